@@ -5,6 +5,7 @@ use crate::render::simd::{BATCH, Lanes, Number, Vec3};
 /// A batch of positions on surfaces, with their normals and their light: an array for each
 /// quantity.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 pub struct Batch<T> {
     /// The number of positions; entries beyond it are meaningless.
     pub len: usize,

@@ -5,7 +5,8 @@
 //! functions in f64, which holds these integers exactly.
 
 use fearless_simd::{
-    Select as _, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8, i32x16,
+    Bytes as _, Select as _, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8,
+    i32x16,
 };
 
 use super::bins::LargeTriangle;
@@ -23,7 +24,11 @@ pub(crate) const LONGEST: i32 = TILE;
 /// Columns and rows of the pixels of two rows of a block, or of the blocks of two rows of a tile.
 const ACROSS: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const DOWN: [i32; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
-const COLUMNS: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
+/// The upper half of the bits of 2^52 as f64. Those of 2^52 + n, n below 2^32, end in n.
+const UPPER: i32 = 0x4330_0000;
+/// 2^52 + 2^31.
+const TO_SIGNED: f64 = 4_503_601_774_854_144.0;
 
 /// Two rows of a block at a time.
 const PAIRS: i32 = BLOCK / 2;
@@ -34,16 +39,13 @@ pub(crate) struct Medium<S: Simd> {
     /// The edge functions at the first pixel of the tile, less their least values at covered
     /// centres.
     edges: [i32; 3],
-    /// The same of the second and third corner without the least values, which depth needs.
-    second: i32,
-    third: i32,
+    /// The least values of the second and the third corner's, which depth needs.
+    least: [i32; 2],
     /// Their steps by a subpixel to the right, and by one down.
     right: [i32; 3],
     down: [i32; 3],
     /// Their offsets within two rows of a block.
     gains: [i32x16<S>; 3],
-    /// The steps of the second and third by pixels to the right.
-    columns: [f64x8<S>; 2],
     depth: f64,
     to_second: f64,
     to_third: f64,
@@ -77,18 +79,14 @@ impl<S: Simd> Medium<S> {
         let least = |i: usize| i32::from(right[i] < 0 || (right[i] == 0 && down[i] <= 0));
         let (across, below) = (i32x16::from_slice(simd, &ACROSS), i32x16::from_slice(simd, &DOWN));
         let gain = |i: usize| across * (right[i] * SUBPIXELS) + below * (down[i] * SUBPIXELS);
-        let columns = f64x8::from_slice(simd, &COLUMNS);
-        let step = |i: usize| columns * f64::from(right[i] * SUBPIXELS);
         let [a, b, c] = each(large.corners, |corner| corner.depth);
         let per_area = 1.0 / f64::from(area.abs());
         Some(Self {
             edges: [at(0) - least(0), at(1) - least(1), at(2) - least(2)],
-            second: at(1),
-            third: at(2),
+            least: [least(1), least(2)],
             right,
             down,
             gains: [gain(0), gain(1), gain(2)],
-            columns: [step(1), step(2)],
             depth: f64::from(a),
             to_second: (f64::from(b) - f64::from(a)) * per_area,
             to_third: (f64::from(c) - f64::from(a)) * per_area,
@@ -168,26 +166,26 @@ impl<S: Simd> Medium<S> {
         let (pairs, _) = visibility.as_chunks_mut::<16>();
         let first = (area.top - row).max(0) / 2;
         let end = ((area.bottom - row + 1) / 2).min(PAIRS);
+        let above = 2 * first * SUBPIXELS;
+        let at = |i: usize| self.gains[i] + (self.edges[i] + gain[i] + above * self.down[i]);
+        let two_down = |i: usize| 2 * SUBPIXELS * self.down[i];
+        let [mut a, mut b, mut c] = [at(0), at(1), at(2)];
         for pair in first..end {
-            let below = 2 * pair * SUBPIXELS;
-            let at = |i: usize| self.gains[i] + (self.edges[i] + gain[i] + below * self.down[i]);
-            let covered = (at(0) | at(1) | at(2)).simd_ge(0);
+            let covered = (a | b | c).simd_ge(0);
             if covered.any_true() {
-                let second = self.second + gain[1] + below * self.down[1];
-                let third = self.third + gain[2] + below * self.down[2];
-                let depth = self.depths(simd, second, third);
+                let depth = self.depths(simd, b + self.least[0], c + self.least[1]);
                 put_rows(format, simd, covered, depth, self.number, &mut pairs[pair as usize % 4]);
             }
+            (a, b, c) = (a + two_down(0), b + two_down(1), c + two_down(2));
         }
     }
 
-    /// The depths of two rows of a block, from the edge functions of their first pixel.
+    /// The depths of two rows of a block, from their edge functions.
     #[inline(always)]
-    fn depths(&self, simd: S, second: i32, third: i32) -> f32x16<S> {
-        let upper = self.depth_at(second, third);
-        let lower =
-            self.depth_at(second + SUBPIXELS * self.down[1], third + SUBPIXELS * self.down[2]);
-        let depth = upper.narrow(lower);
+    fn depths(&self, simd: S, second: i32x16<S>, third: i32x16<S>) -> f32x16<S> {
+        let (second, third) = (in_f64(second), in_f64(third));
+        let upper = self.depth_at(second[0], third[0]);
+        let depth = upper.narrow(self.depth_at(second[1], third[1]));
         let (low, high) = (f32x16::splat(simd, self.low), f32x16::splat(simd, self.high));
         let depth = depth.simd_gt(low).select(depth, low);
         depth.simd_lt(high).select(depth, high)
@@ -195,9 +193,14 @@ impl<S: Simd> Medium<S> {
 
     /// The depths of a row, before they are clamped to the corners'.
     #[inline(always)]
-    fn depth_at(&self, second: i32, third: i32) -> f64x8<S> {
-        let second = self.columns[0] + f64::from(second);
-        let third = self.columns[1] + f64::from(third);
+    fn depth_at(&self, second: f64x8<S>, third: f64x8<S>) -> f64x8<S> {
         second * self.to_second + self.depth + third * self.to_third
     }
+}
+
+/// Integers as f64. No instruction but those of AVX-512 converts them to eight f64 at once.
+#[inline(always)]
+fn in_f64<S: Simd>(numbers: i32x16<S>) -> [f64x8<S>; 2] {
+    let (low, high) = (numbers ^ i32::MIN).interleave(i32x16::splat(numbers.simd, UPPER));
+    [low.bitcast::<f64x8<S>>() - TO_SIGNED, high.bitcast::<f64x8<S>>() - TO_SIGNED]
 }

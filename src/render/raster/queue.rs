@@ -15,6 +15,7 @@ pub(crate) type Pack<S> = [i32x16<S>; ROWS];
 
 /// Triangles that wait until there are [`WAITING`] of them.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 pub(crate) struct Queue {
     rows: [[i32; WAITING + PACK]; ROWS],
     pub(super) count: usize,

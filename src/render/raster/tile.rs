@@ -37,7 +37,7 @@ use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at
 /// by row.
 #[derive(Debug)]
 pub(crate) struct Visibility {
-    buffer: Box<[u64; FOUR * PIXELS]>,
+    buffer: Box<Buffer>,
     /// The samples of the pass.
     sample_positions: SamplePositions,
     /// The blocks whose entries are valid, a bit for each.
@@ -59,6 +59,12 @@ pub(crate) struct Visibility {
     bounds: PixelBox,
 }
 
+/// Entries. Rows of eight begin with a cache line, since those that cross one are read and written
+/// twice: 4% of a frame of 70,000 triangles, flat, at 1920 x 1080.
+#[derive(Debug)]
+#[repr(align(64))]
+struct Buffer([u64; FOUR * PIXELS]);
+
 /// A triangle that covers a block fully.
 #[derive(Clone, Copy, Debug)]
 enum Shown {
@@ -69,7 +75,7 @@ enum Shown {
 impl Default for Visibility {
     fn default() -> Self {
         Self {
-            buffer: Box::new([0; FOUR * PIXELS]),
+            buffer: Box::new(Buffer([0; FOUR * PIXELS])),
             sample_positions: SamplePositions::default(),
             written: 0,
             whole: 0,
@@ -169,18 +175,18 @@ impl Visibility {
 
     /// The entries of a block that shows something, row by row, with one sample per pixel.
     pub(crate) fn block(&self, block: usize) -> &[u64; BLOCK_PIXELS] {
-        &self.buffer.as_chunks().0[block]
+        &self.buffer.0.as_chunks().0[block]
     }
 
     /// The entries of a block that shows something, with four samples per pixel.
     pub(crate) fn planes(&self, block: usize) -> &Planes {
-        &self.buffer.as_chunks().0.as_chunks().0[block]
+        &self.buffer.0.as_chunks().0.as_chunks().0[block]
     }
 
     /// All entries of a block that shows something.
     fn block_samples(&self, block: usize) -> &[u64] {
         let count = BLOCK_PIXELS * self.sample_positions.count();
-        &self.buffer[block * count..][..count]
+        &self.buffer.0[block * count..][..count]
     }
 
     /// Bounds of the depths of all visible triangles: the farthest and the nearest; `None` if no
@@ -284,7 +290,7 @@ impl Visibility {
     /// The entries of a block for one of `N` samples.
     #[inline(always)]
     fn plane<const N: usize>(&mut self, block: usize, sample: usize) -> &mut [u64; BLOCK_PIXELS] {
-        &mut self.buffer.as_chunks_mut().0[block * N + sample]
+        &mut self.buffer.0.as_chunks_mut().0[block * N + sample]
     }
 
     /// Draws a triangle into a block that it covers fully or in part.
@@ -362,7 +368,8 @@ impl Visibility {
                 if self.written >> block & 1 == 0 {
                     self.write::<N>(simd.level(), block);
                 }
-                self.buffer[place] = self.buffer[place].max(word(key, number));
+                let old = &mut self.buffer.0[place];
+                *old = word(key, number).max(*old);
             },
         ));
     }

@@ -14,6 +14,7 @@ use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 
 /// The barycentric coordinates of a list of fragments.
 #[derive(Debug)]
+#[repr(align(64))]
 pub(crate) struct Barycentrics<T> {
     /// The second and third barycentric coordinate, linear on the screen.
     pub(crate) linear: [[T; BATCH]; 2],

@@ -26,6 +26,7 @@ pub(crate) enum Form {
 
 /// Colours of a list of pixels.
 #[derive(Debug)]
+#[repr(align(64))]
 pub(crate) struct Colors {
     pub(crate) form: Form,
     /// Whether fixed-point numbers are linear values, which are encoded when they are added up.
@@ -107,7 +108,7 @@ impl Colors {
 
     /// Replaces each colour by that of the slot with its number: from colours of triangles to
     /// colours of their pixels.
-    pub(crate) fn hand_out(&mut self, pixels: &[i32; BATCH]) {
+    pub(crate) fn hand_out(&mut self, pixels: &[i32]) {
         let hand_out = |row: &mut [u32; BATCH]| {
             let before = *row;
             for (color, place) in row.iter_mut().zip(pixels) {

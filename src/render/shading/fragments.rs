@@ -8,13 +8,17 @@
 
 use std::hint::select_unpredictable;
 
-use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, u32x16};
+use fearless_simd::{
+    Level, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, dispatch, i32x16, mask32x16,
+    u32x16, u64x8,
+};
 
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::simd::gather::SLOTS;
 
 /// The pixels of one block that show triangles. See the [module](self).
 #[derive(Debug)]
+#[repr(align(64))]
 pub(crate) struct Fragments {
     /// The number of fragments.
     pub(crate) len: usize,
@@ -23,8 +27,9 @@ pub(crate) struct Fragments {
     /// Their columns and rows in the picture.
     pub(crate) x: [i32; BLOCK_PIXELS],
     pub(crate) y: [i32; BLOCK_PIXELS],
-    /// The slots of the triangles that they show. Entries beyond the last are valid slots, too.
-    pub(crate) slots: [i32; BLOCK_PIXELS],
+    /// The slots of the triangles that they show. Entries beyond the last are valid slots, too; the
+    /// last row is room for a run that begins at the last pixel.
+    pub(crate) slots: [i32; BLOCK_PIXELS + ROW],
     /// Whether several fragments may share a pixel: then `shares` says how many samples of its
     /// pixel each of them has.
     pub(crate) shared: bool,
@@ -63,7 +68,7 @@ impl Default for Fragments {
             pixels: [0; BLOCK_PIXELS],
             x: [0; BLOCK_PIXELS],
             y: [0; BLOCK_PIXELS],
-            slots: [0; BLOCK_PIXELS],
+            slots: [0; BLOCK_PIXELS + ROW],
             shared: false,
             shares: [0; BLOCK_PIXELS],
             count: 0,
@@ -96,18 +101,14 @@ impl Fragments {
         if triangles == 0 {
             return Shown { triangles, lines: !background };
         }
-        let first = numbers[MARGIN];
         if triangles == u64::MAX && left | 1 == u64::MAX {
-            self.count = 1;
-            self.numbers[0] = first;
-            self.put_all(corner, &[0; BLOCK_PIXELS]);
+            self.list_full_block(numbers[MARGIN], corner);
         } else {
-            let starts = triangles & (!left | FIRST_COLUMN);
-            let slots = self.share_out(&numbers, starts);
+            self.share_out(&numbers, triangles & (!left | FIRST_COLUMN));
             if triangles == u64::MAX {
-                self.put_all(corner, &slots);
+                self.put_all(corner);
             } else {
-                self.put_some(corner, &slots, triangles);
+                self.put_some(simd, corner, triangles);
             }
         }
         Shown { triangles, lines: !triangles & !background }
@@ -128,28 +129,20 @@ impl Fragments {
         self.shared = false;
         self.count = 1;
         self.numbers[0] = number;
-        self.put_all(corner, &[0; BLOCK_PIXELS]);
+        self.slots.fill(0);
+        self.put_all(corner);
     }
 
     /// Assigns slots to the runs of pixels that begin at `starts`.
     #[inline(always)]
-    fn share_out(
-        &mut self,
-        numbers: &[u32; MARGIN + BLOCK_PIXELS],
-        mut starts: u64,
-    ) -> [i32; BLOCK_PIXELS] {
+    fn share_out(&mut self, numbers: &[u32; MARGIN + BLOCK_PIXELS], mut starts: u64) {
         (self.count, self.table) = (0, [FREE; TABLE]);
-        // With room for a run that begins at the last pixel.
-        let mut slots = [0; BLOCK_PIXELS + ROW];
         while starts != 0 {
             let at = starts.trailing_zeros() as usize % BLOCK_PIXELS;
             starts &= starts - 1;
             let slot = self.slot_of(numbers[MARGIN + at]);
-            slots[at..][..ROW].fill(slot);
+            self.slots[at..][..ROW].fill(slot);
         }
-        let mut all = [0; BLOCK_PIXELS];
-        all.copy_from_slice(&slots[..BLOCK_PIXELS]);
-        all
     }
 
     /// The slot of a triangle; a new one if it has none.
@@ -170,24 +163,36 @@ impl Fragments {
         slot as i32
     }
 
+    /// Lists all pixels; their slots are set.
     #[inline(always)]
-    fn put_all(&mut self, [left, top]: [i32; 2], slots: &[i32; BLOCK_PIXELS]) {
+    fn put_all(&mut self, [left, top]: [i32; 2]) {
         self.len = BLOCK_PIXELS;
         self.pixels = ALL_PIXELS;
         for ((x, y), place) in self.x.iter_mut().zip(&mut self.y).zip(ALL_PIXELS) {
             *x = left + i32::from(place) % BLOCK;
             *y = top + i32::from(place) / BLOCK;
         }
-        self.slots = *slots;
     }
 
+    /// Lists some pixels, whose slots are set at their places in the block.
     #[inline(always)]
-    fn put_some(&mut self, corner: [i32; 2], slots: &[i32; BLOCK_PIXELS], mut pixels: u64) {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 64")]
+    fn put_some<S: Simd>(&mut self, simd: S, [left, top]: [i32; 2], pixels: u64) {
         self.len = 0;
-        while pixels != 0 {
-            let place = pixels.trailing_zeros() as usize % BLOCK_PIXELS;
-            pixels &= pixels - 1;
-            self.put(corner, ALL_PIXELS[place], slots[place]);
+        for at in (0..BLOCK_PIXELS).step_by(16) {
+            let some = pixels >> at & 0xffff;
+            let mask = mask32x16::from_bitmask(simd, some);
+            let first = i32x16::splat(simd, ALL_PIXELS[at].into());
+            let places = (i32x16::from_slice(simd, &UP_TO_SIXTEEN) + first).compress(mask);
+            let to = self.len..self.len + 16;
+            ((places & (BLOCK - 1)) + left).store_slice(&mut self.x[to.clone()]);
+            ((places >> 3) + top).store_slice(&mut self.y[to.clone()]);
+            let slots = i32x16::from_slice(simd, &self.slots[at..at + 16]).compress(mask);
+            slots.store_slice(&mut self.slots[to.clone()]);
+            for (pixel, place) in self.pixels[to].iter_mut().zip(<[i32; 16]>::from(places)) {
+                *pixel = place as u8;
+            }
+            self.len += some.count_ones() as usize;
         }
     }
 
@@ -267,19 +272,20 @@ pub(crate) struct Runs {
 
 impl Runs {
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
     pub(crate) fn find<S: Simd>(simd: S, visibility: &[u64; BLOCK_PIXELS]) -> Self {
         // The number of the background is not that of any triangle.
+        let mut before = u32x16::splat(simd, u32::MAX);
         let mut numbers = [u32::MAX; MARGIN + BLOCK_PIXELS];
-        for (number, word) in numbers[MARGIN..].iter_mut().zip(visibility) {
-            *number = !(*word as u32);
-        }
         let (mut triangles, mut background, mut left) = (0, 0, 0);
         for at in (0..BLOCK_PIXELS).step_by(16) {
-            let own = sixteen(simd, &numbers, MARGIN + at);
+            let words = |at| u64x8::from_slice(simd, &visibility[at..at + 8]);
+            let own = !words(at).narrow(words(at + 8));
+            own.store_slice(&mut numbers[MARGIN + at..][..16]);
             triangles |= own.simd_lt(1 << 31).to_bitmask() << at;
             background |= own.simd_eq(u32::MAX).to_bitmask() << at;
-            left |= own.simd_eq(sixteen(simd, &numbers, MARGIN + at - 1)).to_bitmask() << at;
+            // The last lane of those before, and all but the last of its own.
+            left |= own.simd_eq(before.slide::<15>(own)).to_bitmask() << at;
+            before = own;
         }
         Self { numbers, triangles, background, left }
     }
@@ -289,6 +295,11 @@ impl Runs {
         self.triangles & !self.left
     }
 
+    /// The pixels at which runs of anything begin, in each row of the block.
+    pub(crate) const fn starts_in_rows(&self) -> u64 {
+        !self.left | FIRST_COLUMN
+    }
+
     /// The number of the primitive at a pixel.
     #[inline(always)]
     pub(crate) const fn number(&self, pixel: usize) -> u32 {
@@ -296,10 +307,7 @@ impl Runs {
     }
 }
 
-#[inline(always)]
-fn sixteen<S: Simd>(simd: S, numbers: &[u32; MARGIN + BLOCK_PIXELS], at: usize) -> u32x16<S> {
-    u32x16::from_slice(simd, &numbers[at..at + 16])
-}
+const UP_TO_SIXTEEN: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// The pixels of a block, in order.
 const ALL_PIXELS: [u8; BLOCK_PIXELS] = {

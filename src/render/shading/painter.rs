@@ -187,6 +187,8 @@ impl<T: ShadingNumber> Painter<T> {
     ) -> bool {
         let layered = self.layered.layers.touched();
         let mut whole = self.visibility.full_blocks() & !layered;
+        let background = u32::from_le_bytes(context.plan.background.opaque());
+        let mut colors = [0; BLOCK_PIXELS + ROW];
         if whole != u64::MAX {
             for row in canvas.pixels.chunks_mut(canvas.stride).take(TILE_SIDE) {
                 row[..TILE_SIDE].fill(context.plan.background.opaque());
@@ -222,10 +224,10 @@ impl<T: ShadingNumber> Painter<T> {
                     self.block_of_samples(context, (block, corner), canvas, at)
                 } else {
                     let visibility = self.visibility.block(block);
-                    let background = u32::from_le_bytes(context.plan.background.opaque());
-                    let known = context.faces.and_then(|all| all.of_block(visibility, background));
-                    if let Some(colors) = known {
-                        canvas.put(at, &colors);
+                    let runs = (visibility, self.shader.runs[block]);
+                    let faces = context.faces;
+                    if faces.is_some_and(|all| all.of_block(runs, background, &mut colors)) {
+                        canvas.put(at, &colors[..BLOCK_PIXELS]);
                         visibility.iter().any(|word| *word != 0)
                     } else {
                         self.shader.block(context, visibility, corner, (canvas, at))

@@ -51,7 +51,7 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         let mut new = std::mem::take(&mut self.new_faces);
         new.clear();
-        list(context.level, faces, visibility, &mut new);
+        list(context.level, faces, visibility, (&mut new, &mut self.runs));
         let mut left = &new[..];
         while let Some(first) = left.first() {
             let group = group_of(context, *first);
@@ -78,16 +78,28 @@ impl<T: ShadingNumber> Shader<T> {
     }
 }
 
-/// Lists the triangles of a tile that have to be lit.
-fn list(level: Level, faces: &FaceColors, visibility: &Visibility, to: &mut Vec<u32>) {
+/// Lists the triangles of a tile that have to be lit, and finds where runs of pixels begin that
+/// show the same, a bit for each pixel of each block.
+fn list(
+    level: Level,
+    faces: &FaceColors,
+    visibility: &Visibility,
+    to: (&mut Vec<u32>, &mut [u64; BLOCK_PIXELS]),
+) {
     dispatch!(level, simd => list_in(simd, faces, visibility, to));
 }
 
 #[inline(always)]
-fn list_in<S: Simd>(simd: S, faces: &FaceColors, visibility: &Visibility, to: &mut Vec<u32>) {
+fn list_in<S: Simd>(
+    simd: S,
+    faces: &FaceColors,
+    visibility: &Visibility,
+    (to, all_runs): (&mut Vec<u32>, &mut [u64; BLOCK_PIXELS]),
+) {
     let shown = |block: &usize| visibility.shows(*block) && visibility.whole(*block).is_none();
     for block in (0..BLOCK_PIXELS).filter(shown) {
         let runs = Runs::find(simd, visibility.block(block));
+        all_runs[block] = runs.starts_in_rows();
         let mut starts = runs.starts();
         while starts != 0 {
             let number = runs.number(starts.trailing_zeros() as usize);

@@ -57,6 +57,9 @@ pub(crate) struct Shader<T> {
     pub(super) colors: Colors,
     /// The triangles of a tile that have to be lit.
     pub(super) new_faces: Vec<u32>,
+    /// Where runs of pixels that show the same begin in each block of a tile, if colours of
+    /// triangles are looked up.
+    pub(super) runs: [u64; BLOCK_PIXELS],
 }
 
 /// The destination of a block's colours.
@@ -98,6 +101,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             maps: Box::default(),
             colors: Colors::default(),
             new_faces: Vec::new(),
+            runs: [0; BLOCK_PIXELS],
         }
     }
 }

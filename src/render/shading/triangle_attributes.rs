@@ -27,6 +27,7 @@ const NARROW_SIDE: i32 = 1 << 20;
 
 /// The attributes of some triangles of one draw. See the [module](self).
 #[derive(Debug)]
+#[repr(align(64))]
 pub(crate) struct TriangleAttributes<T> {
     pub(crate) count: usize,
     /// Their numbers in the mesh.

@@ -9,11 +9,12 @@ use fearless_simd::{
     Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _, f32x16, i32x16,
 };
 
+use self::mip_level::{Footprint, MipLevel};
 use super::sample::{brightness, linear_factors};
 use crate::accuracy::Filter;
 use crate::base::once::get_or_compute;
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{Lanes as _, Real, Sixteen, Vec3, log2};
+use crate::render::simd::{Real, Vec3, log2};
 use crate::scene::{Texture, Wrap};
 
 /// Mip levels, at most: textures have at most 32,768 texels a side.
@@ -80,7 +81,7 @@ impl<'a> Sampler<'a> {
         match self.filter {
             Filter::Nearest => self.nearest::<S, D>(simd, position),
             Filter::Bilinear => {
-                let level = Level::of(self, simd, i32x16::splat(simd, 0));
+                let level = MipLevel::of(self, simd, i32x16::splat(simd, 0));
                 let color = level.bilinear::<D>(simd, self, position);
                 color.times(f32x16::splat(simd, 1.0 / 255.0))
             }
@@ -108,7 +109,7 @@ impl<'a> Sampler<'a> {
         of: impl Fn(i32x16<S>) -> f32x16<S>,
     ) -> f32x16<S> {
         let position = [self.reduced(position[0], 0), self.reduced(position[1], 1)];
-        let level = Level::of(self, simd, i32x16::splat(simd, 0));
+        let level = MipLevel::of(self, simd, i32x16::splat(simd, 0));
         let number = match self.filter {
             Filter::Nearest => of(level.nearest(simd, self, position)),
             Filter::Bilinear | Filter::Trilinear => {
@@ -125,6 +126,13 @@ impl<'a> Sampler<'a> {
             }
         };
         number * (1.0 / 255.0)
+    }
+
+    /// The pixels of a level; none if there is no such level.
+    #[inline(always)]
+    fn pixels_of(&self, level: i32) -> &[[u8; 4]] {
+        let level = level.cast_unsigned() as usize % LEVELS;
+        self.levels.get(level).map_or(&[], |level| level.picture.pixels())
     }
 
     /// Whether the filter shows texels as they are.
@@ -150,7 +158,7 @@ impl<'a> Sampler<'a> {
 
     #[inline(always)]
     fn nearest<S: Simd, D: Decode>(&self, simd: S, position: Positions<S>) -> Vec3<f32x16<S>> {
-        let level = Level::of(self, simd, i32x16::splat(simd, 0));
+        let level = MipLevel::of(self, simd, i32x16::splat(simd, 0));
         let Vec3([r, g, b]) = D::channels(level.nearest(simd, self, position));
         Vec3([r / 255.0, g / 255.0, b / 255.0])
     }
@@ -170,10 +178,10 @@ impl<'a> Sampler<'a> {
         let below = level.floor();
         let part = level - below;
         let below: i32x16<S> = below.to_int();
-        let near = Level::of(self, simd, below).bilinear::<D>(simd, self, position);
+        let near = MipLevel::of(self, simd, below).bilinear::<D>(simd, self, position);
         let color = if part.simd_gt(0.0).any_true() {
             let next = (below + 1).min(last.to_int::<i32x16<S>>());
-            let far = Level::of(self, simd, next).bilinear::<D>(simd, self, position);
+            let far = MipLevel::of(self, simd, next).bilinear::<D>(simd, self, position);
             between(near, far, part)
         } else {
             near
@@ -182,150 +190,10 @@ impl<'a> Sampler<'a> {
     }
 }
 
-/// The mip levels that sixteen pixels read.
-#[derive(Clone, Copy)]
-struct Level<S: Simd> {
-    /// Their level, if it is the same for all.
-    one: Option<usize>,
-    numbers: i32x16<S>,
-    /// Their sides over those of the first level.
-    scale: [f32x16<S>; 2],
-    width: i32x16<S>,
-    height: i32x16<S>,
-}
-
-/// The columns and rows of four texels, and the weights of the right and the upper ones.
-#[derive(Clone, Copy)]
-struct Footprint<S: Simd> {
-    left: i32x16<S>,
-    right: i32x16<S>,
-    lower: i32x16<S>,
-    upper: i32x16<S>,
-    s: f32x16<S>,
-    t: f32x16<S>,
-}
-
-impl<S: Simd> Level<S> {
-    #[inline(always)]
-    fn of(sampler: &Sampler<'_>, simd: S, numbers: i32x16<S>) -> Self {
-        let (low, high) = (numbers.reduce_min(), numbers.reduce_max());
-        let [widths, heights] = &sampler.sizes;
-        let lanes = Sixteen(simd);
-        let one = (low == high).then(|| low.cast_unsigned() as usize % LEVELS);
-        let [width, across] = sides_of(lanes, widths, numbers, one);
-        let [height, up] = sides_of(lanes, heights, numbers, one);
-        let (width, height) = (width.to_int(), height.to_int());
-        Self { one, numbers, scale: [across, up], width, height }
-    }
-
-    /// The texels at some positions.
-    #[inline(always)]
-    fn nearest(&self, simd: S, sampler: &Sampler<'_>, [x, y]: Positions<S>) -> i32x16<S> {
-        // A position on the upper border is that of the last texel.
-        let column = x.to_int::<i32x16<S>>().min(self.width - 1);
-        let row = y.to_int::<i32x16<S>>().min(self.height - 1);
-        self.fetch(simd, sampler, [column, row])
-    }
-
-    /// Interpolates between four texels: red, green and blue from 0 to 255.
-    #[inline(always)]
-    fn bilinear<D: Decode>(
-        &self,
-        simd: S,
-        sampler: &Sampler<'_>,
-        [x, y]: Positions<S>,
-    ) -> Vec3<f32x16<S>> {
-        let (x, y) = (x * self.scale[0] - 0.5, y * self.scale[1] - 0.5);
-        let (column, row) = (x.floor(), y.floor());
-        let (s, t) = (x - column, y - row);
-        let wrap = sampler.levels[0].wrap;
-        let [left, right] = beside(column.to_int(), self.width, wrap);
-        let [lower, upper] = beside(row.to_int(), self.height, wrap);
-        let below = between(
-            D::channels(self.fetch(simd, sampler, [left, lower])),
-            D::channels(self.fetch(simd, sampler, [right, lower])),
-            s,
-        );
-        let above = between(
-            D::channels(self.fetch(simd, sampler, [left, upper])),
-            D::channels(self.fetch(simd, sampler, [right, upper])),
-            s,
-        );
-        between(below, above, t)
-    }
-
-    /// The four texels around some positions.
-    #[inline(always)]
-    fn footprint(&self, sampler: &Sampler<'_>, [x, y]: Positions<S>) -> Footprint<S> {
-        let (x, y) = (x * self.scale[0] - 0.5, y * self.scale[1] - 0.5);
-        let (column, row) = (x.floor(), y.floor());
-        let wrap = sampler.levels[0].wrap;
-        let [left, right] = beside(column.to_int(), self.width, wrap);
-        let [lower, upper] = beside(row.to_int(), self.height, wrap);
-        Footprint { left, right, lower, upper, s: x - column, t: y - row }
-    }
-
-    /// The texels at some columns and rows of the picture; rows count upwards.
-    #[inline(always)]
-    fn fetch(&self, simd: S, sampler: &Sampler<'_>, [column, row]: [i32x16<S>; 2]) -> i32x16<S> {
-        // The picture's own rows run down.
-        let place = <[i32; 16]>::from((self.height - 1 - row) * self.width + column);
-        let mut texels = [0; 16];
-        if let Some(level) = self.one {
-            let pixels = sampler.levels[level].picture.pixels();
-            for (texel, place) in texels.iter_mut().zip(place) {
-                *texel = texel_of(pixels, place);
-            }
-        } else {
-            let numbers = <[i32; 16]>::from(self.numbers);
-            for ((texel, place), number) in texels.iter_mut().zip(place).zip(numbers) {
-                let level = number.cast_unsigned() as usize % LEVELS;
-                if let Some(level) = sampler.levels.get(level) {
-                    *texel = texel_of(level.picture.pixels(), place);
-                }
-            }
-        }
-        i32x16::from_slice(simd, &texels)
-    }
-}
-
-/// The sides of some levels, and those over the first level's; `one` is the level of all lanes, if
-/// they have the same.
-#[inline(always)]
-fn sides_of<S: Simd>(
-    lanes: Sixteen<S>,
-    sides: &[f32; SLOTS],
-    numbers: i32x16<S>,
-    one: Option<usize>,
-) -> [f32x16<S>; 2] {
-    if let Some(level) = one {
-        return [lanes.set(sides[level]), lanes.set(sides[level] / sides[0])];
-    }
-    let side = lanes.pick::<1>(sides, numbers);
-    [side, side / lanes.set(sides[0])]
-}
-
 /// a + (b - a) part.
 #[inline(always)]
 fn between<R: Real>(a: Vec3<R>, b: Vec3<R>, part: R) -> Vec3<R> {
     a.plus(b.minus(a).times(part))
-}
-
-/// A texel by its place; 0 for lanes without a pixel, whose places are arbitrary.
-#[inline(always)]
-fn texel_of(pixels: &[[u8; 4]], place: i32) -> i32 {
-    pixels.get(place.cast_unsigned() as usize).map_or(0, |texel| i32::from_le_bytes(*texel))
-}
-
-/// A column or row, which is at least -1, and the next one, both brought into the picture.
-#[inline(always)]
-fn beside<S: Simd>(i: i32x16<S>, count: i32x16<S>, wrap: Wrap) -> [i32x16<S>; 2] {
-    let zero = i32x16::splat(i.simd, 0);
-    let next = i + 1;
-    match wrap {
-        Wrap::Repeat => [i.simd_lt(0).select(count - 1, i), next.simd_ge(count).select(zero, next)],
-        Wrap::Clamp => [i.max(zero).min(count - 1), next.min(count - 1)],
-    }
 }
 
 /// Red, green and blue of texels, from 0 to 255.
@@ -401,3 +269,5 @@ fn brightness_of<S: Simd>(texels: i32x16<S>) -> f32x16<S> {
 fn alpha_of<S: Simd>(texels: i32x16<S>) -> f32x16<S> {
     ((texels >> 24) & 255).to_float()
 }
+
+mod mip_level;

@@ -13,6 +13,7 @@ const FARTHEST: f64 = 16_384.0;
 
 /// The coordinates of the triangles of a list, slot by slot, along u and v.
 #[derive(Debug)]
+#[repr(align(64))]
 pub(crate) struct Placement {
     /// Those of the first corner, in texels of the texture's own size.
     pub(crate) first: [[f32; SLOTS]; 2],
