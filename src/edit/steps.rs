@@ -21,8 +21,8 @@ pub fn length(scene: &Scene, view: &View) -> f64 {
 /// them. 0 if there are none.
 ///
 /// Each object counts as a cube as wide as its largest extent, so that turning it, or moving it if
-/// it is the only one, leaves the extent as it is. The plane of the menu of shapes does not count
-/// beside other objects: it is the ground, and larger than what stands on it.
+/// it is the only one, leaves the extent as it is. The ground and the plane of the menu of shapes do
+/// not count beside other objects: they are larger than what stands on them.
 #[must_use]
 pub fn extent(scene: &Scene) -> f64 {
     let cube = |object: &Object| {
@@ -32,7 +32,8 @@ pub fn extent(scene: &Scene) -> f64 {
         Some((centre - half, centre + half))
     };
     let is_ground = |object: &Object| {
-        object.model.source.is_none() && Shape::named(&object.model.name) == Some(Shape::Plane)
+        let shape = Shape::named(&object.model.name).filter(|_| object.model.source.is_none());
+        shape.is_some_and(Shape::is_ground)
     };
     let around = |with_ground: bool| {
         let objects = scene.objects.iter().map(|(_, object)| object);

@@ -192,8 +192,11 @@ actions! {
         "Visible" "Shows or hides the selected object or camera."
         "hide show eye";
 
+    AddGround Add ONCE []
+        "Ground" "Adds ground below all objects, which fades out far away and takes shadows."
+        "floor plane horizon fade infinite disc shape new";
     AddPlane Add ONCE []
-        "Plane" "Adds a plane as ground, below all objects."
+        "Plane" "Adds a square plane, below all objects."
         "floor ground quad primitive shape new";
     AddCube Add ONCE []
         "Cube" "Adds a cube, a fifth as large as the scene, at the origin."
