@@ -9,7 +9,8 @@ pub use axes::{AXES, Axis, AxisKind, Choice, Lesson, uncapitalized};
 pub use presets::{ACCURACY_PRESETS, AccuracyPreset};
 pub use settings::{
     Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt,
-    LightValues, NormalMatrix, Normalising, Rounding, Samples, Settings, SpecularForm,
-    SpecularPower, Subpixels, Tangents, Transparency, VertexArithmetic,
+    LightValues, NormalMatrix, Normalising, Rounding, Samples, Settings, ShadowMapForm,
+    ShadowMethod, SpecularForm, SpecularPower, Subpixels, Tangents, Terminator, Transparency,
+    VertexArithmetic,
 };
 pub use shot::Shot;

@@ -30,7 +30,7 @@ pub use mesh::clusters::{CLUSTER, Cluster};
 pub use mesh::draw_order::{DrawOrder, DrawTriangle, NormalSource, Points};
 pub use mesh::edge_order::{DrawEdge, EdgeOrder};
 pub use mesh::edges::Edge;
-pub use mesh::ray_tree::{RayTree, TreeChild, TreeNode, TreeTriangle};
+pub use mesh::ray_tree::{RayTree, TREE_BLOCK, TreeBlock, TreeChild, TreeNode, TreeTriangle};
 pub use mesh::{
     Corner, Mesh, MeshError, MeshSource, NONE, Part, Point, SourceCorner, Triangle, dvec3, newell,
 };

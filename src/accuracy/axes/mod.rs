@@ -39,6 +39,7 @@ mod light;
 mod picture;
 mod sampling;
 mod sense;
+mod shadows;
 mod texture;
 mod transparency;
 
@@ -126,6 +127,7 @@ pub const AXES: &[Axis] = &[
     geometry::COVERAGE,
     picture::DEPTH,
     transparency::TRANSPARENCY,
+    shadows::SHADOW_METHOD,
     sampling::SAMPLES,
     geometry::INTERPOLATION,
     geometry::STRETCHED,
@@ -134,6 +136,7 @@ pub const AXES: &[Axis] = &[
     picture::ROUNDING,
     light::SPECULAR,
     texture::TANGENTS,
+    shadows::TERMINATOR,
     light::VALUES,
 ];
 

@@ -6,7 +6,7 @@
 
 use crate::accuracy::{
     BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LightValues, Normalising, Rounding,
-    Settings, SpecularPower, Subpixels, Tangents, VertexArithmetic,
+    Settings, ShadowMethod, SpecularPower, Subpixels, Tangents, Terminator, VertexArithmetic,
 };
 use crate::render::simd::Number;
 
@@ -70,6 +70,10 @@ pub(crate) struct Variants {
     pub(crate) tangents: Tangents,
     /// How the maps of bumps are filtered.
     pub(crate) bump_filter: BumpFilter,
+    /// How it is decided whether a light is seen.
+    pub(crate) shadow_method: ShadowMethod,
+    /// Where rays of shadows begin.
+    pub(crate) terminator: Terminator,
     /// In which values light is computed.
     pub(crate) light_values: LightValues,
 }
@@ -88,6 +92,8 @@ impl Variants {
             interpolation: settings.interpolation,
             tangents: settings.tangents,
             bump_filter: settings.bump_filter,
+            shadow_method: settings.shadow_method,
+            terminator: settings.terminator,
             light_values: settings.light_values,
         }
     }

@@ -76,7 +76,15 @@ fn shadow_source(light: &Light, source: &Source) -> Option<ShadowSource> {
     let kind = match light.kind {
         LightKind::Ambient => return None,
         LightKind::Sun { .. } => ShadowSource::Direction(-math::unit(source.direction)?),
-        LightKind::Bulb { .. } | LightKind::Spot { .. } => point,
+        LightKind::Bulb { .. } => point,
+        LightKind::Spot { .. } => match math::unit(source.direction) {
+            Some(direction) => ShadowSource::Cone {
+                at: source.position,
+                direction,
+                cos_half_aperture: source.cos_half_aperture,
+            },
+            None => point,
+        },
     };
     light.shadows.then_some(kind)
 }
