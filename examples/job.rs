@@ -18,7 +18,7 @@ use cpu_time::ProcessTime;
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
 use marraztu::accuracy::Shot;
-use marraztu::accuracy::{Filter, LightAt, Samples, Settings};
+use marraztu::accuracy::{Axis, Choice, Filter, LightAt, Samples, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::{Shared, color::Color, math};
 use marraztu::io::{self, LoadError, Progress, SaveError};
@@ -80,6 +80,10 @@ struct Job {
     /// difference, rays and occluded rays of the first frame
     #[arg(long)]
     shadows: bool,
+    /// How it is decided whether a light is seen: exact, map-2048, map-2048-pcf and others, as
+    /// `marraztu render --shadow-method`
+    #[arg(long, value_name = "METHOD", default_value = "exact")]
+    shadow_method: String,
     /// Save the first frame's picture: .ppm, .png, .jpg or .webp
     #[arg(long)]
     out: Option<PathBuf>,
@@ -211,7 +215,13 @@ fn supported(job: &Job) -> Result<(Mode, Samples, Level), String> {
              them; there are best, avx512, avx2, sse4.2, plain"
         )
     })?;
+    method(job).ok_or_else(|| format!("there are no shadows by \"{}\"", job.shadow_method))?;
     Ok((mode, samples, level))
+}
+
+/// The choice of how shadows are decided.
+fn method(job: &Job) -> Option<&'static Choice> {
+    Axis::named("shadow-method")?.choice(&job.shadow_method)
 }
 
 /// What was measured.
@@ -405,6 +415,7 @@ fn stage(
         normals: if mode == Mode::Flat { Normals::Face } else { Normals::Vertex },
         ..scene.first_view()
     };
+    settings = method(job).map_or(settings, |method| method.of(&settings));
     settings.light = match mode {
         Mode::Flat => LightAt::Face,
         Mode::Gouraud => LightAt::Vertex,

@@ -21,8 +21,8 @@ pub fn length(scene: &Scene, view: &View) -> f64 {
 /// them. 0 if there are none.
 ///
 /// Each object counts as a cube as wide as its largest extent, so that turning it, or moving it if
-/// it is the only one, leaves the extent as it is. The ground and the plane of the menu of shapes do
-/// not count beside other objects: they are larger than what stands on them.
+/// it is the only one, leaves the extent as it is. The ground and the plane of the menu of shapes
+/// do not count beside other objects: they are larger than what stands on them.
 #[must_use]
 pub fn extent(scene: &Scene) -> f64 {
     let cube = |object: &Object| {

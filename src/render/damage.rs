@@ -386,8 +386,8 @@ fn reach(draw: &Draw, plan: &FramePlan) -> PixelBox {
     around(plan, &corners, f64::from(plan.line_width)).unwrap_or(all)
 }
 
-/// The pixels that the convex hull of points in clip space may cover, and so many around; `None`
-/// if it reaches the near plane.
+/// The pixels that the convex hull of points in clip space may cover, with a margin; `None` if it
+/// reaches the near plane.
 #[expect(
     clippy::cast_precision_loss,
     clippy::cast_possible_truncation,

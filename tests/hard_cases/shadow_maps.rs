@@ -84,7 +84,7 @@ fn case_78_a_plane_does_not_shade_itself_in_a_shadow_map_with_a_bias() {
         what: "pixels that a map of 4096 decides otherwise than rays",
         naive: Some(("a map of 512", wrong[0] as f64)),
         ours: wrong[1] as f64,
-        bound: 150.0,
+        bound: 24.0,
         unit: "pixels",
     }
     .hold();

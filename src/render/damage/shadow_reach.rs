@@ -1,9 +1,9 @@
 //! The tiles in which shadows change if something that casts them does.
 //!
-//! With light at pixels, a point's shadow depends on a caster only if it lies in the caster's shadow
-//! volume: what the light sees behind its box, as far as anything is drawn. The volume is convex, so
-//! its corners bound its pixels. Lights that change need nothing of their own, since every surface
-//! that they are on is drawn again anyway.
+//! With light at pixels, a point's shadow depends on a caster only if it lies in the caster's
+//! shadow volume: what the light sees behind its box, as far as anything is drawn. The volume is
+//! convex, so its corners bound its pixels. Lights that change need nothing of their own, since
+//! every surface that they are on is drawn again anyway.
 //!
 //! Crow, "Shadow Algorithms for Computer Graphics", SIGGRAPH 1977.
 
@@ -70,11 +70,37 @@ fn add_volumes(plan: &FramePlan, caster: &Caster, tiles: &mut Tiles) -> bool {
         let Some(ends) = ends_of(source, &corners, &drawn) else { return false };
         let points = corners.into_iter().chain(ends);
         let clip: Vec<DVec4> = points.map(|p| clip_from_world * p.extend(1.0)).collect();
+        let seen = before_the_near_plane(&clip);
+        if seen.is_empty() {
+            continue;
+        }
         // Points are lit up to a pixel away from where they are seen.
-        let Some(pixels) = around(plan, &clip, 2.0) else { return false };
+        let Some(pixels) = around(plan, &seen, 2.0) else { return false };
         tiles.add(pixels);
     }
     true
+}
+
+/// Points in clip space whose convex hull is that of the given ones, as far as it is before the
+/// near plane: those that are, and where the way from one to one that is not meets the plane.
+fn before_the_near_plane(points: &[DVec4]) -> Vec<DVec4> {
+    // A little before it, so that rounding leaves no point behind it.
+    let distance = |p: &DVec4| p.w * (1.0 - 1e-6) - p.z;
+    let mut seen = Vec::new();
+    for p in points {
+        let own = distance(p);
+        if own < 0.0 {
+            continue;
+        }
+        seen.push(*p);
+        for other in points {
+            let beyond = distance(other);
+            if beyond < 0.0 {
+                seen.push(*p + (*other - *p) * (own / (own - beyond)));
+            }
+        }
+    }
+    seen
 }
 
 /// Where the shadow volume of a box ends: behind everything that is drawn. `None` if the light is

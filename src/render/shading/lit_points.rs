@@ -1,8 +1,8 @@
 //! The points of triangles at which fragments are lit, in world space: rays of shadows begin there.
 //!
 //! They are computed in f64 from whole edge functions, in either arithmetic, and lie inside their
-//! triangles: see [`INSIDE`]. On request they are lifted to the surface that vertex normals suggest:
-//! see [`lift`].
+//! triangles: see [`INSIDE`]. On request they are lifted to the surface that vertex normals
+//! suggest: see [`lift`].
 
 use glam::{DMat3, DVec3};
 

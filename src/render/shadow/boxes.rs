@@ -102,7 +102,7 @@ impl LocalRays {
     }
 }
 
-/// The larger of two numbers, neither of which is NaN; a comparison and a choice, for lanes.
+/// The larger of two numbers, none of them NaN; a comparison and a choice, for lanes.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }

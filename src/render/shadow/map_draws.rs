@@ -5,7 +5,6 @@ use glam::{DMat3, DMat4, DVec3};
 use rayon::prelude::*;
 
 use super::map_face::{Face, place};
-use super::maps::{MapView, STEEPEST};
 use crate::accuracy::{Samples, ShadowMapForm, Transparency};
 use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;
@@ -31,6 +30,20 @@ const ROUNDING: f32 = 4.0 * f32::EPSILON;
 
 /// More than half of a texel, for corners that are snapped to 1/256 of it.
 const HALF: f64 = 0.51;
+
+/// The largest slope that a bias takes into account, relative to 45 degrees.
+const STEEPEST: f64 = 16.0;
+
+/// A picture that a light takes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MapView {
+    pub(super) view_from_world: DMat4,
+    pub(super) clip_from_view: DMat4,
+    /// The slope of a surface at 45 degrees, times the texels of a row: a depth or, in perspective,
+    /// a part of the depth.
+    pub(super) slope: f64,
+    pub(super) is_perspective: bool,
+}
 
 /// Draws the pictures of a frame's shadow maps.
 #[derive(Debug)]
@@ -209,7 +222,8 @@ impl Tile<'_> {
     /// How much the depth of a triangle changes from texel to texel, at most.
     ///
     /// With the corners p, q, r in homogeneous pixels (x, y, w) and their z, the plane of depths is
-    /// (zp (q x r) + zq (r x p) + zr (p x q)) / (p . (q x r)), also if a corner is behind the light.
+    /// (zp (q x r) + zq (r x p) + zr (p x q)) / (p . (q x r)), also if a corner is behind the
+    /// light.
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
     fn slope(&self, number: u32) -> f32 {
         let (draw, start) = self.geometry.draw_of(number);

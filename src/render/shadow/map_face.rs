@@ -2,7 +2,6 @@
 
 use glam::DMat4;
 
-use super::maps::LightMap;
 use crate::render::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE_SIDE};
 use crate::render::simd::BATCH;
 
@@ -26,6 +25,13 @@ pub(super) const fn place(side: usize, x: usize, y: usize) -> usize {
 
 /// The texels that are compared if nine are.
 pub(crate) const TAPS: u32 = 9;
+
+/// What one light sees.
+#[derive(Debug)]
+pub(crate) struct LightMap {
+    pub(super) faces: Vec<Face>,
+    pub(super) is_filtered: bool,
+}
 
 /// What a map says of a batch of points.
 #[derive(Clone, Copy, Debug)]

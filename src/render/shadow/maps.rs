@@ -10,7 +10,7 @@
 //! compared: by s = |dz/dx| + |dz/dy| times half a texel, or one and a half if nine texels are
 //! compared. s is the largest of the planes that the texel and its eight neighbours show, as far as
 //! they continue its surface, because a point in the texel may lie on any of them; it is at most
-//! [`STEEPEST`] times that of a surface at 45 degrees. So no plane shades itself.
+//! [`STEEPEST`](super::map_draws) times that of a surface at 45 degrees. So no plane shades itself.
 //!
 //! Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978; Reeves, Salesin and Cook,
 //! "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987. The projection without a far
@@ -19,8 +19,8 @@
 use fearless_simd::Level;
 use glam::{DMat3, DMat4, DVec3};
 
-use super::map_draws::MapDraws;
-use super::map_face::Face;
+use super::map_draws::{MapDraws, MapView};
+use super::map_face::LightMap;
 use crate::accuracy::{Filter, ShadowMapForm};
 use crate::base::cancellation::Cancellation;
 use crate::base::math::placed;
@@ -37,22 +37,12 @@ pub(crate) struct ShadowMaps {
     lights: Vec<(ShadowSource, LightMap)>,
 }
 
-/// What one light sees.
-#[derive(Debug)]
-pub(crate) struct LightMap {
-    pub(super) faces: Vec<Face>,
-    pub(super) is_filtered: bool,
-}
-
 /// The cosine of the widest half-aperture that one picture of a spot has: 70 degrees.
 const WIDEST: f64 = 0.342;
 
 /// The least distance of a map's near plane, relative to what is farthest from the light: what is
 /// nearer casts no shadow.
 const NEAR: f64 = 1e-3;
-
-/// The largest slope that a bias takes into account, relative to 45 degrees.
-pub(super) const STEEPEST: f64 = 16.0;
 
 impl ShadowMaps {
     /// Draws what is missing of a plan's maps, unless that is cancelled, and forgets all others.
@@ -122,17 +112,6 @@ impl Around {
         let all = || self.0.iter().flatten().map(&of);
         [all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max)]
     }
-}
-
-/// A picture that a light takes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct MapView {
-    pub(super) view_from_world: DMat4,
-    pub(super) clip_from_view: DMat4,
-    /// The slope of a surface at 45 degrees, times the texels of a row: a depth or, in perspective,
-    /// a part of the depth.
-    pub(super) slope: f64,
-    pub(super) is_perspective: bool,
 }
 
 /// The pictures that a light takes.

@@ -2,8 +2,8 @@
 //! stand between it and any point of a packet.
 //!
 //! Each function of [`super::triangle`] is linear in the point, so over the box of all points, with
-//! its centre C and half edges H, it is at most n . (C - A) + sum |n . H|. A triangle for which that
-//! is negative by more than its error is left out.
+//! its centre C and half edges H, it is at most n . (C - A) + sum |n . H|. A triangle for which
+//! that is negative by more than its error is left out.
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, f64x8};
 use glam::{DMat4, DVec3};

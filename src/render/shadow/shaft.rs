@@ -101,8 +101,8 @@ impl Shaft {
     /// coordinate of the caster's bounds and of the points, and `pad` the error of both, along each
     /// axis of the space of the caster.
     ///
-    /// With the centre C of the box, its half edges H and the way W to the light, of which the
-    /// share s is inside of the bounds, what a normal n sees is at most
+    /// With the centre C of the box, its half edges H, the way W to the light and the share s of it
+    /// that is inside of the bounds, the rays reach along a normal n at most as far as
     ///
     /// ```text
     /// max(n . C + sum |n . H|,   n . (C + s W) + (1 - s) sum |n . H|)

@@ -3,8 +3,8 @@
 use fearless_simd::{Level, Simd, dispatch};
 use glam::{DMat4, DVec3};
 
-use super::map_face::Reading;
-use super::maps::{LightMap, ShadowMaps};
+use super::map_face::{LightMap, Reading};
+use super::maps::ShadowMaps;
 use super::rays::{Origins, RayCount, RayScratch, bits};
 use super::shaft::Around;
 use super::triangle::{Corners, Prepared, is_between, reaches_behind};

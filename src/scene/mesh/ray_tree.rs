@@ -72,8 +72,8 @@ impl TreeBlock {
 /// The most children of a node.
 const WIDTH: usize = 8;
 
-/// An inner node: the boxes of up to eight children, in four lines of a cache. Large trees are bound
-/// by the latency of memory, and so have few levels.
+/// An inner node: the boxes of up to eight children, in four lines of a cache. Large trees are
+/// bound by the latency of memory, and so have few levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TreeNode {
     boxes: [Box3; WIDTH],
@@ -226,8 +226,8 @@ impl RayTree {
     }
 }
 
-/// Up to eight nodes below one: its children, of which the largest is replaced by its own for as
-/// long as there is room.
+/// Up to eight nodes below one: its children. The largest is replaced by its own as long as there
+/// is room.
 fn children_of(tree: &Bvh2, node: usize) -> Vec<usize> {
     let pair = |node: usize| {
         let first = tree.nodes[node].first_index as usize;
