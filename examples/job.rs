@@ -18,15 +18,14 @@ use cpu_time::ProcessTime;
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
 use marraztu::accuracy::Shot;
-use marraztu::accuracy::{Filter, LightAt, Samples, Settings};
+use marraztu::accuracy::{Axis, Choice, Filter, LightAt, Samples, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::{Shared, color::Color, math};
 use marraztu::io::{self, LoadError, Progress, SaveError};
 use marraztu::lab::instructions;
 use marraztu::lab::statistics::median;
 use marraztu::lab::timing::time;
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
+use marraztu::render::{RayCount, Renderer, plan_frame};
 use marraztu::scene::{
     Aim, Attenuation, Camera, CameraId, Command, CommandError, Crease, Fill, Item, Lens, Light,
     LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource, Model, NONE,
@@ -76,6 +75,15 @@ struct Job {
     /// Leave the mesh where its file has it
     #[arg(long)]
     raw: bool,
+    /// Let the sun, the bulb and the spots cast shadows, and print a second line: S, label, mesh,
+    /// triangles, mode, size, frames, shortest milliseconds with shadows and without, in turn, the
+    /// difference, rays and occluded rays of the first frame
+    #[arg(long)]
+    shadows: bool,
+    /// How it is decided whether a light is seen: exact, map-2048, map-2048-pcf and others, as
+    /// `marraztu render --shadow-method`
+    #[arg(long, value_name = "METHOD", default_value = "exact")]
+    shadow_method: String,
     /// Save the first frame's picture: .ppm, .png, .jpg or .webp
     #[arg(long)]
     out: Option<PathBuf>,
@@ -181,7 +189,12 @@ fn run(job: &Job) -> Result<String, Failure> {
     let Job { label, msaa, .. } = job;
     let (mesh, mode) = (job.mesh.display(), &job.mode);
     let drawn = format!("{label},{mesh},{triangles},{mode},{width}x{height},{msaa}");
-    Ok(format!("R,{drawn},{frames},{times},{times},{covered}"))
+    let line = format!("R,{drawn},{frames},{times},{times},{covered}");
+    let Some(plain) = measured.plain else { return Ok(line) };
+    let RayCount { traced, occluded } = measured.rays;
+    let drawn = format!("{label},{mesh},{triangles},{mode},{width}x{height},{frames}");
+    let times = format!("{shortest:.3},{plain:.3},{:.3}", shortest - plain);
+    Ok(format!("{line}\nS,{drawn},{times},{traced},{occluded}"))
 }
 
 /// How a job is drawn; an error says what is not supported.
@@ -202,7 +215,13 @@ fn supported(job: &Job) -> Result<(Mode, Samples, Level), String> {
              them; there are best, avx512, avx2, sse4.2, plain"
         )
     })?;
+    method(job).ok_or_else(|| format!("there are no shadows by \"{}\"", job.shadow_method))?;
     Ok((mode, samples, level))
+}
+
+/// The choice of how shadows are decided.
+fn method(job: &Job) -> Option<&'static Choice> {
+    Axis::named("shadow-method")?.choice(&job.shadow_method)
 }
 
 /// What was measured.
@@ -211,6 +230,10 @@ struct Measured {
     frames: Vec<f64>,
     /// Milliseconds of all processors together that a frame took on average.
     processor: f64,
+    /// The shortest time of a frame without shadows, if those with shadows were measured.
+    plain: Option<f64>,
+    /// The rays of the first picture's shadows.
+    rays: RayCount,
     /// The first picture.
     picture: Picture,
 }
@@ -227,7 +250,8 @@ fn measure(
     (scene, view, settings): &Stage,
 ) -> Result<Measured, CommandError> {
     let mut renderer = Renderer::new(level);
-    let mut frame = |i: usize| -> Result<f64, CommandError> {
+    let unshaded = without_shadows(scene)?;
+    let mut frame = |scene: &Scene, i: usize| -> Result<f64, CommandError> {
         let mut scene = scene.clone();
         let mut changed = Ok(());
         let elapsed = time(|| {
@@ -238,17 +262,33 @@ fn measure(
         changed.map(|()| elapsed.as_secs_f64() * 1e3)
     };
     for i in 0..job.warm {
-        frame(i + 1)?;
+        frame(scene, i + 1)?;
     }
     let (begun, processor) = (Instant::now(), ProcessTime::now());
     let mut frames = Vec::new();
+    let mut plain = None;
     while frames.len() < job.frames.max(1) && begun.elapsed().as_secs_f64() * 1e3 < job.budget {
-        frames.push(frame(job.warm + 1 + frames.len())?);
+        let i = job.warm + 1 + frames.len();
+        frames.push(frame(scene, i)?);
+        if job.shadows {
+            plain = Some(frame(&unshaded, i)?.min(plain.unwrap_or(f64::INFINITY)));
+        }
     }
     #[expect(clippy::cast_precision_loss, reason = "few frames")]
     let processor = processor.elapsed().as_secs_f64() * 1e3 / frames.len() as f64;
-    frame(0)?;
-    Ok(Measured { frames, processor, picture: renderer.picture().clone() })
+    frame(scene, 0)?;
+    let (picture, rays) = (renderer.picture().clone(), renderer.rays());
+    Ok(Measured { frames, processor, plain, rays, picture })
+}
+
+/// The same scene, whose lights cast no shadows.
+fn without_shadows(scene: &Scene) -> Result<Scene, CommandError> {
+    let mut plain = scene.clone();
+    for (id, light) in scene.lights.iter() {
+        let light = Light { shadows: false, ..light.clone() };
+        Command::Replace(Item::Light(id, Box::new(light))).apply(&mut plain)?;
+    }
+    Ok(plain)
 }
 
 /// The job's mesh: its bounding box centred at the origin, its farthest vertex 100 away, with
@@ -364,7 +404,8 @@ fn stage(
     }
     let item = Item::Object(ObjectId(1), Box::new(object));
     Command::Insert { at: 0, item }.apply(&mut scene)?;
-    for (i, light) in (0..).zip(lights(mode)) {
+    for (i, mut light) in (0..).zip(lights(mode)) {
+        light.shadows = job.shadows && light.can_cast_shadows();
         let item = Item::Light(LightId(2 + i), Box::new(light));
         Command::Insert { at: usize::MAX, item }.apply(&mut scene)?;
     }
@@ -374,6 +415,7 @@ fn stage(
         normals: if mode == Mode::Flat { Normals::Face } else { Normals::Vertex },
         ..scene.first_view()
     };
+    settings = method(job).map_or(settings, |method| method.of(&settings));
     settings.light = match mode {
         Mode::Flat => LightAt::Face,
         Mode::Gouraud => LightAt::Vertex,

@@ -509,3 +509,41 @@ fn edges_that_stand_over_the_border_of_a_tile_are_drawn_again_on_both_sides() {
         }
     }
 }
+
+#[test]
+fn a_moved_object_takes_the_tiles_of_its_shadow_and_no_others() {
+    let lying = DMat4::from_rotation_x(-90_f64.to_radians()) * at(400.0, 0.0, 0.0, 0.0);
+    let floor = DMat4::from_translation(DVec3::new(0.0, -60.0, 0.0)) * lying;
+    let (mut scene, view) = scene(&[(square(), floor), (ball(6), at(15.0, -60.0, -20.0, 0.0))]);
+    let view = View { marks: false, ..view };
+    let size = Size::new(640, 640);
+    for (id, light) in
+        scene.lights.iter().map(|(id, light)| (id, light.clone())).collect::<Vec<_>>()
+    {
+        let command = match light.kind {
+            LightKind::Sun { .. } | LightKind::Bulb { .. } => {
+                lights::toggle_shadows(&scene, id).unwrap()
+            }
+            LightKind::Ambient => continue,
+            LightKind::Spot { .. } => Command::Remove(ItemId::Light(id)),
+        };
+        command.apply(&mut scene).unwrap();
+    }
+    let plan = |scene: &Scene| plan_frame(&Shot::new(scene, &view, &Settings::default(), size));
+    let mut renderer = Renderer::default();
+    let mut last = renderer.render(&plan(&scene)).clone();
+    let mut least = usize::MAX;
+    for place in [DVec3::new(-50.0, -20.0, 5.0), DVec3::new(40.0, 10.0, -60.0), DVec3::Y * 300.0] {
+        edit(&mut scene, ObjectId(11), |object| {
+            let placement = DMat4::from_translation(place) * at(15.0, 0.0, 0.0, 0.0);
+            object.placement = object.placement.replaced(placement);
+        });
+        let changes = renderer.redraw(&plan(&scene), &|| true).unwrap();
+        let mut fresh = Renderer::default();
+        assert!(fresh.render(&plan(&scene)) == renderer.picture(), "{changes:?}");
+        assert!(last != *renderer.picture() && fresh.rays().traced > 1000);
+        last = renderer.picture().clone();
+        least = least.min(changes.tiles() * 100 / changes.tiles_in_all());
+    }
+    assert!(least < 50, "at least {least} of 100 tiles are drawn again");
+}

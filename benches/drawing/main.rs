@@ -8,6 +8,7 @@
 mod effects;
 mod growth;
 mod objects;
+mod shadows;
 mod shapes;
 mod stage;
 mod stages;
@@ -30,5 +31,6 @@ fn main() {
     objects::measure(&mut criterion);
     textures::measure(&mut criterion);
     transparent::measure(&mut criterion);
+    shadows::measure(&mut criterion);
     criterion.final_summary();
 }

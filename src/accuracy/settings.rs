@@ -47,6 +47,11 @@ pub struct Settings {
     /// How the maps of bumps are filtered.
     #[serde(rename = "bumps")]
     pub bump_filter: BumpFilter,
+    /// How it is decided whether a light is seen.
+    #[serde(rename = "shadow-method")]
+    pub shadow_method: ShadowMethod,
+    /// Where rays of shadows begin on smooth surfaces.
+    pub terminator: Terminator,
     /// In which values light is computed.
     #[serde(rename = "values")]
     pub light_values: LightValues,
@@ -331,4 +336,66 @@ pub enum LightValues {
     Stored,
     /// In linear sRGB: colours are decoded, and pictures are encoded.
     Linear,
+}
+
+/// How it is decided whether a light is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum ShadowMethod {
+    /// By a shadow map of 512 x 512 texels.
+    Map512,
+    /// By the mean of nine texels of such a map.
+    Map512Pcf,
+    /// By a shadow map of 1024 x 1024 texels.
+    Map1024,
+    /// By the mean of nine texels of such a map.
+    Map1024Pcf,
+    /// By a shadow map of 2048 x 2048 texels.
+    Map2048,
+    /// By the mean of nine texels of such a map.
+    Map2048Pcf,
+    /// By a shadow map of 4096 x 4096 texels.
+    Map4096,
+    /// By the mean of nine texels of such a map.
+    Map4096Pcf,
+    /// By rays against all triangles, in exact arithmetic.
+    #[default]
+    Exact,
+}
+
+/// How a shadow map is made and read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShadowMapForm {
+    /// Its texels in a row, and its rows.
+    pub side: usize,
+    /// Whether the nine nearest texels are compared, and what they say is averaged.
+    pub is_filtered: bool,
+}
+
+impl ShadowMethod {
+    /// The form of its shadow maps, if it uses any.
+    #[must_use]
+    pub const fn map(self) -> Option<ShadowMapForm> {
+        let (side, is_filtered) = match self {
+            Self::Map512 => (512, false),
+            Self::Map512Pcf => (512, true),
+            Self::Map1024 => (1024, false),
+            Self::Map1024Pcf => (1024, true),
+            Self::Map2048 => (2048, false),
+            Self::Map2048Pcf => (2048, true),
+            Self::Map4096 => (4096, false),
+            Self::Map4096Pcf => (4096, true),
+            Self::Exact => return None,
+        };
+        Some(ShadowMapForm { side, is_filtered })
+    }
+}
+
+/// Where rays of shadows begin on surfaces with vertex normals. The two are different models.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Terminator {
+    /// On the triangles.
+    #[default]
+    Triangles,
+    /// On the curved surface that vertex normals suggest.
+    Smooth,
 }

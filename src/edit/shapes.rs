@@ -12,20 +12,25 @@ use crate::scene::{
 const ALONE: f64 = 100.0;
 
 /// Adds a shape: about a fifth as large as the scene, at the centre of the world. A plane is twice
-/// as large as the scene, and touches its lowest point as the ground does.
+/// as large as the scene and the ground twenty times, and both touch its lowest point.
 #[must_use]
 pub fn insert(scene: &Scene, view: &View, shape: Shape) -> Command {
     let of_scene = match shape {
+        Shape::Ground => 20.0,
         Shape::Plane => 2.0,
         Shape::Cube | Shape::Sphere | Shape::Cylinder | Shape::Torus => 0.2,
     };
     let extent = Some(extent(scene)).filter(|extent| *extent > 0.0).unwrap_or(ALONE / 0.2);
     let size = rounded(extent * of_scene).unwrap_or(ALONE);
-    let place = match shape {
-        Shape::Plane => ground(scene, view.time),
-        Shape::Cube | Shape::Sphere | Shape::Cylinder | Shape::Torus => DVec3::ZERO,
+    let place = if shape.is_ground() { ground(scene, view.time) } else { DVec3::ZERO };
+    // The ground fades by its own material.
+    let material = match shape {
+        Shape::Ground => MaterialChoice::File,
+        Shape::Plane | Shape::Cube | Shape::Sphere | Shape::Cylinder | Shape::Torus => {
+            MaterialChoice::Preset(PresetId::SILVER)
+        }
     };
-    let mut object = Object::new(shape.model(), MaterialChoice::Preset(PresetId::SILVER));
+    let mut object = Object::new(shape.model(), material);
     object.sides = Sides::Auto;
     object.placement =
         Tracked::new(DMat4::from_translation(place) * DMat4::from_scale(DVec3::splat(size)));

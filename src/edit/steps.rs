@@ -21,8 +21,8 @@ pub fn length(scene: &Scene, view: &View) -> f64 {
 /// them. 0 if there are none.
 ///
 /// Each object counts as a cube as wide as its largest extent, so that turning it, or moving it if
-/// it is the only one, leaves the extent as it is. The plane of the menu of shapes does not count
-/// beside other objects: it is the ground, and larger than what stands on it.
+/// it is the only one, leaves the extent as it is. The ground and the plane of the menu of shapes
+/// do not count beside other objects: they are larger than what stands on them.
 #[must_use]
 pub fn extent(scene: &Scene) -> f64 {
     let cube = |object: &Object| {
@@ -45,9 +45,10 @@ pub fn of_grid(scene: &Scene) -> f64 {
     rounded(extent(scene) / 10.0).unwrap_or(Steps::DEFAULT.translation)
 }
 
-/// Whether an object is the plane of the menu of shapes.
+/// Whether an object is the ground or the plane of the menu of shapes.
 pub(super) fn is_ground(object: &Object) -> bool {
-    object.model.source.is_none() && Shape::named(&object.model.name) == Some(Shape::Plane)
+    let shape = Shape::named(&object.model.name).filter(|_| object.model.source.is_none());
+    shape.is_some_and(Shape::is_ground)
 }
 
 /// The nearest of 1, 2 and 5 times the powers of 10, by ratio; `None` if `length` is not a positive

@@ -9,6 +9,8 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec4;
+
 use crate::base::Shared;
 use crate::base::image::Size;
 use crate::base::math::same_bits;
@@ -18,6 +20,8 @@ use crate::render::lights::{PhongMaterial, ViewLight};
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::tiles::{TILE, tiles_of};
 use crate::scene::{ItemId, Texture};
+
+mod shadow_reach;
 
 /// The tiles that are painted again, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -102,12 +106,17 @@ impl Damage {
             tiles.add(reach(draw, after));
             geometry |= change != Change::Look;
         }
+        if !shadow_reach::add(before, after, &mut tiles) {
+            return Self::all(DamageCause::Shadows, after.size);
+        }
         for (item, at) in old {
             items.push((item, Change::Went));
             tiles.add(reach(&before.draws[at], before));
             geometry = true;
         }
-        Self { tiles, geometry, cause: DamageCause::Items(items) }
+        let out_of_view = items.is_empty() && tiles.count() > 0;
+        let cause = if out_of_view { DamageCause::Shadows } else { DamageCause::Items(items) };
+        Self { tiles, geometry, cause }
     }
 
     /// How many tiles of 64 x 64 pixels are painted.
@@ -179,7 +188,9 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         () if moved => Some(DamageCause::Camera),
         () if settings => Some(DamageCause::Settings),
         () if *background != before.background => Some(DamageCause::Background),
-        () if !shadows.is_same(&before.shadows) => Some(DamageCause::Shadows),
+        () if !shadows.is_same(&before.shadows) && !shadow_reach::is_known(before, after) => {
+            Some(DamageCause::Shadows)
+        }
         () => None,
     }
 }
@@ -361,11 +372,6 @@ fn alike_material(a: &PhongMaterial, b: &PhongMaterial) -> bool {
 ///
 /// The projection of what lies before the near plane is within the projection of any box about it.
 /// If the box reaches the near plane, or normals stick out of it, the bounds are the whole picture.
-#[expect(
-    clippy::cast_precision_loss,
-    clippy::cast_possible_truncation,
-    reason = "brought into the picture, which is small"
-)]
 fn reach(draw: &Draw, plan: &FramePlan) -> PixelBox {
     let [right, bottom] = [plan.size.width, plan.size.height]
         .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
@@ -375,24 +381,39 @@ fn reach(draw: &Draw, plan: &FramePlan) -> PixelBox {
     if face_normals.is_some() || vertex_normals.is_some() {
         return all;
     }
+    let corners = bounds.corners().map(|corner| draw.clip_from_object * corner.extend(1.0));
+    // The width of lines.
+    around(plan, &corners, f64::from(plan.line_width)).unwrap_or(all)
+}
+
+/// The pixels that the convex hull of points in clip space may cover, with a margin; `None` if it
+/// reaches the near plane.
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    reason = "brought into the picture, which is small"
+)]
+fn around(plan: &FramePlan, points: &[DVec4], margin: f64) -> Option<PixelBox> {
+    let [right, bottom] = [plan.size.width, plan.size.height]
+        .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
+    let all = PixelBox { left: 0, top: 0, right, bottom };
     let (width, height) = (plan.size.width as f64, plan.size.height as f64);
     let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for corner in bounds.corners() {
-        let clip = draw.clip_from_object * corner.extend(1.0);
+    for clip in points {
         let before_the_near_plane = clip.w > 0.0 && clip.z <= clip.w;
         let at = [(clip.x / clip.w + 1.0) * width / 2.0, (1.0 - clip.y / clip.w) * height / 2.0];
         if !before_the_near_plane || !at.iter().all(|at| at.is_finite()) {
-            return all;
+            return None;
         }
         for axis in 0..2 {
             (low[axis], high[axis]) = (low[axis].min(at[axis]), high[axis].max(at[axis]));
         }
     }
-    // One pixel for rounding and snapping, plus the width of lines.
-    let margin = f64::from(1 + plan.line_width);
+    // One pixel for rounding and snapping.
+    let margin = margin + 1.0;
     let [left, top] = low.map(|at| (at - margin).floor().clamp(-1e6, 1e6) as i32);
     let [right, bottom] = high.map(|at| (at + margin).ceil().clamp(-1e6, 1e6) as i32);
-    PixelBox { left, top, right, bottom }.intersection(all)
+    Some(PixelBox { left, top, right, bottom }.intersection(all))
 }
 
 /// A set of tiles of a picture, row by row.

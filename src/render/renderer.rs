@@ -6,7 +6,7 @@
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 use fearless_simd::Level;
 
@@ -31,6 +31,8 @@ use crate::render::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::render::screen::tiles::{BLOCK_PIXELS, TILE, TILE_SIDE, block_at, tiles_of};
 use crate::render::shading::interpolated::ShadingNumber;
 use crate::render::shading::light_terms::LightTerms;
+use crate::render::shadow::maps::ShadowMaps;
+use crate::render::shadow::rays::RayCount;
 use crate::render::shadow::tracer::Tracer;
 use crate::render::tile_layers::TileLayers;
 use crate::render::timings::{Laps, Timings};
@@ -52,6 +54,8 @@ pub struct Renderer {
     /// Whether the screen geometry is that of the last finished picture.
     built: bool,
     timings: Timings,
+    rays: RayCount,
+    maps: ShadowMaps,
 }
 
 /// The frame was cancelled by a newer request.
@@ -89,6 +93,8 @@ impl Renderer {
             finished: false,
             built: false,
             timings: Timings::default(),
+            rays: RayCount::default(),
+            maps: ShadowMaps::default(),
         }
     }
 
@@ -163,6 +169,7 @@ impl Renderer {
 
     fn draw_damage(&mut self, plan: &FramePlan, damage: &Damage, watch: &Cancellation<'_>) {
         self.timings = Timings::default();
+        self.rays = RayCount::default();
         let passes = passes(plan.samples);
         let pictures = if plan.lit_by_sample { shifts(plan.samples).len() } else { passes.len() };
         watch.expect_tiles(pictures * damage.tiles());
@@ -235,7 +242,9 @@ impl Renderer {
     fn build_again(&mut self) {
         if let (false, Some(plan)) = (self.built, &self.plan) {
             let sample_positions = passes(plan.samples)[0];
-            self.frame.build(self.level, plan, sample_positions, &Cancellation::new(&|| true));
+            let watch = Cancellation::new(&|| true);
+            self.frame.build(self.level, plan, sample_positions, &watch);
+            self.maps.update(self.level, plan, &watch);
             self.built = true;
         }
     }
@@ -250,6 +259,12 @@ impl Renderer {
     #[must_use]
     pub const fn timings(&self) -> Timings {
         self.timings
+    }
+
+    /// The rays of shadows that the last picture took.
+    #[must_use]
+    pub const fn rays(&self) -> RayCount {
+        self.rays
     }
 
     /// The number of triangles of the last picture.
@@ -307,7 +322,7 @@ impl Renderer {
         terms.prepare(plan);
         lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
-        let tracer = Tracer::new(plan);
+        let tracer = Tracer::new(plan, &self.maps);
         let tracer = tracer.as_ref();
         let (lit, terms) = (&lit, &terms);
         let context = ShadingContext { level, plan, frame, lit, terms, faces: None, tracer };
@@ -455,6 +470,7 @@ impl Renderer {
         watch: &Cancellation<'_>,
     ) {
         let mut laps = Laps::start();
+        self.maps.update(self.level, plan, watch);
         let ShadingCache { terms, lit, faces, painters } = T::cache(&mut self.caches);
         terms.prepare(plan);
         lit.prepare(plan);
@@ -463,7 +479,7 @@ impl Renderer {
             faces.begin(self.frame.triangle_numbers());
         }
         let (level, frame) = (self.level, &self.frame);
-        let tracer = Tracer::new(plan);
+        let tracer = Tracer::new(plan, &self.maps);
         let tracer = tracer.as_ref();
         let faces = looks_up.then_some(&*faces);
         let context = ShadingContext { level, plan, frame, lit, terms, faces, tracer };
@@ -498,6 +514,9 @@ impl Renderer {
                 }
             }
         });
+        for painter in painters {
+            self.rays += painter.into_inner().unwrap_or_else(PoisonError::into_inner).ray_count();
+        }
         self.timings.tiles += laps.lap();
     }
 }

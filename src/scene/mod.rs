@@ -38,7 +38,7 @@ pub use mesh::draw_order::{DrawOrder, NormalSource, Points};
 pub use mesh::edge_order::{DrawEdge, EdgeOrder};
 pub use mesh::edges::Edge;
 pub use mesh::outlines::CornerLists;
-pub use mesh::ray_tree::{RayTree, TreeChild, TreeNode, TreeTriangle};
+pub use mesh::ray_tree::{RayTree, TREE_BLOCK, TreeBlock, TreeChild, TreeNode, TreeTriangle};
 pub use mesh::{
     Corner, Mesh, MeshError, MeshSource, NONE, Part, Point, SourceCorner, Triangle, dvec3, newell,
 };

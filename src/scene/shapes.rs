@@ -1,4 +1,4 @@
-//! Simple shapes, made here: plane, cube, sphere, cylinder, torus.
+//! Simple shapes, made here: ground, plane, cube, sphere, cylinder, torus.
 //!
 //! Each is one unit wide and stands around the origin, so that an object's scale is its size. Their
 //! vertices lie on the surface that they stand for, and each corner has that surface's own normal,
@@ -14,9 +14,14 @@ use super::{Crease, LoadOptions, Mesh, MeshSource, Model, Part, Smoothing, Sourc
 use crate::base::Shared;
 use crate::base::once::get_or_compute;
 
+mod ground;
+
 /// A simple shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
+    /// A disc of diameter 1 in the plane of X and Z, seen from above, which fades out towards its
+    /// rim: see [`ground`].
+    Ground,
     /// A square of side 1 in the plane of X and Z, seen from above.
     Plane,
     /// A cube of side 1.
@@ -40,12 +45,24 @@ const TORUS: [f64; 2] = [0.375, 0.125];
 
 impl Shape {
     /// All of them, in the order of the menu.
-    pub const ALL: [Self; 5] = [Self::Plane, Self::Cube, Self::Sphere, Self::Cylinder, Self::Torus];
+    pub const ALL: [Self; 6] =
+        [Self::Ground, Self::Plane, Self::Cube, Self::Sphere, Self::Cylinder, Self::Torus];
+
+    /// Whether it is what other objects stand on: it touches the lowest of them, and is as large as
+    /// the scene, or larger.
+    #[must_use]
+    pub const fn is_ground(self) -> bool {
+        match self {
+            Self::Ground | Self::Plane => true,
+            Self::Cube | Self::Sphere | Self::Cylinder | Self::Torus => false,
+        }
+    }
 
     /// Its name, also in scene files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Ground => "ground",
             Self::Plane => "plane",
             Self::Cube => "cube",
             Self::Sphere => "sphere",
@@ -63,14 +80,14 @@ impl Shape {
     /// Its model, which all objects of this shape share.
     #[must_use]
     pub fn model(self) -> Shared<Model> {
-        static MODELS: [OnceLock<Shared<Model>>; 5] = [const { OnceLock::new() }; 5];
+        static MODELS: [OnceLock<Shared<Model>>; 6] = [const { OnceLock::new() }; 6];
         let make = || {
             Shared::new(Model {
                 name: self.name().to_owned(),
                 source: None,
                 options: LoadOptions::default(),
                 mesh: self.mesh(),
-                materials: Vec::new(),
+                materials: if self == Self::Ground { ground::materials() } else { Vec::new() },
                 edge_color: None,
             })
         };
@@ -80,6 +97,7 @@ impl Shape {
     fn mesh(self) -> Mesh {
         let mut builder = Builder::default();
         match self {
+            Self::Ground => ground::build(&mut builder),
             Self::Plane => plane(&mut builder),
             Self::Cube => cube(&mut builder),
             Self::Sphere => sphere(&mut builder),
@@ -124,7 +142,9 @@ impl Builder {
     }
 
     fn mesh(mut self, name: &str) -> Mesh {
-        self.source.parts = vec![Part { name: name.to_owned(), material: None }];
+        if self.source.parts.is_empty() {
+            self.source.parts = vec![Part { name: name.to_owned(), material: None }];
+        }
         self.source.smoothing = Smoothing::Crease(Crease::default());
         Mesh::new(self.source).expect("every index of a shape is in range")
     }
@@ -333,18 +353,18 @@ mod tests {
     }
 
     #[test]
-    fn every_shape_is_one_unit_wide_about_the_origin_and_closed_but_for_the_plane() {
+    fn every_shape_is_one_unit_wide_about_the_origin_and_closed_but_for_grounds() {
         for shape in Shape::ALL {
             let model = shape.model();
             let bounds = model.mesh.bounds().unwrap();
             let height = match shape {
-                Shape::Plane => 0.0,
+                Shape::Ground | Shape::Plane => 0.0,
                 Shape::Torus => 0.25,
                 Shape::Cube | Shape::Sphere | Shape::Cylinder => 1.0,
             };
             assert_eq!(bounds.extent(), DVec3::new(1.0, height, 1.0), "{shape:?}");
             assert_eq!(bounds.centre(), DVec3::ZERO, "{shape:?}");
-            assert_eq!(model.mesh.is_closed(), shape != Shape::Plane, "{shape:?}");
+            assert_eq!(model.mesh.is_closed(), !shape.is_ground(), "{shape:?}");
             assert_eq!(Shape::named(shape.name()), Some(shape));
         }
     }
@@ -384,7 +404,7 @@ mod tests {
                         Shape::Sphere => p.normalize_or_zero(),
                         Shape::Torus => (*p - ring * TORUS[0]).normalize_or_zero(),
                         Shape::Cylinder if n.y.abs() < 0.5 => ring,
-                        Shape::Plane | Shape::Cube | Shape::Cylinder => facing,
+                        Shape::Ground | Shape::Plane | Shape::Cube | Shape::Cylinder => facing,
                     };
                     assert!((exact - *n).length() < 1e-6, "{shape:?}: {n} instead of {exact}");
                 }

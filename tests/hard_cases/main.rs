@@ -28,6 +28,7 @@ mod files_and_scale;
 mod geometry;
 mod interpolation;
 mod light;
+mod shadow_maps;
 mod shadows;
 mod surfaces;
 mod textures;

@@ -13,17 +13,17 @@ use super::common::{at, ball, cube, draw, edit, model, scene, square};
 use super::figures::Figure;
 use super::oracle::{Eye, inside_by, meet, unit};
 
-const SIDE: usize = 96;
+pub(crate) const SIDE: usize = 96;
 
 /// Objects under one light that casts shadows.
-struct Shade {
-    models: Vec<(Shared<Model>, DMat4)>,
-    light: LightKind,
+pub(crate) struct Shade {
+    pub(crate) models: Vec<(Shared<Model>, DMat4)>,
+    pub(crate) light: LightKind,
     /// The eye's place; it looks along -Z.
-    eye: DVec3,
+    pub(crate) eye: DVec3,
 }
 
-fn sun(towards: DVec3) -> LightKind {
+pub(crate) fn sun(towards: DVec3) -> LightKind {
     LightKind::Sun { direction: Tracked::new(-unit(towards)) }
 }
 
@@ -32,16 +32,16 @@ fn bulb(at: DVec3) -> LightKind {
 }
 
 /// What a picture shows of its shadows.
-struct Shaded {
+pub(crate) struct Shaded {
     /// Whether each pixel is reached by the light, if nothing stands between.
-    lit: Vec<bool>,
+    pub(crate) lit: Vec<bool>,
     /// Whether it is in shadow.
-    shaded: Vec<bool>,
-    picture: Picture,
+    pub(crate) shaded: Vec<bool>,
+    pub(crate) picture: Picture,
 }
 
 impl Shade {
-    fn scene(&self, on: bool, shadows: bool) -> (Scene, View) {
+    pub(crate) fn scene(&self, on: bool, shadows: bool) -> (Scene, View) {
         let (mut scene, mut view) = scene(&self.models);
         let attenuation = Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.0 };
         let light =
@@ -73,9 +73,13 @@ impl Shade {
     }
 
     fn draw(&self) -> Shaded {
+        self.draw_by(&Settings::default())
+    }
+
+    pub(crate) fn draw_by(&self, settings: &Settings) -> Shaded {
         let picture = |on, shadows| {
             let (scene, view) = self.scene(on, shadows);
-            draw(&scene, &view, &Settings::default(), SIDE)
+            draw(&scene, &view, settings, SIDE)
         };
         let [dark, bright, own] =
             [picture(false, false), picture(true, false), picture(true, true)];
@@ -86,7 +90,7 @@ impl Shade {
     }
 
     /// All triangles in the world.
-    fn triangles(&self) -> Vec<[DVec3; 3]> {
+    pub(crate) fn triangles(&self) -> Vec<[DVec3; 3]> {
         let mut all = Vec::new();
         for (model, placement) in &self.models {
             let mesh = &model.mesh;
@@ -203,11 +207,11 @@ fn meets_in_single(p: DVec3, way: DVec3, triangle: [DVec3; 3]) -> bool {
 }
 
 /// The floor y = 0 and what stands on it, seen from above: turned towards the eye.
-fn tilted(degrees: f64) -> DMat4 {
+pub(crate) fn tilted(degrees: f64) -> DMat4 {
     DMat4::from_rotation_x(degrees.to_radians())
 }
 
-fn floor() -> (Shared<Model>, DMat4) {
+pub(crate) fn floor() -> (Shared<Model>, DMat4) {
     let lying = DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2);
     (square(), lying * DMat4::from_scale(DVec3::splat(400.0)))
 }

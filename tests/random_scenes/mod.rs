@@ -13,7 +13,7 @@ use glam::{DMat3, DMat4, DVec3};
 use marraztu::accuracy::Shot;
 use marraztu::accuracy::{
     Arithmetic, BumpFilter, Filter, LeaveOut, LightAt, LightValues, Samples, Settings,
-    SpecularForm, Tangents,
+    ShadowMethod, SpecularForm, Tangents, Terminator,
 };
 use marraztu::base::image::Size;
 use marraztu::base::rng::Rng;
@@ -311,6 +311,11 @@ fn settings(rng: &mut Rng) -> Settings {
             LightValues::Stored,
             LightValues::Linear,
         ]),
+        shadow_method: match rng.percent(20) {
+            true => rng.one_of(&[ShadowMethod::Map512, ShadowMethod::Map512Pcf]),
+            false => ShadowMethod::Exact,
+        },
+        terminator: rng.one_of(&[Terminator::Triangles, Terminator::Smooth]),
         ..Settings::default()
     };
     // Rarely, since it shades every sample.

@@ -10,8 +10,14 @@ use marraztu::scene::{Shape, Subject, dvec3};
 
 use crate::editor::Editor;
 
-const ADD: [Action; 5] =
-    [Action::AddPlane, Action::AddCube, Action::AddSphere, Action::AddCylinder, Action::AddTorus];
+const ADD: [Action; 6] = [
+    Action::AddGround,
+    Action::AddPlane,
+    Action::AddCube,
+    Action::AddSphere,
+    Action::AddCylinder,
+    Action::AddTorus,
+];
 
 #[test]
 fn shapes_are_added_by_their_actions_and_come_back_from_a_scene_file_by_their_kind() {
@@ -30,7 +36,7 @@ fn shapes_are_added_by_their_actions_and_come_back_from_a_scene_file_by_their_ki
     let scene = editor.scene();
     io::save(&path, &scene, &editor.view(), &Settings::default()).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
-    assert!(text.contains("Own(\"torus\")"));
+    assert!(text.contains("Own(\"torus\")") && text.contains("Own(\"ground\")"));
     let opened = io::open(&path, &Progress::new()).unwrap();
     assert!(opened.findings.is_empty());
     assert!(opened.scene.objects == scene.objects);

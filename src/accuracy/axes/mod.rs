@@ -40,6 +40,7 @@ mod light;
 mod picture;
 mod sampling;
 mod sense;
+mod shadows;
 mod texture;
 mod transparency;
 
@@ -129,6 +130,7 @@ pub const AXES: &[Axis] = &[
     geometry::COVERAGE,
     picture::DEPTH,
     transparency::TRANSPARENCY,
+    shadows::SHADOW_METHOD,
     sampling::SAMPLES,
     geometry::INTERPOLATION,
     geometry::STRETCHED,
@@ -137,6 +139,7 @@ pub const AXES: &[Axis] = &[
     picture::ROUNDING,
     light::SPECULAR,
     texture::TANGENTS,
+    shadows::TERMINATOR,
     light::VALUES,
 ];
 

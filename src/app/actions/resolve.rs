@@ -199,6 +199,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::SelectNone if others.is_empty() => Err(Refusal::OneSelected),
         Action::SelectNone => Ok(Intent::Others(Others::default())),
 
+        Action::AddGround => add_shape(state, Shape::Ground),
         Action::AddPlane => add_shape(state, Shape::Plane),
         Action::AddCube => add_shape(state, Shape::Cube),
         Action::AddSphere => add_shape(state, Shape::Sphere),
@@ -556,8 +557,9 @@ impl Action {
             Self::AddBulb | Self::AddSpot | Self::AddObjectSpot | Self::AddCameraSpot => {
                 return None;
             }
-            Self::AddPlane | Self::AddCube | Self::AddSphere | Self::AddCylinder => return None,
-            Self::AddTorus | Self::DropToGround | Self::ResetPlacement => return None,
+            Self::AddGround | Self::AddPlane | Self::AddCube | Self::AddSphere => return None,
+            Self::AddCylinder | Self::AddTorus => return None,
+            Self::DropToGround | Self::ResetPlacement => return None,
             Self::AlignX | Self::AlignY | Self::AlignZ => return None,
             Self::SelectAll | Self::SelectNone | Self::TypeAmount => return None,
             Self::NextItem | Self::NextPolygon | Self::NextSubject => return None,

@@ -214,8 +214,11 @@ actions! {
         "Locked" "Protects the selected item from clicks in the picture, moves and deletion."
         "lock unlock protect freeze pin fix selectable";
 
+    AddGround Add ONCE []
+        "Ground" "Adds ground below all objects, which fades out far away and takes shadows."
+        "floor plane horizon fade infinite disc shape new";
     AddPlane Add ONCE []
-        "Plane" "Adds a plane as ground, below all objects."
+        "Plane" "Adds a square plane, below all objects."
         "floor ground quad primitive shape new";
     AddCube Add ONCE []
         "Cube" "Adds a cube, a fifth as large as the scene, at the origin."

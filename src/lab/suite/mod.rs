@@ -88,6 +88,12 @@ pub const SUITE: &[SuiteScene] = &[
         make: scenes::bumps,
     },
     SuiteScene {
+        word: "shadows",
+        what: "balls on a floor under a sun, a bulb and a spot that cast shadows",
+        axes: &["shadow-method", "terminator"],
+        make: scenes::shadows,
+    },
+    SuiteScene {
         word: "first",
         what: "the first scene of the editor",
         axes: &["samples", "shading", "arithmetic"],

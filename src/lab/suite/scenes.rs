@@ -15,9 +15,9 @@ use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::io::{default_scene, empty_scene, own_model};
 use crate::scene::{
-    Camera, Light, LightId, LightKind, List, LoadOptions, Material, MaterialChoice, Mesh,
+    Aim, Camera, Light, LightId, LightKind, List, LoadOptions, Material, MaterialChoice, Mesh,
     MeshSource, Model, NONE, Object, ObjectId, Orbit, Part, Pose, Scene, Smoothing, SourceCorner,
-    Surface, Texture, Tracked, View, Wrap,
+    SpotOwner, Surface, Texture, Tracked, View, Wrap,
 };
 
 /// A mesh while it is made.
@@ -288,4 +288,41 @@ pub(super) fn bumps(_: u32) -> (Scene, View) {
         object(model.clone(), MaterialChoice::File, placement)
     });
     stage(balls.collect(), DVec3::new(0.0, 0.0, 260.0))
+}
+
+/// Balls of three sizes on a floor, under a sun, a bulb and a spot that cast shadows.
+pub(super) fn shadows(detail: u32) -> (Scene, View) {
+    let model = ball((detail / 25).clamp(8, 40));
+    let mut maker = Maker::default();
+    let corners = [[-900.0, 300.0], [900.0, 300.0], [900.0, -900.0], [-900.0, -900.0]];
+    let corners = corners.map(|[x, z]| maker.vertex([x, -60.0, z], None));
+    maker.polygon(&corners);
+    let floor = object(maker.model("floor"), shiny([0.8; 3], 10.0), DMat4::IDENTITY);
+    let balls = (0..24_u32).map(|i| {
+        let [column, row] = [i % 6, i / 6].map(f64::from);
+        let radius = 10.0 + 4.0 * f64::from(i % 3);
+        let across = column * 52.0 - 130.0 + row * 9.0;
+        let at = DVec3::new(across, radius - 60.0, 40.0 - row * 55.0);
+        let placement = DMat4::from_translation(at) * DMat4::from_scale(DVec3::splat(radius));
+        let color = [0.9 - 0.1 * row, 0.5, 0.3 + 0.1 * column];
+        object(model.clone(), shiny(color, 30.0), placement)
+    });
+    let (mut scene, view) =
+        stage(std::iter::once(floor).chain(balls).collect(), DVec3::new(0.0, 40.0, 230.0));
+    let aim = Aim { position: DVec3::new(150.0, 120.0, 120.0), direction: aimed_down() };
+    let owner = SpotOwner::Fixed(Tracked::new(aim));
+    let spot = LightKind::Spot { owner, half_aperture: 30.0, exponent: 3.0 };
+    let spot = (LightId(1003), Light::new("spot", 3, spot));
+    let lights = scene.lights.iter().map(|(id, light)| (id, light.clone())).chain([spot]);
+    let cast = |(id, light): (LightId, Light)| {
+        let shadows = light.can_cast_shadows();
+        (id, Light { shadows, ..light })
+    };
+    scene.lights = lights.map(cast).collect::<Vec<_>>().into_iter().collect();
+    (scene, view)
+}
+
+/// A direction down and to the left.
+fn aimed_down() -> DVec3 {
+    DVec3::new(-0.62, -0.62, -0.48).normalize_or(DVec3::NEG_Y)
 }

@@ -94,7 +94,7 @@ impl FramePlan {
     /// of them themselves: see [`together`](crate::base::work_stealing::together).
     pub(crate) fn prepare(&self) {
         self.draws.iter().for_each(|draw| draw.prepare(self));
-        self.shadows.prepare();
+        self.shadows.prepare(self.variants.shadow_method);
     }
 
     /// Whether any surface is transparent.

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use glam::{DMat4, DVec3};
 
 use super::draw::Stage;
+use crate::accuracy::ShadowMethod;
 use crate::base::Shared;
 use crate::base::math::same_bits;
 use crate::scene::{Derived, ItemId, Model, Texture};
@@ -23,19 +24,26 @@ pub(crate) struct Shadows {
 pub(crate) enum ShadowSource {
     /// At a point.
     Point(DVec3),
+    /// At a point that shines along a direction, as far to each side as this cosine says.
+    Cone { at: DVec3, direction: DVec3, cos_half_aperture: f64 },
     /// Infinitely far away in this direction.
     Direction(DVec3),
 }
 
 impl ShadowSource {
-    fn is_same(&self, other: &Self) -> bool {
-        let same =
-            |a: &DVec3, b: &DVec3| a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits);
-        match (self, other) {
-            (Self::Point(a), Self::Point(b)) | (Self::Direction(a), Self::Direction(b)) => {
-                same(a, b)
+    /// Whether it is the same, bit by bit.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        self.numbers().map(f64::to_bits) == other.numbers().map(f64::to_bits)
+    }
+
+    /// All that it is made of.
+    fn numbers(&self) -> [f64; 8] {
+        match *self {
+            Self::Point(at) => [0.0, at.x, at.y, at.z, 0.0, 0.0, 0.0, 0.0],
+            Self::Direction(to) => [1.0, to.x, to.y, to.z, 0.0, 0.0, 0.0, 0.0],
+            Self::Cone { at, direction: d, cos_half_aperture } => {
+                [2.0, at.x, at.y, at.z, d.x, d.y, d.z, cos_half_aperture]
             }
-            (Self::Point(_), Self::Direction(_)) | (Self::Direction(_), Self::Point(_)) => false,
         }
     }
 }
@@ -55,8 +63,33 @@ pub(crate) struct Caster {
 /// A part of an object that casts shadows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct CasterPart {
-    /// The texture whose holes let light through, if it has any, and the material's opacity.
-    pub(crate) holes: Option<(Shared<Texture>, f64)>,
+    /// The pictures whose holes let light through, if there are any.
+    pub(crate) holes: Option<Holes>,
+}
+
+/// What a part lets light through: wherever the product of all three is below one half.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Holes {
+    /// The texture, whose alpha counts.
+    pub(crate) texture: Option<Shared<Texture>>,
+    /// The map of opacity: its alpha, or its brightness if all of it is opaque.
+    pub(crate) map: Option<Shared<Texture>>,
+    /// The opacity of the material and of the object.
+    pub(crate) opacity: f64,
+}
+
+impl Holes {
+    fn is_same(&self, other: &Self) -> bool {
+        let same = |a: &Option<Shared<Texture>>, b: &Option<Shared<Texture>>| match (a, b) {
+            (Some(a), Some(b)) => Shared::same(a, b),
+            (None, None) => true,
+            (Some(_), None) | (None, Some(_)) => false,
+        };
+        let Self { texture, map, opacity } = self;
+        same(texture, &other.texture)
+            && same(map, &other.map)
+            && opacity.to_bits() == other.opacity.to_bits()
+    }
 }
 
 impl Caster {
@@ -78,11 +111,12 @@ impl Caster {
         self.polygons.is_none() && self.parts.iter().all(solid)
     }
 
-    fn is_same(&self, other: &Self) -> bool {
+    /// Whether it casts the same shadows.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
         let Self { item, model, world_from_object, parts, polygons } = self;
         let holes = |a: &Option<CasterPart>, b: &Option<CasterPart>| match (a, b) {
             (Some(a), Some(b)) => match (&a.holes, &b.holes) {
-                (Some((a, x)), Some((b, y))) => Shared::same(a, b) && x.to_bits() == y.to_bits(),
+                (Some(a), Some(b)) => a.is_same(b),
                 (None, None) => true,
                 (Some(_), None) | (None, Some(_)) => false,
             },
@@ -126,11 +160,14 @@ impl Shadows {
             && self.casters.iter().zip(&other.casters).all(|(a, b)| a.is_same(b))
     }
 
-    /// Computes what tracing rays reads of the meshes.
-    pub(crate) fn prepare(&self) {
+    /// Computes what deciding shadows by a method reads of the meshes.
+    pub(crate) fn prepare(&self, method: ShadowMethod) {
         for caster in &self.casters {
             let mesh = &caster.model.mesh;
-            mesh.prepare(Derived::RayTree);
+            match method.map() {
+                None => mesh.prepare(Derived::RayTree),
+                Some(_) => mesh.prepare(Derived::DrawOrder),
+            }
             mesh.prepare(Derived::PolygonOf);
         }
     }

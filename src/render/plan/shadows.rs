@@ -10,11 +10,13 @@ use std::collections::BTreeSet;
 use glam::DMat3;
 
 use super::ground::Ground;
+use super::maps::holds_same_alpha;
 use super::planning::{Planner, Planning, Shining};
+use super::rules::TexturedSurface;
 use super::uses::{Effect, EffectState, EffectUse};
 use crate::base::math;
-use crate::render::frame::shadows::{Caster, CasterPart, Shadows};
-use crate::scene::{Fill, ItemId, Object, ObjectId};
+use crate::render::frame::shadows::{Caster, CasterPart, Holes, Shadows};
+use crate::scene::{Fill, ItemId, MapKind, Object, ObjectId};
 
 impl Planner<'_> {
     /// Adds what casts shadows, if any light casts them.
@@ -84,12 +86,17 @@ impl Planner<'_> {
             return;
         }
         let is_mark = !matches!(ground.item, ItemId::Object(_));
+        let method = match into.plan.variants.shadow_method.map() {
+            None => "exact",
+            Some(form) if form.is_filtered => "shadow maps, 3 x 3 texels",
+            Some(_) => "shadow maps",
+        };
         let reason = if is_mark { Some("a mark takes none") } else { no_light };
         into.notes.add(|| EffectUse {
             effect: Effect::Shadows(shining.id),
             name: name(shining),
             on: ground.thing(),
-            state: reason.map_or(EffectState::On("exact".into()), EffectState::exact),
+            state: reason.map_or(EffectState::On(method.into()), EffectState::exact),
             pixels: None,
         });
     }
@@ -106,8 +113,20 @@ fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
     if object.hidden_parts.contains(&part) || look.opacity < 0.5 {
         return None;
     }
-    let texture = look.texture.filter(|_| !object.model.mesh.uvs().is_empty());
-    let has_holes = |least: u8| f64::from(least) / 255.0 * look.opacity < 0.5;
-    let texture = texture.filter(|texture| has_holes(texture.picture.least_alpha()));
-    Some(CasterPart { holes: texture.map(|texture| (texture.clone(), look.opacity)) })
+    let mapped = !object.model.mesh.uvs().is_empty();
+    let texture = look.texture.filter(|_| mapped);
+    let map = look.map(MapKind::Opacity).filter(|_| mapped).map(|map| &map.texture);
+    let map = map.filter(|map| !holds_same_alpha(texture, map));
+    let surface = TexturedSurface {
+        texture: texture.map(|texture| &**texture),
+        opacity_map: map.map(|map| &**map),
+        opacity: look.opacity,
+    };
+    let holes = || Holes {
+        texture: texture.cloned(),
+        map: map.cloned(),
+        opacity: if look.opacity < 1.0 { look.opacity } else { 1.0 },
+    };
+    let is_pictured = texture.is_some() || map.is_some();
+    Some(CasterPart { holes: (is_pictured && !surface.passes_everywhere()).then(holes) })
 }

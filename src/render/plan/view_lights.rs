@@ -74,7 +74,16 @@ pub(super) fn view_lights(
 
 /// The end of the rays of shadows, if the light casts any.
 fn shadow_source(light: &Light, source: &Source) -> Option<ShadowSource> {
-    let end = if light.kind.has_position() {
+    let end = if light.kind.has_position() && light.kind.has_direction() {
+        match math::unit(source.direction) {
+            Some(direction) => ShadowSource::Cone {
+                at: source.position,
+                direction,
+                cos_half_aperture: source.cos_half_aperture,
+            },
+            None => ShadowSource::Point(source.position),
+        }
+    } else if light.kind.has_position() {
         ShadowSource::Point(source.position)
     } else if light.kind.has_direction() {
         ShadowSource::Direction(-math::unit(source.direction)?)

@@ -22,6 +22,7 @@ use crate::render::raster::tile::Visibility;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::sample_positions::{ALL, FOUR};
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
+use crate::render::shadow::rays::RayCount;
 
 /// The pixels of a tile; tiles are counted along rows.
 pub(crate) fn bounds_of(tile: usize, size: Size) -> PixelBox {
@@ -121,6 +122,11 @@ impl<T: ShadingNumber> Painter<T> {
     /// Begins a frame.
     pub(crate) fn begin(&mut self) {
         self.shader.begin();
+    }
+
+    /// The rays of shadows since the frame began.
+    pub(crate) const fn ray_count(&self) -> RayCount {
+        self.shader.ray_count()
     }
 
     /// Paints a tile of the picture into its band.

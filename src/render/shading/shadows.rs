@@ -9,16 +9,17 @@
 //! several samples, at the point at which they are lit), at a vertex, or at the centre of a face.
 //! That point is computed in f64 in either arithmetic, so both have the same shadows.
 
-use fearless_simd::Level;
+use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, u32x16};
 use glam::DVec3;
 
 use super::interpolated::ShadingNumber;
 use super::triangle_attributes::TriangleAttributes;
 use crate::render::frame::draw::{Draw, Stage};
-use crate::render::lights::{Batch, LightTerm};
-use crate::render::shadow::rays::{Origins, RayScratch};
+use crate::render::lights::{Batch, LightTerm, Rows};
+use crate::render::shadow::map_face::TAPS;
+use crate::render::shadow::rays::{Origins, RayScratch, bits};
 use crate::render::shadow::tracer::Tracer;
-use crate::render::simd::Number;
+use crate::render::simd::{BATCH, Number};
 use crate::scene::dvec3;
 
 /// The shadows on a batch.
@@ -59,15 +60,7 @@ impl<'a> BatchShadows<'a> {
         };
         let before = (batch.diffuse, batch.specular);
         T::add_light(stage.variant(), level, batch, term);
-        let rows = || batch.diffuse.iter().chain(&batch.specular);
-        let rows_before = || before.0.iter().chain(&before.1);
-        let mut lit = 0;
-        for (row, before) in rows().zip(rows_before()) {
-            for (i, (now, before)) in row[..batch.len].iter().zip(before).enumerate() {
-                let [now, before]: [f64; 2] = [(*now).into(), (*before).into()];
-                lit |= u64::from(now != before) << i;
-            }
-        }
+        let lit = lit(level, batch, &before);
         if lit == 0 {
             return;
         }
@@ -75,28 +68,60 @@ impl<'a> BatchShadows<'a> {
             (self.place)(&mut self.scratch.origins);
             self.is_placed = true;
         }
-        let mut shaded = self.tracer.shaded(level, light, self.scratch, lit);
-        let rows = batch.diffuse.iter_mut().chain(&mut batch.specular);
+        let (shaded, partly) = match self.tracer.read(level, stage.light, self.scratch, lit) {
+            None => (self.tracer.shaded(level, light, self.scratch, lit), None),
+            Some(reading) => (reading.occluded, Some(reading)),
+        };
         if shaded == lit {
             // What is not lit has not changed.
-            rows.zip(rows_before()).for_each(|(row, before)| *row = *before);
+            (batch.diffuse, batch.specular) = before;
             return;
         }
-        while shaded != 0 {
-            let i = shaded.trailing_zeros() as usize;
-            shaded &= shaded - 1;
+        for i in bits(shaded) {
             for axis in 0..3 {
                 batch.diffuse[axis][i] = before.0[axis][i];
                 batch.specular[axis][i] = before.1[axis][i];
             }
         }
+        for i in bits(partly.map_or(0, |reading| reading.partly)) {
+            let open = partly.map_or(0, |reading| reading.open[i]);
+            let share = T::from_f64(f64::from(open) / f64::from(TAPS));
+            for axis in 0..3 {
+                let (diffuse, specular) = (before.0[axis][i], before.1[axis][i]);
+                batch.diffuse[axis][i] = diffuse + (batch.diffuse[axis][i] - diffuse) * share;
+                batch.specular[axis][i] = specular + (batch.specular[axis][i] - specular) * share;
+            }
+        }
     }
+}
+
+/// The positions of a batch whose light has changed, a bit for each.
+fn lit<T: Number>(level: Level, batch: &Batch<T>, before: &(Rows<T>, Rows<T>)) -> u64 {
+    let mut changed = [0_u32; BATCH];
+    let rows = batch.diffuse.iter().chain(&batch.specular);
+    for (row, before) in rows.zip(before.0.iter().chain(&before.1)) {
+        for ((changed, now), before) in changed.iter_mut().zip(row).zip(before) {
+            *changed |= u32::from(now != before);
+        }
+    }
+    let lit = dispatch!(level, simd => bit_of_each(simd, &changed));
+    lit & u64::MAX >> (BATCH - batch.len)
+}
+
+/// A bit for each number that is not 0.
+#[inline(always)]
+fn bit_of_each<S: Simd>(simd: S, numbers: &[u32; BATCH]) -> u64 {
+    let zero = u32x16::splat(simd, 0);
+    (0..BATCH).step_by(16).fold(0, |bits, at| {
+        let some = u32x16::from_slice(simd, &numbers[at..at + 16]);
+        bits | some.simd_gt(zero).to_bitmask() << at
+    })
 }
 
 /// Sets the points at which vertices are lit, from their positions in object space.
 pub(crate) fn place_vertices<T: Number>(
     (tracer, caster): (&Tracer<'_>, u32),
-    positions: &[[T; crate::render::simd::BATCH]; 3],
+    positions: &[[T; BATCH]; 3],
     count: usize,
     origins: &mut Origins,
 ) {

@@ -32,7 +32,7 @@ use crate::render::plan::tile::TilePlan;
 use crate::render::raster::visibility_buffer::{Visible, seen};
 use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
-use crate::render::shadow::rays::{Origins, RayScratch};
+use crate::render::shadow::rays::{Origins, RayCount, RayScratch};
 use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
 
@@ -110,6 +110,12 @@ impl<T: ShadingNumber> Shader<T> {
     /// Begins a frame.
     pub(crate) fn begin(&mut self) {
         self.attributes.forget();
+        self.rays.count = RayCount::default();
+    }
+
+    /// The rays of shadows since the frame began.
+    pub(crate) const fn ray_count(&self) -> RayCount {
+        self.rays.count
     }
 
     /// Colours a block, whose upper left pixel is `corner`, into a tile from index `at` on. Pixels

@@ -31,25 +31,36 @@ impl LocalRays {
     pub(super) fn set(
         &mut self,
         object_from_world: &DMat4,
-        light: DVec3,
+        (at, light): (&[[f64; BATCH]; 3], DVec3),
         (bounds, reach): (Bounds, f64),
     ) {
         let m = object_from_world;
         let end = m.transform_point3(light);
-        let mut largest = DVec3::ZERO;
+        let (mut ways, mut length, mut largest) = ([[0.0; BATCH]; 3], [0.0; BATCH], DVec3::ZERO);
+        for axis in 0..3 {
+            let [a, b, c, d] = [m.x_axis[axis], m.y_axis[axis], m.z_axis[axis], m.w_axis[axis]];
+            let mut most = [0.0; 8];
+            for first in (0..BATCH).step_by(8) {
+                for i in first..first + 8 {
+                    let from = at[0][i] * a + at[1][i] * b + at[2][i] * c + d;
+                    let way = end[axis] - from;
+                    self.origin[axis][i] = from as f32;
+                    ways[axis][i] = way;
+                    length[i] = larger(length[i], way.abs());
+                    most[i - first] = larger(most[i - first], from.abs());
+                }
+            }
+            largest[axis] = most.into_iter().fold(0.0, larger);
+        }
         for i in 0..BATCH {
-            let at = DVec3::new(self.at[0][i], self.at[1][i], self.at[2][i]);
-            let from = m.transform_point3(at);
-            let way = end - from;
-            let length = way.x.abs().max(way.y.abs()).max(way.z.abs());
-            largest = largest.max(from.abs());
-            for axis in 0..3 {
-                let part = way[axis] / length;
+            self.end[i] = above((length[i] * (1.0 + SINGLE)) as f32);
+        }
+        for axis in 0..3 {
+            for i in 0..BATCH {
+                let part = ways[axis][i] / length[i];
                 let part = if part.abs() < LEAST { LEAST.copysign(part) } else { part };
-                self.origin[axis][i] = from[axis] as f32;
                 self.inverse[axis][i] = (1.0 / part) as f32;
             }
-            self.end[i] = ((length * (1.0 + SINGLE)) as f32).min(f32::MAX).next_up();
         }
         let columns =
             m.x_axis.truncate().abs() + m.y_axis.abs().truncate() + m.z_axis.abs().truncate();
@@ -57,6 +68,7 @@ impl LocalRays {
         let far = bounds.min.abs().max(bounds.max.abs()) + largest;
         let pad = far * SINGLE + exact;
         self.pad = pad.to_array().map(|pad| (pad as f32).next_up());
+        self.far = far.max_element();
     }
 
     /// The rays of a mask that meet a box.
@@ -88,4 +100,16 @@ impl LocalRays {
         }
         met & mask
     }
+}
+
+/// The larger of two numbers, none of them NaN; a comparison and a choice, for lanes.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
+/// A number above a positive one, by two steps of f32 or a little more.
+#[inline(always)]
+fn above(x: f32) -> f32 {
+    x * (1.0 + 4.0 * f32::EPSILON) + f32::MIN_POSITIVE
 }

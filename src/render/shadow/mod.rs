@@ -12,15 +12,24 @@
 //! * A ray through an edge or a corner meets every triangle that has it, so no ray passes between
 //!   the triangles of a closed body.
 //!
-//! Up to 64 rays to one light are traced together ([`rays`]), through the boxes of a mesh in f32,
-//! padded by their error ([`boxes`]), then against triangles in f64 lanes with an error bound, and
-//! where that decides nothing by exact arithmetic ([`triangle`]). A sun is a light at 2^60 times
-//! the size of the scene: no f64 direction tells the difference.
+//! Up to 64 rays to one light are traced together ([`rays`]). Boxes of a mesh beside all of them
+//! are passed over ([`shaft`]); those of leaves are tested ray by ray in f32, padded by their error
+//! ([`boxes`]). Triangles are prepared eight at a time and compared with the box of all points,
+//! then ray by ray, in f64 lanes with an error bound; exact arithmetic decides the rest
+//! ([`triangle`]). A sun is a light at 2^60 times the size of the scene: no f64 direction tells the
+//! difference.
+//!
+//! In place of rays, settings choose shadow maps ([`maps`]), which are read at the same points.
 //!
 //! Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
 //! 1997. Amanatides and Choi, "Ray Tracing Triangular Meshes", 1995, for edges seen from one point.
 
 pub(crate) mod boxes;
+mod map_draws;
+pub(crate) mod map_face;
+pub(crate) mod maps;
+pub(crate) mod prepared_block;
 pub(crate) mod rays;
+pub(crate) mod shaft;
 pub(crate) mod tracer;
 pub(crate) mod triangle;

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use super::prepared_block::PreparedBlock;
+use super::shaft::{Around, Shaft};
 use crate::render::simd::BATCH;
 use crate::scene::TreeChild;
 
@@ -18,6 +20,11 @@ pub(crate) struct Origins {
     pub(crate) in_triangle: bool,
     /// The largest coordinate of the triangles that they lie in.
     pub(crate) reach: f64,
+    /// The points that were lifted off their triangles, a bit for each: they are exact.
+    pub(super) lifted: u64,
+    len: usize,
+    /// The box of all points, if it is known.
+    pub(super) around: Option<Around>,
 }
 
 impl Default for Origins {
@@ -29,6 +36,9 @@ impl Default for Origins {
             end: [0; BATCH],
             in_triangle: false,
             reach: 0.0,
+            lifted: 0,
+            len: 0,
+            around: None,
         }
     }
 }
@@ -37,21 +47,52 @@ impl Origins {
     /// Begins a list of points on a caster.
     pub(crate) const fn begin(&mut self, caster: Option<u32>, in_triangle: bool) {
         (self.caster, self.in_triangle, self.reach) = (caster, in_triangle, 0.0);
+        (self.lifted, self.len, self.around) = (0, 0, None);
     }
 
-    /// Sets a point and the triangles that it lies on.
+    /// Sets a point and the triangles that it lies on; points are set in order.
     #[inline(always)]
     pub(crate) fn set(&mut self, i: usize, at: DVec3, triangles: [u32; 2]) {
         for (row, x) in self.at.iter_mut().zip(at.to_array()) {
             row[i] = x;
         }
         [self.first[i], self.end[i]] = triangles;
+        self.len = i + 1;
+    }
+
+    /// Moves a point off its triangle, which still does not shade it.
+    pub(crate) fn lift(&mut self, i: usize, at: DVec3) {
+        let triangles = [self.first[i], self.end[i]];
+        self.set(i, at, triangles);
+        self.lifted |= 1 << i;
     }
 
     /// One of the points.
     #[inline(always)]
     pub(crate) fn point(&self, i: usize) -> DVec3 {
         DVec3::new(self.at[0][i], self.at[1][i], self.at[2][i])
+    }
+
+    /// The triangle that a point in the middle of the list lies in, if each lies in one.
+    pub(super) fn middle_triangle(&self) -> Option<(u32, u32)> {
+        let caster = self.caster.filter(|_| self.in_triangle && self.len > 0)?;
+        Some((caster, self.first[self.len / 2]))
+    }
+
+    /// Finds the box of all points, along a plane with this normal or, if it is unknown, along
+    /// three of the points. What is left of the lists repeats the first point.
+    #[inline(always)]
+    pub(super) fn find_around(&mut self, normal: Option<DVec3>) -> Around {
+        let len = self.len.clamp(1, BATCH);
+        for row in &mut self.at {
+            let first = row[0];
+            row[len..].fill(first);
+        }
+        let [a, b, c] = [0, len.min(8) - 1, len - 1].map(|i| self.point(i));
+        let normal = normal.unwrap_or_else(|| (b - a).cross(c - a));
+        let around = Around::new(&self.at, normal, b - a);
+        self.around = Some(around);
+        around
     }
 
     /// The points that lie on a triangle of their own caster, a bit for each.
@@ -65,34 +106,64 @@ impl Origins {
     }
 }
 
+/// The rays of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RayCount {
+    /// The rays that were traced.
+    pub traced: u64,
+    /// Those that something stands in the way of.
+    pub occluded: u64,
+}
+
+impl std::ops::AddAssign for RayCount {
+    fn add_assign(&mut self, other: Self) {
+        self.traced += other.traced;
+        self.occluded += other.occluded;
+    }
+}
+
 /// What a thread keeps from packet to packet.
 #[derive(Debug, Default)]
 pub(crate) struct RayScratch {
+    /// The rays since the frame began.
+    pub(crate) count: RayCount,
     pub(crate) origins: Origins,
-    pub(crate) local: LocalRays,
+    pub(super) local: LocalRays,
+    pub(super) shaft: Shaft,
+    pub(super) prepared: PreparedBlock,
     /// Nodes and leaves that are still to be visited, with the rays that reach them.
-    pub(crate) stack: Vec<(TreeChild, u64)>,
+    pub(super) stack: Vec<(TreeChild, u64)>,
 }
 
 /// The rays of a packet in the space of one caster, for its boxes.
 #[derive(Debug)]
-pub(crate) struct LocalRays {
-    /// The origins in world space; those of rays that are not traced repeat one that is.
-    pub(crate) at: [[f64; BATCH]; 3],
-    /// The same in the space of the caster.
-    pub(crate) origin: [[f32; BATCH]; 3],
+pub(super) struct LocalRays {
+    /// The origins in the space of the caster.
+    pub(super) origin: [[f32; BATCH]; 3],
     /// 1 / direction, which is scaled so that its largest component is 1.
-    pub(crate) inverse: [[f32; BATCH]; 3],
+    pub(super) inverse: [[f32; BATCH]; 3],
     /// The parameter of the light.
-    pub(crate) end: [f32; BATCH],
+    pub(super) end: [f32; BATCH],
     /// How far boxes are padded, for all errors of f32.
-    pub(crate) pad: [f32; 3],
+    pub(super) pad: [f32; 3],
+    /// The largest coordinate of the origins and of the caster's bounds.
+    pub(super) far: f64,
 }
 
 impl Default for LocalRays {
     fn default() -> Self {
         let rows = [[0.0; BATCH]; 3];
-        let at = [[0.0; BATCH]; 3];
-        Self { at, origin: rows, inverse: rows, end: [0.0; BATCH], pad: [0.0; 3] }
+        Self { origin: rows, inverse: rows, end: [0.0; BATCH], pad: [0.0; 3], far: 0.0 }
     }
+}
+
+/// The numbers of the bits of a mask.
+pub(crate) fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        (mask != 0).then(|| {
+            let i = mask.trailing_zeros() as usize;
+            mask &= mask - 1;
+            i
+        })
+    })
 }

@@ -3,16 +3,19 @@
 use fearless_simd::{Level, Simd, dispatch};
 use glam::{DMat4, DVec3};
 
-use super::rays::{Origins, RayScratch};
+use super::map_face::{LightMap, Reading};
+use super::maps::ShadowMaps;
+use super::rays::{Origins, RayCount, RayScratch, bits};
+use super::shaft::Around;
 use super::triangle::{Corners, Prepared, is_between, reaches_behind};
-use crate::accuracy::Filter;
+use crate::accuracy::{Filter, ShadowMethod};
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
-use crate::render::frame::shadows::{Caster, CasterPart, ShadowSource, Shadows};
-use crate::render::simd::BATCH;
-use crate::render::texture::sample::sample;
+use crate::render::frame::shadows::{Caster, CasterPart, Holes, ShadowSource, Shadows};
+use crate::render::simd::Vec3;
+use crate::render::texture::sample::{brightness, sample};
 use crate::render::texture::uv::uv;
-use crate::scene::{Bounds, RayTree, TreeTriangle, dvec3};
+use crate::scene::{Bounds, RayTree, TREE_BLOCK, TreeChild, TreeNode, dvec3};
 
 /// How much farther a sun is than the largest coordinate of the scene.
 const SUN: f64 = (1_u64 << 60) as f64;
@@ -25,6 +28,8 @@ pub(crate) struct Tracer<'a> {
     of_draws: Vec<Option<u32>>,
     /// For each light, the end of the rays to it, if it casts shadows.
     lights: Vec<Option<DVec3>>,
+    /// For each light its shadow map, if the settings want one.
+    maps: Vec<Option<&'a LightMap>>,
     filter: Filter,
 }
 
@@ -32,7 +37,8 @@ pub(crate) struct Tracer<'a> {
 #[derive(Debug)]
 struct InPlace<'a> {
     caster: &'a Caster,
-    tree: &'a RayTree,
+    /// `None` with shadow maps.
+    tree: Option<&'a RayTree>,
     object_from_world: DMat4,
     /// Its bounds in object space.
     own: Bounds,
@@ -51,29 +57,39 @@ fn placed(world_from_object: &DMat4, corners: [[f32; 3]; 3]) -> Corners {
 
 impl<'a> Tracer<'a> {
     /// Makes the casters of a plan ready; `None` if no light casts shadows.
-    pub(crate) fn new(plan: &'a FramePlan) -> Option<Self> {
+    pub(crate) fn new(plan: &'a FramePlan, maps: &'a ShadowMaps) -> Option<Self> {
         if !plan.shadows.are_cast() {
             return None;
         }
-        let tracer = Self::of(&plan.shadows, plan.filter);
+        let mut tracer = Self::of(&plan.shadows, plan.filter, plan.variants.shadow_method);
+        let map = |source: &Option<ShadowSource>| source.as_ref().and_then(|own| maps.of(own));
+        tracer.maps = plan.shadows.sources.iter().map(map).collect();
         let of_draw = |item| tracer.casters.iter().position(|placed| placed.caster.item == item);
         let index = |at: usize| u32::try_from(at).expect("fewer than 2^32 objects");
         let of_draws = plan.draws.iter().map(|draw| of_draw(draw.item).map(index)).collect();
         Some(Self { of_draws, ..tracer })
     }
 
+    /// How far away the suns of a frame are.
+    pub(crate) fn sun_distance(shadows: &Shadows) -> f64 {
+        let in_place = |caster| InPlace::new(caster, ShadowMethod::Map512);
+        sun_distance(&shadows.casters.iter().filter_map(in_place).collect::<Vec<_>>())
+    }
+
     /// Makes casters ready.
-    fn of(shadows: &'a Shadows, filter: Filter) -> Self {
-        let casters: Vec<InPlace<'a>> = shadows.casters.iter().filter_map(InPlace::new).collect();
-        let reach = casters.iter().map(InPlace::reach).fold(f64::MIN_POSITIVE, f64::max);
-        let far = power_of_two_above(reach) * SUN;
+    fn of(shadows: &'a Shadows, filter: Filter, method: ShadowMethod) -> Self {
+        let in_place = |caster| InPlace::new(caster, method);
+        let casters: Vec<InPlace<'a>> = shadows.casters.iter().filter_map(in_place).collect();
+        let far = sun_distance(&casters);
         let end = |source: &ShadowSource| match source {
             ShadowSource::Direction(towards) => *towards * far,
             // A light that is farther than a sun is one.
-            ShadowSource::Point(at) => *at * (far / at.abs().max_element()).min(1.0),
+            ShadowSource::Point(at) | ShadowSource::Cone { at, .. } => {
+                *at * (far / at.abs().max_element()).min(1.0)
+            }
         };
         let lights = shadows.sources.iter().map(|source| source.as_ref().map(end)).collect();
-        Self { casters, of_draws: Vec::new(), lights, filter }
+        Self { casters, of_draws: Vec::new(), lights, maps: Vec::new(), filter }
     }
 
     /// The end of the rays to a light, if it casts shadows.
@@ -92,6 +108,18 @@ impl<'a> Tracer<'a> {
         self.casters[caster as usize].caster.world_from_object
     }
 
+    /// What the map of a light says of the points of a mask, if there is one.
+    pub(crate) fn read(
+        &self,
+        level: Level,
+        light: u32,
+        scratch: &mut RayScratch,
+        mask: u64,
+    ) -> Option<Reading> {
+        let map = self.maps.get(light as usize).copied().flatten()?;
+        Some(dispatch!(level, _ => map.read(&scratch.origins.at, mask)))
+    }
+
     /// The rays of a mask that something stands between and the light, a bit for each.
     pub(crate) fn shaded(
         &self,
@@ -103,45 +131,45 @@ impl<'a> Tracer<'a> {
         if mask == 0 {
             return 0;
         }
-        dispatch!(level, simd => self.trace(simd, light, scratch, mask))
+        let shaded = dispatch!(level, simd => self.trace(simd, light, scratch, mask));
+        let [traced, occluded] = [mask, shaded].map(|rays| u64::from(rays.count_ones()));
+        scratch.count += RayCount { traced, occluded };
+        shaded
     }
 
     #[inline(always)]
     fn trace<S: Simd>(&self, simd: S, light: DVec3, scratch: &mut RayScratch, mask: u64) -> u64 {
-        let RayScratch { origins, local, stack } = scratch;
-        fill_up(origins, &mut local.at, mask);
-        let around = bounds_of(&local.at);
-        let (low, high) = (around[0].min(light), around[1].max(light));
+        let around = match scratch.origins.around {
+            Some(around) => around,
+            None => self.find_around(&mut scratch.origins),
+        };
+        let extent = around.extent();
+        let (from, to) = (around.centre - extent, around.centre + extent);
+        let (low, high) = (from.min(light), to.max(light));
         let mut alive = mask;
         for (index, placed) in (0_u32..).zip(&self.casters) {
             if placed.low.cmpgt(high).any() || placed.high.cmplt(low).any() {
                 continue;
             }
-            let reach = placed.reach().max(around[0].abs().max(around[1].abs()).max_element());
-            local.set(&placed.object_from_world, light, (placed.own, reach));
+            let Some(tree) = placed.tree else { continue };
+            let RayScratch { origins, local, shaft, stack, .. } = &mut *scratch;
+            let reach = placed.reach().max(from.abs().max(to.abs()).max_element());
+            local.set(&placed.object_from_world, (&origins.at, light), (placed.own, reach));
+            shaft.set(&placed.object_from_world, (&around, light), (local.far, local.pad));
             let packet = Packet { light, around, is_own: origins.caster == Some(index) };
             stack.clear();
-            stack.push((placed.tree.root, alive));
-            while let Some((child, reached)) = stack.pop() {
+            stack.push((tree.root, alive));
+            while let Some((child, reached)) = scratch.stack.pop() {
                 let reached = reached & alive;
                 if reached == 0 {
                     continue;
                 }
                 if child.count == 0 {
-                    let Some(node) = placed.tree.nodes.get(child.first as usize) else { continue };
-                    for i in 0..2 {
-                        let met = local.meeting(simd, &node.low[i], &node.high[i], reached);
-                        if met != 0 {
-                            stack.push((node.children[i], met));
-                        }
-                    }
+                    let Some(node) = tree.nodes.get(child.first as usize) else { continue };
+                    scratch.visit(simd, node, reached);
                     continue;
                 }
-                for triangle in &placed.tree.triangles[child.triangles()] {
-                    let rays = reached & alive;
-                    alive &=
-                        !self.behind(simd, (placed, triangle), (&packet, origins, &local.at), rays);
-                }
+                alive &= !self.behind_leaf(simd, (placed, tree, child), &packet, scratch, reached);
                 if alive == 0 {
                     return mask;
                 }
@@ -150,43 +178,62 @@ impl<'a> Tracer<'a> {
         mask & !alive
     }
 
-    /// The rays of a mask that a triangle stands between and the light.
+    /// Finds the box of the points of a packet, along the surface on which they lie.
     #[inline(always)]
-    fn behind<S: Simd>(
+    fn find_around(&self, origins: &mut Origins) -> Around {
+        let normal = origins.middle_triangle().map(|(caster, triangle)| {
+            let [a, b, c] = self.corners_of(caster, triangle);
+            (b - a).cross(c - a)
+        });
+        origins.find_around(normal)
+    }
+
+    /// The rays of a mask that a triangle of a leaf stands between and the light.
+    #[inline(always)]
+    fn behind_leaf<S: Simd>(
         &self,
         simd: S,
-        (placed, triangle): (&InPlace<'_>, &TreeTriangle),
-        (packet, origins, at): (&Packet, &Origins, &[[f64; BATCH]; 3]),
-        mut rays: u64,
+        (placed, tree, leaf): (&InPlace<'_>, &RayTree, TreeChild),
+        packet: &Packet,
+        scratch: &mut RayScratch,
+        reached: u64,
     ) -> u64 {
-        if packet.is_own {
-            rays &= !origins.on(triangle.number, rays);
+        let RayScratch { origins, prepared, .. } = scratch;
+        let mut behind = 0;
+        let mut left = leaf.count as usize;
+        for block in &tree.blocks[leaf.blocks()] {
+            let own = (block, &placed.caster.world_from_object);
+            let possible = prepared.set(simd, own, (&packet.around, packet.light), origins.reach);
+            for i in bits(possible & (1 << left.min(TREE_BLOCK)) - 1) {
+                let mut rays = reached & !behind;
+                if packet.is_own {
+                    rays &= !origins.on(block.numbers[i], rays);
+                }
+                if rays == 0 {
+                    continue;
+                }
+                let triangle = prepared.triangle(i);
+                let decided = triangle.decide(simd, &origins.at, rays);
+                if decided.between | decided.open != 0 {
+                    let triangle = (placed, block.numbers[i], &triangle);
+                    behind |= self.settle(triangle, (packet, origins), decided);
+                }
+            }
+            left = left.saturating_sub(TREE_BLOCK);
         }
-        if rays == 0 {
-            return 0;
-        }
-        let corners = self::placed(&placed.caster.world_from_object, triangle.corners);
-        let Some(prepared) = Prepared::new(corners, packet.light, packet.around, origins.reach)
-        else {
-            return 0;
-        };
-        let decided = prepared.decide(simd, at, rays);
-        if decided.between | decided.open == 0 {
-            return 0;
-        }
-        self.settle((placed, triangle.number), (&prepared, &corners), (packet, origins), decided)
+        behind
     }
 
     /// Decides what f64 cannot, and lets rays through holes.
     #[inline(never)]
     fn settle(
         &self,
-        (placed, number): (&InPlace<'_>, u32),
-        (prepared, corners): (&Prepared, &Corners),
+        (placed, number, triangle): (&InPlace<'_>, u32, &Prepared),
         (packet, origins): (&Packet, &Origins),
         decided: super::triangle::Decided,
     ) -> u64 {
         let mut between = decided.between;
+        let corners = &triangle.corners;
         for i in bits(decided.open) {
             let is = self.own_reaches_behind(origins, i, corners, packet.light)
                 && is_between(corners, packet.light, origins.point(i));
@@ -197,7 +244,7 @@ impl<'a> Tracer<'a> {
         }
         let part = placed.caster.part_of(number);
         bits(between)
-            .filter(|i| self.is_solid_at(placed, part, number, prepared.parts(origins.point(*i))))
+            .filter(|i| self.is_solid_at(placed, part, number, triangle.parts(origins.point(*i))))
             .fold(0, |solid, i| solid | 1 << i)
     }
 
@@ -210,7 +257,8 @@ impl<'a> Tracer<'a> {
         triangle: &Corners,
         light: DVec3,
     ) -> bool {
-        let Some(caster) = origins.caster.filter(|_| origins.in_triangle) else { return true };
+        let is_exact = !origins.in_triangle || origins.lifted >> i & 1 == 1;
+        let Some(caster) = origins.caster.filter(|_| !is_exact) else { return true };
         let own = self.corners_of(caster, origins.first[i]);
         reaches_behind(&own, triangle, light)
     }
@@ -235,10 +283,37 @@ impl<'a> Tracer<'a> {
         parts: DVec3,
     ) -> bool {
         let Some(part) = part else { return false };
-        let Some((texture, opacity)) = &part.holes else { return true };
+        let Some(Holes { texture, map, opacity }) = &part.holes else { return true };
         let Some(uvs) = placed.caster.model.mesh.triangle_uvs(triangle) else { return true };
         let uvs = each(uvs, |[u, v]| [f64::from(u), f64::from(v)]);
-        sample::<f64>(texture, uv(uvs, parts), self.filter)[3] * opacity >= 0.5
+        let at = uv(uvs, parts);
+        let texture = texture.as_ref().map_or(1.0, |it| sample::<f64>(it, at, self.filter)[3]);
+        let map = map.as_ref().map_or(1.0, |it| {
+            let [r, g, b, alpha] = sample::<f64>(it, at, self.filter);
+            // Its brightness counts if it has no alpha.
+            if it.picture.least_alpha() == 255 { brightness(Vec3([r, g, b])) } else { alpha }
+        });
+        texture * map * opacity >= 0.5
+    }
+}
+
+impl RayScratch {
+    /// Adds the children of a node that rays meet to those that are still to be visited. A leaf is
+    /// tested ray by ray.
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, simd: S, node: &TreeNode, reached: u64) {
+        for (child, [low, high]) in node.children() {
+            if self.shaft.misses(simd, low, high) {
+                continue;
+            }
+            let met = match child.count {
+                0 => reached,
+                _ => self.local.meeting(simd, low, high, reached),
+            };
+            if met != 0 {
+                self.stack.push((*child, met));
+            }
+        }
     }
 }
 
@@ -246,13 +321,13 @@ impl<'a> Tracer<'a> {
 struct Packet {
     light: DVec3,
     /// The box of their origins.
-    around: [DVec3; 2],
+    around: Around,
     /// Whether they begin on the caster that is traced.
     is_own: bool,
 }
 
 impl<'a> InPlace<'a> {
-    fn new(caster: &'a Caster) -> Option<Self> {
+    fn new(caster: &'a Caster, method: ShadowMethod) -> Option<Self> {
         let mesh = &caster.model.mesh;
         let own = mesh.bounds()?;
         let m = caster.world_from_object;
@@ -266,7 +341,7 @@ impl<'a> InPlace<'a> {
         let is_finite = low.is_finite() && high.is_finite() && object_from_world.is_finite();
         is_finite.then(|| Self {
             caster,
-            tree: mesh.ray_tree(),
+            tree: method.map().is_none().then(|| mesh.ray_tree()),
             object_from_world,
             own,
             low,
@@ -281,39 +356,10 @@ impl<'a> InPlace<'a> {
     }
 }
 
-/// Copies the points of a mask. In place of the others stands one of them, so that they widen no
-/// box.
-#[inline(always)]
-fn fill_up(origins: &Origins, at: &mut [[f64; BATCH]; 3], mask: u64) {
-    let one = mask.trailing_zeros() as usize % BATCH;
-    for (to, from) in at.iter_mut().zip(&origins.at) {
-        for (i, (to, x)) in to.iter_mut().zip(from).enumerate() {
-            *to = if mask >> i & 1 == 1 { *x } else { from[one] };
-        }
-    }
-}
-
-#[inline(always)]
-fn bounds_of(at: &[[f64; BATCH]; 3]) -> [DVec3; 2] {
-    let [mut low, mut high] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for axis in 0..3 {
-        for x in &at[axis] {
-            low[axis] = low[axis].min(*x);
-            high[axis] = high[axis].max(*x);
-        }
-    }
-    [DVec3::from_array(low), DVec3::from_array(high)]
-}
-
-/// The numbers of the bits of a mask.
-fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        (mask != 0).then(|| {
-            let i = mask.trailing_zeros() as usize;
-            mask &= mask - 1;
-            i
-        })
-    })
+/// How far away suns are, with these casters.
+fn sun_distance(casters: &[InPlace<'_>]) -> f64 {
+    let reach = casters.iter().map(InPlace::reach).fold(f64::MIN_POSITIVE, f64::max);
+    power_of_two_above(reach) * SUN
 }
 
 /// The least power of two above a number.

@@ -20,18 +20,17 @@ use fearless_simd::{Simd, SimdBase as _, SimdMask as _, f64x8};
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
-use crate::base::math::each;
 use crate::render::simd::BATCH;
 
 /// The corners of a triangle in world space.
 pub(crate) type Corners = [DVec3; 3];
 
 /// 128 u: see the [module](self).
-const ERROR: f64 = 1.0 / (1_u64 << 46) as f64;
+pub(super) const ERROR: f64 = 1.0 / (1_u64 << 46) as f64;
 
 /// The error of a point's distance from its own triangle's plane, relative to the largest
 /// coordinate of the triangle: some ten times what three products and two sums can lose.
-const OFF_PLANE: f64 = 1.0 / (1_u64 << 46) as f64;
+pub(super) const OFF_PLANE: f64 = 1.0 / (1_u64 << 46) as f64;
 
 fn place(p: DVec3) -> Coord3D<f64> {
     Coord3D { x: p.x, y: p.y, z: p.z }
@@ -75,11 +74,11 @@ pub(crate) fn reaches_behind(own: &Corners, triangle: &Corners, light: DVec3) ->
 /// all edge functions are at least 0 and the plane's is more.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prepared {
-    corners: Corners,
+    pub(super) corners: Corners,
     /// The normals of the planes through the light and each edge, and of the triangle's plane.
-    normals: [DVec3; 4],
+    pub(super) normals: [DVec3; 4],
     /// The error of the edge functions, and of the plane's with that of the points.
-    errors: [f64; 4],
+    pub(super) errors: [f64; 4],
 }
 
 /// Rays whose triangle stands between, and those that f64 cannot decide, a bit for each.
@@ -90,40 +89,6 @@ pub(super) struct Decided {
 }
 
 impl Prepared {
-    /// Prepares a triangle for points in a box; `None` if it stands between none of them and the
-    /// light.
-    #[inline(always)]
-    pub(super) fn new(
-        corners: Corners,
-        light: DVec3,
-        [low, high]: [DVec3; 2],
-        reach: f64,
-    ) -> Option<Self> {
-        let [a, b, c] = corners;
-        let (ab, bc, ca) = (b - a, c - b, a - c);
-        let plane = ab.cross(-ca);
-        let to_light = light - a;
-        let size = largest(ab) * largest(ca);
-        let of_light = plane.dot(to_light);
-        let of_light = if of_light.abs() > ERROR * size * largest(to_light) {
-            of_light
-        } else {
-            side(&corners, light)
-        };
-        let sign = match () {
-            () if of_light > 0.0 => -1.0,
-            () if of_light < 0.0 => 1.0,
-            () => return None,
-        };
-        let far = |corner: DVec3| largest((high - corner).abs().max((low - corner).abs()));
-        let edges = [(a, ab), (b, bc), (c, ca)];
-        let [na, nb, nc] = each(edges, |(from, side)| (from - light).cross(side) * sign);
-        let [ea, eb, ec] =
-            each(edges, |(from, side)| ERROR * largest(from - light) * largest(side) * far(from));
-        let off = size * (ERROR * far(a) + 6.0 * OFF_PLANE * reach);
-        Some(Self { corners, normals: [na, nb, nc, plane * sign], errors: [ea, eb, ec, off] })
-    }
-
     /// Decides for the rays of a mask.
     #[inline(always)]
     pub(super) fn decide<S: Simd>(&self, simd: S, at: &[[f64; BATCH]; 3], mask: u64) -> Decided {
@@ -136,8 +101,10 @@ impl Prepared {
             let y = f64x8::from_slice(simd, &at[1][first..first + 8]);
             let z = f64x8::from_slice(simd, &at[2][first..first + 8]);
             let (mut between, mut possible) = (0xff, 0xff);
-            for (i, (normal, error)) in self.normals.iter().zip(self.errors).enumerate() {
-                let from = self.corners[i % 3];
+            // Most points are on the light's side of a plane: that is the first question.
+            for i in 0..4 {
+                let i = (i + 3) % 4;
+                let (normal, error, from) = (self.normals[i], self.errors[i], self.corners[i % 3]);
                 let value =
                     (x - from.x) * normal.x + (y - from.y) * normal.y + (z - from.z) * normal.z;
                 between &= value.simd_gt(error).to_bitmask();
@@ -160,9 +127,4 @@ impl Prepared {
         let sum = parts.element_sum();
         if sum > 0.0 { parts / sum } else { DVec3::splat(1.0 / 3.0) }
     }
-}
-
-#[inline(always)]
-fn largest(v: DVec3) -> f64 {
-    v.abs().max_element()
 }

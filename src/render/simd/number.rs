@@ -9,7 +9,9 @@ use super::variant_lanes::VariantLanes;
 use crate::accuracy::{Normalising, SpecularPower};
 
 /// The numbers that pictures can be computed in.
-pub trait Number: Real + Default + Into<f64> + Send + Sync + std::fmt::Debug + 'static {
+pub trait Number:
+    Real + Default + PartialEq + Into<f64> + Send + Sync + std::fmt::Debug + 'static
+{
     /// The nearest such number.
     fn from_f64(number: f64) -> Self;
     /// The byte nearest to 255 times the number, clamped and rounded; NaN gives 0.

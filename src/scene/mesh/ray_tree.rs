@@ -2,7 +2,8 @@
 //!
 //! `obvhs` builds the tree from boxes that are brought to the unit cube, so that it meets no
 //! infinity. It needs quadratic time for boxes that coincide, so equal boxes become one leaf first.
-//! The boxes of the finished tree are those of the triangles themselves, exactly.
+//! The boxes of the finished tree are those of the triangles themselves, exactly. The triangles of
+//! a leaf lie eight by eight, coordinate by coordinate, so that eight are prepared at once.
 //!
 //! Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy
 //! Construction", 2018.
@@ -28,35 +29,89 @@ pub struct RayTree {
     pub root: TreeChild,
     /// The inner nodes.
     pub nodes: Vec<TreeNode>,
-    /// The triangles, leaf by leaf.
-    pub triangles: Vec<TreeTriangle>,
+    /// The triangles, leaf by leaf, eight at a time.
+    pub blocks: Vec<TreeBlock>,
 }
 
-/// An inner node: the boxes of its two children.
+/// The triangles of a block.
+pub const TREE_BLOCK: usize = 8;
+
+/// Up to eight triangles of a leaf. The last is repeated in what is left of its block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TreeBlock {
+    /// For each corner and axis the coordinates in object space.
+    pub corners: [[[f32; TREE_BLOCK]; 3]; 3],
+    /// Their indices in [`Mesh::triangles`].
+    pub numbers: [u32; TREE_BLOCK],
+}
+
+impl TreeBlock {
+    /// The block of some triangles, at least one.
+    fn of(triangles: &[TreeTriangle]) -> Self {
+        let mut block = Self::default();
+        for i in 0..TREE_BLOCK {
+            let triangle = &triangles[i.min(triangles.len() - 1)];
+            block.numbers[i] = triangle.number;
+            for (rows, corner) in block.corners.iter_mut().zip(triangle.corners) {
+                rows.iter_mut().zip(corner).for_each(|(row, x)| row[i] = x);
+            }
+        }
+        block
+    }
+
+    /// One of its triangles.
+    #[must_use]
+    pub fn triangle(&self, i: usize) -> TreeTriangle {
+        TreeTriangle {
+            corners: self.corners.map(|rows| rows.map(|row| row[i])),
+            number: self.numbers[i],
+        }
+    }
+}
+
+/// The most children of a node.
+const WIDTH: usize = 8;
+
+/// An inner node: the boxes of up to eight children, in four lines of a cache. Large trees are
+/// bound by the latency of memory, and so have few levels.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TreeNode {
-    /// The least coordinates of each child's box.
-    pub low: [[f32; 3]; 2],
-    /// The largest coordinates of each child's box.
-    pub high: [[f32; 3]; 2],
-    /// The children.
-    pub children: [TreeChild; 2],
+    boxes: [Box3; WIDTH],
+    children: [TreeChild; WIDTH],
+}
+
+impl Default for TreeNode {
+    fn default() -> Self {
+        Self { boxes: [EMPTY; WIDTH], children: [TreeChild::NONE; WIDTH] }
+    }
+}
+
+impl TreeNode {
+    /// The children, each with the least and the largest coordinates of its box.
+    #[inline(always)]
+    pub fn children(&self) -> impl Iterator<Item = (&TreeChild, &[[f32; 3]; 2])> {
+        let children = self.children.iter().take_while(|child| **child != TreeChild::NONE);
+        children.zip(&self.boxes)
+    }
 }
 
 /// A child of a node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TreeChild {
-    /// The index of its node in [`RayTree::nodes`], or of its first triangle.
+    /// The index of its node in [`RayTree::nodes`], or of its first block in [`RayTree::blocks`].
     pub first: u32,
     /// The number of its triangles if it is a leaf, else 0.
     pub count: u32,
 }
 
 impl TreeChild {
-    /// The triangles of a leaf.
+    /// No child.
+    const NONE: Self = Self { first: u32::MAX, count: 0 };
+
+    /// The blocks of a leaf.
     #[must_use]
-    pub const fn triangles(self) -> Range<usize> {
-        self.first as usize..(self.first + self.count) as usize
+    pub const fn blocks(self) -> Range<usize> {
+        self.first as usize..(self.first + self.count.div_ceil(TREE_BLOCK as u32)) as usize
     }
 }
 
@@ -76,7 +131,7 @@ type Box3 = [[f32; 3]; 2];
 const EMPTY: Box3 = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
 /// The most boxes in a leaf, and the cost of a node relative to a box in it.
-const LEAF: u32 = 4;
+const LEAF: u32 = 8;
 const NODE_COST: f32 = 1.5;
 
 /// The number of boxes up to which a tree is one leaf.
@@ -90,8 +145,9 @@ impl RayTree {
             return Self::default();
         }
         if groups.boxes.len() <= FEW {
-            let root = TreeChild { first: 0, count: index(groups.triangles.len()) };
-            return Self { root, nodes: Vec::new(), triangles: groups.triangles };
+            let mut flat = Self::default();
+            flat.root = flat.add_leaf(&groups.triangles);
+            return flat;
         }
         let unit = in_unit_cube(&groups.boxes);
         let numbers = (0..index(unit.len())).collect();
@@ -108,53 +164,87 @@ impl RayTree {
         Self::flattened(&tree, &groups)
     }
 
-    /// Copies the nodes of a tree, children after their parents, and computes their boxes.
+    /// Adds the triangles of a leaf.
+    fn add_leaf(&mut self, triangles: &[TreeTriangle]) -> TreeChild {
+        let child = TreeChild { first: index(self.blocks.len()), count: index(triangles.len()) };
+        self.blocks.extend(triangles.chunks(TREE_BLOCK).map(TreeBlock::of));
+        child
+    }
+
+    /// The triangles of a leaf.
+    pub fn leaf(&self, child: TreeChild) -> impl Iterator<Item = TreeTriangle> + '_ {
+        let place = move |i: usize| (child.first as usize + i / TREE_BLOCK, i % TREE_BLOCK);
+        (0..child.count as usize).map(place).map(|(block, i)| self.blocks[block].triangle(i))
+    }
+
+    /// Copies the nodes of a tree, up to eight children together and after their parents, and
+    /// computes their boxes.
     fn flattened(tree: &Bvh2, groups: &Groups) -> Self {
         let mut flat = Self::default();
         // The nodes that are still to be copied, with the places that refer to them.
         let mut open = vec![(0, None::<(usize, usize)>)];
-        let mut leaf_boxes = Vec::new();
+        let mut triangles = Vec::new();
         while let Some((place, parent)) = open.pop() {
             let node = &tree.nodes[place];
-            let mut own = TreeChild { first: index(flat.nodes.len()), count: 0 };
-            if node.prim_count == 0 {
+            let own = if node.prim_count == 0 {
                 let at = flat.nodes.len();
                 flat.nodes.push(TreeNode::default());
-                let first = node.first_index as usize;
-                open.extend([(first + 1, Some((at, 1))), (first, Some((at, 0)))]);
+                let children = children_of(tree, place).into_iter().enumerate();
+                open.extend(children.map(|(i, child)| (child, Some((at, i)))).rev());
+                TreeChild { first: index(at), count: 0 }
             } else {
-                let first = flat.triangles.len();
                 let leaf = node.first_index as usize..(node.first_index + node.prim_count) as usize;
+                triangles.clear();
                 for group in &tree.primitive_indices[leaf] {
                     let own = groups.starts[*group as usize]..groups.starts[*group as usize + 1];
-                    flat.triangles.extend_from_slice(&groups.triangles[own]);
+                    triangles.extend_from_slice(&groups.triangles[own]);
                 }
-                own = TreeChild { first: index(first), count: index(flat.triangles.len() - first) };
-                let around = flat.triangles[first..].iter().map(|own| box_of(&own.corners));
-                leaf_boxes.push((parent, around.fold(EMPTY, union)));
-            }
+                flat.add_leaf(&triangles)
+            };
             match parent {
                 None => flat.root = own,
-                Some((at, child)) => flat.nodes[at].children[child] = own,
+                Some((at, child)) => {
+                    flat.nodes[at].children[child] = own;
+                    if own.count > 0 {
+                        let around = triangles.iter().map(|own| box_of(&own.corners));
+                        flat.nodes[at].boxes[child] = around.fold(EMPTY, union);
+                    }
+                }
             }
-        }
-        for (parent, around) in leaf_boxes {
-            let Some((at, child)) = parent else { continue };
-            (flat.nodes[at].low[child], flat.nodes[at].high[child]) = (around[0], around[1]);
         }
         // Children have larger numbers than their parents.
         for at in (0..flat.nodes.len()).rev() {
-            for child in 0..2 {
+            for child in 0..WIDTH {
                 let TreeChild { first, count } = flat.nodes[at].children[child];
-                if count == 0 {
-                    let TreeNode { low, high, .. } = flat.nodes[first as usize];
-                    let [low, high] = union([low[0], high[0]], [low[1], high[1]]);
-                    (flat.nodes[at].low[child], flat.nodes[at].high[child]) = (low, high);
+                if count == 0 && first != TreeChild::NONE.first {
+                    let around = flat.nodes[first as usize].boxes.into_iter().fold(EMPTY, union);
+                    flat.nodes[at].boxes[child] = around;
                 }
             }
         }
         flat
     }
+}
+
+/// Up to eight nodes below one: its children. The largest is replaced by its own as long as there
+/// is room.
+fn children_of(tree: &Bvh2, node: usize) -> Vec<usize> {
+    let pair = |node: usize| {
+        let first = tree.nodes[node].first_index as usize;
+        [first, first + 1]
+    };
+    let mut children = Vec::from(pair(node));
+    while children.len() < WIDTH {
+        let inner =
+            children.iter().enumerate().filter(|(_, child)| tree.nodes[**child].prim_count == 0);
+        let area = |node: usize| tree.nodes[node].aabb.half_area();
+        let largest = inner.max_by(|(_, a), (_, b)| area(**a).total_cmp(&area(**b)));
+        let Some((i, child)) = largest.map(|(i, child)| (i, *child)) else { break };
+        let [first, second] = pair(child);
+        children[i] = first;
+        children.insert(i + 1, second);
+    }
+    children
 }
 
 /// Triangles in groups of equal boxes.

@@ -66,7 +66,8 @@ pub(super) fn with_lights_off(it: &RandomScene, count: u32, rng: &mut Rng) -> Ra
                 exponent: 1.0,
             },
         ]);
-        let light = Light { on: false, ..Light::new("off", 500 + i, kind) };
+        let light = Light::new("off", 500 + i, kind);
+        let light = Light { on: false, shadows: light.can_cast_shadows(), ..light };
         let at = rng.index(more.scene.lights.len() + 1);
         insert(&mut more, at, Item::Light(LightId(500 + i), Box::new(light)));
     }

@@ -68,7 +68,7 @@ fn float(p: Point) -> DVec3 {
 }
 
 fn traced(shadows: &Shadows, points: &[Point]) -> u64 {
-    let tracer = Tracer::of(shadows, Filter::Bilinear);
+    let tracer = Tracer::of(shadows, Filter::Bilinear, ShadowMethod::Exact);
     let mut scratch = RayScratch::default();
     scratch.origins.begin(None, false);
     for (i, point) in points.iter().enumerate() {
@@ -174,7 +174,8 @@ fn twenty_thousand_triangles_in_one_place_are_one_and_take_no_longer() {
     let mut triangles = vec![[[0, 0, 0], [4, 0, 0], [0, 4, 0]]; 20_000];
     triangles.push([[9, 9, 9], [9, 9, 8], [9, 8, 9]]);
     let model = mesh_of(&triangles);
-    assert_eq!(model.mesh.ray_tree().triangles.len(), 2);
+    let tree = model.mesh.ray_tree();
+    assert_eq!(tree.leaf(tree.root).count(), 2);
     let shadows = shadows_of(&[(triangles, [0; 3])], [1, 1, 5]);
     assert_eq!(traced(&shadows, &[[1, 1, -1], [5, 5, -1], [1, 1, 0]]), 0b001);
 }
@@ -195,16 +196,15 @@ fn a_tree_holds_every_triangle_once_inside_its_boxes() {
     let mut open = vec![(tree.root, [[f32::NEG_INFINITY; 3], [f32::INFINITY; 3]])];
     while let Some((child, [low, high])) = open.pop() {
         if child.count == 0 {
-            let node = &tree.nodes[child.first as usize];
-            for i in 0..2 {
+            for (child, around) in tree.nodes[child.first as usize].children() {
                 let inside = (0..3)
-                    .all(|axis| node.low[i][axis] >= low[axis] && node.high[i][axis] <= high[axis]);
+                    .all(|axis| around[0][axis] >= low[axis] && around[1][axis] <= high[axis]);
                 assert!(inside, "a child's box sticks out");
-                open.push((node.children[i], [node.low[i], node.high[i]]));
+                open.push((*child, *around));
             }
             continue;
         }
-        for triangle in &tree.triangles[child.triangles()] {
+        for triangle in tree.leaf(child) {
             seen[triangle.number as usize] += 1;
             let inside = |p: &[f32; 3]| (0..3).all(|i| (low[i]..=high[i]).contains(&p[i]));
             assert!(triangle.corners.iter().all(inside), "a corner is outside of its box");

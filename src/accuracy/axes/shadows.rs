@@ -1,0 +1,96 @@
+//! The axes of shadows: how it is decided whether a light is seen, and from where.
+
+use super::{Axis, AxisKind, Choice, Lesson};
+use crate::accuracy::{ShadowMethod, Terminator};
+use crate::scene::{Fill, Scene, View};
+
+/// Whether a light casts shadows in this view; else the reason.
+fn are_cast(scene: &Scene, view: &View) -> Result<(), &'static str> {
+    let casts = |light: &crate::scene::Light| light.on && light.shadows;
+    if view.fill != Fill::Filled {
+        return Err("edges cast no shadows");
+    }
+    if scene.lights.iter().any(|(_, light)| casts(light) && light.can_cast_shadows()) {
+        Ok(())
+    } else {
+        Err("no light casts shadows")
+    }
+}
+
+pub(super) const SHADOW_METHOD: Axis = Axis {
+    key: "shadow-method",
+    label: "Shadow method",
+    phrase: "shadows ({})",
+    what: "How it is decided whether a light is seen",
+    kind: AxisKind::Scored,
+    choices: &[
+        choice!("map-512" "Map 512" shadow_method = ShadowMethod::Map512,
+            "A shadow map of 512 x 512 texels with a slope-scaled bias (Williams, 1978).",
+            "stair steps of a texel along shadows, and light under what stands on the ground"),
+        choice!("map-512-pcf" "Map 512 PCF" shadow_method = ShadowMethod::Map512Pcf,
+            "The same, the mean of what 3 x 3 texels say (Reeves, Salesin and Cook, 1987).",
+            "borders blurred over three texels, and light under what stands on the ground"),
+        choice!("map-1024" "Map 1024" shadow_method = ShadowMethod::Map1024,
+            "A shadow map of 1024 x 1024 texels.",
+            "steps half as large"),
+        choice!("map-1024-pcf" "Map 1024 PCF" shadow_method = ShadowMethod::Map1024Pcf,
+            "A shadow map of 1024 x 1024 texels, the mean of what 3 x 3 of them say.",
+            "borders blurred over three texels"),
+        choice!("map-2048" "Map 2048" shadow_method = ShadowMethod::Map2048,
+            "A shadow map of 2048 x 2048 texels.",
+            "steps a quarter as large"),
+        choice!("map-2048-pcf" "Map 2048 PCF" shadow_method = ShadowMethod::Map2048Pcf,
+            "A shadow map of 2048 x 2048 texels, the mean of what 3 x 3 of them say.",
+            "borders blurred over three texels"),
+        choice!("map-4096" "Map 4096" shadow_method = ShadowMethod::Map4096,
+            "A shadow map of 4096 x 4096 texels.",
+            "steps an eighth as large"),
+        choice!("map-4096-pcf" "Map 4096 PCF" shadow_method = ShadowMethod::Map4096Pcf,
+            "A shadow map of 4096 x 4096 texels, the mean of what 3 x 3 of them say.",
+            "borders blurred over three texels"),
+        choice!("exact" "Exact" shadow_method = ShadowMethod::Exact,
+            "Rays against all triangles, in exact arithmetic; there is no bias.",
+            "none"),
+    ],
+    sense: are_cast,
+    lesson: Lesson {
+        title: "Why shadows have stairs and leaks",
+        what: "A shadow map is a picture of depths as the light sees them: a point is in shadow if \
+            something nearer covers its texel.",
+        coarse: "A texel has one depth for all points in it, so borders are stairs, and a surface \
+            would shade itself in stripes (acne). A bias hides those, and lets light in where two \
+            surfaces touch (leaks).",
+        shows: "Under the low sun, along the shadow of the ring and where it stands on the \
+            ground.",
+        scene: "shadow",
+        choice: None,
+    },
+};
+
+pub(super) const TERMINATOR: Axis = Axis {
+    key: "terminator",
+    label: "Shadow terminator",
+    phrase: "shadow terminator by {}",
+    what: "Where rays of shadows begin on smooth surfaces",
+    kind: AxisKind::Model,
+    choices: &[
+        choice!("triangles" "Triangles" terminator = Terminator::Triangles,
+            "On the triangles: the geometry itself is in shadow.",
+            "a model, not scored"),
+        choice!("smooth" "Smooth" terminator = Terminator::Smooth,
+            "On the curved surface that vertex normals suggest (Hanika, 2021).",
+            "a model, not scored"),
+    ],
+    sense: are_cast,
+    lesson: Lesson {
+        title: "Why the edge of night is jagged",
+        what: "Vertex normals light a ball of triangles as if it were round, but its triangles are \
+            flat: near the edge of night some are turned away from the light already.",
+        coarse: "Neither is an error of the other: the triangles are in their own shadow, whole \
+            ones at a time. Rays that begin on the round surface leave the light that normals \
+            promise.",
+        shows: "Along the edge between day and night of a coarse ball.",
+        scene: "night",
+        choice: Some("triangles"),
+    },
+};

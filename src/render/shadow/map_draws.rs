@@ -1,0 +1,297 @@
+//! Draws the pictures of shadow maps.
+
+use fearless_simd::Level;
+use glam::{DMat3, DMat4, DVec3};
+use rayon::prelude::*;
+
+use super::map_face::{Face, place};
+use crate::accuracy::{Samples, ShadowMapForm, Transparency};
+use crate::base::cancellation::Cancellation;
+use crate::base::color::Color;
+use crate::base::image::Size;
+use crate::base::math::each;
+use crate::render::frame::FramePlan;
+use crate::render::frame::draw::{Back, Draw, Lines, Pipeline, Shaded};
+use crate::render::frame::extras::Extras;
+use crate::render::frame::shadows::{Caster, CasterPart, Shadows};
+use crate::render::frame::variants::Variants;
+use crate::render::lights::PhongMaterial;
+use crate::render::raster::geometry::ScreenGeometry;
+use crate::render::raster::tile::Visibility;
+use crate::render::raster::visibility_buffer::{Visible, key, seen};
+use crate::render::screen::clip::Screen;
+use crate::render::screen::coverage::PixelBox;
+use crate::render::screen::sample_positions::SamplePositions;
+use crate::render::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE, TILE_SIDE, tiles_of};
+use crate::scene::{NormalSource, Normals};
+
+/// How far a depth is moved for the rounding of f32, relative to itself.
+const ROUNDING: f32 = 4.0 * f32::EPSILON;
+
+/// More than half of a texel, for corners that are snapped to 1/256 of it.
+const HALF: f64 = 0.51;
+
+/// The largest slope that a bias takes into account, relative to 45 degrees.
+const STEEPEST: f64 = 16.0;
+
+/// A picture that a light takes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MapView {
+    pub(super) view_from_world: DMat4,
+    pub(super) clip_from_view: DMat4,
+    /// The slope of a surface at 45 degrees, times the texels of a row: a depth or, in perspective,
+    /// a part of the depth.
+    pub(super) slope: f64,
+    pub(super) is_perspective: bool,
+}
+
+/// Draws the pictures of a frame's shadow maps.
+#[derive(Debug)]
+pub(super) struct MapDraws {
+    plan: FramePlan,
+    casters: Vec<Caster>,
+    geometry: ScreenGeometry,
+    form: ShadowMapForm,
+}
+
+impl MapDraws {
+    /// Makes the draws of a plan's casters; those of a map differ only by its view.
+    pub(super) fn new(plan: &FramePlan, form: ShadowMapForm) -> Self {
+        let casters = plan.shadows.casters.clone();
+        let mut pipelines = vec![Pipeline::Flat(Color::WHITE)];
+        let draws = casters.iter().map(|caster| draw(caster, &mut pipelines)).collect();
+        let plan = FramePlan {
+            size: Size::new(form.side, form.side),
+            samples: Samples::One,
+            lit_by_sample: false,
+            shift: [0; 2],
+            transparency: Transparency::Threshold,
+            variants: Variants::default(),
+            line_width: 1,
+            lights: Vec::new(),
+            light_ids: Vec::new(),
+            shadows: Shadows::default(),
+            draws,
+            pipelines,
+            ..plan.clone()
+        };
+        plan.prepare();
+        Self { plan, casters, geometry: ScreenGeometry::default(), form }
+    }
+
+    /// Draws a picture; `None` if it shows nothing.
+    #[expect(clippy::cast_precision_loss, reason = "maps are small")]
+    pub(super) fn face(&mut self, level: Level, view: &MapView) -> Option<Face> {
+        let Self { plan, casters, geometry, form } = self;
+        (plan.view_from_world, plan.clip_from_view) = (view.view_from_world, view.clip_from_view);
+        for (draw, caster) in plan.draws.iter_mut().zip(casters) {
+            draw.view_from_object = view.view_from_world * caster.world_from_object;
+            draw.clip_from_object = view.clip_from_view * draw.view_from_object;
+            draw.mirrored = DMat3::from_mat4(draw.view_from_object).determinant() < 0.0;
+        }
+        geometry.build(level, plan, SamplePositions::default(), &Cancellation::new(&|| true));
+        let (plan, geometry) = (&*plan, &*geometry);
+        let [columns, rows] = tiles_of(plan.size);
+        let count = usize::try_from(columns * rows).expect("not negative");
+        if (0..count).all(|tile| geometry.is_empty(tile)) {
+            return None;
+        }
+        let screens: Vec<Screen> =
+            plan.draws.iter().map(|draw| Screen::new(draw.clip_from_object, plan.size)).collect();
+        let steepest = STEEPEST * view.slope / form.side as f64;
+        let [mut depths, mut slopes] = [0; 2].map(|_| vec![0.0; count * PIXELS]);
+        let tiles = depths.par_chunks_mut(PIXELS).zip(slopes.par_chunks_mut(PIXELS)).enumerate();
+        tiles.for_each_init(Visibility::default, |visibility, (tile, (depths, slopes))| {
+            let map = Tile { level, plan, geometry, screens: &screens };
+            map.draw(visibility, tile, depths, slopes);
+        });
+        let reach = HALF + if form.is_filtered { 1.0 } else { 0.0 };
+        let picture = Picture { side: form.side, depths: &depths, slopes: &slopes };
+        let limit = Limit { reach, steepest, is_perspective: view.is_perspective };
+        let mut texels = vec![0.0; count * PIXELS];
+        texels.par_chunks_mut(PIXELS).enumerate().for_each(|(tile, texels)| {
+            if !geometry.is_empty(tile) {
+                picture.biased(tile, &limit, texels);
+            }
+        });
+        let clip_from_world = view.clip_from_view * view.view_from_world;
+        Some(Face::new(clip_from_world, form.side, texels))
+    }
+}
+
+/// What drawing a tile of a map reads.
+struct Tile<'a> {
+    level: Level,
+    plan: &'a FramePlan,
+    geometry: &'a ScreenGeometry,
+    screens: &'a [Screen],
+}
+
+/// How far depths may be moved.
+struct Limit {
+    /// How far from a texel's centre depths are compared with it, in texels.
+    reach: f64,
+    /// The largest slope that counts, relative to the depth in perspective.
+    steepest: f64,
+    is_perspective: bool,
+}
+
+/// What a light sees: for each texel a depth, 0 where nothing is, and the slope of its triangle.
+struct Picture<'a> {
+    side: usize,
+    depths: &'a [f32],
+    slopes: &'a [f32],
+}
+
+impl Picture<'_> {
+    /// Computes the texels of a tile: depths, moved away from the light.
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+    fn biased(&self, tile: usize, limit: &Limit, texels: &mut [f32]) {
+        let (reach, steepest) = (limit.reach as f32, limit.steepest as f32);
+        let columns = self.side / TILE_SIDE;
+        let (left, top) = (tile % columns * TILE_SIDE, tile / columns * TILE_SIDE);
+        for (i, texel) in texels.iter_mut().enumerate() {
+            let depth = self.depths[tile * PIXELS + i];
+            if depth == 0.0 {
+                continue;
+            }
+            let (block, within) = (i / BLOCK_PIXELS, i % BLOCK_PIXELS);
+            let x = left + block % 8 * 8 + within % 8;
+            let y = top + block / 8 * 8 + within / 8;
+            let slope = self.slope_around([x, y], (depth, self.slopes[tile * PIXELS + i]));
+            let most = if limit.is_perspective { steepest * depth } else { steepest };
+            let moved = depth - reach * slope.min(most) - depth * ROUNDING;
+            *texel = moved.max(f32::MIN_POSITIVE);
+        }
+    }
+
+    /// The largest slope of a texel with this depth and slope and of its neighbours that continue
+    /// its surface.
+    fn slope_around(&self, [x, y]: [usize; 2], (depth, own): (f32, f32)) -> f32 {
+        let last = self.side - 1;
+        let mut slope = own;
+        for y in y.saturating_sub(1)..=(y + 1).min(last) {
+            for x in x.saturating_sub(1)..=(x + 1).min(last) {
+                let at = place(self.side, x, y);
+                let other = self.slopes[at];
+                // A plane that continues this one is not farther than both slopes lead.
+                if (self.depths[at] - depth).abs() <= (own + other) * 2.0 {
+                    slope = slope.max(other);
+                }
+            }
+        }
+        slope
+    }
+}
+
+impl Tile<'_> {
+    /// Draws a tile: the depths and slopes of its texels, block by block.
+    fn draw(
+        &self,
+        visibility: &mut Visibility,
+        tile: usize,
+        depths: &mut [f32],
+        slopes: &mut [f32],
+    ) {
+        let Self { level, plan, geometry, .. } = *self;
+        if geometry.is_empty(tile) {
+            return;
+        }
+        let [columns, _] = tiles_of(plan.size);
+        let at = i32::try_from(tile).expect("a map has few tiles");
+        let (left, top) = (at % columns * TILE, at / columns * TILE);
+        let bounds = PixelBox { left, top, right: left + TILE, bottom: top + TILE };
+        visibility.draw(level, plan, geometry, (tile, bounds));
+        let blocks = depths.chunks_mut(BLOCK_PIXELS).zip(slopes.chunks_mut(BLOCK_PIXELS));
+        for (block, (depths, slopes)) in blocks.enumerate() {
+            if !visibility.shows(block) {
+                continue;
+            }
+            let words = visibility.entries(level, block, 0);
+            let (mut last, mut own) = (u32::MAX, 0.0);
+            for ((depth, slope), word) in depths.iter_mut().zip(slopes).zip(words) {
+                let Visible::Triangle(number) = seen(word) else { continue };
+                if number != last {
+                    (last, own) = (number, self.slope(number));
+                }
+                (*depth, *slope) = (f32::from_bits(key(word)), own);
+            }
+        }
+    }
+
+    /// How much the depth of a triangle changes from texel to texel, at most.
+    ///
+    /// With the corners p, q, r in homogeneous pixels (x, y, w) and their z, the plane of depths is
+    /// (zp (q x r) + zq (r x p) + zr (p x q)) / (p . (q x r)), also if a corner is behind the
+    /// light.
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+    fn slope(&self, number: u32) -> f32 {
+        let (draw, start) = self.geometry.draw_of(number);
+        let screen = &self.screens[draw as usize];
+        let order = self.plan.draws[draw as usize].model.mesh.draw_order();
+        let clip = each(order.vertices_of(number - start.number), |vertex| {
+            screen.clip(order.position(vertex))
+        });
+        let [p, q, r] = clip
+            .map(|[x, y, _, w]| DVec3::new((x + w) * screen.half[0], (w - y) * screen.half[1], w));
+        let [zp, zq, zr] = clip.map(|[_, _, z, _]| z);
+        let plane = q.cross(r) * zp + r.cross(p) * zq + p.cross(q) * zr;
+        let slope = (plane.x.abs() + plane.y.abs()) / p.dot(q.cross(r)).abs();
+        if slope.is_finite() { slope as f32 } else { 0.0 }
+    }
+}
+
+/// The draw of a caster, for a view that is set later.
+fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
+    let mut pipeline = |part: &CasterPart| {
+        let Some(pipeline) = pipeline_of(part) else { return 0 };
+        pipelines.push(pipeline);
+        u32::try_from(pipelines.len() - 1).expect("a scene has fewer parts")
+    };
+    let part_pipelines: Vec<Option<u32>> =
+        caster.parts.iter().map(|part| part.as_ref().map(&mut pipeline)).collect();
+    let first = part_pipelines.first().copied().flatten();
+    let alike = part_pipelines.iter().all(|pipeline| *pipeline == first);
+    Draw {
+        item: caster.item,
+        model: caster.model.clone(),
+        clip_from_object: DMat4::IDENTITY,
+        view_from_object: DMat4::IDENTITY,
+        view_from_normal: DMat3::IDENTITY,
+        mirrored: false,
+        back: Back::Lit,
+        culls_opaque: false,
+        normals: Normals::Vertex,
+        normal_source: NormalSource::Computed,
+        part_pipelines,
+        uniform: first.filter(|_| alike),
+        polygons: caster.polygons.clone(),
+        filled: true,
+        lines: Lines {
+            edges: false,
+            face_normals: None,
+            vertex_normals: None,
+            color: Color::WHITE,
+        },
+    }
+}
+
+/// The alpha test of a part, if it has holes.
+fn pipeline_of(part: &CasterPart) -> Option<Pipeline> {
+    let holes = part.holes.as_ref()?;
+    Some(Pipeline::Shaded(Shaded {
+        material: PhongMaterial::default(),
+        light: None,
+        needs_positions: false,
+        tiled: false,
+        dropped: 0.0,
+        cut_off: 0.0,
+        vertex_colors: false,
+        tint: [1.0; 3],
+        texture: holes.texture.clone(),
+        cutout: Some(holes.opacity),
+        opacity: None,
+        opacity_map: holes.map.clone(),
+        extras: Extras::default(),
+    }))
+}
