@@ -112,8 +112,8 @@ pub(crate) fn found(clock: &mut FakeClock, source: &mut FakeSource) -> Findings 
     bench.run(candidates, &mut |_| {}).unwrap()
 }
 
-/// The first scene with shadows, a ball that has bumps, and a stretched triangle that is transparent and has
-/// a texture and an exponent of 32.
+/// The first scene with shadows, a ball that has bumps, and a stretched triangle that is
+/// transparent and has a texture and an exponent of 32.
 fn textured_scene() -> (marraztu::scene::Scene, marraztu::scene::View) {
     use marraztu::base::Shared;
     use marraztu::scene::*;
