@@ -249,9 +249,10 @@ fn measure(
     level: Level,
     (scene, view, settings): &Stage,
 ) -> Result<Measured, CommandError> {
-    let mut renderer = Renderer::new(level);
+    // One for each kind of frame, so that shadow maps are kept.
+    let [mut renderer, mut other] = [Renderer::new(level), Renderer::new(level)];
     let unshaded = without_shadows(scene)?;
-    let mut frame = |scene: &Scene, i: usize| -> Result<f64, CommandError> {
+    let frame = |renderer: &mut Renderer, scene: &Scene, i| -> Result<f64, CommandError> {
         let mut scene = scene.clone();
         let mut changed = Ok(());
         let elapsed = time(|| {
@@ -262,21 +263,21 @@ fn measure(
         changed.map(|()| elapsed.as_secs_f64() * 1e3)
     };
     for i in 0..job.warm {
-        frame(scene, i + 1)?;
+        frame(&mut renderer, scene, i + 1)?;
     }
     let (begun, processor) = (Instant::now(), ProcessTime::now());
     let mut frames = Vec::new();
     let mut plain = None;
     while frames.len() < job.frames.max(1) && begun.elapsed().as_secs_f64() * 1e3 < job.budget {
         let i = job.warm + 1 + frames.len();
-        frames.push(frame(scene, i)?);
+        frames.push(frame(&mut renderer, scene, i)?);
         if job.shadows {
-            plain = Some(frame(&unshaded, i)?.min(plain.unwrap_or(f64::INFINITY)));
+            plain = Some(frame(&mut other, &unshaded, i)?.min(plain.unwrap_or(f64::INFINITY)));
         }
     }
     #[expect(clippy::cast_precision_loss, reason = "few frames")]
     let processor = processor.elapsed().as_secs_f64() * 1e3 / frames.len() as f64;
-    frame(scene, 0)?;
+    frame(&mut renderer, scene, 0)?;
     let (picture, rays) = (renderer.picture().clone(), renderer.rays());
     Ok(Measured { frames, processor, plain, rays, picture })
 }

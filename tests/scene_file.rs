@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use glam::{DMat4, DVec3};
 use marraztu::accuracy::{
     Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt,
-    LightValues, NormalMatrix, Normalising, Rounding, Samples, Settings, SpecularForm,
-    SpecularPower, Subpixels, Tangents, Transparency, VertexArithmetic,
+    LightValues, NormalMatrix, Normalising, Rounding, Samples, Settings, ShadowMethod,
+    SpecularForm, SpecularPower, Subpixels, Tangents, Terminator, Transparency, VertexArithmetic,
 };
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
@@ -174,6 +174,8 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         bump_filter: BumpFilter::Nearest,
         light_values: LightValues::Linear,
         transparency: Transparency::Objects,
+        shadow_method: ShadowMethod::Map2048Pcf,
+        terminator: Terminator::Smooth,
     };
     (scene, view, settings)
 }

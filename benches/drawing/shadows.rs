@@ -3,6 +3,8 @@
 //!
 //! Nothing but the camera moves, so trees and shadow maps are kept.
 
+use std::io::Write as _;
+
 use criterion::{BenchmarkId, Criterion};
 use marraztu::accuracy::ShadowMethod;
 use marraztu::base::image::Size;
@@ -37,7 +39,8 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         let mut renderer = Renderer::default();
         renderer.render(&stage.plan(0));
         let RayCount { traced, occluded } = renderer.rays();
-        println!("shadows/{name}: {traced} rays, {occluded} of them occluded");
+        let told = format!("shadows/{name}: {traced} rays, {occluded} of them occluded");
+        let _ = writeln!(std::io::stdout().lock(), "{told}");
         for (method, shadow_method) in METHODS {
             stage.settings.shadow_method = shadow_method;
             group.bench_function(BenchmarkId::from_parameter(method), |b| stage.measure(b));

@@ -112,12 +112,16 @@ pub(crate) fn found(clock: &mut FakeClock, source: &mut FakeSource) -> Findings 
     bench.run(candidates, &mut |_| {}).unwrap()
 }
 
-/// The first scene with a ball that has bumps, and a stretched triangle that is transparent and has
-/// a texture and an exponent of 32.
+/// The first scene with shadows, a ball that has bumps, and a stretched triangle that is
+/// transparent and has a texture and an exponent of 32.
 fn textured_scene() -> (marraztu::scene::Scene, marraztu::scene::View) {
     use marraztu::base::Shared;
     use marraztu::scene::*;
     let (mut scene, view) = io::default_scene();
+    let cast = |(id, light): (LightId, &Light)| {
+        (id, Light { shadows: light.can_cast_shadows(), ..light.clone() })
+    };
+    scene.lights = scene.lights.iter().map(cast).collect::<Vec<_>>().into_iter().collect();
     let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
     let options = LoadOptions::default();
     let loaded = io::parse(text, "triangle.obj", None, &options, &io::Progress::new()).unwrap();

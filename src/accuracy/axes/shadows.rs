@@ -91,6 +91,6 @@ pub(super) const TERMINATOR: Axis = Axis {
             promise.",
         shows: "Along the edge between day and night of a coarse ball.",
         scene: "night",
-        choice: Some("triangles"),
+        choice: Some("smooth"),
     },
 };

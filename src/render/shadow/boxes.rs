@@ -52,14 +52,14 @@ impl LocalRays {
             }
             largest[axis] = most.into_iter().fold(0.0, larger);
         }
-        for i in 0..BATCH {
-            self.end[i] = above((length[i] * (1.0 + SINGLE)) as f32);
+        for (end, length) in self.end.iter_mut().zip(&length) {
+            *end = above((length * (1.0 + SINGLE)) as f32);
         }
-        for axis in 0..3 {
-            for i in 0..BATCH {
-                let part = ways[axis][i] / length[i];
+        for (row, ways) in self.inverse.iter_mut().zip(&ways) {
+            for ((inverse, way), length) in row.iter_mut().zip(ways).zip(&length) {
+                let part = way / length;
                 let part = if part.abs() < LEAST { LEAST.copysign(part) } else { part };
-                self.inverse[axis][i] = (1.0 / part) as f32;
+                *inverse = (1.0 / part) as f32;
             }
         }
         let columns =

@@ -156,7 +156,7 @@ impl Shaft {
         let mut least = f32x16::splat(simd, 0.0);
         for axis in 0..3 {
             let normal = f32x16::from_slice(simd, &self.normals[axis]);
-            least = least + (normal * low[axis]).min(normal * high[axis]);
+            least += (normal * low[axis]).min(normal * high[axis]);
         }
         least.simd_gt(f32x16::from_slice(simd, &self.offsets)).any_true()
     }

@@ -113,7 +113,7 @@ impl<'a> Tracer<'a> {
         &self,
         level: Level,
         light: u32,
-        scratch: &mut RayScratch,
+        scratch: &RayScratch,
         mask: u64,
     ) -> Option<Reading> {
         let map = self.maps.get(light as usize).copied().flatten()?;
@@ -204,7 +204,7 @@ impl<'a> Tracer<'a> {
         for block in &tree.blocks[leaf.blocks()] {
             let own = (block, &placed.caster.world_from_object);
             let possible = prepared.set(simd, own, (&packet.around, packet.light), origins.reach);
-            for i in bits(possible & (1 << left.min(TREE_BLOCK)) - 1) {
+            for i in bits(possible & ((1 << left.min(TREE_BLOCK)) - 1)) {
                 let mut rays = reached & !behind;
                 if packet.is_own {
                     rays &= !origins.on(block.numbers[i], rays);

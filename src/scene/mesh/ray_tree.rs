@@ -111,7 +111,8 @@ impl TreeChild {
     /// The blocks of a leaf.
     #[must_use]
     pub const fn blocks(self) -> Range<usize> {
-        self.first as usize..(self.first + self.count.div_ceil(TREE_BLOCK as u32)) as usize
+        let first = self.first as usize;
+        first..first + (self.count as usize).div_ceil(TREE_BLOCK)
     }
 }
 
