@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn angles_that_a_user_gave_say_the_same_as_those_that_are_computed() {
         let given = DVec3::new(10.0, 95.0, -20.0);
-        let placement = glam::DMat4::from_mat3(object_turn(given));
+        let placement = DMat4::from_mat3(object_turn(given));
         let canonical = placement::turn_degrees(&placement);
         assert!(canonical.y < 90.0, "{canonical}");
         assert!(same_turn(object_turn(given), object_turn(canonical)));
