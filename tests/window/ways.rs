@@ -81,7 +81,7 @@ fn every_action_is_in_a_menu_and_does_there_what_it_does_anywhere() {
         missing.retain(|action| !is_here(&action));
         for action in Action::ALL.iter().filter(is_here).filter(|it| !LEFT_OUT.contains(it)) {
             let subject = SUBJECTS[0];
-            let mut asked = Editor::of_size(900.0, 640.0);
+            let mut asked = Editor::of_size(900.0, 300.0);
             asked.perform(subject);
             if action.availability(asked.state()).is_err() {
                 continue;
