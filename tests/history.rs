@@ -33,6 +33,8 @@ fn command() -> impl Strategy<Value = Command> {
         2 => (0_usize..3, id())
             .prop_map(move |(at, id)| Command::Insert { at, item: shown(id, true) }),
         4 => (id(), any::<bool>()).prop_map(move |(id, on)| Command::Replace(shown(id, on))),
+        2 => (id(), any::<bool>())
+            .prop_map(|(id, locked)| Command::Lock { id: ItemId::Object(ObjectId(id)), locked }),
         2 => any::<u8>().prop_map(|c| Command::Background(Color([c; 3]))),
         1 => (id(), id()).prop_map(move |(a, b)| Command::Batch(vec![
             Command::Replace(shown(a, false)),

@@ -30,6 +30,7 @@ fn lines(editor: &Editor) -> Vec<[egui::Pos2; 2]> {
 }
 
 #[test]
+#[expect(clippy::cast_possible_truncation, reason = "places within the picture")]
 fn the_grid_lies_behind_everything_and_in_no_file() {
     let mut editor = Editor::new();
     // From above, so that the ships stand before the ground.
