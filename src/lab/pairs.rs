@@ -178,7 +178,8 @@ pub fn abba(
         spent += pair;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a time")]
         watch.touches.pair.store(pair.ceil() as u64, Ordering::Relaxed);
-        if watch.touches() == before && before.is_multiple_of(2) {
+        let is_undisturbed = watch.touches() == before && before.is_multiple_of(2);
+        if is_undisturbed || pair >= LONG {
             ratios.push((b1 + b2) / (a1 + a2));
             of_a.extend([a1, a2]);
         } else {
@@ -189,6 +190,10 @@ pub fn abba(
     let a_ms = Quartiles::of(&of_a).ok_or(Unmeasured::Disturbed)?.median;
     Ok(Ratio { quartiles, pairs: ratios.len(), thrown, a_ms })
 }
+
+/// Pairs of this many milliseconds count even if they were touched: a window that is drawn a few
+/// times a second touches each of them, and takes a small part of it.
+const LONG: f64 = 500.0;
 
 /// The number of pairs that may be thrown away for each that is wanted.
 const MOST_THROWN: usize = 3;
@@ -224,13 +229,15 @@ mod tests {
             // The second pair, after two runs that are not counted.
             if runs == 8 {
                 drop(watch.touch());
-                return Ok(1000.0);
+                return Ok(LONG / 2.0);
             }
             Ok(if which == 0 { 2.0 } else { 1.0 } * 0.001)
         });
         let ratio = ratio.unwrap();
         assert_eq!((ratio.thrown, ratio.quartiles.upper), (1, 0.5));
         let touch = watch.touch();
+        let long = abba(&LIMITS, &watch, &mut |_| Ok(LONG / 4.0)).unwrap();
+        assert!(long.pairs > 0 && long.thrown == 0, "{long:?}");
         let disturbed = abba(&LIMITS, &watch, &mut |_| Ok(1.0));
         drop(touch);
         assert_eq!(disturbed, Err(Unmeasured::Disturbed));
