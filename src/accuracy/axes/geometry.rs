@@ -89,9 +89,7 @@ pub(super) const COVERAGE: Axis = Axis {
             "As ancestor A's author wrote it: points every 0.1 unit of the observer's space, each \
                 drawn separately.",
             "holes nearer than 97 units; 17 writes per pixel at a distance of 400, 100 at 966")
-        .slower_because(
-            "points are set one after the other, most of them on pixels that others have set",
-        ),
+        .slower_because("most of its points fall on pixels that others have set"),
         choice!("scan-lines" "Scan lines" coverage = Coverage::ScanLines,
             "As ancestor B's author wrote it: row by row, between edges that are rounded to whole \
                 pixels.",
