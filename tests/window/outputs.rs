@@ -79,7 +79,7 @@ fn a_scene_is_exported_with_notes_on_what_the_format_does_not_say() {
     editor.type_path(&path);
     editor.wait_until(|editor| says(editor, "Saved"));
     assert!(std::fs::read(&path).unwrap().starts_with(b"glTF"));
-    assert!(editor.shows("first.glb: what it does not say"));
+    editor.wait_until(|editor| editor.shows("first.glb: what it does not say"));
     let modifiers = Modifiers::NONE;
     editor.key(Key::Escape, true, modifiers);
     editor.settle();
