@@ -20,7 +20,7 @@ mod ground;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
     /// A disc of diameter 1 in the plane of X and Z, seen from above, which fades out towards its
-    /// rim: see [`ground`].
+    /// rim: see `ground`.
     Ground,
     /// A square of side 1 in the plane of X and Z, seen from above.
     Plane,
