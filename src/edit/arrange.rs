@@ -29,7 +29,7 @@ pub fn ground(scene: &Scene, id: ObjectId) -> f64 {
 /// Moves the selected object up or down until its lowest point is at the height of the ground.
 ///
 /// # Errors
-/// If it stands there already, is empty or locked, or there is none.
+/// If no object is selected, or it is empty, locked, or on the ground already.
 pub fn drop_to_ground(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Command, Refusal> {
     let (id, object) = set_transform::selected_object(scene, view)?;
     let bounds = world_box(object, view.time).ok_or(Refusal::NoPolygons)?;
@@ -43,7 +43,7 @@ pub fn drop_to_ground(scene: &Scene, view: &View, phase: GesturePhase) -> Result
 /// Puts the selected object back to where its file has it.
 ///
 /// # Errors
-/// If it is there, or is locked, or there is none.
+/// If no object is selected, or it is locked or has not been moved.
 pub fn reset(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Command, Refusal> {
     let (id, object) = set_transform::selected_object(scene, view)?;
     if *object.placement.now() == DMat4::IDENTITY {

@@ -103,8 +103,8 @@ fn before_the_near_plane(points: &[DVec4]) -> Vec<DVec4> {
     seen
 }
 
-/// Where the shadow volume of a box ends: behind everything that is drawn. `None` if the light is
-/// in the box.
+/// The far corners of a box's shadow volume, behind everything that is drawn; `None` if the light
+/// is in the box.
 fn ends_of(source: &ShadowSource, corners: &[DVec3; 8], drawn: &[DVec3]) -> Option<[DVec3; 8]> {
     // A little more, for all rounding.
     const MORE: f64 = 1.0 + 1e-6;

@@ -219,6 +219,25 @@ pub(crate) struct Shaded {
 }
 
 impl Shaded {
+    /// An opaque surface of a material that no light reaches, without any texture or map.
+    pub(crate) fn unlit(material: PhongMaterial) -> Self {
+        Self {
+            material,
+            light: None,
+            needs_positions: false,
+            tiled: false,
+            dropped: 0.0,
+            cut_off: 0.0,
+            vertex_colors: false,
+            tint: [1.0; 3],
+            texture: None,
+            cutout: None,
+            opacity: None,
+            opacity_map: None,
+            extras: Extras::default(),
+        }
+    }
+
     /// Hashes what equal surfaces have in common; of a texture, only its source.
     fn hash_into(&self, hasher: &mut DefaultHasher) {
         let Self {
@@ -300,21 +319,8 @@ mod tests {
     use crate::render::frame::extras::Glow;
 
     fn shaded(change: impl FnOnce(&mut Shaded)) -> u64 {
-        let mut shaded = Shaded {
-            material: PhongMaterial::default(),
-            light: Some(Vec::new()),
-            needs_positions: false,
-            tiled: false,
-            dropped: 0.0,
-            cut_off: 0.0,
-            vertex_colors: false,
-            tint: [1.0; 3],
-            texture: None,
-            cutout: None,
-            opacity: None,
-            opacity_map: None,
-            extras: Extras::default(),
-        };
+        let mut shaded = Shaded::unlit(PhongMaterial::default());
+        shaded.light = Some(Vec::new());
         change(&mut shaded);
         Pipeline::Shaded(shaded).fingerprint()
     }

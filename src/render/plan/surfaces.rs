@@ -18,7 +18,6 @@ use crate::base::{
     color::{self, Color},
 };
 use crate::render::frame::draw::{Form, Pipeline, Shaded, Stage};
-use crate::render::frame::extras::Extras;
 use crate::render::lights::PhongMaterial;
 use crate::render::lights::region::Region;
 use crate::scene::{MapKind, PartLook, Surface, Texture, Wrap};
@@ -121,21 +120,7 @@ impl Planner<'_> {
         let material = coefficients(look);
         let floor = self.floor(into, ground.region.as_ref(), &material);
         let mut material = material.with_floor(floor, self.shot.settings.power);
-        let mut shaded = Shaded {
-            material,
-            light: None,
-            needs_positions: false,
-            tiled: false,
-            dropped: 0.0,
-            cut_off: 0.0,
-            vertex_colors: false,
-            tint: [1.0; 3],
-            texture: None,
-            cutout: None,
-            opacity: None,
-            opacity_map: None,
-            extras: Extras::default(),
-        };
+        let mut shaded = Shaded::unlit(material);
         if ground.object.surface == Surface::Texture {
             return shaded;
         }

@@ -12,7 +12,6 @@ use crate::base::image::Size;
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Back, Draw, Lines, Pipeline, Shaded};
-use crate::render::frame::extras::Extras;
 use crate::render::frame::shadows::{Caster, CasterPart, Shadows};
 use crate::render::frame::variants::Variants;
 use crate::render::lights::PhongMaterial;
@@ -280,18 +279,9 @@ fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
 fn pipeline_of(part: &CasterPart) -> Option<Pipeline> {
     let holes = part.holes.as_ref()?;
     Some(Pipeline::Shaded(Shaded {
-        material: PhongMaterial::default(),
-        light: None,
-        needs_positions: false,
-        tiled: false,
-        dropped: 0.0,
-        cut_off: 0.0,
-        vertex_colors: false,
-        tint: [1.0; 3],
         texture: holes.texture.clone(),
         cutout: Some(holes.opacity),
-        opacity: None,
         opacity_map: holes.map.clone(),
-        extras: Extras::default(),
+        ..Shaded::unlit(PhongMaterial::default())
     }))
 }
