@@ -26,6 +26,18 @@ fn report() -> Report {
 }
 
 #[test]
+fn a_choice_that_takes_longer_than_a_more_exact_one_says_why() {
+    let power = Axis::named("power").unwrap();
+    let slow = power.choice("schlick").unwrap();
+    let why = slow.slower_because.unwrap();
+    let mut clock = FakeClock::new(Some((power, slow)));
+    let findings = found(&mut clock, &mut FakeSource::new(None, None));
+    let told = Report { findings, ..report() }.verdict_on(power);
+    assert!(told.contains(why), "{told}");
+    assert!(!report().verdict_on(power).contains(why));
+}
+
+#[test]
 fn the_table_has_a_row_for_every_choice_of_every_axis() {
     let report = report();
     let (text, csv) = (text(&report), csv(&report));
