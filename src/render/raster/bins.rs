@@ -6,6 +6,7 @@
 use super::hits::Hits;
 use super::lines::{self, ScreenLine};
 use super::queue::{Queue, SMALL};
+use super::small::Covered;
 use crate::base::image::Size;
 use crate::render::screen::clip::ScreenVertex;
 use crate::render::screen::coverage::PixelBox;
@@ -47,6 +48,8 @@ pub(crate) struct Bins {
     pub(crate) lines: Vec<ScreenLine>,
     /// Small triangles that wait to be drawn together, by the size of their boxes.
     pub(crate) queues: Box<[Queue; SMALL.len()]>,
+    /// The pixels that some of them cover.
+    pub(crate) covered: Box<Covered>,
     /// The number of triangles, or of pieces of clipped ones, in the bins.
     pub(crate) drawn: usize,
     /// The transparent triangles, which hide nothing; `None` if the frame has none.

@@ -52,6 +52,16 @@ impl Page {
         pixels.number.compress(some).store_slice(&mut self.number[to]);
         self.count += some.to_bitmask().count_ones() as usize;
     }
+
+    /// Adds the first `count` of sixteen hits.
+    #[inline(always)]
+    fn add_first<S: Simd>(&mut self, place: u32x16<S>, pixels: &Pixels<S>, count: usize) {
+        let to = self.count..self.count + PACK;
+        place.store_slice(&mut self.place[to.clone()]);
+        pixels.depth.store_slice(&mut self.depth[to.clone()]);
+        pixels.number.store_slice(&mut self.number[to]);
+        self.count += count;
+    }
 }
 
 /// A pixel of each of sixteen primitives.
@@ -137,6 +147,25 @@ impl Hits {
                 Reach::Few(tiles)
             }
             _ => Reach::Many,
+        }
+    }
+
+    /// Adds those of the first `count` of sixteen pixels, covered in one of their `N` samples, that
+    /// are in the picture.
+    #[inline(always)]
+    pub(crate) fn add_first<S: Simd, const N: usize>(
+        &mut self,
+        reach: &Reach,
+        (pixels, sample): (&Pixels<S>, usize),
+        count: usize,
+    ) {
+        let Pixels { x, y, .. } = *pixels;
+        if let Reach::One(tile) = *reach {
+            let place = lanes_place::<S, N>(x & (TILE - 1), y & (TILE - 1), sample).bitcast();
+            self.page(tile).add_first(place, pixels, count);
+        } else {
+            let covered = mask32x16::from_bitmask(x.simd, (1 << count) - 1);
+            self.add::<S, N>(reach, (pixels, sample), covered);
         }
     }
 

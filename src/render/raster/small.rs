@@ -17,6 +17,7 @@ use super::small_edges::Edges;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::sample_positions::SamplePositions;
 use crate::render::simd::Real;
+use crate::render::simd::gather::permute;
 
 /// Draws the triangles that wait in a queue, in packs of sixteen, with `N` samples per pixel.
 ///
@@ -50,14 +51,34 @@ pub(crate) fn draw<S: Simd, R: Rule, const N: usize>(simd: S, pack: &Pack<S>, bi
     let sample_positions = bins.sample_positions;
     let lanes = Lanes::<S, R::Edges<S>>::new(simd, pack, sample_positions.reach::<N>());
     let reach = bins.hits.reach(lanes.bounds());
-    lanes.each_sample::<N>(
-        &sample_positions,
-        #[inline(always)]
-        |[x, y], sample, covered, depth| {
-            let pixels = Pixels { x, y, depth: depth.bitcast(), number: lanes.number };
-            bins.hits.add::<S, N>(&reach, (&pixels, sample), covered);
-        },
-    );
+    let Bins { hits, covered, .. } = bins;
+    let shifts = lanes.edges.shifts::<N>(&sample_positions);
+    for (sample, shift) in shifts.iter().enumerate() {
+        lanes.scan::<N>(shift, covered);
+        lanes.each_pixel::<N>(
+            shift,
+            covered,
+            #[inline(always)]
+            |pixels, count| hits.add_first::<S, N>(&reach, (pixels, sample), count),
+        );
+    }
+}
+
+/// Pixels that sixteen triangles cover: in bits, from the lowest, 4 for the lane, 4 for the column
+/// and 4 for the row in the box of the triangle.
+#[derive(Debug)]
+pub(crate) struct Covered {
+    pixels: [i32; PACK * MOST + PACK],
+    count: usize,
+}
+
+/// The most pixels of a box.
+const MOST: usize = 64;
+
+impl Default for Covered {
+    fn default() -> Self {
+        Self { pixels: [0; PACK * MOST + PACK], count: 0 }
+    }
 }
 
 /// Sixteen small triangles, set up for rasterization.
@@ -104,40 +125,61 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
         }
     }
 
-    /// Calls `take` with the pixels of the boxes, step by step, and each of their `N` samples, if
-    /// any triangle covers its own; with the coverage and the depths.
+    /// Lists the pixels that the triangles cover in the sample with an offset.
     #[inline(always)]
-    fn each_sample<const N: usize>(
-        &self,
-        sample_positions: &SamplePositions,
-        mut take: impl FnMut([i32x16<S>; 2], usize, mask32x16<S>, f32x16<S>),
-    ) {
-        let shifts = self.edges.shifts::<N>(sample_positions);
+    fn scan<const N: usize>(&self, shift: &E::Shift, covered: &mut Covered) {
         let columns = (self.right - self.left).reduce_max();
         let rows = (self.bottom - self.top).reduce_max();
         let mut row = self.edges.first();
-        for dy in 0..rows {
-            let mut at = row;
-            for dx in 0..columns {
-                for (sample, shift) in shifts.iter().enumerate() {
-                    let edges = if N == 1 { at } else { self.edges.moved(at, *shift) };
-                    let covered = self.edges.covered(edges);
-                    if covered.any_true() {
-                        let pixel = [self.left + dx, self.top + dy];
-                        take(pixel, sample, covered, self.depth_at(edges));
-                    }
-                }
+        if N > 1 {
+            row = self.edges.moved(row, *shift);
+        }
+        let mut count = 0;
+        let mut row_pixels = i32x16::from_slice(self.left.simd, &UP_TO_SIXTEEN);
+        for _ in 0..rows {
+            let (mut at, mut pixels) = (row, row_pixels);
+            for _ in 0..columns {
+                let some = self.edges.covered(at);
+                let to = count % (PACK * MOST);
+                pixels.compress(some).store_slice(&mut covered.pixels[to..to + PACK]);
+                count = to + some.to_bitmask().count_ones() as usize;
                 at = self.edges.right(at);
+                pixels += 1 << 4;
             }
             row = self.edges.below(row);
+            row_pixels += 1 << 8;
         }
+        covered.count = count;
     }
 
-    /// The depths at a pixel, clamped to the depths of the corners.
+    /// Calls `take` with the pixels of a list, sixteen at a time, and their number.
     #[inline(always)]
-    fn depth_at(&self, at: E::At) -> f32x16<S> {
-        let depth = self.edges.depth(at);
-        let depth = depth.simd_gt(self.low).select(depth, self.low);
-        depth.simd_lt(self.high).select(depth, self.high)
+    fn each_pixel<const N: usize>(
+        &self,
+        shift: &E::Shift,
+        covered: &Covered,
+        mut take: impl FnMut(&Pixels<S>, usize),
+    ) {
+        let shift = (N > 1).then_some(shift);
+        for at in (0..covered.count).step_by(PACK) {
+            let pixels = i32x16::from_slice(self.left.simd, &covered.pixels[at..at + PACK]);
+            let by = [(pixels >> 4) & 15, pixels >> 8];
+            let lanes = pixels & 15;
+            let depth = self.edges.depths(lanes, by, shift);
+            let low = permute(self.low.bitcast(), lanes).bitcast::<f32x16<S>>();
+            let high = permute(self.high.bitcast(), lanes).bitcast::<f32x16<S>>();
+            // Clamped to the depths of the corners.
+            let depth = depth.simd_gt(low).select(depth, low);
+            let depth = depth.simd_lt(high).select(depth, high);
+            let pixels = Pixels {
+                x: permute(self.left, lanes) + by[0],
+                y: permute(self.top, lanes) + by[1],
+                depth: depth.bitcast(),
+                number: permute(self.number.bitcast(), lanes).bitcast(),
+            };
+            take(&pixels, (covered.count - at).min(PACK));
+        }
     }
 }
+
+const UP_TO_SIXTEEN: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];

@@ -16,6 +16,7 @@ use crate::accuracy::Coverage;
 use crate::base::math::each;
 use crate::render::screen::coverage::{Grid, SUBPIXELS};
 use crate::render::screen::sample_positions::SamplePositions;
+use crate::render::simd::gather::permute;
 
 /// The bounding boxes of sixteen triangles: left, top, right and bottom.
 type Boxes<S> = [i32x16<S>; 4];
@@ -45,8 +46,10 @@ pub(crate) trait Edges<S: Simd>: Copy {
     fn moved(&self, at: Self::At, shift: Self::Shift) -> Self::At;
     /// Which triangles cover it.
     fn covered(&self, at: Self::At) -> mask32x16<S>;
-    /// The depths there, linear on the screen.
-    fn depth(&self, at: Self::At) -> f32x16<S>;
+    /// The depths, linear on the screen, of the triangles in some lanes at pixels this far from the
+    /// first of their boxes, in the sample with an offset, if there are several.
+    fn depths(&self, lanes: i32x16<S>, by: [i32x16<S>; 2], shift: Option<&Self::Shift>)
+    -> f32x16<S>;
 }
 
 /// On the usual grid.
@@ -62,6 +65,26 @@ pub(crate) struct UsualEdges<S: Simd> {
     depth: f32x16<S>,
     to_second: f32x16<S>,
     to_third: f32x16<S>,
+}
+
+impl<S: Simd> UsualEdges<S> {
+    /// An edge function of the triangles in some lanes, this far from their first pixels: exact, as
+    /// steps are.
+    #[inline(always)]
+    fn edge(
+        &self,
+        i: usize,
+        lanes: i32x16<S>,
+        [dx, dy]: [f32x16<S>; 2],
+        shift: Option<&[f32x16<S>; 3]>,
+    ) -> f32x16<S> {
+        let first = own(self.first[i], lanes);
+        let at = first + own(self.a[i], lanes) * dx + own(self.b[i], lanes) * dy;
+        match shift {
+            Some(shift) => at + own(shift[i], lanes),
+            None => at,
+        }
+    }
 }
 
 impl<S: Simd> Edges<S> for UsualEdges<S> {
@@ -145,8 +168,18 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
     }
 
     #[inline(always)]
-    fn depth(&self, at: Self::At) -> f32x16<S> {
-        self.depth + at[1] * self.to_second + at[2] * self.to_third
+    fn depths(
+        &self,
+        lanes: i32x16<S>,
+        by: [i32x16<S>; 2],
+        shift: Option<&Self::Shift>,
+    ) -> f32x16<S> {
+        let by = [by[0].to_float(), by[1].to_float()];
+        let second = self.edge(1, lanes, by, shift);
+        let third = self.edge(2, lanes, by, shift);
+        let [depth, to_second, to_third] =
+            [own(self.depth, lanes), own(self.to_second, lanes), own(self.to_third, lanes)];
+        depth + second * to_second + third * to_third
     }
 }
 
@@ -167,10 +200,30 @@ pub(crate) struct FineEdges<S: Simd> {
 /// log2 of the parts of a pixel on the fine grid.
 const FINE: u32 = Grid::Fine.parts().trailing_zeros();
 
+impl<S: Simd> FineEdges<S> {
+    /// An edge function of the triangles in some lanes, this far from their first pixels.
+    #[inline(always)]
+    fn edge(
+        &self,
+        i: usize,
+        lanes: i32x16<S>,
+        [dx, dy]: [i32x16<S>; 2],
+        shift: Option<&([i32x16<S>; 3], [f32x16<S>; 2])>,
+    ) -> f32x16<S> {
+        let steps = permute(self.a[i], lanes) * dx + permute(self.b[i], lanes) * dy;
+        let at = (permute(self.first[i], lanes) + (steps << FINE)).to_float::<f32x16<S>>();
+        match shift {
+            Some((_, gain)) => at + own(gain[i - 1], lanes),
+            None => at,
+        }
+    }
+}
+
 impl<S: Simd> Edges<S> for FineEdges<S> {
-    /// Quotients, and the second and third edge function.
-    type At = ([i32x16<S>; 3], [f32x16<S>; 2]);
-    type Shift = Self::At;
+    /// Quotients.
+    type At = [i32x16<S>; 3];
+    /// What the quotients gain, and the second and third edge function.
+    type Shift = ([i32x16<S>; 3], [f32x16<S>; 2]);
 
     #[inline(always)]
     fn bounds(corners: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S> {
@@ -210,17 +263,17 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
     #[inline(always)]
     fn first(&self) -> Self::At {
         let [a, b, c] = self.first;
-        ([a >> FINE, b >> FINE, c >> FINE], [b.to_float(), c.to_float()])
+        [a >> FINE, b >> FINE, c >> FINE]
     }
 
     #[inline(always)]
-    fn right(&self, at: Self::At) -> Self::At {
-        fine_step(at, self.a)
+    fn right(&self, [a, b, c]: Self::At) -> Self::At {
+        [a + self.a[0], b + self.a[1], c + self.a[2]]
     }
 
     #[inline(always)]
-    fn below(&self, at: Self::At) -> Self::At {
-        fine_step(at, self.b)
+    fn below(&self, [a, b, c]: Self::At) -> Self::At {
+        [a + self.b[0], b + self.b[1], c + self.b[2]]
     }
 
     #[inline(always)]
@@ -242,21 +295,27 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
     }
 
     #[inline(always)]
-    fn moved(&self, (whole, edges): Self::At, (more, gain): Self::Shift) -> Self::At {
-        (
-            [whole[0] + more[0], whole[1] + more[1], whole[2] + more[2]],
-            [edges[0] + gain[0], edges[1] + gain[1]],
-        )
+    fn moved(&self, [a, b, c]: Self::At, (more, _): Self::Shift) -> Self::At {
+        [a + more[0], b + more[1], c + more[2]]
     }
 
     #[inline(always)]
-    fn covered(&self, ([a, b, c], _): Self::At) -> mask32x16<S> {
+    fn covered(&self, [a, b, c]: Self::At) -> mask32x16<S> {
         (a | b | c).simd_ge(0)
     }
 
     #[inline(always)]
-    fn depth(&self, (_, [second, third]): Self::At) -> f32x16<S> {
-        self.depth + second * self.to_second + third * self.to_third
+    fn depths(
+        &self,
+        lanes: i32x16<S>,
+        by: [i32x16<S>; 2],
+        shift: Option<&Self::Shift>,
+    ) -> f32x16<S> {
+        let second = self.edge(1, lanes, by, shift);
+        let third = self.edge(2, lanes, by, shift);
+        let [depth, to_second, to_third] =
+            [own(self.depth, lanes), own(self.to_second, lanes), own(self.to_third, lanes)];
+        depth + second * to_second + third * to_third
     }
 }
 
@@ -278,6 +337,15 @@ impl<S: Simd> FloatEdges<S> {
     fn edge(&self, i: usize, [x, y]: [f32x16<S>; 2]) -> f32x16<S> {
         let [a, b, c] = self.lines[i];
         a * x + b * y + c
+    }
+}
+
+impl<S: Simd> FloatEdges<S> {
+    /// An edge function of the triangles in some lanes.
+    #[inline(always)]
+    fn edge_of(&self, i: usize, lanes: i32x16<S>, [x, y]: [f32x16<S>; 2]) -> f32x16<S> {
+        let [a, b, c] = self.lines[i];
+        own(a, lanes) * x + own(b, lanes) * y + own(c, lanes)
     }
 }
 
@@ -358,10 +426,28 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
     }
 
     #[inline(always)]
-    fn depth(&self, (at, _): Self::At) -> f32x16<S> {
-        let (second, third) = (self.edge(1, at) / self.area, self.edge(2, at) / self.area);
-        self.depth + second * self.second + third * self.third
+    fn depths(
+        &self,
+        lanes: i32x16<S>,
+        [dx, dy]: [i32x16<S>; 2],
+        shift: Option<&Self::Shift>,
+    ) -> f32x16<S> {
+        let [x, y] = self.start;
+        let [more_x, more_y] = shift.copied().unwrap_or_default();
+        let x = own(x, lanes) + dx.to_float::<f32x16<S>>() + more_x;
+        let y = own(y, lanes) + dy.to_float::<f32x16<S>>() + more_y;
+        let area = own(self.area, lanes);
+        let weights = [self.edge_of(1, lanes, [x, y]) / area, self.edge_of(2, lanes, [x, y]) / area];
+        let [depth, second, third] =
+            [own(self.depth, lanes), own(self.second, lanes), own(self.third, lanes)];
+        depth + weights[0] * second + weights[1] * third
     }
+}
+
+/// The numbers of some lanes.
+#[inline(always)]
+fn own<S: Simd>(of: f32x16<S>, lanes: i32x16<S>) -> f32x16<S> {
+    permute(of.bitcast(), lanes).bitcast()
 }
 
 /// The pixels that snapped triangles may cover.
@@ -384,19 +470,6 @@ fn snapped_bounds<S: Simd>(
 #[inline(always)]
 fn step<S: Simd>([x, y, z]: [f32x16<S>; 3], by: [f32x16<S>; 3]) -> [f32x16<S>; 3] {
     [x + by[0], y + by[1], z + by[2]]
-}
-
-#[inline(always)]
-fn fine_step<S: Simd>(
-    (whole, edges): ([i32x16<S>; 3], [f32x16<S>; 2]),
-    by: [i32x16<S>; 3],
-) -> ([i32x16<S>; 3], [f32x16<S>; 2]) {
-    let parts = Grid::Fine.parts() as f32;
-    let gain = |i: usize| by[i].to_float::<f32x16<S>>() * parts;
-    (
-        [whole[0] + by[0], whole[1] + by[1], whole[2] + by[2]],
-        [edges[0] + gain(1), edges[1] + gain(2)],
-    )
 }
 
 /// The line through two corners, as a, b and c.

@@ -47,6 +47,35 @@ pub(crate) fn pick<S: Simd, const PAGES: usize>(
     }
 }
 
+/// Gathers the numbers in some lanes, all below sixteen.
+#[inline(always)]
+pub(crate) fn permute<S: Simd>(of: i32x16<S>, lanes: i32x16<S>) -> i32x16<S> {
+    let simd = of.simd;
+    match simd.level() {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Avx512(token) => {
+            let lanes = i32x16::from_slice(token, &<[i32; 16]>::from(lanes));
+            let of = i32x16::from_slice(token, &<[i32; 16]>::from(of));
+            i32x16::from_slice(simd, &<[i32; 16]>::from(x86::of_one(token, of, lanes)))
+        }
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Avx2(token) => {
+            let lanes = i32x16::from_slice(token, &<[i32; 16]>::from(lanes));
+            let of = i32x16::from_slice(token, &<[i32; 16]>::from(of));
+            i32x16::from_slice(simd, &<[i32; 16]>::from(x86::of_halves(token, of, lanes)))
+        }
+        _ => {
+            let of = <[i32; 16]>::from(of);
+            let lanes = <[i32; 16]>::from(lanes);
+            let mut picked = [0; 16];
+            for (picked, lane) in picked.iter_mut().zip(lanes) {
+                *picked = of[lane.cast_unsigned() as usize % 16];
+            }
+            i32x16::from_slice(simd, &picked)
+        }
+    }
+}
+
 /// Sixteen numbers of a row.
 #[inline(always)]
 fn page<S: Simd>(simd: S, row: &[i32; SLOTS], page: usize) -> i32x16<S> {
