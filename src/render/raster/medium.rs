@@ -200,7 +200,7 @@ impl<S: Simd> Medium<S> {
 
 /// Integers as f64. No instruction but those of AVX-512 converts them to eight f64 at once.
 #[inline(always)]
-fn in_f64<S: Simd>(numbers: i32x16<S>) -> [f64x8<S>; 2] {
+pub(super) fn in_f64<S: Simd>(numbers: i32x16<S>) -> [f64x8<S>; 2] {
     let (low, high) = (numbers ^ i32::MIN).interleave(i32x16::splat(numbers.simd, UPPER));
     [low.bitcast::<f64x8<S>>() - TO_SIGNED, high.bitcast::<f64x8<S>>() - TO_SIGNED]
 }

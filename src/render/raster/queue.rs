@@ -5,7 +5,7 @@ use fearless_simd::{Simd, SimdBase as _, i32x16, mask32x16};
 use super::hits::PACK;
 
 /// The sizes of bounding boxes, in pixels to a side, that the queues hold.
-pub(crate) const SMALL: [i32; 4] = [1, 2, 4, 8];
+pub(crate) const SMALL: [i32; 5] = [1, 2, 4, 8, 16];
 
 /// Numbers stored per triangle: x and y of its corners, their depths, its own number.
 pub(crate) const ROWS: usize = 10;

@@ -7,6 +7,8 @@
 
 use fearless_simd::Simd;
 
+use super::queue::SMALL;
+use super::small_edges::whole::WholeEdges;
 use super::small_edges::{Edges, FineEdges, FloatEdges, UsualEdges};
 use crate::accuracy::Coverage;
 use crate::render::frame::variants::Variants;
@@ -18,8 +20,12 @@ pub(crate) trait Rule: Copy {
     const GRID: Grid = Grid::Usual;
     /// Whether corners are needed as they were before they were snapped.
     const UNSNAPPED: bool = false;
+    /// The number of queues of small triangles that are used.
+    const QUEUES: usize = SMALL.len() - 1;
     /// The edge functions of small triangles.
     type Edges<S: Simd>: Edges<S>;
+    /// Those of the last queue, whose boxes are larger.
+    type LastEdges<S: Simd>: Edges<S>;
 }
 
 /// Whole numbers on the usual grid.
@@ -27,7 +33,9 @@ pub(crate) trait Rule: Copy {
 pub(crate) struct Usual;
 
 impl Rule for Usual {
+    const QUEUES: usize = SMALL.len();
     type Edges<S: Simd> = UsualEdges<S>;
+    type LastEdges<S: Simd> = WholeEdges<S>;
 }
 
 /// Whole numbers on the fine grid.
@@ -37,6 +45,7 @@ pub(crate) struct Fine;
 impl Rule for Fine {
     const GRID: Grid = Grid::Fine;
     type Edges<S: Simd> = FineEdges<S>;
+    type LastEdges<S: Simd> = FineEdges<S>;
 }
 
 /// Corners that are not snapped: of small triangles, edge functions in f32. By rounding they may
@@ -48,6 +57,7 @@ pub(crate) struct Unsnapped;
 impl Rule for Unsnapped {
     const UNSNAPPED: bool = true;
     type Edges<S: Simd> = FloatEdges<S>;
+    type LastEdges<S: Simd> = FloatEdges<S>;
 }
 
 /// Evaluates an expression with the rule of coverage of a frame.

@@ -247,7 +247,8 @@ impl<'a> Setup<'a> {
         bins: &mut Bins,
     ) {
         let mut above = 0;
-        for (queue, limit) in SMALL.into_iter().enumerate().filter(|_| self.has_small::<R>()) {
+        let queues = if self.has_small::<R>() { R::QUEUES } else { 0 };
+        for (queue, limit) in SMALL[..queues].iter().copied().enumerate() {
             let some = plain & side.simd_gt(above) & side.simd_le(limit);
             above = limit;
             let count = some.to_bitmask().count_ones() as usize;
@@ -415,7 +416,7 @@ pub(crate) fn finish<R: Rule>(level: Level, bins: &mut Bins) {
     }
     let many = bins.sample_positions.are_many();
     dispatch!(level, simd => {
-        for queue in 0..SMALL.len() {
+        for queue in 0..R::QUEUES {
             match many {
                 true => small::draw_queue::<_, R, FOUR>(simd, queue, bins),
                 false => small::draw_queue::<_, R, 1>(simd, queue, bins),

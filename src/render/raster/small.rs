@@ -11,7 +11,7 @@ use fearless_simd::{
 
 use super::bins::Bins;
 use super::hits::{PACK, Pixels};
-use super::queue::{Pack, WAITING};
+use super::queue::{Pack, SMALL, WAITING};
 use super::rule::Rule;
 use super::small_edges::Edges;
 use crate::render::screen::coverage::PixelBox;
@@ -38,7 +38,10 @@ pub(crate) fn draw_queue<S: Simd, R: Rule, const N: usize>(simd: S, queue: usize
                         *row = there.select(*row, nothing);
                     }
                 }
-                draw::<S, R, N>(simd, &pack, bins);
+                match queue + 1 == SMALL.len() {
+                    true => draw::<S, R::LastEdges<S>, N>(simd, &pack, bins),
+                    false => draw::<S, R::Edges<S>, N>(simd, &pack, bins),
+                }
             }
             bins.queues[queue].forget();
         },
@@ -47,9 +50,9 @@ pub(crate) fn draw_queue<S: Simd, R: Rule, const N: usize>(simd: S, queue: usize
 
 /// Draws sixteen triangles whose boxes have at most 8 x 8 pixels.
 #[inline(always)]
-pub(crate) fn draw<S: Simd, R: Rule, const N: usize>(simd: S, pack: &Pack<S>, bins: &mut Bins) {
+pub(crate) fn draw<S: Simd, E: Edges<S>, const N: usize>(simd: S, pack: &Pack<S>, bins: &mut Bins) {
     let sample_positions = bins.sample_positions;
-    let lanes = Lanes::<S, R::Edges<S>>::new(simd, pack, sample_positions.reach::<N>());
+    let lanes = Lanes::<S, E>::new(simd, pack, sample_positions.reach::<N>());
     let reach = bins.hits.reach(lanes.bounds());
     let Bins { hits, covered, .. } = bins;
     let shifts = lanes.edges.shifts::<N>(&sample_positions);
@@ -73,7 +76,7 @@ pub(crate) struct Covered {
 }
 
 /// The most pixels of a box.
-const MOST: usize = 64;
+const MOST: usize = 256;
 
 impl Default for Covered {
     fn default() -> Self {

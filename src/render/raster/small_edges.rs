@@ -18,6 +18,8 @@ use crate::render::screen::coverage::{Grid, SUBPIXELS};
 use crate::render::screen::sample_positions::SamplePositions;
 use crate::render::simd::gather::permute;
 
+pub(crate) mod whole;
+
 /// The bounding boxes of sixteen triangles: left, top, right and bottom.
 type Boxes<S> = [i32x16<S>; 4];
 
@@ -251,9 +253,9 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
         ];
         let area = (area * sign).max(1).to_float::<f32x16<S>>();
         Self {
-            first: each(edges, |[value, ..]| value),
-            a: each(edges, |[_, a, _]| a),
-            b: each(edges, |[_, _, b]| b),
+            first: each(edges, |edge| edge.value),
+            a: each(edges, |edge| edge.a),
+            b: each(edges, |edge| edge.b),
             depth: d0,
             to_second: (d1 - d0) / area,
             to_third: (d2 - d0) / area,
@@ -506,15 +508,27 @@ fn edge<S: Simd>(
     }
 }
 
-/// The same in whole numbers: the value less the least that counts as covered, a and b.
+/// An edge function of sixteen triangles in whole numbers.
+#[derive(Clone, Copy)]
+struct WholeEdge<S: Simd> {
+    /// Less the least value that counts as covered.
+    value: i32x16<S>,
+    least: i32x16<S>,
+    /// The steps by a part of a pixel to the right, and by one down.
+    a: i32x16<S>,
+    b: i32x16<S>,
+}
+
+/// The same in whole numbers.
 #[inline(always)]
 fn whole_edge<S: Simd>(
     [px, py]: [i32x16<S>; 2],
     [qx, qy]: [i32x16<S>; 2],
     sign: i32x16<S>,
-) -> [i32x16<S>; 3] {
+) -> WholeEdge<S> {
     let (a, b) = ((py - qy) * sign, (qx - px) * sign);
     let on_edge = a.simd_gt(0) | (a.simd_eq(0) & b.simd_gt(0));
     let (zero, one) = (i32x16::splat(px.simd, 0), i32x16::splat(px.simd, 1));
-    [zero - (a * px + b * py) - on_edge.select(zero, one), a, b]
+    let least = on_edge.select(zero, one);
+    WholeEdge { value: zero - (a * px + b * py) - least, least, a, b }
 }
