@@ -4,7 +4,7 @@
 //! primitive below. So the depth test is a maximum: the larger entry is visible.
 
 use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, SimdMask as _, f32x16, f64x8, mask32x16, u32x16,
+    Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, f32x16, f64x8, mask32x16, u32x16,
 };
 
 use super::depth_format::Format;
@@ -110,17 +110,19 @@ fn entries<S: Simd>(
 /// The entries of a block for each of four samples.
 pub(crate) type Planes = [[u64; BLOCK_PIXELS]; FOUR];
 
-/// The keys of the least and of the largest depth of the triangles in some entries.
+/// The keys of the least and of the largest depth of the triangles in the entries of whole blocks.
 #[inline(always)]
-#[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
-pub(crate) fn depths_of<S: Simd>(_: S, visibility: &[u64]) -> [u32; 2] {
-    let (mut low, mut high) = (u32::MAX, 0);
-    for word in visibility {
-        let depth = (*word >> 32) as u32;
+pub(crate) fn depths_of<S: Simd>(simd: S, visibility: &[u64]) -> [u32; 2] {
+    let (none, all) = (u32x16::splat(simd, 0), u32x16::splat(simd, u32::MAX));
+    let (mut low, mut high) = (all, none);
+    let halves: &[u32] = bytemuck::cast_slice(visibility);
+    for sixteen in halves.chunks_exact(32) {
+        let upper = u32x16::from_slice(simd, &sixteen[..16]);
+        let (number, key) = upper.deinterleave(u32x16::from_slice(simd, &sixteen[16..]));
         // The numbers of lines are the upper half of all; the background has the lowest entry.
-        let is_triangle = *word as u32 >> 31 == 1;
-        low = low.min(if is_triangle { depth } else { u32::MAX });
-        high = high.max(if is_triangle { depth } else { 0 });
+        let is_triangle = number.simd_ge(1 << 31);
+        low = low.min(is_triangle.select(key, all));
+        high = high.max(is_triangle.select(key, none));
     }
-    [low, high]
+    [low.reduce_min(), high.reduce_max()]
 }

@@ -97,7 +97,7 @@ impl Fragments {
         corner: [i32; 2],
     ) -> Shown {
         self.shared = false;
-        let Runs { numbers, triangles, background, left } = Runs::find(simd, visibility);
+        let Runs { numbers, triangles, background, left, .. } = Runs::find(simd, visibility);
         if triangles == 0 {
             return Shown { triangles, lines: !background };
         }
@@ -264,10 +264,12 @@ impl Fragments {
 pub(crate) struct Runs {
     /// The numbers of the primitives, after a margin.
     numbers: [u32; MARGIN + BLOCK_PIXELS],
-    /// The pixels that show triangles, nothing, and the same as their left neighbours.
+    /// The pixels that show triangles, nothing, the same as their left neighbours, and the same as
+    /// those above.
     triangles: u64,
     background: u64,
     left: u64,
+    above: u64,
 }
 
 impl Runs {
@@ -276,7 +278,7 @@ impl Runs {
         // The number of the background is not that of any triangle.
         let mut before = u32x16::splat(simd, u32::MAX);
         let mut numbers = [u32::MAX; MARGIN + BLOCK_PIXELS];
-        let (mut triangles, mut background, mut left) = (0, 0, 0);
+        let (mut triangles, mut background, mut left, mut above) = (0, 0, 0, 0);
         for at in (0..BLOCK_PIXELS).step_by(16) {
             let words = |at| u64x8::from_slice(simd, &visibility[at..at + 8]);
             let own = !words(at).narrow(words(at + 8));
@@ -285,14 +287,15 @@ impl Runs {
             background |= own.simd_eq(u32::MAX).to_bitmask() << at;
             // The last lane of those before, and all but the last of its own.
             left |= own.simd_eq(before.slide::<15>(own)).to_bitmask() << at;
+            above |= own.simd_eq(before.slide::<ROW>(own)).to_bitmask() << at;
             before = own;
         }
-        Self { numbers, triangles, background, left }
+        Self { numbers, triangles, background, left, above }
     }
 
-    /// The pixels at which runs of triangles begin.
-    pub(crate) const fn starts(&self) -> u64 {
-        self.triangles & !self.left
+    /// The pixels at which runs of triangles begin that do not show in the row above.
+    pub(crate) const fn new_starts(&self) -> u64 {
+        self.triangles & !self.left & !self.above
     }
 
     /// The pixels at which runs of anything begin, in each row of the block.

@@ -100,7 +100,7 @@ fn list_in<S: Simd>(
     for block in (0..BLOCK_PIXELS).filter(shown) {
         let runs = Runs::find(simd, visibility.block(block));
         all_runs[block] = runs.starts_in_rows();
-        let mut starts = runs.starts();
+        let mut starts = runs.new_starts();
         while starts != 0 {
             let number = runs.number(starts.trailing_zeros() as usize);
             starts &= starts - 1;
