@@ -26,7 +26,7 @@ pub(crate) fn piece_of(count: usize) -> usize {
 }
 
 /// Fewer elements than this are set up by one thread: waking the others would take longer.
-const FEW: usize = 4096;
+const FEW: usize = 512;
 
 /// A piece of work.
 #[derive(Clone, Copy, Debug)]
