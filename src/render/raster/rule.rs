@@ -8,8 +8,7 @@
 use fearless_simd::Simd;
 
 use super::queue::SMALL;
-use super::small_edges::whole::WholeEdges;
-use super::small_edges::{Edges, FineEdges, FloatEdges, UsualEdges};
+use super::small_edges::{Edges, FineEdges, FloatEdges, UsualEdges, WholeEdges};
 use crate::accuracy::Coverage;
 use crate::render::frame::variants::Variants;
 use crate::render::screen::coverage::Grid;

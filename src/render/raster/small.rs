@@ -1,9 +1,11 @@
 //! Rasterizes small triangles, sixteen at a time, one in each lane.
 //!
-//! Triangles whose bounding box has at most 8 x 8 pixels wait in queues by the size of their boxes.
-//! When there are sixteen, their edge functions are stepped together over the pixels of the boxes,
-//! and the pixels that they cover become hits in the bins. How edge functions are computed depends
-//! on the rule of coverage: see `small_edges`.
+//! Triangles whose bounding box has at most 16 x 16 pixels wait in queues by the size of their
+//! boxes. When there are sixteen, their edge functions are stepped together over the pixels of the
+//! boxes, and the pixels that they cover are listed: few lanes of a step cover theirs. Then each
+//! lane takes a pixel of the list, computes its depth and adds it to the hits of the bins: set-up of
+//! triangles of 5 pixels takes 0.55 of what it takes if each step computes depths (AVX-512). How
+//! edge functions are computed depends on the rule of coverage: see `small_edges`.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdMask as _, f32x16, i32x16, mask32x16, u32x16,
@@ -15,9 +17,8 @@ use super::queue::{Pack, SMALL, WAITING};
 use super::rule::Rule;
 use super::small_edges::Edges;
 use crate::render::screen::coverage::PixelBox;
-use crate::render::screen::sample_positions::SamplePositions;
-use crate::render::simd::Real;
 use crate::render::simd::gather::permute;
+use crate::render::simd::{Real, UP_TO_SIXTEEN};
 
 /// Draws the triangles that wait in a queue, in packs of sixteen, with `N` samples per pixel.
 ///
@@ -38,19 +39,30 @@ pub(crate) fn draw_queue<S: Simd, R: Rule, const N: usize>(simd: S, queue: usize
                         *row = there.select(*row, nothing);
                     }
                 }
-                match queue + 1 == SMALL.len() {
-                    true => draw::<S, R::LastEdges<S>, N>(simd, &pack, bins),
-                    false => draw::<S, R::Edges<S>, N>(simd, &pack, bins),
-                }
+                draw::<S, R, N>(simd, queue, &pack, bins);
             }
             bins.queues[queue].forget();
         },
     );
 }
 
-/// Draws sixteen triangles whose boxes have at most 8 x 8 pixels.
+/// Draws sixteen triangles of a queue.
 #[inline(always)]
-pub(crate) fn draw<S: Simd, E: Edges<S>, const N: usize>(simd: S, pack: &Pack<S>, bins: &mut Bins) {
+pub(crate) fn draw<S: Simd, R: Rule, const N: usize>(
+    simd: S,
+    queue: usize,
+    pack: &Pack<S>,
+    bins: &mut Bins,
+) {
+    if queue + 1 == SMALL.len() {
+        draw_by::<S, R::LastEdges<S>, N>(simd, pack, bins);
+    } else {
+        draw_by::<S, R::Edges<S>, N>(simd, pack, bins);
+    }
+}
+
+#[inline(always)]
+fn draw_by<S: Simd, E: Edges<S>, const N: usize>(simd: S, pack: &Pack<S>, bins: &mut Bins) {
     let sample_positions = bins.sample_positions;
     let lanes = Lanes::<S, E>::new(simd, pack, sample_positions.reach::<N>());
     let reach = bins.hits.reach(lanes.bounds());
@@ -67,20 +79,20 @@ pub(crate) fn draw<S: Simd, E: Edges<S>, const N: usize>(simd: S, pack: &Pack<S>
     }
 }
 
+/// The most pixels that sixteen triangles cover.
+const MOST: usize = PACK * 16 * 16;
+
 /// Pixels that sixteen triangles cover: in bits, from the lowest, 4 for the lane, 4 for the column
-/// and 4 for the row in the box of the triangle.
+/// and 4 for the row in the box of the triangle. There is room for sixteen more.
 #[derive(Debug)]
 pub(crate) struct Covered {
-    pixels: [i32; PACK * MOST + PACK],
+    pixels: [i32; MOST + PACK],
     count: usize,
 }
 
-/// The most pixels of a box.
-const MOST: usize = 256;
-
 impl Default for Covered {
     fn default() -> Self {
-        Self { pixels: [0; PACK * MOST + PACK], count: 0 }
+        Self { pixels: [0; MOST + PACK], count: 0 }
     }
 }
 
@@ -143,7 +155,7 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
             let (mut at, mut pixels) = (row, row_pixels);
             for _ in 0..columns {
                 let some = self.edges.covered(at);
-                let to = count % (PACK * MOST);
+                let to = count % MOST;
                 pixels.compress(some).store_slice(&mut covered.pixels[to..to + PACK]);
                 count = to + some.to_bitmask().count_ones() as usize;
                 at = self.edges.right(at);
@@ -184,5 +196,3 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
         }
     }
 }
-
-const UP_TO_SIXTEEN: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];

@@ -4,7 +4,7 @@
 //! primitive below. So the depth test is a maximum: the larger entry is visible.
 
 use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, f32x16, f64x8, mask32x16, u32x16,
+    Bytes as _, Select as _, Simd, SimdBase as _, SimdMask as _, f32x16, f64x8, mask32x16, u32x16,
 };
 
 use super::depth_format::Format;

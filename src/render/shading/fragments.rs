@@ -14,6 +14,7 @@ use fearless_simd::{
 };
 
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::render::simd::UP_TO_SIXTEEN;
 use crate::render::simd::gather::SLOTS;
 
 /// The pixels of one block that show triangles. See the [module](self).
@@ -309,8 +310,6 @@ impl Runs {
         self.numbers[MARGIN + pixel % BLOCK_PIXELS]
     }
 }
-
-const UP_TO_SIXTEEN: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// The pixels of a block, in order.
 const ALL_PIXELS: [u8; BLOCK_PIXELS] = {

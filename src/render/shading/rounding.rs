@@ -37,23 +37,40 @@ const fn bayer(x: i32, y: i32) -> u8 {
     number
 }
 
-/// The thresholds of a list of fragments.
-pub(crate) fn thresholds<T: Number>(rounding: Rounding, fragments: &Fragments) -> [T; BATCH] {
-    let mut all = [T::from_f64(threshold(rounding, 0, 0)); BATCH];
-    if rounding != Rounding::Dithered {
-        return all;
+/// The thresholds of a list of fragments. Those that are the same for every list are kept.
+#[derive(Debug)]
+pub(crate) struct Thresholds<T> {
+    rounding: Option<Rounding>,
+    all: [T; BATCH],
+}
+
+impl<T: Number> Default for Thresholds<T> {
+    fn default() -> Self {
+        Self { rounding: None, all: [T::default(); BATCH] }
     }
-    for ((to, x), y) in all.iter_mut().zip(&fragments.x).zip(&fragments.y) {
-        *to = T::from_f64(threshold(rounding, *x, *y));
+}
+
+impl<T: Number> Thresholds<T> {
+    /// Those of a list.
+    pub(crate) fn of(&mut self, rounding: Rounding, fragments: &Fragments) -> &[T; BATCH] {
+        if rounding == Rounding::Dithered {
+            let pixels = fragments.x.iter().zip(&fragments.y);
+            for (to, (x, y)) in self.all.iter_mut().zip(pixels) {
+                *to = T::from_f64(threshold(rounding, *x, *y));
+            }
+        } else if self.rounding != Some(rounding) {
+            self.all = [T::from_f64(threshold(rounding, 0, 0)); BATCH];
+        }
+        self.rounding = Some(rounding);
+        &self.all
     }
-    all
 }
 
 /// The thresholds of all pixels of a block, which are the same for every block.
 pub(crate) fn block_thresholds(rounding: Rounding) -> [f32; BATCH] {
     let mut fragments = Fragments::default();
     fragments.list_full_block(0, [0; 2]);
-    thresholds(rounding, &fragments)
+    *Thresholds::default().of(rounding, &fragments)
 }
 
 /// Converts colours to bytes, like [`Quantize`](super::quantize::Quantize), with a threshold per

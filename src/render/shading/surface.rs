@@ -21,7 +21,7 @@ use super::lit_points::place_fragments;
 use super::map_rows::MapRows;
 use super::map_texels::{Points, TexturePlacement};
 use super::quantize::{Finish, Quantize, SurfaceColor};
-use super::rounding::{QuantizeWithThresholds, thresholds};
+use super::rounding::{QuantizeWithThresholds, Thresholds};
 use super::shadows::{BatchShadows, place_faces};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
@@ -55,6 +55,7 @@ pub(crate) struct Shader<T> {
     /// For surfaces with further maps, or light of their own.
     pub(super) maps: Box<MapRows<T>>,
     pub(super) colors: Colors,
+    thresholds: Thresholds<T>,
     /// The triangles of a tile that have to be lit.
     pub(super) new_faces: Vec<u32>,
     /// Where runs of pixels that show the same begin in each block of a tile, if colours of
@@ -100,6 +101,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             vertex_colors: [[[T::default(); SLOTS]; 3]; 3],
             maps: Box::default(),
             colors: Colors::default(),
+            thresholds: Thresholds::default(),
             new_faces: Vec::new(),
             runs: [0; BLOCK_PIXELS],
         }
@@ -320,7 +322,7 @@ impl<T: ShadingNumber> Shader<T> {
             }
         }
         let encoding = context.terms.encoding();
-        let Self { batch, texels, colors, maps, .. } = self;
+        let Self { batch, texels, colors, maps, thresholds, .. } = self;
         let own = if textured {
             SurfaceColor::Texels(texels)
         } else {
@@ -329,13 +331,13 @@ impl<T: ShadingNumber> Shader<T> {
         let lit = light.is_some();
         if glows || encoding.is_some() {
             let thresholds =
-                (rounding != Rounding::Nearest).then(|| thresholds(rounding, &self.fragments));
-            let (glow, thresholds) = (glows.then_some(&maps.glow), thresholds.as_ref());
+                (rounding != Rounding::Nearest).then(|| thresholds.of(rounding, &self.fragments));
+            let glow = glows.then_some(&maps.glow);
             T::run(level, Finish { batch, lit, own, glow, thresholds, encoding, colors });
         } else if rounding == Rounding::Nearest {
             T::run(level, Quantize { batch, lit, own, colors });
         } else {
-            let thresholds = &thresholds(rounding, &self.fragments);
+            let thresholds = thresholds.of(rounding, &self.fragments);
             T::run(level, QuantizeWithThresholds { batch, lit, own, thresholds, colors });
         }
         if !(located || each) {
@@ -420,10 +422,10 @@ impl<T: ShadingNumber> Shader<T> {
             self.carry_diffuse(context, group, shaded, tables);
             self.attributes.spread(level);
         }
-        let Self { fragments, attributes, barycentrics, batch, colors, .. } = self;
+        let Self { fragments, attributes, barycentrics, batch, colors, thresholds, .. } = self;
         let colored = tables[0].is_colored();
         if colored && !plan.variants.are_linear() && shaded.extras.is_empty() {
-            let thresholds = &thresholds(plan.variants.rounding, fragments);
+            let thresholds = thresholds.of(plan.variants.rounding, fragments);
             mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors, thresholds));
             return Mixture::Bytes;
         }

@@ -31,3 +31,6 @@ pub(crate) use single::log2;
 pub use sixteen::Sixteen;
 pub(crate) use variant_lanes::VariantLanes;
 pub use vec3::Vec3;
+
+/// The numbers of sixteen lanes.
+pub(crate) const UP_TO_SIXTEEN: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];

@@ -1,21 +1,19 @@
-//! Edge functions in 32-bit integers, for boxes too large for f32: as [`medium`], with the same
-//! depths, from edge functions in f64.
-//!
-//! [`medium`]: crate::render::raster::medium
+//! On the usual grid, in 32-bit integers, for boxes of up to 16 x 16 pixels. Depths are those of
+//! [`medium`](crate::render::raster::medium), to the same bits.
 
 use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, SimdWiden as _,
-    f32x16, f64x8, i32x16, mask32x16, u32x16,
+    Bytes as _, Select as _, Simd, SimdBase as _, SimdNarrow as _, SimdWiden as _, f32x16, f64x8,
+    i32x16, mask32x16, u32x16,
 };
 
-use super::{Boxes, Corners, Edges, own, snapped_bounds, whole_edge};
+use super::{Boxes, Corners, Edges, of_lanes, snapped_bounds, whole_edge};
 use crate::base::math::each;
 use crate::render::raster::medium::in_f64;
 use crate::render::screen::coverage::{Grid, SUBPIXELS};
 use crate::render::screen::sample_positions::SamplePositions;
 use crate::render::simd::gather::permute;
 
-/// On the usual grid, for boxes of up to 16 x 16 pixels.
+/// On the usual grid, in whole numbers.
 #[derive(Clone, Copy)]
 pub(crate) struct WholeEdges<S: Simd> {
     /// Edge functions at the first pixel, less their least values at covered centres.
@@ -139,7 +137,7 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
     ) -> f32x16<S> {
         let second = self.edge(1, lanes, by, shift);
         let third = self.edge(2, lanes, by, shift);
-        let (low, high) = own(self.depth, lanes).widen();
+        let (low, high) = of_lanes(self.depth, lanes).widen();
         let to_second = doubles(self.to_second, lanes);
         let to_third = doubles(self.to_third, lanes);
         let low = second[0] * to_second[0] + low + third[0] * to_third[0];

@@ -52,20 +52,24 @@ fn reached(corners: [Snapped; 3], sample_positions: &SamplePositions) -> PixelBo
     }
 }
 
-/// The bins with some small triangles, sixteen at the most.
-fn small(triangles: &[[Snapped; 3]], sample_positions: SamplePositions) -> Bins {
-    let numbers = |corner: Snapped| [corner.x, corner.y];
-    let rows: Vec<_> = triangles.iter().map(|corners| corners.map(numbers)).collect();
-    small_by::<Usual>(&rows, sample_positions)
+/// The bins with some triangles of a queue, sixteen at the most.
+fn small(queue: usize, triangles: &[[ScreenVertex; 3]], sample_positions: SamplePositions) -> Bins {
+    let number = |corner: ScreenVertex| ([corner.at().x, corner.at().y], corner.depth);
+    let rows: Vec<_> = triangles.iter().map(|corners| corners.map(number)).collect();
+    small_by::<Usual>(queue, &rows, sample_positions)
 }
 
-/// The same by a rule of coverage, from the numbers that it reads.
-fn small_by<R: Rule>(triangles: &[[[i32; 2]; 3]], sample_positions: SamplePositions) -> Bins {
+/// The same by a rule of coverage, from the numbers that it reads, and depths.
+fn small_by<R: Rule>(
+    queue: usize,
+    triangles: &[[([i32; 2], f32); 3]],
+    sample_positions: SamplePositions,
+) -> Bins {
     let mut rows = [[0; 16]; ROWS];
     for ((lane, corners), number) in triangles.iter().enumerate().zip(0..) {
-        for (i, [x, y]) in corners.iter().enumerate() {
+        for (i, ([x, y], depth)) in corners.iter().enumerate() {
             (rows[2 * i][lane], rows[2 * i + 1][lane]) = (*x, *y);
-            rows[6 + i][lane] = 0.5_f32.to_bits().cast_signed();
+            rows[6 + i][lane] = depth.to_bits().cast_signed();
         }
         rows[9][lane] = number;
     }
@@ -76,8 +80,8 @@ fn small_by<R: Rule>(triangles: &[[[i32; 2]; 3]], sample_positions: SamplePositi
             *values = i32x16::from_slice(simd, row);
         }
         match sample_positions.are_many() {
-            true => small::draw::<_, R, FOUR>(simd, &pack, &mut bins),
-            false => small::draw::<_, R, 1>(simd, &pack, &mut bins),
+            true => small::draw::<_, R, FOUR>(simd, queue, &pack, &mut bins),
+            false => small::draw::<_, R, 1>(simd, queue, &pack, &mut bins),
         }
     });
     bins
@@ -138,7 +142,7 @@ fn covered_on(
 fn every_way_covers_the_samples_that_the_rule_says() {
     let mut random = numbers(7);
     for sample_positions in middle_and_others() {
-        for extent in [1, 2, 4, 8, 30, 100] {
+        for extent in [1, 2, 4, 8, 15, 30, 100] {
             for _ in 0..400 {
                 // Every second coordinate on a pixel's centre or border, or on that of a sample.
                 let (left, top) = (random(158) - 8, random(148) - 8);
@@ -160,23 +164,67 @@ fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
     let want = covered(corners, &sample_positions);
     let bounds = reached(corners, &sample_positions);
     let side = bounds.width().max(bounds.height());
-    if side <= SMALL[3] && !bounds.is_empty() {
-        let got = seen_in(&small(&[corners], sample_positions));
+    let flat = |corners: [Snapped; 3]| corners.map(|corner| ScreenVertex::new(corner, 0.5));
+    let queue = SMALL.iter().position(|limit| side <= *limit).filter(|_| !bounds.is_empty());
+    if let Some(queue) = queue {
+        let got = seen_in(&small(queue, &[flat(corners)], sample_positions));
         assert_eq!(got, want, "{corners:?} alone");
         // With others far away it is drawn pixel by pixel, whatever the tile.
         let far = [(2, 2), (140, 3), (4, 130), (141, 135)].map(|(x, y)| {
             [(0, 0), (200, 0), (0, 200)]
                 .map(|(dx, dy)| Snapped { x: x * 256 + dx, y: y * 256 + dy })
         });
-        let got = seen_in(&small(&[corners, far[0], far[1], far[2], far[3]], sample_positions));
+        let all = [corners, far[0], far[1], far[2], far[3]].map(flat);
+        let got = seen_in(&small(queue, &all, sample_positions));
         let nearer = |pixel: &(i32, i32, usize)| !got.contains(pixel);
         assert!(!want.iter().any(nearer), "{corners:?} among others");
         assert_eq!(got.len(), want.len(), "{corners:?} among others");
     }
     let mut bins = bins(sample_positions);
-    let corners = corners.map(|corner| ScreenVertex::new(corner, 0.5));
-    bins.add_large(LargeTriangle { corners, number: 0, cutout: false }, bounds);
+    bins.add_large(LargeTriangle { corners: flat(corners), number: 0, cutout: false }, bounds);
     assert_eq!(seen_in(&bins), want, "{corners:?} alone in 64 bits");
+}
+
+/// The entries of the first tile.
+fn entries(bins: &Bins) -> Vec<u64> {
+    let mut visibility = Visibility::default();
+    visibility.clear(TILE_BOX, bins.sample_positions);
+    dispatch!(Level::new(), simd => match bins.sample_positions.are_many() {
+        true => {
+            visibility.draw_plain::<_, FOUR>(simd, bins, 0);
+            visibility.draw_hits::<_, FOUR>(simd, bins, 0);
+        }
+        false => {
+            visibility.draw_plain::<_, 1>(simd, bins, 0);
+            visibility.draw_hits::<_, 1>(simd, bins, 0);
+        }
+    });
+    let pixels = (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y)));
+    pixels
+        .flat_map(|(x, y)| {
+            let (samples, count) = visibility.samples(Level::new(), x, y);
+            samples.into_iter().take(count)
+        })
+        .collect()
+}
+
+#[test]
+fn triangles_of_sixteen_pixels_have_the_same_depths_as_larger_ones() {
+    let mut random = numbers(17);
+    for sample_positions in middle_and_others() {
+        for _ in 0..400 {
+            let (left, top) = (random(46) * 256, random(46) * 256);
+            let corners = [0, 1, 2].map(|_| {
+                let (x, y) = (left + random(15 * 256), top + random(15 * 256));
+                ScreenVertex::new(Snapped { x, y }, random(1 << 20) as f32 / 1_048_583.0)
+            });
+            let mut alone = bins(sample_positions);
+            let bounds = reached(corners.map(|corner| corner.at()), &sample_positions);
+            alone.add_large(LargeTriangle { corners, number: 0, cutout: false }, bounds);
+            let last = small(SMALL.len() - 1, &[corners], sample_positions);
+            assert_eq!(entries(&last), entries(&alone), "{corners:?}");
+        }
+    }
 }
 
 #[test]
@@ -195,8 +243,8 @@ fn on_the_fine_grid_small_and_large_triangles_cover_what_the_rule_says() {
                     [0, 1, 2].map(|_| Snapped { x: coordinate(left), y: coordinate(top) });
                 let want = covered_on(Grid::Fine, corners, &sample_positions);
                 if extent <= 4 {
-                    let numbers = corners.map(|corner| [corner.x, corner.y]);
-                    let got = seen_in(&small_by::<Fine>(&[numbers], sample_positions));
+                    let numbers = corners.map(|corner| ([corner.x, corner.y], 0.5));
+                    let got = seen_in(&small_by::<Fine>(0, &[numbers], sample_positions));
                     assert_eq!(got, want, "{corners:?} alone");
                 }
                 let mut visibility = Visibility::default();
@@ -287,8 +335,8 @@ fn edges_in_floats_decide_by_their_formula_alone_however_large_a_triangle_is() {
                 assert_eq!(own, BLOCK_PIXELS, "{corners:?}");
             }
             if extent <= 7 {
-                let bits = corners.map(|corner| corner.map(|x| x.to_bits().cast_signed()));
-                let seen = seen_in(&small_by::<Unsnapped>(&[bits], one));
+                let bits = corners.map(|corner| (corner.map(|x| x.to_bits().cast_signed()), 0.5));
+                let seen = seen_in(&small_by::<Unsnapped>(0, &[bits], one));
                 let got: Vec<_> = seen.iter().map(|(y, x, _)| (*y, *x)).collect();
                 let want: Vec<_> = want.into_iter().filter(|(y, x)| *y < 64 && *x < 64).collect();
                 let got: Vec<_> = got.into_iter().filter(|(y, x)| *y < 64 && *x < 64).collect();
