@@ -360,7 +360,7 @@ impl<T: ShadingNumber> Shader<T> {
         let new = self.attributes.take(&self.fragments, order, draw_index, base);
         if new {
             let vertices = frame.corners_of(draw_index);
-            self.attributes.find_sides(draw, plan, vertices);
+            self.attributes.find_sides(level, draw, plan, vertices);
             if located {
                 self.attributes.locate(level, draw, plan, vertices);
             }

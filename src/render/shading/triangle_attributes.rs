@@ -132,21 +132,27 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
     }
 
     /// Finds which triangles are back faces, if that matters.
-    pub(crate) fn find_sides(&mut self, draw: &Draw, plan: &FramePlan, vertices: &[ScreenVertex]) {
+    pub(crate) fn find_sides(
+        &mut self,
+        level: Level,
+        draw: &Draw,
+        plan: &FramePlan,
+        vertices: &[ScreenVertex],
+    ) {
         self.back = 0;
         if draw.back == Back::Culled {
             return;
         }
-        let order = draw.model.mesh.draw_order();
-        let screen = Screen::new(draw.clip_from_object, plan.size);
-        for (slot, ids) in self.ids[..self.count].iter().enumerate() {
-            let own = each(*ids, |vertex| vertices[vertex as usize]);
-            let front = if own.iter().all(ScreenVertex::is_inside) {
-                doubled_area(own.map(|vertex| vertex.at())) < 0
-            } else {
-                faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
-            };
-            self.back |= u64::from(front == draw.mirrored) << slot;
+        let ids = &self.ids;
+        let (front, odd) = dispatch!(level, simd => fronts(simd, ids, self.count, vertices));
+        self.back = if draw.mirrored { front } else { !front };
+        let mut odd = odd & (u64::MAX >> (SLOTS - self.count.max(1)));
+        while odd != 0 {
+            let slot = odd.trailing_zeros();
+            odd &= odd - 1;
+            let front = is_front(self.ids[slot as usize], draw, plan, vertices);
+            let back = u64::from(front == draw.mirrored) << slot;
+            self.back = self.back & !(1 << slot) | back;
         }
     }
 
@@ -303,6 +309,44 @@ impl AttributeNumber for f32 {
         (attributes.cut, attributes.wide) = (0, 0);
         dispatch!(level, simd => prepare(simd, attributes, vertices));
     }
+}
+
+/// The largest sides of a bounding box, in subpixels, whose doubled area fits 31 bits.
+const NARROW_BOX: i32 = 1 << 14;
+
+/// Which of the first `count` triangles turn their fronts to the observer if nothing is mirrored, a
+/// bit for each; and for which that has to be found out one by one.
+#[inline(always)]
+fn fronts<S: Simd>(
+    simd: S,
+    ids: &[[u32; 3]; SLOTS],
+    count: usize,
+    vertices: &[ScreenVertex],
+) -> (u64, u64) {
+    let (mut front, mut odd) = (0, 0);
+    for at in (0..count).step_by(16) {
+        let [[x0, y0, ..], [x1, y1, ..], [x2, y2, ..]] = corners(simd, ids, at, vertices);
+        let low = [x0.min(x1).min(x2), y0.min(y1).min(y2)];
+        let high = [x0.max(x1).max(x2), y0.max(y1).max(y2)];
+        // Corners that are beyond the clipping planes have the least of all numbers as x.
+        let beyond = low[0].simd_eq(ScreenVertex::BEYOND);
+        let wide = (high[0] - low[0]).simd_gt(NARROW_BOX) | (high[1] - low[1]).simd_gt(NARROW_BOX);
+        let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
+        front |= area.simd_lt(0).to_bitmask() << at;
+        odd |= (beyond | wide).to_bitmask() << at;
+    }
+    (front, odd)
+}
+
+/// Whether a triangle with these vertices turns its front to the observer if nothing is mirrored.
+fn is_front(ids: [u32; 3], draw: &Draw, plan: &FramePlan, vertices: &[ScreenVertex]) -> bool {
+    let own = each(ids, |vertex| vertices[vertex as usize]);
+    if own.iter().all(ScreenVertex::is_inside) {
+        return doubled_area(own.map(|vertex| vertex.at())) < 0;
+    }
+    let order = draw.model.mesh.draw_order();
+    let screen = Screen::new(draw.clip_from_object, plan.size);
+    faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
 }
 
 /// The edge functions of sixteen triangles at a time.
