@@ -39,8 +39,11 @@ pub(crate) struct Fragments {
     pub(crate) count: usize,
     /// The triangles of the slots, by their numbers in the frame.
     pub(crate) numbers: [u32; SLOTS],
-    /// The slot in which a triangle was put last, by the low bits of its number, or [`FREE`].
-    table: [u8; TABLE],
+    /// By the low bits of a triangle's number: above, the number of the triangle that was put last,
+    /// in the middle that of the list, and in the lowest byte its slot.
+    table: [u64; TABLE],
+    /// The number of the list, as it stands in the table.
+    list: u64,
 }
 
 /// Masks of the pixels that show triangles or lines: bit i stands for pixel i.
@@ -54,8 +57,9 @@ pub(crate) struct Shown {
 /// later one has it.
 const TABLE: usize = 128;
 
-/// The value of an empty entry.
-const FREE: u8 = u8::MAX;
+/// The numbers of lists in the table, and what one is more than that before.
+const LISTS: u64 = 0xffff_ff00;
+const NEXT_LIST: u64 = 0x100;
 
 /// Padding before the first pixel, so that every pixel has a left neighbour.
 const MARGIN: usize = 16;
@@ -74,7 +78,8 @@ impl Default for Fragments {
             shares: [0; BLOCK_PIXELS],
             count: 0,
             numbers: [0; SLOTS],
-            table: [FREE; TABLE],
+            table: [0; TABLE],
+            list: NEXT_LIST,
         }
     }
 }
@@ -137,7 +142,7 @@ impl Fragments {
     /// Assigns slots to the runs of pixels that begin at `starts`.
     #[inline(always)]
     fn share_out(&mut self, numbers: &[u32; MARGIN + BLOCK_PIXELS], mut starts: u64) {
-        (self.count, self.table) = (0, [FREE; TABLE]);
+        self.begin_list();
         while starts != 0 {
             let at = starts.trailing_zeros() as usize % BLOCK_PIXELS;
             starts &= starts - 1;
@@ -146,20 +151,28 @@ impl Fragments {
         }
     }
 
+    /// Forgets the slots of the list before.
+    #[inline(always)]
+    fn begin_list(&mut self) {
+        self.count = 0;
+        self.list = (self.list + NEXT_LIST) & LISTS;
+        if self.list == 0 {
+            (self.table, self.list) = ([0; TABLE], NEXT_LIST);
+        }
+    }
+
     /// The slot of a triangle; a new one if it has none.
     #[inline(always)]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_possible_wrap,
-        reason = "there are 64 slots"
-    )]
+    #[expect(clippy::cast_possible_wrap, reason = "there are 64 slots")]
     fn slot_of(&mut self, number: u32) -> i32 {
-        let known = &mut self.table[number as usize % TABLE];
-        let slot = usize::from(*known);
-        let is_known = (*known != FREE) & (self.numbers[slot % SLOTS] == number);
-        let slot = select_unpredictable(is_known, slot, self.count);
-        *known = slot as u8;
-        self.numbers[slot % SLOTS] = number;
+        let entry = &mut self.table[number as usize % TABLE];
+        let new = u64::from(number) << 32 | self.list;
+        // If it is this triangle's in this list, nothing but the slot is left.
+        let known = *entry ^ new;
+        let is_known = known < SLOTS as u64;
+        let slot = select_unpredictable(is_known, known, self.count as u64) as usize % SLOTS;
+        *entry = new | slot as u64;
+        self.numbers[slot] = number;
         self.count += usize::from(!is_known);
         slot as i32
     }
@@ -218,8 +231,8 @@ impl Fragments {
 
     /// Empties the list, for fragments that share pixels.
     pub(crate) fn begin_shared(&mut self) {
-        (self.len, self.count, self.shared) = (0, 0, true);
-        self.table = [FREE; TABLE];
+        (self.len, self.shared) = (0, true);
+        self.begin_list();
     }
 
     /// Whether the list is full.
