@@ -12,6 +12,7 @@ use egui_kittest::kittest::NodeT as _;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Lower, Named, Upper};
 use marraztu::app::actions::Request;
+use marraztu::app::panels::Panel;
 use marraztu::scene::{MaterialChoice, ObjectId, PresetId, Sides};
 
 use crate::editor::Editor;
@@ -348,7 +349,7 @@ fn a_scene_opens_with_the_panels_that_it_was_saved_with() {
     let file = folder.path().join("my.marraztu");
     let mut editor = Editor::new();
     let usual = editor.state().panels;
-    editor.perform_all(&[Action::ToggleStatistics, Action::ToggleOutline]);
+    editor.perform_all(&[Action::Panel(Panel::Statistics), Action::Panel(Panel::Outline)]);
     let shown = editor.state().panels;
     assert_ne!(shown, usual);
     editor.press(Command(Key::S));

@@ -10,6 +10,7 @@ use marraztu::app::actions::Chord::{
     self, Command, CommandShift, Either, Lower, Named, Text, Upper,
 };
 use marraztu::app::actions::Request;
+use marraztu::app::panels::Panel;
 use marraztu::app::state::Tone;
 use marraztu::base::math::Axis;
 use marraztu::edit::{Gesture, items};
@@ -172,7 +173,7 @@ fn signs_under_alt_ask_for_nothing() {
     editor.key(Key::Questionmark, false, Modifiers::ALT);
     editor.set_modifiers(Modifiers::NONE);
     editor.settle();
-    assert!(!editor.state().panels.cheat_sheet);
+    assert!(!editor.state().panels.has(Panel::CheatSheet));
     assert_eq!(editor.view(), before);
 }
 

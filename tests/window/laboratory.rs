@@ -12,6 +12,7 @@ use marraztu::accuracy::Shot;
 use marraztu::accuracy::{AXES, Arithmetic, Axis, Filter, LightAt, Settings};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::{LabRequest, Request};
+use marraztu::app::panels::Panel;
 use marraztu::app::state::laboratory::Compare;
 use marraztu::app::state::laboratory::Laboratory;
 use marraztu::base::image::Picture;
@@ -25,7 +26,7 @@ use crate::panels::{click, control};
 
 fn editor() -> Editor {
     let mut editor = Editor::of_size(1300.0, 760.0);
-    editor.perform_all(&[Action::ToggleLaboratory, Action::ToggleProperties]);
+    editor.perform_all(&[Action::Panel(Panel::Laboratory), Action::Panel(Panel::Properties)]);
     editor
 }
 
@@ -280,7 +281,7 @@ fn the_suite_is_measured_and_looked_through() {
 #[test]
 fn the_help_menu_leads_to_every_lesson() {
     let mut editor = Editor::of_size(1300.0, 760.0);
-    assert!(!editor.state().panels.laboratory);
+    assert!(!editor.state().panels.has(Panel::Laboratory));
     for axis in [&AXES[0], &AXES[AXES.len() - 1]] {
         click(&mut editor, Role::Button, "Help");
         click(&mut editor, Role::MenuItem, "Lessons");
@@ -291,7 +292,7 @@ fn the_help_menu_leads_to_every_lesson() {
         }
         click(&mut editor, Role::MenuItem, axis.lesson.title);
         editor.harness.run_steps(30);
-        assert!(editor.state().panels.laboratory);
+        assert!(editor.state().panels.has(Panel::Laboratory));
         assert_eq!(lab(&editor).lesson.key, axis.key);
         for sentence in [axis.lesson.what, axis.lesson.coarse, axis.lesson.shows] {
             assert!(editor.shows(sentence), "{sentence}");

@@ -133,7 +133,7 @@ impl App {
         // An example is saved under a name of its own.
         state.path = (!io::is_example(path)).then(|| path.to_owned());
         self.replace(state);
-        self.state.set_window(window);
+        self.state.set_window(&window);
         if !self.settle_recovered(path) {
             self.note_recent(path);
         }

@@ -4,6 +4,7 @@ use egui::{Atom, IdSalt, MenuBar, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
 use crate::accuracy::AXES;
 use crate::app::actions::{Action, Group, LabRequest, Request};
+use crate::app::panels::Panel;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::text::file_name;
@@ -13,7 +14,7 @@ use crate::io::EXAMPLES;
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];
 
 /// Those that stand under Help.
-const HELP: [Action; 3] = [Action::Palette, Action::CheatSheet, Action::ToPanels];
+const HELP: [Action; 3] = [Action::Palette, Action::Panel(Panel::CheatSheet), Action::ToPanels];
 
 /// How large the interface is.
 const SIZES: [Action; 3] = [Action::LargerText, Action::SmallerText, Action::NormalText];
