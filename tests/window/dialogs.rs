@@ -435,3 +435,18 @@ fn files_of_the_command_line_stand_in_their_order_and_are_no_unsaved_work() {
     editor.press(Lower(Key::Z));
     assert!(!editor.leaves_by(Named(Key::Escape)));
 }
+
+#[test]
+fn a_path_that_was_refused_is_typed_on() {
+    let (folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = Editor::new();
+    editor.press(Lower(Key::F));
+    editor.press(Command(Key::A));
+    type_text(&mut editor, &folder.path().join("nothing").display().to_string());
+    editor.press(Named(Key::Enter));
+    assert!(editor.shows("There is no such file."));
+    // What is typed now is behind the refused path, and may begin anew there.
+    type_text(&mut editor, &format!("/{}", path.with_extension("").display()));
+    editor.press(Named(Key::Enter));
+    editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+}

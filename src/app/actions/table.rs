@@ -389,12 +389,12 @@ actions! {
         "Normal interface size" "Makes texts and panels as large as the system says."
         "zoom reset scale font size ui";
     ThemeSystem Window ONCE []
-        "Follow the system" "Makes the window light or dark as the system is."
+        "Theme of the system" "Makes the window light or dark as the system is."
         "theme auto colours colors";
     ThemeLight Window ONCE []
-        "Light" "Shows dark text on light panels."
+        "Light theme" "Shows dark text on light panels."
         "theme mode white day bright";
     ThemeDark Window ONCE []
-        "Dark" "Shows light text on dark panels."
+        "Dark theme" "Shows light text on dark panels."
         "theme mode black night";
 }

@@ -51,7 +51,7 @@ impl App {
             Answer::Save(after) => self.save(ctx, Some(after)),
             Answer::Discard(after) => self.after(ctx, after),
             Answer::Material(dialog, choices) => self.take_material(ctx, *dialog, choices),
-            Answer::Picture(choices) => self.take_picture(ctx, choices),
+            Answer::Picture(choices, file) => self.take_picture(ctx, choices, file),
             Answer::ChooseTexture => self.ask_file(ctx, Wanted::TextureOfModel, ""),
         }
     }

@@ -64,9 +64,17 @@ impl App {
         self.make_picture(ctx, path);
     }
 
-    /// Asks for the file of a picture with these options.
-    pub(crate) fn take_picture(&mut self, ctx: &Context, choices: PictureChoices) {
+    /// Begins to make a picture with these options; asks for the file if there is none.
+    pub(crate) fn take_picture(
+        &mut self,
+        ctx: &Context,
+        choices: PictureChoices,
+        file: Option<PathBuf>,
+    ) {
         self.making.choices = Some(choices);
+        if let Some(path) = file {
+            return self.make_picture(ctx, path);
+        }
         match choices.purpose {
             Purpose::Picture => self.ask_file(ctx, Wanted::PictureWithOptionsTo, "picture.png"),
             Purpose::Turntable => self.ask_file(ctx, Wanted::TurntableTo, "turntable.gif"),

@@ -39,6 +39,7 @@ use crate::app::state::layout::NARROW;
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
 use crate::app::widgets::number::take_bad_text;
+use crate::app::widgets::tooltips;
 use crate::scene::{Scene, Steps, View};
 use explaining::Explaining;
 use keeping::Keeping;
@@ -158,6 +159,7 @@ impl App {
         let mut requests = Vec::new();
         let _touch = self.lab.touch();
         self.begin(&ctx, &mut requests);
+        tooltips::hide_by_keys(&ctx);
         self.state.zoom = ctx.zoom_factor();
         self.state.asking = self.dialogs.system_title();
         self.state.narrow = ui.available_width() < NARROW;

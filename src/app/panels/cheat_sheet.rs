@@ -11,7 +11,7 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls;
 
-const WIDTH: f32 = 700.0;
+const WIDTH: f32 = 900.0;
 const KEYS: f32 = 160.0;
 const LABEL: f32 = 150.0;
 const NOW: f32 = 36.0;
@@ -24,7 +24,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .default_pos(ui.ctx().content_rect().center() - vec2(WIDTH, room.y) / 2.0)
+        .default_pos(ui.ctx().content_rect().center() - vec2(WIDTH.min(room.x), room.y) / 2.0)
         .fixed_size(vec2(WIDTH.min(room.x), room.y.min(520.0)))
         .show(ui.ctx(), |ui| contents(ui, state, requests));
     if !open {

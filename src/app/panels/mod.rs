@@ -7,6 +7,7 @@
 pub(crate) mod arrange;
 mod cheat_sheet;
 mod greeting;
+mod history;
 mod lab;
 mod menu_bar;
 pub(crate) mod notices;
@@ -93,6 +94,9 @@ macro_rules! each_panel {
             Plan plan "plan" [Dock::UnderPicture] false [Named(Key::F3)]
                 "Plan" "Shows or hides each effect of the picture: on or off, why, and its cost."
                 "effects explain cost why";
+            History history "history" [Dock::Floating] false []
+                "History" "Shows or hides the steps that can be undone and redone."
+                "undo redo steps back list changes";
             Laboratory lab "laboratory" [Dock::Bottom] false [Named(Key::F5)]
                 "Laboratory"
                 "Shows or hides the laboratory, which measures what accuracy costs in time."
