@@ -47,9 +47,6 @@ struct Palette {
     axes: [Color32; 3],
 }
 
-/// Seconds that the pointer rests before a tooltip is shown.
-pub(crate) const TOOLTIP_DELAY: f32 = 0.4;
-
 const DARK: Palette = Palette {
     panel: gray(0x2a),
     field: gray(0x1b),
@@ -152,7 +149,7 @@ fn style(visuals: Visuals, palette: &Palette) -> Style {
     .into();
     style.compact_menu_style = false;
     style.interaction.selectable_labels = false;
-    style.interaction.tooltip_delay = TOOLTIP_DELAY;
+    style.interaction.tooltip_delay = 0.4;
     style.animation_time = 0.08;
     let spacing = &mut style.spacing;
     spacing.item_spacing = vec2(GAP, GAP);

@@ -5,12 +5,13 @@
 
 use std::time::Duration;
 
-use egui::PointerButton;
 use egui::accesskit::Role;
+use egui::{Key, PointerButton};
 use egui_kittest::kittest::{By, Queryable as _};
 use marraztu::accuracy::Shot;
 use marraztu::accuracy::{AXES, Arithmetic, Axis, Filter, LightAt, Settings};
 use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::Named;
 use marraztu::app::actions::{LabRequest, Request};
 use marraztu::app::panels::Panel;
 use marraztu::app::state::laboratory::Compare;
@@ -225,6 +226,17 @@ fn the_way_back_from_a_lesson_restores_scene_view_settings_selection_and_history
     assert!(!lab(&editor).away && lab(&editor).lesson.key == "depth");
     editor.perform(Action::Undo);
     assert!(editor.scene() != scene, "what was done before can be undone");
+}
+
+#[test]
+fn esc_leads_back_from_a_lesson_and_only_then_out_of_the_program() {
+    let mut editor = editor();
+    let scene = editor.scene();
+    editor.ask(Request::Lab(LabRequest::ShowLesson("depth")));
+    assert!(editor.scene() != scene);
+    assert!(!editor.leaves_by(Named(Key::Escape)));
+    assert!(editor.scene() == scene && !lab(&editor).away);
+    assert!(editor.leaves_by(Named(Key::Escape)));
 }
 
 #[test]

@@ -159,7 +159,6 @@ impl App {
         let mut requests = Vec::new();
         let _touch = self.lab.touch();
         self.begin(&ctx, &mut requests);
-        tooltips::hide_by_keys(&ctx);
         self.state.zoom = ctx.zoom_factor();
         self.state.asking = self.dialogs.system_title();
         self.state.narrow = ui.available_width() < NARROW;
@@ -174,7 +173,7 @@ impl App {
             }
         }
         arrangement.over_picture_ui(ui, &self.state, &mut requests);
-        notices::show(&ctx, &self.state, &self.loading, &self.making.tasks, &mut requests);
+        notices::show((&ctx, place), &self.state, &self.loading, &self.making.tasks, &mut requests);
         pixel::show(&ctx, &self.state, place, &mut requests);
         let answer = self.dialogs.ui(&ctx);
         let pressed = Action::pressed(&ctx);
@@ -234,6 +233,7 @@ impl App {
     fn begin(&mut self, ctx: &Context, requests: &mut Vec<Request>) {
         if self.worker.is_none() {
             Keyboard::install(ctx);
+            tooltips::install(ctx);
             // Quitting is an action like the others.
             ctx.options_mut(|options| {
                 options.quit_shortcuts.clear();

@@ -51,6 +51,9 @@ impl App {
                 self.state.several = Others::default();
                 return;
             }
+            if self.state.lab.away {
+                return self.back_to_scene();
+            }
         }
         self.perform(ctx, press.action, press.gesture);
     }

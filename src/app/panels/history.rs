@@ -1,6 +1,6 @@
 //! The history of changes: every step, the point that the scene is at, and a click to any other.
 
-use egui::{Align, Button, Layout, Pos2, ScrollArea, Ui, Window, vec2};
+use egui::{Atom, Button, Pos2, ScrollArea, Ui, Window};
 
 use crate::app::actions::{Action, Request};
 use crate::app::panels::Panel;
@@ -43,10 +43,9 @@ pub(super) fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -
         for position in range {
             let here = position == history.position();
             let text = format!("{position}  {}", labels[position]);
-            let size = vec2(ui.available_width(), row);
-            let button = Button::selectable(here, text).truncate().min_size(size);
-            let left = Layout::left_to_right(Align::Center).with_main_justify(true);
-            let response = ui.allocate_ui_with_layout(size, left, |ui| ui.add(button)).inner;
+            // What grows behind the text keeps it at the left.
+            let button = Button::selectable(here, (text, Atom::grow())).truncate();
+            let response = ui.add_sized([ui.available_width(), row], button);
             if response.on_hover_text("Goes to the point just after this step").clicked() {
                 requests.push(Request::GoTo(position));
                 clicked = true;

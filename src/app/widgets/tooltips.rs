@@ -1,31 +1,33 @@
-//! Hides tooltips while keys are pressed.
+//! Hides tooltips when a key is pressed.
 //!
 //! egui keeps a tooltip for as long as the pointer rests, even if what it belongs to has gone or
-//! lies under a dialog by then. So a key hides all of them until the pointer moves again.
+//! lies under a dialog by then. It hides them while something scrolls; so a key is given as a turn
+//! of the wheel by nothing. Afterwards only what the pointer is really over has its tooltip again.
 
-use egui::{Context, Event, Id};
+use egui::{Context, Event, Modifiers, MouseWheelUnit, Plugin, RawInput, TouchPhase, Vec2};
 
-use crate::app::theme;
+/// Adds what hides tooltips.
+pub(crate) fn install(ctx: &Context) {
+    ctx.add_plugin(HiddenByKeys);
+}
 
-/// A tooltip that waits this long is never shown.
-const NEVER: f32 = 1e6;
+struct HiddenByKeys;
 
-/// Looks at the keys and the pointer of this frame.
-pub(crate) fn hide_by_keys(ctx: &Context) {
-    let id = Id::unique("tooltips are hidden");
-    let (key, moved) = ctx.input(|input| {
-        let is_key = |event: &Event| match event {
-            Event::Key { pressed, .. } => *pressed,
-            _ => matches!(event, Event::Text(_)),
-        };
-        let is_move = |event: &Event| matches!(event, Event::PointerMoved(_));
-        (input.events.iter().any(is_key), input.events.iter().any(is_move))
-    });
-    let were = ctx.data(|data| data.get_temp(id)).unwrap_or(false);
-    let are = key || (were && !moved);
-    if are != were {
-        ctx.data_mut(|data| data.insert_temp(id, are));
-        let delay = if are { NEVER } else { theme::TOOLTIP_DELAY };
-        ctx.all_styles_mut(|style| style.interaction.tooltip_delay = delay);
+impl Plugin for HiddenByKeys {
+    fn debug_name(&self) -> &'static str {
+        "tooltips hidden by keys"
+    }
+
+    fn input_hook(&mut self, _: &Context, input: &mut RawInput) {
+        let is_key = |event: &Event| matches!(event, Event::Key { pressed: true, .. });
+        if input.events.iter().any(is_key) {
+            input.events.push(Event::MouseWheel {
+                unit: MouseWheelUnit::Point,
+                delta: Vec2::ZERO,
+                phase: TouchPhase::Move,
+                source: egui::MouseWheelSource::Unknown,
+                modifiers: Modifiers::NONE,
+            });
+        }
     }
 }
