@@ -207,7 +207,8 @@ proptest! {
         let folder = folder();
         let (scene, view, settings) = rich(folder.path(), numbers);
         let path = folder.path().join("scenes.marraztu");
-        let panels = Panels { outline: false, statistics: true, plan: true, ..Panels::DEFAULT };
+        let panels = [("outline", false), ("statistics", true), ("plan", true)];
+        let panels: Panels = panels.into_iter().collect();
         let window = WindowState { coarse_while_moving: false, panels };
         save_with_window(&path, &scene, &view, &settings, &window).unwrap();
         let opened = open(&path, &Progress::new()).unwrap();

@@ -1,4 +1,5 @@
-//! Fonts of the system, for names whose letters the built-in fonts do not have.
+//! Fonts of the system, for names whose letters the built-in fonts do not have. Those have Latin,
+//! Greek, Cyrillic and most emoji, in one colour.
 //!
 //! Nothing is read before such a letter is to be shown. Then a thread looks through the fonts of
 //! the system, while a box stands for the letter; the font that it finds is used from the next
@@ -158,6 +159,18 @@ mod tests {
         assert!(font.has('a') && !font.has('山'));
         assert_eq!(font_with(&fonts, '山'), None);
         assert_eq!(font.insert().families.len(), 2);
+    }
+
+    #[test]
+    fn emoji_need_no_font_of_the_system() {
+        let ctx = Context::default();
+        drop(ctx.run_ui(egui::RawInput::default(), |_| {}));
+        for letter in "🚀🐄🎨🔦🌍😀".chars() {
+            let has = |fonts: &mut egui::epaint::text::FontsView<'_>| {
+                fonts.has_glyph(&egui::FontId::proportional(14.0), letter)
+            };
+            assert!(ctx.fonts_mut(has), "{letter} is a box");
+        }
     }
 
     #[test]

@@ -17,24 +17,27 @@
 //! shell      windows of the system: what the editor is shown in, with OpenGL or without
 //! widgets    controls that know nothing of scenes being edited: numbers, switches, colours, icons
 //! drawing    the thread that draws the viewport's pictures, and how it keeps up with the user
+//! chord      keys that are pressed together
+//! panels/mod the table of panels: names, keys, places
 //! state      everything that panels read
 //! actions    the table of actions, their keys, what each means now; requests
 //! input      keys and buttons that give actions
 //! documents  dialogs: files, materials, unsaved work
-//! panels     the panels around the viewport
+//! panels     what the panels show, around the viewport
 //! viewport   the picture, with the mouse and everything shown over it
 //! editor     the app: it answers requests, and is the only writer of the scene
 //! start      opens the window
 //! ```
 
 pub mod actions;
+mod chord;
 mod documents;
 mod drawing;
 mod editor;
 mod fonts;
 mod input;
 mod painter;
-mod panels;
+pub mod panels;
 mod shell;
 mod start;
 pub mod state;

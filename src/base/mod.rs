@@ -2,6 +2,8 @@
 
 pub(crate) mod cancellation;
 pub mod color;
+#[cfg(test)]
+pub(crate) mod counted;
 pub mod image;
 pub mod lists;
 pub mod math;

@@ -302,54 +302,21 @@ fn keep_polygons(scene: &Scene, view: &mut View) {
 
 #[cfg(test)]
 mod tests {
-    use std::cell::Cell;
-    use std::cmp::Ordering;
-
     use super::*;
-
-    thread_local! {
-        static COMPARISONS: Cell<usize> = const { Cell::new(0) };
-    }
-
-    /// An id that counts how often it is compared with another.
-    #[derive(Clone, Copy, Debug)]
-    struct Counted(usize);
-
-    impl Ord for Counted {
-        fn cmp(&self, other: &Self) -> Ordering {
-            COMPARISONS.set(COMPARISONS.get() + 1);
-            self.0.cmp(&other.0)
-        }
-    }
-
-    impl PartialOrd for Counted {
-        fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-            Some(self.cmp(other))
-        }
-    }
-
-    impl PartialEq for Counted {
-        fn eq(&self, other: &Self) -> bool {
-            self.cmp(other) == Ordering::Equal
-        }
-    }
-
-    impl Eq for Counted {}
+    use crate::base::counted::{Counted, comparisons};
 
     #[test]
     fn a_change_of_one_of_ten_thousand_items_is_followed_by_a_few_comparisons() {
-        let list = |ids: &mut dyn Iterator<Item = usize>| -> List<Counted, usize> {
+        let list = |ids: &mut dyn Iterator<Item = u32>| -> List<Counted, u32> {
             ids.map(|id| (Counted(id), id)).collect()
         };
         let before = list(&mut (0..10_000));
         let selected = Some(Counted(9_999));
-        COMPARISONS.set(0);
-        assert!(followed(&before, &before.clone(), selected) == selected);
-        assert!(COMPARISONS.get() < 200, "{}", COMPARISONS.get());
+        let same = || assert!(followed(&before, &before.clone(), selected) == selected);
+        assert!(comparisons(same) < 200);
         // Lists that share nothing are walked through once.
         let without = list(&mut (0..9_999));
-        COMPARISONS.set(0);
-        assert!(followed(&before, &without, selected) == Some(Counted(9_998)));
-        assert!(COMPARISONS.get() < 40_000, "{}", COMPARISONS.get());
+        let left = || assert!(followed(&before, &without, selected) == Some(Counted(9_998)));
+        assert!(comparisons(left) < 40_000);
     }
 }

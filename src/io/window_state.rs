@@ -1,9 +1,15 @@
 //! What scene files and preferences keep of the window.
 
+use std::collections::BTreeMap;
+use std::fmt;
+
+use ron::value::RawValue;
+use serde::de::{self, Deserializer, MapAccess, Visitor};
+use serde::ser::{self, Serializer};
 use serde::{Deserialize, Serialize};
 
 /// What a scene file keeps of the window in which the scene was saved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WindowState {
     /// Whether pictures may be coarser while something moves, if they would come too late
     /// otherwise.
@@ -14,44 +20,100 @@ pub struct WindowState {
 
 impl WindowState {
     /// That of the first start.
-    pub const DEFAULT: Self = Self { coarse_while_moving: true, panels: Panels::DEFAULT };
+    pub const DEFAULT: Self = Self { coarse_while_moving: true, panels: Panels(BTreeMap::new()) };
 }
 
-/// Which panels are open.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Panels {
-    /// The list of objects, cameras and lights.
-    pub outline: bool,
-    /// The properties of the selected item.
-    pub properties: bool,
-    /// The switches of the view.
-    pub view: bool,
-    /// The plan of the frame.
-    pub statistics: bool,
-    /// The settings of accuracy.
-    pub plan: bool,
-    /// The list of keys.
-    pub cheat_sheet: bool,
-    /// The laboratory.
-    pub laboratory: bool,
-}
+/// Which panels are open and which are closed, by their names. A panel that is not named is as at
+/// the first start.
+///
+/// Files know names alone: the window has the table of panels, and leaves out what it has not.
+/// They are written as the fields of a struct are: `(outline: true, plan: false)`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Panels(BTreeMap<String, bool>);
 
 impl Panels {
-    /// The panels of the first start.
-    pub const DEFAULT: Self = Self {
-        outline: true,
-        properties: true,
-        view: true,
-        statistics: false,
-        plan: false,
-        cheat_sheet: false,
-        laboratory: false,
-    };
+    /// Whether the panel of this name is open, if it is named.
+    #[must_use]
+    pub fn is_open(&self, name: &str) -> Option<bool> {
+        self.0.get(name).copied()
+    }
 }
 
-impl Default for Panels {
-    fn default() -> Self {
-        Self::DEFAULT
+impl<'a> FromIterator<(&'a str, bool)> for Panels {
+    fn from_iter<T: IntoIterator<Item = (&'a str, bool)>>(panels: T) -> Self {
+        Self(panels.into_iter().map(|(name, open)| (name.to_owned(), open)).collect())
+    }
+}
+
+impl Serialize for Panels {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let fields: Vec<String> =
+            self.0.iter().map(|(name, open)| format!("{name}: {open}")).collect();
+        let text = format!("({})", fields.join(", "));
+        RawValue::from_boxed_ron(text.into()).map_err(ser::Error::custom)?.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Panels {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_struct("Panels", &[], Fields)
+    }
+}
+
+/// Reads any names, each with whether the panel is open.
+struct Fields;
+
+impl<'de> Visitor<'de> for Fields {
+    type Value = Panels;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("struct Panels")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut fields: A) -> Result<Panels, A::Error> {
+        let mut panels = BTreeMap::new();
+        while let Some((Name(name), open)) = fields.next_entry()? {
+            panels.insert(name, open);
+        }
+        Ok(Panels(panels))
+    }
+}
+
+/// The name of a field.
+struct Name(String);
+
+impl<'de> Deserialize<'de> for Name {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Named;
+        impl Visitor<'_> for Named {
+            type Value = Name;
+
+            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                formatter.write_str("identifier")
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<Name, E> {
+                Ok(Name(name.to_owned()))
+            }
+        }
+        deserializer.deserialize_identifier(Named)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panels_are_written_as_fields_and_names_of_other_programs_are_kept() {
+        let panels: Panels = [("outline", true), ("plan", false)].into_iter().collect();
+        assert_eq!(ron::to_string(&panels).unwrap(), "(outline: true, plan: false)");
+        for text in ["(outline:true,plan:false)", "( plan : false,\n outline: true, )"] {
+            assert_eq!(ron::from_str::<Panels>(text).unwrap(), panels);
+        }
+        let newer: Panels = ron::from_str("(curves: true)").unwrap();
+        assert_eq!((newer.is_open("curves"), newer.is_open("plan")), (Some(true), None));
+        assert_eq!(ron::from_str::<Panels>("()").unwrap(), Panels::default());
+        assert!(ron::from_str::<Panels>("(plan: 1)").is_err());
     }
 }

@@ -241,48 +241,10 @@ impl<K: Copy + Ord, T> FromIterator<(K, T)> for List<K, T> {
 
 #[cfg(test)]
 mod tests {
-    use std::cell::Cell;
-    use std::cmp::Ordering;
-
     use proptest::prelude::*;
 
     use super::*;
-
-    thread_local! {
-        static COMPARISONS: Cell<usize> = const { Cell::new(0) };
-    }
-
-    /// An id that counts how often it is compared.
-    #[derive(Clone, Copy, Debug)]
-    struct Counted(u32);
-
-    impl Ord for Counted {
-        fn cmp(&self, other: &Self) -> Ordering {
-            COMPARISONS.set(COMPARISONS.get() + 1);
-            self.0.cmp(&other.0)
-        }
-    }
-
-    impl PartialOrd for Counted {
-        fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-            Some(self.cmp(other))
-        }
-    }
-
-    impl PartialEq for Counted {
-        fn eq(&self, other: &Self) -> bool {
-            self.cmp(other) == Ordering::Equal
-        }
-    }
-
-    impl Eq for Counted {}
-
-    /// The number of comparisons that `work` takes.
-    fn comparisons<R>(work: impl FnOnce() -> R) -> usize {
-        COMPARISONS.set(0);
-        work();
-        COMPARISONS.get()
-    }
+    use crate::base::counted::{Counted, comparisons};
 
     #[test]
     fn a_query_on_ten_thousand_items_takes_few_comparisons_of_ids() {

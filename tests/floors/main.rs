@@ -22,7 +22,7 @@ const FLOORS: &[(&str, &[&str])] = &[
 ];
 
 /// The rooms of a folder, files or folders, lowest first: a room may use those named before it. The
-/// folder's own `mod.rs` stands above them all.
+/// folder's own `mod.rs` stands above them all; that of a room may be a room by itself.
 const ROOMS: &[(&str, &[&str])] = &[
     (
         "base",
@@ -120,6 +120,8 @@ const ROOMS: &[(&str, &[&str])] = &[
             "shell",
             "widgets",
             "drawing",
+            "chord",
+            "panels/mod",
             "state",
             "actions",
             "input",
@@ -308,7 +310,12 @@ fn a_use_of_a_wrong_floor_is_seen_however_it_is_written() {
 fn room_faults(sources: &Sources, folder: &str, rooms: &[&str]) -> Vec<String> {
     let names: Vec<&str> = folder.split('/').collect();
     let arrows = sources.arrows(&names);
-    let room = |module: &[String]| module.get(names.len()).cloned();
+    let room = |module: &[String]| {
+        let name = module.get(names.len())?;
+        let alone = format!("{name}/mod");
+        let is_alone = module.len() == names.len() + 1 && rooms.contains(&alone.as_str());
+        Some(if is_alone { alone } else { name.clone() })
+    };
     let floor = |room: &Option<String>| match room {
         Some(room) => rooms.iter().position(|name| name == room),
         None => Some(rooms.len()),

@@ -12,6 +12,7 @@ use egui_kittest::kittest::NodeT as _;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Lower, Named, Upper};
 use marraztu::app::actions::Request;
+use marraztu::app::panels::Panel;
 use marraztu::scene::{MaterialChoice, ObjectId, PresetId, Sides};
 
 use crate::editor::Editor;
@@ -348,7 +349,7 @@ fn a_scene_opens_with_the_panels_that_it_was_saved_with() {
     let file = folder.path().join("my.marraztu");
     let mut editor = Editor::new();
     let usual = editor.state().panels;
-    editor.perform_all(&[Action::ToggleStatistics, Action::ToggleOutline]);
+    editor.perform_all(&[Action::Panel(Panel::Statistics), Action::Panel(Panel::Outline)]);
     let shown = editor.state().panels;
     assert_ne!(shown, usual);
     editor.press(Command(Key::S));
@@ -433,4 +434,19 @@ fn files_of_the_command_line_stand_in_their_order_and_are_no_unsaved_work() {
     assert!(editor.leaves_by(Named(Key::Escape)));
     editor.press(Lower(Key::Z));
     assert!(!editor.leaves_by(Named(Key::Escape)));
+}
+
+#[test]
+fn a_path_that_was_refused_is_typed_on() {
+    let (folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = Editor::new();
+    editor.press(Lower(Key::F));
+    editor.press(Command(Key::A));
+    type_text(&mut editor, &folder.path().join("nothing").display().to_string());
+    editor.press(Named(Key::Enter));
+    assert!(editor.shows("There is no such file."));
+    // What is typed now is behind the refused path, and may begin anew there.
+    type_text(&mut editor, &format!("/{}", path.with_extension("").display()));
+    editor.press(Named(Key::Enter));
+    editor.wait_until(|editor| editor.shows("Material of cube.obj"));
 }

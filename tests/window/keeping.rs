@@ -18,6 +18,7 @@ use egui::{Key, ThemePreference};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Lower, Named};
 use marraztu::app::actions::Request;
+use marraztu::app::panels::Panel;
 use marraztu::app::state::layout::Layout;
 use marraztu::base::rng::Rng;
 use marraztu::io::{Abandoned, OwnFolders, Preferences};
@@ -73,7 +74,7 @@ fn work_of_a_program_that_ended_is_offered_and_recovered_as_unsaved() {
     let scene = {
         let mut editor = Editor::keeping(folder.path());
         assert_eq!(editor.is_offered(), 0);
-        editor.perform_all(&[Action::ToggleStatistics, Action::ToggleCoarse]);
+        editor.perform_all(&[Action::Panel(Panel::Statistics), Action::ToggleCoarse]);
         editor.press(Lower(Key::Z));
         editor.press(Lower(Key::X));
         editor.harness.state().wait_for_journal();
@@ -92,7 +93,7 @@ fn work_of_a_program_that_ended_is_offered_and_recovered_as_unsaved() {
     };
     assert_eq!(camera(&editor.scene()), camera(&scene));
     assert!(!editor.state().history.is_saved());
-    assert!(editor.state().panels.statistics && !editor.state().coarse_while_moving);
+    assert!(editor.state().panels.has(Panel::Statistics) && !editor.state().coarse_while_moving);
     editor.harness.state().wait_for_journal();
     // It is the work of this program now: killed at once, it is offered again.
     drop(editor);
@@ -183,7 +184,11 @@ fn theme_panels_scale_and_recent_files_are_remembered() {
     let folder = tempfile::tempdir().unwrap();
     let (_models, path) = folder_with("cube.obj", CUBE);
     let mut editor = Editor::keeping_in_a_large_window(folder.path());
-    editor.perform_all(&[Action::ThemeLight, Action::ToggleOutline, Action::ToggleStatistics]);
+    editor.perform_all(&[
+        Action::ThemeLight,
+        Action::Panel(Panel::Outline),
+        Action::Panel(Panel::Statistics),
+    ]);
     editor.harness.ctx.set_zoom_factor(1.25);
     editor.ask(Request::LoadFiles(vec![path.clone()]));
     editor.wait_until(|editor| editor.shows("Material of cube.obj"));

@@ -7,9 +7,10 @@ use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{
-    self, Command, CommandShift, Either, Lower, Named, Text, Upper,
+    self, Command, CommandShift, Either, Lower, Named, Shifted, Text, Upper,
 };
 use marraztu::app::actions::Request;
+use marraztu::app::panels::Panel;
 use marraztu::app::state::Tone;
 use marraztu::base::math::Axis;
 use marraztu::edit::{Gesture, items};
@@ -172,7 +173,7 @@ fn signs_under_alt_ask_for_nothing() {
     editor.key(Key::Questionmark, false, Modifiers::ALT);
     editor.set_modifiers(Modifiers::NONE);
     editor.settle();
-    assert!(!editor.state().panels.cheat_sheet);
+    assert!(!editor.state().panels.has(Panel::CheatSheet));
     assert_eq!(editor.view(), before);
 }
 
@@ -216,7 +217,8 @@ fn typing_into_a_text_field_triggers_no_action() {
     editor.settle();
     let typed = Action::ALL.iter().flat_map(|action| action.info().keys);
     let harmless = |key: &&Chord| {
-        !matches!(key, Command(_) | CommandShift(_) | Named(_)) || **key == Command(Key::Z)
+        !matches!(key, Command(_) | CommandShift(_) | Named(_) | Shifted(_))
+            || **key == Command(Key::Z)
     };
     for key in typed.filter(harmless) {
         editor.press(*key);

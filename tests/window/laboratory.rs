@@ -5,13 +5,15 @@
 
 use std::time::Duration;
 
-use egui::PointerButton;
 use egui::accesskit::Role;
+use egui::{Key, PointerButton};
 use egui_kittest::kittest::{By, Queryable as _};
 use marraztu::accuracy::Shot;
 use marraztu::accuracy::{AXES, Arithmetic, Axis, Filter, LightAt, Settings};
 use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::Named;
 use marraztu::app::actions::{LabRequest, Request};
+use marraztu::app::panels::Panel;
 use marraztu::app::state::laboratory::Compare;
 use marraztu::app::state::laboratory::Laboratory;
 use marraztu::base::image::Picture;
@@ -25,7 +27,7 @@ use crate::panels::{click, control};
 
 fn editor() -> Editor {
     let mut editor = Editor::of_size(1300.0, 760.0);
-    editor.perform_all(&[Action::ToggleLaboratory, Action::ToggleProperties]);
+    editor.perform_all(&[Action::Panel(Panel::Laboratory), Action::Panel(Panel::Properties)]);
     editor
 }
 
@@ -227,6 +229,17 @@ fn the_way_back_from_a_lesson_restores_scene_view_settings_selection_and_history
 }
 
 #[test]
+fn esc_leads_back_from_a_lesson_and_only_then_out_of_the_program() {
+    let mut editor = editor();
+    let scene = editor.scene();
+    editor.ask(Request::Lab(LabRequest::ShowLesson("depth")));
+    assert!(editor.scene() != scene);
+    assert!(!editor.leaves_by(Named(Key::Escape)));
+    assert!(editor.scene() == scene && !lab(&editor).away);
+    assert!(editor.leaves_by(Named(Key::Escape)));
+}
+
+#[test]
 fn leaving_a_lesson_for_a_new_scene_asks_for_the_unsaved_work_that_waits() {
     let mut editor = editor();
     editor.perform_all(&[Action::SubjectObject, Action::StepXUp]);
@@ -280,7 +293,7 @@ fn the_suite_is_measured_and_looked_through() {
 #[test]
 fn the_help_menu_leads_to_every_lesson() {
     let mut editor = Editor::of_size(1300.0, 760.0);
-    assert!(!editor.state().panels.laboratory);
+    assert!(!editor.state().panels.has(Panel::Laboratory));
     for axis in [&AXES[0], &AXES[AXES.len() - 1]] {
         click(&mut editor, Role::Button, "Help");
         click(&mut editor, Role::MenuItem, "Lessons");
@@ -291,7 +304,7 @@ fn the_help_menu_leads_to_every_lesson() {
         }
         click(&mut editor, Role::MenuItem, axis.lesson.title);
         editor.harness.run_steps(30);
-        assert!(editor.state().panels.laboratory);
+        assert!(editor.state().panels.has(Panel::Laboratory));
         assert_eq!(lab(&editor).lesson.key, axis.key);
         for sentence in [axis.lesson.what, axis.lesson.coarse, axis.lesson.shows] {
             assert!(editor.shows(sentence), "{sentence}");

@@ -6,6 +6,7 @@
 use egui::{Rect, Shape};
 use egui_kittest::kittest::Queryable as _;
 use marraztu::app::actions::{Action, Request};
+use marraztu::app::panels::Panel;
 use marraztu::edit::{Gesture, items};
 use marraztu::scene::ItemId;
 
@@ -106,7 +107,7 @@ fn check(editor: &Editor, names: &[&str], what: &str) {
 
 /// Every panel that a narrow window shows one at a time.
 const COLUMNS: [Action; 3] =
-    [Action::ToggleOutline, Action::ToggleViewPanel, Action::ToggleProperties];
+    [Action::Panel(Panel::Outline), Action::Panel(Panel::View), Action::Panel(Panel::Properties)];
 
 fn check_all(editor: &mut Editor, names: &[&str]) {
     for size in SIZES {
@@ -122,10 +123,10 @@ fn check_all(editor: &mut Editor, names: &[&str]) {
             }
             editor.perform(COLUMNS[2]);
         }
-        editor.perform_all(&[Action::TogglePlan, Action::ToggleLaboratory]);
+        editor.perform_all(&[Action::Panel(Panel::Plan), Action::Panel(Panel::Laboratory)]);
         editor.settle();
         check(editor, names, "plan and laboratory");
-        editor.perform_all(&[Action::TogglePlan, Action::ToggleLaboratory]);
+        editor.perform_all(&[Action::Panel(Panel::Plan), Action::Panel(Panel::Laboratory)]);
     }
 }
 
@@ -158,13 +159,13 @@ fn a_window_that_shrank_and_grew_has_its_panels_back() {
     let mut editor = Editor::of_size(1280.0, 800.0);
     let place = |editor: &Editor, name: &str| editor.harness.get_by_label(name).rect();
     let before = (editor.picture(), place(&editor, "Height of the view switches"));
-    editor.perform_all(&[Action::TogglePlan, Action::ToggleLaboratory]);
+    editor.perform_all(&[Action::Panel(Panel::Plan), Action::Panel(Panel::Laboratory)]);
     let open = (editor.picture(), place(&editor, "Height of the laboratory"));
     for size in [[640.0, 400.0], [320.0, 200.0], [1024.0, 640.0], [1280.0, 800.0]] {
         resize(&mut editor, size);
     }
     assert_eq!((editor.picture(), place(&editor, "Height of the laboratory")), open);
-    editor.perform_all(&[Action::TogglePlan, Action::ToggleLaboratory]);
+    editor.perform_all(&[Action::Panel(Panel::Plan), Action::Panel(Panel::Laboratory)]);
     assert_eq!((editor.picture(), place(&editor, "Height of the view switches")), before);
 }
 

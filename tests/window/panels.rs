@@ -12,6 +12,7 @@ use marraztu::accuracy::{Arithmetic, Filter, LightAt, Settings, SpecularForm};
 use marraztu::app::actions::Chord::{Command, Either, Named};
 use marraztu::app::actions::Request;
 use marraztu::app::actions::{Action, Group};
+use marraztu::app::panels::Panel;
 use marraztu::base::color::Color;
 use marraztu::scene::{ItemId, LightKind, Subject};
 
@@ -436,4 +437,39 @@ fn a_drag_in_the_colour_picker_is_one_step() {
     editor.press(Command(Key::Z));
     editor.press(Command(Key::Z));
     assert_eq!(editor.scene().background, before);
+}
+
+#[test]
+fn a_key_hides_tooltips_until_the_pointer_moves() {
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    let hint = "Draws the edges of polygons instead of filling them.";
+    let at = middle(&editor, Role::CheckBox, "Wireframe");
+    editor.hover(at);
+    editor.harness.run_steps(60);
+    assert!(editor.shows(hint));
+    // The palette lies over the switch, which the pointer does not leave.
+    editor.press(Command(Key::K));
+    type_text(&mut editor, "cube");
+    editor.harness.run_steps(60);
+    assert!(!editor.shows(hint));
+    editor.press(Named(Key::Escape));
+    editor.hover(at + egui::vec2(2.0, 0.0));
+    editor.harness.run_steps(60);
+    assert!(editor.shows(hint));
+}
+
+#[test]
+fn the_history_is_gone_through_by_clicks_on_its_steps() {
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.perform_all(&[Action::SubjectObject, Action::Panel(Panel::History)]);
+    let first = editor.scene();
+    editor.perform_all(&[Action::StepXUp, Action::StepYUp]);
+    let last = editor.scene();
+    click(&mut editor, Role::Button, "0  Beginning");
+    assert!(editor.scene() == first);
+    assert!(editor.state().panels.has(Panel::History), "it stays open");
+    let step = editor.harness.query_all_by_label_contains("2  ").next().expect("the last step");
+    step.click();
+    editor.settle();
+    assert!(editor.scene() == last);
 }

@@ -8,6 +8,7 @@ use marraztu::accuracy::{LeaveOut, Settings};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::Lower;
 use marraztu::app::actions::Request;
+use marraztu::app::panels::Panel;
 use marraztu::render::Effect;
 
 use crate::editor::Editor;
@@ -24,7 +25,7 @@ fn effects(editor: &Editor) -> Vec<Effect> {
 fn the_plan_follows_the_scene_while_it_is_shown() {
     let mut editor = Editor::of_size(1400.0, 1400.0);
     assert!(editor.state().plan.explained.is_none(), "no one has asked");
-    editor.perform(Action::TogglePlan);
+    editor.perform(Action::Panel(Panel::Plan));
     assert!(editor.shows("sun on, all 3"));
     let lights = |editor: &Editor| {
         effects(editor).into_iter().filter(|effect| matches!(effect, Effect::Light(_))).count()
@@ -34,7 +35,7 @@ fn the_plan_follows_the_scene_while_it_is_shown() {
     assert!(editor.shows("sun left out, the frame: switched off"));
     editor.perform(Action::Undo);
     assert!(editor.shows("sun on, all 3"));
-    editor.perform(Action::TogglePlan);
+    editor.perform(Action::Panel(Panel::Plan));
     assert!(!editor.shows("sun on, all 3"));
 }
 
@@ -47,7 +48,7 @@ fn unfold(editor: &mut Editor, line: &str) {
 #[test]
 fn every_effect_has_a_line_and_what_differs_is_folded_out() {
     let mut editor = Editor::of_size(1400.0, 1400.0);
-    editor.perform(Action::TogglePlan);
+    editor.perform(Action::Panel(Panel::Plan));
     for one in editor.state().plan.explained.clone().unwrap().uses.iter() {
         assert!(editor.shows(&format!("{} ", one.name)), "{}", one.name);
     }
@@ -63,7 +64,7 @@ fn every_effect_has_a_line_and_what_differs_is_folded_out() {
 fn a_measurement_is_shown_until_something_changes() {
     let mut editor = Editor::of_size(900.0, 500.0);
     editor.perform(Action::MeasurePlan);
-    assert!(editor.state().panels.plan && editor.state().plan.measuring);
+    assert!(editor.state().panels.has(Panel::Plan) && editor.state().plan.measuring);
     for _ in 0..3000 {
         if !editor.state().plan.measuring {
             break;
@@ -109,7 +110,7 @@ fn an_idle_editor_draws_nothing_and_asks_for_no_frame() {
     for plan in [false, true] {
         let mut editor = Editor::new();
         if plan {
-            editor.perform(Action::TogglePlan);
+            editor.perform(Action::Panel(Panel::Plan));
         }
         // Panels that fade in are fully visible by now.
         for _ in 0..60 {

@@ -10,6 +10,7 @@ use egui::accesskit::Role;
 use egui::{Key, PointerButton, Pos2};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{self, Command, CommandShift, Either, Lower, Named};
+use marraztu::app::panels::Panel;
 use marraztu::io;
 use marraztu::scene::{LightKind, MaterialChoice, Normals, Scene, SpotOwner};
 
@@ -69,6 +70,12 @@ impl Hand {
     fn elsewhere(&mut self, path: &Path) {
         self.editor.press(Command(Key::A));
         type_text(&mut self.editor, &path.display().to_string());
+    }
+
+    /// As [`Self::elsewhere`], in the field of the file among the options of a picture.
+    fn named(&mut self, path: &Path) {
+        click(&mut self.editor, Role::TextInput, "File");
+        self.elsewhere(path);
     }
 }
 
@@ -186,10 +193,14 @@ fn ten_steps_are_undone() {
     keys.editor.hold(Command(Key::Z), 9);
     keys.steps += 1;
     let (_, mut mouse) = moved();
-    mouse.click(Role::Button, "Edit");
-    mouse.click(Role::MenuItem, "History");
+    // It stays open from one start to the next.
+    mouse.editor.perform(Action::Panel(Panel::History));
     mouse.click(Role::Button, "0  Beginning");
-    for hand in [&keys, &mouse] {
+    let (_, mut menu) = moved();
+    menu.click(Role::Button, "Edit");
+    menu.click(Role::MenuItem, "History");
+    menu.click(Role::Button, "0  Beginning");
+    for hand in [&keys, &mouse, &menu] {
         assert!(hand.editor.scene() == before);
     }
     holds("Undo ten steps", &keys, &mouse);
@@ -281,16 +292,14 @@ fn a_turntable_is_saved() {
     let small = || Hand::at(Editor::of_size(700.0, 480.0));
     let mut keys = small();
     keys.press(Command(Key::F12));
-    keys.press(Named(Key::Enter));
-    keys.elsewhere(&path);
+    keys.named(&path);
     keys.press(Named(Key::Enter));
     keys.editor.wait_until(|_| path.exists());
     std::fs::remove_file(&path).unwrap();
     let mut mouse = small();
     mouse.click(Role::Button, "File");
     mouse.click(Role::MenuItem, Action::SaveTurntable.info().label);
-    mouse.click(Role::Button, "Save...");
-    mouse.elsewhere(&path);
+    mouse.named(&path);
     mouse.click(Role::Button, "Save");
     mouse.editor.wait_until(|_| path.exists());
     holds("Save a turntable", &keys, &mouse);

@@ -1,14 +1,19 @@
 //! Actions: everything a user can ask for by a key, a menu or a button.
 
-mod chord;
+mod info;
+mod intent;
 mod labels;
+mod lists;
 mod request;
 mod resolve;
 pub mod search;
+mod switches;
 mod table;
 
-pub use chord::Chord;
+pub use crate::app::chord::Chord;
+pub use info::{ActionInfo, Group};
+pub(crate) use intent::{FileIntent, Intent};
 pub use request::{Also, KeyRequest, LabRequest, Request};
 pub(crate) use request::{change, change_view};
-pub(crate) use resolve::{ADD_LIGHTS, FileIntent, Intent, resolve};
-pub use table::{Action, ActionInfo, Group};
+pub(crate) use resolve::{ADD_LIGHTS, resolve};
+pub use table::Action;

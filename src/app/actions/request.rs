@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 
-use super::chord::Chord;
 use super::table::Action;
 use crate::accuracy::Settings;
+use crate::app::chord::Chord;
 use crate::app::state::laboratory::{Compare, Side};
 use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, State};

@@ -6,122 +6,29 @@
 
 use egui::ThemePreference;
 
+use super::intent::{FileIntent, Intent};
 use super::table::Action;
 use crate::accuracy::{LeaveOut, Settings};
-use crate::app::state::layout::{Layout, Side};
+use crate::app::panels::{Dock, Panel};
+use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, State};
 use crate::app::widgets::regions::Way;
 use crate::base::math::Axis;
 use crate::edit::framing::Side as LookSide;
 use crate::edit::lights::{APERTURE_STEP, Channel};
-use crate::edit::selection::Selection;
 use crate::edit::several::{self, Others};
 use crate::edit::transform::Sign;
 use crate::edit::{
     GesturePhase, Refusal, aiming, arrange, framing, gizmo, items, lights, selection, shapes,
     transform,
 };
-use crate::io::{Helpers, Panels};
+use crate::io::Helpers;
 use crate::scene::{
-    CameraMode, Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Observer,
-    Projection, Scene, Shape, SpotOwner, Subject, Transformation, View,
+    Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Projection, Scene,
+    Shape, SpotOwner, Subject, Transformation, View,
 };
 
-/// What an action means.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Intent {
-    /// A change of the scene.
-    Change(Command),
-    /// A change of the scene whose new item becomes the subject.
-    Add(Command, Subject),
-    /// A change of the view.
-    View(Box<View>),
-    /// Another selection.
-    Select(Box<Selection>),
-    /// Other settings of accuracy.
-    Settings(Settings),
-    /// The window draws in another way beyond the settings.
-    Drawing(DrawingChoices),
-    /// Other panels are shown.
-    Panels(Panels),
-    /// The window is divided differently among its panels.
-    Layout(Layout),
-    /// The window becomes light or dark.
-    Theme(ThemePreference),
-    /// Asks for a new name.
-    Rename(ItemId),
-    /// One step back in the history.
-    Undo,
-    /// One step forward in the history.
-    Redo,
-    /// Something with files.
-    File(FileIntent),
-    /// A camera is added once its material is chosen.
-    AskCamera,
-    /// The effects of the picture are measured, or no longer.
-    Measure,
-    /// The reason why nothing of an object is seen is looked for.
-    WhyUnseen(ObjectId),
-    /// The list of everything that can be asked for opens or closes.
-    Palette,
-    /// The interface becomes this large.
-    Zoom(f32),
-    /// What is drawn over the picture is shown or hidden.
-    Overlays,
-    /// Handles over the picture are shown or hidden.
-    Gizmo,
-    /// Pictures may be coarser while something moves, or not.
-    Coarse,
-    /// Files are looked at, or no longer.
-    Watch,
-    /// Other helpers are shown.
-    Helpers(Helpers),
-    /// An axis and a number are taken from the keyboard.
-    TypeAmount,
-    /// These are selected beside the selected item.
-    Others(Others),
-    /// The next click into the picture explains a pixel.
-    Explain,
-    /// The next click into the picture aims the selected light.
-    AimByClick,
-    /// The keyboard goes to the panels, or back to the viewport.
-    ChangeKeyboardOwner(Way),
-}
-
-/// What an action does with files, most of it by asking for one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FileIntent {
-    New,
-    Open,
-    Load,
-    Save,
-    SaveAs,
-    SavePicture,
-    PictureOptions,
-    Turntable,
-    Export,
-    CopyPicture,
-    NewAncestor,
-    Reload,
-    Recover,
-    Quit,
-}
-
 type Resolved = Result<Intent, Refusal>;
-
-/// The switches of the lights, in the order of their keys.
-const LIGHT_SWITCHES: [Action; 10] = [
-    Action::Light0,
-    Action::Light1,
-    Action::Light2,
-    Action::Light3,
-    Action::Light4,
-    Action::Light5,
-    Action::Light6,
-    Action::Light7,
-    Action::Light8,
-    Action::Light9,
-];
 
 /// The actions that add a light with a position or direction of its own, in the order of menus.
 pub(crate) const ADD_LIGHTS: [Action; 3] = [Action::AddSun, Action::AddBulb, Action::AddSpot];
@@ -347,16 +254,8 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::LargerText => zoom(state, 0.1),
         Action::SmallerText => zoom(state, -0.1),
         Action::NormalText => Ok(Intent::Zoom(1.0)),
-        Action::CheatSheet => panels(state, |panels| panels.cheat_sheet ^= true),
-        Action::ToggleOutline => column(state, Side::Outline, |panels| &mut panels.outline),
-        Action::ToggleProperties => {
-            column(state, Side::Properties, |panels| &mut panels.properties)
-        }
-        Action::ToggleViewPanel => column(state, Side::Switches, |panels| &mut panels.view),
-        Action::ToggleStatistics => panels(state, |panels| panels.statistics ^= true),
-        Action::TogglePlan => panels(state, |panels| panels.plan ^= true),
+        Action::Panel(panel) => toggle(state, panel),
         Action::MeasurePlan => Ok(Intent::Measure),
-        Action::ToggleLaboratory => panels(state, |panels| panels.laboratory ^= true),
         Action::ThemeSystem => Ok(Intent::Theme(ThemePreference::System)),
         Action::ThemeLight => Ok(Intent::Theme(ThemePreference::Light)),
         Action::ThemeDark => Ok(Intent::Theme(ThemePreference::Dark)),
@@ -432,19 +331,15 @@ fn transformation(state: &State, transformation: Transformation) -> Resolved {
     seen(state, |view| selection::set_transformation(view, transformation))
 }
 
-fn panels(state: &State, change: impl FnOnce(&mut Panels)) -> Resolved {
-    let mut panels = state.panels;
-    change(&mut panels);
-    Ok(Intent::Panels(panels))
-}
-
-/// Shows or hides a panel beside the picture; in a narrow window, unfolds or folds it.
-fn column(state: &State, side: Side, of: impl FnOnce(&mut Panels) -> &mut bool) -> Resolved {
-    if state.narrow {
-        let unfolded = (state.layout.unfolded != Some(side)).then_some(side);
-        return Ok(Intent::Layout(Layout { unfolded, ..state.layout }));
+/// Shows or hides a panel; in a narrow window, unfolds or folds one that stands beside the picture.
+fn toggle(state: &State, panel: Panel) -> Resolved {
+    match panel.info().dock {
+        Dock::Beside(side) if state.narrow => {
+            let unfolded = (state.layout.unfolded != Some(side)).then_some(side);
+            Ok(Intent::Layout(Layout { unfolded, ..state.layout }))
+        }
+        _ => Ok(Intent::Panels(state.panels.toggled(panel))),
     }
-    panels(state, |panels| *of(panels) ^= true)
 }
 
 /// The one of two that `now` is not.
@@ -462,120 +357,5 @@ impl Action {
             Ok(_) => Ok(()),
             Err(refusal) => Err(refusal.to_string()),
         }
-    }
-
-    /// The slot of the light that the action switches.
-    #[must_use]
-    pub fn slot(self) -> Option<u32> {
-        let at = LIGHT_SWITCHES.iter().position(|action| *action == self)?;
-        u32::try_from(at).ok()
-    }
-
-    /// Whether the action's switch is on; `None` if the action is not a switch.
-    #[must_use]
-    pub fn is_on(self, state: &State) -> Option<bool> {
-        let (scene, view, panels) = (&state.scene, &state.view, &state.panels);
-        let is_shown = |side, open| match state.narrow {
-            true => state.layout.unfolded == Some(side),
-            false => open,
-        };
-        if let Some(slot) = self.slot() {
-            return Some(scene.lights.iter().any(|(_, light)| light.slot == slot && light.on));
-        }
-        Some(match self {
-            Self::SubjectCamera => view.subject == Subject::Camera,
-            Self::SubjectObject => view.subject == Subject::Object,
-            Self::SubjectLight => view.subject == Subject::Light,
-            Self::Translate => view.transformation == Transformation::Translation,
-            Self::Rotate => view.transformation == Transformation::Rotation,
-            Self::Scale => view.transformation == Transformation::Scaling,
-            Self::ToggleFrame => match view.subject {
-                Subject::Camera => {
-                    let pose = scene.selected_camera(view).pose.now();
-                    pose.mode_with(view.object) != CameraMode::Fly
-                }
-                Subject::Object => view.frame == Frame::Global,
-                Subject::Light => false,
-            },
-            Self::ToggleVisible => match state.selected()? {
-                ItemId::Object(id) => scene.objects.get(id)?.visible,
-                ItemId::Camera(id) => scene.cameras.get(id)?.visible,
-                ItemId::Light(id) => scene.lights.get(id)?.on,
-            },
-            Self::ToggleLocked => scene.locked.contains(&state.selected()?),
-            Self::ToggleEdges => view.fill == Fill::Edges,
-            Self::ToggleEdgesOverFill => view.edges_over_fill,
-            Self::TogglePolygons => view.polygons.is_some(),
-            Self::ToggleOthers => match view.polygons {
-                Some(_) => !view.polygons_stay,
-                None => view.only_selected,
-            },
-            Self::ToggleBackFaces => view.back_faces,
-            Self::ToggleFaceNormals => view.face_normals,
-            Self::ToggleVertexNormals => view.vertex_normals,
-            Self::ToggleNormalLength => view.normal_length == NormalLength::BySize,
-            Self::ToggleMarks => view.marks,
-            Self::ToggleOverlays => state.overlays,
-            Self::ToggleGizmo => state.gizmo,
-            Self::ToggleWatch => state.watches,
-            Self::ToggleGrid => state.helpers.grid,
-            Self::ToggleDimensions => state.helpers.dimensions,
-            Self::ToggleDirections => state.helpers.directions,
-            Self::SoloLight => lights::is_solo(scene, view.light?),
-            Self::AimByClick => state.aiming,
-            Self::ExplainPixel => state.explaining,
-            Self::Palette => state.palette,
-            Self::ToggleCoarse => state.coarse_while_moving,
-            Self::ToggleRefine => state.drawing.refines,
-            Self::ToggleLightNormals => view.normals == Normals::Face,
-            Self::ToggleAllShadows => lights::casts_shadows(scene),
-            Self::ToggleShadows => scene.lights.get(view.light?)?.shadows,
-            Self::ToggleProjection => view.projection == Projection::Orthographic,
-            Self::ToggleObserver => view.observer == Observer::Object,
-            Self::CheatSheet => panels.cheat_sheet,
-            Self::ToggleOutline => is_shown(Side::Outline, panels.outline),
-            Self::ToggleProperties => is_shown(Side::Properties, panels.properties),
-            Self::ToggleViewPanel => is_shown(Side::Switches, panels.view),
-            Self::ToggleStatistics => panels.statistics,
-            Self::TogglePlan => panels.plan,
-            Self::MeasurePlan => state.plan.measuring,
-            Self::ToggleLeaveOut => state.settings.leave_out == LeaveOut::HalfStep,
-            Self::ToggleLaboratory => panels.laboratory,
-            Self::ThemeSystem => state.theme == ThemePreference::System,
-            Self::ThemeLight => state.theme == ThemePreference::Light,
-            Self::ThemeDark => state.theme == ThemePreference::Dark,
-            Self::New | Self::Open | Self::Load | Self::Save | Self::SaveAs | Self::SavePicture => {
-                return None;
-            }
-            Self::CopyPicture | Self::PictureOptions | Self::SaveTurntable => return None,
-            Self::ReloadModels | Self::RecoverWork => return None,
-            Self::ExportScene | Self::NewAncestor | Self::ToPanelsBack => return None,
-            Self::Quit | Self::Undo | Self::Redo | Self::TakeBack | Self::Rename => return None,
-            Self::Duplicate | Self::Delete | Self::Split | Self::AddCamera | Self::AddSun => {
-                return None;
-            }
-            Self::AddBulb | Self::AddSpot | Self::AddObjectSpot | Self::AddCameraSpot => {
-                return None;
-            }
-            Self::AddGround | Self::AddPlane | Self::AddCube | Self::AddSphere => return None,
-            Self::AddCylinder | Self::AddTorus => return None,
-            Self::DropToGround | Self::ResetPlacement => return None,
-            Self::AlignX | Self::AlignY | Self::AlignZ => return None,
-            Self::SelectAll | Self::SelectNone | Self::TypeAmount => return None,
-            Self::NextItem | Self::NextPolygon | Self::NextSubject => return None,
-            Self::StepXUp | Self::StepXDown | Self::StepYUp | Self::StepYDown => return None,
-            Self::StepZUp | Self::StepZDown | Self::FrameSelection | Self::FrameAll => return None,
-            Self::LookFront | Self::LookRight | Self::LookTop => return None,
-            Self::LookBack | Self::LookLeft | Self::LookBottom => return None,
-            Self::ApertureUp | Self::ApertureDown | Self::RedUp | Self::RedDown => return None,
-            Self::GreenUp | Self::GreenDown | Self::BlueUp | Self::BlueDown => return None,
-            Self::LargerText | Self::SmallerText | Self::NormalText => return None,
-            Self::AimAtSelection | Self::WhyUnseen => return None,
-            Self::ToPanels | Self::Light0 | Self::Light1 | Self::Light2 | Self::Light3 => {
-                return None;
-            }
-            Self::Light4 | Self::Light5 | Self::Light6 | Self::Light7 => return None,
-            Self::Light8 | Self::Light9 => return None,
-        })
     }
 }

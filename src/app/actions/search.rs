@@ -7,8 +7,8 @@
 use nucleo_matcher::pattern::{Atom, AtomKind, CaseMatching, Normalization};
 use nucleo_matcher::{Config, Matcher, Utf32Str};
 
-use super::chord::Chord;
 use super::table::Action;
+use crate::app::chord::Chord;
 
 /// The texts by which something is found.
 #[derive(Clone, Copy, Debug)]

@@ -2,135 +2,13 @@
 //!
 //! Keys, menus, buttons and the cheat sheet all read [`Action::info`] and return an [`Action`];
 //! none of them changes anything. What an action means for a scene stands in one place too, and
-//! whether it can be done now is asked there.
+//! whether it can be done now is asked there. Each panel has an action from the table of panels.
 
 use egui::Key;
 
-use super::chord::Chord;
-use super::chord::Chord::{Command, CommandShift, Either, Lower, Named, Shifted, Text, Upper};
-
-/// How an action appears.
-#[derive(Clone, Copy, Debug)]
-pub struct ActionInfo {
-    /// On menus and buttons.
-    pub label: &'static str,
-    /// Over them: one sentence.
-    pub hint: &'static str,
-    /// Other words that people use for it, for searches.
-    pub words: &'static str,
-    /// Every way to press it; the first is the one that is shown.
-    pub keys: &'static [Chord],
-    /// Its group in menus and in the cheat sheet.
-    pub group: Group,
-    /// Whether a held key asks for it again and again.
-    pub repeats: bool,
-}
-
-/// Actions that stand together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Group {
-    /// Files and the program itself.
-    File,
-    /// Changes to the selection, undo and redo.
-    Edit,
-    /// New things.
-    Add,
-    /// What the keys act on.
-    Select,
-    /// Moving, turning, scaling.
-    Transform,
-    /// What is shown, and how.
-    Show,
-    /// Who looks, and from where.
-    Camera,
-    /// Lights on and off, colours, apertures.
-    Light,
-    /// Panels and help.
-    Window,
-}
-
-impl Group {
-    /// All of them, in the order of menus and cheat sheet.
-    pub const ALL: [Self; 9] = [
-        Self::File,
-        Self::Edit,
-        Self::Add,
-        Self::Select,
-        Self::Transform,
-        Self::Show,
-        Self::Camera,
-        Self::Light,
-        Self::Window,
-    ];
-
-    /// Those of [`Self::Show`] that are drawn over the picture, not in it.
-    pub const OVER_PICTURE: [Action; 6] = [
-        Action::ToggleOverlays,
-        Action::ToggleMarks,
-        Action::ToggleGizmo,
-        Action::ToggleGrid,
-        Action::ToggleDimensions,
-        Action::ToggleDirections,
-    ];
-
-    /// Its heading.
-    #[must_use]
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::File => "File",
-            Self::Edit => "Edit",
-            Self::Add => "Add",
-            Self::Select => "Select",
-            Self::Transform => "Transform",
-            Self::Show => "Show",
-            Self::Camera => "Camera",
-            Self::Light => "Light",
-            Self::Window => "Window",
-        }
-    }
-
-    /// Its actions, in order.
-    pub fn actions(self) -> impl Iterator<Item = Action> {
-        Action::ALL.iter().copied().filter(move |action| action.info().group == self)
-    }
-}
-
-/// What a held key does: it asks once, or again and again.
-const ONCE: bool = false;
-const REPEATS: bool = true;
-
-macro_rules! actions {
-    ($(
-        $name:ident $group:ident $repeats:ident [$($key:expr),*]
-            $label:literal $hint:literal $words:literal;
-    )+) => {
-        /// Something a user can ask for that needs no further words.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        pub enum Action {
-            $(#[doc = $hint] $name,)+
-        }
-
-        impl Action {
-            /// Every action, in the order in which menus and cheat sheet show them.
-            pub const ALL: &'static [Self] = &[$(Self::$name),+];
-
-            /// How the action appears.
-            #[must_use]
-            pub const fn info(self) -> ActionInfo {
-                match self {
-                    $(Self::$name => ActionInfo {
-                        label: $label,
-                        hint: $hint,
-                        words: $words,
-                        keys: &[$($key),*],
-                        group: Group::$group,
-                        repeats: $repeats,
-                    },)+
-                }
-            }
-        }
-    };
-}
+use super::info::{ActionInfo, Group, ONCE, REPEATS, actions};
+use crate::app::chord::Chord::{Command, CommandShift, Either, Lower, Named, Shifted, Text, Upper};
+use crate::app::panels::Panel;
 
 actions! {
     New File ONCE [Command(Key::N)]
@@ -490,9 +368,6 @@ actions! {
     Palette Window ONCE [Command(Key::K), Command(Key::P)]
         "Command palette" "Finds actions, items and settings by their names."
         "search find run commands";
-    CheatSheet Window ONCE [Either(Key::H), Text("?"), Named(Key::F1)]
-        "Keys" "Lists every key and what it would do now."
-        "shortcuts help hotkeys keyboard bindings";
     ToPanels Window ONCE [Named(Key::F6)]
         "Keyboard to the panels"
         "Moves keyboard focus from region to region; Esc returns it to the viewport."
@@ -501,28 +376,9 @@ actions! {
         "Keyboard back"
         "Moves keyboard focus to the region before; from the first one to the viewport."
         "focus previous region tab";
-    ToggleOutline Window ONCE []
-        "Outline" "Shows or hides the list of objects, cameras and lights."
-        "tree hierarchy list scene layers";
-    ToggleProperties Window ONCE []
-        "Properties" "Shows or hides the properties of the selected item."
-        "inspector settings details material attributes";
-    ToggleViewPanel Window ONCE []
-        "View switches" "Shows or hides the switches of the view."
-        "options settings display accuracy";
-    ToggleStatistics Window ONCE []
-        "Statistics" "Shows or hides how much is drawn and how long it takes."
-        "fps frames speed performance triangles count";
-    TogglePlan Window ONCE [Named(Key::F3)]
-        "Plan" "Shows or hides each effect of the picture: on or off, why, and its cost."
-        "effects explain cost why";
     MeasurePlan Window ONCE [Named(Key::F4)]
         "Measure effects" "Measures the time of a picture with and without each of its effects."
         "benchmark time profile speed";
-    ToggleLaboratory Window ONCE [Named(Key::F5)]
-        "Laboratory"
-        "Shows or hides the laboratory, which measures what accuracy costs in time."
-        "accuracy benchmark error compare experiment";
     LargerText Window ONCE [Command(Key::Plus), Command(Key::Equals)]
         "Larger interface" "Makes texts and panels larger."
         "zoom in scale font size big ui";
@@ -533,67 +389,12 @@ actions! {
         "Normal interface size" "Makes texts and panels as large as the system says."
         "zoom reset scale font size ui";
     ThemeSystem Window ONCE []
-        "Follow the system" "Makes the window light or dark as the system is."
+        "Theme of the system" "Makes the window light or dark as the system is."
         "theme auto colours colors";
     ThemeLight Window ONCE []
-        "Light" "Shows dark text on light panels."
+        "Light theme" "Shows dark text on light panels."
         "theme mode white day bright";
     ThemeDark Window ONCE []
-        "Dark" "Shows light text on dark panels."
+        "Dark theme" "Shows light text on dark panels."
         "theme mode black night";
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_two_actions_share_a_key() {
-        let all: Vec<(Action, Chord)> = Action::ALL
-            .iter()
-            .flat_map(|action| action.info().keys.iter().map(|key| (*action, *key)))
-            .collect();
-        for (i, (a, key)) in all.iter().enumerate() {
-            for (b, other) in &all[i + 1..] {
-                assert!(!key.clashes_with(*other), "{a:?} and {b:?} are both on {key}");
-            }
-        }
-    }
-
-    #[test]
-    fn every_key_of_the_specification_has_an_action() {
-        let letters = "f F l L o O d D t T r R s S g G x X y Y z Z u U c C p P b B n N m M i I \
-                       q Q v V a A 0 1 2 3 4 5 6 7 8 9 + - . ? h Tab Enter Esc Home Delete F1 F2 \
-                       F12 Ctrl+Z Ctrl+Shift+Z Ctrl+Y Ctrl+S Ctrl+Shift+S Ctrl+O Ctrl+N Ctrl+D \
-                       Ctrl+Q Ctrl+1 Ctrl+3 Ctrl+7 Ctrl+K Ctrl+P";
-        for name in letters.split_whitespace() {
-            let named = |action: &&Action| {
-                action.info().keys.iter().any(|key| key.names().iter().any(|text| text == name))
-            };
-            assert!(Action::ALL.iter().any(|action| named(&action)), "nothing is on {name}");
-        }
-    }
-
-    #[test]
-    fn only_what_the_specification_names_repeats() {
-        let repeating: Vec<String> = Action::ALL
-            .iter()
-            .filter(|action| action.info().repeats)
-            .flat_map(|action| action.info().keys.iter().flat_map(|key| key.names()))
-            .collect();
-        let expected = "Ctrl+Z Ctrl+Shift+Z Ctrl+Y Tab Enter x X y Y z Z + - q Q v V a A";
-        assert_eq!(repeating.join(" "), expected);
-    }
-
-    #[test]
-    fn every_hint_is_a_sentence_and_no_two_labels_are_alike_in_a_group() {
-        for (i, action) in Action::ALL.iter().enumerate() {
-            let info = action.info();
-            assert!(info.hint.ends_with('.'), "{action:?}");
-            for other in &Action::ALL[i + 1..] {
-                let same = other.info().label == info.label;
-                assert!(!same, "{action:?} and {other:?} are both called {}", info.label);
-            }
-        }
-    }
 }

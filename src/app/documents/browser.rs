@@ -89,7 +89,14 @@ impl Browser {
             self.follow();
         }
         let mut choice = if entered { self.take() } else { None };
-        choice = choice.or_else(|| self.list_ui(ui));
+        if entered && choice.is_none() {
+            // It goes on being typed into, behind what stands there now.
+            self.type_on(ui, field.id);
+        }
+        if let (None, Some(clicked)) = (&choice, self.list_ui(ui)) {
+            choice = self.click(&clicked);
+            self.type_on(ui, field.id);
+        }
         if let Some(fault) = &self.fault {
             ui.colored_label(ui.visuals().error_fg_color, fault);
         }
@@ -121,38 +128,75 @@ impl Browser {
         CCursorRange::two(CCursor::new(from), CCursor::new(from + stem))
     }
 
-    fn list_ui(&mut self, ui: &mut Ui) -> Option<Choice> {
+    /// Gives the keyboard to the path field, with the cursor at its end.
+    fn type_on(&self, ui: &Ui, field: egui::Id) {
+        let mut editing = egui::text_edit::TextEditState::load(ui.ctx(), field).unwrap_or_default();
+        let end = CCursor::new(self.path.chars().count());
+        editing.cursor.set_char_range(Some(CCursorRange::one(end)));
+        editing.store(ui.ctx(), field);
+        ui.memory_mut(|memory| memory.request_focus(field));
+    }
+
+    /// Lists what fits the typed name; gives the path that was clicked.
+    fn list_ui(&self, ui: &mut Ui) -> Option<PathBuf> {
         let mut clicked = None;
         let list = egui::ScrollArea::vertical().max_height(260.0).auto_shrink([false, true]);
         list.show(ui, |ui| {
             if self.folder.parent().is_some() && ui.selectable_label(false, "..").clicked() {
                 clicked = self.folder.parent().map(Path::to_owned);
             }
-            for entry in &self.entries {
+            for entry in self.fitting() {
                 let path = self.folder.join(&entry.name);
-                let chosen = Path::new(&self.path) == path;
+                let chosen = self.typed() == path;
                 let text = match entry.is_folder {
                     true => format!("{}/", entry.name),
                     false => entry.name.clone(),
                 };
-                let row = ui.selectable_label(chosen, text);
-                if row.clicked() || row.double_clicked() {
+                if ui.selectable_label(chosen, text).clicked() {
                     clicked = Some(path);
-                }
-                if row.double_clicked() && !entry.is_folder {
-                    self.fault = None;
                 }
             }
         });
-        let clicked = clicked?;
-        let again = Path::new(&self.path) == clicked;
-        self.path = clicked.display().to_string();
+        clicked
+    }
+
+    /// Takes a click on a path of the list: a folder is entered, a file is chosen, and a second
+    /// click on it takes it.
+    fn click(&mut self, clicked: &Path) -> Option<Choice> {
+        let again = self.typed() == clicked;
         if clicked.is_dir() {
-            self.enter(&clicked);
-            None
-        } else {
-            // A second click on the chosen file takes it.
-            again.then(|| self.take()).flatten()
+            self.enter(clicked);
+            self.path = shown_folder(&self.folder);
+            return None;
+        }
+        self.path = clicked.display().to_string();
+        again.then(|| self.take()).flatten()
+    }
+
+    /// The entries that the typed name is a part of; all if it names a folder or one of them.
+    fn fitting(&self) -> impl Iterator<Item = &Entry> {
+        let typed = self.typed();
+        let name = match self.path.trim().ends_with(['/', std::path::MAIN_SEPARATOR]) {
+            true => None,
+            false => typed.file_name().map(|name| name.to_string_lossy().to_lowercase()),
+        };
+        let is_whole =
+            typed.is_dir() || self.entries.iter().any(|it| self.folder.join(&it.name) == typed);
+        let part = name.filter(|_| self.mode == Mode::Open && !is_whole);
+        self.entries.iter().filter(move |entry| {
+            part.as_ref().is_none_or(|part| entry.name.to_lowercase().contains(part))
+        })
+    }
+
+    /// The path that is typed. One that begins anew behind the folder, with a slash or the sign of
+    /// the home folder, is taken from there.
+    fn typed(&self) -> PathBuf {
+        let path = self.path.trim();
+        let path = path.rfind("//").map_or(path, |at| &path[at + 1..]);
+        let home = path.rfind("/~/").map(|at| &path[at + 3..]).or(path.strip_prefix("~/"));
+        match home.zip(std::env::home_dir()) {
+            Some((rest, home)) => home.join(rest),
+            None => self.folder.join(path),
         }
     }
 
@@ -167,7 +211,7 @@ impl Browser {
 
     /// The file that the path field names, with an ending.
     fn named(&self) -> PathBuf {
-        let path = self.folder.join(self.path.trim());
+        let path = self.typed();
         match self.endings.first() {
             Some(ending) if self.mode == Mode::Save && path.extension().is_none() => {
                 path.with_extension(ending)
@@ -177,13 +221,22 @@ impl Browser {
     }
 
     fn take(&mut self) -> Option<Choice> {
-        let typed = self.folder.join(self.path.trim());
+        let typed = self.typed();
         if typed.is_dir() {
             self.enter(&typed);
+            self.path = shown_folder(&self.folder);
             return None;
         }
         let path = self.named();
         if path.file_name().is_none() || (self.mode == Mode::Open && !path.exists()) {
+            // The only entry that fits is meant.
+            let is_here = typed.parent() == Some(&self.folder);
+            let fitting: Vec<PathBuf> =
+                self.fitting().take(2).map(|entry| self.folder.join(&entry.name)).collect();
+            if let ([only], true) = (&fitting[..], is_here) {
+                self.path = only.display().to_string();
+                return self.take();
+            }
             self.fault = Some("There is no such file.".to_owned());
             return None;
         }
@@ -192,7 +245,7 @@ impl Browser {
 
     /// Lists the folder that the typed path is in.
     fn follow(&mut self) {
-        let path = PathBuf::from(self.path.trim());
+        let path = self.typed();
         let folder = if path.is_dir() { Some(path) } else { path.parent().map(Path::to_owned) };
         if let Some(folder) = folder.filter(|folder| folder.is_dir() && *folder != self.folder) {
             self.enter(&folder);
@@ -226,6 +279,11 @@ impl Browser {
         ending
             .is_some_and(|ending| self.endings.iter().any(|own| own.eq_ignore_ascii_case(&ending)))
     }
+}
+
+/// A folder as it stands in the path field: a name typed behind it is in it.
+fn shown_folder(folder: &Path) -> String {
+    folder.join("").display().to_string()
 }
 
 #[cfg(test)]
@@ -264,6 +322,36 @@ mod tests {
         };
         assert_eq!(proposed("view.png"), "view");
         assert_eq!(proposed(""), "");
+    }
+
+    #[test]
+    fn a_part_of_a_name_shows_what_fits_and_is_enough_if_only_one_does() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["teapot.obj", "bunny.obj", "butter.obj"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        let mut browser = Browser::new("", Mode::Open, vec!["obj"], folder.path(), "");
+        let whole = browser.path.clone();
+        let mut typed = |name: &str| {
+            browser.path = format!("{whole}{name}");
+            browser.follow();
+            (browser.fitting().count(), browser.take())
+        };
+        assert_eq!(typed("b"), (2, None));
+        assert_eq!(typed("zebra"), (0, None));
+        assert_eq!(typed("Tea"), (1, Some(Choice::File(folder.path().join("teapot.obj")))));
+        assert_eq!(typed("bunny.obj").0, 3, "a whole name hides nothing");
+    }
+
+    #[test]
+    fn a_path_may_begin_anew_behind_the_folder() {
+        let [here, there] = [(), ()].map(|()| tempfile::tempdir().unwrap());
+        let mut browser = Browser::new("", Mode::Open, vec!["obj"], here.path(), "");
+        browser.path += &there.path().display().to_string();
+        browser.follow();
+        assert_eq!(browser.folder, there.path());
+        browser.path = format!("{}/~/x.obj", here.path().display());
+        assert_eq!(Some(browser.typed()), std::env::home_dir().map(|home| home.join("x.obj")));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use egui::{Context, Id, Modal, Ui};
 
 use super::browser::{Browser, Choice, Mode};
 use super::material_dialog::{self, MaterialChoices, MaterialDialog};
-use super::picture_dialog::{PictureChoices, PictureDialog};
+use super::picture_dialog::{self, PictureChoices, PictureDialog};
 use crate::app::shell::Parent;
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::controls::take_focus;
@@ -70,8 +70,9 @@ pub(crate) enum Answer {
     Discard(After),
     /// This material.
     Material(Box<MaterialDialog>, MaterialChoices),
-    /// A picture or a turntable with these options.
-    Picture(PictureChoices),
+    /// A picture or a turntable with these options, into this file; it is asked for if there is
+    /// none.
+    Picture(PictureChoices, Option<PathBuf>),
     /// A texture is wanted for the model whose material is being chosen.
     ChooseTexture,
 }
@@ -140,7 +141,8 @@ impl Dialogs {
 
     /// Asks for the options of a picture or a turntable.
     pub(crate) fn ask_picture(&mut self, choices: PictureChoices) {
-        self.open.push(Dialog::Picture(Box::new(PictureDialog::new(choices))));
+        let dialog = PictureDialog::new(choices, self.folder());
+        self.open.push(Dialog::Picture(Box::new(dialog)));
     }
 
     /// Sets the texture of the model whose material is being chosen.
@@ -219,7 +221,8 @@ impl Dialogs {
         let number = self.open.len();
         let dialog = self.open.last_mut()?;
         let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
-        let modal = Modal::new(Id::unique(("dialog", number))).frame(frame);
+        let kind = std::mem::discriminant(dialog);
+        let modal = Modal::new(Id::unique(("dialog", number, kind))).frame(frame);
         let response = modal.show(ctx, |ui| dialog.ui(ui));
         let ended = match response.inner {
             Some(end) => end,
@@ -242,15 +245,17 @@ impl Dialogs {
                 | End::Save
                 | End::Discard
                 | End::Material(_)
-                | End::Picture(_)
+                | End::Picture(..)
                 | End::Asked => Answer::NoFile(wanted),
             }),
             Dialog::Unsaved(after) => match end {
                 End::Save => Some(Answer::Save(after)),
                 End::Discard => Some(Answer::Discard(after)),
-                End::Cancelled | End::File(_) | End::Material(_) | End::Picture(_) | End::Asked => {
-                    None
-                }
+                End::Cancelled
+                | End::File(_)
+                | End::Material(_)
+                | End::Picture(..)
+                | End::Asked => None,
             },
             Dialog::Material(dialog) => match end {
                 End::Material(choices) => Some(Answer::Material(dialog, choices)),
@@ -258,11 +263,16 @@ impl Dialogs {
                 | End::File(_)
                 | End::Save
                 | End::Discard
-                | End::Picture(_)
+                | End::Picture(..)
                 | End::Asked => None,
             },
             Dialog::Picture(_) => match end {
-                End::Picture(choices) => Some(Answer::Picture(choices)),
+                End::Picture(choices, file) => {
+                    if let Some(folder) = file.as_ref().and_then(|path| path.parent()) {
+                        folder.clone_into(&mut self.folder);
+                    }
+                    Some(Answer::Picture(choices, file))
+                }
                 End::Cancelled
                 | End::File(_)
                 | End::Save
@@ -347,7 +357,7 @@ enum End {
     Save,
     Discard,
     Material(MaterialChoices),
-    Picture(PictureChoices),
+    Picture(PictureChoices, Option<PathBuf>),
     /// It stays open, and a texture is chosen.
     Asked,
 }
@@ -366,8 +376,9 @@ impl Dialog {
                 material_dialog::End::Cancelled => End::Cancelled,
             }),
             Self::Picture(dialog) => dialog.ui(ui).map(|end| match end {
-                Some(choices) => End::Picture(choices),
-                None => End::Cancelled,
+                picture_dialog::End::Into(choices, path) => End::Picture(choices, Some(path)),
+                picture_dialog::End::Elsewhere(choices) => End::Picture(choices, None),
+                picture_dialog::End::Cancelled => End::Cancelled,
             }),
             Self::Fault(sentence) => {
                 ui.set_max_width(420.0);

@@ -1,6 +1,8 @@
 //! The options of a picture or a turntable that is saved.
 
-use egui::{DragValue, Ui};
+use std::path::PathBuf;
+
+use egui::{DragValue, Key, Ui};
 
 use crate::accuracy::Samples;
 use crate::app::widgets::controls::{Choice, Switch, choices as choices_ui, take_focus};
@@ -15,6 +17,16 @@ const LONGEST_SIDE: usize = 16_384;
 pub(crate) enum Purpose {
     Picture,
     Turntable,
+}
+
+impl Purpose {
+    /// The name of a file without its ending, and the ending.
+    pub(crate) const fn file(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Picture => ("picture", "png"),
+            Self::Turntable => ("turntable", "gif"),
+        }
+    }
 }
 
 /// The options.
@@ -57,22 +69,44 @@ impl PictureChoices {
     }
 }
 
+/// How the dialog ends.
+#[derive(Debug)]
+pub(crate) enum End {
+    Cancelled,
+    /// With these options, into this file.
+    Into(PictureChoices, PathBuf),
+    /// With these options, into a file that is asked for.
+    Elsewhere(PictureChoices),
+}
+
 /// The dialog.
 #[derive(Debug)]
 pub(crate) struct PictureDialog {
     choices: PictureChoices,
+    /// The folder of the last file.
+    folder: PathBuf,
+    /// What stands in the field of the file.
+    file: String,
 }
 
 impl PictureDialog {
-    pub(crate) const fn new(choices: PictureChoices) -> Self {
-        Self { choices }
+    /// Options to begin with; a file in `folder` that is not there yet is proposed.
+    pub(crate) fn new(choices: PictureChoices, folder: PathBuf) -> Self {
+        let (stem, ending) = choices.purpose.file();
+        let named = |n: u32| match n {
+            1 => format!("{stem}.{ending}"),
+            n => format!("{stem} {n}.{ending}"),
+        };
+        let file = (1..).map(named).find(|name| !folder.join(name).exists()).unwrap_or_default();
+        Self { choices, folder, file }
     }
 
-    /// Shows the dialog. Returns how it ended, once it has: with the options, or without.
-    pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<Option<PictureChoices>> {
+    /// Shows the dialog. Returns how it ended, once it has.
+    pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<End> {
         ui.set_width(ui.available_width().clamp(240.0, 380.0));
         let is_picture = self.choices.purpose == Purpose::Picture;
         ui.heading(if is_picture { "Save picture" } else { "Save turntable" });
+        let mut entered = false;
         egui::Grid::new("picture options").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {
             // What the window shows has the window's size and samples.
             ui.add_enabled_ui(!self.choices.overlays, |ui| ui.label("Size"));
@@ -102,6 +136,14 @@ impl PictureDialog {
                 choices.transparent ^= ground.ui(ui).on_hover_text(hint).clicked();
             });
             ui.end_row();
+            let label = ui.label("File");
+            let file = egui::TextEdit::singleline(&mut self.file)
+                .align(egui::Align2::LEFT_CENTER)
+                .desired_width(f32::INFINITY);
+            let folder = self.folder.display().to_string();
+            let file = ui.add(file).labelled_by(label.id).on_hover_text(format!("In {folder}"));
+            entered = file.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+            ui.end_row();
         });
         let Size { width, height } = self.choices.whole();
         ui.weak(match is_picture {
@@ -111,16 +153,29 @@ impl PictureDialog {
         ui.add_space(6.0);
         let mut end = None;
         ui.horizontal(|ui| {
-            let save = ui.button("Save...");
+            let path = self.path();
+            let replaces = path.is_file();
+            let save = ui.button(if replaces { "Replace the file" } else { "Save" });
             take_focus(ui, &save);
-            if save.clicked() {
-                end = Some(Some(self.choices));
+            if save.clicked() || entered {
+                end = Some(End::Into(self.choices, path));
+            }
+            if ui.button("Elsewhere...").on_hover_text("Asks for the file").clicked() {
+                end = Some(End::Elsewhere(self.choices));
             }
             if ui.button("Cancel").clicked() {
-                end = Some(None);
+                end = Some(End::Cancelled);
             }
         });
         end
+    }
+
+    /// The file that is named, with an ending.
+    fn path(&self) -> PathBuf {
+        let (stem, ending) = self.choices.purpose.file();
+        let name = if self.file.trim().is_empty() { stem } else { self.file.trim() };
+        let path = self.folder.join(name);
+        if path.extension().is_some() { path } else { path.with_extension(ending) }
     }
 
     fn size_ui(&mut self, ui: &mut Ui) {

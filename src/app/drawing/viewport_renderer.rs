@@ -10,11 +10,12 @@ use egui::ColorImage;
 
 use super::adaptive_quality::{AdaptiveQuality, Attempt};
 use super::border::Border;
+use super::images::present;
 use super::reduction::{Applicable, Reduction};
 use super::refinement::{difference, next_samples};
 use super::snapshot::Snapshot;
 use crate::accuracy::{Samples, Shot};
-use crate::base::image::{Picture, Size};
+use crate::base::image::Size;
 use crate::lab::cost::{self, Explained};
 use crate::render::plan_frame;
 use crate::render::{Cancelled, Damage, FramePlan, Hit, Renderer};
@@ -261,34 +262,6 @@ impl ViewportRenderer {
         let own = self.renderer.pixels_of_any(all);
         Some(Border::of(item, Size::new(width, height), &own))
     }
-}
-
-/// Copies a picture into a free image, and makes that the last one.
-fn present(images: &mut [Arc<ColorImage>; 3], picture: &Picture) {
-    let [first, second, _] = images;
-    let free = if Arc::get_mut(first).is_some() { 0 } else { 1 };
-    if free == 1 && Arc::get_mut(second).is_none() {
-        *second = Arc::default();
-    }
-    show(picture, Arc::make_mut(&mut images[free]));
-    images.swap(free, 2);
-}
-
-/// Copies opaque pixels; those are the same with and without multiplication by alpha.
-fn show(picture: &Picture, image: &mut ColorImage) {
-    let Size { width, height } = picture.size();
-    if image.size != [width, height] {
-        *image = ColorImage::filled([width, height], egui::Color32::BLACK);
-    }
-    let bytes: &mut [[u8; 4]] = bytemuck::cast_slice_mut(&mut image.pixels);
-    bytes.copy_from_slice(picture.pixels());
-}
-
-/// The picture that an image of the viewport shows.
-pub(crate) fn picture(image: &ColorImage) -> Option<Picture> {
-    let [width, height] = image.size;
-    let pixels: &[[u8; 4]] = bytemuck::cast_slice(&image.pixels);
-    Picture::from_pixels(Size::new(width, height), pixels.to_vec())
 }
 
 #[cfg(test)]

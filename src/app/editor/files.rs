@@ -15,7 +15,7 @@ use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wis
 use crate::app::documents::material_dialog::{
     MaterialChoices, MaterialDialog, own_or_silver, summary,
 };
-use crate::app::drawing::viewport_renderer;
+use crate::app::drawing::images;
 use crate::app::state::{Notice, Offer, Reduction, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
@@ -51,7 +51,7 @@ impl App {
             Answer::Save(after) => self.save(ctx, Some(after)),
             Answer::Discard(after) => self.after(ctx, after),
             Answer::Material(dialog, choices) => self.take_material(ctx, *dialog, choices),
-            Answer::Picture(choices) => self.take_picture(ctx, choices),
+            Answer::Picture(choices, file) => self.take_picture(ctx, choices, file),
             Answer::ChooseTexture => self.ask_file(ctx, Wanted::TextureOfModel, ""),
         }
     }
@@ -312,7 +312,7 @@ impl App {
     /// The picture that the viewport shows.
     #[must_use]
     pub fn shown_picture(&self) -> Option<Picture> {
-        self.viewport.image().and_then(|image| viewport_renderer::picture(image))
+        self.viewport.image().and_then(|image| images::picture(image))
     }
 
     /// Whether the viewport shows the picture at full quality, and refined as far as it will be.

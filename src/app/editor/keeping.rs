@@ -14,10 +14,11 @@ use super::App;
 use crate::app::documents::loading::{Fetched, Opening};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::input::keymap::Keymap;
+use crate::app::panels::{OpenPanels, Panel};
 use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, Notice, State};
 use crate::app::widgets::text::file_name;
-use crate::io::{self, Abandoned, Journal, OwnFolders, Panels, Preferences, Theme, Unsaved};
+use crate::io::{self, Abandoned, Journal, OwnFolders, Preferences, Theme, Unsaved};
 use crate::scene::Scene;
 
 /// The seconds without a change after which preferences are written.
@@ -56,7 +57,7 @@ impl App {
         ctx.set_theme(theme);
         ctx.set_zoom_factor(preferences.scale);
         self.state.theme = theme;
-        self.state.panels = preferences.panels;
+        self.state.panels = OpenPanels::of_kept(&preferences.panels);
         self.state.overlays = preferences.overlays;
         self.state.helpers = preferences.helpers;
         self.state.watches = preferences.watches;
@@ -256,7 +257,7 @@ fn preferences_now(ctx: &Context, state: &State, before: &Preferences) -> Prefer
             ThemePreference::Light => Theme::Light,
             ThemePreference::Dark => Theme::Dark,
         },
-        panels: Panels { cheat_sheet: false, ..state.panels },
+        panels: state.panels.with(Panel::CheatSheet, false).kept(),
         gizmo: state.gizmo,
         scale,
         window: size.map(whole).or(before.window),

@@ -12,6 +12,7 @@ use super::App;
 use crate::accuracy::Shot;
 use crate::accuracy::{AXES, Axis, Settings};
 use crate::app::actions::LabRequest;
+use crate::app::panels::Panel;
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Side};
 use crate::app::tasks::{Outcome, Task};
@@ -148,7 +149,7 @@ impl App {
             LabRequest::Lesson(key) => {
                 lab.lesson = Axis::named(key).unwrap_or(lab.lesson);
                 lab.side = Side::Lessons;
-                self.state.panels.laboratory = true;
+                self.state.panels = self.state.panels.with(Panel::Laboratory, true);
             }
             LabRequest::ShowLesson(key) => self.show_lesson(key),
             LabRequest::Back => self.back_to_scene(),

@@ -10,7 +10,7 @@ use super::App;
 use crate::accuracy::{Settings, Shot};
 use crate::app::documents::dialogs::Wanted;
 use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
-use crate::app::drawing::viewport_renderer;
+use crate::app::drawing::images;
 use crate::app::state::{Notice, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
@@ -64,9 +64,17 @@ impl App {
         self.make_picture(ctx, path);
     }
 
-    /// Asks for the file of a picture with these options.
-    pub(crate) fn take_picture(&mut self, ctx: &Context, choices: PictureChoices) {
+    /// Begins to make a picture with these options; asks for the file if there is none.
+    pub(crate) fn take_picture(
+        &mut self,
+        ctx: &Context,
+        choices: PictureChoices,
+        file: Option<PathBuf>,
+    ) {
         self.making.choices = Some(choices);
+        if let Some(path) = file {
+            return self.make_picture(ctx, path);
+        }
         match choices.purpose {
             Purpose::Picture => self.ask_file(ctx, Wanted::PictureWithOptionsTo, "picture.png"),
             Purpose::Turntable => self.ask_file(ctx, Wanted::TurntableTo, "turntable.gif"),
@@ -174,7 +182,7 @@ impl App {
     }
 
     fn save_these(&mut self, path: &Path, image: &ColorImage) {
-        let saved = viewport_renderer::picture(image).map(|it| io::save_picture(path, &it));
+        let saved = images::picture(image).map(|it| io::save_picture(path, &it));
         match saved {
             Some(Ok(())) => self.state.tell(Some(format!("Saved {}", path.display()))),
             Some(Err(error)) => self.dialogs.tell_fault(format!("{error}.")),

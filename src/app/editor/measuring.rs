@@ -7,6 +7,7 @@ use egui::Context;
 
 use super::App;
 use crate::accuracy::Shot;
+use crate::app::panels::Panel;
 use crate::app::state::Measured;
 use crate::app::tasks::{Outcome, Task};
 use crate::lab::cost::{self, Costs};
@@ -30,7 +31,7 @@ impl Drop for Measuring {
 impl App {
     /// Starts to measure the cost of each effect, or cancels a measurement in progress.
     pub(crate) fn measure(&mut self, ctx: &Context) {
-        self.state.panels.plan = true;
+        self.state.panels = self.state.panels.with(Panel::Plan, true);
         if let Some(measuring) = &self.measuring {
             return measuring.task.progress.cancel();
         }

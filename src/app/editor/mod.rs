@@ -32,13 +32,14 @@ use crate::app::drawing::motion::{Happening, Motion};
 use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::worker::Worker;
 use crate::app::input::keyboard::Keyboard;
-use crate::app::panels::{self, notices, pixel};
+use crate::app::panels::{Panel, arrange, notices, pixel};
 use crate::app::shell::{Editor, Parent};
 use crate::app::state::State;
 use crate::app::state::layout::NARROW;
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
 use crate::app::widgets::number::take_bad_text;
+use crate::app::widgets::tooltips;
 use crate::scene::{Scene, Steps, View};
 use explaining::Explaining;
 use keeping::Keeping;
@@ -145,7 +146,8 @@ impl App {
     /// Puts the strip of the first minute away if anything has begun.
     fn end_greeting(&mut self) {
         let State { history, path, lab, panels, .. } = &self.state;
-        let has_begun = history.position() > 0 || path.is_some() || lab.away || panels.laboratory;
+        let has_begun =
+            history.position() > 0 || path.is_some() || lab.away || panels.has(Panel::Laboratory);
         if has_begun || !self.loading.is_empty() {
             self.state.greeting = false;
         }
@@ -160,7 +162,7 @@ impl App {
         self.state.zoom = ctx.zoom_factor();
         self.state.asking = self.dialogs.system_title();
         self.state.narrow = ui.available_width() < NARROW;
-        let arrangement = panels::show(ui, &self.state, &mut requests);
+        let arrangement = arrange::show(ui, &self.state, &mut requests);
         let place = arrangement.picture();
         if let Some(worker) = &self.worker {
             let mut ui = ui.new_child(UiBuilder::new().id_salt("picture").max_rect(place));
@@ -170,9 +172,8 @@ impl App {
                 self.comparison.ui(&ui, rect, &self.state, &mut requests);
             }
         }
-        arrangement.greeting_ui(ui, &self.state, &mut requests);
-        arrangement.splitters_ui(ui, &self.state, &mut requests);
-        notices::show(&ctx, &self.state, &self.loading, &self.making.tasks, &mut requests);
+        arrangement.over_picture_ui(ui, &self.state, &mut requests);
+        notices::show((&ctx, place), &self.state, &self.loading, &self.making.tasks, &mut requests);
         pixel::show(&ctx, &self.state, place, &mut requests);
         let answer = self.dialogs.ui(&ctx);
         let pressed = Action::pressed(&ctx);
@@ -232,6 +233,7 @@ impl App {
     fn begin(&mut self, ctx: &Context, requests: &mut Vec<Request>) {
         if self.worker.is_none() {
             Keyboard::install(ctx);
+            tooltips::install(ctx);
             // Quitting is an action like the others.
             ctx.options_mut(|options| {
                 options.quit_shortcuts.clear();
@@ -291,7 +293,7 @@ impl App {
         let (Some(worker), Some(size)) = (&mut self.worker, self.viewport.size()) else { return };
         let State { scene, view, settings, .. } = &self.state;
         let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
-        let explain = self.state.panels.plan;
+        let explain = self.state.panels.has(Panel::Plan);
         let outlined = self.state.outlined();
         let coarse = self.state.coarse_while_moving;
         let budget = Duration::from_millis(self.state.drawing.budget_ms.into());

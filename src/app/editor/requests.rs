@@ -13,6 +13,7 @@ use crate::app::documents::material_dialog::MaterialDialog;
 use crate::app::documents::picture_dialog::Purpose;
 use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::input::keymap::Keymap;
+use crate::app::panels::Panel;
 use crate::app::state::{Message, Offer, State, Tone};
 use crate::edit::selection::{self, Selection};
 use crate::edit::several::Others;
@@ -20,6 +21,13 @@ use crate::edit::{Gesture, GesturePhase, aiming, items, lights};
 use crate::scene::{Command, ItemId, Subject, View};
 
 impl App {
+    /// Closes a panel; says whether it was open.
+    fn closes(&mut self, panel: Panel) -> bool {
+        let panels = self.state.panels;
+        self.state.panels = panels.with(panel, false);
+        panels.has(panel)
+    }
+
     /// Performs the action of a key. Esc first closes whatever is open.
     pub(crate) fn press(&mut self, ctx: &Context, press: Press) {
         if press.chord == Chord::Named(Key::Escape) {
@@ -30,7 +38,7 @@ impl App {
             if std::mem::take(&mut self.state.aiming)
                 || std::mem::take(&mut self.state.explaining)
                 || std::mem::take(&mut self.state.lab.picking)
-                || std::mem::take(&mut self.state.panels.cheat_sheet)
+                || self.closes(Panel::CheatSheet)
                 || self.state.renaming.take().is_some()
             {
                 return;
@@ -42,6 +50,9 @@ impl App {
             if !self.state.others().is_empty() {
                 self.state.several = Others::default();
                 return;
+            }
+            if self.state.lab.away {
+                return self.back_to_scene();
             }
         }
         self.perform(ctx, press.action, press.gesture);
@@ -143,7 +154,7 @@ impl App {
                 ctx.set_theme(theme);
             }
             Ok(Intent::Rename(id)) => {
-                self.state.panels.outline = true;
+                self.state.panels = self.state.panels.with(Panel::Outline, true);
                 self.state.renaming = Some(id);
             }
             Ok(Intent::Undo) => self.walk(|state| {

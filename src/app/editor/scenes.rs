@@ -124,7 +124,7 @@ impl App {
         let Opened { scene, view, window, settings, findings } = opened;
         let mut state = State { settings, ..State::new(scene, view) };
         selection::settle(&state.scene, &mut state.view);
-        state.tell(Some(format!("Opened {}", path.display())));
+        state.tell(Some(format!("Opened {}", file_name(path))));
         if !findings.is_empty() {
             let text = format!("{}: {} findings", file_name(path), findings.len());
             let details = findings.iter().map(ToString::to_string).collect();
@@ -133,7 +133,7 @@ impl App {
         // An example is saved under a name of its own.
         state.path = (!io::is_example(path)).then(|| path.to_owned());
         self.replace(state);
-        self.state.set_window(window);
+        self.state.set_window(&window);
         if !self.settle_recovered(path) {
             self.note_recent(path);
         }

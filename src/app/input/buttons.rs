@@ -25,7 +25,11 @@ impl Action {
     /// A button that looks pressed while the action's switch is on. Gives it back when clicked.
     pub fn switch(self, ui: &mut Ui, state: &State) -> Option<Self> {
         let on = self.is_on(state).unwrap_or(false);
-        self.add(ui, state, egui::Button::selectable(on, self.info().label))
+        self.add(
+            ui,
+            state,
+            egui::Button::selectable(on, self.info().label).frame_when_inactive(true),
+        )
     }
 
     /// An entry of a menu with its key at the right and, while its switch is on, a tick at the

@@ -65,7 +65,7 @@ impl Keymap {
     pub(crate) fn names(&self) -> BTreeMap<String, Vec<String>> {
         let named = |(place, keys): (&usize, &Vec<Chord>)| {
             let keys = keys.iter().flat_map(|key| key.names()).collect();
-            Some((format!("{:?}", Action::ALL.get(*place)?), keys))
+            Some((Action::ALL.get(*place)?.name(), keys))
         };
         self.chosen.iter().filter_map(named).collect()
     }
@@ -74,10 +74,9 @@ impl Keymap {
     pub(crate) fn of_names(names: &BTreeMap<String, Vec<String>>) -> Self {
         let mut keymap = Self::default();
         for (action, keys) in names {
-            let found = Action::ALL.iter().find(|other| format!("{other:?}") == *action);
-            let Some(action) = found else { continue };
+            let Some(action) = Action::named(action) else { continue };
             let keys = keys.iter().filter_map(|key| chord_named(key)).collect();
-            keymap.choose(*action, keys);
+            keymap.choose(action, keys);
         }
         keymap
     }

@@ -6,29 +6,30 @@ use crate::app::actions::search::Search;
 use crate::app::actions::{Action, Group, KeyRequest, Request};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::input::keymap::Keymap;
+use crate::app::panels::Panel;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls;
 
-const WIDTH: f32 = 700.0;
+const WIDTH: f32 = 900.0;
 const KEYS: f32 = 160.0;
 const LABEL: f32 = 150.0;
 const NOW: f32 = 36.0;
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let mut open = true;
     let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
     Window::new("Keys")
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .default_pos(ui.ctx().content_rect().center() - vec2(WIDTH, room.y) / 2.0)
+        .default_pos(ui.ctx().content_rect().center() - vec2(WIDTH.min(room.x), room.y) / 2.0)
         .fixed_size(vec2(WIDTH.min(room.x), room.y.min(520.0)))
         .show(ui.ctx(), |ui| contents(ui, state, requests));
     if !open {
         requests.push(Request::Keys(KeyRequest::Cancel));
-        requests.push(Action::CheatSheet.into());
+        requests.push(Action::Panel(Panel::CheatSheet).into());
     }
 }
 
@@ -56,7 +57,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         response.request_focus();
     }
     if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
-        requests.push(Action::CheatSheet.into());
+        requests.push(Action::Panel(Panel::CheatSheet).into());
     }
     ui.data_mut(|data| data.insert_temp(id, wanted.clone()));
     let keymap = Keyboard::keymap(ui.ctx());

@@ -2,8 +2,10 @@
 
 use egui::{Atom, IdSalt, MenuBar, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
+use super::history;
 use crate::accuracy::AXES;
 use crate::app::actions::{Action, Group, LabRequest, Request};
+use crate::app::panels::Panel;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::text::file_name;
@@ -13,7 +15,7 @@ use crate::io::EXAMPLES;
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];
 
 /// Those that stand under Help.
-const HELP: [Action; 3] = [Action::Palette, Action::CheatSheet, Action::ToPanels];
+const HELP: [Action; 3] = [Action::Palette, Action::Panel(Panel::CheatSheet), Action::ToPanels];
 
 /// How large the interface is.
 const SIZES: [Action; 3] = [Action::LargerText, Action::SmallerText, Action::NormalText];
@@ -31,7 +33,12 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         menu(ui, "Edit", |ui| {
             group_ui(ui, state, requests, Group::Edit);
             ui.separator();
-            submenu(ui, "History", |ui| history_ui(ui, state, requests));
+            submenu(ui, "History", |ui| {
+                ui.set_min_width(200.0);
+                if history::list_ui(ui, state, requests) {
+                    ui.close();
+                }
+            });
             submenu(ui, "Select", |ui| group_ui(ui, state, requests, Group::Select));
             submenu(ui, "Transform", |ui| group_ui(ui, state, requests, Group::Transform));
         });
@@ -144,24 +151,4 @@ fn lessons_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
             ui.close();
         }
     }
-}
-
-/// The steps of the history; a click goes to the point just after a step.
-fn history_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let history = &state.history;
-    let labels: Vec<&str> = std::iter::once("Beginning").chain(history.steps()).collect();
-    ui.set_min_width(200.0);
-    let row = ui.spacing().interact_size.y;
-    ScrollArea::vertical().max_height(12.0 * row).show_rows(ui, row, labels.len(), |ui, range| {
-        for position in range {
-            let here = position == history.position();
-            let text = format!("{position}  {}", labels[position]);
-            let button = egui::Button::selectable(here, text);
-            let response = ui.add_sized([ui.available_width(), row], button);
-            if response.on_hover_text("Goes to the point just after this step").clicked() {
-                requests.push(Request::GoTo(position));
-                ui.close();
-            }
-        }
-    });
 }

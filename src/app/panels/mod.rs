@@ -1,7 +1,13 @@
-//! The panels around the viewport. They read the state and return requests; they change nothing.
+//! The table of panels: what each is called, where it stands, and its file.
+//!
+//! Actions, menus, scene files and preferences read the table; [`arrange`] shows what it lists. It
+//! is plain data and stands below the panels themselves, so that the table of actions can read it.
+//! Panels read the state and return requests; they change nothing.
 
+pub(crate) mod arrange;
 mod cheat_sheet;
 mod greeting;
+mod history;
 mod lab;
 mod menu_bar;
 pub(crate) mod notices;
@@ -11,90 +17,205 @@ pub(crate) mod pixel;
 mod plan;
 mod properties;
 mod splitters;
+mod statistics;
 mod status_line;
 mod view_switches;
 
-use egui::{Frame, Layout, Margin, Panel, Rect, Ui, UiBuilder};
+use egui::Key;
 
-use crate::app::actions::Request;
-use crate::app::state::State;
-use crate::app::state::layout::{Places, Side};
-use crate::app::theme;
-use crate::app::widgets::regions;
+use crate::app::chord::Chord;
+use crate::app::chord::Chord::{Either, Named, Text};
+use crate::io;
 
-/// Where everything stands in a frame.
+/// Where a panel stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dock {
+    /// Beside the picture; in a narrow window, one at a time.
+    Beside(Side),
+    /// Below everything else.
+    Bottom,
+    /// Below the picture.
+    UnderPicture,
+    /// Over the picture, in a place of its own choice.
+    Floating,
+}
+
+/// A place beside the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// At the left: the list of objects, cameras and lights.
+    Outline,
+    /// At the left, below it: the switches of the view.
+    Switches,
+    /// At the right: the properties of the selected item.
+    Properties,
+}
+
+/// How a panel appears.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Arrangement {
-    /// All between the menus and the status line.
-    area: Rect,
-    places: Places,
+pub struct PanelInfo {
+    /// In files.
+    pub name: &'static str,
+    /// Where it stands.
+    pub dock: Dock,
+    /// Whether it is open at the first start.
+    pub open: bool,
+    /// Keys that show and hide it.
+    pub keys: &'static [Chord],
+    /// On menus and buttons.
+    pub label: &'static str,
+    /// Over them: one sentence.
+    pub hint: &'static str,
+    /// Other words that people use for it, for searches.
+    pub words: &'static str,
 }
 
-impl Arrangement {
-    /// The place that is left to the picture.
-    pub(crate) const fn picture(&self) -> Rect {
-        self.places.picture
+/// Hands the rows of the table to a macro: variant, file, name in files, dock, whether it is open
+/// at the first start, keys, label, hint and words.
+macro_rules! each_panel {
+    ($then:ident) => {
+        $then! {
+            CheatSheet cheat_sheet "cheat_sheet" [Dock::Floating] false
+                [Either(Key::H), Text("?"), Named(Key::F1)]
+                "Keys" "Lists every key and what it would do now."
+                "shortcuts help hotkeys keyboard bindings";
+            Outline outline "outline" [Dock::Beside(Side::Outline)] true []
+                "Outline" "Shows or hides the list of objects, cameras and lights."
+                "tree hierarchy list scene layers";
+            Properties properties "properties" [Dock::Beside(Side::Properties)] true []
+                "Properties" "Shows or hides the properties of the selected item."
+                "inspector settings details material attributes";
+            View view_switches "view" [Dock::Beside(Side::Switches)] true []
+                "View switches" "Shows or hides the switches of the view."
+                "options settings display accuracy";
+            Statistics statistics "statistics" [Dock::Floating] false []
+                "Statistics" "Shows or hides how much is drawn and how long it takes."
+                "fps frames speed performance triangles count";
+            Plan plan "plan" [Dock::UnderPicture] false [Named(Key::F3)]
+                "Plan" "Shows or hides each effect of the picture: on or off, why, and its cost."
+                "effects explain cost why";
+            History history "history" [Dock::Floating] false []
+                "History" "Shows or hides the steps that can be undone and redone."
+                "undo redo steps back list changes";
+            Laboratory lab "laboratory" [Dock::Bottom] false [Named(Key::F5)]
+                "Laboratory"
+                "Shows or hides the laboratory, which measures what accuracy costs in time."
+                "accuracy benchmark error compare experiment";
+        }
+    };
+}
+pub(crate) use each_panel;
+
+macro_rules! table {
+    ($(
+        $panel:ident $file:ident $name:literal [$dock:expr] $open:literal [$($key:expr),*]
+            $label:literal $hint:literal $words:literal;
+    )+) => {
+        /// A panel that can be shown and hidden.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Panel {
+            $(#[doc = $hint] $panel,)+
+        }
+
+        impl Panel {
+            /// Every panel, in the order of menus.
+            pub const ALL: &'static [Self] = &[$(Self::$panel),+];
+
+            /// How the panel appears.
+            #[must_use]
+            pub const fn info(self) -> PanelInfo {
+                match self {
+                    $(Self::$panel => PanelInfo {
+                        name: $name,
+                        dock: $dock,
+                        open: $open,
+                        keys: &[$($key),*],
+                        label: $label,
+                        hint: $hint,
+                        words: $words,
+                    },)+
+                }
+            }
+        }
+    };
+}
+
+each_panel!(table);
+
+/// Which panels are open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OpenPanels([bool; Panel::ALL.len()]);
+
+impl OpenPanels {
+    /// Those of the first start.
+    pub const DEFAULT: Self = {
+        let mut open = [false; Panel::ALL.len()];
+        let mut i = 0;
+        while i < open.len() {
+            open[i] = Panel::ALL[i].info().open;
+            i += 1;
+        }
+        Self(open)
+    };
+
+    /// Whether a panel is open.
+    #[must_use]
+    pub const fn has(self, panel: Panel) -> bool {
+        self.0[panel as usize]
     }
 
-    /// Shows the strip of the first minute over the picture.
-    pub(crate) fn greeting_ui(&self, ui: &Ui, state: &State, requests: &mut Vec<Request>) {
-        greeting::show(ui, self.places.picture, state, requests);
+    /// These panels, with one of them open or closed.
+    #[must_use]
+    pub const fn with(mut self, panel: Panel, open: bool) -> Self {
+        self.0[panel as usize] = open;
+        self
     }
 
-    /// Shows the borders that can be dragged; over the picture, which would take their presses.
-    pub(crate) fn splitters_ui(&self, ui: &Ui, state: &State, requests: &mut Vec<Request>) {
-        splitters::show(ui, state, self.area, &self.places, requests);
+    /// These panels, with one of them toggled.
+    #[must_use]
+    pub const fn toggled(self, panel: Panel) -> Self {
+        self.with(panel, !self.has(panel))
+    }
+
+    /// As files keep them.
+    #[must_use]
+    pub fn kept(self) -> io::Panels {
+        Panel::ALL.iter().map(|panel| (panel.info().name, self.has(*panel))).collect()
+    }
+
+    /// Those of a file; what it does not say is as at the first start.
+    #[must_use]
+    pub fn of_kept(kept: &io::Panels) -> Self {
+        let is_open = |panel: &Panel| kept.is_open(panel.info().name);
+        Panel::ALL.iter().fold(Self::DEFAULT, |panels, panel| match is_open(panel) {
+            Some(open) => panels.with(*panel, open),
+            None => panels,
+        })
     }
 }
 
-/// Shows all open panels.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> Arrangement {
-    let fill = ui.visuals().panel_fill;
-    let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
-    Panel::top("menu bar").frame(bar).show(ui, |ui| {
-        regions::begin(ui, "menus");
-        menu_bar::show(ui, state, requests);
-    });
-    Panel::bottom("status line").frame(bar).show(ui, |ui| status_line::show(ui, state, requests));
-    let area = ui.available_rect_before_wrap();
-    let mut layout = state.layout;
-    if state.renaming.is_some() {
-        // A new name is typed in the outline.
-        layout.unfolded = Some(Side::Outline);
-    }
-    let outline = state.panels.outline || state.renaming.is_some();
-    let panels = crate::io::Panels { outline, ..state.panels };
-    let places = layout.divide(area, panels);
-    if let Some(rect) = places.strip {
-        ui.painter().rect_filled(rect, 0.0, fill);
-        regions::begin(ui, "strip");
-        splitters::strip_ui(ui, rect, state, requests);
-    }
-    within(ui, "outline", places.outline, |ui| outline::show(ui, state, requests));
-    within(ui, "view switches", places.switches, |ui| view_switches::show(ui, state, requests));
-    within(ui, "properties", places.properties, |ui| properties::show(ui, state, requests));
-    within(ui, "laboratory", places.laboratory, |ui| lab::show(ui, state, requests));
-    within(ui, "plan", places.plan, |ui| plan::show(ui, state, requests));
-    if state.panels.cheat_sheet {
-        cheat_sheet::show(ui, state, requests);
-    }
-    if state.palette {
-        palette::show(ui, state, requests);
-    }
-    Arrangement { area, places }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Shows a panel in its place. What it holds never makes it larger.
-fn within(ui: &mut Ui, name: &str, place: Option<Rect>, add: impl FnOnce(&mut Ui)) {
-    let Some(rect) = place else { return };
-    ui.painter().rect_filled(rect, 0.0, ui.visuals().panel_fill);
-    // The contents leave room for a scroll bar.
-    let margin = Margin { left: theme::MARGIN, right: 2, top: 4, bottom: 4 };
-    let layout = Layout::top_down(egui::Align::Min);
-    let builder = UiBuilder::new().id_salt(name).max_rect(rect - margin).layout(layout);
-    let mut child = ui.new_child(builder);
-    child.set_clip_rect(rect.intersect(ui.clip_rect()));
-    regions::begin(&child, name);
-    add(&mut child);
-    regions::follow_focus(&child);
+    #[test]
+    fn no_two_docked_panels_share_a_place_and_none_a_name() {
+        for (i, panel) in Panel::ALL.iter().enumerate() {
+            for other in &Panel::ALL[i + 1..] {
+                let (a, b) = (panel.info(), other.info());
+                assert_ne!(a.name, b.name);
+                assert!(a.dock != b.dock || a.dock == Dock::Floating, "{panel:?} and {other:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn open_panels_come_back_from_what_files_keep_and_the_rest_is_as_at_the_first_start() {
+        for panel in Panel::ALL {
+            let toggled = OpenPanels::DEFAULT.toggled(*panel);
+            assert_ne!(toggled, OpenPanels::DEFAULT);
+            assert_eq!(OpenPanels::of_kept(&toggled.kept()), toggled);
+        }
+        assert_eq!(OpenPanels::of_kept(&io::Panels::default()), OpenPanels::DEFAULT);
+    }
 }

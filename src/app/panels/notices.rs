@@ -12,7 +12,7 @@ use crate::edit::Gesture;
 
 /// Shows them at the top of the picture; their requests are added to `requests`.
 pub(crate) fn show<T>(
-    ctx: &Context,
+    (ctx, picture): (&Context, Rect),
     state: &State,
     loading: &[Loading],
     making: &[Task<T>],
@@ -27,9 +27,10 @@ pub(crate) fn show<T>(
     }
     let corner = Area::new(Id::unique("notices"))
         .order(Order::Middle)
-        .anchor(Align2::CENTER_TOP, vec2(0.0, 40.0));
+        .pivot(Align2::CENTER_TOP)
+        .fixed_pos(picture.center_top() + vec2(0.0, 14.0));
     corner.show(ctx, |ui| {
-        ui.set_max_width(420.0);
+        ui.set_max_width(420.0_f32.min(picture.width() - 16.0).max(200.0));
         // They lie over others: only controls among them belong to this region.
         let column = Rect::from_min_size(ui.cursor().min, ui.available_size());
         let seen: Option<Rect> = ui.data(|data| data.get_temp(seen_id()));

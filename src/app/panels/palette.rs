@@ -39,6 +39,9 @@ struct Entry {
     request: Request,
 }
 
+/// The height of an entry.
+const ENTRY: f32 = theme::ROW + 2.0;
+
 /// Shows it; its requests are added to `requests`.
 pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
     let id = Id::unique("palette");
@@ -107,6 +110,10 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32
     });
     ui.add_space(theme::GAP);
     let mut clicked = None;
+    // No higher than what is found.
+    let rows = if entries.is_empty() { 2 } else { entries.len().min(99) };
+    let rows = u16::try_from(rows).unwrap_or(99);
+    let height = height.min(f32::from(rows) * ENTRY);
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     let mut list = ui.new_child(UiBuilder::new().id_salt("found").max_rect(rect));
     let area = ScrollArea::vertical().auto_shrink(false);
@@ -300,7 +307,7 @@ fn settings(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
 impl Entry {
     fn ui(&self, ui: &mut Ui, chosen: bool) -> egui::Response {
         let enabled = self.refused.is_none();
-        let size = vec2(ui.available_width(), theme::ROW + 2.0);
+        let size = vec2(ui.available_width(), ENTRY);
         // The arrows go through the list while the field has the keyboard.
         let (rect, response) = ui.allocate_exact_size(size, Sense::CLICK);
         response.widget_info(|| {

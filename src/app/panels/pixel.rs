@@ -1,8 +1,8 @@
 //! A pixel explained: what is seen there, what its colour is made of, and the vectors of its light.
 
 use egui::{
-    Align2, Color32, Context, Grid, Label, Painter, Pos2, Rect, RichText, Role, Sense, Stroke,
-    TextStyle, Ui, Vec2, WidgetInfo, Window, pos2, vec2,
+    Align2, Color32, Context, Grid, Label, Painter, Pos2, Rect, RichText, Role, ScrollArea, Sense,
+    Stroke, TextStyle, Ui, Vec2, WidgetInfo, Window, pos2, vec2,
 };
 use glam::DVec3;
 
@@ -20,6 +20,9 @@ const DIAGRAM: f32 = 120.0;
 /// The length of a vector of length 1 in it.
 const VECTOR: f32 = 72.0;
 
+/// The height of the title, the buttons, and what is around them.
+const BUTTONS: f32 = 76.0;
+
 /// Shows the window; its requests are added to `requests`.
 pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut Vec<Request>) {
     let Some(pixel) = &state.explained else { return };
@@ -33,9 +36,16 @@ pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut V
         .default_width(360.0)
         .max_height((picture.height() - 60.0).max(160.0))
         .collapsible(false)
-        .vscroll(true)
         .show(ctx, |ui| match &pixel.explained {
-            Some(explained) => explained_ui(ui, state, pixel, explained, requests),
+            Some(explained) => {
+                // The buttons stay in sight.
+                let most = (picture.height() - 60.0).max(160.0) - BUTTONS;
+                ScrollArea::vertical().max_height(most).show(ui, |ui| {
+                    explained_ui(ui, state, pixel, explained);
+                });
+                ui.separator();
+                buttons_ui(ui, state, pixel, explained, requests);
+            }
             None => drop(ui.weak("Outside of the picture.")),
         });
     if !open {
@@ -43,13 +53,7 @@ pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut V
     }
 }
 
-fn explained_ui(
-    ui: &mut Ui,
-    state: &State,
-    pixel: &ExplainedPixel,
-    explained: &PixelColor,
-    requests: &mut Vec<Request>,
-) {
+fn explained_ui(ui: &mut Ui, state: &State, pixel: &ExplainedPixel, explained: &PixelColor) {
     let mono = |text: String| RichText::new(text).monospace();
     // The answer first.
     ui.scope(|ui| sum_ui(ui, pixel, explained));
@@ -75,7 +79,15 @@ fn explained_ui(
             }
         });
     }
-    ui.separator();
+}
+
+fn buttons_ui(
+    ui: &mut Ui,
+    state: &State,
+    pixel: &ExplainedPixel,
+    explained: &PixelColor,
+    requests: &mut Vec<Request>,
+) {
     ui.horizontal(|ui| {
         if ui.button("Copy as text").clicked() {
             ui.ctx().copy_text(pixel::lines(&pixel.scene, explained).join("\n"));

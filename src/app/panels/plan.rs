@@ -34,7 +34,10 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 const BUTTON: f32 = 70.0;
 
 /// In less width the table is scrolled sideways.
-const LEAST: f32 = 540.0;
+const LEAST: f32 = 400.0;
+
+/// In less width the columns are closer together.
+const ROOMY: f32 = 540.0;
 
 /// The summary, and the button that measures.
 fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained: &Explained) {
@@ -110,10 +113,12 @@ struct Columns {
 
 impl Columns {
     fn of(row: Rect) -> Self {
-        let number = 92.0;
+        let is_roomy = row.width() >= ROOMY;
+        let number = if is_roomy { 92.0 } else { 68.0 };
+        let shares = if is_roomy { [0.26, 0.28] } else { [0.33, 0.36] };
         let right = row.right() - 4.0;
         let text = (right - 2.0 * number - row.left()).max(120.0);
-        let (name, on) = ((text * 0.26).min(220.0), (text * 0.28).min(220.0));
+        let [name, on] = shares.map(|share| (text * share).min(220.0));
         let column = |left: f32, width: f32| {
             Rect::from_min_max(pos2(left, row.top()), pos2(left + width - 8.0, row.bottom()))
         };
@@ -136,7 +141,7 @@ fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
         (columns.on, "Of"),
         (columns.why, "Why"),
         (columns.pixels, "Pixels"),
-        (columns.time, "Milliseconds"),
+        (columns.time, if columns.time.width() < 80.0 { "ms" } else { "Milliseconds" }),
     ];
     let weak = ui.visuals().weak_text_color();
     for (i, (rect, title)) in titles.into_iter().enumerate() {

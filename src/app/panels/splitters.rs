@@ -4,8 +4,9 @@ use egui::{CursorIcon, Id, Rect, Sense, Stroke, Ui, UiBuilder, WidgetInfo, vec2}
 
 use crate::app::actions::{Action, Request};
 use crate::app::input::buttons::action_icon;
+use crate::app::panels::{Panel, Side};
 use crate::app::state::State;
-use crate::app::state::layout::{Places, Side, Splitter};
+use crate::app::state::layout::{Places, Splitter};
 use crate::app::theme;
 use crate::app::widgets::icons::Icon;
 
@@ -63,16 +64,16 @@ pub(crate) fn show(
 pub(crate) fn strip_ui(ui: &mut Ui, rect: Rect, state: &State, requests: &mut Vec<Request>) {
     let inner = rect.shrink2(vec2((rect.width() - theme::ROW) / 2.0, theme::GAP));
     let mut child = ui.new_child(UiBuilder::new().id_salt("strip").max_rect(inner));
-    for (side, icon, action) in [
-        (Side::Outline, Icon::List, Action::ToggleOutline),
-        (Side::Switches, Icon::Switches, Action::ToggleViewPanel),
-        (Side::Properties, Icon::Properties, Action::ToggleProperties),
+    for (side, icon, panel) in [
+        (Side::Outline, Icon::List, Panel::Outline),
+        (Side::Switches, Icon::Switches, Panel::View),
+        (Side::Properties, Icon::Properties, Panel::Properties),
     ] {
         if state.layout.unfolded == Some(side) {
             let row = vec2(theme::ROW, theme::ROW);
             let ground = Rect::from_min_size(child.cursor().min, row);
             child.painter().rect_filled(ground, 4.0, child.visuals().selection.bg_fill);
         }
-        action_icon(&mut child, state, requests, icon, action);
+        action_icon(&mut child, state, requests, icon, Action::Panel(panel));
     }
 }

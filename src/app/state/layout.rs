@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use egui::{Rect, pos2, vec2};
 
-use crate::io::Panels;
+use crate::app::panels::{Dock, OpenPanels, Panel, Side};
 
 /// Windows narrower than this show one panel at a time, beside a strip of buttons.
 pub const NARROW: f32 = 900.0;
@@ -21,17 +21,6 @@ const STRIP: f32 = 30.0;
 
 /// The least height of a panel that shares a column, and of the picture.
 const LEAST: f32 = 72.0;
-
-/// A panel beside the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// The list of objects, cameras and lights.
-    Outline,
-    /// The switches of the view.
-    Switches,
-    /// The properties of the selected item.
-    Properties,
-}
 
 /// A border between two panels that can be dragged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -150,9 +139,9 @@ fn share(of: f32, part: f32, least: f32, rest: f32) -> f32 {
 impl Layout {
     /// Divides `area` among the open panels and the picture.
     #[must_use]
-    pub fn divide(&self, area: Rect, panels: Panels) -> Places {
+    pub fn divide(&self, area: Rect, panels: OpenPanels) -> Places {
         let mut rest = area;
-        let laboratory = panels.laboratory.then(|| {
+        let laboratory = panels.has(Panel::Laboratory).then(|| {
             let height = share(area.height(), self.laboratory.unwrap_or(0.58), 150.0, 150.0);
             let (above, place) = cut(rest, area.bottom() - height);
             rest = above;
@@ -172,7 +161,7 @@ impl Layout {
         } else {
             self.columns(area.width(), &mut rest, panels, &mut places);
         }
-        places.plan = panels.plan.then(|| {
+        places.plan = panels.has(Panel::Plan).then(|| {
             let height = share(rest.height(), self.plan.unwrap_or(0.34), 90.0, LEAST);
             let (above, place) = cut(rest, rest.bottom() - height);
             rest = above;
@@ -202,13 +191,13 @@ impl Layout {
     }
 
     /// The columns at both sides.
-    fn columns(&self, width: f32, rest: &mut Rect, panels: Panels, places: &mut Places) {
+    fn columns(&self, width: f32, rest: &mut Rect, panels: OpenPanels, places: &mut Places) {
         let (left, right) = if width >= WIDE { (228.0, 280.0) } else { (212.0, 256.0) };
-        if panels.outline || panels.view {
+        if panels.has(Panel::Outline) || panels.has(Panel::View) {
             let left = self.left.unwrap_or(left).clamp(180.0, width * 0.28).round();
             let column = rest.with_max_x(rest.left() + left);
             rest.min.x += left;
-            match (panels.outline, panels.view) {
+            match (panels.has(Panel::Outline), panels.has(Panel::View)) {
                 (true, true) => {
                     let part = self.switches.unwrap_or(0.56);
                     let height = share(column.height(), part, LEAST, LEAST);
@@ -219,7 +208,7 @@ impl Layout {
                 _ => places.switches = Some(column),
             }
         }
-        if panels.properties {
+        if panels.has(Panel::Properties) {
             let right = self.right.unwrap_or(right).clamp(232.0, width * 0.34).round();
             places.properties = Some(rest.with_min_x(rest.right() - right));
             rest.max.x -= right;
@@ -271,6 +260,19 @@ fn cut(rect: Rect, y: f32) -> (Rect, Rect) {
 impl Places {
     fn strip_width(&self) -> f32 {
         self.strip.map_or(0.0, |strip| strip.width())
+    }
+
+    /// The place of a dock, if a panel stands there.
+    #[must_use]
+    pub const fn of(&self, dock: Dock) -> Option<Rect> {
+        match dock {
+            Dock::Beside(Side::Outline) => self.outline,
+            Dock::Beside(Side::Switches) => self.switches,
+            Dock::Beside(Side::Properties) => self.properties,
+            Dock::Bottom => self.laboratory,
+            Dock::UnderPicture => self.plan,
+            Dock::Floating => None,
+        }
     }
 
     /// All panels, and the picture.
@@ -325,19 +327,17 @@ mod tests {
         [1920.0, 1030.0],
     ];
 
-    fn every_layout(check: impl Fn(Layout, Rect, Panels)) {
+    fn every_layout(check: impl Fn(Layout, Rect, OpenPanels)) {
         let wishes = [Layout::default(), wished(40.0, 0.02), wished(2000.0, 0.98)];
         for [width, height] in SIZES {
             for bits in 0..32_u8 {
                 let on = |bit: u8| bits >> bit & 1 == 1;
-                let panels = Panels {
-                    outline: on(0),
-                    view: on(1),
-                    properties: on(2),
-                    laboratory: on(3),
-                    plan: on(4),
-                    ..Panels::DEFAULT
-                };
+                let panels = OpenPanels::DEFAULT
+                    .with(Panel::Outline, on(0))
+                    .with(Panel::View, on(1))
+                    .with(Panel::Properties, on(2))
+                    .with(Panel::Laboratory, on(3))
+                    .with(Panel::Plan, on(4));
                 for wish in wishes {
                     check(wish, Rect::from_min_size(pos2(3.0, 26.0), vec2(width, height)), panels);
                 }
@@ -376,7 +376,7 @@ mod tests {
     #[test]
     fn a_splitter_that_is_dragged_goes_where_it_is_dragged_and_back() {
         let area = Rect::from_min_size(pos2(0.0, 26.0), vec2(1280.0, 750.0));
-        let panels = Panels { plan: true, laboratory: true, ..Panels::DEFAULT };
+        let panels = OpenPanels::DEFAULT.with(Panel::Plan, true).with(Panel::Laboratory, true);
         let now = Layout::default().divide(area, panels);
         for splitter in Splitter::ALL {
             let grip = now.grip(splitter, 6.0).unwrap();
@@ -392,7 +392,7 @@ mod tests {
     #[test]
     fn a_window_that_was_small_has_its_panels_back() {
         let layout = Layout { left: Some(300.0), laboratory: Some(0.6), ..Layout::default() };
-        let panels = Panels { laboratory: true, ..Panels::DEFAULT };
+        let panels = OpenPanels::DEFAULT.with(Panel::Laboratory, true);
         let large = Rect::from_min_size(pos2(0.0, 0.0), vec2(1920.0, 1030.0));
         let before = layout.divide(large, panels);
         let small = layout.divide(Rect::from_min_size(large.min, vec2(640.0, 350.0)), panels);

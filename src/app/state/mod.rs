@@ -1,30 +1,28 @@
 //! Everything that panels read. Only the app writes it.
 
 pub mod laboratory;
+mod last_picture;
 pub mod layout;
+mod notices;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
 use egui::ThemePreference;
 
 use crate::accuracy::{Samples, Settings};
 pub use crate::app::drawing::reduction::{Reduction, Shrink};
 use crate::app::drawing::refinement::can_refine;
-use crate::app::drawing::viewport_renderer::Drawn;
-use crate::base::image::Size;
+use crate::app::panels::OpenPanels;
 use crate::edit::several::Others;
-use crate::edit::{Gesture, GesturePhase, History, Refusal, framing, items, selection};
-use crate::io::{Helpers, Panels, WindowState};
-use crate::lab::cost::{Costs, Explained};
-use crate::render::{Damage, PixelColor};
-use crate::scene::{
-    Command, ItemId, Light, LightId, MaterialChoice, Object, ObjectId, Scene, Sides, Surface, View,
-};
+use crate::edit::{Gesture, GesturePhase, History, selection};
+use crate::io::{Helpers, WindowState};
+use crate::scene::{ItemId, Light, LightId, Scene, View};
 use laboratory::Laboratory;
+pub use last_picture::{ExplainedPixel, Measured, Plan, Statistics};
 use layout::Layout;
+pub use notices::{Message, Notice, Offer, Tone};
 
 /// The scene being edited, and everything shown about it.
 #[derive(Debug)]
@@ -50,7 +48,7 @@ pub struct State {
     /// The effects of the last picture, while the plan is shown.
     pub plan: Plan,
     /// Which panels are shown.
-    pub panels: Panels,
+    pub panels: OpenPanels,
     /// Whether pictures may be coarser while something moves, if they would come too late
     /// otherwise.
     pub coarse_while_moving: bool,
@@ -119,216 +117,6 @@ impl Default for DrawingChoices {
     }
 }
 
-/// A message to the user.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Message {
-    /// One sentence.
-    pub text: String,
-    /// Its tone.
-    pub tone: Tone,
-}
-
-/// The tone of a message.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tone {
-    /// It was done.
-    Done,
-    /// It was not done, for this reason.
-    Refused,
-}
-
-/// A notice that stays until the user dismisses it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Notice {
-    /// One line.
-    pub text: String,
-    /// Details, one line each.
-    pub details: Vec<String>,
-    /// An offer shown with it as a button.
-    pub offer: Option<Offer>,
-}
-
-/// An action that a notice offers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Offer {
-    /// To bring an object into view.
-    Frame(ObjectId),
-    /// To draw both sides of an object's faces.
-    TwoSides(ObjectId),
-    /// To show an object that is hidden.
-    Show(ObjectId),
-    /// To make an object opaque.
-    Opaque(ObjectId),
-}
-
-impl Offer {
-    /// The label of its button.
-    #[must_use]
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Frame(_) => "Frame",
-            Self::TwoSides(_) => "Draw both sides",
-            Self::Show(_) => "Show",
-            Self::Opaque(_) => "Make opaque",
-        }
-    }
-
-    /// The object that it is about.
-    #[must_use]
-    pub const fn object(self) -> ObjectId {
-        let (Self::Frame(id) | Self::TwoSides(id) | Self::Show(id) | Self::Opaque(id)) = self;
-        id
-    }
-
-    /// The change of the scene, and its label in the history.
-    ///
-    /// # Errors
-    /// If the object is gone, or the observer is an object.
-    pub fn command(self, scene: &Scene, view: &View) -> Result<(Command, String), Refusal> {
-        let id = self.object();
-        let name = &scene.objects.get(id).ok_or(Refusal::Gone)?.name;
-        Ok(match self {
-            Self::Frame(_) => (framing::objects(scene, view, &[id])?, format!("Frame {name}")),
-            Self::TwoSides(_) => {
-                let two = |object: &mut Object| object.sides = Sides::Two;
-                (items::change_object(scene, id, two)?, format!("Draw both sides of {name}"))
-            }
-            Self::Show(_) => {
-                let show = |object: &mut Object| object.visible = true;
-                (items::change_object(scene, id, show)?, format!("Show {name}"))
-            }
-            Self::Opaque(_) => {
-                (items::change_object(scene, id, make_opaque)?, format!("Make {name} opaque"))
-            }
-        })
-    }
-}
-
-/// Makes an object opaque: its own opacity becomes 1. If it was, the materials or the texture of
-/// its file hide it: it gets the first part's material as its own, or shows its material alone.
-fn make_opaque(object: &mut Object) {
-    let was_transparent = object.opacity < 1.0;
-    object.opacity = 1.0;
-    if was_transparent {
-        return;
-    }
-    let parts = u32::try_from(object.model.mesh.parts().len()).unwrap_or(u32::MAX);
-    if (0..parts).all(|part| object.part_look(part).opacity == 0.0) {
-        object.material = MaterialChoice::Own(object.part_look(0).material);
-    } else if (0..parts).any(|part| object.part_look(part).texture.is_some()) {
-        object.surface = Surface::Material;
-    }
-}
-
-/// Statistics of the last picture.
-#[derive(Clone, Debug)]
-pub struct Statistics {
-    /// From the snapshot to the finished picture in memory, on the thread that draws.
-    pub time: Duration,
-    /// The size of the picture.
-    pub size: Size,
-    /// The number of pictures drawn.
-    pub pictures: u64,
-    /// The number of pictures shown in the last second.
-    pub rate: u32,
-    /// The number of triangles drawn.
-    pub triangles: usize,
-    /// How its quality is reduced.
-    pub reduction: Reduction,
-    /// The measured error of that: the root mean square, in steps of a byte.
-    pub lost: Option<f64>,
-    /// The samples per pixel that it is refined to.
-    pub refined: Option<Samples>,
-    /// What was redrawn, and why.
-    pub changes: Option<Damage>,
-}
-
-impl Default for Statistics {
-    fn default() -> Self {
-        Self {
-            time: Duration::ZERO,
-            size: Size::new(0, 0),
-            pictures: 0,
-            rate: 0,
-            triangles: 0,
-            reduction: Reduction::NONE,
-            lost: None,
-            refined: None,
-            changes: None,
-        }
-    }
-}
-
-impl Statistics {
-    /// Records a picture, the `rate`th in the last second.
-    pub(crate) fn note(&mut self, drawn: &Drawn, rate: u32) {
-        let [width, height] = drawn.image.size;
-        *self = Self {
-            time: drawn.time,
-            size: Size::new(width, height),
-            pictures: self.pictures + 1,
-            rate,
-            triangles: drawn.triangles,
-            reduction: drawn.reduction,
-            lost: drawn.lost,
-            refined: drawn.refined,
-            changes: Some(drawn.changes.clone()),
-        };
-    }
-}
-
-/// The effects of the last picture.
-#[derive(Clone, Debug, Default)]
-pub struct Plan {
-    /// Its effects.
-    pub explained: Option<Arc<Explained>>,
-    /// Their costs in time, if measured.
-    pub costs: Option<Arc<Measured>>,
-    /// Whether it is being measured.
-    pub measuring: bool,
-}
-
-/// The measured costs of effects, and their picture.
-#[derive(Clone, Debug)]
-pub struct Measured {
-    /// What was measured.
-    pub costs: Costs,
-    /// What there was to draw.
-    pub scene: Scene,
-    /// How it was looked at.
-    pub view: View,
-    /// How exactly it was drawn.
-    pub settings: Settings,
-}
-
-/// A pixel that is explained, and the picture that it belongs to.
-#[derive(Clone, Debug)]
-pub struct ExplainedPixel {
-    /// Column and row, from the upper left.
-    pub at: [usize; 2],
-    /// What there is to draw.
-    pub scene: Scene,
-    /// How it is looked at.
-    pub view: View,
-    /// How exactly it is drawn.
-    pub settings: Settings,
-    /// The size of the picture.
-    pub size: Size,
-    /// The explanation; `None` if the pixel is outside of the picture.
-    pub explained: Option<PixelColor>,
-}
-
-impl ExplainedPixel {
-    /// Whether the picture is still the one that was explained.
-    #[must_use]
-    pub fn is_of(&self, state: &State, size: Size) -> bool {
-        let Self { scene, view, settings, .. } = self;
-        self.size == size
-            && (settings, view) == (&state.settings, &state.view)
-            && *scene == state.scene
-    }
-}
-
 impl State {
     /// The state of a new scene, without history.
     #[must_use]
@@ -344,7 +132,7 @@ impl State {
             notices: Vec::new(),
             statistics: Statistics::default(),
             plan: Plan::default(),
-            panels: WindowState::DEFAULT.panels,
+            panels: OpenPanels::DEFAULT,
             coarse_while_moving: WindowState::DEFAULT.coarse_while_moving,
             layout: Layout::default(),
             palette: false,
@@ -452,14 +240,15 @@ impl State {
 
     /// What a scene file keeps of the window.
     #[must_use]
-    pub const fn window(&self) -> WindowState {
-        WindowState { coarse_while_moving: self.coarse_while_moving, panels: self.panels }
+    pub fn window(&self) -> WindowState {
+        WindowState { coarse_while_moving: self.coarse_while_moving, panels: self.panels.kept() }
     }
 
     /// Takes what a scene file has kept of the window.
-    pub(crate) const fn set_window(&mut self, window: WindowState) {
+    pub(crate) fn set_window(&mut self, window: &WindowState) {
         let WindowState { coarse_while_moving, panels } = window;
-        (self.coarse_while_moving, self.panels) = (coarse_while_moving, panels);
+        self.coarse_while_moving = *coarse_while_moving;
+        self.panels = OpenPanels::of_kept(panels);
     }
 
     /// Whether anything in the scene moves by itself.

@@ -206,9 +206,6 @@ impl Viewport {
         self.border_ui(ui, worker);
         self.over_ui(ui, state, &response, &projection, &over);
         self.overlay(ui, state);
-        if state.panels.statistics {
-            overlay::statistics_ui(ui, state, rect);
-        }
         self.menu_ui(ui, state, requests);
     }
 

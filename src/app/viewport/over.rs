@@ -179,13 +179,13 @@ impl Viewport {
         }
         if state.explaining {
             let text = "Click a pixel to explain it; Esc cancels".to_owned();
-            plate_ui(ui, rect, egui::Align2::CENTER_TOP, text);
+            plate_ui(ui, rect, egui::Align2::CENTER_BOTTOM, text);
             ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
         }
         self.explained_ui(ui, rect, state);
         if state.aiming {
-            let text = "Click where the light shall shine; Esc cancels".to_owned();
-            plate_ui(ui, rect, egui::Align2::CENTER_TOP, text);
+            let text = "Click where the light should shine; Esc cancels".to_owned();
+            plate_ui(ui, rect, egui::Align2::CENTER_BOTTOM, text);
             ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
         }
     }

@@ -10,3 +10,4 @@ pub(crate) mod plate;
 pub(crate) mod regions;
 pub(crate) mod spheres;
 pub(crate) mod text;
+pub(crate) mod tooltips;

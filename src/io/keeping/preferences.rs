@@ -84,7 +84,7 @@ impl Default for Preferences {
     fn default() -> Self {
         Self {
             theme: Theme::System,
-            panels: Panels::DEFAULT,
+            panels: Panels::default(),
             gizmo: true,
             scale: 1.0,
             window: None,

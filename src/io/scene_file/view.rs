@@ -107,16 +107,16 @@ impl FileView {
             marks: *marks,
             coarse_while_moving: *coarse_while_moving,
             time: *time,
-            panels: *panels,
+            panels: panels.clone(),
         }
     }
 }
 
 impl FileView {
     /// The state of the window.
-    pub(super) const fn window(&self) -> WindowState {
-        let Self { coarse_while_moving, panels, .. } = *self;
-        WindowState { coarse_while_moving, panels }
+    pub(super) fn window(&self) -> WindowState {
+        let Self { coarse_while_moving, panels, .. } = self;
+        WindowState { coarse_while_moving: *coarse_while_moving, panels: panels.clone() }
     }
 }
 

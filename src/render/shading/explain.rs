@@ -4,7 +4,9 @@
 //! picture's own arithmetic. So the terms are those of the picture bit for bit; what their sum
 //! loses by rounding is a term of its own, and with it they add up to the colour exactly.
 
-use glam::{DMat3, DVec3};
+mod light_ray;
+
+use light_ray::{World, first, light_terms, plus, reflect, vec3};
 
 use super::context::ShadingContext;
 use super::groups::{Group, group_of};
@@ -12,158 +14,16 @@ use super::interpolate::{Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::run;
 use super::lit_points::place_fragments;
-use super::quantize::{SurfaceColor, reflected};
+use super::pixel_color::{Part, PixelColor, SurfacePoint, Term};
 use super::shadows::{BatchShadows, place_faces};
 use super::surface::Shader;
 use crate::accuracy::LightAt;
-use crate::render::frame::draw::{Back, Form, Pipeline, Shaded, Stage};
-use crate::render::frame::{Eye, FramePlan};
-use crate::render::lights::{Batch, Rows, ViewLight, store};
+use crate::render::frame::Eye;
+use crate::render::frame::draw::{Back, Pipeline, Shaded, Stage};
+use crate::render::lights::Batch;
 use crate::render::raster::visibility_buffer::{Visible, seen};
 use crate::render::screen::coverage::PixelBox;
 use crate::render::shadow::rays::{Origins, RayScratch};
-use crate::render::simd::{Kernel, Lanes, Vec3};
-use crate::scene::{ItemId, LightId};
-
-/// One pixel of a picture, and what its colour is made of.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PixelColor {
-    /// Column and row, from the upper left.
-    pub at: [usize; 2],
-    /// The surface that is seen there; `None` if it is the background or a line.
-    pub surface: Option<SurfacePoint>,
-    /// What the colour is made of, as factors from 0 to 1: with [`Self::rounding`] their sum is
-    /// [`Self::color`].
-    pub terms: Vec<Term>,
-    /// What the sum loses in the arithmetic of the picture.
-    pub rounding: [f64; 3],
-    /// The colour before it is clamped to 0 to 1 and rounded to a byte.
-    pub color: [f64; 3],
-    /// Whether the sum is linear light, which is encoded in sRGB before it is rounded.
-    pub linear: bool,
-    /// The bytes of the picture.
-    pub bytes: [u8; 3],
-}
-
-/// A point of a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfacePoint {
-    /// The object, the camera whose mark it is, or the bulb's light.
-    pub item: ItemId,
-    /// The polygon of its mesh.
-    pub polygon: u32,
-    /// The triangle of its mesh, in the order in which it is drawn.
-    pub triangle: u32,
-    /// The barycentric coordinates of the point in the triangle, in space.
-    pub weights: DVec3,
-    /// The distance along the observer's axis, in units of the world.
-    pub distance: f64,
-    /// The point in the world.
-    pub position: DVec3,
-    /// N, of length 1.
-    pub normal: DVec3,
-    /// V, of length 1.
-    pub to_eye: DVec3,
-    /// Whether its back is seen.
-    pub back: bool,
-    /// The colour t of the surface, which ambient and diffuse light are multiplied by: texel, tint
-    /// and vertex colour.
-    pub own: [f64; 3],
-    /// Where light was evaluated; `None` if the surface is not lit.
-    pub light_at: Option<LightAt>,
-}
-
-/// A part of a colour.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Term {
-    /// Which part it is.
-    pub part: Part,
-    /// The light that it comes from, if it comes from one.
-    pub light: Option<LightId>,
-    /// Red, green and blue, as factors.
-    pub value: [f64; 3],
-    /// How the light reaches the point; with a light's first term.
-    pub ray: Option<LightRay>,
-    /// How many transparent layers lie before what it is the colour of.
-    pub layer: u32,
-}
-
-impl Term {
-    const fn new(part: Part, value: [f64; 3]) -> Self {
-        Self { part, light: None, value, ray: None, layer: 0 }
-    }
-}
-
-/// The parts that a colour can have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// The colour where nothing is seen.
-    Background,
-    /// The colour of an edge or of a drawn normal.
-    Line,
-    /// The colour of what is not lit.
-    Unlit,
-    /// The red of a back face.
-    BackFace,
-    /// I Ka, times the colour of the surface.
-    Ambient,
-    /// I Kd (N.L), times the colour of the surface.
-    Diffuse,
-    /// I Ks (R.V)^Ns.
-    Specular,
-    /// What the surface adds to its colour whatever the lights: emission, and ambient light that
-    /// has a map of its own.
-    Emission,
-    /// What is cut off above 1 before layers are blended.
-    Cut,
-    /// What another way of blending makes of the layers than one over another.
-    Blending,
-    /// Light of the corners, interpolated: of all lights together.
-    Corners,
-}
-
-impl Part {
-    /// Its name.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Background => "background",
-            Self::Line => "line",
-            Self::Unlit => "surface, not lit",
-            Self::BackFace => "back face",
-            Self::Ambient => "ambient",
-            Self::Diffuse => "diffuse",
-            Self::Specular => "specular",
-            Self::Emission => "emission",
-            Self::Cut => "cut off above 255",
-            Self::Blending => "way of blending",
-            Self::Corners => "light of the corners",
-        }
-    }
-}
-
-/// How a light reaches a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LightRay {
-    /// L, of length 1, in the world.
-    pub to_light: DVec3,
-    /// R = 2 (N.L) N - L, in the world.
-    pub reflected: DVec3,
-    /// N.L
-    pub n_l: f64,
-    /// R.V, or N.H if highlights are Blinn's.
-    pub highlight: f64,
-    /// Whether it is N.H.
-    pub half_vector: bool,
-    /// The distance to the light in units of the world; `None` for a sun.
-    pub distance: Option<f64>,
-    /// The factor by which distance weakens it.
-    pub attenuation: f64,
-    /// The factor of a spot's cone.
-    pub cone: f64,
-    /// 0 where something stands between, else 1.
-    pub shadow: f64,
-}
 
 /// The pixel of a tile that is explained.
 #[derive(Clone, Copy, Debug)]
@@ -468,131 +328,5 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.diffuse));
         let color = first(&batch.diffuse);
         (vec![term(color)], color)
-    }
-}
-
-/// The terms of one light: ambient, or diffuse and specular.
-fn light_terms<T: ShadingNumber>(
-    plan: &FramePlan,
-    stage: &Stage,
-    batch: &Batch<T>,
-    [diffuse, specular]: [[f64; 3]; 2],
-    own: [f64; 3],
-) -> Vec<Term> {
-    let id = plan.light_ids[stage.light as usize];
-    let light = &plan.lights[stage.light as usize];
-    let value = [0, 1, 2].map(|i| own[i] * diffuse[i]);
-    if !stage.effect.reads_positions {
-        return vec![Term { light: Some(id), ..Term::new(Part::Ambient, value) }];
-    }
-    let ray = Some(ray(plan, stage, light, batch));
-    vec![
-        Term { light: Some(id), ray, ..Term::new(Part::Diffuse, value) },
-        Term { light: Some(id), ..Term::new(Part::Specular, specular) },
-    ]
-}
-
-/// How a light reaches the first position of a batch.
-fn ray<T: ShadingNumber>(
-    plan: &FramePlan,
-    stage: &Stage,
-    light: &ViewLight,
-    batch: &Batch<T>,
-) -> LightRay {
-    let world = World::new(plan);
-    let (position, normal) = (vec3(&batch.position), vec3(&batch.normal));
-    let to_eye = vec3(&batch.to_eye);
-    let travels = DVec3::from_array(light.direction);
-    let has_position = stage.effect.has_position;
-    let way = DVec3::from_array(light.position) - position;
-    let (to_light, distance) = if has_position {
-        (way.normalize_or_zero(), Some(way.length() / world.unit))
-    } else {
-        (-travels, None)
-    };
-    let n_l = normal.dot(to_light);
-    let reflected = normal * (2.0 * n_l) - to_light;
-    let half_vector = stage.highlight == Form::HalfVector;
-    let highlight = match half_vector {
-        true => normal.dot((to_light + to_eye).normalize_or_zero()),
-        false => reflected.dot(to_eye),
-    };
-    let [a0, a1, a2] = light.attenuation;
-    let d = way.length();
-    let cosine = travels.dot(-to_light).min(1.0);
-    LightRay {
-        to_light: world.direction(to_light),
-        reflected: world.direction(reflected),
-        n_l,
-        highlight,
-        half_vector,
-        distance,
-        attenuation: if has_position { 1.0 / (a0 + (a1 + a2 * d) * d) } else { 1.0 },
-        cone: (stage.effect.fraction_at)(light, cosine),
-        shadow: 1.0,
-    }
-}
-
-/// From view space to the world.
-struct World {
-    world_from_view: glam::DMat4,
-    turn: DMat3,
-    /// The length of a unit of the world in view space.
-    unit: f64,
-}
-
-impl World {
-    fn new(plan: &FramePlan) -> Self {
-        let unit = plan.view_from_world.x_axis.truncate().length();
-        let world_from_view = plan.view_from_world.inverse();
-        Self { world_from_view, turn: DMat3::from_mat4(world_from_view) * unit, unit }
-    }
-
-    fn point(&self, at: DVec3) -> DVec3 {
-        self.world_from_view.transform_point3(at)
-    }
-
-    fn direction(&self, v: DVec3) -> DVec3 {
-        self.turn * v
-    }
-}
-
-/// The first of each of three rows.
-fn first<T: ShadingNumber>(rows: &Rows<T>) -> [f64; 3] {
-    [rows[0][0].into(), rows[1][0].into(), rows[2][0].into()]
-}
-
-fn vec3<T: ShadingNumber>(rows: &Rows<T>) -> DVec3 {
-    DVec3::from_array(first(rows))
-}
-
-fn plus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-/// t D + S of the first position of a batch, in the arithmetic of the picture.
-fn reflect<T: ShadingNumber>(
-    context: &ShadingContext<'_, T>,
-    batch: &Batch<T>,
-    own: [f64; 3],
-) -> [f64; 3] {
-    let mut to: Rows<T> = [[T::default(); crate::render::simd::BATCH]; 3];
-    let own = own.map(T::from_f64);
-    T::run(context.level, Reflect { batch, own, to: &mut to });
-    first(&to)
-}
-
-struct Reflect<'a, T> {
-    batch: &'a Batch<T>,
-    own: [T; 3],
-    to: &'a mut Rows<T>,
-}
-
-impl<T: ShadingNumber> Kernel<T> for Reflect<'_, T> {
-    #[inline(always)]
-    fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { batch, own, to } = self;
-        let own: Vec3<M::R> = SurfaceColor::Tint(own).at(lanes, 0);
-        store(lanes, reflected(lanes, own, batch, 0), to, 0);
     }
 }

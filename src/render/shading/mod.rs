@@ -34,6 +34,7 @@ mod map_rows;
 mod map_texels;
 mod opacity;
 pub(crate) mod painter;
+pub(crate) mod pixel_color;
 pub(crate) mod quantize;
 mod resolve;
 pub(crate) mod rounding;

@@ -12,8 +12,11 @@ use crate::app::widgets::controls::{self, Choice, choices_in_rows};
 use crate::app::widgets::regions;
 use crate::lab::report::{Panel, PanelMark, Panels, Report, TextBox, brief, place};
 
-/// The least height of a plot with its title: 420 points and a line.
-const LEAST: f32 = 444.0;
+/// The height of a plot with its title, if the panel has room for it: 420 points and a line.
+const USUAL: f32 = 444.0;
+
+/// The least height, in a panel that is lower.
+const LEAST: f32 = 200.0;
 
 /// The height that the verdict gets under the plot, if there is room.
 const VERDICT: f32 = 84.0;
@@ -35,7 +38,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let panels = Panels::new(report);
     let panel = panels.of(state.lab.panel);
     panels_ui(ui, &panels, panel, requests);
-    let height = LEAST.max(ui.available_height() - VERDICT);
+    let height = height(ui.available_height());
     let area = ScrollArea::vertical().id_salt("plots").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         let size = vec2(ui.available_width(), height);
@@ -44,6 +47,12 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             ui.add(egui::Label::new(sentence).wrap());
         }
     });
+}
+
+/// The height of the plot in this room: in a low panel it has all of it, so that its scales are
+/// seen, and the verdict is scrolled to.
+fn height(room: f32) -> f32 {
+    (room - VERDICT).max(room.min(USUAL)).max(LEAST)
 }
 
 fn empty_ui(ui: &mut Ui, state: &State) {

@@ -20,7 +20,7 @@ struct Column {
 }
 
 /// In less width the table is scrolled sideways.
-const LEAST: f32 = 540.0;
+const LEAST: f32 = 480.0;
 
 /// What of the width the names have.
 const NAMES: f32 = 0.30;
@@ -29,13 +29,13 @@ const COLUMNS: [Column; 7] = [
     Column {
         heading: "time",
         hint: "Times the default's: the median of the pairs' ratios",
-        share: 0.11,
+        share: 0.09,
         value: |point, _, _| format!("{:.2}", point.ratio.quartiles.median),
     },
     Column {
         heading: "IQR",
         hint: "The interquartile range of the pairs' ratios: the middle half of them",
-        share: 0.17,
+        share: 0.15,
         value: |point, _, _| {
             let quartiles = &point.ratio.quartiles;
             format!("{:.2} - {:.2}", quartiles.lower, quartiles.upper)
@@ -44,31 +44,31 @@ const COLUMNS: [Column; 7] = [
     Column {
         heading: "ms",
         hint: "Milliseconds of a picture",
-        share: 0.09,
+        share: 0.08,
         value: |point, _, _| brief(point.ms),
     },
     Column {
         heading: "max",
         hint: "The maximum error: the largest difference of a byte",
-        share: 0.09,
+        share: 0.08,
         value: |_, error, region| error.over(region).largest.to_string(),
     },
     Column {
         heading: "RMSE",
         hint: "The root of the mean square difference, in byte steps",
-        share: 0.09,
+        share: 0.10,
         value: |_, error, region| brief(error.over(region).rmse),
     },
     Column {
         heading: "bytes",
         hint: "The part of the bytes that differ, in per cent",
-        share: 0.08,
+        share: 0.11,
         value: |_, error, region| format!("{}%", brief(error.over(region).differing * 100.0)),
     },
     Column {
         heading: "FLIP",
         hint: "How different it looks, from 0 to 1",
-        share: 0.07,
+        share: 0.09,
         value: |_, error, _| brief(error.flip),
     },
 ];

@@ -1,0 +1,38 @@
+//! The images that pictures of the viewport are copied to.
+//!
+//! There are three: one may be held by the window, one by what paints it, and one is copied into,
+//! so that no picture is copied while it is shown.
+
+use std::sync::Arc;
+
+use egui::ColorImage;
+
+use crate::base::image::{Picture, Size};
+
+/// Copies a picture into a free image, and makes that the last one.
+pub(super) fn present(images: &mut [Arc<ColorImage>; 3], picture: &Picture) {
+    let [first, second, _] = images;
+    let free = if Arc::get_mut(first).is_some() { 0 } else { 1 };
+    if free == 1 && Arc::get_mut(second).is_none() {
+        *second = Arc::default();
+    }
+    show(picture, Arc::make_mut(&mut images[free]));
+    images.swap(free, 2);
+}
+
+/// Copies opaque pixels; those are the same with and without multiplication by alpha.
+fn show(picture: &Picture, image: &mut ColorImage) {
+    let Size { width, height } = picture.size();
+    if image.size != [width, height] {
+        *image = ColorImage::filled([width, height], egui::Color32::BLACK);
+    }
+    let bytes: &mut [[u8; 4]] = bytemuck::cast_slice_mut(&mut image.pixels);
+    bytes.copy_from_slice(picture.pixels());
+}
+
+/// The picture that an image of the viewport shows.
+pub(crate) fn picture(image: &ColorImage) -> Option<Picture> {
+    let [width, height] = image.size;
+    let pixels: &[[u8; 4]] = bytemuck::cast_slice(&image.pixels);
+    Picture::from_pixels(Size::new(width, height), pixels.to_vec())
+}

@@ -1,0 +1,108 @@
+//! Arranges the panels around the picture and shows those that are open.
+
+use egui::{Frame, Layout, Margin, Rect, Ui, UiBuilder};
+
+use super::{Dock, Panel, Side, each_panel};
+use super::{greeting, menu_bar, palette, splitters, status_line};
+use crate::app::actions::Request;
+use crate::app::state::State;
+use crate::app::state::layout::Places;
+use crate::app::theme;
+use crate::app::widgets::regions;
+
+/// Where everything stands in a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arrangement {
+    /// All between the menus and the status line.
+    area: Rect,
+    places: Places,
+}
+
+/// What shows a panel: it adds its requests to those that it is given.
+type Contents = fn(&mut Ui, &State, &mut Vec<Request>);
+
+macro_rules! contents {
+    ($(
+        $panel:ident $file:ident $name:literal [$dock:expr] $open:literal [$($key:expr),*]
+            $label:literal $hint:literal $words:literal;
+    )+) => {
+        const fn contents(panel: Panel) -> Contents {
+            match panel {
+                $(Panel::$panel => super::$file::show,)+
+            }
+        }
+    };
+}
+
+each_panel!(contents);
+
+impl Arrangement {
+    /// The place that is left to the picture.
+    pub(crate) const fn picture(&self) -> Rect {
+        self.places.picture
+    }
+
+    /// Shows what stands over the picture: open panels, the palette and the strip of the first
+    /// minute; last the borders that can be dragged, since the picture would take their presses.
+    pub(crate) fn over_picture_ui(&self, ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+        let builder = UiBuilder::new().id_salt("over the picture").max_rect(self.places.picture);
+        let mut child = ui.new_child(builder);
+        child.set_clip_rect(self.places.picture.intersect(ui.clip_rect()));
+        let open =
+            |panel: &&Panel| state.panels.has(**panel) && panel.info().dock == Dock::Floating;
+        for panel in Panel::ALL.iter().filter(open) {
+            contents(*panel)(&mut child, state, requests);
+        }
+        greeting::show(ui, self.places.picture, state, requests);
+        splitters::show(ui, state, self.area, &self.places, requests);
+    }
+}
+
+/// Shows the bars and all docked panels that are open.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> Arrangement {
+    let fill = ui.visuals().panel_fill;
+    let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
+    egui::Panel::top("menu bar").frame(bar).show(ui, |ui| {
+        regions::begin(ui, "menus");
+        menu_bar::show(ui, state, requests);
+    });
+    egui::Panel::bottom("status line")
+        .frame(bar)
+        .show(ui, |ui| status_line::show(ui, state, requests));
+    let area = ui.available_rect_before_wrap();
+    let mut layout = state.layout;
+    if state.renaming.is_some() {
+        // A new name is typed in the outline.
+        layout.unfolded = Some(Side::Outline);
+    }
+    let renames = state.renaming.is_some();
+    let panels = state.panels.with(Panel::Outline, state.panels.has(Panel::Outline) || renames);
+    let places = layout.divide(area, panels);
+    if let Some(rect) = places.strip {
+        ui.painter().rect_filled(rect, 0.0, fill);
+        regions::begin(ui, "strip");
+        splitters::strip_ui(ui, rect, state, requests);
+    }
+    for panel in Panel::ALL {
+        let Some(rect) = places.of(panel.info().dock) else { continue };
+        within(ui, panel.info().label, rect, |ui| contents(*panel)(ui, state, requests));
+    }
+    if state.palette {
+        palette::show(ui, state, requests);
+    }
+    Arrangement { area, places }
+}
+
+/// Shows a panel in its place. What it holds never makes it larger.
+fn within(ui: &mut Ui, name: &str, rect: Rect, add: impl FnOnce(&mut Ui)) {
+    ui.painter().rect_filled(rect, 0.0, ui.visuals().panel_fill);
+    // The contents leave room for a scroll bar.
+    let margin = Margin { left: theme::MARGIN, right: 2, top: 4, bottom: 4 };
+    let layout = Layout::top_down(egui::Align::Min);
+    let builder = UiBuilder::new().id_salt(name).max_rect(rect - margin).layout(layout);
+    let mut child = ui.new_child(builder);
+    child.set_clip_rect(rect.intersect(ui.clip_rect()));
+    regions::begin(&child, name);
+    add(&mut child);
+    regions::follow_focus(&child);
+}

@@ -1,0 +1,56 @@
+//! The history of changes: every step, the point that the scene is at, and a click to any other.
+
+use egui::{Atom, Button, Pos2, ScrollArea, Ui, Window};
+
+use crate::app::actions::{Action, Request};
+use crate::app::panels::Panel;
+use crate::app::state::State;
+
+/// The usual width.
+const WIDTH: f32 = 240.0;
+
+/// How many steps are seen; the others are scrolled to.
+const ROWS: f32 = 14.0;
+
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let mut open = true;
+    let picture = ui.max_rect();
+    // Notices have the upper border.
+    let at = Pos2::new(picture.left() + 12.0, picture.top() + 84.0);
+    Window::new(Panel::History.info().label)
+        .open(&mut open)
+        .collapsible(false)
+        .default_pos(at)
+        .default_width(WIDTH)
+        .constrain_to(picture)
+        .show(ui.ctx(), |ui| list_ui(ui, state, requests));
+    if !open {
+        requests.push(Action::Panel(Panel::History).into());
+    }
+}
+
+/// The steps; a click goes to the point just after one. Says whether one was clicked.
+pub(super) fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> bool {
+    let history = &state.history;
+    let labels: Vec<&str> = std::iter::once("Beginning").chain(history.steps()).collect();
+    let row = ui.spacing().interact_size.y;
+    let mut clicked = false;
+    let most = ROWS * (row + ui.spacing().item_spacing.y);
+    let list = ScrollArea::vertical().max_height(most).auto_shrink([false, true]);
+    // The last step is seen as it comes.
+    list.stick_to_bottom(true).show_rows(ui, row, labels.len(), |ui, range| {
+        for position in range {
+            let here = position == history.position();
+            let text = format!("{position}  {}", labels[position]);
+            // What grows behind the text keeps it at the left.
+            let button = Button::selectable(here, (text, Atom::grow())).truncate();
+            let response = ui.add_sized([ui.available_width(), row], button);
+            if response.on_hover_text("Goes to the point just after this step").clicked() {
+                requests.push(Request::GoTo(position));
+                clicked = true;
+            }
+        }
+    });
+    clicked
+}

@@ -1,0 +1,112 @@
+//! Statistics over the picture: how much is drawn, how long it takes, and what was drawn again.
+
+use egui::{Align2, Ui};
+
+use crate::app::actions::Request;
+use crate::app::state::{Shrink, State};
+use crate::app::widgets::plate::plate_ui;
+use crate::app::widgets::text::grouped;
+use crate::render::{Change, Damage, DamageCause};
+use crate::scene::ItemId;
+
+/// Shows the panel in a corner of the picture; it asks for nothing.
+pub(crate) fn show(ui: &mut Ui, state: &State, _: &mut Vec<Request>) {
+    let statistics = &state.statistics;
+    let shown = || state.scene.objects.iter().filter(|(_, object)| object.visible);
+    let sum = |count: fn(&crate::scene::Mesh) -> usize| {
+        grouped(shown().map(|(_, object)| count(&object.model.mesh)).sum())
+    };
+    let text = format!(
+        "{} pictures in the last second, {:.1} ms each\n{} x {} pixels{}\n{}\n\
+        {} objects, {} vertices, {} faces\n{} of {} triangles drawn",
+        statistics.rate,
+        statistics.time.as_secs_f64() * 1e3,
+        statistics.size.width,
+        statistics.size.height,
+        shown_as(statistics.reduction.shrink),
+        statistics.changes.as_ref().map_or_else(String::new, |changes| redrawn(state, changes)),
+        shown().count(),
+        sum(|mesh| mesh.positions().len()),
+        sum(crate::scene::Mesh::polygon_count),
+        grouped(statistics.triangles),
+        sum(|mesh| mesh.triangle_count()),
+    );
+    plate_ui(ui, ui.max_rect(), Align2::LEFT_TOP, text);
+}
+
+/// How large the pixels of a smaller picture are shown.
+const fn shown_as(shrink: Shrink) -> &'static str {
+    match shrink {
+        Shrink::Whole => "",
+        Shrink::Half => ", each shown as four",
+        Shrink::Quarter => ", each shown as sixteen",
+    }
+}
+
+/// The maximum number of names in a reason.
+const NAMES: usize = 2;
+
+/// How much of the last picture was redrawn, and why: "14 of 169 tiles drawn: teapot moved".
+fn redrawn(state: &State, changes: &Damage) -> String {
+    let why = match changes.cause() {
+        DamageCause::First => "a new picture".to_owned(),
+        DamageCause::Size => "another size".to_owned(),
+        DamageCause::Camera => "seen from elsewhere".to_owned(),
+        DamageCause::Background => "another background".to_owned(),
+        DamageCause::Settings => "drawn in another way".to_owned(),
+        DamageCause::Shadows => "other shadows".to_owned(),
+        DamageCause::Order => "another order".to_owned(),
+        DamageCause::Items(items) => reasons(items, |item| state.name(item)),
+    };
+    format!("{} of {} tiles drawn: {why}", changes.tiles(), changes.tiles_in_all())
+}
+
+/// The changes of items, grouped by kind: "teapot moved, cube and 2 more look different".
+fn reasons<'a>(items: &[(ItemId, Change)], name: impl Fn(ItemId) -> Option<&'a str>) -> String {
+    let all = [
+        (Change::Moved, "moved"),
+        (Change::Shape, "changed in shape"),
+        (Change::Look, "changed in colour or light"),
+        (Change::Came, "came"),
+        (Change::Went, "went"),
+    ];
+    let reason = |(change, verb): (Change, &str)| {
+        let alike: Vec<ItemId> =
+            items.iter().filter(|(_, other)| *other == change).map(|(item, _)| *item).collect();
+        let named = |item: &ItemId| name(*item).unwrap_or("what is gone").to_owned();
+        let mut names: Vec<String> = alike.iter().take(NAMES).map(named).collect();
+        if alike.len() > NAMES {
+            names.truncate(NAMES - 1);
+            names.push(format!("{} more", alike.len() + 1 - NAMES));
+        }
+        (!names.is_empty()).then(|| format!("{} {verb}", names.join(" and ")))
+    };
+    all.into_iter().filter_map(reason).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::ObjectId;
+
+    #[test]
+    fn a_reason_names_two_at_most_and_puts_those_together_that_changed_alike() {
+        let object = |id| ItemId::Object(ObjectId(id));
+        let names = ["teapot", "cube", "ball"];
+        let name = |item| match item {
+            ItemId::Object(ObjectId(id)) => names.get(id as usize).copied(),
+            ItemId::Camera(_) | ItemId::Light(_) => None,
+        };
+        let items = |changes: &[Change]| -> Vec<(ItemId, Change)> {
+            (0..).map(object).zip(changes.iter().copied()).collect()
+        };
+        let moved = items(&[Change::Look, Change::Moved, Change::Look]);
+        let reason = "cube moved, teapot and ball changed in colour or light";
+        assert_eq!(reasons(&moved, name), reason);
+        assert_eq!(
+            reasons(&items(&[Change::Look; 3]), name),
+            "teapot and 2 more changed in colour or light"
+        );
+        assert_eq!(reasons(&[(object(9), Change::Went)], name), "what is gone went");
+    }
+}

@@ -1,0 +1,105 @@
+//! What the window says: messages in the status line, notices, and what they offer.
+
+use crate::edit::{Refusal, framing, items};
+use crate::scene::{Command, MaterialChoice, Object, ObjectId, Scene, Sides, Surface, View};
+
+/// A message to the user.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// One sentence.
+    pub text: String,
+    /// Its tone.
+    pub tone: Tone,
+}
+
+/// The tone of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// It was done.
+    Done,
+    /// It was not done, for this reason.
+    Refused,
+}
+
+/// A notice that stays until the user dismisses it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// One line.
+    pub text: String,
+    /// Details, one line each.
+    pub details: Vec<String>,
+    /// An offer shown with it as a button.
+    pub offer: Option<Offer>,
+}
+
+/// An action that a notice offers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Offer {
+    /// To bring an object into view.
+    Frame(ObjectId),
+    /// To draw both sides of an object's faces.
+    TwoSides(ObjectId),
+    /// To show an object that is hidden.
+    Show(ObjectId),
+    /// To make an object opaque.
+    Opaque(ObjectId),
+}
+
+impl Offer {
+    /// The label of its button.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Frame(_) => "Frame",
+            Self::TwoSides(_) => "Draw both sides",
+            Self::Show(_) => "Show",
+            Self::Opaque(_) => "Make opaque",
+        }
+    }
+
+    /// The object that it is about.
+    #[must_use]
+    pub const fn object(self) -> ObjectId {
+        let (Self::Frame(id) | Self::TwoSides(id) | Self::Show(id) | Self::Opaque(id)) = self;
+        id
+    }
+
+    /// The change of the scene, and its label in the history.
+    ///
+    /// # Errors
+    /// If the object is gone, or the observer is an object.
+    pub fn command(self, scene: &Scene, view: &View) -> Result<(Command, String), Refusal> {
+        let id = self.object();
+        let name = &scene.objects.get(id).ok_or(Refusal::Gone)?.name;
+        Ok(match self {
+            Self::Frame(_) => (framing::objects(scene, view, &[id])?, format!("Frame {name}")),
+            Self::TwoSides(_) => {
+                let two = |object: &mut Object| object.sides = Sides::Two;
+                (items::change_object(scene, id, two)?, format!("Draw both sides of {name}"))
+            }
+            Self::Show(_) => {
+                let show = |object: &mut Object| object.visible = true;
+                (items::change_object(scene, id, show)?, format!("Show {name}"))
+            }
+            Self::Opaque(_) => {
+                (items::change_object(scene, id, make_opaque)?, format!("Make {name} opaque"))
+            }
+        })
+    }
+}
+
+/// Makes an object opaque: its own opacity becomes 1. If it was, the materials or the texture of
+/// its file hide it: it gets the first part's material as its own, or shows its material alone.
+fn make_opaque(object: &mut Object) {
+    let was_transparent = object.opacity < 1.0;
+    object.opacity = 1.0;
+    if was_transparent {
+        return;
+    }
+    let parts = u32::try_from(object.model.mesh.parts().len()).unwrap_or(u32::MAX);
+    if (0..parts).all(|part| object.part_look(part).opacity == 0.0) {
+        object.material = MaterialChoice::Own(object.part_look(0).material);
+    } else if (0..parts).any(|part| object.part_look(part).texture.is_some()) {
+        object.surface = Surface::Material;
+    }
+}
