@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Key, ViewportCommand, ViewportEvent, ViewportId};
-use egui_kittest::kittest::NodeT as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Lower, Named, Upper};
 use marraztu::app::actions::Request;
@@ -449,4 +449,21 @@ fn a_path_that_was_refused_is_typed_on() {
     type_text(&mut editor, &format!("/{}", path.with_extension("").display()));
     editor.press(Named(Key::Enter));
     editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+}
+
+#[test]
+fn a_notice_stands_over_the_picture_and_covers_no_panel() {
+    let (_folder, path) = folder_with("cube.obj", &format!("{CUBE}f 1 2 99\n"));
+    let mut editor = Editor::of_size(640.0, 480.0);
+    editor.ask(Request::LoadFiles(vec![path]));
+    editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+    editor.click_label("Load");
+    editor.wait_until(|editor| editor.shows("Details"));
+    editor.perform(Action::Panel(Panel::Properties));
+    let picture = editor.picture();
+    for label in ["Details", "Dismiss"] {
+        for notice in editor.harness.query_all_by_label(label) {
+            assert!(picture.contains_rect(notice.rect()), "{label}");
+        }
+    }
 }

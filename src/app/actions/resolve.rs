@@ -9,7 +9,7 @@ use egui::ThemePreference;
 use super::intent::{FileIntent, Intent};
 use super::table::Action;
 use crate::accuracy::{LeaveOut, Settings};
-use crate::app::panels::{Dock, Panel};
+use crate::app::panels::Panel;
 use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, State};
 use crate::app::widgets::regions::Way;
@@ -333,12 +333,12 @@ fn transformation(state: &State, transformation: Transformation) -> Resolved {
 
 /// Shows or hides a panel; in a narrow window, unfolds or folds one that stands beside the picture.
 fn toggle(state: &State, panel: Panel) -> Resolved {
-    match panel.info().dock {
-        Dock::Beside(side) if state.narrow => {
+    match panel.info().dock.side().filter(|_| state.narrow) {
+        Some(side) => {
             let unfolded = (state.layout.unfolded != Some(side)).then_some(side);
             Ok(Intent::Layout(Layout { unfolded, ..state.layout }))
         }
-        _ => Ok(Intent::Panels(state.panels.toggled(panel))),
+        None => Ok(Intent::Panels(state.panels.toggled(panel))),
     }
 }
 

@@ -136,6 +136,7 @@ pub fn actions_for(query: &str) -> Vec<Action> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::panels::Panel;
 
     /// The words that people use, and the action that they mean.
     const WORDS: [(&str, Action); 66] = [
@@ -160,9 +161,9 @@ mod tests {
         ("dark mode", Action::ThemeDark),
         ("night", Action::ThemeDark),
         ("white", Action::ThemeLight),
-        ("shortcuts", Action::CheatSheet),
-        ("hotkeys", Action::CheatSheet),
-        ("help", Action::CheatSheet),
+        ("shortcuts", Action::Panel(Panel::CheatSheet)),
+        ("hotkeys", Action::Panel(Panel::CheatSheet)),
+        ("help", Action::Panel(Panel::CheatSheet)),
         ("import", Action::Load),
         ("load obj", Action::Load),
         ("insert", Action::Load),
@@ -189,9 +190,9 @@ mod tests {
         ("spotlight", Action::AddSpot),
         ("point light", Action::AddBulb),
         ("directional", Action::AddSun),
-        ("fps", Action::ToggleStatistics),
-        ("hierarchy", Action::ToggleOutline),
-        ("inspector", Action::ToggleProperties),
+        ("fps", Action::Panel(Panel::Statistics)),
+        ("hierarchy", Action::Panel(Panel::Outline)),
+        ("inspector", Action::Panel(Panel::Properties)),
         ("revert", Action::Undo),
         ("again", Action::Redo),
         ("above", Action::LookTop),
@@ -204,7 +205,7 @@ mod tests {
         ("numeric", Action::TypeAmount),
         ("target", Action::AimAtSelection),
         ("font size", Action::LargerText),
-        ("benchmark", Action::ToggleLaboratory),
+        ("benchmark", Action::Panel(Panel::Laboratory)),
     ];
 
     #[test]

@@ -4,7 +4,6 @@ use egui::ThemePreference;
 
 use super::table::Action;
 use crate::accuracy::LeaveOut;
-use crate::app::panels::Dock;
 use crate::app::state::State;
 use crate::edit::lights;
 use crate::scene::{
@@ -91,9 +90,9 @@ impl Action {
             Self::ToggleShadows => scene.lights.get(view.light?)?.shadows,
             Self::ToggleProjection => view.projection == Projection::Orthographic,
             Self::ToggleObserver => view.observer == Observer::Object,
-            Self::Panel(panel) => match panel.info().dock {
-                Dock::Beside(side) if state.narrow => state.layout.unfolded == Some(side),
-                _ => state.panels.has(panel),
+            Self::Panel(panel) => match panel.info().dock.side().filter(|_| state.narrow) {
+                Some(side) => state.layout.unfolded == Some(side),
+                None => state.panels.has(panel),
             },
             Self::MeasurePlan => state.plan.measuring,
             Self::ToggleLeaveOut => state.settings.leave_out == LeaveOut::HalfStep,

@@ -278,9 +278,6 @@ actions! {
     LookTop Camera ONCE [Command(Key::Num7)]
         "Top view" "Looks from above, along -Y."
         "camera above bird plan down";
-    WhyUnseen Camera ONCE [Either(Key::W)]
-        "Why can't I see it?" "Says why nothing of the selected object is seen, and what mends it."
-        "invisible missing gone lost hidden vanished black find";
     ExplainPixel Show ONCE [Either(Key::E)]
         "Explain a pixel"
         "Says what the next pixel that is clicked shows, and what its colour is made of."
@@ -294,6 +291,9 @@ actions! {
     LookBottom Camera ONCE []
         "Bottom view" "Looks from below, along +Y."
         "camera under up";
+    WhyUnseen Camera ONCE [Either(Key::W)]
+        "Why can't I see it?" "Says why nothing of the selected object is seen, and what mends it."
+        "invisible missing gone lost hidden vanished black find";
 
     Light0 Light ONCE [Lower(Key::Num0)]
         "Light 0" "Switches light 0 on or off."

@@ -17,6 +17,32 @@ const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::Th
 /// Those that stand under Help.
 const HELP: [Action; 3] = [Action::Palette, Action::Panel(Panel::CheatSheet), Action::ToPanels];
 
+/// Actions that begin another part of a menu: a line stands before them.
+const PARTS: [Action; 22] = [
+    Action::Load,
+    Action::Save,
+    Action::SavePicture,
+    Action::ExportScene,
+    Action::Quit,
+    Action::Rename,
+    Action::SelectAll,
+    Action::ToggleVisible,
+    Action::SubjectCamera,
+    Action::ToggleFrame,
+    Action::DropToGround,
+    Action::StepXUp,
+    Action::AddCamera,
+    Action::AddSun,
+    Action::ToggleBackFaces,
+    Action::ToggleLeaveOut,
+    Action::ExplainPixel,
+    Action::LookFront,
+    Action::WhyUnseen,
+    Action::SoloLight,
+    Action::AimAtSelection,
+    Action::RedUp,
+];
+
 /// How large the interface is.
 const SIZES: [Action; 3] = [Action::LargerText, Action::SmallerText, Action::NormalText];
 
@@ -107,7 +133,10 @@ fn items(
     requests: &mut Vec<Request>,
     actions: impl IntoIterator<Item = Action>,
 ) {
-    for action in actions {
+    for (i, action) in actions.into_iter().enumerate() {
+        if i > 0 && PARTS.contains(&action) {
+            ui.separator();
+        }
         requests.extend(action.menu_item(ui, state).map(Request::from));
     }
 }

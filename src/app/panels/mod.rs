@@ -40,6 +40,17 @@ pub enum Dock {
     Floating,
 }
 
+impl Dock {
+    /// The place beside the picture, if it is one.
+    #[must_use]
+    pub const fn side(self) -> Option<Side> {
+        match self {
+            Self::Beside(side) => Some(side),
+            Self::Bottom | Self::UnderPicture | Self::Floating => None,
+        }
+    }
+}
+
 /// A place beside the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {

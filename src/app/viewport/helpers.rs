@@ -159,7 +159,9 @@ fn box_ui(ui: &Ui, painter: &Painter, onto: &Projection, bounds: &Bounds, stroke
         let outer = |at: &Pos2| if axis == Axis::Y { -at.x } else { at.y };
         if let Some(at) = middles.max_by(|a, b| outer(a).total_cmp(&outer(b))) {
             let text = format!("{} {}", LETTERS[axis.index()], short(size[axis.index()]));
-            label_ui(ui, painter, at, text, theme::axis_on_dark(axis));
+            // Beside the edge, so that neither it nor a handle is covered.
+            let aside = if axis == Axis::Y { vec2(-28.0, 0.0) } else { vec2(0.0, 13.0) };
+            label_ui(ui, painter, at + aside, text, theme::axis_on_dark(axis));
         }
     }
 }

@@ -260,3 +260,16 @@ fn tip_ui(ui: &mut Ui, mark: &PanelMark, report: &Report) {
     }
     ui.weak("Click to draw the picture with these settings.");
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plot_fits_into_a_low_panel_and_leaves_room_for_the_verdict_in_a_high_one() {
+        assert_eq!(height(290.0), 290.0);
+        assert_eq!(height(USUAL + 20.0), USUAL);
+        assert_eq!(height(700.0), 700.0 - VERDICT);
+        assert_eq!(height(100.0), LEAST);
+    }
+}

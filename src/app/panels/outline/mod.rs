@@ -130,7 +130,9 @@ fn filter_ui(ui: &mut Ui, state: &State) -> String {
     let id = Id::unique("filter of the outline");
     let mut query: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let width = ui.available_width() - f32::from(theme::MARGIN);
-    let field = egui::TextEdit::singleline(&mut query).hint_text("Filter by name");
+    let field = egui::TextEdit::singleline(&mut query)
+        .hint_text("Filter by name")
+        .align(egui::Align2::LEFT_CENTER);
     let response = ui.add_sized(vec2(width, theme::ROW), field);
     response.accessible_name("Filter by name");
     ui.add_space(2.0);

@@ -225,7 +225,10 @@ fn rename_ui(ui: &mut Ui, requests: &mut Vec<Request>, rect: Rect, name: &str) {
     let id = new_name();
     let begun: Option<String> = ui.data(|data| data.get_temp(id));
     let mut text = begun.clone().unwrap_or_else(|| name.to_owned());
-    let field = TextEdit::singleline(&mut text).id(id).margin(vec2(3.0, 1.0));
+    let field = TextEdit::singleline(&mut text)
+        .id(id)
+        .align(egui::Align2::LEFT_CENTER)
+        .margin(vec2(3.0, 1.0));
     let response = ui.put(rect.shrink2(vec2(0.0, 1.0)), field).accessible_name("New name");
     if begun.is_none() {
         response.request_focus();
