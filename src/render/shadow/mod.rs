@@ -25,9 +25,11 @@
 //! 1997. Amanatides and Choi, "Ray Tracing Triangular Meshes", 1995, for edges seen from one point.
 
 pub(crate) mod boxes;
+mod map_bias;
 mod map_draws;
 pub(crate) mod map_face;
 pub(crate) mod maps;
+mod patches;
 pub(crate) mod prepared_block;
 pub(crate) mod rays;
 pub(crate) mod shaft;

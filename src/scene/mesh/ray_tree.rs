@@ -10,6 +10,7 @@
 
 use std::ops::Range;
 
+use fearless_simd::{Simd, SimdBase as _, SimdMask as _, u32x8};
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -38,6 +39,7 @@ pub const TREE_BLOCK: usize = 8;
 
 /// Up to eight triangles of a leaf. The last is repeated in what is left of its block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(64))]
 pub struct TreeBlock {
     /// For each corner and axis the coordinates in object space.
     pub corners: [[[f32; TREE_BLOCK]; 3]; 3],
@@ -59,6 +61,13 @@ impl TreeBlock {
         block
     }
 
+    /// The triangles whose numbers are at least the first of two and less than the second.
+    #[inline(always)]
+    pub fn among<S: Simd>(&self, simd: S, [first, end]: [u32; 2]) -> u64 {
+        let numbers = u32x8::from_slice(simd, &self.numbers);
+        (numbers.simd_ge(first) & numbers.simd_lt(end)).to_bitmask()
+    }
+
     /// One of its triangles.
     #[must_use]
     pub fn triangle(&self, i: usize) -> TreeTriangle {
@@ -75,6 +84,7 @@ const WIDTH: usize = 8;
 /// An inner node: the boxes of up to eight children, in four lines of a cache. Large trees are
 /// bound by the latency of memory, and so have few levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
 pub struct TreeNode {
     boxes: [Box3; WIDTH],
     children: [TreeChild; WIDTH],
@@ -133,7 +143,7 @@ const EMPTY: Box3 = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
 /// The most boxes in a leaf, and the cost of a node relative to a box in it.
 const LEAF: u32 = 8;
-const NODE_COST: f32 = 1.5;
+const NODE_COST: f32 = 4.0;
 
 /// The number of boxes up to which a tree is one leaf.
 const FEW: usize = 2;
