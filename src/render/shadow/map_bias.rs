@@ -3,7 +3,7 @@
 //! Each tile is copied with a border of one texel, so that sixteen texels of a row and their
 //! neighbours are loaded at once.
 
-use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdFloat as _, dispatch, f32x16};
+use fearless_simd::{Level, Select as _, Simd, SimdBase as _, dispatch, f32x16};
 
 use super::map_face::place;
 use crate::render::screen::tiles::{BLOCK_PIXELS, TILE_SIDE};
@@ -126,5 +126,61 @@ impl Bordered {
             }
         }
         slope
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::rng::Rng;
+    use crate::render::screen::tiles::PIXELS;
+
+    /// The rule, texel by texel.
+    fn moved(picture: Picture<'_>, limit: &Limit, [x, y]: [usize; 2]) -> f32 {
+        let Picture { side, depths, slopes } = picture;
+        let (depth, own) = (depths[place(side, x, y)], slopes[place(side, x, y)]);
+        if depth == 0.0 {
+            return 0.0;
+        }
+        let mut slope = own;
+        for y in y.saturating_sub(1)..=(y + 1).min(side - 1) {
+            for x in x.saturating_sub(1)..=(x + 1).min(side - 1) {
+                let other = slopes[place(side, x, y)];
+                if (depths[place(side, x, y)] - depth).abs() <= (own + other) * 2.0 {
+                    slope = slope.max(other);
+                }
+            }
+        }
+        let most = if limit.is_perspective { limit.steepest * depth } else { limit.steepest };
+        (depth - limit.reach * slope.min(most) - depth * ROUNDING).max(f32::MIN_POSITIVE)
+    }
+
+    #[test]
+    fn sixteen_texels_are_moved_as_each_by_itself() {
+        let (mut rng, side) = (Rng::new(7), 2 * TILE_SIDE);
+        for round in 0..8 {
+            let mut numbers = |most: usize, unit: f32| -> Vec<f32> {
+                (0..4 * PIXELS).map(|_| rng.index(most) as f32 * unit).collect()
+            };
+            // A quarter of the texels is empty; some slopes join surfaces, and some do not.
+            let (mut depths, slopes) = (numbers(4, 0.25), numbers(9, 0.02));
+            for (depth, more) in depths.iter_mut().zip(numbers(100, 1e-3)) {
+                *depth = if *depth == 0.0 { 0.0 } else { *depth - more };
+            }
+            let picture = Picture { side, depths: &depths, slopes: &slopes };
+            let limit = Limit { reach: 1.51, steepest: 0.1, is_perspective: round % 2 == 0 };
+            for level in [Level::baseline(), Level::new()] {
+                for tile in 0..4 {
+                    let mut texels = [0.0; PIXELS];
+                    Bordered::default().biased(level, picture, (tile, &limit), &mut texels);
+                    for i in 0..PIXELS {
+                        let (x, y) = (i % TILE_SIDE, i / TILE_SIDE);
+                        let at = [tile % 2 * TILE_SIDE + x, tile / 2 * TILE_SIDE + y];
+                        let got = texels[place(TILE_SIDE, x, y)];
+                        assert_eq!(got, moved(picture, &limit, at), "{at:?}");
+                    }
+                }
+            }
+        }
     }
 }

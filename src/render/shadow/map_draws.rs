@@ -22,7 +22,7 @@ use crate::render::raster::visibility_buffer::{Visible, key, seen};
 use crate::render::screen::clip::Screen;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::sample_positions::SamplePositions;
-use crate::render::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE, TILE_SIDE, tiles_of};
+use crate::render::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE, tiles_of};
 use crate::scene::{NormalSource, Normals};
 
 /// More than half of a texel, for corners that are snapped to 1/256 of it.

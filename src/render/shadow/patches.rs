@@ -108,3 +108,69 @@ impl Origins {
 fn nth(mask: u64, n: usize) -> usize {
     bits(mask).nth(n).unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::rng::Rng;
+
+    /// Points on squares of a plane, some columns of each.
+    fn origins(squares: &[(DVec3, usize)]) -> Origins {
+        let mut origins = Origins::default();
+        origins.begin(None, false);
+        let points = squares.iter().flat_map(|(at, columns)| {
+            (0..8 * columns).map(move |i| at + DVec3::new((i / 8) as f64, (i % 8) as f64, 0.0))
+        });
+        points.enumerate().for_each(|(i, point)| origins.set(i, point, [0; 2]));
+        origins
+    }
+
+    fn patches(mut origins: Origins) -> Vec<Patch> {
+        origins.find_patches(|_, _| Some(DVec3::Z));
+        origins.patches
+    }
+
+    #[test]
+    fn a_surface_is_one_patch_and_surfaces_with_a_gap_between_them_are_two() {
+        assert_eq!(patches(origins(&[(DVec3::ZERO, 8)])).len(), 1);
+        let far = DVec3::new(40.0, 0.0, -9.0);
+        let two = patches(origins(&[(DVec3::ZERO, 5), (far, 3)]));
+        let mut points: Vec<u64> = two.iter().map(|patch| patch.points).collect();
+        points.sort_unstable();
+        assert_eq!(points, [(1 << 40) - 1, u64::MAX << 40]);
+        // Neither box is longer than its own points.
+        assert!(two.iter().all(|patch| patch.around.extent().max_element() < 4.0));
+    }
+
+    #[test]
+    fn every_point_is_in_one_patch_and_inside_its_box() {
+        let mut rng = Rng::new(11);
+        for round in 0..500 {
+            let mut origins = Origins::default();
+            origins.begin(None, false);
+            let len = 1 + rng.index(64);
+            let mut number = |range: usize| rng.index(2 * range + 1) as f64 - range as f64;
+            for i in 0..len {
+                // In clusters, so that gaps of every width come up.
+                let cluster = DVec3::new(number(1), number(1), number(1)) * (round % 50) as f64;
+                origins.set(i, cluster + DVec3::new(number(9), number(9), number(9)), [0; 2]);
+            }
+            origins.find_patches(|_, _| None);
+            assert!(origins.patches.len() <= MOST);
+            let mut all = 0;
+            for Patch { points, around } in &origins.patches {
+                assert!(all & points == 0 && *points != 0, "a point is in two patches");
+                all |= points;
+                for i in bits(*points) {
+                    let from = origins.point(i) - around.centre;
+                    let inside = around
+                        .halves
+                        .iter()
+                        .all(|half| from.dot(*half).abs() <= half.length_squared() * (1.0 + 1e-12));
+                    assert!(inside, "a point is outside of its box");
+                }
+            }
+            assert_eq!(all, u64::MAX >> (64 - len));
+        }
+    }
+}

@@ -149,8 +149,15 @@ const NODE_COST: f32 = 4.0;
 const FEW: usize = 2;
 
 impl RayTree {
-    /// Builds the tree of a mesh.
+    /// Builds the tree of a mesh. A million triangles take a second, so drawing threads do it.
+    ///
+    /// # Panics
+    /// In builds with debug assertions, on a thread that does not draw, such as the window's.
     pub(crate) fn new(mesh: &Mesh) -> Self {
+        debug_assert!(
+            rayon::current_thread_index().is_some(),
+            "a tree of boxes is built on a thread that does not draw: prepare it before"
+        );
         let groups = Groups::of(mesh);
         if groups.boxes.is_empty() {
             return Self::default();
@@ -342,4 +349,15 @@ fn in_unit_cube(boxes: &[Box3]) -> Vec<Aabb> {
         Vec3A::new(axis(0), axis(1), axis(2))
     };
     boxes.par_iter().map(|[low, high]| Aabb::new(place(*low), place(*high))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[should_panic(expected = "built on a thread that does not draw")]
+    fn no_thread_but_those_that_draw_builds_a_tree() {
+        RayTree::new(&Mesh::default());
+    }
 }
