@@ -17,6 +17,10 @@ fn are_cast(scene: &Scene, view: &View) -> Result<(), &'static str> {
     }
 }
 
+/// Why a shadow map may take longer than rays: what is compared is a picture after a change.
+const DRAWN_AGAIN: &str = "the maps of all lights are drawn for each picture that is measured, as \
+    whenever a light or an object moves";
+
 pub(super) const SHADOW_METHOD: Axis = Axis {
     key: "shadow-method",
     label: "Shadow method",
@@ -26,28 +30,36 @@ pub(super) const SHADOW_METHOD: Axis = Axis {
     choices: &[
         choice!("map-512" "Map 512" shadow_method = ShadowMethod::Map512,
             "A shadow map of 512 x 512 texels with a slope-scaled bias (Williams, 1978).",
-            "stair steps of a texel along shadows, and light under what stands on the ground"),
+            "stair steps of a texel along shadows, and light under what stands on the ground")
+        .slower_because(DRAWN_AGAIN),
         choice!("map-512-pcf" "Map 512 PCF" shadow_method = ShadowMethod::Map512Pcf,
             "The same, the mean of what 3 x 3 texels say (Reeves, Salesin and Cook, 1987).",
-            "borders blurred over three texels, and light under what stands on the ground"),
+            "borders blurred over three texels, and light under what stands on the ground")
+        .slower_because(DRAWN_AGAIN),
         choice!("map-1024" "Map 1024" shadow_method = ShadowMethod::Map1024,
             "A shadow map of 1024 x 1024 texels.",
-            "steps half as large"),
+            "steps half as large")
+        .slower_because(DRAWN_AGAIN),
         choice!("map-1024-pcf" "Map 1024 PCF" shadow_method = ShadowMethod::Map1024Pcf,
             "A shadow map of 1024 x 1024 texels, the mean of what 3 x 3 of them say.",
-            "borders blurred over three texels"),
+            "borders blurred over three texels")
+        .slower_because(DRAWN_AGAIN),
         choice!("map-2048" "Map 2048" shadow_method = ShadowMethod::Map2048,
             "A shadow map of 2048 x 2048 texels.",
-            "steps a quarter as large"),
+            "steps a quarter as large")
+        .slower_because(DRAWN_AGAIN),
         choice!("map-2048-pcf" "Map 2048 PCF" shadow_method = ShadowMethod::Map2048Pcf,
             "A shadow map of 2048 x 2048 texels, the mean of what 3 x 3 of them say.",
-            "borders blurred over three texels"),
+            "borders blurred over three texels")
+        .slower_because(DRAWN_AGAIN),
         choice!("map-4096" "Map 4096" shadow_method = ShadowMethod::Map4096,
             "A shadow map of 4096 x 4096 texels.",
-            "steps an eighth as large"),
+            "steps an eighth as large")
+        .slower_because(DRAWN_AGAIN),
         choice!("map-4096-pcf" "Map 4096 PCF" shadow_method = ShadowMethod::Map4096Pcf,
             "A shadow map of 4096 x 4096 texels, the mean of what 3 x 3 of them say.",
-            "borders blurred over three texels"),
+            "borders blurred over three texels")
+        .slower_because(DRAWN_AGAIN),
         choice!("exact" "Exact" shadow_method = ShadowMethod::Exact,
             "Rays against all triangles, in exact arithmetic; there is no bias.",
             "none"),

@@ -17,7 +17,7 @@ pub(super) const TRANSPARENCY: Axis = Axis {
         choice!("weighted" "Weighted mean" transparency = Transparency::Weighted,
             "A mean of all layers, weighted by opacity and nearness (McGuire and Bavoil, 2013).",
             "none for one layer; with more, up to the difference between their colours")
-        .slower_because("all layers of a pixel are listed and sorted for it, too"),
+        .slower_because("all layers of a pixel are listed for it, too, and each is weighted"),
         choice!("objects" "By object" transparency = Transparency::Objects,
             "Object by object, the farthest first, and in each triangle by triangle.",
             "where objects cut through each other, or one is in front of itself, the wrong order")

@@ -1,5 +1,6 @@
 //! The geometry of a frame on the screen: vertices, and triangles and lines in bins.
 
+use std::ops::Range;
 use std::sync::atomic::AtomicU8;
 use std::sync::{Mutex, PoisonError};
 
@@ -313,12 +314,12 @@ impl ScreenGeometry {
         self.starts.last().map_or(0, |start| start.end as usize)
     }
 
-    /// What triangles are sorted by if draws are laid over each other as wholes: the draw's place
-    /// in the order from far to near above, and the number of the triangle below.
-    pub(crate) fn key_by_draw(&self, triangle: u32) -> u64 {
-        let (draw, _) = self.draw_of(triangle);
+    /// The triangles of the draw to which one belongs, and the draw's place in the order from far to
+    /// near, if draws are laid over each other as wholes.
+    pub(crate) fn place_of_draw(&self, triangle: u32) -> (Range<u32>, u64) {
+        let (draw, start) = self.draw_of(triangle);
         let place = self.far_to_near.get(draw as usize).map_or(0, |place| u64::from(*place) + 1);
-        place << 32 | u64::from(triangle)
+        (start.number..start.end, place)
     }
 
     /// The corners of a draw's triangles: on the finer grid, if there is one.

@@ -10,6 +10,7 @@
 //! is gathered again for the next, so memory is bounded whatever the number of layers.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use fearless_simd::{Level, Simd, dispatch};
 
@@ -313,7 +314,8 @@ impl Layers {
         if self.block.more == 0 {
             return false;
         }
-        let key = Keys { by_draw: order == Transparency::Objects, frame };
+        let by_draw = order == Transparency::Objects;
+        let mut key = Keys { by_draw, frame, last: (0..0, 0) };
         self.block.begin();
         let samples = self.sample_positions;
         for (pixel, word) in &self.hits[block * samples.count() + sample] {
@@ -323,7 +325,7 @@ impl Layers {
             }
         }
         let shift = if samples.are_many() { samples.shift::<FOUR>(sample) } else { [0; 2] };
-        dispatch!(level, simd => self.take_large(simd, &key, (block, sample, shift), opaque));
+        dispatch!(level, simd => self.take_large(simd, &mut key, (block, sample, shift), opaque));
         self.block.end()
     }
 
@@ -331,7 +333,7 @@ impl Layers {
     fn take_large<S: Simd>(
         &mut self,
         simd: S,
-        key: &Keys<'_>,
+        key: &mut Keys<'_>,
         (block, sample, shift): (usize, usize, [i32; 2]),
         opaque: &[u64; BLOCK_PIXELS],
     ) {
@@ -388,6 +390,8 @@ impl Layers {
 struct Keys<'a> {
     by_draw: bool,
     frame: &'a ScreenGeometry,
+    /// The triangles of the draw that was asked for last, and its place above.
+    last: (Range<u32>, u64),
 }
 
 impl Keys<'_> {
@@ -395,8 +399,15 @@ impl Keys<'_> {
     /// far to near above and the triangle's number below.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the lower half is the number")]
-    fn of(&self, word: u64) -> u64 {
-        if self.by_draw { self.frame.key_by_draw(!(word as u32)) } else { word }
+    fn of(&mut self, word: u64) -> u64 {
+        if !self.by_draw {
+            return word;
+        }
+        let triangle = !(word as u32);
+        if !self.last.0.contains(&triangle) {
+            self.last = self.frame.place_of_draw(triangle);
+        }
+        self.last.1 << 32 | u64::from(triangle)
     }
 }
 

@@ -12,6 +12,8 @@
 //! Order-Independent Transparency", JCGT 2(2), 2013, with z in units of view space, whose far plane
 //! is between 1024 and 2048 units away.
 
+use fearless_simd::{Level, dispatch};
+
 use crate::render::screen::tiles::BLOCK_PIXELS;
 
 /// A colour of each pixel of a block.
@@ -76,11 +78,10 @@ impl Blend {
     }
 
     /// Sets the distances of the layer that comes next, if they matter.
-    pub(crate) fn place(&mut self, distance: impl Fn(usize) -> f64) {
+    pub(crate) fn place(&mut self, level: Level, distances: impl FnOnce() -> [f64; BLOCK_PIXELS]) {
         if let Some(mean) = &mut self.mean {
-            for (place, next) in mean.next.iter_mut().enumerate() {
-                *next = weight(distance(place));
-            }
+            mean.next = distances();
+            dispatch!(level, _ => mean.next.iter_mut().for_each(|it| *it = weight(*it)));
         }
     }
 
@@ -136,6 +137,7 @@ impl Mean {
 }
 
 /// w = max(0.01, min(3000, 0.03 / (1e-5 + (z / 200)^4)))
+#[inline(always)]
 fn weight(z: f64) -> f64 {
     let square = (z / 200.0) * (z / 200.0);
     (0.03 / (1e-5 + square * square)).clamp(0.01, 3000.0)
@@ -154,7 +156,7 @@ mod tests {
         let mut blend = Blend::default();
         blend.begin(|_| [parts(100); 3], way);
         for (color, opacity) in layers {
-            blend.place(|_| 50.0);
+            blend.place(Level::new(), || [50.0; BLOCK_PIXELS]);
             blend.put(9, [parts(*color); 3], *opacity);
         }
         blend.color(9)[1]

@@ -5,6 +5,8 @@
 //! ones. With four samples per pixel, each sample has layers of its own; samples that show the same
 //! triangles in the same order throughout a block are coloured once.
 
+use fearless_simd::{Level, dispatch};
+
 use super::blend::{Blend, Way};
 use super::colors::Sums;
 use super::context::ShadingContext;
@@ -57,7 +59,7 @@ impl Layered {
                 while more {
                     for i in 0..layers.len() {
                         let row = layers.row(plan.transparency, i);
-                        blend.place(|place| distance(plan, row[place]));
+                        blend.place(level, || distances(level, plan, &row));
                         shader.layer(context, &row, corner, blend);
                     }
                     more = layers.take(level, order, at, &opaque);
@@ -91,14 +93,24 @@ const fn way(plan: &FramePlan) -> Way {
     }
 }
 
-/// The distance of a word of the visibility buffer along the observer's axis, in view space.
-fn distance(plan: &FramePlan, word: u64) -> f64 {
-    let depth = f64::from(depth_format::depth(plan.variants.depth, key(word)));
+/// The distances of words of the visibility buffer along the observer's axis, in view space.
+fn distances(level: Level, plan: &FramePlan, words: &[u64; BLOCK_PIXELS]) -> [f64; BLOCK_PIXELS] {
+    let format = plan.variants.depth;
+    let mut depths = [0.0; BLOCK_PIXELS];
+    for (depth, word) in depths.iter_mut().zip(words) {
+        *depth = f64::from(depth_format::depth(format, key(*word)));
+    }
     let m = &plan.clip_from_view;
-    let (zz, zw) = (m.z_axis.z, m.w_axis.z);
-    match plan.eye {
-        Eye::Point => zw / (depth + zz),
-        Eye::Parallel => (zw - depth) / zz,
+    dispatch!(level, _ => in_view(plan.eye, [m.z_axis.z, m.w_axis.z], &mut depths));
+    depths
+}
+
+/// Turns depths into distances; zz and zw are entries of the projection.
+#[inline(always)]
+fn in_view(eye: Eye, [zz, zw]: [f64; 2], depths: &mut [f64; BLOCK_PIXELS]) {
+    match eye {
+        Eye::Point => depths.iter_mut().for_each(|depth| *depth = zw / (*depth + zz)),
+        Eye::Parallel => depths.iter_mut().for_each(|depth| *depth = (zw - *depth) / zz),
     }
 }
 

@@ -4,7 +4,8 @@ use fearless_simd::Level;
 use glam::{DMat3, DMat4, DVec3};
 use rayon::prelude::*;
 
-use super::map_face::{Face, place};
+use super::map_bias::{Bordered, Limit, Picture};
+use super::map_face::Face;
 use crate::accuracy::{Samples, ShadowMapForm, Transparency};
 use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;
@@ -21,11 +22,8 @@ use crate::render::raster::visibility_buffer::{Visible, key, seen};
 use crate::render::screen::clip::Screen;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::sample_positions::SamplePositions;
-use crate::render::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE, TILE_SIDE, tiles_of};
+use crate::render::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE, tiles_of};
 use crate::scene::{NormalSource, Normals};
-
-/// How far a depth is moved for the rounding of f32, relative to itself.
-const ROUNDING: f32 = 4.0 * f32::EPSILON;
 
 /// More than half of a texel, for corners that are snapped to 1/256 of it.
 const HALF: f64 = 0.51;
@@ -51,6 +49,18 @@ pub(super) struct MapDraws {
     casters: Vec<Caster>,
     geometry: ScreenGeometry,
     form: ShadowMapForm,
+    seen: Seen,
+}
+
+/// What the light sees in the picture that is drawn, kept for the next one.
+#[derive(Debug, Default)]
+struct Seen {
+    /// For each texel a depth, 0 where nothing is, and the slope of its triangle: tile by tile,
+    /// block by block.
+    depths: Vec<f32>,
+    slopes: Vec<f32>,
+    /// The tiles that have any.
+    drawn: Vec<bool>,
 }
 
 impl MapDraws {
@@ -75,13 +85,13 @@ impl MapDraws {
             ..plan.clone()
         };
         plan.prepare();
-        Self { plan, casters, geometry: ScreenGeometry::default(), form }
+        let geometry = ScreenGeometry::default();
+        Self { plan, casters, geometry, form, seen: Seen::default() }
     }
 
     /// Draws a picture; `None` if it shows nothing.
-    #[expect(clippy::cast_precision_loss, reason = "maps are small")]
     pub(super) fn face(&mut self, level: Level, view: &MapView) -> Option<Face> {
-        let Self { plan, casters, geometry, form } = self;
+        let Self { plan, casters, geometry, form, seen } = self;
         (plan.view_from_world, plan.clip_from_view) = (view.view_from_world, view.clip_from_view);
         for (draw, caster) in plan.draws.iter_mut().zip(casters) {
             draw.view_from_object = view.view_from_world * caster.world_from_object;
@@ -97,20 +107,14 @@ impl MapDraws {
         }
         let screens: Vec<Screen> =
             plan.draws.iter().map(|draw| Screen::new(draw.clip_from_object, plan.size)).collect();
-        let steepest = STEEPEST * view.slope / form.side as f64;
-        let [mut depths, mut slopes] = [0; 2].map(|_| vec![0.0; count * PIXELS]);
-        let tiles = depths.par_chunks_mut(PIXELS).zip(slopes.par_chunks_mut(PIXELS)).enumerate();
-        tiles.for_each_init(Visibility::default, |visibility, (tile, (depths, slopes))| {
-            let map = Tile { level, plan, geometry, screens: &screens };
-            map.draw(visibility, tile, depths, slopes);
-        });
-        let reach = HALF + if form.is_filtered { 1.0 } else { 0.0 };
-        let picture = Picture { side: form.side, depths: &depths, slopes: &slopes };
-        let limit = Limit { reach, steepest, is_perspective: view.is_perspective };
+        Tile { level, plan, geometry, screens: &screens }.draw_all(count, seen);
+        let picture = Picture { side: form.side, depths: &seen.depths, slopes: &seen.slopes };
+        let limit = limit(view, *form);
         let mut texels = vec![0.0; count * PIXELS];
-        texels.par_chunks_mut(PIXELS).enumerate().for_each(|(tile, texels)| {
-            if !geometry.is_empty(tile) {
-                picture.biased(tile, &limit, texels);
+        let tiles = texels.par_chunks_mut(PIXELS).enumerate();
+        tiles.for_each_init(Bordered::default, |bordered, (tile, texels)| {
+            if seen.drawn[tile] {
+                bordered.biased(level, picture, (tile, &limit), texels);
             }
         });
         let clip_from_world = view.clip_from_view * view.view_from_world;
@@ -118,7 +122,19 @@ impl MapDraws {
     }
 }
 
-/// What drawing a tile of a map reads.
+/// How far the depths of a picture may be moved.
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    reason = "maps are small, and the nearest f32 is meant"
+)]
+fn limit(view: &MapView, form: ShadowMapForm) -> Limit {
+    let reach = HALF + if form.is_filtered { 1.0 } else { 0.0 };
+    let steepest = STEEPEST * view.slope / form.side as f64;
+    Limit { reach: reach as f32, steepest: steepest as f32, is_perspective: view.is_perspective }
+}
+
+/// What drawing the tiles of a map reads.
 struct Tile<'a> {
     level: Level,
     plan: &'a FramePlan,
@@ -126,64 +142,31 @@ struct Tile<'a> {
     screens: &'a [Screen],
 }
 
-/// How far depths may be moved.
-struct Limit {
-    /// How far from a texel's centre depths are compared with it, in texels.
-    reach: f64,
-    /// The largest slope that counts, relative to the depth in perspective.
-    steepest: f64,
-    is_perspective: bool,
-}
-
-/// What a light sees: for each texel a depth, 0 where nothing is, and the slope of its triangle.
-struct Picture<'a> {
-    side: usize,
-    depths: &'a [f32],
-    slopes: &'a [f32],
-}
-
-impl Picture<'_> {
-    /// Computes the texels of a tile: depths, moved away from the light.
-    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
-    fn biased(&self, tile: usize, limit: &Limit, texels: &mut [f32]) {
-        let (reach, steepest) = (limit.reach as f32, limit.steepest as f32);
-        let columns = self.side / TILE_SIDE;
-        let (left, top) = (tile % columns * TILE_SIDE, tile / columns * TILE_SIDE);
-        for (i, texel) in texels.iter_mut().enumerate() {
-            let depth = self.depths[tile * PIXELS + i];
-            if depth == 0.0 {
-                continue;
-            }
-            let (block, within) = (i / BLOCK_PIXELS, i % BLOCK_PIXELS);
-            let x = left + block % 8 * 8 + within % 8;
-            let y = top + block / 8 * 8 + within / 8;
-            let slope = self.slope_around([x, y], (depth, self.slopes[tile * PIXELS + i]));
-            let most = if limit.is_perspective { steepest * depth } else { steepest };
-            let moved = depth - reach * slope.min(most) - depth * ROUNDING;
-            *texel = moved.max(f32::MIN_POSITIVE);
-        }
-    }
-
-    /// The largest slope of a texel with this depth and slope and of its neighbours that continue
-    /// its surface.
-    fn slope_around(&self, [x, y]: [usize; 2], (depth, own): (f32, f32)) -> f32 {
-        let last = self.side - 1;
-        let mut slope = own;
-        for y in y.saturating_sub(1)..=(y + 1).min(last) {
-            for x in x.saturating_sub(1)..=(x + 1).min(last) {
-                let at = place(self.side, x, y);
-                let other = self.slopes[at];
-                // A plane that continues this one is not farther than both slopes lead.
-                if (self.depths[at] - depth).abs() <= (own + other) * 2.0 {
-                    slope = slope.max(other);
-                }
-            }
-        }
-        slope
-    }
-}
-
 impl Tile<'_> {
+    /// Draws all tiles.
+    fn draw_all(&self, count: usize, seen: &mut Seen) {
+        let Seen { depths, slopes, drawn } = seen;
+        for row in [&mut *depths, &mut *slopes] {
+            row.resize(count * PIXELS, 0.0);
+        }
+        drawn.resize(count, false);
+        let tiles = depths.par_chunks_mut(PIXELS).zip(slopes.par_chunks_mut(PIXELS));
+        let tiles = tiles.zip(drawn.par_iter_mut()).enumerate();
+        tiles.for_each_init(
+            Visibility::default,
+            |visibility, (tile, ((depths, slopes), drawn))| {
+                if *drawn {
+                    depths.fill(0.0);
+                    slopes.fill(0.0);
+                }
+                *drawn = !self.geometry.is_empty(tile);
+                if *drawn {
+                    self.draw(visibility, tile, depths, slopes);
+                }
+            },
+        );
+    }
+
     /// Draws a tile: the depths and slopes of its texels, block by block.
     fn draw(
         &self,
@@ -193,9 +176,6 @@ impl Tile<'_> {
         slopes: &mut [f32],
     ) {
         let Self { level, plan, geometry, .. } = *self;
-        if geometry.is_empty(tile) {
-            return;
-        }
         let [columns, _] = tiles_of(plan.size);
         let at = i32::try_from(tile).expect("a map has few tiles");
         let (left, top) = (at % columns * TILE, at / columns * TILE);
@@ -207,13 +187,16 @@ impl Tile<'_> {
                 continue;
             }
             let words = visibility.entries(level, block, 0);
-            let (mut last, mut own) = (u32::MAX, 0.0);
-            for ((depth, slope), word) in depths.iter_mut().zip(slopes).zip(words) {
+            // The triangles of the texels to the left and above, with their slopes.
+            let (mut last, mut above) = ((u32::MAX, 0.0), [(u32::MAX, 0.0); 8]);
+            for (i, ((depth, slope), word)) in depths.iter_mut().zip(slopes).zip(words).enumerate()
+            {
                 let Visible::Triangle(number) = seen(word) else { continue };
-                if number != last {
-                    (last, own) = (number, self.slope(number));
-                }
-                (*depth, *slope) = (f32::from_bits(key(word)), own);
+                let around = [last, above[i % 8], above[(i % 8 + 1) % 8]];
+                let known = around.into_iter().find(|(other, _)| *other == number);
+                last = known.unwrap_or_else(|| (number, self.slope(number)));
+                above[i % 8] = last;
+                (*depth, *slope) = (f32::from_bits(key(word)), last.1);
             }
         }
     }

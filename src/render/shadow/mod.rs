@@ -12,10 +12,11 @@
 //! * A ray through an edge or a corner meets every triangle that has it, so no ray passes between
 //!   the triangles of a closed body.
 //!
-//! Up to 64 rays to one light are traced together ([`rays`]). Boxes of a mesh beside all of them
-//! are passed over ([`shaft`]); those of leaves are tested ray by ray in f32, padded by their error
-//! ([`boxes`]). Triangles are prepared eight at a time and compared with the box of all points,
-//! then ray by ray, in f64 lanes with an error bound; exact arithmetic decides the rest
+//! Up to 64 rays to one light are traced together ([`rays`]), those of each patch of a surface by
+//! themselves ([`patches`]). Boxes of a mesh beside all of them are passed over ([`shaft`]); those
+//! of leaves are tested ray by ray in f32, padded by their error ([`boxes`]). Triangles are prepared
+//! eight at a time ([`prepared_block`]), compared with the box of all points, then all eight with
+//! each ray, in f64 lanes with an error bound; exact arithmetic decides the rest
 //! ([`triangle`]). A sun is a light at 2^60 times the size of the scene: no f64 direction tells the
 //! difference.
 //!
@@ -25,9 +26,11 @@
 //! 1997. Amanatides and Choi, "Ray Tracing Triangular Meshes", 1995, for edges seen from one point.
 
 pub(crate) mod boxes;
+mod map_bias;
 mod map_draws;
 pub(crate) mod map_face;
 pub(crate) mod maps;
+mod patches;
 pub(crate) mod prepared_block;
 pub(crate) mod rays;
 pub(crate) mod shaft;

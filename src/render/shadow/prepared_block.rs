@@ -9,17 +9,20 @@ use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, f64x8};
 use glam::{DMat4, DVec3};
 
 use super::shaft::Around;
-use super::triangle::{Corners, ERROR, OFF_PLANE, Prepared, side};
+use super::triangle::{Corners, Decided, ERROR, OFF_PLANE, Prepared, side};
 use crate::base::math::each;
 use crate::scene::{TREE_BLOCK, TreeBlock};
 
-/// Eight triangles, prepared.
+/// Eight triangles, prepared. A row is a line of the cache.
 #[derive(Debug, Default)]
+#[repr(align(64))]
 pub(crate) struct PreparedBlock {
     /// For each corner and axis the coordinates in world space.
     corners: [[[f64; TREE_BLOCK]; 3]; 3],
-    /// See [`Prepared`].
+    /// The normals of the planes through the light and each edge, and of the triangle's plane: see
+    /// [`Prepared`].
     normals: [[[f64; TREE_BLOCK]; 3]; 4],
+    /// The errors of the edge functions, and of the plane's with that of the points.
     errors: [[f64; TREE_BLOCK]; 4],
 }
 
@@ -189,30 +192,47 @@ impl PreparedBlock {
         self.corners.map(|rows| DVec3::from_array(rows.map(|row| row[i])))
     }
 
-    /// One of the triangles.
+    /// Decides for a point which triangles of a mask stand between it and the light.
     #[inline(always)]
-    pub(super) fn triangle(&self, i: usize) -> Prepared {
-        let ([a, b, c], [d, e, f, g]) = (&self.corners, &self.normals);
-        let errors = &self.errors;
-        Prepared {
-            corners: [vector(a, i), vector(b, i), vector(c, i)],
-            normals: [vector(d, i), vector(e, i), vector(f, i), vector(g, i)],
-            errors: [errors[0][i], errors[1][i], errors[2][i], errors[3][i]],
+    pub(super) fn decide<S: Simd>(&self, simd: S, p: DVec3, of: u64) -> Decided {
+        let p = all(simd, p);
+        let (mut between, mut possible) = (of, of);
+        // Most points are on the light's side of a plane: that is the first question.
+        for i in [3, 0, 1, 2] {
+            if possible == 0 {
+                break;
+            }
+            let (corner, normal) = (&self.corners[i % 3], &self.normals[i]);
+            let from = minus(p, rows(simd, corner));
+            let error = f64x8::from_slice(simd, &self.errors[i]);
+            let value = dot(from, rows(simd, normal));
+            between &= value.simd_gt(error).to_bitmask();
+            possible &= value.simd_ge(-error).to_bitmask();
         }
+        between &= possible;
+        Decided { between, open: possible & !between }
     }
+
+    /// One of the triangles.
+    pub(super) fn triangle(&self, i: usize) -> Prepared {
+        let vector = |rows: &[[f64; TREE_BLOCK]; 3]| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
+        let [a, b, c] = &self.corners;
+        let [d, e, f, _] = &self.normals;
+        Prepared { corners: each([a, b, c], vector), normals: each([d, e, f], vector) }
+    }
+}
+
+#[inline(always)]
+fn rows<S: Simd>(simd: S, [x, y, z]: &[[f64; TREE_BLOCK]; 3]) -> Eight<S> {
+    [f64x8::from_slice(simd, x), f64x8::from_slice(simd, y), f64x8::from_slice(simd, z)]
 }
 
 #[inline(always)]
 fn store<S: Simd, const N: usize>(to: &mut [[[f64; TREE_BLOCK]; 3]; N], vectors: [Eight<S>; N]) {
-    for (rows, vector) in to.iter_mut().zip(vectors) {
-        for (row, x) in rows.iter_mut().zip(vector) {
-            x.store_slice(row);
+    // By index: moving vectors through iterators takes them through memory.
+    for i in 0..N {
+        for axis in 0..3 {
+            vectors[i][axis].store_slice(&mut to[i][axis]);
         }
     }
-}
-
-/// One of eight vectors.
-#[inline(always)]
-fn vector(rows: &[[f64; TREE_BLOCK]; 3], i: usize) -> DVec3 {
-    DVec3::new(rows[0][i], rows[1][i], rows[2][i])
 }

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
+use super::patches::Patch;
 use super::prepared_block::PreparedBlock;
-use super::shaft::{Around, Shaft};
+use super::shaft::Shaft;
 use crate::render::simd::BATCH;
 use crate::scene::TreeChild;
 
@@ -22,9 +23,9 @@ pub(crate) struct Origins {
     pub(crate) reach: f64,
     /// The points that were lifted off their triangles, a bit for each: they are exact.
     pub(super) lifted: u64,
-    len: usize,
-    /// The box of all points, if it is known.
-    pub(super) around: Option<Around>,
+    pub(super) len: usize,
+    /// The points by where they lie; empty if that is not known yet.
+    pub(super) patches: Vec<Patch>,
 }
 
 impl Default for Origins {
@@ -38,16 +39,17 @@ impl Default for Origins {
             reach: 0.0,
             lifted: 0,
             len: 0,
-            around: None,
+            patches: Vec::new(),
         }
     }
 }
 
 impl Origins {
     /// Begins a list of points on a caster.
-    pub(crate) const fn begin(&mut self, caster: Option<u32>, in_triangle: bool) {
+    pub(crate) fn begin(&mut self, caster: Option<u32>, in_triangle: bool) {
         (self.caster, self.in_triangle, self.reach) = (caster, in_triangle, 0.0);
-        (self.lifted, self.len, self.around) = (0, 0, None);
+        (self.lifted, self.len) = (0, 0);
+        self.patches.clear();
     }
 
     /// Sets a point and the triangles that it lies on; points are set in order.
@@ -71,38 +73,6 @@ impl Origins {
     #[inline(always)]
     pub(crate) fn point(&self, i: usize) -> DVec3 {
         DVec3::new(self.at[0][i], self.at[1][i], self.at[2][i])
-    }
-
-    /// The triangle that a point in the middle of the list lies in, if each lies in one.
-    pub(super) fn middle_triangle(&self) -> Option<(u32, u32)> {
-        let caster = self.caster.filter(|_| self.in_triangle && self.len > 0)?;
-        Some((caster, self.first[self.len / 2]))
-    }
-
-    /// Finds the box of all points, along a plane with this normal or, if it is unknown, along
-    /// three of the points. What is left of the lists repeats the first point.
-    #[inline(always)]
-    pub(super) fn find_around(&mut self, normal: Option<DVec3>) -> Around {
-        let len = self.len.clamp(1, BATCH);
-        for row in &mut self.at {
-            let first = row[0];
-            row[len..].fill(first);
-        }
-        let [a, b, c] = [0, len.min(8) - 1, len - 1].map(|i| self.point(i));
-        let normal = normal.unwrap_or_else(|| (b - a).cross(c - a));
-        let around = Around::new(&self.at, normal, b - a);
-        self.around = Some(around);
-        around
-    }
-
-    /// The points that lie on a triangle of their own caster, a bit for each.
-    #[inline(always)]
-    pub(crate) fn on(&self, triangle: u32, of: u64) -> u64 {
-        let mut on = 0;
-        for (i, (first, end)) in self.first.iter().zip(&self.end).enumerate() {
-            on |= u64::from((*first <= triangle) & (triangle < *end)) << i;
-        }
-        on & of
     }
 }
 

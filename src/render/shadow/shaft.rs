@@ -65,6 +65,11 @@ impl Around {
     pub(super) fn extent(&self) -> DVec3 {
         self.halves.iter().fold(DVec3::ZERO, |sum, half| sum + half.abs())
     }
+
+    /// Its largest coordinate.
+    pub(super) fn farthest(&self) -> f64 {
+        (self.centre.abs() + self.extent()).max_element()
+    }
 }
 
 /// The planes of a shaft.

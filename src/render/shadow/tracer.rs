@@ -5,6 +5,8 @@ use glam::{DMat4, DVec3};
 
 use super::map_face::{LightMap, Reading};
 use super::maps::ShadowMaps;
+use super::patches::Patch;
+use super::prepared_block::PreparedBlock;
 use super::rays::{Origins, RayCount, RayScratch, bits};
 use super::shaft::Around;
 use super::triangle::{Corners, Prepared, is_between, reaches_behind};
@@ -15,7 +17,7 @@ use crate::render::frame::shadows::{Caster, CasterPart, Holes, ShadowSource, Sha
 use crate::render::simd::Vec3;
 use crate::render::texture::sample::{brightness, sample};
 use crate::render::texture::uv::uv;
-use crate::scene::{Bounds, RayTree, TREE_BLOCK, TreeChild, TreeNode, dvec3};
+use crate::scene::{Bounds, RayTree, TREE_BLOCK, TreeBlock, TreeChild, TreeNode, dvec3};
 
 /// How much farther a sun is than the largest coordinate of the scene.
 const SUN: f64 = (1_u64 << 60) as f64;
@@ -139,53 +141,91 @@ impl<'a> Tracer<'a> {
 
     #[inline(always)]
     fn trace<S: Simd>(&self, simd: S, light: DVec3, scratch: &mut RayScratch, mask: u64) -> u64 {
-        let around = match scratch.origins.around {
-            Some(around) => around,
-            None => self.find_around(&mut scratch.origins),
-        };
-        let extent = around.extent();
-        let (from, to) = (around.centre - extent, around.centre + extent);
-        let (low, high) = (from.min(light), to.max(light));
+        if scratch.origins.patches.is_empty() {
+            scratch.origins.find_patches(|origins, i| self.normal_at(origins, i));
+        }
         let mut alive = mask;
         for (index, placed) in (0_u32..).zip(&self.casters) {
-            if placed.low.cmpgt(high).any() || placed.high.cmplt(low).any() {
-                continue;
-            }
-            let Some(tree) = placed.tree else { continue };
-            let RayScratch { origins, local, shaft, stack, .. } = &mut *scratch;
-            let reach = placed.reach().max(from.abs().max(to.abs()).max_element());
-            local.set(&placed.object_from_world, (&origins.at, light), (placed.own, reach));
-            shaft.set(&placed.object_from_world, (&around, light), (local.far, local.pad));
-            let packet = Packet { light, around, is_own: origins.caster == Some(index) };
-            stack.clear();
-            stack.push((tree.root, alive));
-            while let Some((child, reached)) = scratch.stack.pop() {
-                let reached = reached & alive;
-                if reached == 0 {
-                    continue;
-                }
-                if child.count == 0 {
-                    let Some(node) = tree.nodes.get(child.first as usize) else { continue };
-                    scratch.visit(simd, node, reached);
-                    continue;
-                }
-                alive &= !self.behind_leaf(simd, (placed, tree, child), &packet, scratch, reached);
-                if alive == 0 {
-                    return mask;
-                }
+            alive &= !self.behind(simd, (index, placed), light, scratch, alive);
+            if alive == 0 {
+                break;
             }
         }
         mask & !alive
     }
 
-    /// Finds the box of the points of a packet, along the surface on which they lie.
+    /// The normal of the triangle that a point lies in, if it lies in one.
+    fn normal_at(&self, origins: &Origins, i: usize) -> Option<DVec3> {
+        let caster = origins.caster.filter(|_| origins.in_triangle)?;
+        let [a, b, c] = self.corners_of(caster, origins.first[i]);
+        Some((b - a).cross(c - a))
+    }
+
+    /// The rays of a mask that a caster stands in the way of.
     #[inline(always)]
-    fn find_around(&self, origins: &mut Origins) -> Around {
-        let normal = origins.middle_triangle().map(|(caster, triangle)| {
-            let [a, b, c] = self.corners_of(caster, triangle);
-            (b - a).cross(c - a)
-        });
-        origins.find_around(normal)
+    fn behind<S: Simd>(
+        &self,
+        simd: S,
+        (index, placed): (u32, &InPlace<'_>),
+        light: DVec3,
+        scratch: &mut RayScratch,
+        mask: u64,
+    ) -> u64 {
+        let Some(tree) = placed.tree else { return 0 };
+        let mut behind = 0;
+        let mut is_set = false;
+        for i in 0..scratch.origins.patches.len() {
+            let Patch { points, around } = scratch.origins.patches[i];
+            let extent = around.extent();
+            let (from, to) = (around.centre - extent, around.centre + extent);
+            let (low, high) = (from.min(light), to.max(light));
+            let is_beside = placed.low.cmpgt(high).any() || placed.high.cmplt(low).any();
+            if is_beside || points & mask == 0 {
+                continue;
+            }
+            let RayScratch { origins, local, shaft, stack, .. } = &mut *scratch;
+            if !is_set {
+                let all = origins.patches.iter().map(|patch| patch.around.farthest());
+                let reach = all.fold(placed.reach(), f64::max);
+                local.set(&placed.object_from_world, (&origins.at, light), (placed.own, reach));
+                is_set = true;
+            }
+            shaft.set(&placed.object_from_world, (&around, light), (local.far, local.pad));
+            let packet = Packet { light, around, is_own: origins.caster == Some(index) };
+            stack.clear();
+            stack.push((tree.root, points & mask));
+            behind |= self.behind_tree(simd, (placed, tree), &packet, scratch, points & mask);
+        }
+        behind
+    }
+
+    /// The rays of a mask that a tree stands in the way of, from what is on the stack.
+    #[inline(always)]
+    fn behind_tree<S: Simd>(
+        &self,
+        simd: S,
+        (placed, tree): (&InPlace<'_>, &RayTree),
+        packet: &Packet,
+        scratch: &mut RayScratch,
+        mask: u64,
+    ) -> u64 {
+        let mut alive = mask;
+        while let Some((child, reached)) = scratch.stack.pop() {
+            let reached = reached & alive;
+            if reached == 0 {
+                continue;
+            }
+            if child.count == 0 {
+                let Some(node) = tree.nodes.get(child.first as usize) else { continue };
+                scratch.visit(simd, node, reached);
+                continue;
+            }
+            alive &= !self.behind_leaf(simd, (placed, tree, child), packet, scratch, reached);
+            if alive == 0 {
+                break;
+            }
+        }
+        mask & !alive
     }
 
     /// The rays of a mask that a triangle of a leaf stands between and the light.
@@ -204,48 +244,66 @@ impl<'a> Tracer<'a> {
         for block in &tree.blocks[leaf.blocks()] {
             let own = (block, &placed.caster.world_from_object);
             let possible = prepared.set(simd, own, (&packet.around, packet.light), origins.reach);
-            for i in bits(possible & ((1 << left.min(TREE_BLOCK)) - 1)) {
-                let mut rays = reached & !behind;
-                if packet.is_own {
-                    rays &= !origins.on(block.numbers[i], rays);
-                }
-                if rays == 0 {
-                    continue;
-                }
-                let triangle = prepared.triangle(i);
-                let decided = triangle.decide(simd, &origins.at, rays);
-                if decided.between | decided.open != 0 {
-                    let triangle = (placed, block.numbers[i], &triangle);
-                    behind |= self.settle(triangle, (packet, origins), decided);
-                }
+            let possible = possible & ((1 << left.min(TREE_BLOCK)) - 1);
+            if possible != 0 {
+                let block = (placed, block, &*prepared);
+                let rays = reached & !behind;
+                behind |= self.behind_block(simd, block, possible, (packet, origins), rays);
             }
             left = left.saturating_sub(TREE_BLOCK);
         }
         behind
     }
 
-    /// Decides what f64 cannot, and lets rays through holes.
+    /// The rays of a mask that some triangles of a block stand between and the light: all of the
+    /// triangles at once, ray by ray, since few rays reach a leaf.
+    #[inline(always)]
+    fn behind_block<S: Simd>(
+        &self,
+        simd: S,
+        (placed, block, prepared): (&InPlace<'_>, &TreeBlock, &PreparedBlock),
+        possible: u64,
+        (packet, origins): (&Packet, &Origins),
+        rays: u64,
+    ) -> u64 {
+        let mut behind = 0;
+        for ray in bits(rays) {
+            let others = if packet.is_own {
+                possible & !block.among(simd, [origins.first[ray], origins.end[ray]])
+            } else {
+                possible
+            };
+            let decided = prepared.decide(simd, origins.point(ray), others);
+            let is_own = |i: usize| decided.between >> i & 1 == 1;
+            let mut met = bits(decided.between | decided.open);
+            if met.any(|i| {
+                let triangle = (placed, block.numbers[i], &prepared.triangle(i));
+                self.stands_between(triangle, (packet, origins), (ray, is_own(i)))
+            }) {
+                behind |= 1 << ray;
+            }
+        }
+        behind
+    }
+
+    /// Whether a triangle stands between a point and the light: decides what f64 cannot, unless it
+    /// is `sure`, and lets rays through holes.
     #[inline(never)]
-    fn settle(
+    fn stands_between(
         &self,
         (placed, number, triangle): (&InPlace<'_>, u32, &Prepared),
         (packet, origins): (&Packet, &Origins),
-        decided: super::triangle::Decided,
-    ) -> u64 {
-        let mut between = decided.between;
+        (ray, sure): (usize, bool),
+    ) -> bool {
         let corners = &triangle.corners;
-        for i in bits(decided.open) {
-            let is = self.own_reaches_behind(origins, i, corners, packet.light)
-                && is_between(corners, packet.light, origins.point(i));
-            between |= u64::from(is) << i;
-        }
-        if placed.is_solid || between == 0 {
-            return between;
+        let is_between = sure
+            || (self.own_reaches_behind(origins, ray, corners, packet.light)
+                && is_between(corners, packet.light, origins.point(ray)));
+        if placed.is_solid || !is_between {
+            return is_between;
         }
         let part = placed.caster.part_of(number);
-        bits(between)
-            .filter(|i| self.is_solid_at(placed, part, number, triangle.parts(origins.point(*i))))
-            .fold(0, |solid, i| solid | 1 << i)
+        self.is_solid_at(placed, part, number, triangle.parts(origins.point(ray)))
     }
 
     /// Whether a point's own triangle reaches behind the plane of another. A point that lies in no

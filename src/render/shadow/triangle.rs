@@ -16,11 +16,8 @@
 //! cross product is below 2 a b with an error of 8 u a b, and the dot product adds three of those
 //! times m. The bounds below are 128 u a b m.
 
-use fearless_simd::{Simd, SimdBase as _, SimdMask as _, f64x8};
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
-
-use crate::render::simd::BATCH;
 
 /// The corners of a triangle in world space.
 pub(crate) type Corners = [DVec3; 3];
@@ -75,13 +72,11 @@ pub(crate) fn reaches_behind(own: &Corners, triangle: &Corners, light: DVec3) ->
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prepared {
     pub(super) corners: Corners,
-    /// The normals of the planes through the light and each edge, and of the triangle's plane.
-    pub(super) normals: [DVec3; 4],
-    /// The error of the edge functions, and of the plane's with that of the points.
-    pub(super) errors: [f64; 4],
+    /// The normals of the planes through the light and each edge.
+    pub(super) normals: [DVec3; 3],
 }
 
-/// Rays whose triangle stands between, and those that f64 cannot decide, a bit for each.
+/// Triangles that stand between, and those that f64 cannot decide, a bit for each.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Decided {
     pub(super) between: u64,
@@ -89,37 +84,6 @@ pub(super) struct Decided {
 }
 
 impl Prepared {
-    /// Decides for the rays of a mask.
-    #[inline(always)]
-    pub(super) fn decide<S: Simd>(&self, simd: S, at: &[[f64; BATCH]; 3], mask: u64) -> Decided {
-        let mut decided = Decided::default();
-        for first in (0..BATCH).step_by(8) {
-            if mask >> first & 0xff == 0 {
-                continue;
-            }
-            let x = f64x8::from_slice(simd, &at[0][first..first + 8]);
-            let y = f64x8::from_slice(simd, &at[1][first..first + 8]);
-            let z = f64x8::from_slice(simd, &at[2][first..first + 8]);
-            let (mut between, mut possible) = (0xff, 0xff);
-            // Most points are on the light's side of a plane: that is the first question.
-            for i in 0..4 {
-                let i = (i + 3) % 4;
-                let (normal, error, from) = (self.normals[i], self.errors[i], self.corners[i % 3]);
-                let value =
-                    (x - from.x) * normal.x + (y - from.y) * normal.y + (z - from.z) * normal.z;
-                between &= value.simd_gt(error).to_bitmask();
-                possible &= value.simd_ge(-error).to_bitmask();
-                if possible & (mask >> first) == 0 {
-                    break;
-                }
-            }
-            between &= possible;
-            decided.between |= between << first;
-            decided.open |= (possible & !between) << first;
-        }
-        Decided { between: decided.between & mask, open: decided.open & mask }
-    }
-
     /// The parts of the triangle's corners in the place where a ray passes.
     pub(super) fn parts(&self, p: DVec3) -> DVec3 {
         let value = |i: usize| self.normals[i].dot(p - self.corners[i]).max(0.0);

@@ -10,6 +10,7 @@
 
 use std::ops::Range;
 
+use fearless_simd::{Simd, SimdBase as _, SimdMask as _, u32x8};
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -38,6 +39,7 @@ pub const TREE_BLOCK: usize = 8;
 
 /// Up to eight triangles of a leaf. The last is repeated in what is left of its block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(64))]
 pub struct TreeBlock {
     /// For each corner and axis the coordinates in object space.
     pub corners: [[[f32; TREE_BLOCK]; 3]; 3],
@@ -59,6 +61,13 @@ impl TreeBlock {
         block
     }
 
+    /// The triangles whose numbers are at least the first of two and less than the second.
+    #[inline(always)]
+    pub fn among<S: Simd>(&self, simd: S, [first, end]: [u32; 2]) -> u64 {
+        let numbers = u32x8::from_slice(simd, &self.numbers);
+        (numbers.simd_ge(first) & numbers.simd_lt(end)).to_bitmask()
+    }
+
     /// One of its triangles.
     #[must_use]
     pub fn triangle(&self, i: usize) -> TreeTriangle {
@@ -75,6 +84,7 @@ const WIDTH: usize = 8;
 /// An inner node: the boxes of up to eight children, in four lines of a cache. Large trees are
 /// bound by the latency of memory, and so have few levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
 pub struct TreeNode {
     boxes: [Box3; WIDTH],
     children: [TreeChild; WIDTH],
@@ -133,14 +143,21 @@ const EMPTY: Box3 = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
 /// The most boxes in a leaf, and the cost of a node relative to a box in it.
 const LEAF: u32 = 8;
-const NODE_COST: f32 = 1.5;
+const NODE_COST: f32 = 4.0;
 
 /// The number of boxes up to which a tree is one leaf.
 const FEW: usize = 2;
 
 impl RayTree {
-    /// Builds the tree of a mesh.
+    /// Builds the tree of a mesh. A million triangles take a second, so drawing threads do it.
+    ///
+    /// # Panics
+    /// In builds with debug assertions, on a thread that does not draw, such as the window's.
     pub(crate) fn new(mesh: &Mesh) -> Self {
+        debug_assert!(
+            rayon::current_thread_index().is_some(),
+            "a tree of boxes is built on a thread that does not draw: prepare it before"
+        );
         let groups = Groups::of(mesh);
         if groups.boxes.is_empty() {
             return Self::default();
@@ -332,4 +349,15 @@ fn in_unit_cube(boxes: &[Box3]) -> Vec<Aabb> {
         Vec3A::new(axis(0), axis(1), axis(2))
     };
     boxes.par_iter().map(|[low, high]| Aabb::new(place(*low), place(*high))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[should_panic(expected = "built on a thread that does not draw")]
+    fn no_thread_but_those_that_draw_builds_a_tree() {
+        RayTree::new(&Mesh::default());
+    }
 }

@@ -6,7 +6,7 @@ use super::*;
 use crate::base::Shared;
 use crate::base::rng::Rng;
 use crate::scene::{
-    ItemId, LoadOptions, Mesh, MeshSource, Model, NONE, ObjectId, Part, SourceCorner,
+    Derived, ItemId, LoadOptions, Mesh, MeshSource, Model, NONE, ObjectId, Part, SourceCorner,
 };
 
 type Point = [i128; 3];
@@ -39,11 +39,13 @@ fn mesh_of(triangles: &[[Point; 3]]) -> Shared<Model> {
         parts: vec![Part { name: "part".to_owned(), material: None }],
         ..MeshSource::default()
     };
+    let mesh = Mesh::new(source).expect("a good mesh");
+    rayon::scope(|_| mesh.prepare(Derived::RayTree));
     Shared::new(Model {
         name: "mesh".to_owned(),
         source: None,
         options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("a good mesh"),
+        mesh,
         materials: Vec::new(),
         edge_color: None,
     })

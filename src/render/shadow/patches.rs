@@ -1,0 +1,176 @@
+//! The points of a packet by where they lie.
+//!
+//! The pixels of a block may show surfaces far apart, one in front of another. A box around all of
+//! them would be large, and rays from it pass much of a scene; so points are divided wherever there
+//! is a wide gap between them, and each patch of a surface gets a box of its own.
+
+use glam::DVec3;
+
+use super::rays::{Origins, bits};
+use super::shaft::Around;
+use crate::render::simd::BATCH;
+
+/// Points that lie close to each other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Patch {
+    /// The points, a bit for each.
+    pub(super) points: u64,
+    /// A box that holds them.
+    pub(super) around: Around,
+}
+
+/// The most patches of a packet.
+const MOST: usize = 8;
+
+/// A box is divided if this many neighbouring sixteenths of its length are empty.
+const EMPTY: u32 = 4;
+
+impl Origins {
+    /// Divides the points into patches. `normal` tells the normal of the triangle that a point lies
+    /// in, if it lies in one.
+    #[inline(always)]
+    pub(super) fn find_patches(&mut self, normal: impl Fn(&Self, usize) -> Option<DVec3>) {
+        let len = self.len.clamp(1, BATCH);
+        // What is left of the lists repeats the first point.
+        for row in &mut self.at {
+            let first = row[0];
+            row[len..].fill(first);
+        }
+        let mut open = vec![u64::MAX >> (BATCH - len)];
+        while let Some(points) = open.pop() {
+            let around = self.around(points, &normal);
+            let parts = if self.patches.len() + open.len() + 1 < MOST {
+                self.divided(points, &around)
+            } else {
+                None
+            };
+            match parts {
+                Some(parts) => open.extend(parts),
+                None => self.patches.push(Patch { points, around }),
+            }
+        }
+    }
+
+    /// The box of some points, along the triangle of one in their middle or, if that is unknown,
+    /// along three of the points.
+    #[inline(always)]
+    fn around(&self, points: u64, normal: impl Fn(&Self, usize) -> Option<DVec3>) -> Around {
+        let count = points.count_ones() as usize;
+        let [first, second, middle, last] =
+            [0, count.min(8) - 1, count / 2, count - 1].map(|i| nth(points, i));
+        let [a, b, c] = [first, second, last].map(|i| self.point(i));
+        let normal = normal(self, middle).unwrap_or_else(|| (b - a).cross(c - a));
+        if count >= self.len {
+            return Around::new(&self.at, normal, b - a);
+        }
+        let mut at = [a.x, a.y, a.z].map(|x| [x; BATCH]);
+        for i in bits(points) {
+            for (to, from) in at.iter_mut().zip(&self.at) {
+                to[i] = from[i];
+            }
+        }
+        Around::new(&at, normal, b - a)
+    }
+
+    /// The points on both sides of the widest gap along their box, if there is one.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 16")]
+    #[inline(always)]
+    fn divided(&self, points: u64, around: &Around) -> Option<[u64; 2]> {
+        let [a, b, c] = around.halves.map(DVec3::length_squared);
+        let longest = around.halves[if a >= b && a >= c { 0 } else { usize::from(c > b) + 1 }];
+        // Along the longest edge, from -1 to 1.
+        let along = longest / longest.length_squared();
+        let offset = 1.0 - around.centre.dot(along);
+        let mut places = [0; BATCH];
+        for (i, place) in places.iter_mut().enumerate() {
+            let x = self.at[0][i] * along.x + self.at[1][i] * along.y + self.at[2][i] * along.z;
+            *place = ((x + offset) * 8.0) as u32;
+        }
+        let mut taken = 0_u32;
+        for i in bits(points) {
+            taken |= 1 << places[i].min(15);
+        }
+        // Sixteenths that begin a gap: each removes those that do not continue.
+        let empty = !taken & 0xffff;
+        let gap = (1..EMPTY).fold(empty, |gap, i| gap & empty >> i);
+        // The ends of the box touch points, but for rounding.
+        let inner = gap & !1 & (taken.checked_ilog2().map_or(0, |last| (1 << last) - 1));
+        if inner == 0 {
+            return None;
+        }
+        let from = inner.trailing_zeros();
+        let near = bits(points).filter(|i| places[*i] < from).fold(0, |own, i| own | 1 << i);
+        Some([near, points & !near]).filter(|[near, far]| *near != 0 && *far != 0)
+    }
+}
+
+/// The number of one of the set bits of a mask that has enough.
+fn nth(mask: u64, n: usize) -> usize {
+    bits(mask).nth(n).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::rng::Rng;
+
+    /// Points on squares of a plane, some columns of each.
+    fn origins(squares: &[(DVec3, usize)]) -> Origins {
+        let mut origins = Origins::default();
+        origins.begin(None, false);
+        let points = squares.iter().flat_map(|(at, columns)| {
+            (0..8 * columns).map(move |i| at + DVec3::new((i / 8) as f64, (i % 8) as f64, 0.0))
+        });
+        points.enumerate().for_each(|(i, point)| origins.set(i, point, [0; 2]));
+        origins
+    }
+
+    fn patches(mut origins: Origins) -> Vec<Patch> {
+        origins.find_patches(|_, _| Some(DVec3::Z));
+        origins.patches
+    }
+
+    #[test]
+    fn a_surface_is_one_patch_and_surfaces_with_a_gap_between_them_are_two() {
+        assert_eq!(patches(origins(&[(DVec3::ZERO, 8)])).len(), 1);
+        let far = DVec3::new(40.0, 0.0, -9.0);
+        let two = patches(origins(&[(DVec3::ZERO, 5), (far, 3)]));
+        let mut points: Vec<u64> = two.iter().map(|patch| patch.points).collect();
+        points.sort_unstable();
+        assert_eq!(points, [(1 << 40) - 1, u64::MAX << 40]);
+        // Neither box is longer than its own points.
+        assert!(two.iter().all(|patch| patch.around.extent().max_element() < 4.0));
+    }
+
+    #[test]
+    fn every_point_is_in_one_patch_and_inside_its_box() {
+        let mut rng = Rng::new(11);
+        for round in 0..500 {
+            let mut origins = Origins::default();
+            origins.begin(None, false);
+            let len = 1 + rng.index(64);
+            let mut number = |range: usize| rng.index(2 * range + 1) as f64 - range as f64;
+            for i in 0..len {
+                // In clusters, so that gaps of every width come up.
+                let cluster = DVec3::new(number(1), number(1), number(1)) * (round % 50) as f64;
+                origins.set(i, cluster + DVec3::new(number(9), number(9), number(9)), [0; 2]);
+            }
+            origins.find_patches(|_, _| None);
+            assert!(origins.patches.len() <= MOST);
+            let mut all = 0;
+            for Patch { points, around } in &origins.patches {
+                assert!(all & points == 0 && *points != 0, "a point is in two patches");
+                all |= points;
+                for i in bits(*points) {
+                    let from = origins.point(i) - around.centre;
+                    let inside = around
+                        .halves
+                        .iter()
+                        .all(|half| from.dot(*half).abs() <= half.length_squared() * (1.0 + 1e-12));
+                    assert!(inside, "a point is outside of its box");
+                }
+            }
+            assert_eq!(all, u64::MAX >> (64 - len));
+        }
+    }
+}
