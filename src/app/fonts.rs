@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn emoji_need_no_font_of_the_system() {
         let ctx = Context::default();
-        drop(ctx.run_ui(egui::RawInput::default(), |_| {}));
+        ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
         for letter in "🚀🐄🎨🔦🌍😀".chars() {
             let has = |fonts: &mut egui::epaint::text::FontsView<'_>| {
                 fonts.has_glyph(&egui::FontId::proportional(14.0), letter)

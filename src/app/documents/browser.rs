@@ -184,7 +184,12 @@ impl Browser {
             typed.is_dir() || self.entries.iter().any(|it| self.folder.join(&it.name) == typed);
         let part = name.filter(|_| self.mode == Mode::Open && !is_whole);
         self.entries.iter().filter(move |entry| {
-            part.as_ref().is_none_or(|part| entry.name.to_lowercase().contains(part))
+            // Without its ending, which all have.
+            let stem = Path::new(&entry.name).file_stem().map(|stem| stem.to_string_lossy());
+            part.as_ref().is_none_or(|part| match stem {
+                Some(stem) if !part.contains('.') => stem.to_lowercase().contains(part),
+                _ => entry.name.to_lowercase().contains(part),
+            })
         })
     }
 

@@ -3,7 +3,7 @@
 //! Files are asked for with the system's own dialog, on a thread of its own. A system that has none
 //! answers at once, as no hand could; then a plain choice of our own stands in.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use egui::{Context, Id, Modal, Ui};
@@ -238,50 +238,18 @@ impl Dialogs {
     }
 
     fn close(&mut self, dialog: Dialog, end: End) -> Option<Answer> {
-        match dialog {
-            Dialog::Browser(wanted, _) => Some(match end {
-                End::File(path) => self.chosen(wanted, vec![path]),
-                End::Cancelled
-                | End::Save
-                | End::Discard
-                | End::Material(_)
-                | End::Picture(..)
-                | End::Asked => Answer::NoFile(wanted),
-            }),
-            Dialog::Unsaved(after) => match end {
-                End::Save => Some(Answer::Save(after)),
-                End::Discard => Some(Answer::Discard(after)),
-                End::Cancelled
-                | End::File(_)
-                | End::Material(_)
-                | End::Picture(..)
-                | End::Asked => None,
-            },
-            Dialog::Material(dialog) => match end {
-                End::Material(choices) => Some(Answer::Material(dialog, choices)),
-                End::Cancelled
-                | End::File(_)
-                | End::Save
-                | End::Discard
-                | End::Picture(..)
-                | End::Asked => None,
-            },
-            Dialog::Picture(_) => match end {
-                End::Picture(choices, file) => {
-                    if let Some(folder) = file.as_ref().and_then(|path| path.parent()) {
-                        folder.clone_into(&mut self.folder);
-                    }
-                    Some(Answer::Picture(choices, file))
+        Some(match (end, dialog) {
+            (End::Answer(answer), _) => {
+                if let Answer::Picture(_, Some(path)) = &answer {
+                    self.remember_folder_of(path);
                 }
-                End::Cancelled
-                | End::File(_)
-                | End::Save
-                | End::Discard
-                | End::Material(_)
-                | End::Asked => None,
-            },
-            Dialog::Fault(_) | Dialog::Details(..) => None,
-        }
+                answer
+            }
+            (End::File(path), Dialog::Browser(wanted, _)) => self.chosen(wanted, vec![path]),
+            (End::Cancelled, Dialog::Browser(wanted, _)) => Answer::NoFile(wanted),
+            (End::Material(choices), Dialog::Material(dialog)) => Answer::Material(dialog, choices),
+            (End::Cancelled | End::File(_) | End::Material(_) | End::Asked, _) => return None,
+        })
     }
 
     fn hear_system(&mut self) -> Option<Answer> {
@@ -304,10 +272,16 @@ impl Dialogs {
     }
 
     fn chosen(&mut self, wanted: Wanted, paths: Vec<PathBuf>) -> Answer {
-        if let Some(folder) = paths.first().and_then(|path| path.parent()) {
-            folder.clone_into(&mut self.folder);
+        if let Some(path) = paths.first() {
+            self.remember_folder_of(path);
         }
         Answer::Files(wanted, paths)
+    }
+
+    fn remember_folder_of(&mut self, path: &Path) {
+        if let Some(folder) = path.parent() {
+            folder.clone_into(&mut self.folder);
+        }
     }
 
     fn browse(&mut self, wanted: Wanted, name: &str) {
@@ -354,10 +328,9 @@ impl Wanted {
 enum End {
     Cancelled,
     File(PathBuf),
-    Save,
-    Discard,
     Material(MaterialChoices),
-    Picture(PictureChoices, Option<PathBuf>),
+    /// With this answer.
+    Answer(Answer),
     /// It stays open, and a texture is chosen.
     Asked,
 }
@@ -376,8 +349,12 @@ impl Dialog {
                 material_dialog::End::Cancelled => End::Cancelled,
             }),
             Self::Picture(dialog) => dialog.ui(ui).map(|end| match end {
-                picture_dialog::End::Into(choices, path) => End::Picture(choices, Some(path)),
-                picture_dialog::End::Elsewhere(choices) => End::Picture(choices, None),
+                picture_dialog::End::Into(choices, path) => {
+                    End::Answer(Answer::Picture(choices, Some(path)))
+                }
+                picture_dialog::End::Elsewhere(choices) => {
+                    End::Answer(Answer::Picture(choices, None))
+                }
                 picture_dialog::End::Cancelled => End::Cancelled,
             }),
             Self::Fault(sentence) => {
@@ -426,8 +403,8 @@ fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
         let discard = ui.button("Discard").clicked();
         let cancel = ui.button("Cancel").clicked();
         match (save.clicked(), discard, cancel) {
-            (true, ..) => Some(End::Save),
-            (_, true, _) => Some(End::Discard),
+            (true, ..) => Some(End::Answer(Answer::Save(after.clone()))),
+            (_, true, _) => Some(End::Answer(Answer::Discard(after.clone()))),
             (.., true) => Some(End::Cancelled),
             _ => None,
         }
