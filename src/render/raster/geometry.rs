@@ -314,8 +314,8 @@ impl ScreenGeometry {
         self.starts.last().map_or(0, |start| start.end as usize)
     }
 
-    /// The triangles of the draw to which one belongs, and the draw's place in the order from far to
-    /// near, if draws are laid over each other as wholes.
+    /// The triangles of the draw to which one belongs, and the draw's place in the order from far
+    /// to near, if draws are laid over each other as wholes.
     pub(crate) fn place_of_draw(&self, triangle: u32) -> (Range<u32>, u64) {
         let (draw, start) = self.draw_of(triangle);
         let place = self.far_to_near.get(draw as usize).map_or(0, |place| u64::from(*place) + 1);

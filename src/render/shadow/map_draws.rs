@@ -49,12 +49,12 @@ pub(super) struct MapDraws {
     casters: Vec<Caster>,
     geometry: ScreenGeometry,
     form: ShadowMapForm,
-    seen: Seen,
+    shown: Shown,
 }
 
 /// What the light sees in the picture that is drawn, kept for the next one.
 #[derive(Debug, Default)]
-struct Seen {
+struct Shown {
     /// For each texel a depth, 0 where nothing is, and the slope of its triangle: tile by tile,
     /// block by block.
     depths: Vec<f32>,
@@ -86,12 +86,12 @@ impl MapDraws {
         };
         plan.prepare();
         let geometry = ScreenGeometry::default();
-        Self { plan, casters, geometry, form, seen: Seen::default() }
+        Self { plan, casters, geometry, form, shown: Shown::default() }
     }
 
     /// Draws a picture; `None` if it shows nothing.
     pub(super) fn face(&mut self, level: Level, view: &MapView) -> Option<Face> {
-        let Self { plan, casters, geometry, form, seen } = self;
+        let Self { plan, casters, geometry, form, shown } = self;
         (plan.view_from_world, plan.clip_from_view) = (view.view_from_world, view.clip_from_view);
         for (draw, caster) in plan.draws.iter_mut().zip(casters) {
             draw.view_from_object = view.view_from_world * caster.world_from_object;
@@ -107,13 +107,13 @@ impl MapDraws {
         }
         let screens: Vec<Screen> =
             plan.draws.iter().map(|draw| Screen::new(draw.clip_from_object, plan.size)).collect();
-        Tile { level, plan, geometry, screens: &screens }.draw_all(count, seen);
-        let picture = Picture { side: form.side, depths: &seen.depths, slopes: &seen.slopes };
+        Tile { level, plan, geometry, screens: &screens }.draw_all(count, shown);
+        let picture = Picture { side: form.side, depths: &shown.depths, slopes: &shown.slopes };
         let limit = limit(view, *form);
         let mut texels = vec![0.0; count * PIXELS];
         let tiles = texels.par_chunks_mut(PIXELS).enumerate();
         tiles.for_each_init(Bordered::default, |bordered, (tile, texels)| {
-            if seen.drawn[tile] {
+            if shown.drawn[tile] {
                 bordered.biased(level, picture, (tile, &limit), texels);
             }
         });
@@ -144,8 +144,8 @@ struct Tile<'a> {
 
 impl Tile<'_> {
     /// Draws all tiles.
-    fn draw_all(&self, count: usize, seen: &mut Seen) {
-        let Seen { depths, slopes, drawn } = seen;
+    fn draw_all(&self, count: usize, shown: &mut Shown) {
+        let Shown { depths, slopes, drawn } = shown;
         for row in [&mut *depths, &mut *slopes] {
             row.resize(count * PIXELS, 0.0);
         }

@@ -14,9 +14,9 @@
 //!
 //! Up to 64 rays to one light are traced together ([`rays`]), those of each patch of a surface by
 //! themselves ([`patches`]). Boxes of a mesh beside all of them are passed over ([`shaft`]); those
-//! of leaves are tested ray by ray in f32, padded by their error ([`boxes`]). Triangles are prepared
-//! eight at a time ([`prepared_block`]), compared with the box of all points, then all eight with
-//! each ray, in f64 lanes with an error bound; exact arithmetic decides the rest
+//! of leaves are tested ray by ray in f32, padded by their error ([`boxes`]). Triangles are
+//! prepared eight at a time ([`prepared_block`]), compared with the box of all points, then all
+//! eight with each ray, in f64 lanes with an error bound; exact arithmetic decides the rest
 //! ([`triangle`]). A sun is a light at 2^60 times the size of the scene: no f64 direction tells the
 //! difference.
 //!
@@ -30,7 +30,7 @@ mod map_bias;
 mod map_draws;
 pub(crate) mod map_face;
 pub(crate) mod maps;
-mod patches;
+pub(crate) mod patches;
 pub(crate) mod prepared_block;
 pub(crate) mod rays;
 pub(crate) mod shaft;

@@ -6,8 +6,8 @@
 
 use glam::DVec3;
 
-use super::rays::{Origins, bits};
 use super::shaft::Around;
+use crate::base::math::each;
 use crate::render::simd::BATCH;
 
 /// Points that lie close to each other.
@@ -25,83 +25,94 @@ const MOST: usize = 8;
 /// A box is divided if this many neighbouring sixteenths of its length are empty.
 const EMPTY: u32 = 4;
 
-impl Origins {
-    /// Divides the points into patches. `normal` tells the normal of the triangle that a point lies
-    /// in, if it lies in one.
-    #[inline(always)]
-    pub(super) fn find_patches(&mut self, normal: impl Fn(&Self, usize) -> Option<DVec3>) {
-        let len = self.len.clamp(1, BATCH);
-        // What is left of the lists repeats the first point.
-        for row in &mut self.at {
-            let first = row[0];
-            row[len..].fill(first);
-        }
-        let mut open = vec![u64::MAX >> (BATCH - len)];
-        while let Some(points) = open.pop() {
-            let around = self.around(points, &normal);
-            let parts = if self.patches.len() + open.len() + 1 < MOST {
-                self.divided(points, &around)
-            } else {
-                None
-            };
-            match parts {
-                Some(parts) => open.extend(parts),
-                None => self.patches.push(Patch { points, around }),
-            }
+/// Divides the first `len` points of a list into patches; the rest repeats the first. `normal`
+/// tells the normal of the triangle that a point lies in, if it lies in one.
+#[inline(always)]
+pub(super) fn find_patches(
+    at: &[[f64; BATCH]; 3],
+    len: usize,
+    normal: impl Fn(usize) -> Option<DVec3>,
+    patches: &mut Vec<Patch>,
+) {
+    let mut open = vec![u64::MAX >> (BATCH - len)];
+    while let Some(points) = open.pop() {
+        let around = if points.count_ones() as usize == len {
+            around(at, points, &normal)
+        } else {
+            around(&only(at, points), points, &normal)
+        };
+        let may_be_divided = patches.len() + open.len() + 1 < MOST;
+        match may_be_divided.then(|| divided(at, points, &around)).flatten() {
+            Some(parts) => open.extend(parts),
+            None => patches.push(Patch { points, around }),
         }
     }
+}
 
-    /// The box of some points, along the triangle of one in their middle or, if that is unknown,
-    /// along three of the points.
-    #[inline(always)]
-    fn around(&self, points: u64, normal: impl Fn(&Self, usize) -> Option<DVec3>) -> Around {
-        let count = points.count_ones() as usize;
-        let [first, second, middle, last] =
-            [0, count.min(8) - 1, count / 2, count - 1].map(|i| nth(points, i));
-        let [a, b, c] = [first, second, last].map(|i| self.point(i));
-        let normal = normal(self, middle).unwrap_or_else(|| (b - a).cross(c - a));
-        if count >= self.len {
-            return Around::new(&self.at, normal, b - a);
+/// The points of a mask; in place of all others, the first of them.
+fn only(at: &[[f64; BATCH]; 3], points: u64) -> [[f64; BATCH]; 3] {
+    let first = nth(points, 0);
+    let mut some = each([0, 1, 2], |axis: usize| [at[axis][first]; BATCH]);
+    for i in bits(points) {
+        for (to, from) in some.iter_mut().zip(at) {
+            to[i] = from[i];
         }
-        let mut at = [a.x, a.y, a.z].map(|x| [x; BATCH]);
-        for i in bits(points) {
-            for (to, from) in at.iter_mut().zip(&self.at) {
-                to[i] = from[i];
-            }
-        }
-        Around::new(&at, normal, b - a)
     }
+    some
+}
 
-    /// The points on both sides of the widest gap along their box, if there is one.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 16")]
-    #[inline(always)]
-    fn divided(&self, points: u64, around: &Around) -> Option<[u64; 2]> {
-        let [a, b, c] = around.halves.map(DVec3::length_squared);
-        let longest = around.halves[if a >= b && a >= c { 0 } else { usize::from(c > b) + 1 }];
-        // Along the longest edge, from -1 to 1.
-        let along = longest / longest.length_squared();
-        let offset = 1.0 - around.centre.dot(along);
-        let mut places = [0; BATCH];
-        for (i, place) in places.iter_mut().enumerate() {
-            let x = self.at[0][i] * along.x + self.at[1][i] * along.y + self.at[2][i] * along.z;
-            *place = ((x + offset) * 8.0) as u32;
-        }
-        let mut taken = 0_u32;
-        for i in bits(points) {
-            taken |= 1 << places[i].min(15);
-        }
-        // Sixteenths that begin a gap: each removes those that do not continue.
-        let empty = !taken & 0xffff;
-        let gap = (1..EMPTY).fold(empty, |gap, i| gap & empty >> i);
-        // The ends of the box touch points, but for rounding.
-        let inner = gap & !1 & (taken.checked_ilog2().map_or(0, |last| (1 << last) - 1));
-        if inner == 0 {
-            return None;
-        }
-        let from = inner.trailing_zeros();
-        let near = bits(points).filter(|i| places[*i] < from).fold(0, |own, i| own | 1 << i);
-        Some([near, points & !near]).filter(|[near, far]| *near != 0 && *far != 0)
+/// The box of some points, which are all that a list has: along the triangle of one in their middle
+/// or, if that is unknown, along three of the points.
+#[inline(always)]
+fn around(at: &[[f64; BATCH]; 3], points: u64, normal: impl Fn(usize) -> Option<DVec3>) -> Around {
+    let count = points.count_ones() as usize;
+    let point = |n: usize| {
+        let i = nth(points, n);
+        DVec3::new(at[0][i], at[1][i], at[2][i])
+    };
+    let [a, b, c] = [point(0), point(count.min(8) - 1), point(count - 1)];
+    let normal = normal(nth(points, count / 2)).unwrap_or_else(|| (b - a).cross(c - a));
+    Around::new(at, normal, b - a)
+}
+
+/// The points on both sides of the first wide gap along their box, if there is one.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 16")]
+fn divided(at: &[[f64; BATCH]; 3], points: u64, around: &Around) -> Option<[u64; 2]> {
+    let [a, b, c] = around.halves.map(DVec3::length_squared);
+    let longest = around.halves[if a >= b && a >= c { 0 } else { usize::from(c > b) + 1 }];
+    // Along the longest edge, from -1 to 1.
+    let along = longest / longest.length_squared();
+    let offset = 1.0 - around.centre.dot(along);
+    let mut places = [0; BATCH];
+    for (i, place) in places.iter_mut().enumerate() {
+        let x = at[0][i] * along.x + at[1][i] * along.y + at[2][i] * along.z;
+        *place = ((x + offset) * 8.0) as u32;
     }
+    let taken = bits(points).fold(0_u32, |taken, i| taken | 1 << places[i].min(15));
+    // The sixteenths at which a gap begins, between the first and the last that are taken.
+    let empty = !taken & 0xffff;
+    let gaps = (1..EMPTY).fold(empty, |gaps, i| gaps & empty >> i);
+    let below = |bit: u32| (1_u32 << bit) - 1;
+    let between = below(taken.checked_ilog2()?) & !below(taken.trailing_zeros());
+    let gap = gaps & between;
+    if gap == 0 {
+        return None;
+    }
+    let near = bits(points).filter(|i| places[*i] < gap.trailing_zeros());
+    let near = near.fold(0, |near, i| near | 1 << i);
+    Some([near, points & !near])
+}
+
+/// The numbers of the bits of a mask.
+pub(crate) fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        (mask != 0).then(|| {
+            let i = mask.trailing_zeros() as usize;
+            mask &= mask - 1;
+            i
+        })
+    })
 }
 
 /// The number of one of the set bits of a mask that has enough.
@@ -113,6 +124,7 @@ fn nth(mask: u64, n: usize) -> usize {
 mod tests {
     use super::*;
     use crate::base::rng::Rng;
+    use crate::render::shadow::rays::Origins;
 
     /// Points on squares of a plane, some columns of each.
     fn origins(squares: &[(DVec3, usize)]) -> Origins {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::patches::Patch;
+use super::patches::{Patch, find_patches};
 use super::prepared_block::PreparedBlock;
 use super::shaft::Shaft;
 use crate::render::simd::BATCH;
@@ -23,7 +23,7 @@ pub(crate) struct Origins {
     pub(crate) reach: f64,
     /// The points that were lifted off their triangles, a bit for each: they are exact.
     pub(super) lifted: u64,
-    pub(super) len: usize,
+    len: usize,
     /// The points by where they lie; empty if that is not known yet.
     pub(super) patches: Vec<Patch>,
 }
@@ -73,6 +73,21 @@ impl Origins {
     #[inline(always)]
     pub(crate) fn point(&self, i: usize) -> DVec3 {
         DVec3::new(self.at[0][i], self.at[1][i], self.at[2][i])
+    }
+
+    /// Divides the points into patches. `normal` tells the normal of the triangle that a point lies
+    /// in, if it lies in one.
+    #[inline(always)]
+    pub(super) fn find_patches(&mut self, normal: impl Fn(&Self, usize) -> Option<DVec3>) {
+        let len = self.len.clamp(1, BATCH);
+        // What is left of the lists repeats the first point.
+        for row in &mut self.at {
+            let first = row[0];
+            row[len..].fill(first);
+        }
+        let mut patches = std::mem::take(&mut self.patches);
+        find_patches(&self.at, len, |i| normal(self, i), &mut patches);
+        self.patches = patches;
     }
 }
 
@@ -125,15 +140,4 @@ impl Default for LocalRays {
         let rows = [[0.0; BATCH]; 3];
         Self { origin: rows, inverse: rows, end: [0.0; BATCH], pad: [0.0; 3], far: 0.0 }
     }
-}
-
-/// The numbers of the bits of a mask.
-pub(crate) fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        (mask != 0).then(|| {
-            let i = mask.trailing_zeros() as usize;
-            mask &= mask - 1;
-            i
-        })
-    })
 }

@@ -5,9 +5,9 @@ use glam::{DMat4, DVec3};
 
 use super::map_face::{LightMap, Reading};
 use super::maps::ShadowMaps;
-use super::patches::Patch;
+use super::patches::{Patch, bits};
 use super::prepared_block::PreparedBlock;
-use super::rays::{Origins, RayCount, RayScratch, bits};
+use super::rays::{Origins, RayCount, RayScratch};
 use super::shaft::Around;
 use super::triangle::{Corners, Prepared, is_between, reaches_behind};
 use crate::accuracy::{Filter, ShadowMethod};

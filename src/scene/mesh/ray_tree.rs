@@ -354,10 +354,12 @@ fn in_unit_cube(boxes: &[Box3]) -> Vec<Aabb> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::MeshSource;
 
     #[test]
     #[should_panic(expected = "built on a thread that does not draw")]
     fn no_thread_but_those_that_draw_builds_a_tree() {
-        RayTree::new(&Mesh::default());
+        let mesh = Mesh::new(MeshSource::default()).expect("an empty mesh");
+        RayTree::new(&mesh);
     }
 }
