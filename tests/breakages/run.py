@@ -139,23 +139,35 @@ def key(breakage):
     return f"{breakage['case']:0>2}-{words}"
 
 
+def told():
+    """The last columns of each row of the page as it is: what came of a breakage, by what, and when."""
+    rows = (line.strip("| \n").split(" | ") for line in (ROOT / "docs/breakages.md").read_text().splitlines())
+    return {(row[0], row[1]): row[3:] for row in rows if len(row) == 6}
+
+
 def page():
-    rows, missing = [], 0
+    rows, missing, untried, before = [], 0, 0, told()
     for breakage in TABLE:
         kept = WORK / f"{key(breakage)}.tsv"
-        day, commit, came, by = kept.read_text().strip("\n").split("\t") if kept.is_file() else ("", "", "not tried", "")
-        missing += came != "caught"
-        named = by.split(", ")[0].replace("_", " ")
-        more = by.count(",")
-        rows.append(f"| {breakage['case']} | {breakage['what']} | `{breakage['file'].removeprefix('src/')}` "
-                    f"| {came} | {named}{f' and {more} more' if more else ''} | {day} {commit} |")
+        if kept.is_file():
+            day, commit, came, by = kept.read_text().strip("\n").split("\t")
+            more = by.count(",")
+            named = by.split(", ")[0].replace("_", " ") + (f" and {more} more" if more else "")
+            result = [came, named, f"{day} {commit}"]
+        else:
+            # What was tried elsewhere stays.
+            result = before.get((str(breakage["case"]), breakage["what"]), ["not tried", "", ""])
+        missing += result[0] != "caught"
+        untried += result[0] == "not tried"
+        file = breakage["file"].removeprefix("src/")
+        rows.append(f"| {breakage['case']} | {breakage['what']} | `{file}` | {' | '.join(result)} |")
     text = f"""# Mutation tests
 
 <!-- Made by tests/breakages/run.py page: change tests/breakages, and run it again. -->
 
 Each row is a mistake that was made on purpose in a copy of the sources, alone, and the test that failed
 for it. The first column names the hard case, or the proof, that has to notice.
-{len(TABLE)} mistakes, {len(TABLE) - missing} caught by the case that claims them.
+{len(TABLE)} mistakes, {len(TABLE) - missing} caught by the case that claims them, {untried} not tried yet.
 
 `tests/breakages/run.py 1/4` tries a quarter of them, `tests/breakages/run.py page` makes this page.
 
