@@ -1,8 +1,6 @@
 //! Edge functions of sixteen small triangles, one in each lane, by each rule of coverage.
 
-use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, i32x16, mask32x16,
-};
+use fearless_simd::{Bytes as _, Select as _, Simd, SimdBase as _, f32x16, i32x16, mask32x16};
 
 use crate::render::screen::coverage::Grid;
 use crate::render::screen::sample_positions::SamplePositions;

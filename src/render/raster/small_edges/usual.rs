@@ -1,9 +1,7 @@
 //! On the usual grid, in f32: integers below 2^24 are exact, and no edge function in a box of 8 x 8
 //! pixels is larger.
 
-use fearless_simd::{
-    Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, f32x16, i32x16, mask32x16,
-};
+use fearless_simd::{Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, i32x16, mask32x16};
 
 use super::{Boxes, Corners, Edges, of_lanes, snapped_bounds};
 use crate::base::math::each;
