@@ -32,7 +32,7 @@ def output(*command, **options):
 # What the window and the command line are made of, and what only their tests and benchmarks use.
 UPPER_FLOORS = ("src/app/", "src/cli/", "src/main.rs", "benches/", "examples/", "fuzz/", "docs/")
 THEIR_CRATES = (
-    "clap", "criterion", "eframe", "egui", "egui-winit", "egui_kittest", "egui_material_icons", "egui_plot", "fontdb",
+    "criterion", "eframe", "egui", "egui-winit", "egui_kittest", "egui_material_icons", "egui_plot", "fontdb",
     "indicatif", "nucleo-matcher", "rfd", "softbuffer", "ttf-parser", "winit",
 )
 
