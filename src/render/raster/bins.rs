@@ -3,10 +3,10 @@
 //! Every thread that sets up triangles and lines has bins of its own, so no thread waits for
 //! another. Visibility does not depend on the order in which a tile reads them.
 
+use super::covered::Covered;
 use super::hits::Hits;
 use super::lines::{self, ScreenLine};
 use super::queue::{Queue, SMALL};
-use super::small::Covered;
 use crate::base::image::Size;
 use crate::render::screen::clip::ScreenVertex;
 use crate::render::screen::coverage::PixelBox;

@@ -5,8 +5,7 @@
 //! functions in f64, which holds these integers exactly.
 
 use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8,
-    i32x16,
+    Select as _, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8, i32x16,
 };
 
 use super::bins::LargeTriangle;
@@ -17,6 +16,7 @@ use crate::base::math::each;
 use crate::render::screen::coverage::{PixelBox, SUBPIXELS};
 use crate::render::screen::sample_positions::SamplePositions;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE};
+use crate::render::simd::in_f64;
 
 /// The longest sides of the bounding box, in pixels.
 pub(crate) const LONGEST: i32 = TILE;
@@ -24,11 +24,6 @@ pub(crate) const LONGEST: i32 = TILE;
 /// Columns and rows of the pixels of two rows of a block, or of the blocks of two rows of a tile.
 const ACROSS: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const DOWN: [i32; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
-
-/// The upper half of the bits of 2^52 as f64. Those of 2^52 + n, n below 2^32, end in n.
-const UPPER: i32 = 0x4330_0000;
-/// 2^52 + 2^31.
-const TO_SIGNED: f64 = 4_503_601_774_854_144.0;
 
 /// Two rows of a block at a time.
 const PAIRS: i32 = BLOCK / 2;
@@ -196,11 +191,4 @@ impl<S: Simd> Medium<S> {
     fn depth_at(&self, second: f64x8<S>, third: f64x8<S>) -> f64x8<S> {
         second * self.to_second + self.depth + third * self.to_third
     }
-}
-
-/// Integers as f64. No instruction but those of AVX-512 converts them to eight f64 at once.
-#[inline(always)]
-pub(super) fn in_f64<S: Simd>(numbers: i32x16<S>) -> [f64x8<S>; 2] {
-    let (low, high) = (numbers ^ i32::MIN).interleave(i32x16::splat(numbers.simd, UPPER));
-    [low.bitcast::<f64x8<S>>() - TO_SIGNED, high.bitcast::<f64x8<S>>() - TO_SIGNED]
 }

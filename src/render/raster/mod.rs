@@ -13,6 +13,7 @@
 pub(crate) mod alpha_test;
 mod beyond;
 pub(crate) mod bins;
+mod covered;
 mod culling;
 pub(crate) mod depth_format;
 mod edges;

@@ -3,15 +3,16 @@
 //! Triangles whose bounding box has at most 16 x 16 pixels wait in queues by the size of their
 //! boxes. When there are sixteen, their edge functions are stepped together over the pixels of the
 //! boxes, and the pixels that they cover are listed: few lanes of a step cover theirs. Then each
-//! lane takes a pixel of the list, computes its depth and adds it to the hits of the bins: set-up of
-//! triangles of 5 pixels takes 0.55 of what it takes if each step computes depths (AVX-512). How
-//! edge functions are computed depends on the rule of coverage: see `small_edges`.
+//! lane takes a pixel of the list, computes its depth and adds it to the hits of the bins: set-up
+//! of triangles of 5 pixels takes 0.55 of what it takes if each step computes depths (AVX-512).
+//! How edge functions are computed depends on the rule of coverage: see `small_edges`.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdMask as _, f32x16, i32x16, mask32x16, u32x16,
 };
 
 use super::bins::Bins;
+use super::covered::{Covered, MOST};
 use super::hits::{PACK, Pixels};
 use super::queue::{Pack, SMALL, WAITING};
 use super::rule::Rule;
@@ -76,23 +77,6 @@ fn draw_by<S: Simd, E: Edges<S>, const N: usize>(simd: S, pack: &Pack<S>, bins: 
             #[inline(always)]
             |pixels, count| hits.add_first::<S, N>(&reach, (pixels, sample), count),
         );
-    }
-}
-
-/// The most pixels that sixteen triangles cover.
-const MOST: usize = PACK * 16 * 16;
-
-/// Pixels that sixteen triangles cover: in bits, from the lowest, 4 for the lane, 4 for the column
-/// and 4 for the row in the box of the triangle. There is room for sixteen more.
-#[derive(Debug)]
-pub(crate) struct Covered {
-    pixels: [i32; MOST + PACK],
-    count: usize,
-}
-
-impl Default for Covered {
-    fn default() -> Self {
-        Self { pixels: [0; MOST + PACK], count: 0 }
     }
 }
 

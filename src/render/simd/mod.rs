@@ -8,6 +8,7 @@
 //!   variant that the settings choose; `variant_real` and `variant_lanes` bring them into
 //!   equations.
 
+mod doubles;
 mod encoding;
 pub(crate) mod gather;
 mod lanes;
@@ -22,6 +23,7 @@ mod variant_lanes;
 mod variant_real;
 mod vec3;
 
+pub(crate) use doubles::in_f64;
 pub(crate) use encoding::Encoding;
 pub use lanes::{BATCH, Exact, Kernel, Lanes};
 pub use number::Number;

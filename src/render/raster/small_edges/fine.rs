@@ -1,5 +1,5 @@
-//! On the fine grid, in 32-bit integers. A step by a pixel adds a multiple of 4096 to edge functions,
-//! so that whole quotients by 4096 tell whether they are negative.
+//! On the fine grid, in 32-bit integers. A step by a pixel adds a multiple of 4096 to edge
+//! functions, so that whole quotients by 4096 tell whether they are negative.
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, i32x16, mask32x16};
 

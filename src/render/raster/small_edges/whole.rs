@@ -1,5 +1,5 @@
 //! On the usual grid, in 32-bit integers, for boxes of up to 16 x 16 pixels. Depths are those of
-//! [`medium`](crate::render::raster::medium), to the same bits.
+//! `medium`, to the same bits.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdNarrow as _, SimdWiden as _, f32x16, f64x8,
@@ -8,10 +8,10 @@ use fearless_simd::{
 
 use super::{Boxes, Corners, Edges, of_lanes, snapped_bounds, whole_edge};
 use crate::base::math::each;
-use crate::render::raster::medium::in_f64;
 use crate::render::screen::coverage::{Grid, SUBPIXELS};
 use crate::render::screen::sample_positions::SamplePositions;
 use crate::render::simd::gather::permute;
+use crate::render::simd::in_f64;
 
 /// On the usual grid, in whole numbers.
 #[derive(Clone, Copy)]
