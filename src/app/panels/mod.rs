@@ -1,6 +1,6 @@
 //! The table of panels: what each is called, where it stands, and its file.
 //!
-//! Actions, menus, scene files and preferences read the table; [`arrange`] shows what it lists. It
+//! Actions, menus, scene files and preferences read the table; `arrange` shows what it lists. It
 //! is plain data and stands below the panels themselves, so that the table of actions can read it.
 //! Panels read the state and return requests; they change nothing.
 

@@ -163,7 +163,11 @@ impl Fragments {
 
     /// The slot of a triangle; a new one if it has none.
     #[inline(always)]
-    #[expect(clippy::cast_possible_wrap, reason = "there are 64 slots")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_possible_wrap,
+        reason = "there are 64 slots"
+    )]
     fn slot_of(&mut self, number: u32) -> i32 {
         let entry = &mut self.table[number as usize % TABLE];
         let new = u64::from(number) << 32 | self.list;

@@ -26,6 +26,9 @@ pub(crate) struct FineEdges<S: Simd> {
 /// log2 of the parts of a pixel on the fine grid.
 const FINE: u32 = Grid::Fine.parts().trailing_zeros();
 
+/// What quotients gain by the offset of a sample, and what the second and third edge function do.
+type Shift<S> = ([i32x16<S>; 3], [f32x16<S>; 2]);
+
 impl<S: Simd> FineEdges<S> {
     /// An edge function of the triangles in some lanes, this far from their first pixels.
     #[inline(always)]
@@ -34,7 +37,7 @@ impl<S: Simd> FineEdges<S> {
         i: usize,
         lanes: i32x16<S>,
         [dx, dy]: [i32x16<S>; 2],
-        shift: Option<&([i32x16<S>; 3], [f32x16<S>; 2])>,
+        shift: Option<&Shift<S>>,
     ) -> f32x16<S> {
         let steps = permute(self.a[i], lanes) * dx + permute(self.b[i], lanes) * dy;
         let at = (permute(self.first[i], lanes) + (steps << FINE)).to_float::<f32x16<S>>();
@@ -48,8 +51,7 @@ impl<S: Simd> FineEdges<S> {
 impl<S: Simd> Edges<S> for FineEdges<S> {
     /// Quotients.
     type At = [i32x16<S>; 3];
-    /// What the quotients gain, and the second and third edge function.
-    type Shift = ([i32x16<S>; 3], [f32x16<S>; 2]);
+    type Shift = Shift<S>;
 
     #[inline(always)]
     fn bounds(corners: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S> {
