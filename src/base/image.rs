@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use super::ByteBounds;
 use super::once::get_or_compute;
 
 /// Rows of pixels from the top; each pixel is red, green, blue and alpha, not premultiplied.
@@ -10,12 +11,16 @@ pub struct Picture {
     width: usize,
     height: usize,
     pixels: Vec<[u8; 4]>,
-    alphas: Alphas,
+    derived: Derived,
 }
 
-/// What the alphas of a picture's pixels are; found when it is first needed.
+/// What follows from a picture's pixels; found when it is first needed.
 #[derive(Clone, Debug, Default)]
-struct Alphas(OnceLock<Found>);
+struct Derived {
+    found: OnceLock<Found>,
+    alphas: OnceLock<ByteBounds>,
+    colors: OnceLock<ByteBounds>,
+}
 
 #[derive(Clone, Copy, Debug)]
 struct Found {
@@ -26,14 +31,14 @@ struct Found {
     grey: bool,
 }
 
-/// They follow from the pixels, which are compared anyway.
-impl PartialEq for Alphas {
+/// It follows from the pixels, which are compared anyway.
+impl PartialEq for Derived {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-impl Eq for Alphas {}
+impl Eq for Derived {}
 
 /// The width and height of a picture in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -63,8 +68,8 @@ impl Picture {
     #[must_use]
     pub fn filled(size: Size, pixel: [u8; 4]) -> Self {
         let pixels = vec![pixel; size.area()];
-        let alphas = Alphas::default();
-        Self { width: size.width, height: size.height, pixels, alphas }
+        let derived = Derived::default();
+        Self { width: size.width, height: size.height, pixels, derived }
     }
 
     /// A picture of these pixels, row by row from the top; `None` if their number does not fit.
@@ -74,7 +79,7 @@ impl Picture {
             width: size.width,
             height: size.height,
             pixels,
-            alphas: Alphas::default(),
+            derived: Derived::default(),
         })
     }
 
@@ -92,31 +97,50 @@ impl Picture {
 
     /// All pixels, to be written.
     pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
-        self.alphas = Alphas::default();
+        self.derived = Derived::default();
         &mut self.pixels
     }
 
     /// The least alpha of all pixels; 255 if there are none.
     #[must_use]
     pub fn least_alpha(&self) -> u8 {
-        self.alphas().least
+        self.found().least
     }
 
     /// Whether the alpha of any pixel is neither 0 nor 255.
     #[must_use]
     pub fn has_partial_alpha(&self) -> bool {
-        self.alphas().partial
+        self.found().partial
     }
 
     /// Whether, as a map of opacity, it is anywhere between nothing and all. Its alpha counts; if
     /// all of it is opaque, its colour does.
     #[must_use]
     pub fn fades(&self) -> bool {
-        let Found { least, partial, grey } = self.alphas();
+        let Found { least, partial, grey } = self.found();
         if least == 255 { grey } else { partial }
     }
 
-    fn alphas(&self) -> Found {
+    /// Bounds of the alphas, by columns and rows from the upper left.
+    #[must_use]
+    pub fn alpha_bounds(&self) -> &ByteBounds {
+        let of = |[_, _, _, alpha]: &[u8; 4]| [*alpha; 2];
+        get_or_compute(&self.derived.alphas, || self.bounds(of))
+    }
+
+    /// Bounds of the colours' components, and so of any mean of them, by columns and rows from the
+    /// upper left.
+    #[must_use]
+    pub fn color_bounds(&self) -> &ByteBounds {
+        let of = |[r, g, b, _]: &[u8; 4]| [*r.min(g).min(b), *r.max(g).max(b)];
+        get_or_compute(&self.derived.colors, || self.bounds(of))
+    }
+
+    fn bounds(&self, of: impl Fn(&[u8; 4]) -> [u8; 2]) -> ByteBounds {
+        ByteBounds::new(self.size(), self.pixels.iter().map(of))
+    }
+
+    fn found(&self) -> Found {
         let nothing = Found { least: 255, partial: false, grey: false };
         let find = || {
             self.pixels.iter().fold(nothing, |found, [r, g, b, alpha]| {
@@ -128,7 +152,7 @@ impl Picture {
                 }
             })
         };
-        *get_or_compute(&self.alphas.0, find)
+        *get_or_compute(&self.derived.found, find)
     }
 
     /// The pixel in column `x` of row `y`, both counted from the upper left.
@@ -141,6 +165,6 @@ impl Picture {
     pub fn resize(&mut self, size: Size) {
         (self.width, self.height) = (size.width, size.height);
         self.pixels.resize(size.area(), [0, 0, 0, 255]);
-        self.alphas = Alphas::default();
+        self.derived = Derived::default();
     }
 }

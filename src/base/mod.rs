@@ -1,5 +1,6 @@
 //! The lowest floor: mathematics, colours, pictures, shared values, parallel work.
 
+mod byte_bounds;
 pub(crate) mod cancellation;
 pub mod color;
 #[cfg(test)]
@@ -12,4 +13,5 @@ pub mod rng;
 mod shared;
 pub(crate) mod work_stealing;
 
+pub use byte_bounds::ByteBounds;
 pub use shared::Shared;

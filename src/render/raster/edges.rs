@@ -142,6 +142,7 @@ impl EdgeSetup<'_> {
         self.add_segment(ends, number, self.nearer(), bins);
     }
 
+    #[inline(always)]
     fn add_segment(&self, ends: [DVec3; 2], number: u32, nearer: u32, bins: &mut Bins) {
         let clip = ends.map(|end| self.screen.clip(end.to_array()));
         if let Some(ends) = self.screen.segment(clip) {
@@ -149,15 +150,18 @@ impl EdgeSetup<'_> {
         }
     }
 
-    /// Sets up the draw's normals into bins, and their polygons into a list; the number of the
-    /// first normal is `first`.
-    pub(crate) fn add_normals(&self, first: u32, bins: &mut Bins, polygons: &mut Vec<u32>) {
-        let begin = polygons.len();
-        normals(self.draw, |ends, polygon| {
-            let own = u32::try_from(polygons.len() - begin).expect("fewer than 2^30 lines");
-            let number = LineNumber::new(first + own, false);
-            self.add_segment(ends, number.bits(), NEARER, bins);
-            polygons.push(polygon);
+    /// Sets up some of the draw's normals into bins; the number of the first is `first`.
+    pub(crate) fn add_normals(
+        &self,
+        level: Level,
+        (first, normals): (u32, &[DrawnNormal]),
+        bins: &mut Bins,
+    ) {
+        let placed = NormalsInObject::new(self.draw);
+        // Dispatched so that rounding uses the processor's instruction, if it has one.
+        dispatch!(level, _ => for (number, normal) in (first..).zip(normals) {
+            let number = LineNumber::new(number, false);
+            self.add_segment(placed.ends(normal), number.bits(), NEARER, bins);
         });
     }
 }
@@ -183,9 +187,17 @@ pub(crate) fn polygon_of(draw: &Draw, edge: u32, outlines: &[AtomicU8]) -> Optio
     all.min_by_key(|polygon| (u8::MAX - outline(*polygon), *polygon))
 }
 
-/// Calls `add` with the normals of polygons that are shown, whichever way they face, in object
-/// space.
-fn normals(draw: &Draw, mut add: impl FnMut([DVec3; 2], u32)) {
+/// A normal that is drawn as a line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DrawnNormal {
+    /// The polygon that it belongs to; of a point, the first one that is shown.
+    pub(crate) polygon: u32,
+    /// The point of a vertex normal, or [`NONE`].
+    point: u32,
+}
+
+/// Adds the normals of polygons that are shown, whichever way they face, to a list.
+pub(crate) fn list_normals(draw: &Draw, to: &mut Vec<DrawnNormal>) {
     let Lines { face_normals, vertex_normals, .. } = draw.lines;
     if face_normals.is_none() && vertex_normals.is_none() {
         return;
@@ -194,21 +206,15 @@ fn normals(draw: &Draw, mut add: impl FnMut([DVec3; 2], u32)) {
     let mut drawn = vec![false; mesh.points().len()];
     let all = 0..u32::try_from(mesh.polygon_count()).expect("polygons have 32-bit numbers");
     for polygon in all.filter(|polygon| draw.shows(*polygon)) {
-        let mut add = |from: DVec3, normal: [f32; 3], length: f64| {
-            let to = from + normal_in_object(draw, dvec3(normal), length);
-            add([from, to], polygon);
-        };
-        if let Some(length) = face_normals {
-            let normal = mesh.polygon_normals()[polygon as usize];
-            add(mesh.polygon_centre(polygon), normal, length);
+        if face_normals.is_some() {
+            to.push(DrawnNormal { polygon, point: NONE });
         }
-        let Some(length) = vertex_normals else { continue };
-        for corner in mesh.polygon(polygon) {
-            let point = point_of(draw, corner) as usize;
-            if !std::mem::replace(&mut drawn[point], true) {
-                let point = mesh.points()[point];
-                let from = mesh.positions()[point.position as usize];
-                add(dvec3(from), point.normal, length);
+        if vertex_normals.is_some() {
+            for corner in mesh.polygon(polygon) {
+                let point = point_of(draw, corner);
+                if !std::mem::replace(&mut drawn[point as usize], true) {
+                    to.push(DrawnNormal { polygon, point });
+                }
             }
         }
     }
@@ -222,11 +228,42 @@ fn point_of(draw: &Draw, corner: &Corner) -> u32 {
     }
 }
 
-/// A drawn normal in object space: perpendicular to the placed surface, and as long as `length`
-/// units of object space along the normal before placement.
-fn normal_in_object(draw: &Draw, normal: DVec3, length: f64) -> DVec3 {
-    let linear = DMat3::from_mat4(draw.view_from_object);
-    let across = linear.inverse() * (draw.view_from_normal * normal);
-    let scale = (linear * normal).length() / (linear * across).length();
-    if scale.is_finite() { across * (scale * length) } else { normal * length }
+/// The drawn normals of a draw in object space.
+struct NormalsInObject<'a> {
+    draw: &'a Draw,
+    view_from_object: DMat3,
+    object_from_view: DMat3,
+}
+
+impl<'a> NormalsInObject<'a> {
+    fn new(draw: &'a Draw) -> Self {
+        let view_from_object = DMat3::from_mat4(draw.view_from_object);
+        Self { draw, view_from_object, object_from_view: view_from_object.inverse() }
+    }
+
+    /// Where a normal begins and ends.
+    #[inline(always)]
+    fn ends(&self, normal: &DrawnNormal) -> [DVec3; 2] {
+        let DrawnNormal { polygon, point } = *normal;
+        let (mesh, lines) = (&self.draw.model.mesh, &self.draw.lines);
+        let (from, normal, length) = if point == NONE {
+            let normal = mesh.polygon_normals()[polygon as usize];
+            (mesh.polygon_centre(polygon), normal, lines.face_normals)
+        } else {
+            let point = mesh.points()[point as usize];
+            let from = dvec3(mesh.positions()[point.position as usize]);
+            (from, point.normal, lines.vertex_normals)
+        };
+        [from, from + self.placed(dvec3(normal), length.unwrap_or(0.0))]
+    }
+
+    /// A normal perpendicular to the placed surface, and as long as `length` units of object space
+    /// along the normal before placement.
+    #[inline(always)]
+    fn placed(&self, normal: DVec3, length: f64) -> DVec3 {
+        let across = self.object_from_view * (self.draw.view_from_normal * normal);
+        let along = (self.view_from_object * normal).length();
+        let scale = along / (self.view_from_object * across).length();
+        if scale.is_finite() { across * (scale * length) } else { normal * length }
+    }
 }

@@ -9,13 +9,15 @@ use glam::DMat4;
 use rayon::prelude::*;
 
 use super::bins::Bins;
+use super::edges::{self, DrawnNormal};
+use super::hole_tables::HoleTables;
 use super::lines::LineNumber;
 use super::parts::{Parts, share_out};
 use super::rule::{Rule as _, with_rule};
 use super::starts::{Start, number};
+use super::vertex_variants;
 use super::vertices::Vertices;
 use super::work::{What, WorkList, piece_of};
-use super::{edges, vertex_variants};
 use crate::accuracy::Transparency;
 use crate::base::Shared;
 use crate::base::cancellation::Cancellation;
@@ -42,13 +44,15 @@ pub(crate) struct ScreenGeometry {
     starts: Vec<Start>,
     /// For each polygon of draws with edges, the number of an [`Outline`](super::facing::Outline).
     outlines: Vec<AtomicU8>,
-    /// The polygons of the normals that are drawn.
-    normals: Vec<u32>,
+    /// The normals that are drawn.
+    normals: Vec<DrawnNormal>,
+    /// Where triangles have holes.
+    holes: HoleTables,
     /// The vertices to transform.
     placing: WorkList<()>,
     /// The triangles to set up, and the polygons whose outlines are needed.
     set_up: WorkList<What>,
-    /// The edges to set up.
+    /// The edges and normals to set up.
     lines: WorkList<What>,
     bins: Vec<Bins>,
     /// The samples of the pass.
@@ -240,7 +244,9 @@ impl ScreenGeometry {
                 bins.clear_transparent(transparent, plan.size);
             }
         }
+        self.holes.update(plan);
         let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+        let parts = parts.with_holes(&self.holes);
         share_out(level, self.set_up.sorted(), &parts, &mut self.bins, watch);
     }
 
@@ -257,17 +263,18 @@ impl ScreenGeometry {
             let start = &mut self.starts[i];
             (start.line, start.normal) = (next, next + number(edges));
             start.normal_place = self.normals.len();
-            let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
-            let setup = parts.edge_setup(i);
-            let first = self.starts[i].normal;
-            setup.add_normals(first, &mut self.bins[0], &mut self.normals);
-            next = first + number(self.normals.len() - self.starts[i].normal_place);
-            self.starts[i].line_end = next;
+            edges::list_normals(draw, &mut self.normals);
+            let normals = &self.normals[start.normal_place..];
+            next = start.normal + number(normals.len());
+            start.line_end = next;
             let position = |edge| What::Edges.position(draw, edge);
             self.lines.add((i, draw), (What::Edges, edges), plan.size, position);
+            let position = |i: usize| What::Normals.position(draw, normals[i].polygon as usize);
+            self.lines.add((i, draw), (What::Normals, normals.len()), plan.size, position);
         }
         if self.lines.len() > 0 {
             let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+            let parts = parts.with_normals(&self.normals);
             share_out(level, self.lines.sorted(), &parts, &mut self.bins, watch);
         }
     }
@@ -346,7 +353,7 @@ impl ScreenGeometry {
         let draw = self.draw_of_line(line);
         let start = self.starts[draw];
         let polygon = match line.line().checked_sub(start.normal) {
-            Some(normal) => self.normals[start.normal_place + normal as usize],
+            Some(normal) => self.normals[start.normal_place + normal as usize].polygon,
             None => {
                 let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
                 edges::polygon_of(

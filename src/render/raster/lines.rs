@@ -153,30 +153,66 @@ pub(crate) fn pixels(
     if du == 0 {
         return;
     }
-    let (first, last) = if steep { (clip.top, clip.bottom) } else { (clip.left, clip.right) };
+    let (columns, rows) = ((clip.left, clip.right), (clip.top, clip.bottom));
+    let ((first, last), (low, high)) = if steep { (rows, columns) } else { (columns, rows) };
     let begin = ua.min(ub).div_euclid(SUBPIXELS).max(first);
     let end = (ua.max(ub).div_euclid(SUBPIXELS) + 1).min(last);
+    let pixel = i64::from(SUBPIXELS);
+    let at = |u: i32| i64::from(u) * pixel + i64::from(HALF) - i64::from(ua);
+    let first = i64::from(va) * du + dv * at(begin);
+    let mut crossing = Crossing::new(first, dv * pixel, du * pixel);
     for u in begin..end {
-        let centre = i64::from(u) * i64::from(SUBPIXELS) + i64::from(HALF);
-        let along = centre - i64::from(ua);
-        // v where the line crosses the centre of the column: (va du + dv along) / du, rounded down.
-        let (above, below) = (i64::from(va) * du + dv * along, du * i64::from(SUBPIXELS));
-        let v = (above * below.signum()).div_euclid(below.abs());
+        let (v, along) = (crossing.next(), at(u));
         let Ok(v) = i32::try_from(v) else { continue };
-        if !leaves(u, v, along, du, (ua, va), (ub, vb)) {
+        if v >= high || v <= low - width {
+            continue;
+        }
+        let is_end = along.abs() <= pixel || (along - du).abs() <= pixel;
+        if is_end && !leaves(u, v, along, du, (ua, va), (ub, vb)) {
             continue;
         }
         let t = (along as f64 / du as f64).clamp(0.0, 1.0);
         let depth = f64::from(a.depth) + t * (f64::from(b.depth) - f64::from(a.depth));
         let depth = nearer(depth as f32, line.nearer);
-        for side in 0..width {
-            let v = v + side;
+        for v in v.max(low)..(v + width).min(high) {
             let (x, y) = if steep { (v, u) } else { (u, v) };
-            let inside = x >= clip.left && x < clip.right && y >= clip.top && y < clip.bottom;
-            if inside {
-                take(x, y, depth);
-            }
+            take(x, y, depth);
         }
+    }
+}
+
+/// v where a line crosses the centres of columns: (va du + dv along) / du, rounded down. From one
+/// column to the next the quotient and the remainder grow by the same, so that none is divided.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    quotient: i64,
+    remainder: i64,
+    /// What both grow by.
+    step: [i64; 2],
+    divisor: i64,
+}
+
+impl Crossing {
+    /// From a dividend, its growth and a divisor, which is not 0.
+    const fn new(dividend: i64, growth: i64, divisor: i64) -> Self {
+        let (dividend, growth) = (dividend * divisor.signum(), growth * divisor.signum());
+        let divisor = divisor.abs();
+        Self {
+            quotient: dividend.div_euclid(divisor),
+            remainder: dividend.rem_euclid(divisor),
+            step: [growth.div_euclid(divisor), growth.rem_euclid(divisor)],
+            divisor,
+        }
+    }
+
+    /// The quotient in this column; goes on to the next one.
+    #[inline(always)]
+    const fn next(&mut self) -> i64 {
+        let Self { quotient, remainder, step, divisor } = *self;
+        let carry = remainder + step[1] >= divisor;
+        self.quotient = quotient + step[0] + carry as i64;
+        self.remainder = remainder + step[1] - if carry { divisor } else { 0 };
+        quotient
     }
 }
 

@@ -21,6 +21,7 @@ mod edges_in_floats;
 mod facing;
 pub(crate) mod geometry;
 mod hits;
+mod hole_tables;
 mod large;
 pub(crate) mod layers;
 pub(crate) mod lines;

@@ -7,8 +7,9 @@ use fearless_simd::Level;
 
 use super::bins::Bins;
 use super::culling::Culling;
-use super::edges::EdgeSetup;
+use super::edges::{DrawnNormal, EdgeSetup};
 use super::facing::Facing;
+use super::hole_tables::HoleTables;
 use super::rule::with_rule;
 use super::setup::{self, Setup};
 use super::starts::{Start, number};
@@ -50,6 +51,8 @@ pub(crate) struct Parts<'a> {
     vertices: &'a Vertices,
     starts: &'a [Start],
     outlines: &'a [AtomicU8],
+    holes: Option<&'a HoleTables>,
+    normals: &'a [DrawnNormal],
 }
 
 impl<'a> Parts<'a> {
@@ -59,7 +62,17 @@ impl<'a> Parts<'a> {
         starts: &'a [Start],
         outlines: &'a [AtomicU8],
     ) -> Self {
-        Self { plan, vertices, starts, outlines }
+        Self { plan, vertices, starts, outlines, holes: None, normals: &[] }
+    }
+
+    /// The same, with what is known of holes.
+    pub(crate) fn with_holes(self, holes: &'a HoleTables) -> Self {
+        Self { holes: Some(holes), ..self }
+    }
+
+    /// The same, with the normals that are drawn.
+    pub(crate) fn with_normals(self, normals: &'a [DrawnNormal]) -> Self {
+        Self { normals, ..self }
     }
 
     fn run(&self, level: Level, work: &Work<What>, bins: &mut Bins) {
@@ -74,6 +87,7 @@ impl<'a> Parts<'a> {
                 let setup = Setup::new(draw, pipelines, corners, size, self.starts[i].number);
                 let mut setup = setup.seen_from(self.plan.shift, self.plan.variants.grid());
                 setup.coverage = self.plan.variants.coverage;
+                setup.holes = self.holes.map_or(&[], |holes| holes.of_draw(i));
                 if !self.vertices.unsnapped.is_empty() {
                     setup.unsnapped = &self.vertices.unsnapped[self.starts[i].vertex..];
                 }
@@ -99,6 +113,11 @@ impl<'a> Parts<'a> {
                 for polygon in from..to {
                     facing.one(number(polygon), self.outlines_of(i));
                 }
+            }
+            What::Normals => {
+                let Start { normal, normal_place, .. } = self.starts[i];
+                let own = &self.normals[normal_place..][from..to];
+                self.edge_setup(i).add_normals(level, (normal + number(from), own), bins);
             }
             What::Edges => {
                 self.edge_setup(i).run(level, &mesh.edge_order().edges[from..to], bins);

@@ -17,10 +17,11 @@ use super::vertices::{fetch, fetch_vertices};
 use crate::accuracy::Coverage;
 use crate::base::image::Size;
 use crate::base::math::each;
-use crate::render::frame::draw::{Back, Draw, Pipeline};
+use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded};
 use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::render::screen::coverage::{Grid, PixelBox, doubled_area};
 use crate::render::screen::sample_positions::FOUR;
+use crate::render::texture::opacity::Holes;
 use crate::scene::{DrawOrder, DrawTriangle};
 
 /// The largest bounding box, in subpixels, whose doubled area fits 31 bits.
@@ -41,6 +42,8 @@ pub(crate) struct Setup<'a> {
     /// The vertices in pixels, before they were snapped, if the rule of coverage needs them.
     pub(crate) unsnapped: &'a [[f32; 2]],
     pub(crate) coverage: Coverage,
+    /// Where its triangles have holes, if any has.
+    pub(crate) holes: &'a [Holes],
     /// Whether all triangles that are drawn are transparent.
     pub(crate) transparent: bool,
 }
@@ -83,6 +86,7 @@ impl<'a> Setup<'a> {
             transparent,
             unsnapped: &[],
             coverage: Coverage::Exact,
+            holes: &[],
         }
     }
 
@@ -397,9 +401,17 @@ impl<'a> Setup<'a> {
         }
         match self.draw.part_pipelines[mesh.polygon_parts()[polygon as usize] as usize] {
             None => Kind::Not,
-            Some(pipeline) if pipelines[pipeline as usize].is_cutout() => Kind::Cutout,
-            Some(pipeline) if pipelines[pipeline as usize].opacity().is_some() => Kind::Transparent,
-            Some(_) => Kind::Plain,
+            Some(pipeline) => match &pipelines[pipeline as usize] {
+                Pipeline::Shaded(Shaded { cutout: Some(_), .. }) => {
+                    match self.holes.get(number as usize) {
+                        Some(Holes::Nowhere) => Kind::Plain,
+                        Some(Holes::Everywhere) => Kind::Not,
+                        Some(Holes::Somewhere) | None => Kind::Cutout,
+                    }
+                }
+                Pipeline::Shaded(Shaded { opacity: Some(_), .. }) => Kind::Transparent,
+                Pipeline::Shaded(_) | Pipeline::Flat(_) => Kind::Plain,
+            },
         }
     }
 

@@ -121,6 +121,7 @@ impl Visibility {
                 dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, tile));
             }
         }
+        let mut surface = None;
         for bins in frame.bins() {
             dispatch!(level, simd => self.draw_hits::<_, N>(simd, bins, tile));
             if plan.variants.coverage != Coverage::Exact {
@@ -134,7 +135,7 @@ impl Visibility {
                 let large = &bins.large[number as usize];
                 if large.cutout {
                     dispatch!(level, simd => {
-                        self.draw_cutout::<_, N>(simd, plan, frame, large);
+                        self.draw_cutout::<_, N>(simd, (plan, frame), large, &mut surface);
                     });
                 }
             }
@@ -318,13 +319,12 @@ impl Visibility {
         &mut self,
         level: Level,
         (x, y, sample): (i32, i32, usize),
-        depth: f32,
+        key: u32,
         number: u32,
-        bias: u32,
     ) {
         let (x, y) = (x - self.bounds.left, y - self.bounds.top);
         self.write::<N>(level, block_at(x, y));
-        let word = word(self.key(depth) + bias, number);
+        let word = word(key, number);
         let old = &mut self.plane::<N>(block_at(x, y), sample)[within(x, y)];
         *old = word.max(*old);
     }
@@ -338,8 +338,8 @@ impl Visibility {
     /// Draws the lines of a tile that are not short.
     #[inline(always)]
     fn draw_lines<const N: usize>(&mut self, level: Level, bins: &Bins, width: i32, tile: usize) {
-        let bias = Any(self.depth_format).lines_nearer();
-        for &place in &bins.tiles[tile].lines {
+        with_format!(self.depth_format, D => for &place in &bins.tiles[tile].lines {
+            let format = D::of(self.depth_format);
             for sample in 0..N {
                 let line =
                     bins.lines[place as usize].seen_from(self.sample_positions.shift::<N>(sample));
@@ -349,11 +349,12 @@ impl Visibility {
                     self.bounds,
                     #[inline(always)]
                     |x, y, depth| {
-                        self.put::<N>(level, (x, y, sample), depth, line.number, bias);
+                        let key = format.key(depth) + format.lines_nearer();
+                        self.put::<N>(level, (x, y, sample), key, line.number);
                     },
                 );
             }
-        }
+        });
     }
 
     /// Draws the small triangles of a tile, and lines that are short.

@@ -52,6 +52,8 @@ pub(crate) enum What {
     FacingOneByOne,
     /// Setup of edges.
     Edges,
+    /// Setup of the normals of polygons.
+    Normals,
 }
 
 /// Pieces of work on one picture, in the order of their homes.
@@ -124,13 +126,13 @@ impl<W: Copy> WorkList<W> {
 }
 
 impl What {
-    /// The position of element `i` in object space.
+    /// The position of element `i` in object space; of normals, that of polygon `i`.
     pub(crate) fn position(self, draw: &Draw, i: usize) -> [f64; 3] {
         let mesh = &draw.model.mesh;
         let order = mesh.draw_order();
         match self {
             Self::Triangles | Self::Facing => order.position(order.triangles[i].vertices[0]),
-            Self::FacingOneByOne => {
+            Self::FacingOneByOne | Self::Normals => {
                 let polygon = u32::try_from(i).unwrap_or(0);
                 let corner = mesh.corners()[mesh.corners_of(polygon).start];
                 mesh.positions()[corner.position as usize].map(f64::from)

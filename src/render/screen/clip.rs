@@ -256,6 +256,7 @@ impl Screen {
     }
 
     /// Clips a line between two positions of clip space.
+    #[inline(always)]
     pub(crate) fn segment(&self, ends: [Clip; 2]) -> Option<[ScreenVertex; 2]> {
         let [mut a, mut b] = ends;
         if !ends.as_flattened().iter().all(|x| x.is_finite()) {

@@ -84,6 +84,25 @@ impl Weights {
 }
 
 impl Weights {
+    /// The weights at a pixel that need not be in the triangle: of the point of its plane that is
+    /// seen there. `None` if no such point is in front of the observer, or it is very far away.
+    ///
+    /// If there are weights at the corners of a rectangle, those in it lie between them, since a
+    /// projection keeps lines and what is between.
+    #[inline(always)]
+    pub(crate) fn projected(&self, pixel: [i32; 2]) -> Option<DVec3> {
+        match &self.method {
+            Method::Cut(weights) => weights.inside(pixel),
+            Method::Spans(..) => None,
+            Method::Edges(triangle, w) => {
+                let [second, third] = barycentric(triangle.as_ref()?, pixel);
+                let by_w = DVec3::new(1.0 - second - third, second, third) / *w;
+                let sum = by_w.element_sum();
+                (sum >= FAR / w.max_element()).then(|| by_w / sum)
+            }
+        }
+    }
+
     /// The weights of the second and the third corner at eight pixels of a row, from its first on,
     /// to a few last places; `edges` are the edge functions of both there. `None` for spans.
     #[inline(always)]
@@ -108,6 +127,9 @@ impl Weights {
         }
     }
 }
+
+/// How much farther away than the farthest corner points are very far, inverted.
+const FAR: f64 = 1e-3;
 
 /// The second and third barycentric coordinate of a pixel, linear on the screen.
 #[inline(always)]
@@ -181,6 +203,14 @@ impl HomogeneousWeights {
         let per = 1.0 / sum;
         let [w0, w1, w2] = self.w;
         ([m1 * per, m2 * per], (w0 * m0 + w1 * m1 + w2 * m2) * per)
+    }
+
+    /// The weights at a pixel, if it is in the triangle.
+    #[inline(always)]
+    fn inside(&self, [x, y]: [i32; 2]) -> Option<DVec3> {
+        let (x, y) = (f64::from(x), f64::from(y));
+        let parts = DVec3::from_array(each(self.planes, |[a, b, c]| a * x + (b * y + c)));
+        (parts.min_element() > 0.0).then(|| parts / parts.element_sum())
     }
 
     /// The same at eight pixels of a row, from its first on: the same bits.

@@ -6,7 +6,7 @@ use super::{Shown, Visibility};
 use crate::accuracy::Coverage;
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
-use crate::render::raster::alpha_test::AlphaTest;
+use crate::render::raster::alpha_test::{AlphaSurface, AlphaTest};
 use crate::render::raster::beyond::{beyond, reach};
 use crate::render::raster::bins::Bins;
 use crate::render::raster::depth_format::Any;
@@ -18,13 +18,13 @@ use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::tiles::BLOCK;
 
 /// The alpha test of a triangle in one block, one pixel at a time.
-struct Tested<'a, 'b> {
-    test: &'b AlphaTest<'a>,
+struct Tested<'a, 'b, 'c> {
+    test: &'c AlphaTest<'a, 'b>,
     /// The first pixel of the block in the picture.
     first: [i32; 2],
 }
 
-impl Opaque for Tested<'_, '_> {
+impl Opaque for Tested<'_, '_, '_> {
     const ALL: bool = false;
 
     fn of(&self, pair: usize, mut pixels: u64) -> u64 {
@@ -51,12 +51,17 @@ impl Visibility {
         bins: &Bins,
         tile: usize,
     ) {
+        let mut surface = None;
         for place in &bins.tiles[tile].large {
             let triangle = &bins.large[*place as usize];
             let number = triangle.number;
-            let tests: [Option<AlphaTest<'_>>; N] = std::array::from_fn(|sample| {
+            let own = match triangle.cutout {
+                true => AlphaSurface::of(&mut surface, plan, frame, number),
+                false => None,
+            };
+            let tests: [Option<AlphaTest<'_, '_>>; N] = std::array::from_fn(|sample| {
                 let shift = self.sample_positions.shift::<N>(sample);
-                triangle.cutout.then(|| AlphaTest::of(plan, frame, number, shift)).flatten()
+                AlphaTest::of(own?, (plan, frame), number, shift)
             });
             if plan.variants.coverage == Coverage::Points {
                 self.draw_points::<N>(simd.level(), (plan, frame), number, &tests);
@@ -85,7 +90,7 @@ impl Visibility {
         &mut self,
         simd: S,
         (triangle, area): (&FloatTriangle, PixelBox),
-        tests: &[Option<AlphaTest<'_>>; N],
+        tests: &[Option<AlphaTest<'_, '_>>; N],
     ) {
         let touched = triangle.blocks::<S, N>(simd, area, &self.sample_positions);
         let (mut some, high) = (touched.some, self.key(triangle.high));
@@ -160,7 +165,7 @@ impl Visibility {
         &mut self,
         simd: S,
         (corners, depths, number): ([[f32; 2]; 3], [f32; 3], u32),
-        tests: &[Option<AlphaTest<'_>>; N],
+        tests: &[Option<AlphaTest<'_, '_>>; N],
     ) {
         let format = Any(self.depth_format);
         for (sample, test) in tests.iter().enumerate() {
@@ -192,7 +197,7 @@ impl Visibility {
         level: Level,
         (plan, frame): (&FramePlan, &ScreenGeometry),
         number: u32,
-        tests: &[Option<AlphaTest<'_>>; N],
+        tests: &[Option<AlphaTest<'_, '_>>; N],
     ) {
         let (draw, start) = frame.draw_of(number);
         let draw = &plan.draws[draw as usize];
@@ -202,7 +207,7 @@ impl Visibility {
             let own = number - start.number;
             points::cover(plan, draw, own, (self.bounds, shift), &mut |x, y, depth| {
                 if test.as_ref().is_none_or(|test| test.is_opaque([x, y])) {
-                    self.put::<N>(level, (x, y, sample), depth, number, 0);
+                    self.put::<N>(level, (x, y, sample), self.key(depth), number);
                 }
             });
         }

@@ -1,0 +1,151 @@
+//! Bounds of a byte over rectangles of a grid: the least and the largest.
+//!
+//! They are kept for cells of 4 x 4 bytes, and for cells of twice that side, up to a single one, as
+//! in a pyramid of mip maps: 17% of the memory of the bytes themselves. Bounds of a rectangle are
+//! those of the few cells that it reaches into, so they may be too wide, but never too narrow.
+
+use std::ops::RangeInclusive;
+
+use super::image::Size;
+
+/// The side of the finest cells, as a power of two.
+const FINEST: u32 = 2;
+/// Cells along a side that a rectangle reaches into, at most.
+const MOST: usize = 4;
+
+/// See the [module](self).
+#[derive(Clone, Debug)]
+pub struct ByteBounds {
+    /// From the finest cells to the only one.
+    levels: Vec<Cells>,
+}
+
+/// Cells of one size, row by row: the least and the largest byte in each.
+#[derive(Clone, Debug)]
+struct Cells {
+    columns: usize,
+    bounds: Vec<[u8; 2]>,
+}
+
+/// The bounds of two parts together.
+fn joined([low, high]: [u8; 2], [other_low, other_high]: [u8; 2]) -> [u8; 2] {
+    [low.min(other_low), high.max(other_high)]
+}
+
+/// The bounds of nothing.
+const NOTHING: [u8; 2] = [u8::MAX, 0];
+
+impl Cells {
+    /// Cells of `side` x `side` of the bounds that stand row by row.
+    fn new(width: usize, side: usize, bounds: impl Iterator<Item = [u8; 2]>) -> Self {
+        let columns = width.div_ceil(side);
+        let mut cells = Vec::new();
+        for (i, own) in bounds.enumerate() {
+            let (x, y) = (i % width, i / width);
+            let at = y / side * columns + x / side;
+            if at >= cells.len() {
+                cells.resize(at + 1, NOTHING);
+            }
+            cells[at] = joined(cells[at], own);
+        }
+        Self { columns, bounds: cells }
+    }
+}
+
+impl ByteBounds {
+    /// The bounds of a grid of this size, whose bytes stand row by row; each may be bounded itself.
+    #[must_use]
+    pub fn new(size: Size, bytes: impl Iterator<Item = [u8; 2]>) -> Self {
+        let mut levels = vec![Cells::new(size.width, 1 << FINEST, bytes.take(size.area()))];
+        while let Some(last) = levels.last()
+            && last.bounds.len() > 1
+        {
+            levels.push(Cells::new(last.columns, 2, last.bounds.iter().copied()));
+        }
+        Self { levels }
+    }
+
+    /// Bounds of the bytes in some columns and rows, which must be within the grid; of nothing, the
+    /// least is above the largest.
+    #[must_use]
+    #[inline]
+    pub fn over(&self, columns: &RangeInclusive<usize>, rows: &RangeInclusive<usize>) -> [u8; 2] {
+        let few = |range: &RangeInclusive<usize>, shift: u32| {
+            (range.end() >> shift) - (range.start() >> shift) < MOST
+        };
+        let shifts = FINEST..;
+        let found = self
+            .levels
+            .iter()
+            .zip(shifts)
+            .find(|(_, shift)| few(columns, *shift) && few(rows, *shift));
+        let Some((cells, shift)) = found else { return NOTHING };
+        let mut bounds = NOTHING;
+        for row in rows.start() >> shift..=rows.end() >> shift {
+            let first = row * cells.columns;
+            let own = first + (columns.start() >> shift)..=first + (columns.end() >> shift);
+            bounds = cells.bounds.get(own).unwrap_or_default().iter().copied().fold(bounds, joined);
+        }
+        bounds
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::rng::Rng;
+
+    const SIZES: [Size; 5] = [
+        Size::new(1, 1),
+        Size::new(1, 300),
+        Size::new(3, 70),
+        Size::new(64, 64),
+        Size::new(101, 37),
+    ];
+
+    /// Ranges within `0..count`.
+    fn range(rng: &mut Rng, count: usize) -> RangeInclusive<usize> {
+        let (a, b) = (rng.index(count), rng.index(count));
+        a.min(b)..=a.max(b)
+    }
+
+    /// The exact bounds.
+    fn exact(
+        bytes: &[u8],
+        width: usize,
+        columns: &RangeInclusive<usize>,
+        rows: &RangeInclusive<usize>,
+    ) -> [u8; 2] {
+        let own = rows.clone().flat_map(|y| &bytes[y * width..][columns.clone()]);
+        own.fold(NOTHING, |bounds, byte| joined(bounds, [*byte; 2]))
+    }
+
+    #[test]
+    fn no_byte_is_out_of_bounds_and_those_of_cells_are_exact() {
+        let mut rng = Rng::new(5);
+        for size in SIZES {
+            let bytes: Vec<u8> = (0..size.area()).map(|_| rng.bits().to_le_bytes()[0]).collect();
+            let bounds = ByteBounds::new(size, bytes.iter().map(|byte| [*byte; 2]));
+            for _ in 0..300 {
+                let (columns, rows) = (range(&mut rng, size.width), range(&mut rng, size.height));
+                let [low, high] = bounds.over(&columns, &rows);
+                let [least, largest] = exact(&bytes, size.width, &columns, &rows);
+                assert!(low <= least && largest <= high, "{size:?} {columns:?} {rows:?}");
+                // A rectangle of whole cells, four at most along a side.
+                let whole = |range: &RangeInclusive<usize>, count: usize| {
+                    let first = range.start() / 4 * 4;
+                    first..=(first + 15).min(count - 1)
+                };
+                let cells = (whole(&columns, size.width), whole(&rows, size.height));
+                let own = exact(&bytes, size.width, &cells.0, &cells.1);
+                assert_eq!(bounds.over(&cells.0, &cells.1), own, "{size:?} {cells:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn of_nothing_the_least_is_above_the_largest() {
+        let bounds = ByteBounds::new(Size::new(0, 5), std::iter::empty());
+        assert_eq!(bounds.over(&(0..=0), &(0..=0)), NOTHING);
+    }
+}
