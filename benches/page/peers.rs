@@ -9,9 +9,11 @@ use marraztu::lab::statistics::median;
 
 use super::tables::{brief, head};
 
-/// The label of the renderer that all are measured against, and ours.
+/// The label of the renderer that all are measured against, and ours with the best instructions
+/// and with AVX2.
 const ANCHOR: &str = "llvmpipe-host";
 const OURS: &str = "marraztu";
+const AVX2: &str = "marraztu-avx2";
 
 type Times = BTreeMap<(String, String), Vec<f64>>;
 
@@ -46,19 +48,30 @@ pub(crate) fn table(file: &Path) -> Result<String, String> {
         }
         times.entry((job, cell("label")?.to_owned())).or_default().push(ms);
     }
-    let mut text = head("mesh (triangles), mode, size", &["llvmpipe", "Marraztu", "times as fast"]);
+    let columns = ["llvmpipe", "Marraztu", "times as fast", "AVX2", "times as fast"];
+    let mut text = head("mesh (triangles), mode, size", &columns);
+    let mut logarithms = [Vec::new(), Vec::new()];
     for job in jobs {
         let median_of = |of: &str| median(times.get(&(job.clone(), of.to_owned()))?);
-        let (anchor, ours) = (median_of(ANCHOR), median_of(OURS));
-        if let (Some(anchor), Some(ours)) = (anchor, ours) {
-            let _ = writeln!(
-                text,
-                "| {job} | {} | {} | **{:.1}** |",
-                brief(anchor),
-                brief(ours),
-                anchor / ours
-            );
+        let Some(anchor) = median_of(ANCHOR) else { continue };
+        let _ = write!(text, "| {job} | {} |", brief(anchor));
+        for (label, logarithms) in [OURS, AVX2].into_iter().zip(&mut logarithms) {
+            let Some(ours) = median_of(label) else {
+                text.push_str("  |  |");
+                continue;
+            };
+            let _ = write!(text, " {} | **{:.1}** |", brief(ours), anchor / ours);
+            logarithms.push((anchor / ours).ln());
         }
+        text.push('\n');
     }
+    text.push_str("| geometric mean | |");
+    for logarithms in logarithms {
+        #[expect(clippy::cast_precision_loss, reason = "few jobs")]
+        let mean = (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp();
+        let mean = if mean.is_finite() { format!("**{mean:.1}**") } else { String::new() };
+        let _ = write!(text, " | {mean} |");
+    }
+    text.push('\n');
     Ok(text)
 }
