@@ -45,6 +45,7 @@ impl Layered {
         let ShadingContext { level, plan, frame, .. } = *context;
         let samples = frame.sample_positions().count();
         self.before.clear();
+        shader.rays.paints_layers = true;
         for sample in 0..samples {
             let opaque = visibility.entries(level, block, sample);
             let (at, order) = ((block, sample), (frame, plan.transparency));
@@ -68,6 +69,7 @@ impl Layered {
             std::mem::swap(sequence, before);
             (0..BLOCK_PIXELS).for_each(|place| sums.add_parts(place, blend.color(place)));
         }
+        shader.rays.paints_layers = false;
     }
 
     /// Notes what a sample shows, if another sample may be compared with it.
