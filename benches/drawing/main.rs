@@ -8,6 +8,7 @@
 mod effects;
 mod growth;
 mod objects;
+mod redraw;
 mod shadows;
 mod shapes;
 mod stage;
@@ -32,5 +33,6 @@ fn main() {
     textures::measure(&mut criterion);
     transparent::measure(&mut criterion);
     shadows::measure(&mut criterion);
+    redraw::measure(&mut criterion);
     criterion.final_summary();
 }

@@ -1,7 +1,8 @@
 //! Measures how much longer one way of drawing takes than another, so that disturbances cancel.
 //!
 //! A pair is four pictures, A B B A, so that a steady drift of the machine's speed affects both
-//! alike. The result is the median and the quartiles of the ratios of all pairs. Every picture is
+//! alike. The result is the median and the quartiles of the ratios of all pairs, and the interval in
+//! which their true median lies. Every picture is
 //! hashed after it is timed: the compiler cannot leave out work, and the same settings have to give
 //! the same bytes.
 
@@ -12,7 +13,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use super::picture_source::{PictureSource, hash};
-use super::statistics::Quartiles;
+use super::statistics::{Quartiles, median_interval};
 use super::timing::{Clock, Work};
 use crate::accuracy::Settings;
 use crate::io::{Cancelled, Progress};
@@ -99,12 +100,28 @@ impl Drop for Touch {
 pub struct Ratio {
     /// How many times as long B takes.
     pub quartiles: Quartiles,
+    /// The true median lies between these with a probability of [`CONFIDENCE`].
+    pub interval: [f64; 2],
     /// The number of pairs that count.
     pub pairs: usize,
     /// The number of pairs that were thrown away.
     pub thrown: usize,
     /// The median time of a picture of A in milliseconds.
     pub a_ms: f64,
+}
+
+/// How probable it is that a [`Ratio::interval`] holds the true median: of seven pairs, the least
+/// number, it is all of them, 98%.
+pub const CONFIDENCE: f64 = 0.95;
+
+impl Ratio {
+    /// The interval of ratios that may be meant by this one, where differences up to `floor` mean
+    /// nothing: the larger, on each side, of its own interval and of the floor about its median.
+    #[must_use]
+    pub fn noise(&self, floor: f64) -> [f64; 2] {
+        let ([lower, upper], median) = (self.interval, self.quartiles.median);
+        [lower.min(median / (1.0 + floor)), upper.max(median * (1.0 + floor))]
+    }
 }
 
 /// Why a measurement fails.
@@ -187,8 +204,9 @@ pub fn abba(
         }
     }
     let quartiles = Quartiles::of(&ratios).ok_or(Unmeasured::Disturbed)?;
+    let interval = median_interval(&ratios, CONFIDENCE).ok_or(Unmeasured::Disturbed)?;
     let a_ms = Quartiles::of(&of_a).ok_or(Unmeasured::Disturbed)?.median;
-    Ok(Ratio { quartiles, pairs: ratios.len(), thrown, a_ms })
+    Ok(Ratio { quartiles, interval, pairs: ratios.len(), thrown, a_ms })
 }
 
 /// Pairs of this many milliseconds count even if they were touched: a window that is drawn a few
@@ -213,6 +231,18 @@ mod tests {
         });
         let ratio = ratio.unwrap();
         assert!((ratio.quartiles.median - 2.0).abs() < 0.01, "{ratio:?}");
+    }
+
+    #[test]
+    fn the_noise_of_a_ratio_is_the_larger_of_its_own_and_the_floor() {
+        let mut times = [1.0, 1.0, 1.1, 1.0, 1.2, 1.0, 1.3, 1.0, 1.2].into_iter().cycle();
+        let mut run = |which| Ok(if which == 0 { 1.0 } else { times.next().unwrap_or(1.0) });
+        let ratio = abba(&LIMITS, &Watch::default(), &mut run).unwrap();
+        let [lower, upper] = ratio.interval;
+        let median = ratio.quartiles.median;
+        assert!(lower < median && median < upper, "{ratio:?}");
+        assert_eq!(ratio.noise(0.0), ratio.interval);
+        assert_eq!(ratio.noise(1.0), [median / 2.0, median * 2.0]);
     }
 
     #[test]

@@ -5,6 +5,11 @@
 //! the first, samples per pixel against the second. The default is measured against itself; the
 //! spread of that control is the floor under which no difference means anything. Then every
 //! candidate is measured against the default, in the same process, in turn with it.
+//!
+//! One interval says what a ratio may mean, in verdicts, plots and pages alike: [`Ratio::noise`],
+//! the larger of the control's noise and the ratio's own. Two choices differ in time only if their
+//! intervals do not meet. The control alone does not tell: it is measured once, at the beginning,
+//! and what else the machine does may begin later.
 
 use fearless_simd::Level;
 use serde::Serialize;
@@ -45,7 +50,7 @@ pub struct Findings {
     pub thoroughness: &'static str,
     /// The default against itself.
     pub control: Ratio,
-    /// A ratio that is closer to 1 than this means nothing.
+    /// The noise of the control: the farthest of its quartiles from 1. No row has less.
     pub floor: f64,
     /// The settings that the picture is drawn with now.
     pub current: Settings,
@@ -70,7 +75,7 @@ pub struct Measured {
     pub ms: f64,
     /// How many times as long as the default they take.
     pub ratio: Ratio,
-    /// Whether the ratio means anything.
+    /// Whether the ratio means anything: see [`Findings::noise_of`].
     pub verdict: Verdict,
     /// The error against the reference: every axis at its most exact, one sample per pixel.
     pub error: Error,
@@ -160,20 +165,52 @@ impl Findings {
         }
     }
 
+    /// The interval of what the ratio of a point to the default may be. Two points differ in time
+    /// if their intervals do not meet.
+    #[must_use]
+    pub fn noise_of(&self, point: usize) -> [f64; 2] {
+        if point == 0 { DEFAULT } else { self.points[point].ratio.noise(self.floor) }
+    }
+
+    /// The least and the largest noise of some points, as parts: the larger distance of each to the
+    /// ends of its interval. Only the control's if there are no points.
+    #[must_use]
+    pub fn noises(&self, points: impl Iterator<Item = usize>) -> [f64; 2] {
+        let noise = |point: usize| {
+            let median = self.points[point].ratio.quartiles.median;
+            let [lower, upper] = self.noise_of(point);
+            (median / lower - 1.0).max(upper / median - 1.0)
+        };
+        let noises = points.filter(|point| *point != 0).map(noise);
+        let ends = |ends: Option<[f64; 2]>, noise: f64| {
+            Some(ends.map_or([noise; 2], |[least, most]| [least.min(noise), most.max(noise)]))
+        };
+        noises.fold(None, ends).unwrap_or([self.floor; 2])
+    }
+
     /// The rows of an axis, from coarse to exact.
     pub fn rows_of<'a>(&'a self, axis: &'a Axis) -> impl Iterator<Item = &'a Row> {
         self.rows.iter().filter(move |row| row.group == Group::Axis(axis.key))
     }
 }
 
+/// What the default's ratio to itself may be.
+const DEFAULT: [f64; 2] = [1.0; 2];
+
 impl Verdict {
-    /// Judges a ratio, if differences up to `floor` mean nothing: the median has to be beyond it,
-    /// and the quartile towards 1 on the same side of 1.
+    /// Judges a ratio to the default, if differences up to `floor` mean nothing.
     #[must_use]
-    pub fn of(ratio: &Quartiles, floor: f64) -> Self {
-        if ratio.median < 1.0 - floor && ratio.upper < 1.0 {
+    pub fn of(ratio: &Ratio, floor: f64) -> Self {
+        Self::between(ratio.noise(floor), DEFAULT)
+    }
+
+    /// Judges one of two choices, by the intervals of what their ratios may be: they differ only if
+    /// these do not meet.
+    #[must_use]
+    pub fn between(one: [f64; 2], other: [f64; 2]) -> Self {
+        if one[1] < other[0] {
             Self::Faster
-        } else if ratio.median > 1.0 + floor && ratio.lower > 1.0 {
+        } else if one[0] > other[1] {
             Self::Slower
         } else {
             Self::Alike
@@ -355,7 +392,7 @@ impl Bench<'_> {
             name: settings.in_words(),
             settings,
             ms,
-            verdict: Verdict::of(&ratio.quartiles, findings.floor),
+            verdict: Verdict::of(&ratio, findings.floor),
             ratio,
             error: rendering.error(exact),
             sampled: (!is_model).then(|| rendering.error(&references.sampled)),

@@ -20,6 +20,7 @@ use crate::render::screen::tiles::{TILE, tiles_of};
 use crate::scene::ItemId;
 
 mod compared;
+pub(crate) mod kept_shadows;
 mod shadow_reach;
 
 use compared::Compared;
@@ -28,6 +29,8 @@ use compared::Compared;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Damage {
     pub(crate) tiles: Tiles,
+    /// The tiles in which another triangle may show, or the same one elsewhere.
+    surfaces: Tiles,
     /// Whether the triangles and lines on the screen changed, or their numbers did.
     pub(crate) geometry: bool,
     cause: DamageCause,
@@ -72,7 +75,8 @@ pub enum Change {
 impl Damage {
     /// Damages every tile.
     pub(crate) fn all(cause: DamageCause, size: Size) -> Self {
-        Self { tiles: Tiles::all(size), geometry: true, cause }
+        let tiles = Tiles::all(size);
+        Self { surfaces: tiles.clone(), tiles, geometry: true, cause }
     }
 
     /// Compares two plans.
@@ -86,13 +90,14 @@ impl Damage {
         }
         let mut compared = Compared { before, after, pipelines: BTreeMap::new() };
         let mut tiles = Tiles::none(after.size);
+        let mut surfaces = tiles.clone();
         let mut items = Vec::new();
         let mut geometry = before.draws.len() != after.draws.len();
         let mut next = 0;
         for draw in &after.draws {
             let Some(at) = old.remove(&draw.item) else {
                 items.push((draw.item, Change::Came));
-                tiles.add(reach(draw, after));
+                surfaces.add(reach(draw, after));
                 geometry = true;
                 continue;
             };
@@ -103,21 +108,24 @@ impl Damage {
             let earlier = &before.draws[at];
             let Some(change) = compared.change(earlier, draw) else { continue };
             items.push((draw.item, change));
-            tiles.add(reach(earlier, before));
-            tiles.add(reach(draw, after));
+            let shows_others = change != Change::Look || compared.has_other_holes(earlier, draw);
+            let changed = if shows_others { &mut surfaces } else { &mut tiles };
+            changed.add(reach(earlier, before));
+            changed.add(reach(draw, after));
             geometry |= change != Change::Look;
-        }
-        if !shadow_reach::add(before, after, &mut tiles) {
-            return Self::all(DamageCause::Shadows, after.size);
         }
         for (item, at) in old {
             items.push((item, Change::Went));
-            tiles.add(reach(&before.draws[at], before));
+            surfaces.add(reach(&before.draws[at], before));
             geometry = true;
+        }
+        tiles.add_all(&surfaces);
+        if !shadow_reach::add(before, after, &mut tiles) {
+            return Self { surfaces, ..Self::all(DamageCause::Shadows, after.size) };
         }
         let out_of_view = items.is_empty() && tiles.count() > 0;
         let cause = if out_of_view { DamageCause::Shadows } else { DamageCause::Items(items) };
-        Self { tiles, geometry, cause }
+        Self { tiles, surfaces, geometry, cause }
     }
 
     /// How many tiles of 64 x 64 pixels are painted.
@@ -274,6 +282,13 @@ impl Tiles {
                 let tile = usize::try_from(row * self.columns + column).expect("not negative");
                 self.painted[tile] = true;
             }
+        }
+    }
+
+    /// Adds those of another set of the same picture.
+    fn add_all(&mut self, others: &Self) {
+        for (own, other) in self.painted.iter_mut().zip(&others.painted) {
+            *own |= other;
         }
     }
 

@@ -20,6 +20,7 @@ use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
 use crate::base::work_stealing::{own, together};
+use crate::render::damage::kept_shadows::KeptShadows;
 use crate::render::damage::{Damage, DamageCause};
 use crate::render::frame::{FramePlan, Rules};
 use crate::render::raster::geometry::ScreenGeometry;
@@ -52,6 +53,7 @@ pub struct Renderer {
     timings: Timings,
     rays: RayCount,
     maps: ShadowMaps,
+    shadows: KeptShadows,
 }
 
 /// The frame was cancelled by a newer request.
@@ -80,6 +82,7 @@ impl Renderer {
             timings: Timings::default(),
             rays: RayCount::default(),
             maps: ShadowMaps::default(),
+            shadows: KeptShadows::default(),
         }
     }
 
@@ -98,6 +101,7 @@ impl Renderer {
     ) -> &Picture {
         self.finished = false;
         self.frame.forget();
+        self.shadows.forget();
         self.redraw_by(plan, &Cancellation::new(&|| true).telling(tell))
             .expect("it is always wanted");
         &self.picture
@@ -155,6 +159,7 @@ impl Renderer {
     fn draw_damage(&mut self, plan: &FramePlan, damage: &Damage, watch: &Cancellation<'_>) {
         self.timings = Timings::default();
         self.rays = RayCount::default();
+        self.shadows.update(plan);
         let passes = passes(plan.samples);
         let pictures = if plan.lit_by_sample { shifts(plan.samples).len() } else { passes.len() };
         watch.expect_tiles(pictures * damage.tiles());
@@ -265,7 +270,7 @@ impl Renderer {
             faces.begin(self.frame.triangle_numbers());
         }
         let (level, frame) = (self.level, &self.frame);
-        let tracer = Tracer::new(plan, &self.maps);
+        let tracer = Tracer::new(plan, &self.maps).map(|it| it.with_known(self.shadows.known()));
         let tracer = tracer.as_ref();
         let faces = looks_up.then_some(&*faces);
         let context = ShadingContext { level, plan, frame, lit, terms, faces, tracer };

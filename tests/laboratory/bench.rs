@@ -26,12 +26,16 @@ pub(crate) fn plantable() -> impl Iterator<Item = (&'static Axis, &'static Choic
 /// A clock on which every picture takes a millisecond, and three with the planted choice.
 pub(crate) struct FakeClock {
     pub(crate) slow: Planted,
+    /// A choice whose pictures take from a quarter to four times as long as they would, in turn.
+    pub(crate) disturbed: Planted,
+    /// The pictures of the disturbed choice.
+    turns: usize,
     now: Duration,
 }
 
 impl FakeClock {
     pub(crate) fn new(slow: Planted) -> Self {
-        Self { slow, now: Duration::ZERO }
+        Self { slow, disturbed: None, turns: 0, now: Duration::ZERO }
     }
 }
 
@@ -42,7 +46,14 @@ impl Clock for FakeClock {
             Work::Picture(settings) => self.slow.is_some_and(|(_, choice)| choice.is(settings)),
             Work::Kernel(_) => false,
         };
-        let time = Duration::from_millis(if slow { 3 } else { 1 });
+        let mut time = Duration::from_millis(if slow { 3 } else { 1 });
+        let disturbed = |settings| self.disturbed.is_some_and(|(_, choice)| choice.is(settings));
+        if matches!(work, Work::Picture(settings) if disturbed(settings)) {
+            // The first is not counted; then both pictures of a pair alike, pair by pair.
+            let part = [1, 4, 16][(self.turns.div_ceil(2) + 2) % 3];
+            self.turns += 1;
+            time = time * part / 4;
+        }
         self.now += time;
         time
     }

@@ -4,7 +4,7 @@ use marraztu::accuracy::{Axis, AxisKind, Choice, LightAt, Settings};
 use marraztu::lab::attribution::attribute;
 use marraztu::lab::candidates::Group;
 use marraztu::lab::error::{Measure, Region};
-use marraztu::lab::report::{Budgets, Report};
+use marraztu::lab::report::{Budgets, Panels, Report};
 use marraztu::lab::statistics::Quartiles;
 use marraztu::lab::sweep::{Findings, Measured, Verdict};
 
@@ -90,18 +90,21 @@ fn the_error_of_a_pixel_is_attributed_to_the_axis_that_causes_it() {
     assert_eq!(attribute(&mut FakeSource::new(face, None), &coarse, [8, 0]), None);
 }
 
-/// The verdict on a scene with something planted, in one string.
-fn verdict(slow: Planted, wrong: Planted) -> String {
-    let findings = found(&mut FakeClock::new(slow), &mut FakeSource::new(wrong, None));
-    let report = Report {
+fn report_on(findings: Findings) -> Report {
+    Report {
         scene: "a scene".to_owned(),
         command: String::new(),
         measure: Measure::Rmse,
         region: Region::Whole,
         budgets: Budgets::default(),
         findings,
-    };
-    report.verdict().join(" ")
+    }
+}
+
+/// The verdict on a scene with something planted, in one string.
+fn verdict(slow: Planted, wrong: Planted) -> String {
+    let findings = found(&mut FakeClock::new(slow), &mut FakeSource::new(wrong, None));
+    report_on(findings).verdict().join(" ")
 }
 
 #[test]
@@ -150,7 +153,8 @@ fn the_verdict_tells_what_samples_buy_and_that_64_bits_are_not_worth_it() {
         for point in points.filter(|point| point.settings == settings || default) {
             if point.settings == settings {
                 point.ratio.quartiles = Quartiles { lower: ratio, median: ratio, upper: ratio };
-                point.verdict = Verdict::of(&point.ratio.quartiles, 0.06);
+                point.ratio.interval = [ratio; 2];
+                point.verdict = Verdict::of(&point.ratio, 0.06);
                 point.change.largest = largest;
                 point.change.differing = 4e-5;
             }
@@ -185,4 +189,35 @@ fn the_verdict_tells_what_samples_buy_and_that_64_bits_are_not_worth_it() {
                 worth it here.";
     assert!(text.contains(bits), "{text}");
     assert!(text.ends_with("Nothing saves more than the noise (6%)."), "{text}");
+}
+
+/// A machine that does something else while one choice is measured: the control says nothing of it.
+#[test]
+fn what_disturbs_one_choice_alone_is_no_verdict_and_no_reason() {
+    let power = Axis::named("power").unwrap();
+    let slow = power.choice("schlick").unwrap();
+    let verdict_with = |disturbed: &'static Choice| {
+        let mut clock = FakeClock::new(Some((power, slow)));
+        clock.disturbed = Some((power, disturbed));
+        let findings = found(&mut clock, &mut FakeSource::new(None, None));
+        assert_eq!(findings.floor, 0.0);
+        let rows = rows(&findings, &(power, disturbed));
+        let (_, point, _) = rows.iter().find(|(_, _, here)| *here).unwrap();
+        let report = report_on(findings.clone());
+        (point.verdict, report.verdict_on(power), report)
+    };
+    // The slow choice itself: three times as long in the mean, and at times less than the default.
+    let (verdict, told, report) = verdict_with(slow);
+    assert_eq!(verdict, Verdict::Alike, "{told}");
+    assert!(!told.contains(slow.slower_because.unwrap()), "{told}");
+    let panels = Panels::new(&report);
+    let mark = panels.of(Some("power")).marks.iter().find(|mark| mark.label == slow.label);
+    let [from, to] = mark.unwrap().noise;
+    assert!(from < 0.0 && to > libm::log10(3.0), "{from} to {to}");
+    assert!(told.contains("noise 0.1 to "), "{told}");
+    // Every other choice: the slow one takes longer than the default all the same.
+    let exact = power.most_exact(&Settings::default());
+    let (verdict, told, _) = verdict_with(exact);
+    assert_eq!(verdict, Verdict::Alike, "{told}");
+    assert!(told.contains(slow.slower_because.unwrap()), "{told}");
 }

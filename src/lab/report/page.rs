@@ -30,9 +30,11 @@ fn basis(reports: &[Report]) -> String {
     let threads = if findings.threads == 1 { "thread" } else { "threads" };
     format!(
         "Measured at {width} x {height} on {} {threads} with {}. Times are multiples of the \
-         default's, as medians of pairs drawn in turn; those that could be noise say so. Errors \
-         are over all pixels, in steps of 255, against every axis at its most exact; those of \
-         samples per pixel are against 256 samples, each lit.",
+         default's, as medians of pairs drawn in turn. What a time may mean is the interval of \
+         its median (95%, by a sign test), or the noise of the default against itself if that is \
+         more; times differ if their intervals do not meet, and else are noise. Errors are over \
+         all pixels, in steps of 255, against every axis at its most exact; those of samples per \
+         pixel are against 256 samples, each lit.",
         findings.threads, findings.instructions
     )
 }

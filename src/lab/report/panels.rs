@@ -16,6 +16,8 @@ pub struct PanelMark {
     pub point: usize,
     /// Its position on the scales.
     pub at: [f64; 2],
+    /// The interval of `x` that its time may mean.
+    pub noise: [f64; 2],
     /// Its name.
     pub label: String,
     /// Whether it is the default.
@@ -57,7 +59,7 @@ pub struct Panels {
     pub y: Scale,
     /// The position of an error of 0.
     pub zero: f64,
-    /// The interval of `x` within the noise.
+    /// The interval of `x` within the noise of the default against itself.
     pub noise: [f64; 2],
     /// The default and the front, by the error against 256 samples per pixel.
     pub overview: Panel,
@@ -87,6 +89,7 @@ impl Panels {
         let mark = |point: usize, error: f64, label: String| PanelMark {
             point,
             at: [time(point), if error > 0.0 { libm::log10(error) } else { zero }],
+            noise: findings.noise_of(point).map(|ratio| libm::log10(ratio.max(1e-3))),
             label,
             is_default: point == 0,
             current: current == Some(point),

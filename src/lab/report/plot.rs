@@ -225,8 +225,8 @@ impl Sheet {
             place = if place.0 + 1 == COLUMNS { (0, place.1 + 1) } else { (place.0 + 1, place.1) };
         }
         let note = format!(
-            "From left to right: {}. Upwards: {}. Orange: the default. Band: the noise. All \
-             panels have one scale.",
+            "From left to right: {}. Upwards: {}. Orange: the default. Band: its noise. Lines \
+             through marks: what their time may be. All panels have one scale.",
             self.panels.x.label, self.panels.y.label
         );
         area.draw(&Text::new(note, (EDGE, self.height() - 26), left(13, colors.faint)))?;
@@ -250,6 +250,10 @@ impl Sheet {
         area.draw(&PathElement::new(at.clone(), colors.data.stroke_width(2)))?;
         for (mark, at) in panel.marks.iter().zip(&at) {
             let color = if mark.is_default { colors.default } else { colors.data };
+            let [left, _, right, _] = frame;
+            let noise = mark.noise.map(|x| along(&self.panels.x, x, left, right));
+            let noise = noise.map(|x| (x.clamp(left, right), at.1));
+            area.draw(&PathElement::new(noise.to_vec(), color.stroke_width(1)))?;
             area.draw(&Circle::new(*at, MARK, color.filled()))?;
             if mark.current {
                 area.draw(&Circle::new(*at, MARK + 4, colors.ink.stroke_width(2)))?;

@@ -118,7 +118,7 @@ fn head(report: &Report) -> String {
         text,
         "The default takes {} ms. Against itself it took {:.3} times as long, with an\n\
          interquartile range (IQR) of {} pairs from {:.3} to {:.3}: a difference of less than\n\
-         {:.1} % means nothing.",
+         {:.1} % means nothing, nor one within the interval of a row's own median (95 %).",
         brief(findings.control.a_ms),
         quartiles.median,
         findings.control.pairs,
@@ -253,11 +253,13 @@ fn joined(report: &Report, separator: &str, field: fn(&str) -> String) -> String
 
 /// The cells of the table; the first row has the names of the columns.
 fn cells(report: &Report) -> Vec<Vec<String>> {
-    const FIGURES: [&str; 21] = [
+    const FIGURES: [&str; 23] = [
         "ms",
         "ratio",
         "ratio_lower",
         "ratio_upper",
+        "noise_lower",
+        "noise_upper",
         "pairs",
         "thrown_away",
         "verdict",
@@ -286,12 +288,15 @@ fn cells(report: &Report) -> Vec<Vec<String>> {
         let error = report.findings.error_of(row);
         let (whole, inside) = (&error.whole, &error.inside);
         let quartiles = &ratio.quartiles;
+        let [lower, upper] = report.findings.noise_of(row.point);
         let psnr = whole.psnr.map_or_else(|| "inf".to_owned(), |psnr| psnr.to_string());
         let figures: [String; FIGURES.len()] = [
             ms.to_string(),
             quartiles.median.to_string(),
             quartiles.lower.to_string(),
             quartiles.upper.to_string(),
+            lower.to_string(),
+            upper.to_string(),
             ratio.pairs.to_string(),
             ratio.thrown.to_string(),
             verdict.word().to_owned(),

@@ -1,7 +1,7 @@
 //! What the figures of a sweep say, in sentences, by rules.
 //!
-//! A choice is compared with the default of its axis: its time by the verdict on their ratio, its
-//! error by the RMSE over all pixels against the reference of its axis. An error counts as cut or
+//! A choice is compared with the default of its axis: its time by the verdict on their ratio
+//! ([`Findings::noise_of`](crate::lab::sweep::Findings::noise_of) says what is noise), its error by the RMSE over all pixels against the reference of its axis. An error counts as cut or
 //! raised if it changes by a twentieth. Every choice that differs beyond the noise in time, or in
 //! error, falls under one of the rules, so that nothing is passed over in silence.
 
@@ -50,7 +50,7 @@ pub(super) fn verdict_on(report: &Report, axis: &Axis) -> String {
     }
     let said: Vec<Said<'_>> =
         said(report).into_iter().filter(|it| it.axis.key == axis.key).collect();
-    let noise = digits((report.findings.floor * 100.0).max(0.1));
+    let noise = noise(report, report.findings.rows_of(axis).map(|row| row.point));
     let mut sentences = told(&said);
     if sentences.is_empty() {
         sentences.push("No choice differs from the default beyond the noise here.".to_owned());
@@ -58,24 +58,24 @@ pub(super) fn verdict_on(report: &Report, axis: &Axis) -> String {
     sentences.extend(reasons(report, axis));
     let capital: Vec<String> = sentences.iter().map(|sentence| capitalized(sentence)).collect();
     let [width, height] = report.findings.size;
-    format!("{} (At {width}x{height} on {}; noise {noise}%.)", capital.join(" "), report.scene)
+    format!("{} (At {width}x{height} on {}; noise {noise}.)", capital.join(" "), report.scene)
 }
 
 /// Why choices take longer than more exact ones, for those that do here.
 fn reasons(report: &Report, axis: &Axis) -> Vec<String> {
     let rows = report.findings.rows_of(axis);
-    let mut measured: Vec<(usize, f64)> = rows
+    let mut measured: Vec<(usize, [f64; 2])> = rows
         .filter_map(|row| {
             let point = &report.findings.points[row.point];
             let word = axis.chosen(&point.settings).word;
             let place = axis.choices.iter().position(|choice| choice.word == word)?;
-            Some((place, point.ratio.quartiles.median))
+            Some((place, report.findings.noise_of(row.point)))
         })
         .collect();
     measured.sort_by_key(|(place, _)| *place);
     let is_slower = |i: usize| {
-        let least = measured[i + 1..].iter().map(|(_, ratio)| *ratio).reduce(f64::min);
-        least.is_some_and(|least| measured[i].1 > least * (1.0 + report.findings.floor))
+        let mut others = measured[i + 1..].iter();
+        others.any(|(_, other)| Verdict::between(measured[i].1, *other) == Verdict::Slower)
     };
     let reason = |i: usize| {
         let choice = &axis.choices[measured[i].0];
@@ -91,8 +91,8 @@ pub(super) fn verdict(report: &Report) -> Vec<String> {
     let mut sentences = told(&said);
     let is_faster = |it: &Said<'_>| it.point.verdict == Verdict::Faster;
     let nothing = if said.iter().any(is_faster) { "nothing else" } else { "nothing" };
-    let noise = digits((report.findings.floor * 100.0).max(0.1));
-    sentences.push(format!("{nothing} saves more than the noise ({noise}%)."));
+    let noise = noise(report, report.findings.rows.iter().map(|row| row.point));
+    sentences.push(format!("{nothing} saves more than the noise ({noise})."));
     let [width, height] = report.findings.size;
     if let Some(first) = sentences.first_mut() {
         *first = format!("At {width}x{height} on {}: {first}", report.scene);
@@ -100,6 +100,12 @@ pub(super) fn verdict(report: &Report) -> Vec<String> {
     // The first goes on after a colon.
     sentences.iter_mut().skip(1).for_each(|sentence| *sentence = capitalized(sentence));
     sentences
+}
+
+/// The noise of some points, in per cent: "1.2%", or "1.2 to 4.5%" if they differ.
+fn noise(report: &Report, points: impl Iterator<Item = usize>) -> String {
+    let [least, most] = report.findings.noises(points).map(|it| digits((it * 100.0).max(0.1)));
+    if least == most { format!("{most}%") } else { format!("{least} to {most}%") }
 }
 
 /// The sentences on some choices.

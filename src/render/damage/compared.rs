@@ -74,6 +74,19 @@ impl Compared<'_> {
         kinds(self.after, after) != kinds(self.before, before)
     }
 
+    /// Whether two draws of the same parts have other holes, so that other pixels may show them.
+    pub(super) fn has_other_holes(&self, before: &Draw, after: &Draw) -> bool {
+        before.part_pipelines.iter().zip(&after.part_pipelines).any(|pair| match pair {
+            (Some(before), Some(after)) => {
+                let before = &self.before.pipelines[*before as usize];
+                let after = &self.after.pipelines[*after as usize];
+                !alike_holes(before, after)
+            }
+            (None, None) => false,
+            (Some(_), None) | (None, Some(_)) => true,
+        })
+    }
+
     fn alike_parts(&mut self, before: &[Option<u32>], after: &[Option<u32>]) -> bool {
         before.len() == after.len()
             && before.iter().zip(after).all(|pair| match pair {
@@ -115,15 +128,8 @@ impl Compared<'_> {
             opacity_map,
             extras,
         } = after;
-        let alike_maps = |after: &Option<Shared<Texture>>, before: &Option<Shared<Texture>>| match (
-            after, before,
-        ) {
-            (Some(after), Some(before)) => Shared::same(after, before),
-            (None, None) => true,
-            _ => false,
-        };
-        let textures =
-            alike_maps(texture, &before.texture) && alike_maps(opacity_map, &before.opacity_map);
+        let textures = alike_maps(texture.as_ref(), before.texture.as_ref())
+            && alike_maps(opacity_map.as_ref(), before.opacity_map.as_ref());
         let stages = match (light, &before.light) {
             (Some(after), Some(before)) => {
                 after.len() == before.len()
@@ -151,6 +157,32 @@ impl Compared<'_> {
             && alike(cutout.as_slice(), before.cutout.as_slice())
             && alike(opacity.as_slice(), before.opacity.as_slice())
             && extras.are_alike(&before.extras)
+    }
+}
+
+/// Whether surfaces have the same holes, and let the same through.
+fn alike_holes(before: &Pipeline, after: &Pipeline) -> bool {
+    match (before, after) {
+        (Pipeline::Shaded(before), Pipeline::Shaded(after)) => {
+            let is_solid = |it: &Shaded| it.cutout.is_none() && it.opacity.is_none();
+            let both = is_solid(before) && is_solid(after);
+            both || (alike(before.cutout.as_slice(), after.cutout.as_slice())
+                && alike(before.opacity.as_slice(), after.opacity.as_slice())
+                && alike_maps(before.texture.as_ref(), after.texture.as_ref())
+                && alike_maps(before.opacity_map.as_ref(), after.opacity_map.as_ref()))
+        }
+        (Pipeline::Flat(_), Pipeline::Flat(_)) => true,
+        (Pipeline::Flat(_), Pipeline::Shaded(_)) | (Pipeline::Shaded(_), Pipeline::Flat(_)) => {
+            false
+        }
+    }
+}
+
+fn alike_maps(a: Option<&Shared<Texture>>, b: Option<&Shared<Texture>>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => Shared::same(a, b),
+        (None, None) => true,
+        (Some(_), None) | (None, Some(_)) => false,
     }
 }
 

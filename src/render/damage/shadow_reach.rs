@@ -9,7 +9,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec3, DVec4};
+use glam::{DMat4, DVec3, DVec4};
 
 use super::{Tiles, around};
 use crate::accuracy::{LightAt, Samples, Terminator};
@@ -18,13 +18,21 @@ use crate::render::frame::shadows::{Caster, ShadowSource};
 use crate::render::shadow::tracer::Tracer;
 use crate::scene::ItemId;
 
+/// Whether rays begin at the pixels themselves, so that nothing but what a pixel shows decides where
+/// its rays begin.
+pub(super) fn is_by_pixel(plan: &FramePlan) -> bool {
+    plan.light_at == LightAt::Pixel
+        && plan.samples == Samples::One
+        && !plan.lit_by_sample
+        && plan.shift == [0; 2]
+        && plan.variants.shadow_method.map().is_none()
+        && plan.variants.terminator == Terminator::Triangles
+}
+
 /// Whether the tiles of changed shadows can be told: rays begin at the pixels themselves, and
 /// nothing else depends on all casters together.
 pub(super) fn is_known(before: &FramePlan, after: &FramePlan) -> bool {
-    after.light_at == LightAt::Pixel
-        && after.samples == Samples::One
-        && after.variants.shadow_method.map().is_none()
-        && after.variants.terminator == Terminator::Triangles
+    is_by_pixel(after)
         && before.shadows.are_cast() == after.shadows.are_cast()
         && Tracer::sun_distance(&before.shadows).to_bits()
             == Tracer::sun_distance(&after.shadows).to_bits()
@@ -32,53 +40,92 @@ pub(super) fn is_known(before: &FramePlan, after: &FramePlan) -> bool {
 
 /// Adds the tiles of the shadows of all casters that differ. Returns whether they are known.
 pub(super) fn add(before: &FramePlan, after: &FramePlan, tiles: &mut Tiles) -> bool {
-    if after.shadows.is_same(&before.shadows) {
-        return true;
-    }
-    let mut old: BTreeMap<ItemId, &Caster> =
-        before.shadows.casters.iter().map(|caster| (caster.item, caster)).collect();
-    for caster in &after.shadows.casters {
-        let earlier = old.remove(&caster.item);
-        if earlier.is_some_and(|earlier| earlier.is_same(caster)) {
-            continue;
-        }
-        let is_known = earlier.is_none_or(|earlier| add_volumes(before, earlier, tiles));
-        if !is_known || !add_volumes(after, caster, tiles) {
-            return false;
-        }
-    }
-    old.into_values().all(|caster| add_volumes(before, caster, tiles))
+    let changed = Changed::between(before, after);
+    changed.all().all(|(seen, caster)| {
+        seen.plan.shadows.sources.iter().flatten().all(|source| seen.add(caster, source, tiles))
+    })
 }
 
-/// Adds the tiles of a caster's shadow volumes. Returns whether they are bounded.
-fn add_volumes(plan: &FramePlan, caster: &Caster, tiles: &mut Tiles) -> bool {
-    let Some(bounds) = caster.model.mesh.bounds() else { return true };
-    let corners = bounds.corners().map(|corner| caster.world_from_object.transform_point3(corner));
-    let world_from_view = plan.view_from_world.inverse();
-    let drawn: Vec<DVec3> = plan
-        .draws
-        .iter()
-        .filter_map(|draw| {
+/// The casters that differ between two plans.
+pub(super) struct Changed<'a> {
+    before: Seen<'a>,
+    after: Seen<'a>,
+    /// As they were, and as they are.
+    old: Vec<&'a Caster>,
+    new: Vec<&'a Caster>,
+}
+
+impl<'a> Changed<'a> {
+    pub(super) fn between(before: &'a FramePlan, after: &'a FramePlan) -> Self {
+        let mut left: BTreeMap<ItemId, &Caster> =
+            before.shadows.casters.iter().map(|caster| (caster.item, caster)).collect();
+        let (mut old, mut new) = (Vec::new(), Vec::new());
+        for caster in &after.shadows.casters {
+            let earlier = left.remove(&caster.item);
+            if earlier.is_none_or(|earlier| !earlier.is_same(caster)) {
+                old.extend(earlier);
+                new.push(caster);
+            }
+        }
+        old.extend(left.into_values());
+        let is_any = !(old.is_empty() && new.is_empty());
+        let [before, after] = [before, after].map(|plan| Seen::new(plan, is_any));
+        Self { before, after, old, new }
+    }
+
+    /// Each with the plan that it belongs to.
+    fn all(&self) -> impl Iterator<Item = (&Seen<'a>, &'a Caster)> {
+        let old = self.old.iter().map(|caster| (&self.before, *caster));
+        old.chain(self.new.iter().map(|caster| (&self.after, *caster)))
+    }
+
+    /// The tiles of their shadows by a light that both plans have; `None` if they are not known.
+    pub(super) fn tiles(&self, source: &ShadowSource) -> Option<Tiles> {
+        let mut tiles = Tiles::none(self.after.plan.size);
+        let mut all = self.all();
+        all.all(|(seen, caster)| seen.add(caster, source, &mut tiles)).then_some(tiles)
+    }
+}
+
+/// A plan, and what is drawn of it.
+struct Seen<'a> {
+    plan: &'a FramePlan,
+    /// The corners of the boxes of all that is drawn, in world space.
+    drawn: Vec<DVec3>,
+    clip_from_world: DMat4,
+}
+
+impl<'a> Seen<'a> {
+    /// `is_asked`: whether anything will be added.
+    fn new(plan: &'a FramePlan, is_asked: bool) -> Self {
+        let world_from_view = plan.view_from_world.inverse();
+        let draws = if is_asked { &plan.draws[..] } else { &[] };
+        let drawn = draws.iter().filter_map(|draw| {
             let world_from_object = world_from_view * draw.view_from_object;
             let corners = draw.model.mesh.bounds()?.corners();
             Some(corners.map(|corner| world_from_object.transform_point3(corner)))
-        })
-        .flatten()
-        .collect();
-    let clip_from_world = plan.clip_from_view * plan.view_from_world;
-    for source in plan.shadows.sources.iter().flatten() {
-        let Some(ends) = ends_of(source, &corners, &drawn) else { return false };
+        });
+        let clip_from_world = plan.clip_from_view * plan.view_from_world;
+        Self { plan, drawn: drawn.flatten().collect(), clip_from_world }
+    }
+
+    /// Adds the tiles of a caster's shadow volume. Returns whether it is bounded.
+    fn add(&self, caster: &Caster, source: &ShadowSource, tiles: &mut Tiles) -> bool {
+        let Some(bounds) = caster.model.mesh.bounds() else { return true };
+        let corners =
+            bounds.corners().map(|corner| caster.world_from_object.transform_point3(corner));
+        let Some(ends) = ends_of(source, &corners, &self.drawn) else { return false };
         let points = corners.into_iter().chain(ends);
-        let clip: Vec<DVec4> = points.map(|p| clip_from_world * p.extend(1.0)).collect();
+        let clip: Vec<DVec4> = points.map(|p| self.clip_from_world * p.extend(1.0)).collect();
         let seen = before_the_near_plane(&clip);
         if seen.is_empty() {
-            continue;
+            return true;
         }
         // Points are lit up to a pixel away from where they are seen.
-        let Some(pixels) = around(plan, &seen, 2.0) else { return false };
+        let Some(pixels) = around(self.plan, &seen, 2.0) else { return false };
         tiles.add(pixels);
+        true
     }
-    true
 }
 
 /// Points in clip space whose convex hull is that of the given ones, as far as it is before the

@@ -49,6 +49,21 @@ impl Extras {
             && bump.is_none()
     }
 
+    /// Light of its own that is the same at every pixel, 0 without any; `None` if there is something
+    /// else.
+    pub(crate) fn even_glow(&self) -> Option<[f64; 3]> {
+        let Self { emission, ambient, specular, exponent, bump } = self;
+        let is_else = ambient.is_some() || specular.is_some() || exponent.is_some();
+        if is_else || bump.is_some() {
+            return None;
+        }
+        match emission {
+            None => Some([0.0; 3]),
+            Some(Glow { color, map: None }) => Some(*color),
+            Some(Glow { map: Some(_), .. }) => None,
+        }
+    }
+
     /// Whether the colour of a pixel depends on the map of a glow or of highlights.
     pub(crate) fn reads_texels(&self) -> bool {
         self.specular.is_some() || self.glows().any(|glow| glow.map.is_some())

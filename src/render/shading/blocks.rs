@@ -119,7 +119,8 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Colours fully covered blocks, a block at a time without a list of fragments, if they are lit
-    /// per pixel or not at all, with or without a texture, and nothing else is done to them.
+    /// per pixel or not at all, with or without a texture and even light of their own, and nothing
+    /// else is done to them.
     /// Returns whether that was so.
     fn light_blocks(
         &mut self,
@@ -134,9 +135,9 @@ impl<T: ShadingNumber> Shader<T> {
         };
         let is_lit = shaded.light.is_some();
         let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
+        let Some(glow) = shaded.extras.even_glow() else { return false };
         let otherwise = plan.variants.interpolation == Interpolation::EverySixteen
-            || plan.variants.are_linear()
-            || !shaded.extras.is_empty()
+            || (plan.variants.are_linear() && shaded.texture.is_some())
             || plan.shadows.any_of(shaded.light.as_deref().unwrap_or_default());
         if (is_lit && !pixels) || otherwise || group.draw.back == Back::Red {
             return false;
@@ -181,6 +182,8 @@ impl<T: ShadingNumber> Shader<T> {
             vertex_colors: shaded.vertex_colors.then_some(vertex_colors),
             lights,
             terms: terms.of(group.pipeline),
+            glow: shaded.extras.emission.is_some().then(|| glow.map(T::from_f64)),
+            encoding: terms.encoding(),
         };
         T::light_blocks(level, attributes, blocks, (light, batch), canvas)
     }

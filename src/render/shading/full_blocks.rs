@@ -20,7 +20,7 @@ use crate::render::screen::coverage::Triangle;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{BATCH, Lanes as _, Sixteen, VariantLanes, Vec3};
+use crate::render::simd::{BATCH, Encoding, Lanes as _, Sixteen, VariantLanes, Vec3};
 use crate::render::texture::lanes::Stored;
 
 /// The pixels of a tile, in rows that begin `stride` pixels apart.
@@ -321,6 +321,10 @@ pub(crate) struct BlockLight<'a, T> {
     pub(crate) lights: Option<TileLight<'a>>,
     /// The products of the lights and the material.
     pub(crate) terms: &'a [LightTerm<T>],
+    /// What is added to every colour, if the surface has light of its own.
+    pub(crate) glow: Option<[T; 3]>,
+    /// How linear colours are encoded, if they are linear.
+    pub(crate) encoding: Option<&'a Encoding>,
 }
 
 /// Lights blocks that the first triangle, whose corners carry normals, covers fully. Returns false,
@@ -347,7 +351,8 @@ fn lit<S: Simd>(
     canvas: &mut Canvas<'_>,
 ) {
     let lanes = Sixteen(simd);
-    let BlockLight { by, look, roots, tint, texture, vertex_colors, lights, terms } = light;
+    let BlockLight { by, look, roots, tint, texture, vertex_colors, lights, terms, .. } = light;
+    let BlockLight { glow, encoding, .. } = light;
     let z = of_first(lanes, &attributes.z);
     let corners = corners(lanes, &attributes.values);
     let tint = set(lanes, tint);
@@ -413,10 +418,13 @@ fn lit<S: Simd>(
             for pair in 0..PAIRS {
                 let mut pixels = [0; 16];
                 let own = if is_colored { load(lanes, &texels, 16 * pair) } else { tint };
-                let color = match lights {
+                let mut color = match lights {
                     Some(_) => reflected(lanes, own, batch, 16 * pair),
                     None => own,
                 };
+                if glow.is_some() || encoding.is_some() {
+                    color = finished(lanes, color, glow, encoding);
+                }
                 let threshold = lanes.load(by.thresholds, 16 * pair);
                 lanes.store_pixels_by(color, threshold, &mut pixels, 0);
                 canvas.put(at, &pixels);
@@ -424,6 +432,21 @@ fn lit<S: Simd>(
             }
         },
     );
+}
+
+/// A colour with what is added to it, encoded if it is linear.
+#[inline(always)]
+fn finished<S: Simd>(
+    lanes: Sixteen<S>,
+    color: Vec3<f32x16<S>>,
+    glow: Option<[f32; 3]>,
+    encoding: Option<&Encoding>,
+) -> Vec3<f32x16<S>> {
+    let color = glow.map_or(color, |glow| color.plus(set(lanes, glow)));
+    encoding.map_or(color, |encoding| {
+        let Vec3([r, g, b]) = color;
+        Vec3([encoding.of(r), encoding.of(g), encoding.of(b)])
+    })
 }
 
 /// Stores the samples of sixteen pixels whose roots are computed by a variant.

@@ -45,6 +45,7 @@ impl Layered {
         let ShadingContext { level, plan, frame, .. } = *context;
         let samples = frame.sample_positions().count();
         self.before.clear();
+        shader.rays.paints_layers = true;
         for sample in 0..samples {
             let opaque = visibility.entries(level, block, sample);
             let (at, order) = ((block, sample), (frame, plan.transparency));
@@ -59,15 +60,18 @@ impl Layered {
                 while more {
                     for i in 0..layers.len() {
                         let row = layers.row(plan.transparency, i);
-                        blend.place(level, || distances(level, plan, &row));
+                        blend.begin_layer(level, || distances(level, plan, &row));
                         shader.layer(context, &row, corner, blend);
+                        blend.end_layer(level);
                     }
                     more = layers.take(level, order, at, &opaque);
                 }
+                blend.end(level);
             }
             std::mem::swap(sequence, before);
             (0..BLOCK_PIXELS).for_each(|place| sums.add_parts(place, blend.color(place)));
         }
+        shader.rays.paints_layers = false;
     }
 
     /// Notes what a sample shows, if another sample may be compared with it.

@@ -3,7 +3,7 @@
 //! A light with shadows is added like any other. Then rays run to it from the positions at which
 //! it added something, and those whose ray is stopped get back what they had before, bit for bit.
 //! So the shaders of lights know nothing of shadows, and a position that no light reaches costs no
-//! ray.
+//! ray. If a light's shadow on a pixel is known from an earlier frame, no ray is traced either.
 //!
 //! Rays begin where light is evaluated: at the point of the triangle that a pixel shows (with
 //! several samples, at the point at which they are lit), at a vertex, or at the centre of a face.
@@ -12,10 +12,12 @@
 use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, u32x16};
 use glam::DVec3;
 
+use super::fragments::Fragments;
 use super::interpolated::ShadingNumber;
 use super::triangle_attributes::TriangleAttributes;
 use crate::render::frame::draw::{Draw, Stage};
 use crate::render::lights::{Batch, LightTerm, Rows};
+use crate::render::shadow::known::{BatchPixels, KnownPixels};
 use crate::render::shadow::map_face::TAPS;
 use crate::render::shadow::patches::bits;
 use crate::render::shadow::rays::{Origins, RayScratch};
@@ -31,6 +33,8 @@ pub(crate) struct BatchShadows<'a> {
     pub(crate) place: &'a mut dyn FnMut(&mut Origins),
     /// Whether they are set.
     pub(crate) is_placed: bool,
+    /// The pixels of the batch, if what is known of them may be used.
+    pixels: Option<BatchPixels<'a>>,
 }
 
 impl std::fmt::Debug for BatchShadows<'_> {
@@ -45,7 +49,43 @@ impl<'a> BatchShadows<'a> {
         scratch: &'a mut RayScratch,
         place: &'a mut dyn FnMut(&mut Origins),
     ) -> Self {
-        Self { tracer, scratch, place, is_placed: false }
+        Self { tracer, scratch, place, is_placed: false, pixels: None }
+    }
+
+    /// The same for a batch of these fragments, each of which is all that its pixel shows, unless
+    /// layers are painted.
+    pub(crate) fn of_pixels(self, fragments: &'a Fragments) -> Self {
+        let Fragments { len, pixels, x, y, .. } = fragments;
+        let of_batch = BatchPixels { first: [x[0], y[0]], places: &pixels[..*len] };
+        Self { pixels: (!self.scratch.paints_layers).then_some(of_batch), ..self }
+    }
+
+    /// Sets the points at which the batch is lit.
+    fn place(&mut self) {
+        if !self.is_placed {
+            (self.place)(&mut self.scratch.origins);
+            self.is_placed = true;
+        }
+    }
+
+    /// The positions of a mask at which a light is hidden: those that are not known are traced.
+    fn traced(&mut self, level: Level, (number, light): (u32, DVec3), mask: u64) -> u64 {
+        let known = self.pixels.zip(self.tracer.known(number));
+        let before = known.map_or(KnownPixels::default(), |(pixels, known)| {
+            let KnownPixels { traced, shaded } = known.at(pixels.first);
+            KnownPixels { traced: pixels.in_batch(traced), shaded: pixels.in_batch(shaded) }
+        });
+        let unknown = mask & !before.traced;
+        if unknown == 0 {
+            return before.shaded & mask;
+        }
+        self.place();
+        let shaded = self.tracer.shaded(level, light, self.scratch, unknown);
+        if let Some((pixels, known)) = known {
+            let [traced, shaded] = [unknown, shaded].map(|mask| pixels.in_block(mask));
+            known.note(pixels.first, KnownPixels { traced, shaded });
+        }
+        before.shaded & mask | shaded
     }
 
     /// Adds the light of a stage at every position of a batch that sees it.
@@ -65,13 +105,14 @@ impl<'a> BatchShadows<'a> {
         if lit == 0 {
             return;
         }
-        if !self.is_placed {
-            (self.place)(&mut self.scratch.origins);
-            self.is_placed = true;
-        }
-        let (shaded, partly) = match self.tracer.read(level, stage.light, self.scratch, lit) {
-            None => (self.tracer.shaded(level, light, self.scratch, lit), None),
-            Some(reading) => (reading.occluded, Some(reading)),
+        let (shaded, partly) = match self.tracer.map(stage.light) {
+            None => (self.traced(level, (stage.light, light), lit), None),
+            Some(map) => {
+                self.place();
+                let at = &self.scratch.origins.at;
+                let reading = dispatch!(level, _ => map.read(at, lit));
+                (reading.occluded, Some(reading))
+            }
         };
         if shaded == lit {
             // What is not lit has not changed.

@@ -404,7 +404,8 @@ impl<T: ShadingNumber> Shader<T> {
                 place_fragments(context, tracer, group, on, barycentrics, origins);
             }
         };
-        let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, rays, &mut place));
+        let shadows = tracer
+            .map(|(tracer, _)| BatchShadows::new(tracer, rays, &mut place).of_pixels(fragments));
         light.light_batch(terms.of(group.pipeline), level, batch, shadows);
     }
 

@@ -79,7 +79,7 @@ impl LightMap {
         clippy::cast_precision_loss,
         reason = "inside of a map"
     )]
-    pub(super) fn read(&self, at: &[[f64; BATCH]; 3], mask: u64) -> Reading {
+    pub(crate) fn read(&self, at: &[[f64; BATCH]; 3], mask: u64) -> Reading {
         let mut reading = Reading { occluded: 0, partly: 0, open: [0; BATCH] };
         let [mut x, mut y, mut z] = [[0.0_f64; BATCH]; 3];
         let mut left = mask;

@@ -20,12 +20,15 @@
 //! ([`triangle`]). A sun is a light at 2^60 times the size of the scene: no f64 direction tells the
 //! difference.
 //!
+//! What is known of a light's shadows is kept from frame to frame ([`known`]).
+//!
 //! In place of rays, settings choose shadow maps ([`maps`]), which are read at the same points.
 //!
 //! Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
 //! 1997. Amanatides and Choi, "Ray Tracing Triangular Meshes", 1995, for edges seen from one point.
 
 pub(crate) mod boxes;
+pub(crate) mod known;
 mod map_bias;
 mod map_draws;
 pub(crate) mod map_face;

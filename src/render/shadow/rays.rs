@@ -112,6 +112,8 @@ impl std::ops::AddAssign for RayCount {
 pub(crate) struct RayScratch {
     /// The rays since the frame began.
     pub(crate) count: RayCount,
+    /// Whether the layers of a block are painted: a pixel then shows several surfaces.
+    pub(crate) paints_layers: bool,
     pub(crate) origins: Origins,
     pub(super) local: LocalRays,
     pub(super) shaft: Shaft,

@@ -3,7 +3,8 @@
 use fearless_simd::{Level, Simd, dispatch};
 use glam::{DMat4, DVec3};
 
-use super::map_face::{LightMap, Reading};
+use super::known::{KnownLight, KnownShadows};
+use super::map_face::LightMap;
 use super::maps::ShadowMaps;
 use super::patches::{Patch, bits};
 use super::prepared_block::PreparedBlock;
@@ -32,6 +33,8 @@ pub(crate) struct Tracer<'a> {
     lights: Vec<Option<DVec3>>,
     /// For each light its shadow map, if the settings want one.
     maps: Vec<Option<&'a LightMap>>,
+    /// What is known of shadows, if it is kept.
+    known: Option<&'a KnownShadows>,
     filter: Filter,
 }
 
@@ -91,7 +94,7 @@ impl<'a> Tracer<'a> {
             }
         };
         let lights = shadows.sources.iter().map(|source| source.as_ref().map(end)).collect();
-        Self { casters, of_draws: Vec::new(), lights, maps: Vec::new(), filter }
+        Self { casters, of_draws: Vec::new(), lights, maps: Vec::new(), known: None, filter }
     }
 
     /// The end of the rays to a light, if it casts shadows.
@@ -110,16 +113,20 @@ impl<'a> Tracer<'a> {
         self.casters[caster as usize].caster.world_from_object
     }
 
-    /// What the map of a light says of the points of a mask, if there is one.
-    pub(crate) fn read(
-        &self,
-        level: Level,
-        light: u32,
-        scratch: &RayScratch,
-        mask: u64,
-    ) -> Option<Reading> {
-        let map = self.maps.get(light as usize).copied().flatten()?;
-        Some(dispatch!(level, _ => map.read(&scratch.origins.at, mask)))
+    /// The same, with what is known of shadows and is added to.
+    pub(crate) fn with_known(self, known: Option<&'a KnownShadows>) -> Self {
+        Self { known, ..self }
+    }
+
+    /// The map of a light, if the settings want one.
+    pub(crate) fn map(&self, light: u32) -> Option<&'a LightMap> {
+        self.maps.get(light as usize).copied().flatten()
+    }
+
+    /// What is known of the shadows of a light, if it is kept.
+    #[inline(always)]
+    pub(crate) fn known(&self, light: u32) -> Option<&'a KnownLight> {
+        self.known?.of(light)
     }
 
     /// The rays of a mask that something stands between and the light, a bit for each.

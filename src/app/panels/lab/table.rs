@@ -206,9 +206,10 @@ fn foot_ui(ui: &mut Ui, report: &Report) {
         ui,
         format!(
             "{width} x {height} pixels, {} threads, {}. The default takes {} ms; against itself \
-             it differed by {:.1}% in {} pairs, so smaller differences mean nothing. * is the \
-             default; a bar marks choices that no other beats in both. Errors are against every \
-             axis at its most exact; those of samples per pixel, against 256 samples, each lit.",
+             it differed by {:.1}% in {} pairs, so smaller differences mean nothing, nor do those \
+             within the interval of a row's own median (95%). * is the default; a bar marks \
+             choices that no other beats in both. Errors are against every axis at its most exact; \
+             those of samples per pixel, against 256 samples, each lit.",
             findings.threads,
             findings.instructions,
             brief(findings.control.a_ms),

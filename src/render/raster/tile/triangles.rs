@@ -11,6 +11,7 @@ use crate::render::raster::depth_format::{Any, Format as _, with_format};
 use crate::render::raster::geometry::ScreenGeometry;
 use crate::render::raster::large::{Large, Solid, Touched};
 use crate::render::raster::medium::{self, Medium};
+use crate::render::raster::visibility_buffer::word;
 use crate::render::screen::coverage::{Grid, PixelBox, Snapped, Triangle};
 use crate::render::texture::opacity::Holes;
 
@@ -105,29 +106,41 @@ impl Visibility {
         place: &mut Option<u32>,
     ) {
         let [low, high] = large.depths::<N>(block).map(|depth| self.key(depth));
-        if high < self.farthest[block] {
+        if self.hides(block, high, large.number) {
             return;
         }
-        if !self.show_whole(block, [low, high], place, || Shown::Large(*large)) {
+        let own = ([low, high], large.number);
+        if !self.show_whole(block, own, place, || Shown::Large(*large)) {
             self.write::<N>(level, block);
             self.draw_planes::<N>(level, large, block, true);
         }
         self.farthest[block] = self.farthest[block].max(low);
     }
 
-    /// Notes that a triangle covers a block fully, with depths between these keys, if no entries
-    /// have to be written for that. Returns whether that was so.
+    /// Whether a block hides a triangle that reaches up to this key in it. Of equal depths the
+    /// lower number is in front: coarse formats have many.
+    #[inline(always)]
+    pub(super) fn hides(&self, block: usize, high: u32, number: u32) -> bool {
+        match self.whole(block) {
+            Some(other) => word(high, number) < word(self.farthest[block], other),
+            None => high < self.farthest[block],
+        }
+    }
+
+    /// Notes that the triangle with this number covers a block fully, with depths between these
+    /// keys, if no entries have to be written for that. Returns whether that was so.
     #[inline(always)]
     pub(super) fn show_whole(
         &mut self,
         block: usize,
-        [low, high]: [u32; 2],
+        ([low, high], number): ([u32; 2], u32),
         place: &mut Option<u32>,
         triangle: impl FnOnce() -> Shown,
     ) -> bool {
         let bit = 1 << block;
         let alone = (self.written | self.whole) & bit == 0;
-        let noted = alone || (self.whole & bit != 0 && low > self.nearest[block]);
+        let is_behind = |other| word(low, number) > word(self.nearest[block], other);
+        let noted = alone || self.whole(block).is_some_and(is_behind);
         if noted {
             self.shown[block] = *place.get_or_insert_with(|| {
                 self.large.push(triangle());

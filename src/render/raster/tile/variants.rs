@@ -132,10 +132,11 @@ impl Visibility {
         place: &mut Option<u32>,
     ) {
         let [low, high] = triangle.depths::<N>(block).map(|depth| self.key(depth));
-        if high < self.farthest[block] {
+        if self.hides(block, high, triangle.number) {
             return;
         }
-        if !self.show_whole(block, [low, high], place, || Shown::Floats(*triangle)) {
+        let own = ([low, high], triangle.number);
+        if !self.show_whole(block, own, place, || Shown::Floats(*triangle)) {
             self.write::<N>(level, block);
             self.draw_float_planes::<N>(level, triangle, block, true);
         }
