@@ -36,6 +36,10 @@ pub(crate) enum Icon {
     Pen,
     /// Delete.
     Bin,
+    /// Undo.
+    Undo,
+    /// Redo.
+    Redo,
     /// Up.
     Up,
     /// Down.
@@ -93,6 +97,8 @@ impl Icon {
             Self::Copy => icons::ICON_CONTENT_COPY,
             Self::Pen => icons::ICON_EDIT,
             Self::Bin => icons::ICON_DELETE,
+            Self::Undo => icons::ICON_UNDO,
+            Self::Redo => icons::ICON_REDO,
             Self::Up => icons::ICON_KEYBOARD_ARROW_UP,
             Self::Down => icons::ICON_KEYBOARD_ARROW_DOWN,
             Self::Right => icons::ICON_KEYBOARD_ARROW_RIGHT,
