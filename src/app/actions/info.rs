@@ -27,7 +27,7 @@ pub struct ActionInfo {
 /// How the history names what an action did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepName {
-    /// By the action's label.
+    /// By the action's label, with "Add" before those of new things.
     Label,
     /// By words before and after the name of the item: "Drop", "to the ground".
     Around(&'static str, &'static str),

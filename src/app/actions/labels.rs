@@ -1,6 +1,6 @@
 //! Names what an action does now, as the history shows it.
 
-use super::info::StepName;
+use super::info::{Group, StepName};
 use super::table::Action;
 use crate::app::state::State;
 use crate::app::widgets::number::short;
@@ -23,8 +23,12 @@ impl Action {
     #[must_use]
     pub fn step_label(self, state: &State, times: u32) -> String {
         let name = &state.acted_on_name();
-        match self.info().step {
-            StepName::Label => self.info().label.to_owned(),
+        let info = self.info();
+        match info.step {
+            StepName::Label if info.group == Group::Add => {
+                format!("Add {}", info.label.to_lowercase())
+            }
+            StepName::Label => info.label.to_owned(),
             StepName::Around(before, after) => {
                 format!("{before} {name} {after}").trim_end().to_owned()
             }
@@ -108,6 +112,6 @@ mod tests {
         assert_eq!(label(&state, Action::DropToGround, 1), "Drop r_falke to the ground");
         assert_eq!(label(&state, Action::ToggleVisible, 1), "Hide r_falke");
         assert_eq!(label(&state, Action::ToggleLocked, 1), "Lock r_falke");
-        assert_eq!(label(&state, Action::AddCube, 1), "Cube");
+        assert_eq!(label(&state, Action::AddCube, 1), "Add cube");
     }
 }

@@ -1,6 +1,6 @@
 //! The dialog that asks for the material of a new item, and how its file is read.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use egui::Ui;
 
@@ -197,14 +197,14 @@ pub(crate) fn own_or_silver(loaded: &Loaded) -> MaterialChoice {
     }
 }
 
-/// "6,320 faces, 3,644 vertices; 2 things mended".
+/// "6,320 faces, 3,644 vertices; 2 findings"; of one finding its file and what it says.
 pub(crate) fn summary(loaded: &Loaded) -> String {
     let mesh = &loaded.model.mesh;
     let faces = mesh.polygon_count();
     let counts = format!("{} faces, {} vertices", grouped(faces), grouped(mesh.positions().len()));
     match loaded.findings.as_slice() {
         [] => counts,
-        [one] => format!("{counts}; {one}"),
+        [one] => format!("{counts}; {}: {}", file_name(Path::new(&one.file)), one.text),
         more => format!("{counts}; {} findings", more.len()),
     }
 }

@@ -99,7 +99,10 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             submenu(ui, "Lessons", |ui| lessons_ui(ui, requests));
         });
         ui.add_space(theme::GAP);
-        undo_buttons::show(ui, state, requests);
+        // In a very narrow window the menus have all the room.
+        if ui.available_width() >= 2.0 * theme::ROW + theme::GAP {
+            undo_buttons::show(ui, state, requests);
+        }
     });
 }
 

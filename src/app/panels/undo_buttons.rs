@@ -7,8 +7,8 @@
 use std::time::Duration;
 
 use egui::{
-    Popup, PopupCloseBehavior, Rect, Response, Role, ScrollArea, Sense, SetOpenCommand, TextStyle,
-    Ui, WidgetInfo, vec2,
+    Margin, Popup, PopupCloseBehavior, Rect, Response, Role, ScrollArea, Sense, SetOpenCommand,
+    TextStyle, Ui, WidgetInfo, vec2,
 };
 
 use crate::app::actions::{Action, Request};
@@ -75,8 +75,7 @@ fn button_ui(
         Popup::close_id(ui.ctx(), id);
     }
     ui.data_mut(|data| data.insert_temp(id, pulls && !let_go));
-    let hint = "Held or pulled down, it lists the steps.";
-    action.explain(response, state).on_hover_text(hint);
+    action.explain_also(response, state, "Held or pulled down, it lists the steps.");
 }
 
 /// Whether the button is held for long enough, or was pressed and is pulled down.
@@ -106,10 +105,12 @@ fn list_ui(
     let (mut pointed, mut chosen) = (0, None);
     ui.set_width(WIDTH);
     ui.spacing_mut().item_spacing.y = 0.0;
+    let count = u16::try_from(steps.len()).unwrap_or(u16::MAX);
+    let scrolls = f32::from(count) > ROWS;
+    let margin = if scrolls { theme::SCROLL_MARGIN } else { Margin::ZERO };
     let list = ScrollArea::vertical().max_height(ROWS * theme::ROW).auto_shrink([false, true]);
-    list.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
+    list.content_margin(margin).show(ui, |ui| {
         let row = vec2(ui.available_width(), theme::ROW);
-        let count = u16::try_from(steps.len()).unwrap_or(u16::MAX);
         let (all, _) = ui.allocate_exact_size(row * vec2(1.0, count.into()), Sense::hover());
         let seen = all.intersect(ui.clip_rect());
         let at = ui.input(|input| input.pointer.interact_pos()).filter(|at| seen.contains(*at));

@@ -44,7 +44,9 @@ pub(crate) enum Icon {
     Up,
     /// Down.
     Down,
-    /// Folded.
+    /// To the left.
+    Left,
+    /// To the right, or folded.
     Right,
     /// On, or done.
     Tick,
@@ -101,6 +103,7 @@ impl Icon {
             Self::Redo => icons::ICON_REDO,
             Self::Up => icons::ICON_KEYBOARD_ARROW_UP,
             Self::Down => icons::ICON_KEYBOARD_ARROW_DOWN,
+            Self::Left => icons::ICON_KEYBOARD_ARROW_LEFT,
             Self::Right => icons::ICON_KEYBOARD_ARROW_RIGHT,
             Self::Tick => icons::ICON_CHECK,
             Self::Warning => icons::ICON_WARNING,
