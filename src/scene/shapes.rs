@@ -102,6 +102,9 @@ impl Shape {
 mod tests {
     use std::f64::consts::PI;
 
+    use glam::DVec3;
+
+    use super::solids::{AROUND, TORUS};
     use super::*;
     use crate::scene::{dvec3, newell};
 

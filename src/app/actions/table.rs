@@ -46,7 +46,7 @@ actions! {
         "screenshot render export image png capture snapshot photo";
     PictureOptions File ONCE [Shifted(Key::F12)]
         "Save picture with options..."
-        "Asks for size, samples, a transparent ground and overlays, and saves a picture."
+        "Asks for size, samples, a transparent background and overlays, and saves a picture."
         "screenshot render resolution size transparent alpha large print wallpaper";
     SaveTurntable File ONCE [Command(Key::F12)]
         "Turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::Ui;
 
 use crate::app::widgets::color_picker::swatch;
-use crate::app::widgets::controls::{Switch, take_focus};
+use crate::app::widgets::controls::{Switch, heading, take_focus};
 use crate::app::widgets::spheres::{self, Sphere};
 use crate::app::widgets::text::{file_name, grouped};
 use crate::base::color::Color;
@@ -73,11 +73,11 @@ impl MaterialDialog {
         ui.set_width(ui.available_width().clamp(240.0, 460.0));
         match &self.loaded {
             Some((path, loaded)) => {
-                ui.heading(format!("Material of {}", file_name(path)));
+                heading(ui, format!("Material of {}", file_name(path)));
                 ui.label(summary(loaded));
             }
             None => {
-                ui.heading("Material of the new camera");
+                heading(ui, "Material of the new camera");
             }
         }
         self.materials_ui(ui);
