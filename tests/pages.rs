@@ -209,3 +209,44 @@ fn the_readme_is_short_and_its_scene_can_be_drawn() {
     let seen = picture.pixels().iter().filter(|pixel| **pixel != picture.pixel(0, 0)).count();
     assert!(seen > 1000, "only {seen} pixels show the ship");
 }
+
+#[test]
+fn every_mistake_of_the_mutation_tests_can_be_made_in_the_sources_as_they_are() {
+    let table = page("tests/breakages/table.toml");
+    let text = |row: &str, key: &str| {
+        let line = row.lines().find_map(|line| line.strip_prefix(&format!("{key} = \"")));
+        let text = line.and_then(|line| line.strip_suffix('"')).unwrap_or_else(|| panic!("{row}"));
+        text.replace("\\n", "\n").replace("\\\"", "\"")
+    };
+    let rows: Vec<&str> = table.split("[[breakage]]").skip(1).collect();
+    assert!(rows.len() > 100, "only {} rows were found", rows.len());
+    for row in rows {
+        let (file, from) = (text(row, "file"), text(row, "from"));
+        let times = page(&file).matches(&from).count();
+        assert_eq!(times, 1, "{file} has to hold once what a row of the table changes:\n{from}");
+    }
+}
+
+#[test]
+fn every_path_that_a_page_names_is_there() {
+    let is_part = |letter: char| letter.is_alphanumeric() || "/._-".contains(letter);
+    let roots = ["", "src/", "src/render/"];
+    let mut found = 0;
+    for name in PAGES {
+        let text = page(name);
+        for quoted in text.split('`').skip(1).step_by(2) {
+            let is_path = quoted.contains('/') && quoted.chars().all(is_part);
+            // A folder of the user's, a group of benchmarks, or a stand-in is no path.
+            if !is_path || quoted.contains("..") || quoted.contains("TARGET") {
+                continue;
+            }
+            let there = |root: &&str| {
+                let path = self::root().join(root).join(quoted);
+                path.exists() || path.with_extension("rs").exists()
+            };
+            assert!(roots.iter().any(|root| there(root)), "{name} names {quoted}");
+            found += 1;
+        }
+    }
+    assert!(found > 100, "only {found} paths were found");
+}

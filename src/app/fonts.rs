@@ -3,31 +3,68 @@
 //!
 //! Nothing is read before such a letter is to be shown. Then a thread looks through the fonts of
 //! the system, while a box stands for the letter; the font that it finds is used from the next
-//! frame on. So neither the first frame nor any other waits for a disk.
+//! frame on. So neither the first frame nor any other waits for a disk. Letters that no font of the
+//! system has stay boxes, and [`take_missing`] says so once.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-use egui::Context;
 use egui::epaint::text::{
     FallbackRequest, FontInsert, FontPriority, FontProvider, InsertFontFamily,
 };
+use egui::{Context, Id};
 use egui::{FontData, FontFamily};
 use fontdb::{Database, FaceInfo, Style};
 
 /// Asks the system for fonts when letters are missing.
 pub(crate) fn install(ctx: &Context) {
-    let search = Arc::new(Search { ctx: ctx.clone(), state: Mutex::default() });
+    install_from(ctx, || {
+        let mut fonts = Database::new();
+        fonts.load_system_fonts();
+        fonts
+    });
+}
+
+fn install_from(ctx: &Context, load: fn() -> Database) {
+    let search = Arc::new(Search { ctx: ctx.clone(), load, state: Mutex::default() });
+    ctx.data_mut(|data| data.insert_temp(id(), Arc::clone(&search)));
     ctx.add_font_provider(Arc::new(SystemFonts(search)));
 }
 
+fn id() -> Id {
+    Id::unique("fonts of the system")
+}
+
+/// Says which letters no font has, if any were looked for in vain since this was last asked.
+pub(crate) fn take_missing(ctx: &Context) -> Option<String> {
+    let search: Arc<Search> = ctx.data(|data| data.get_temp(id()))?;
+    let missing = std::mem::take(&mut search.lock().missing);
+    let code = |letter: &char| format!("U+{:04X}", u32::from(*letter));
+    let mut codes: Vec<String> = missing.iter().take(MOST_NAMED).map(code).collect();
+    let last = match missing.len().checked_sub(MOST_NAMED) {
+        None | Some(0) => codes.pop()?,
+        Some(more) => format!("{more} more"),
+    };
+    let list = if codes.is_empty() { last } else { format!("{} and {last}", codes.join(", ")) };
+    let letters = if missing.len() == 1 { "letter" } else { "letters" };
+    Some(format!(
+        "No font of this system has the {letters} {list}, so boxes stand for them. Install a font \
+         that has them, such as one of the Noto family, and start the program again."
+    ))
+}
+
+/// How many letters are named.
+const MOST_NAMED: usize = 4;
+
 /// What is looked for, and what was found.
 #[derive(Default)]
-struct State {
+struct Letters {
     /// The letters that the thread is to look for.
     wanted: BTreeSet<char>,
     /// The font of each letter; `None` if the system has none.
     found: BTreeMap<char, Option<Font>>,
+    /// Letters that no font has, until that was said.
+    missing: BTreeSet<char>,
     is_searching: bool,
 }
 
@@ -41,7 +78,9 @@ struct Font {
 
 struct Search {
     ctx: Context,
-    state: Mutex<State>,
+    /// Reads the list of fonts.
+    load: fn() -> Database,
+    state: Mutex<Letters>,
 }
 
 struct SystemFonts(Arc<Search>);
@@ -64,23 +103,22 @@ impl FontProvider for SystemFonts {
 }
 
 impl Search {
-    fn lock(&self) -> MutexGuard<'_, State> {
+    fn lock(&self) -> MutexGuard<'_, Letters> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 /// Starts the thread.
-fn begin(search: &Arc<Search>, state: &mut State) {
-    let theirs = Arc::downgrade(search);
-    let thread = std::thread::Builder::new().name("fonts".to_owned()).spawn(move || look(&theirs));
+fn begin(search: &Arc<Search>, state: &mut Letters) {
+    let (theirs, load) = (Arc::downgrade(search), search.load);
+    let work = move || look(&theirs, &load());
+    let thread = std::thread::Builder::new().name("fonts".to_owned()).spawn(work);
     // Without a thread, boxes stay.
     state.is_searching = thread.is_ok();
 }
 
-/// Looks for fonts until no letter is wanted any more.
-fn look(search: &Weak<Search>) {
-    let mut fonts = Database::new();
-    fonts.load_system_fonts();
+/// Looks for letters among the fonts until no letter is wanted any more.
+fn look(search: &Weak<Search>, fonts: &Database) {
     loop {
         let Some(search) = search.upgrade() else { return };
         let wanted = {
@@ -95,14 +133,19 @@ fn look(search: &Weak<Search>) {
         let mut found = BTreeMap::new();
         for letter in wanted {
             let known = found.values().flatten().find(|font: &&Font| font.has(letter)).cloned();
-            found.insert(letter, known.or_else(|| font_with(&fonts, letter)));
+            found.insert(letter, known.or_else(|| font_with(fonts, letter)));
         }
         let is_any = found.values().any(Option::is_some);
-        search.lock().found.extend(found);
+        let missing = found.iter().filter(|(_, font)| font.is_none()).map(|(letter, _)| *letter);
+        let mut state = search.lock();
+        state.missing.extend(missing);
+        state.found.extend(found);
+        drop(state);
         if is_any {
             // The letters are asked for again, and now there is an answer.
             search.ctx.set_font_providers(vec![Arc::new(SystemFonts(Arc::clone(&search)))]);
         }
+        search.ctx.request_repaint();
     }
 }
 
@@ -175,7 +218,8 @@ mod tests {
 
     #[test]
     fn a_missing_letter_is_looked_for_once_and_answered_when_it_was_found() {
-        let search = Arc::new(Search { ctx: Context::default(), state: Mutex::default() });
+        let (ctx, load) = (Context::default(), Database::new as fn() -> Database);
+        let search = Arc::new(Search { ctx, load, state: Mutex::default() });
         // As if the thread were looking already.
         search.lock().is_searching = true;
         let provider = SystemFonts(Arc::clone(&search));
@@ -187,5 +231,49 @@ mod tests {
         let font = Font { name: "font".to_owned(), data, face: 0 };
         search.lock().found.insert('山', Some(font));
         assert_eq!(ask().unwrap().name, "font");
+    }
+
+    /// A font of one letter, which `tests/fonts/make.py` makes.
+    fn mountain() -> Database {
+        let mut fonts = Database::new();
+        fonts.load_font_data(include_bytes!("../../tests/fonts/mountain.ttf").to_vec());
+        fonts
+    }
+
+    /// Shows a name until the fonts for it were looked for. Gives whether each letter has a glyph,
+    /// and what is said of those that have none.
+    fn shown(name: &str, load: fn() -> Database) -> (Vec<bool>, Option<String>) {
+        let ctx = Context::default();
+        install_from(&ctx, load);
+        let search: Arc<Search> = ctx.data(|data| data.get_temp(id())).unwrap();
+        let show = || ctx.run_ui(egui::RawInput::default(), |ui| drop(ui.label(name)));
+        show().textures_delta.clear();
+        while search.lock().is_searching {
+            std::thread::yield_now();
+        }
+        show().textures_delta.clear();
+        let font = egui::FontId::proportional(14.0);
+        let has = |letter| ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter));
+        let glyphs = name.chars().map(has).collect();
+        (glyphs, take_missing(&ctx).inspect(|_| assert_eq!(take_missing(&ctx), None)))
+    }
+
+    #[test]
+    fn a_name_in_han_letters_is_drawn_by_a_font_of_the_system() {
+        assert_eq!(shown("山 a", mountain), (vec![true; 3], None));
+    }
+
+    #[test]
+    fn letters_that_no_font_has_are_said_once_by_their_numbers() {
+        let (glyphs, said) = shown("山田a", mountain);
+        assert_eq!(glyphs, [true, false, true]);
+        let said = said.unwrap();
+        assert!(
+            said.starts_with("No font of this system has the letter U+7530, so boxes"),
+            "{said}"
+        );
+        let said = |name| shown(name, Database::new).1.unwrap();
+        assert!(said("山田").contains("the letters U+5C71 and U+7530, so"));
+        assert!(said("山田川海空雨").contains("U+5C71, U+5DDD, U+6D77, U+7530 and 2 more, so"));
     }
 }

@@ -19,7 +19,7 @@ pub const MARGIN: i8 = 10;
 /// To the right of what can be scrolled: the bar stands in it.
 pub const SCROLL_MARGIN: Margin = Margin { left: 0, right: MARGIN, top: 0, bottom: 0 };
 /// The width of the labels in the rows of a panel.
-pub const LABEL: f32 = 62.0;
+pub const LABEL: f32 = 72.0;
 /// Small text: keys, units, what can be missed.
 pub const SMALL: f32 = 11.0;
 /// Text.

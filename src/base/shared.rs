@@ -19,12 +19,6 @@ impl<T> Shared<T> {
     pub fn same(a: &Self, b: &Self) -> bool {
         Arc::ptr_eq(&a.0, &b.0)
     }
-
-    /// The value's address, which identifies it for as long as it is shared.
-    #[must_use]
-    pub fn address(&self) -> usize {
-        Arc::as_ptr(&self.0).addr()
-    }
 }
 
 impl<T> From<T> for Shared<T> {

@@ -102,7 +102,7 @@ pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal
 /// # Errors
 /// If there is no other item.
 pub fn next(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Selection, Refusal> {
-    fn after<K: Copy + Ord, T>(list: &List<K, T>, id: Option<K>) -> Option<K> {
+    fn after<K: Copy + Ord, T, D>(list: &List<K, T, D>, id: Option<K>) -> Option<K> {
         list.after(id).filter(|next| Some(*next) != id)
     }
     let id = match view.subject {
@@ -258,9 +258,9 @@ pub fn settle(scene: &Scene, view: &mut View) {
 }
 
 /// The selected item of a list after a change.
-fn followed<K: Copy + Ord, T>(
-    before: &List<K, T>,
-    after: &List<K, T>,
+fn followed<K: Copy + Ord, T, D>(
+    before: &List<K, T, D>,
+    after: &List<K, T, D>,
     selected: Option<K>,
 ) -> Option<K> {
     if let Some(new) = after.first_since(before) {

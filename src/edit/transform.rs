@@ -28,7 +28,9 @@ pub enum Sign {
 }
 
 impl Sign {
-    const fn of(self, amount: f64) -> f64 {
+    /// The amount with this sign.
+    #[must_use]
+    pub const fn of(self, amount: f64) -> f64 {
         match self {
             Self::Positive => amount,
             Self::Negative => -amount,

@@ -8,14 +8,14 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// A share of some work, from 0 to 1, with a flag that asks for its end.
 #[derive(Clone, Debug)]
 pub struct Progress {
-    state: Arc<State>,
+    state: Arc<Status>,
     /// The beginning of this part of the work, and its share of the whole.
     begin: f64,
     share: f64,
 }
 
 #[derive(Debug, Default)]
-struct State {
+struct Status {
     /// The bits of an f64.
     fraction: AtomicU64,
     cancelled: AtomicBool,

@@ -58,13 +58,13 @@ pub fn facts(scene: &Scene, point: &SurfacePoint) -> Vec<[String; 2]> {
         Some(LightAt::Pixel | LightAt::Sample) => "at the pixel",
     };
     let mut facts = vec![
-        ["seen".to_owned(), format!("{}, {side}", name.map_or("nothing", String::as_str))],
+        ["shows".to_owned(), format!("{}, {side}", name.map_or("nothing", String::as_str))],
         ["polygon".to_owned(), format!("{}, triangle {}", point.polygon, point.triangle)],
-        ["corners' weights".to_owned(), vector(point.weights)],
+        ["barycentrics".to_owned(), vector(point.weights)],
         ["distance".to_owned(), number(point.distance)],
-        ["place".to_owned(), vector(point.position)],
-        ["N".to_owned(), vector(point.normal)],
-        ["V".to_owned(), vector(point.to_eye)],
+        ["position".to_owned(), vector(point.position)],
+        ["N".to_owned(), direction(point.normal)],
+        ["V".to_owned(), direction(point.to_eye)],
         ["light".to_owned(), light.to_owned()],
     ];
     if point.own != [1.0; 3] {
@@ -79,8 +79,8 @@ pub fn ray_line(ray: &LightRay) -> String {
     let cosine = if ray.half_vector { "N.H" } else { "R.V" };
     let mut line = format!(
         "L {}  R {}  N.L {}  {cosine} {}",
-        vector(ray.to_light),
-        vector(ray.reflected),
+        direction(ray.to_light),
+        direction(ray.reflected),
         number(ray.n_l),
         number(ray.highlight)
     );
@@ -138,4 +138,9 @@ pub fn number(x: f64) -> String {
 
 fn vector(v: DVec3) -> String {
     format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
+}
+
+/// A vector of length 1: what would be shown as 0 with four decimals is 0.
+fn direction(v: DVec3) -> String {
+    vector(v.map(|x| if x.abs() < 5e-5 { 0.0 } else { x }))
 }

@@ -9,7 +9,6 @@
 //! neighbours; if no label is left, all items are relabelled: Dietz and Sleator, "Two Algorithms
 //! for Maintaining Order in a List", STOC 1987.
 
-use std::any::Any;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
@@ -25,16 +24,13 @@ const STEP: i64 = 1 << 32;
 /// one after the other.
 const NEAR: u64 = 1 << 16;
 
-/// A list of items under ids.
-pub struct List<K, T> {
+/// A list of items under ids, and a value `D` that is computed from it when it is first needed.
+pub struct List<K, T, D = ()> {
     entries: Vector<Entry<K, T>>,
     labels: OrdMap<K, i64>,
-    derived: Kept,
+    /// Shared by all copies until they change.
+    derived: Arc<OnceLock<D>>,
 }
-
-/// A value that was computed from a list.
-#[derive(Clone, Default)]
-struct Kept(Arc<OnceLock<Arc<dyn Any + Send + Sync>>>);
 
 /// An item with its label.
 #[derive(Debug)]
@@ -50,30 +46,30 @@ impl<K: Copy, T> Clone for Entry<K, T> {
     }
 }
 
-impl<K: Copy, T> Clone for List<K, T> {
+impl<K: Copy, T, D> Clone for List<K, T, D> {
     fn clone(&self) -> Self {
         Self {
             entries: self.entries.clone(),
             labels: self.labels.clone(),
-            derived: self.derived.clone(),
+            derived: Arc::clone(&self.derived),
         }
     }
 }
 
-impl<K: Copy + Ord + fmt::Debug, T: fmt::Debug> fmt::Debug for List<K, T> {
+impl<K: Copy + Ord + fmt::Debug, T: fmt::Debug, D> fmt::Debug for List<K, T, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_map().entries(self.iter()).finish()
     }
 }
 
-impl<K, T> Default for List<K, T> {
+impl<K, T, D> Default for List<K, T, D> {
     fn default() -> Self {
-        Self { entries: Vector::new(), labels: OrdMap::new(), derived: Kept::default() }
+        Self { entries: Vector::new(), labels: OrdMap::new(), derived: Arc::default() }
     }
 }
 
 /// Compares addresses first: lists that share their items are equal.
-impl<K: PartialEq, T: PartialEq> PartialEq for List<K, T> {
+impl<K: PartialEq, T: PartialEq, D> PartialEq for List<K, T, D> {
     fn eq(&self, other: &Self) -> bool {
         let alike = |(a, b): (&Entry<K, T>, &Entry<K, T>)| {
             a.id == b.id && (Arc::ptr_eq(&a.item, &b.item) || a.item == b.item)
@@ -84,7 +80,7 @@ impl<K: PartialEq, T: PartialEq> PartialEq for List<K, T> {
     }
 }
 
-impl<K: Copy + Ord, T> List<K, T> {
+impl<K: Copy + Ord, T, D> List<K, T, D> {
     /// The number of items.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -128,10 +124,8 @@ impl<K: Copy + Ord, T> List<K, T> {
     }
 
     /// What `compute` makes of the list: computed once, and kept by all copies until they change.
-    /// A list keeps one value, so all callers have to ask for the same.
-    pub(super) fn derived<D: Any + Send + Sync>(&self, compute: impl FnOnce(&Self) -> D) -> Arc<D> {
-        let kept = get_or_compute(&self.derived.0, || Arc::new(compute(self)));
-        Arc::clone(kept).downcast().expect("all callers ask for the same")
+    pub(super) fn derived(&self, compute: impl FnOnce(&Self) -> D) -> &D {
+        get_or_compute(&self.derived, || compute(self))
     }
 
     /// All ids, first to last.
@@ -158,13 +152,6 @@ impl<K: Copy + Ord, T> List<K, T> {
         self.id_at(next).or_else(|| self.first())
     }
 
-    /// The id that is selected when `id` is removed: the next, else the previous one.
-    #[must_use]
-    pub fn successor(&self, id: K) -> Option<K> {
-        let at = self.position(id)?;
-        self.id_at(at + 1).or_else(|| self.id_at(at.checked_sub(1)?))
-    }
-
     /// The first id that `before` does not have. Nodes that both lists share are skipped.
     #[must_use]
     pub fn first_since(&self, before: &Self) -> Option<K> {
@@ -177,7 +164,7 @@ impl<K: Copy + Ord, T> List<K, T> {
 
     /// Inserts an item before the one at `at`; past the end means last.
     pub(super) fn insert(&mut self, at: usize, id: K, item: T) {
-        self.derived = Kept::default();
+        self.derived = Arc::default();
         let at = at.min(self.len());
         let label = self.free_label(at).unwrap_or_else(|| {
             self.label_anew();
@@ -210,11 +197,11 @@ impl<K: Copy + Ord, T> List<K, T> {
     }
 }
 
-impl<K: Copy + Ord, T: Clone> List<K, T> {
+impl<K: Copy + Ord, T: Clone, D> List<K, T, D> {
     /// Replaces the item with this id, and returns the old one.
     pub(super) fn replace(&mut self, id: K, item: T) -> Option<T> {
         let at = self.position(id)?;
-        self.derived = Kept::default();
+        self.derived = Arc::default();
         let entry = self.entries.get_mut(at)?;
         Some(Arc::unwrap_or_clone(std::mem::replace(&mut entry.item, Arc::new(item))))
     }
@@ -222,14 +209,14 @@ impl<K: Copy + Ord, T: Clone> List<K, T> {
     /// Removes the item with this id, and returns it with its position.
     pub(super) fn remove(&mut self, id: K) -> Option<(usize, T)> {
         let at = self.position(id)?;
-        self.derived = Kept::default();
+        self.derived = Arc::default();
         self.labels.remove(&id);
         Some((at, Arc::unwrap_or_clone(self.entries.remove(at).item)))
     }
 }
 
 /// The ids have to differ.
-impl<K: Copy + Ord, T> FromIterator<(K, T)> for List<K, T> {
+impl<K: Copy + Ord, T, D> FromIterator<(K, T)> for List<K, T, D> {
     fn from_iter<I: IntoIterator<Item = (K, T)>>(items: I) -> Self {
         let mut list = Self::default();
         for (id, item) in items {
@@ -255,7 +242,6 @@ mod tests {
         assert!(comparisons(|| before.get(middle)) < few);
         assert!(comparisons(|| before.position(middle)) < few);
         assert!(comparisons(|| before.after(Some(middle))) < few);
-        assert!(comparisons(|| before.successor(middle)) < few);
         assert!(comparisons(|| list.insert(0, Counted(10_000), 7)) < few);
         assert!(comparisons(|| list.remove(Counted(9_000))) < few);
         assert!(comparisons(|| list.replace(middle, 7)) < few);

@@ -94,11 +94,14 @@ pub enum ItemId {
     Light(LightId),
 }
 
+/// The objects of a scene, and the spheres about them.
+pub type Objects = List<ObjectId, Object, Spheres>;
+
 /// Everything that can be drawn. A clone is cheap, since everything large is shared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The objects, in the order that the user sees.
-    pub objects: List<ObjectId, Object>,
+    pub objects: Objects,
     /// The cameras; there is always one.
     pub cameras: List<CameraId, Camera>,
     /// The lights.

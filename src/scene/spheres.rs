@@ -1,11 +1,9 @@
 //! Spheres about the objects of a scene in the world, side by side in memory: with thousands of
 //! objects, what is out of view is found without touching the objects themselves.
 
-use std::sync::Arc;
-
 use glam::{DMat3, DVec3};
 
-use super::{List, Object, ObjectId};
+use super::{Object, ObjectId, Objects};
 
 /// A sphere about each object.
 #[derive(Debug, Default)]
@@ -21,16 +19,16 @@ pub struct Spheres {
 /// Rounded up by more than the arithmetic of placing is inexact.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-impl List<ObjectId, Object> {
+impl Objects {
     /// A sphere about each object; computed once for as long as no object changes.
     #[must_use]
-    pub fn spheres(&self) -> Arc<Spheres> {
+    pub fn spheres(&self) -> &Spheres {
         self.derived(Spheres::of)
     }
 }
 
 impl Spheres {
-    fn of(objects: &List<ObjectId, Object>) -> Self {
+    fn of(objects: &Objects) -> Self {
         let mut sorted: Vec<(ObjectId, u32, &Object)> =
             (0..).zip(objects.iter()).map(|(at, (id, object))| (id, at, object)).collect();
         sorted.sort_unstable_by_key(|(id, ..)| *id);

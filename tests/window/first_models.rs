@@ -96,6 +96,23 @@ fn a_model_of_the_command_line_opens_alone_framed_and_with_steps_that_fit() {
 }
 
 #[test]
+fn a_model_without_faces_is_one_notice_that_names_its_file_shortly() {
+    let (_folder, path) = folder_with("cloud.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    let mut editor = Editor::new();
+    editor.open_at_start(&[&path]);
+    editor.wait_until(|editor| editor.names() == ["cloud"]);
+    for _ in 0..5 {
+        editor.settle();
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let notices: Vec<&str> =
+        editor.state().notices.iter().map(|notice| notice.text.as_str()).collect();
+    let [only] = notices[..] else { panic!("{notices:?}") };
+    assert!(only.starts_with("cloud: 0 faces, 3 vertices; cloud.obj: "), "{only}");
+    assert!(editor.state().notices[0].details[0].contains(&path.display().to_string()));
+}
+
+#[test]
 fn a_model_that_cannot_be_read_leaves_the_first_scene() {
     let (_folder, path) = folder_with("bad.obj", "v 0 zero 0\n");
     let mut editor = Editor::new();

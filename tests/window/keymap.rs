@@ -6,6 +6,7 @@ use egui::Key;
 use egui::accesskit::Role;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Lower, Named};
+use marraztu::app::panels::Panel;
 use marraztu::io::{OwnFolders, Preferences};
 
 use crate::editor::Editor;
@@ -60,6 +61,33 @@ fn chosen_keys_are_kept() {
     assert_eq!(editor.steps(), 1);
     editor.harness.state_mut().end_keeping();
     assert_eq!(Preferences::load(&folders).0.keys, preferences.keys);
+}
+
+#[test]
+fn keys_of_an_older_version_are_read_and_what_has_changed_is_said_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let folders = OwnFolders::within(folder.path());
+    let keys = [("ToggleStatistics", "k"), ("Duplicate", "w"), ("Gone", "j")];
+    let keys = keys.map(|(action, key)| (action.to_owned(), vec![key.to_owned()])).into();
+    Preferences { keys, ..Preferences::default() }.save(&folders).unwrap();
+    for is_first in [true, false] {
+        let mut editor = Editor::small();
+        let (preferences, said) = Preferences::load(&folders);
+        let ctx = editor.harness.ctx.clone();
+        editor.harness.state_mut().keep_in(&ctx, folders.clone(), preferences, said);
+        editor.settle();
+        let told = editor.state().notices.iter().flat_map(|notice| &notice.details);
+        assert_eq!(told.count(), if is_first { 2 } else { 0 });
+        assert_eq!(editor.shows("keys that you have chosen"), is_first);
+        editor.press(Lower(Key::K));
+        assert!(editor.state().panels.has(Panel::Statistics), "k has opened the panel");
+        editor.press(Lower(Key::K));
+        let before = editor.scene().cameras.len();
+        editor.press(Lower(Key::W));
+        assert_eq!(editor.scene().cameras.len(), before + 1, "w has duplicated the camera");
+        editor.perform(Action::Undo);
+        editor.harness.state_mut().end_keeping();
+    }
 }
 
 #[test]

@@ -28,4 +28,5 @@ mod regions;
 mod several;
 mod shapes;
 mod tasks;
+mod undo_buttons;
 mod ways;

@@ -26,7 +26,7 @@ fn a_picture_has_the_size_the_samples_and_the_ground_that_were_chosen() {
     let mut editor = Editor::of_size(900.0, 500.0);
     editor.press(Shifted(Key::F12));
     click(&mut editor, Role::RadioButton, "Samples per pixel: 4");
-    click(&mut editor, Role::CheckBox, "Transparent ground");
+    click(&mut editor, Role::CheckBox, "Transparent background");
     editor.click_label("Elsewhere...");
     editor.type_path(&path);
     editor.wait_until(|editor| says(editor, "Saved"));

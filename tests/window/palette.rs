@@ -10,7 +10,7 @@ use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
 use marraztu::accuracy::LightAt;
 use marraztu::app::actions::Chord::{Command, Either, Lower, Named};
 use marraztu::app::actions::{Action, Request};
-use marraztu::scene::{ItemId, LightKind, SpotOwner, Subject};
+use marraztu::scene::{ItemId, LightKind, MaterialChoice, SpotOwner, Subject};
 
 use crate::editor::Editor;
 use crate::panels::{control, type_text};
@@ -311,6 +311,17 @@ fn a_colour_that_is_typed_is_offered_for_the_selection_and_the_background() {
     assert_eq!(listed(&editor)[0], "Material: jade");
     editor.press(Named(Key::Enter));
     assert_eq!(editor.state().history.steps().last(), Some("Material of r_falke"));
+    let preset = editor.scene().objects.first().unwrap();
+    let before = editor.scene().objects.get(preset).unwrap().part_look(0).material;
+    editor.press(Command(Key::K));
+    type_text(&mut editor, "own material");
+    assert!(listed(&editor).contains(&"Material: your own".to_owned()));
+    editor.press(Named(Key::Escape));
+    editor.press(Command(Key::K));
+    type_text(&mut editor, "your own");
+    editor.press(Named(Key::Enter));
+    let own = editor.scene().objects.get(preset).unwrap().material.clone();
+    assert_eq!(own, MaterialChoice::Own(before), "it begins as what was chosen");
     editor.press(Command(Key::K));
     type_text(&mut editor, "#0a");
     assert!(editor.shows("Nothing has this name"));

@@ -473,3 +473,27 @@ fn the_history_is_gone_through_by_clicks_on_its_steps() {
     editor.settle();
     assert!(editor.scene() == last);
 }
+
+#[test]
+fn an_explained_pixel_stays_within_the_picture_and_leads_to_those_beside_it() {
+    for (width, height) in [(1280.0, 800.0), (1024.0, 640.0), (1024.0, 420.0)] {
+        let mut editor = Editor::of_size(width, height);
+        editor.perform(Action::ExplainPixel);
+        let at = editor.at(0.2, 0.5);
+        editor.click(at, PointerButton::Primary);
+        editor.harness.run_steps(10);
+        let copy = control(&editor, Role::Button, "Copy as text").rect();
+        let picture = editor.picture();
+        assert!(picture.contains_rect(copy), "{copy} in {picture}");
+        let title = |editor: &Editor| {
+            let mut found = editor.harness.query_all_by_label_contains("Pixel ");
+            found.find_map(|node| node.accesskit_node().label()).unwrap_or_default()
+        };
+        let number = |text: &str| -> usize {
+            text["Pixel ".len()..].split(',').next().unwrap().parse().unwrap()
+        };
+        let before = number(&title(&editor));
+        click(&mut editor, Role::Button, "The pixel to the right");
+        editor.wait_until(|editor| number(&title(editor)) == before + 1);
+    }
+}

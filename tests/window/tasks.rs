@@ -17,6 +17,7 @@ use marraztu::scene::{LightKind, MaterialChoice, Normals, Scene, SpotOwner};
 use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;
 use crate::panels::{click, middle, type_text};
+use crate::undo_buttons::pull_to;
 
 /// An editor, and the steps that were taken in it.
 struct Hand {
@@ -193,14 +194,12 @@ fn ten_steps_are_undone() {
     keys.editor.hold(Command(Key::Z), 9);
     keys.steps += 1;
     let (_, mut mouse) = moved();
-    // It stays open from one start to the next.
-    mouse.editor.perform(Action::Panel(Panel::History));
-    mouse.click(Role::Button, "0  Beginning");
-    let (_, mut menu) = moved();
-    menu.click(Role::Button, "Edit");
-    menu.click(Role::MenuItem, "History");
-    menu.click(Role::Button, "0  Beginning");
-    for hand in [&keys, &mouse, &menu] {
+    pull_to(&mut mouse.editor, "Undo", 10);
+    mouse.steps += 1;
+    let (_, mut panel) = moved();
+    panel.editor.perform(Action::Panel(Panel::History));
+    panel.click(Role::Button, "0  Beginning");
+    for hand in [&keys, &mouse, &panel] {
         assert!(hand.editor.scene() == before);
     }
     holds("Undo ten steps", &keys, &mouse);

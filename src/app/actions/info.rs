@@ -2,6 +2,8 @@
 
 use crate::app::chord::Chord;
 use crate::app::panels::PanelInfo;
+use crate::base::math::Axis;
+use crate::edit::transform::Sign;
 
 /// How an action appears.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +20,21 @@ pub struct ActionInfo {
     pub group: Group,
     /// Whether a held key asks for it again and again.
     pub repeats: bool,
+    /// How the history names it.
+    pub step: StepName,
+}
+
+/// How the history names what an action did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepName {
+    /// By the action's label, with "Add" before those of new things.
+    Label,
+    /// By words before and after the name of the item: "Drop", "to the ground".
+    Around(&'static str, &'static str),
+    /// By one of two words before the name of the item; the first if the switch was on.
+    Switched(&'static str, &'static str),
+    /// By how far the item goes: "Move ship 10 along x".
+    Amount(Axis, Sign),
 }
 
 /// What a held key does: it asks once, or again and again.
@@ -28,7 +45,15 @@ impl ActionInfo {
     /// How the action that shows and hides a panel appears.
     pub(super) const fn of_panel(panel: PanelInfo) -> Self {
         let PanelInfo { label, hint, words, keys, .. } = panel;
-        Self { label, hint, words, keys, group: Group::Window, repeats: ONCE }
+        Self {
+            label,
+            hint,
+            words,
+            keys,
+            group: Group::Window,
+            repeats: ONCE,
+            step: StepName::Label,
+        }
     }
 }
 
@@ -90,7 +115,7 @@ impl Group {
 macro_rules! actions {
     ($(
         $name:ident $group:ident $repeats:ident [$($key:expr),*]
-            $label:literal $hint:literal $words:literal;
+            $label:literal $hint:literal $words:literal $(=> $step:expr)?;
     )+) => {
         /// Something a user can ask for that needs no further words.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -115,6 +140,7 @@ macro_rules! actions {
                         keys: &[$($key),*],
                         group: Group::$group,
                         repeats: $repeats,
+                        step: [$($step,)? StepName::Label][0],
                     },)+
                     Self::Panel(panel) => ActionInfo::of_panel(panel.info()),
                 }

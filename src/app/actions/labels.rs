@@ -1,5 +1,6 @@
 //! Names what an action does now, as the history shows it.
 
+use super::info::{Group, StepName};
 use super::table::Action;
 use crate::app::state::State;
 use crate::app::widgets::number::short;
@@ -22,44 +23,44 @@ impl Action {
     #[must_use]
     pub fn step_label(self, state: &State, times: u32) -> String {
         let name = &state.acted_on_name();
-        let (axis, sign) = match self {
-            Self::StepXUp => (Axis::X, 1.0),
-            Self::StepXDown => (Axis::X, -1.0),
-            Self::StepYUp => (Axis::Y, 1.0),
-            Self::StepYDown => (Axis::Y, -1.0),
-            Self::StepZUp => (Axis::Z, 1.0),
-            Self::StepZDown => (Axis::Z, -1.0),
-            Self::Delete | Self::Duplicate | Self::Rename | Self::AimAtSelection => {
-                return format!("{} {name}", self.info().label);
+        let info = self.info();
+        match info.step {
+            StepName::Label if info.group == Group::Add => {
+                format!("Add {}", info.label.to_lowercase())
             }
-            Self::DropToGround => return format!("Drop {name} to the ground"),
-            Self::ResetPlacement => return format!("Reset the placement of {name}"),
-            Self::ToggleLocked => {
-                let verb = if self.is_on(state) == Some(true) { "Unlock" } else { "Lock" };
-                return format!("{verb} {name}");
+            StepName::Label => info.label.to_owned(),
+            StepName::Around(before, after) => {
+                format!("{before} {name} {after}").trim_end().to_owned()
             }
-            _ => return self.info().label.to_owned(),
-        };
-        let letter = ["x", "y", "z"][axis.index()];
-        let steps = &state.view.steps;
-        let many = f64::from(times);
-        match deed(state, axis) {
-            Deed::Move => {
-                let amount = short(sign * many * distance(&state.scene, &state.view, axis));
-                format!("Move {name} {amount} along {letter}")
+            StepName::Switched(on, off) => {
+                let verb = if self.is_on(state) == Some(true) { on } else { off };
+                format!("{verb} {name}")
             }
-            Deed::Turn => {
-                let amount = short(sign * many * steps.rotation);
-                format!("Rotate {name} {amount} deg about {letter}")
-            }
-            Deed::Orbit => {
-                let amount = short(sign * many * steps.rotation);
-                format!("Orbit {name} {amount} deg by {letter}")
-            }
-            Deed::Scale => {
-                let factor = libm::pow(steps.scaling, sign * many);
-                format!("Scale {name} by {}", short(factor))
-            }
+            StepName::Amount(axis, sign) => amount(state, name, axis, sign.of(f64::from(times))),
+        }
+    }
+}
+
+/// How far `count` steps along an axis, or about it, bring the selected item.
+fn amount(state: &State, name: &str, axis: Axis, count: f64) -> String {
+    let letter = ["x", "y", "z"][axis.index()];
+    let steps = &state.view.steps;
+    match deed(state, axis) {
+        Deed::Move => {
+            let amount = short(count * distance(&state.scene, &state.view, axis));
+            format!("Move {name} {amount} along {letter}")
+        }
+        Deed::Turn => {
+            let amount = short(count * steps.rotation);
+            format!("Rotate {name} {amount} deg about {letter}")
+        }
+        Deed::Orbit => {
+            let amount = short(count * steps.rotation);
+            format!("Orbit {name} {amount} deg by {letter}")
+        }
+        Deed::Scale => {
+            let factor = libm::pow(steps.scaling, count);
+            format!("Scale {name} by {}", short(factor))
         }
     }
 }
@@ -108,5 +109,9 @@ mod tests {
         state.view.transformation = Transformation::Scaling;
         assert_eq!(label(&state, Action::StepYUp, 2), "Scale r_falke by 1.44");
         assert_eq!(label(&state, Action::Delete, 1), "Delete r_falke");
+        assert_eq!(label(&state, Action::DropToGround, 1), "Drop r_falke to the ground");
+        assert_eq!(label(&state, Action::ToggleVisible, 1), "Hide r_falke");
+        assert_eq!(label(&state, Action::ToggleLocked, 1), "Lock r_falke");
+        assert_eq!(label(&state, Action::AddCube, 1), "Add cube");
     }
 }

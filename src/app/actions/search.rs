@@ -121,22 +121,21 @@ impl Action {
     }
 }
 
-/// The actions that match, best first; in the order of the table for an empty query.
-#[must_use]
-pub fn actions_for(query: &str) -> Vec<Action> {
-    let mut search = Search::new(query);
-    let mut found: Vec<(u32, Action)> = Action::ALL
-        .iter()
-        .filter_map(|action| Some((action.score(&mut search, query)?, *action)))
-        .collect();
-    found.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
-    found.into_iter().map(|(_, action)| action).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::app::panels::Panel;
+
+    /// The actions that match, best first; in the order of the table for an empty query.
+    fn actions_for(query: &str) -> Vec<Action> {
+        let mut search = Search::new(query);
+        let mut found: Vec<(u32, Action)> = Action::ALL
+            .iter()
+            .filter_map(|action| Some((action.score(&mut search, query)?, *action)))
+            .collect();
+        found.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
+        found.into_iter().map(|(_, action)| action).collect()
+    }
 
     /// The words that people use, and the action that they mean.
     const WORDS: [(&str, Action); 66] = [

@@ -6,9 +6,12 @@
 
 use egui::Key;
 
+use super::info::StepName::{self, Amount, Around, Switched};
 use super::info::{ActionInfo, Group, ONCE, REPEATS, actions};
 use crate::app::chord::Chord::{Command, CommandShift, Either, Lower, Named, Shifted, Text, Upper};
 use crate::app::panels::Panel;
+use crate::base::math::Axis;
+use crate::edit::transform::Sign;
 
 actions! {
     New File ONCE [Command(Key::N)]
@@ -43,7 +46,7 @@ actions! {
         "screenshot render export image png capture snapshot photo";
     PictureOptions File ONCE [Shifted(Key::F12)]
         "Save picture with options..."
-        "Asks for size, samples, a transparent ground and overlays, and saves a picture."
+        "Asks for size, samples, a transparent background and overlays, and saves a picture."
         "screenshot render resolution size transparent alpha large print wallpaper";
     SaveTurntable File ONCE [Command(Key::F12)]
         "Turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
@@ -69,13 +72,16 @@ actions! {
         "revert step back reset";
     Rename Edit ONCE [Named(Key::F2)]
         "Rename" "Renames the selected item."
-        "name title label";
+        "name title label"
+        => Around("Rename", "");
     Duplicate Edit ONCE [Command(Key::D)]
         "Duplicate" "Adds a copy of the selected item and selects it."
-        "copy clone paste";
+        "copy clone paste"
+        => Around("Duplicate", "");
     Delete Edit ONCE [Named(Key::Delete)]
         "Delete" "Deletes the selected item and the spots attached to it."
-        "remove erase trash";
+        "remove erase trash"
+        => Around("Delete", "");
     Split Edit ONCE []
         "Split into parts" "Turns each part of the selected object into an object of its own."
         "separate explode ungroup pieces";
@@ -87,10 +93,12 @@ actions! {
         "none deselect clear single nothing";
     ToggleVisible Edit ONCE []
         "Visible" "Shows or hides the selected object or camera."
-        "hide show eye";
+        "hide show eye"
+        => Switched("Hide", "Show");
     ToggleLocked Edit ONCE [Command(Key::L)]
         "Locked" "Protects the selected item from clicks in the picture, moves and deletion."
-        "lock unlock protect freeze pin fix selectable";
+        "lock unlock protect freeze pin fix selectable"
+        => Switched("Unlock", "Lock");
 
     AddGround Add ONCE []
         "Ground" "Adds ground below all objects, which fades out far away and takes shadows."
@@ -166,10 +174,12 @@ actions! {
         "type amount exact distance angle factor numeric move rotate scale";
     DropToGround Transform ONCE []
         "Drop to the ground" "Moves the selected object until it stands on the ground."
-        "floor land rest snap lowest stand";
+        "floor land rest snap lowest stand"
+        => Around("Drop", "to the ground");
     ResetPlacement Transform ONCE []
         "Reset the placement" "Puts the selected object back to where its file has it."
-        "origin clear transformation identity zero original";
+        "origin clear transformation identity zero original"
+        => Around("Reset the placement of", "");
     AlignX Transform ONCE []
         "Align along X" "Brings the other selected objects in line with this one along X."
         "line up arrange distribute centre center left right";
@@ -181,22 +191,28 @@ actions! {
         "line up arrange distribute centre center depth";
     StepXUp Transform REPEATS [Lower(Key::X)]
         "Step along or about +X" "Transforms the selected item one step along or about +X."
-        "nudge move turn grow x";
+        "nudge move turn grow x"
+        => Amount(Axis::X, Sign::Positive);
     StepXDown Transform REPEATS [Upper(Key::X)]
         "Step along or about -X" "Transforms the selected item one step along or about -X."
-        "nudge move turn grow x";
+        "nudge move turn grow x"
+        => Amount(Axis::X, Sign::Negative);
     StepYUp Transform REPEATS [Lower(Key::Y)]
         "Step along or about +Y" "Transforms the selected item one step along or about +Y."
-        "nudge move turn grow y";
+        "nudge move turn grow y"
+        => Amount(Axis::Y, Sign::Positive);
     StepYDown Transform REPEATS [Upper(Key::Y)]
         "Step along or about -Y" "Transforms the selected item one step along or about -Y."
-        "nudge move turn grow y";
+        "nudge move turn grow y"
+        => Amount(Axis::Y, Sign::Negative);
     StepZUp Transform REPEATS [Lower(Key::Z)]
         "Step along or about +Z" "Transforms the selected item one step along or about +Z."
-        "nudge move turn grow z";
+        "nudge move turn grow z"
+        => Amount(Axis::Z, Sign::Positive);
     StepZDown Transform REPEATS [Upper(Key::Z)]
         "Step along or about -Z" "Transforms the selected item one step along or about -Z."
-        "nudge move turn grow z";
+        "nudge move turn grow z"
+        => Amount(Axis::Z, Sign::Negative);
 
     ToggleEdges Show ONCE [Either(Key::L)]
         "Wireframe" "Draws the edges of polygons instead of filling them."
@@ -342,7 +358,8 @@ actions! {
         "shadow cast ray trace occlusion shade lamp";
     AimAtSelection Light ONCE []
         "Aim at selection" "Turns the selected spot or sun towards the selected object."
-        "point target look track direct";
+        "point target look track direct"
+        => Around("Aim", "at the selection");
     AimByClick Light ONCE []
         "Aim by a click" "Turns the selected spot or sun towards the next point that is clicked."
         "point target look direct";

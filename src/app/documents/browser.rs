@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use egui::text::{CCursor, CCursorRange};
 use egui::{Key, Ui};
 
+use crate::app::widgets::controls::heading;
+
 /// Whether the file is opened or saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mode {
@@ -70,7 +72,7 @@ impl Browser {
     /// Shows the dialog. Returns how it ended, once it has.
     pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<Choice> {
         ui.set_width(ui.available_width().clamp(240.0, 520.0));
-        ui.heading(self.title);
+        heading(ui, self.title);
         let label = ui.label("Path");
         let output = egui::TextEdit::singleline(&mut self.path)
             .desired_width(f32::INFINITY)

@@ -13,7 +13,7 @@ use super::material_dialog::{self, MaterialChoices, MaterialDialog};
 use super::picture_dialog::{self, PictureChoices, PictureDialog};
 use crate::app::shell::Parent;
 use crate::app::tasks::{Outcome, Task};
-use crate::app::widgets::controls::take_focus;
+use crate::app::widgets::controls::{heading, take_focus};
 use crate::io;
 use crate::scene::ObjectId;
 
@@ -359,14 +359,14 @@ impl Dialog {
             }),
             Self::Fault(sentence) => {
                 ui.set_max_width(420.0);
-                ui.heading("Something went wrong");
+                heading(ui, "Something went wrong");
                 ui.label(sentence.as_str());
                 ui.add_space(4.0);
                 close_ui(ui)
             }
             Self::Details(title, lines) => {
                 ui.set_max_width(560.0);
-                ui.heading(title.as_str());
+                heading(ui, title.as_str());
                 egui::ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
                     for line in lines {
                         ui.label(line.as_str());
@@ -387,7 +387,7 @@ fn close_ui(ui: &mut Ui) -> Option<End> {
 
 fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
     ui.set_max_width(420.0);
-    ui.heading("Save the scene?");
+    heading(ui, "Save the scene?");
     ui.label(match after {
         After::Quit => "It has unsaved changes, which are lost unless you save them.",
         After::New | After::NewAncestor => {

@@ -1,11 +1,11 @@
 //! The dialog that asks for the material of a new item, and how its file is read.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use egui::Ui;
 
 use crate::app::widgets::color_picker::swatch;
-use crate::app::widgets::controls::{Switch, take_focus};
+use crate::app::widgets::controls::{Switch, heading, take_focus};
 use crate::app::widgets::spheres::{self, Sphere};
 use crate::app::widgets::text::{file_name, grouped};
 use crate::base::color::Color;
@@ -73,11 +73,11 @@ impl MaterialDialog {
         ui.set_width(ui.available_width().clamp(240.0, 460.0));
         match &self.loaded {
             Some((path, loaded)) => {
-                ui.heading(format!("Material of {}", file_name(path)));
+                heading(ui, format!("Material of {}", file_name(path)));
                 ui.label(summary(loaded));
             }
             None => {
-                ui.heading("Material of the new camera");
+                heading(ui, "Material of the new camera");
             }
         }
         self.materials_ui(ui);
@@ -197,14 +197,14 @@ pub(crate) fn own_or_silver(loaded: &Loaded) -> MaterialChoice {
     }
 }
 
-/// "6,320 faces, 3,644 vertices; 2 things mended".
+/// "6,320 faces, 3,644 vertices; 2 findings"; of one finding its file and what it says.
 pub(crate) fn summary(loaded: &Loaded) -> String {
     let mesh = &loaded.model.mesh;
     let faces = mesh.polygon_count();
     let counts = format!("{} faces, {} vertices", grouped(faces), grouped(mesh.positions().len()));
     match loaded.findings.as_slice() {
         [] => counts,
-        [one] => format!("{counts}; {one}"),
+        [one] => format!("{counts}; {}: {}", file_name(Path::new(&one.file)), one.text),
         more => format!("{counts}; {} findings", more.len()),
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use egui::{DragValue, Key, Ui};
 
 use crate::accuracy::Samples;
-use crate::app::widgets::controls::{Choice, Switch, choices as choices_ui, take_focus};
+use crate::app::widgets::controls::{Choice, Switch, choices as choices_ui, heading, take_focus};
 use crate::base::image::Size;
 use crate::edit::turntable::Turn;
 
@@ -105,7 +105,7 @@ impl PictureDialog {
     pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<End> {
         ui.set_width(ui.available_width().clamp(240.0, 380.0));
         let is_picture = self.choices.purpose == Purpose::Picture;
-        ui.heading(if is_picture { "Save picture" } else { "Save turntable" });
+        heading(ui, if is_picture { "Save picture" } else { "Save turntable" });
         let mut entered = false;
         egui::Grid::new("picture options").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {
             // What the window shows has the window's size and samples.
@@ -130,7 +130,7 @@ impl PictureDialog {
             ui.add_enabled_ui(!choices.overlays, |ui| {
                 let ground = Switch {
                     enabled: !choices.overlays,
-                    ..Switch::new("Transparent ground", choices.transparent)
+                    ..Switch::new("Transparent background", choices.transparent)
                 };
                 let hint = "Leaves the background out; PNG, APNG and WebP have alpha";
                 choices.transparent ^= ground.ui(ui).on_hover_text(hint).clicked();

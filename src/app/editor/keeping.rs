@@ -62,12 +62,17 @@ impl App {
         self.state.helpers = preferences.helpers;
         self.state.watches = preferences.watches;
         self.state.layout = Layout::of_shares(&preferences.shares);
-        Keyboard::set_keymap(ctx, Keymap::of_names(&preferences.keys));
+        let (keymap, changed_keys) = Keymap::of_names(&preferences.keys);
+        Keyboard::set_keymap(ctx, keymap);
         self.state.gizmo = preferences.gizmo;
         let Preferences { refines, refined, budget_ms, .. } = preferences;
         self.state.drawing = DrawingChoices { refines, refined, budget_ms };
         self.state.recent.clone_from(&preferences.recent);
         self.state.notices.extend(said.map(notice));
+        if !changed_keys.is_empty() {
+            let text = "Some of the keys that you have chosen are not as they were.".to_owned();
+            self.state.notices.push(Notice { text, details: changed_keys, offer: None });
+        }
         let offered = Abandoned::all(&folders);
         let now = SystemTime::now();
         self.state.recoverable = offered.iter().map(|work| described(work, now)).collect();

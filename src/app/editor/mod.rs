@@ -31,11 +31,12 @@ use crate::app::documents::loading::{Loading, Queued, Waiting};
 use crate::app::drawing::motion::{Happening, Motion};
 use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::worker::Worker;
+use crate::app::fonts;
 use crate::app::input::keyboard::Keyboard;
 use crate::app::panels::{Panel, arrange, notices, pixel};
 use crate::app::shell::{Editor, Parent};
-use crate::app::state::State;
 use crate::app::state::layout::NARROW;
+use crate::app::state::{Notice, State};
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
 use crate::app::widgets::number::take_bad_text;
@@ -184,6 +185,9 @@ impl App {
         }
         if let Some(text) = take_bad_text(&ctx) {
             self.refuse(format!("\"{text}\" means nothing here: the field keeps its value"));
+        }
+        if let Some(text) = fonts::take_missing(&ctx) {
+            self.state.notices.push(Notice { text, details: Vec::new(), offer: None });
         }
         if Keyboard::take_held_escape(&ctx) {
             self.state.tell(Some("Esc once more leaves the program".to_owned()));

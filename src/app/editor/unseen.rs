@@ -25,8 +25,11 @@ pub(crate) struct Search {
 const SIZE: Size = Size::new(800, 600);
 
 impl App {
-    /// Starts to search for which of these objects are not visible in the current scene.
-    pub(crate) fn look_for_unseen(&mut self, ctx: &Context, ids: Vec<ObjectId>) {
+    /// Starts to search for which of these objects are not visible in the current scene. That one
+    /// has no faces is a finding of its file already.
+    pub(crate) fn look_for_unseen(&mut self, ctx: &Context, mut ids: Vec<ObjectId>) {
+        let has_faces = |object: &Object| object.model.mesh.polygon_count() > 0;
+        ids.retain(|id| self.state.scene.objects.get(*id).is_some_and(has_faces));
         self.search(ctx, ids, None);
     }
 

@@ -61,9 +61,16 @@ impl Action {
     /// The tooltip of whatever stands for the action: its hint and its keys, and why it cannot be
     /// done now.
     pub fn explain(self, response: Response, state: &State) -> Response {
+        self.explain_also(response, state, "")
+    }
+
+    /// As [`Self::explain`], with a further sentence.
+    pub(crate) fn explain_also(self, response: Response, state: &State, also: &str) -> Response {
         let tip = |ui: &mut Ui| {
-            let info = self.info();
-            ui.label(info.hint);
+            ui.label(self.info().hint);
+            if !also.is_empty() {
+                ui.label(also);
+            }
             let keymap = Keyboard::keymap(ui.ctx());
             if !keymap.keys(self).is_empty() {
                 let keys: Vec<String> = keymap.keys(self).iter().map(|key| key.name()).collect();

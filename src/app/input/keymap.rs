@@ -36,10 +36,15 @@ impl Keymap {
     /// Makes this the key of an action, and takes it from all others.
     pub(crate) fn set(&mut self, action: Action, chord: Chord) {
         while let Some(other) = self.clash(action, chord) {
-            let keys = self.keys(other).iter().copied().filter(|it| !it.clashes_with(chord));
-            self.choose(other, keys.collect());
+            self.take(other, chord);
         }
         self.choose(action, vec![chord]);
+    }
+
+    /// Takes a key from an action that has it.
+    fn take(&mut self, from: Action, chord: Chord) {
+        let keys = self.keys(from).iter().copied().filter(|it| !it.clashes_with(chord));
+        self.choose(from, keys.collect());
     }
 
     fn choose(&mut self, action: Action, keys: Vec<Chord>) {
@@ -55,8 +60,7 @@ impl Keymap {
         self.chosen.remove(&place(action));
         for chord in action.info().keys {
             while let Some(other) = self.clash(action, *chord) {
-                let keys = self.keys(other).iter().copied().filter(|it| !it.clashes_with(*chord));
-                self.choose(other, keys.collect());
+                self.take(other, *chord);
             }
         }
     }
@@ -70,15 +74,42 @@ impl Keymap {
         self.chosen.iter().filter_map(named).collect()
     }
 
-    /// The keys that these names say; what is not understood is left out.
-    pub(crate) fn of_names(names: &BTreeMap<String, Vec<String>>) -> Self {
-        let mut keymap = Self::default();
-        for (action, keys) in names {
-            let Some(action) = Action::named(action) else { continue };
-            let keys = keys.iter().filter_map(|key| chord_named(key)).collect();
-            keymap.choose(action, keys);
+    /// The keys that these names say; and in sentences, what of them this version does not know or
+    /// gives to other actions. An action of whose keys none is known keeps those of the table.
+    pub(crate) fn of_names(names: &BTreeMap<String, Vec<String>>) -> (Self, Vec<String>) {
+        let (mut keymap, mut said) = (Self::default(), Vec::new());
+        for (name, keys) in names {
+            let Some(action) = Action::named(name) else {
+                said.push(format!("This version has no action {name:?}."));
+                continue;
+            };
+            let (known, unknown): (Vec<_>, Vec<_>) =
+                keys.iter().map(|key| chord_named(key).ok_or(key)).partition(Result::is_ok);
+            for key in unknown.into_iter().filter_map(Result::err) {
+                said.push(format!("{key:?} is no key that \"{}\" can have.", action.info().label));
+            }
+            if keys.is_empty() || !known.is_empty() {
+                keymap.choose(action, known.into_iter().flatten().collect());
+            }
         }
-        keymap
+        keymap.settle(&mut said);
+        (keymap, said)
+    }
+
+    /// Takes the keys that the user has chosen from all other actions, as an older version may have
+    /// let them choose a key that the table has given to another action since.
+    fn settle(&mut self, said: &mut Vec<String>) {
+        for action in Action::ALL.iter().copied() {
+            let chosen = self.chosen.get(&place(action)).cloned();
+            for chord in chosen.into_iter().flatten() {
+                while let Some(other) = self.clash(action, chord) {
+                    self.take(other, chord);
+                    let [own, other] = [action, other].map(|action| action.info().label);
+                    let key = chord.name();
+                    said.push(format!("{key} is your key of \"{own}\", not that of \"{other}\"."));
+                }
+            }
+        }
     }
 }
 
@@ -128,6 +159,7 @@ pub(crate) fn chord_of(key: Key, modifiers: egui::Modifiers) -> Option<Chord> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::panels::Panel;
 
     #[test]
     fn every_key_of_the_table_comes_back_from_its_name() {
@@ -148,8 +180,7 @@ mod tests {
         assert_eq!(keymap.keys(Action::Rename), [key]);
         assert!(keymap.keys(Action::StepXUp).is_empty());
         assert_eq!(keymap.clash(Action::Rename, key), None);
-        let kept = Keymap::of_names(&keymap.names());
-        assert_eq!(kept, keymap);
+        assert_eq!(Keymap::of_names(&keymap.names()), (keymap.clone(), Vec::new()));
         keymap.reset(Action::StepXUp);
         assert_eq!(keymap.keys(Action::StepXUp), [key]);
         assert!(keymap.keys(Action::Rename).is_empty(), "no key is pressed for two actions");
@@ -157,11 +188,54 @@ mod tests {
         assert_eq!(keymap, Keymap::default());
     }
 
+    fn read(names: &[(&str, &str)]) -> (Keymap, Vec<String>) {
+        let keys = |keys: &str| keys.split_whitespace().map(str::to_owned).collect();
+        let names = names.iter().map(|(action, names)| ((*action).to_owned(), keys(names)));
+        Keymap::of_names(&names.collect())
+    }
+
     #[test]
-    fn names_that_mean_nothing_are_left_out() {
-        let names = [("Rename", "Hyper+Q"), ("Nothing", "x")];
-        let names = names.map(|(action, key)| (action.to_owned(), vec![key.to_owned()]));
-        let keymap = Keymap::of_names(&names.into());
-        assert!(keymap.keys(Action::Rename).is_empty() && keymap.names().len() == 1);
+    fn names_that_mean_nothing_are_said_and_change_nothing() {
+        let (keymap, said) =
+            read(&[("Rename", "Hyper+Q"), ("Undo", "k Hyper+Z"), ("Nothing", "x")]);
+        assert_eq!(keymap.keys(Action::Rename), Action::Rename.info().keys);
+        assert_eq!(keymap.keys(Action::Undo), [Chord::Lower(Key::K)]);
+        let expected = [
+            "This version has no action \"Nothing\".",
+            "\"Hyper+Q\" is no key that \"Rename\" can have.",
+            "\"Hyper+Z\" is no key that \"Undo\" can have.",
+        ];
+        assert_eq!(said, expected);
+    }
+
+    #[test]
+    fn the_names_that_actions_had_in_older_versions_are_known() {
+        let older = [
+            ("CheatSheet", Panel::CheatSheet),
+            ("ToggleProperties", Panel::Properties),
+            ("ToggleOutline", Panel::Outline),
+            ("ToggleLaboratory", Panel::Laboratory),
+            ("TogglePlan", Panel::Plan),
+            ("ToggleStatistics", Panel::Statistics),
+            ("ToggleViewPanel", Panel::View),
+        ];
+        for (name, panel) in older {
+            let (keymap, said) = read(&[(name, "k")]);
+            assert_eq!(keymap.keys(Action::Panel(panel)), [Chord::Lower(Key::K)], "{name}");
+            assert!(said.is_empty(), "{said:?}");
+        }
+    }
+
+    #[test]
+    fn a_key_that_a_newer_version_uses_stays_the_users() {
+        let (keymap, said) = read(&[("Duplicate", "w")]);
+        assert_eq!(keymap.keys(Action::Duplicate), [Chord::Lower(Key::W)]);
+        assert!(keymap.keys(Action::WhyUnseen).is_empty(), "no key is pressed for two actions");
+        assert_eq!(said, ["w is your key of \"Duplicate\", not that of \"Why can't I see it?\"."]);
+        assert_eq!(Keymap::of_names(&keymap.names()), (keymap, Vec::new()), "it is said once");
+        // Of two choices by hand, the first action of the table has the key.
+        let (keymap, said) = read(&[("Redo", "k"), ("Undo", "k x")]);
+        assert!(keymap.keys(Action::Redo).is_empty() && keymap.keys(Action::StepXUp).is_empty());
+        assert_eq!((keymap.keys(Action::Undo).len(), said.len()), (2, 2));
     }
 }

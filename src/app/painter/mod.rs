@@ -34,7 +34,7 @@ const REMEMBERED: usize = 4;
 
 /// What to paint.
 #[derive(Debug)]
-pub(crate) struct Frame {
+pub(crate) struct WindowFrame {
     /// egui's meshes, from the lowest to the uppermost.
     pub(crate) primitives: Vec<ClippedPrimitive>,
     /// Pixels per point.
@@ -56,7 +56,7 @@ pub(crate) struct Canvas<'a> {
 
 /// Paints frame after frame.
 #[derive(Debug)]
-pub(crate) struct Painter {
+pub(crate) struct WindowPainter {
     pool: rayon::ThreadPool,
     textures: Textures,
     layers: Vec<Layer>,
@@ -91,7 +91,7 @@ struct Band {
     changes: VecDeque<Range<i32>>,
 }
 
-impl Painter {
+impl WindowPainter {
     /// A painter that has painted nothing.
     ///
     /// # Errors
@@ -110,7 +110,7 @@ impl Painter {
     pub(crate) fn paint(
         &mut self,
         canvas: &mut Canvas<'_>,
-        frame: Frame,
+        frame: WindowFrame,
         textures: &mut TexturesDelta,
     ) -> Vec<PixelBox> {
         self.textures.set(textures);

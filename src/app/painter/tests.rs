@@ -3,7 +3,7 @@ use std::sync::Arc;
 use egui::epaint::{ClippedPrimitive, ImageDelta, Mesh, Primitive, Vertex};
 use egui::{Color32, ColorImage, Pos2, Rect, TextureId, TextureOptions, TexturesDelta, pos2};
 
-use super::{Canvas, Frame, Painter};
+use super::{Canvas, WindowFrame, WindowPainter};
 use crate::base::rng::Rng;
 use crate::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle};
 
@@ -15,14 +15,14 @@ const PICTURE: TextureId = TextureId::Managed(1);
 
 /// A painter with textures, and the pixels that it paints.
 struct Desk {
-    painter: Painter,
+    painter: WindowPainter,
     pixels: Vec<u32>,
     age: usize,
 }
 
 impl Desk {
     fn new() -> Self {
-        Self { painter: Painter::new().unwrap(), pixels: vec![0; WIDTH * HEIGHT], age: 0 }
+        Self { painter: WindowPainter::new().unwrap(), pixels: vec![0; WIDTH * HEIGHT], age: 0 }
     }
 
     fn paint(&mut self, meshes: &[(Rect, Mesh)], textures: &mut TexturesDelta) -> Vec<PixelBox> {
@@ -31,7 +31,7 @@ impl Desk {
             primitive: Primitive::Mesh(mesh.clone()),
         };
         let primitives = meshes.iter().map(primitive).collect();
-        let frame = Frame { primitives, scale: 1.0, ground: GROUND };
+        let frame = WindowFrame { primitives, scale: 1.0, ground: GROUND };
         let mut canvas = Canvas { pixels: &mut self.pixels, size: [WIDTH, HEIGHT], age: self.age };
         self.age = 1;
         self.painter.paint(&mut canvas, frame, textures)

@@ -1,8 +1,8 @@
-//! The menus, made from the table of actions.
+//! The menus, made from the table of actions, and the buttons beside them.
 
 use egui::{Atom, IdSalt, MenuBar, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
-use super::history;
+use super::{history, undo_buttons};
 use crate::accuracy::AXES;
 use crate::app::actions::{Action, Group, LabRequest, Request};
 use crate::app::panels::Panel;
@@ -98,6 +98,11 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             ui.separator();
             submenu(ui, "Lessons", |ui| lessons_ui(ui, requests));
         });
+        ui.add_space(theme::GAP);
+        // In a very narrow window the menus have all the room.
+        if ui.available_width() >= 2.0 * theme::ROW + theme::GAP {
+            undo_buttons::show(ui, state, requests);
+        }
     });
 }
 

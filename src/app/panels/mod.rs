@@ -19,6 +19,7 @@ mod properties;
 mod splitters;
 mod statistics;
 mod status_line;
+mod undo_buttons;
 mod view_switches;
 
 use egui::Key;

@@ -204,11 +204,14 @@ fn materials(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
     let Some(ItemId::Object(id)) = state.selected() else { return };
     let Some(object) = state.scene.objects.get(id) else { return };
     let presets = PresetId::all().map(|id| (id.get().name, MaterialChoice::Preset(id)));
-    for (name, to) in presets.chain([("the file's own", MaterialChoice::File)]) {
+    let own = MaterialChoice::Own(object.part_look(0).material);
+    let is_own = matches!(object.material, MaterialChoice::Own(_));
+    let others = [("the file's own", MaterialChoice::File), ("your own", own)];
+    for (name, to) in presets.chain(others) {
         let label = format!("Material: {name}");
-        let texts = Texts { label: &label, words: "surface shader look", hint: "" };
+        let texts = Texts { label: &label, words: "surface shader look custom", hint: "" };
         let Some(score) = search.score(texts) else { continue };
-        let on = object.material == to;
+        let on = object.material == to || (is_own && matches!(to, MaterialChoice::Own(_)));
         let hint = "Gives it to the selected object.".to_owned();
         let what = format!("Material of {}", state.acted_on_name());
         let request = of_objects(state, id, what, |object| object.material = to.clone());

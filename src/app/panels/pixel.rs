@@ -9,7 +9,8 @@ use glam::DVec3;
 use crate::app::actions::Request;
 use crate::app::state::{ExplainedPixel, State};
 use crate::app::theme;
-use crate::app::widgets::controls;
+use crate::app::widgets::controls::{self, icon_button};
+use crate::app::widgets::icons::Icon;
 use crate::base::math;
 use crate::lab::pixel;
 use crate::render::{PixelColor, SurfacePoint, Term};
@@ -23,24 +24,28 @@ const VECTOR: f32 = 72.0;
 /// The height of the title, the buttons, and what is around them.
 const BUTTONS: f32 = 76.0;
 
+/// The height of the axes above it.
+const AXES: f32 = 90.0;
+
 /// Shows the window; its requests are added to `requests`.
 pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut Vec<Request>) {
     let Some(pixel) = &state.explained else { return };
     let mut open = true;
     let [x, y] = pixel.at;
-    let place = pos2(picture.right() - 372.0, picture.top() + 90.0).max(picture.min);
+    let place = pos2(picture.right() - 372.0, picture.top() + AXES).max(picture.min);
+    let most = (picture.height() - AXES - 28.0).max(160.0);
     Window::new(format!("Pixel {x}, {y}"))
         .id(egui::Id::unique("explained pixel"))
         .open(&mut open)
         .default_pos(place)
         .default_width(360.0)
-        .max_height((picture.height() - 60.0).max(160.0))
+        .max_height(most)
+        .constrain_to(picture)
         .collapsible(false)
         .show(ctx, |ui| match &pixel.explained {
             Some(explained) => {
                 // The buttons stay in sight.
-                let most = (picture.height() - 60.0).max(160.0) - BUTTONS;
-                ScrollArea::vertical().max_height(most).show(ui, |ui| {
+                ScrollArea::vertical().max_height(most - BUTTONS).show(ui, |ui| {
                     explained_ui(ui, state, pixel, explained);
                 });
                 ui.separator();
@@ -95,9 +100,14 @@ fn buttons_ui(
         if ui.selectable_label(state.explaining, "Another pixel").clicked() {
             requests.push(Request::Do(crate::app::actions::Action::ExplainPixel));
         }
-        for (name, by) in [("<", [-1, 0]), (">", [1, 0]), ("^", [0, -1]), ("v", [0, 1])] {
+        for (icon, name, by) in [
+            (Icon::Left, "The pixel to the left", [-1, 0]),
+            (Icon::Right, "The pixel to the right", [1, 0]),
+            (Icon::Up, "The pixel above", [0, -1]),
+            (Icon::Down, "The pixel below", [0, 1]),
+        ] {
             let next = |at: usize, by: isize| at.checked_add_signed(by);
-            let response = ui.small_button(name).on_hover_text("The pixel beside it");
+            let response = icon_button(ui, icon, name, true).on_hover_text(name);
             if let ([Some(x), Some(y)], true) =
                 ([next(pixel.at[0], by[0]), next(pixel.at[1], by[1])], response.clicked())
             {

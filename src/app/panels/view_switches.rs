@@ -216,7 +216,7 @@ fn slot_ui(
     ui.painter().galley_with_override_text_color(at, digit, color);
     controls::focus_ring(ui, rect, &response);
     let name = light.map_or("No light has this key", |(_, light)| light.name.as_str());
-    let response = action.explain(response, state).on_hover_text(name);
+    let response = action.explain_also(response, state, name);
     if enabled && response.clicked() {
         requests.push(action.into());
     }

@@ -8,7 +8,7 @@ use softbuffer::SoftBufferError;
 use winit::window::Window;
 
 use super::StartError;
-use crate::app::painter::{Canvas, Frame, Painter};
+use crate::app::painter::{Canvas, WindowFrame, WindowPainter};
 use crate::render::screen::coverage::PixelBox;
 
 type Shared = Arc<Window>;
@@ -17,7 +17,7 @@ type Shared = Arc<Window>;
 pub(super) struct Surface {
     context: softbuffer::Context<Shared>,
     surface: softbuffer::Surface<Shared, Shared>,
-    painter: Painter,
+    painter: WindowPainter,
     /// Whether the window has lost what it showed, so that all of it is shown again.
     exposed: bool,
     /// Whether the memory is not what it was after the last frame.
@@ -30,7 +30,7 @@ impl Surface {
             softbuffer::Context::new(Arc::clone(window)).map_err(|error| other(&error))?;
         let surface = softbuffer::Surface::new(&context, Arc::clone(window));
         let surface = surface.map_err(|error| other(&error))?;
-        let painter = Painter::new().map_err(|error| StartError::Other(error.to_string()))?;
+        let painter = WindowPainter::new().map_err(|error| StartError::Other(error.to_string()))?;
         Ok(Self { context, surface, painter, exposed: true, lost: true })
     }
 
@@ -43,7 +43,7 @@ impl Surface {
     pub(super) fn show(
         &mut self,
         size: [u32; 2],
-        frame: Frame,
+        frame: WindowFrame,
         textures: &mut TexturesDelta,
         copy: bool,
     ) -> Result<Option<ColorImage>, StartError> {
@@ -56,7 +56,7 @@ impl Surface {
     fn try_show(
         &mut self,
         [width, height]: [NonZeroU32; 2],
-        frame: Frame,
+        frame: WindowFrame,
         textures: &mut TexturesDelta,
         copy: bool,
     ) -> Result<Option<ColorImage>, SoftBufferError> {

@@ -14,7 +14,7 @@ use winit::raw_window_handle::{HasDisplayHandle, RawDisplayHandle};
 
 use super::surface::Surface;
 use super::{Editor, Make, StartError, display_error};
-use crate::app::painter::Frame;
+use crate::app::painter::WindowFrame;
 
 /// Frames follow each other no faster.
 const FASTEST: Duration = Duration::from_micros(1_000_000 / 144);
@@ -272,7 +272,7 @@ impl Window {
         if (show && self.is_seen()) || wants_copy {
             let primitives = self.ctx.tessellate(shapes, pixels_per_point);
             let ground = self.ctx.global_style().visuals.panel_fill;
-            let frame = Frame { primitives, scale: pixels_per_point, ground };
+            let frame = WindowFrame { primitives, scale: pixels_per_point, ground };
             let size = self.size.into();
             copy = self.surface.show(size, frame, &mut self.textures, wants_copy)?;
             if !std::mem::replace(&mut self.has_been_shown, true) {

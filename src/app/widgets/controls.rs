@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use egui::collapsing_header::CollapsingState;
 use egui::{
-    Color32, Galley, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle,
-    TextWrapMode, Ui, WidgetInfo, WidgetText, pos2, vec2,
+    Color32, Galley, Id, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke, StrokeKind,
+    TextStyle, TextWrapMode, Ui, WidgetInfo, WidgetText, pos2, vec2,
 };
 
 use super::icons::Icon;
@@ -58,6 +58,12 @@ pub(crate) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl Fn
         ui.add_space(theme::GAP);
     });
     regions::follow_focus(ui);
+}
+
+/// The name of a dialog, above what stands in it.
+pub(crate) fn heading(ui: &mut Ui, name: impl Into<RichText>) {
+    ui.heading(name);
+    ui.add_space(theme::GAP);
 }
 
 /// Shows what needs `least` points of width; in less it is scrolled sideways.

@@ -36,11 +36,17 @@ pub(crate) enum Icon {
     Pen,
     /// Delete.
     Bin,
+    /// Undo.
+    Undo,
+    /// Redo.
+    Redo,
     /// Up.
     Up,
     /// Down.
     Down,
-    /// Folded.
+    /// To the left.
+    Left,
+    /// To the right, or folded.
     Right,
     /// On, or done.
     Tick,
@@ -93,8 +99,11 @@ impl Icon {
             Self::Copy => icons::ICON_CONTENT_COPY,
             Self::Pen => icons::ICON_EDIT,
             Self::Bin => icons::ICON_DELETE,
+            Self::Undo => icons::ICON_UNDO,
+            Self::Redo => icons::ICON_REDO,
             Self::Up => icons::ICON_KEYBOARD_ARROW_UP,
             Self::Down => icons::ICON_KEYBOARD_ARROW_DOWN,
+            Self::Left => icons::ICON_KEYBOARD_ARROW_LEFT,
             Self::Right => icons::ICON_KEYBOARD_ARROW_RIGHT,
             Self::Tick => icons::ICON_CHECK,
             Self::Warning => icons::ICON_WARNING,

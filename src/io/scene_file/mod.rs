@@ -5,6 +5,7 @@
 //! with both can be moved. The view and the settings are saved with the scene; the history is not.
 
 mod fields;
+mod files;
 mod format;
 mod light;
 mod open;
@@ -13,23 +14,20 @@ mod save;
 mod view;
 mod words;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use self::format::{FileModel, FileScene, FileTexture, Head, VERSION};
+use self::files::{Files, StandIns};
+use self::format::{FileScene, Head, VERSION};
 use super::error::{LoadError, shown};
 use super::examples;
 use super::findings::{Finding, Findings, joined};
-use super::obj::load_with;
 use super::progress::Progress;
 use super::read::{MOST_WORDS, read, utf_8};
 use super::replace::{SaveError, Worth, replace};
-use super::texture::Pictures;
 use super::window_state::WindowState;
 use crate::accuracy::Settings;
-use crate::base::Shared;
-use crate::base::image::{Picture, Size};
-use crate::scene::{Crease, LoadOptions, Model, Scale, Scene, Texture, UpAxis, View, Winding};
+use crate::scene::{Scene, View};
 
 /// The ending of the names of scene files, without the dot.
 pub const SCENE_ENDING: &str = "marraztu";
@@ -234,181 +232,4 @@ fn file_scene(text: &str, name: &str) -> Result<FileScene, SceneFileError> {
         )
     };
     Err(SceneFileError::Line { file: name.to_owned(), line, column, reason })
-}
-
-/// The identity of a model in a scene file: its name or path, and how it is read. The crease angle
-/// comes last, so that files that differ only in it are neighbours.
-type ModelKey = (String, Option<(UpAxis, u64, Winding, u64)>);
-
-fn key(model: &FileModel) -> ModelKey {
-    match model {
-        FileModel::Own(name) => (name.clone(), None),
-        FileModel::File { path, up, scale, winding, crease } => {
-            (path.clone(), Some((*up, scale.to_bits(), *winding, crease.to_bits())))
-        }
-    }
-}
-
-/// The models and textures that a scene file names, loaded.
-struct Files<'a> {
-    folder: PathBuf,
-    relocated: &'a BTreeMap<PathBuf, PathBuf>,
-    models: BTreeMap<ModelKey, Shared<Model>>,
-    textures: BTreeMap<String, Shared<Texture>>,
-    /// Those of models and of textures: one file may be both.
-    pictures: Pictures,
-    findings: Vec<Finding>,
-}
-
-impl<'a> Files<'a> {
-    fn new(folder: PathBuf, relocated: &'a BTreeMap<PathBuf, PathBuf>) -> Self {
-        let (models, textures) = (BTreeMap::new(), BTreeMap::new());
-        let pictures = Pictures::default();
-        Self { folder, relocated, models, textures, pictures, findings: Vec::new() }
-    }
-
-    /// The path of a file that the scene file names.
-    fn place(&self, path: &str) -> PathBuf {
-        if examples::is_example(Path::new(path)) {
-            return PathBuf::from(path);
-        }
-        let place = paths::plain(&self.folder.join(path));
-        self.relocated.get(&place).cloned().unwrap_or(place)
-    }
-
-    fn load(
-        &mut self,
-        file: &FileScene,
-        name: &str,
-        progress: &Progress,
-    ) -> Result<(), SceneFileError> {
-        let of_objects = file.objects.iter().map(|object| &object.model);
-        let all = of_objects.chain(file.cameras.iter().map(|camera| &camera.model));
-        let mut keys = BTreeSet::new();
-        let models: Vec<&FileModel> = all.filter(|model| keys.insert(key(model))).collect();
-        let textures: BTreeSet<&str> = file
-            .objects
-            .iter()
-            .filter_map(|object| object.texture.as_ref())
-            .map(|texture| texture.path.as_str())
-            .collect();
-        self.refuse_missing(&models, &textures, name)?;
-        for (i, model) in models.iter().enumerate() {
-            let (from, to) = (share(i, models.len()), share(i + 1, models.len()));
-            let loaded = self.load_model(model, name, &progress.part(from, to))?;
-            self.models.insert(key(model), loaded);
-        }
-        for path in textures {
-            let texture = match super::own_texture(path) {
-                Some(own) => own,
-                None => {
-                    let place = self.place(path);
-                    match examples::content(&place) {
-                        Some(content) => examples::texture(&place, content)?,
-                        None => self.pictures.texture(&place, &mut self.findings)?,
-                    }
-                }
-            };
-            self.textures.insert(path.to_owned(), texture);
-        }
-        Ok(())
-    }
-
-    fn refuse_missing(
-        &self,
-        models: &[&FileModel],
-        textures: &BTreeSet<&str>,
-        name: &str,
-    ) -> Result<(), SceneFileError> {
-        let of_models = models.iter().filter_map(|model| match model {
-            FileModel::File { path, .. } => Some(path.as_str()),
-            FileModel::Own(_) => None,
-        });
-        let mut missing: Vec<PathBuf> = of_models
-            .chain(textures.iter().copied().filter(|path| super::own_texture(path).is_none()))
-            .map(|path| self.place(path))
-            .filter(|place| examples::content(place).is_none() && !place.exists())
-            .collect();
-        missing.sort();
-        missing.dedup();
-        if missing.is_empty() {
-            return Ok(());
-        }
-        Err(SceneFileError::Missing { file: name.to_owned(), missing })
-    }
-
-    /// The same file, loaded with another crease angle: it is not read twice.
-    fn with_other_crease(&self, model: &FileModel) -> Option<&Shared<Model>> {
-        let (path, options) = key(model);
-        let (up, scale, winding, _) = options?;
-        let with = |crease| (path.clone(), Some((up, scale, winding, crease)));
-        let mut others = self.models.range(with(0)..=with(u64::MAX));
-        others.next().map(|(_, loaded)| loaded)
-    }
-
-    fn load_model(
-        &mut self,
-        model: &FileModel,
-        name: &str,
-        progress: &Progress,
-    ) -> Result<Shared<Model>, SceneFileError> {
-        let fail = |reason: String| SceneFileError::File { file: name.to_owned(), reason };
-        match model {
-            FileModel::Own(own) => super::own_model(own)
-                .ok_or_else(|| fail(format!("there is no built-in model \"{own}\""))),
-            FileModel::File { path, up, scale, winding, crease } => {
-                let scale = Scale::new(*scale)
-                    .ok_or_else(|| fail(format!("the scale of {path} has to be above 0")))?;
-                let crease = Crease::new(*crease).ok_or_else(|| {
-                    fail(format!("the crease angle of {path} has to be from 0 to 180 degrees"))
-                })?;
-                if let Some(other) = self.with_other_crease(model) {
-                    return Ok(Shared::new(other.with_crease(crease)));
-                }
-                let options = LoadOptions { up: *up, scale, winding: *winding, crease };
-                let place = self.place(path);
-                let loaded = match examples::content(&place) {
-                    Some(content) => examples::model(&place, content, &options, progress)?,
-                    None => load_with(&place, &options, &mut self.pictures, progress)?,
-                };
-                self.findings.extend(loaded.findings);
-                Ok(Shared::new(loaded.model))
-            }
-        }
-    }
-}
-
-#[expect(clippy::cast_precision_loss, reason = "for the eye")]
-fn share(i: usize, of: usize) -> f64 {
-    i as f64 / of.max(1) as f64
-}
-
-impl open::Needs for Files<'_> {
-    fn model(&self, model: &FileModel) -> Shared<Model> {
-        self.models.get(&key(model)).expect("every model of the file was loaded").clone()
-    }
-
-    fn texture(&self, texture: &FileTexture) -> Shared<Texture> {
-        let plain = self.textures.get(&texture.path).expect("every texture of the file was loaded");
-        let FileTexture { wrap, offset, scale, .. } = *texture;
-        if (plain.wrap, plain.offset, plain.scale) == (wrap, offset, scale) {
-            return plain.clone();
-        }
-        Shared::new(Texture { wrap, offset, scale, ..Texture::clone(plain) })
-    }
-}
-
-/// Replaces models and textures if only the scene file itself is checked.
-struct StandIns;
-
-impl open::Needs for StandIns {
-    fn model(&self, _: &FileModel) -> Shared<Model> {
-        super::cam_model()
-    }
-
-    fn texture(&self, texture: &FileTexture) -> Shared<Texture> {
-        let FileTexture { wrap, offset, scale, .. } = *texture;
-        let picture = Picture::filled(Size::new(1, 1), [255; 4]).into();
-        Shared::new(Texture { source: PathBuf::new(), picture, wrap, offset, scale })
-    }
 }

@@ -36,7 +36,7 @@ impl Planner<'_> {
         let spheres = scene.objects.spheres();
         let outside = self.culls_spheres(into).then(|| self.observer.spheres_outside());
         for (i, place) in spheres.places.iter().enumerate() {
-            if outside.as_ref().is_some_and(|planes| planes.misses(&spheres, i)) {
+            if outside.as_ref().is_some_and(|planes| planes.misses(spheres, i)) {
                 continue;
             }
             let (id, object) = scene.objects.at(*place as usize).expect("a sphere for each object");

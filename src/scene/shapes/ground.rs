@@ -14,7 +14,7 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 
-use super::{AROUND, Builder, turn};
+use super::solids::{AROUND, Builder, turn};
 use crate::base::Shared;
 use crate::base::color::byte;
 use crate::base::image::{Picture, Size};

@@ -99,9 +99,12 @@ fn right_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         Choice::new("Laboratory", "Table", side == Side::Table, "Every choice with its figures"),
         Choice::new("Laboratory", "Lessons", side == Side::Lessons, "What each axis teaches"),
     ];
-    if let Some(clicked) = choices(ui, &all) {
-        requests.push(Request::Lab(LabRequest::Side([Side::Table, Side::Lessons][clicked])));
-    }
+    ui.horizontal(|ui| {
+        ui.set_width(ui.available_width() - f32::from(theme::MARGIN));
+        if let Some(clicked) = choices(ui, &all) {
+            requests.push(Request::Lab(LabRequest::Side([Side::Table, Side::Lessons][clicked])));
+        }
+    });
     match side {
         Side::Table => table::show(ui, state, requests),
         Side::Lessons => lessons::show(ui, state, requests),

@@ -40,7 +40,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
             });
         }
         Anchor::Position(position) => {
-            section(ui, "Place", true, |ui| {
+            section(ui, "Position", true, |ui| {
                 shown.position_ui(ui, requests, *position.now());
                 if let Some(orbit) = light.kind.orbit() {
                     shown.orbit_ui(ui, requests, *orbit);
@@ -48,7 +48,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
             });
         }
         Anchor::Owner(owner) => {
-            section(ui, "Place", true, |ui| {
+            section(ui, "Position", true, |ui| {
                 shown.owner_ui(ui, requests, owner);
                 if let Some(aim) = owner.fixed() {
                     shown.position_ui(ui, requests, aim.now().position);

@@ -19,7 +19,7 @@ const LETTERS: [&str; 3] = ["X", "Y", "Z"];
 
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: ObjectId) {
     let Some(object) = state.scene.objects.get(id) else { return };
-    section(ui, "Placement", true, |ui| placement_ui(ui, state, requests, id, object));
+    section(ui, "Transform", true, |ui| placement_ui(ui, state, requests, id, object));
     section(ui, "Material", true, |ui| {
         let label = format!("Material of {}", object.name);
         let chosen = material::choice_ui(ui, &object.material, Some(object));

@@ -7,7 +7,7 @@ use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::widgets::number::set_mixed;
 use crate::edit::{placement, several as together};
-use crate::scene::{Attenuation, ItemId, Light, LightKind, Scene, SpotOwner};
+use crate::scene::{Anchor, Attenuation, ItemId, Light, Scene};
 
 /// Says how many items a change sets, and in which properties they differ. Gives those of the
 /// selected one's kind.
@@ -121,21 +121,22 @@ impl Fields {
         {
             self.number(name, value);
         }
-        match &light.kind {
-            LightKind::Ambient => {}
-            LightKind::Sun { direction } => self.vector("Direction", *direction.now()),
-            LightKind::Bulb { position, orbit } => {
-                self.vector("Position", *position.now());
-                self.number("Circling speed", orbit.speed);
-            }
-            LightKind::Spot { owner, half_aperture, exponent } => {
-                self.number("Half-aperture", *half_aperture);
-                self.number("Concentration", *exponent);
-                if let SpotOwner::Fixed(aim) = owner {
+        for (row, now) in light.kind.numbers() {
+            self.number(row.name, now);
+        }
+        match light.kind.anchor() {
+            Anchor::Everywhere => {}
+            Anchor::Direction(direction) => self.vector("Direction", *direction.now()),
+            Anchor::Position(position) => self.vector("Position", *position.now()),
+            Anchor::Owner(owner) => {
+                if let Some(aim) = owner.fixed() {
                     self.vector("Position", aim.now().position);
                     self.vector("Direction", aim.now().direction);
                 }
             }
+        }
+        if let Some(orbit) = light.kind.orbit() {
+            self.number("Circling speed", orbit.speed);
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::app::state::State;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Choice, choices, row};
 use crate::app::widgets::number::Number;
+use crate::app::widgets::text::file_name;
 use crate::edit::{Gesture, items};
 use crate::scene::{FileMaterial, MapKind, Object, ObjectId, Surface};
 
@@ -56,10 +57,7 @@ fn texture_ui(
     id: ObjectId,
     object: &Object,
 ) {
-    let by_hand = object.texture.as_ref().map(|texture| {
-        let name = texture.source.file_name().unwrap_or(texture.source.as_os_str());
-        name.to_string_lossy().into_owned()
-    });
+    let by_hand = object.texture.as_ref().map(|texture| file_name(&texture.source));
     let of_file = object.model.materials.iter().any(|material| material.texture.is_some());
     let mapped = !object.model.mesh.uvs().is_empty();
     let text = by_hand.clone().unwrap_or_else(|| match (of_file, mapped) {
@@ -94,9 +92,11 @@ fn maps_ui(ui: &mut Ui, object: &Object) {
         let names: Vec<String> = textures
             .iter()
             .map(|texture| {
-                let name = texture.source.file_name().unwrap_or(texture.source.as_os_str());
+                let name = file_name(&texture.source);
+                // The program's own pictures are marked so in scene files.
+                let name = name.strip_prefix("own:").unwrap_or(&name);
                 let size = texture.picture.size();
-                format!("{} ({} x {})", name.to_string_lossy(), size.width, size.height)
+                format!("{name} ({} x {})", size.width, size.height)
             })
             .collect();
         if let Some(first) = names.first() {

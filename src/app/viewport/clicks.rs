@@ -1,0 +1,117 @@
+//! What a click into the picture asks for, once it is known what it has hit.
+
+use egui::Context;
+
+use super::marks::Projection;
+use super::over::Over;
+use super::{Menu, Purpose, Viewport, menu, picking};
+use crate::app::actions::{Action, Also, Request};
+use crate::app::drawing::worker::Pick;
+use crate::app::state::State;
+use crate::base::image::Size;
+use crate::edit::Refusal;
+use crate::render::Hit;
+use crate::scene::ItemId;
+
+impl Viewport {
+    /// Takes the answer to a pick; adds the requests that follow from it.
+    pub(super) fn answer(
+        &mut self,
+        ctx: &Context,
+        state: &State,
+        pick: Pick<Purpose>,
+        hit: Option<Hit>,
+        requests: &mut Vec<Request>,
+    ) {
+        let item = hit.map(|hit| hit.item);
+        match pick.purpose {
+            Purpose::Hover => {
+                if let Some((at, seen)) = &mut self.hovered
+                    && *at == pick.at
+                {
+                    *seen = hit;
+                }
+            }
+            Purpose::Select => requests.extend(hit.map(|hit| self.selecting(state, pick.at, hit))),
+            Purpose::SelectAlso => {
+                let also = |item| Request::SelectAlso(vec![item], Also::Toggle);
+                let found = item.map(|item| self.unlocked(state, pick.at, item));
+                requests.extend(found.map(|item| item.map_or_else(Request::Refuse, also)));
+            }
+            // It is answered without a picture.
+            Purpose::Box(_) => {}
+            Purpose::Aim(at) => requests.push(match (hit, self.place) {
+                (Some(hit), Some((rect, size))) => {
+                    match Projection::new(state, rect, size).world(at, hit.depth) {
+                        Some(point) => Request::AimAt(point),
+                        None => Request::Refuse("there is no point here".to_owned()),
+                    }
+                }
+                _ => Request::Refuse("nothing is here to aim at: click on an object".to_owned()),
+            }),
+            // What lies under a light's mark is meant.
+            Purpose::Frame => match self.framed(state, pick.at, item) {
+                Some(item) => {
+                    requests.extend([Request::Select(item), Request::Do(Action::FrameSelection)]);
+                }
+                None => requests.push(Request::Do(Action::FrameAll)),
+            },
+            Purpose::Menu(at) => {
+                requests.extend(item.map(Request::Select));
+                self.menu = Some(Menu { at, item });
+                egui::Popup::open_id(ctx, menu::id());
+            }
+        }
+    }
+
+    /// What a double click frames: the object there, also if the mark of a light lies over it.
+    fn framed(&self, state: &State, at: [usize; 2], item: Option<ItemId>) -> Option<ItemId> {
+        match item {
+            Some(ItemId::Light(_)) => {
+                let objects = picking::objects_at(state, at, self.size()?);
+                objects.first().copied().map(ItemId::Object)
+            }
+            item => item,
+        }
+    }
+
+    /// The request of a click on `hit`: selects the polygon in polygon mode, otherwise the item; a
+    /// second click on the same pixel selects the object behind the selected one.
+    fn selecting(&mut self, state: &State, at: [usize; 2], hit: Hit) -> Request {
+        match self.unlocked(state, at, hit.item) {
+            Ok(item) if item == hit.item => {}
+            Ok(item) => return Request::Select(item),
+            Err(why) => return Request::Refuse(why),
+        }
+        let click = (at, state.scene.observer_frame(&state.view));
+        let again = self.clicked.replace(click) == Some(click);
+        match hit.item {
+            ItemId::Object(id)
+                if state.view.polygons.is_some() && state.view.object == Some(id) =>
+            {
+                Request::SelectPolygon(hit.polygon)
+            }
+            ItemId::Object(_) if again && state.view.polygons.is_none() => {
+                let Some((rect, size)) = self.place else { return Request::Select(hit.item) };
+                let projection = Projection::new(state, rect, size);
+                let over = Over::new(state, rect, &projection);
+                Request::Select(self.deeper(state, &over, self.point(at), true, hit.item))
+            }
+            item => Request::Select(item),
+        }
+    }
+
+    /// The item that a click here selects: `item`, or the nearest behind it if that is locked.
+    fn unlocked(&self, state: &State, at: [usize; 2], item: ItemId) -> Result<ItemId, String> {
+        let is_locked = |item: &ItemId| state.scene.locked.contains(item);
+        if !is_locked(&item) {
+            return Ok(item);
+        }
+        let size = self.size().unwrap_or(Size::new(0, 0));
+        let mut objects = picking::objects_at(state, at, size).into_iter().map(ItemId::Object);
+        objects.find(|item| !is_locked(item)).ok_or_else(|| {
+            let locked = Refusal::Locked(state.name(item).unwrap_or_default().to_owned());
+            locked.to_string()
+        })
+    }
+}
