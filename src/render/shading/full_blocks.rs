@@ -14,6 +14,7 @@ use super::quantize::reflected;
 use super::texels::{OfFirst, PlacedTexture, product};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{Interpolation, Normalising};
+use crate::base::color::Color;
 use crate::render::lights::{Batch, LightTerm, load, set, store};
 use crate::render::plan::tile::TileLight;
 use crate::render::screen::coverage::Triangle;
@@ -39,6 +40,14 @@ impl Canvas<'_> {
             for (to, from) in to.iter_mut().zip(from) {
                 *to = from.to_le_bytes();
             }
+        }
+    }
+
+    /// Fills a block; `at` is the index of its first pixel.
+    #[inline(always)]
+    pub(crate) fn fill(&mut self, at: usize, color: Color) {
+        for row in self.pixels[at..].chunks_mut(self.stride).take(ROW) {
+            row[..ROW].fill(color.opaque());
         }
     }
 

@@ -195,18 +195,13 @@ impl<T: ShadingNumber> Painter<T> {
         let mut whole = self.visibility.full_blocks() & !layered;
         let background = u32::from_le_bytes(context.plan.background.opaque());
         let mut colors = [0; BLOCK_PIXELS + ROW];
-        if whole != u64::MAX {
-            for row in canvas.pixels.chunks_mut(canvas.stride).take(TILE_SIDE) {
-                row[..TILE_SIDE].fill(context.plan.background.opaque());
-            }
-        }
         if let Some(faces) = context.faces {
             self.shader.light_shown_faces(context, faces, &self.visibility);
         }
         let mut shows = whole != 0;
         for block in 0..BLOCK_PIXELS {
+            let at = canvas.offset(corner_in_tile(block));
             if layered >> block & 1 != 0 {
-                let at = canvas.offset(corner_in_tile(block));
                 let mut sums = Sums::new(context.plan.variants.are_linear());
                 let corner = self.visibility.corner(block);
                 let Self { shader, visibility, layered, .. } = self;
@@ -225,7 +220,6 @@ impl<T: ShadingNumber> Painter<T> {
                 }
             } else if self.visibility.shows(block) {
                 let corner = self.visibility.corner(block);
-                let at = canvas.offset(corner_in_tile(block));
                 shows |= if context.frame.sample_positions().are_many() {
                     self.block_of_samples(context, (block, corner), canvas, at)
                 } else {
@@ -236,9 +230,12 @@ impl<T: ShadingNumber> Painter<T> {
                         canvas.put(at, &colors[..BLOCK_PIXELS]);
                         visibility.iter().any(|word| *word != 0)
                     } else {
+                        canvas.fill(at, context.plan.background);
                         self.shader.block(context, visibility, corner, (canvas, at))
                     }
                 };
+            } else {
+                canvas.fill(at, context.plan.background);
             }
         }
         shows
@@ -255,6 +252,7 @@ impl<T: ShadingNumber> Painter<T> {
         let Self { shader, visibility, samples, .. } = self;
         let planes = visibility.planes(block);
         if samples.compare(context.level, planes) {
+            canvas.fill(at, context.plan.background);
             return shader.block(context, &planes[0], corner, (canvas, at));
         }
         let mut sums = Sums::new(context.plan.variants.are_linear());
