@@ -577,7 +577,7 @@ fn change_light(scene: &mut Scene, mut change: impl FnMut(&mut Light) -> bool) {
     panic!("no light is changed");
 }
 
-/// Redraws a changed scene. Returns the parts of a whole picture's rays that it traced, in per cent.
+/// Redraws a changed scene. Returns how many per cent of a whole picture's rays it traced.
 fn rays_again(
     (scene, view): (&mut Scene, &View),
     settings: &Settings,

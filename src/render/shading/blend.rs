@@ -11,8 +11,8 @@
 //! 1 - a, and w falls with the distance z: equation (9) of McGuire and Bavoil, "Weighted Blended
 //! Order-Independent Transparency", JCGT 2(2), 2013, with z in units of view space, whose far plane
 //! is between 1024 and 2048 units away. That needs no order, and none may show in the last bit: the
-//! terms of all sums are rounded to steps of which f64 adds up 1024, the most that are held at once,
-//! exactly, and T is two to the power of a sum of logarithms.
+//! terms of all sums are rounded to steps, so that f64 adds up exactly the 1024 layers that are
+//! held at once, and T is two to the power of a sum of logarithms.
 //!
 //! A layer is laid over all pixels of the block at once, with an opacity of 0 wherever it is not.
 
