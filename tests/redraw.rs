@@ -577,7 +577,7 @@ fn change_light(scene: &mut Scene, mut change: impl FnMut(&mut Light) -> bool) {
     panic!("no light is changed");
 }
 
-/// Redraws a changed scene. Returns the parts of a whole picture's rays that it traced, in per cent.
+/// Redraws a changed scene. Returns how many per cent of a whole picture's rays it traced.
 fn rays_again(
     (scene, view): (&mut Scene, &View),
     settings: &Settings,
@@ -646,4 +646,20 @@ fn only_what_changed_is_traced_again() {
         edit(scene, ObjectId(12), |object| object.hidden_parts.extend([0]));
     });
     assert!((1..70).contains(&hidden), "{hidden}% for an object that goes");
+}
+
+/// Nothing that casts shadows changes, but other surfaces show.
+#[test]
+fn a_back_that_is_shown_has_shadows_of_its_own() {
+    let (mut scene, view) = shaded_stage();
+    let mut wall = scene.objects.get(ObjectId(10)).unwrap().clone();
+    let turned = DMat4::from_rotation_y(std::f64::consts::PI);
+    wall.placement = wall.placement.replaced(at(60.0, 0.0, -30.0, 60.0) * turned);
+    wall.sides = Sides::One;
+    let item = Item::Object(ObjectId(13), Box::new(wall));
+    Command::Insert { at: usize::MAX, item }.apply(&mut scene).unwrap();
+    let again = rays_again((&mut scene, &view), &Settings::default(), &mut |scene| {
+        edit(scene, ObjectId(13), |wall| wall.sides = Sides::Two);
+    });
+    assert!((1..70).contains(&again), "{again}%");
 }

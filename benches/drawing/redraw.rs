@@ -25,7 +25,7 @@ const CHANGES: [(&str, Change); 7] = [
         change_object(scene, |object| {
             let placement = DMat4::from_translation(DVec3::X * 4.0) * *object.placement.now();
             object.placement = Tracked::new(placement);
-        })
+        });
     }),
     ("sun moves", |scene| {
         change_light(scene, |light| match &mut light.kind {
@@ -35,7 +35,7 @@ const CHANGES: [(&str, Change); 7] = [
                 true
             }
             LightKind::Ambient | LightKind::Bulb { .. } | LightKind::Spot { .. } => false,
-        })
+        });
     }),
     ("bulb moves", |scene| {
         change_light(scene, |light| match &mut light.kind {
@@ -44,7 +44,7 @@ const CHANGES: [(&str, Change); 7] = [
                 true
             }
             LightKind::Ambient | LightKind::Sun { .. } | LightKind::Spot { .. } => false,
-        })
+        });
     }),
     ("spot moves", |scene| {
         change_light(scene, |light| match &mut light.kind {
@@ -58,13 +58,13 @@ const CHANGES: [(&str, Change); 7] = [
             | LightKind::Sun { .. }
             | LightKind::Bulb { .. }
             | LightKind::Spot { .. } => false,
-        })
+        });
     }),
     ("bulb recoloured", |scene| {
         change_light(scene, |light| {
             light.color = Color([255, 200, 120]);
             matches!(light.kind, LightKind::Bulb { .. })
-        })
+        });
     }),
     ("floor's material", |scene| {
         let floor = scene.objects.ids().min().expect("there is a floor");
@@ -75,7 +75,7 @@ const CHANGES: [(&str, Change); 7] = [
     ("ball's material", |scene| {
         change_object(scene, |object| {
             object.material = MaterialChoice::Preset(PresetId::RUBY);
-        })
+        });
     }),
 ];
 

@@ -1,10 +1,9 @@
 //! Measures how much longer one way of drawing takes than another, so that disturbances cancel.
 //!
 //! A pair is four pictures, A B B A, so that a steady drift of the machine's speed affects both
-//! alike. The result is the median and the quartiles of the ratios of all pairs, and the interval in
-//! which their true median lies. Every picture is
-//! hashed after it is timed: the compiler cannot leave out work, and the same settings have to give
-//! the same bytes.
+//! alike. The result is the median and the quartiles of the ratios of all pairs, and the interval
+//! in which their true median lies. Every picture is hashed after it is timed: the compiler cannot
+//! leave out work, and the same settings have to give the same bytes.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -97,7 +97,8 @@ mod tests {
         assert_eq!((median(&[9.0, 1.0, 4.0, 2.0]), quartiles.spread()), (Some(3.0), 1.75));
     }
 
-    /// `qbinom(0.025, n, 0.5)` in R is the k of an interval of 95%: 1 of 6 and 7, 2 of 11, 4 of 15, 10 of 31.
+    /// `qbinom(0.025, n, 0.5)` in R is the k of an interval of 95%: 1 of 6 and 7, 2 of 11, 4 of
+    /// 15, 10 of 31.
     #[test]
     fn the_interval_of_a_median_is_that_of_the_sign_test() {
         let interval = |n: i32| {
@@ -112,7 +113,8 @@ mod tests {
         assert_eq!(median_interval(&[], 0.95), None);
     }
 
-    /// Of ten thousand sets of numbers with a true median of 0, at most the promised part misses it.
+    /// Of ten thousand sets of numbers with a true median of 1, at most the promised part misses
+    /// it.
     #[test]
     fn the_interval_holds_the_true_median_as_often_as_is_said() {
         let mut rng = crate::base::rng::Rng::new(7);

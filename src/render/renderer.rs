@@ -286,10 +286,11 @@ impl Renderer {
         let tiles = bands.len() * columns;
         let shares = frame.shares_of_tiles(tiles);
         painters.resize_with(rayon::current_num_threads(), Painter::default);
+        // Also those of threads that come too late to paint.
+        painters.iter_mut().for_each(Painter::begin);
         let painters: Vec<Mutex<&mut Painter<T>>> = painters.iter_mut().map(Mutex::new).collect();
         together(painters.len(), || {
             let painter = &mut own(&painters);
-            painter.begin();
             loop {
                 let Some(tile) = shares.next().filter(|_| watch.goes_on()) else { return };
                 let row = tile / columns;

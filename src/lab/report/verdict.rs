@@ -1,9 +1,10 @@
 //! What the figures of a sweep say, in sentences, by rules.
 //!
 //! A choice is compared with the default of its axis: its time by the verdict on their ratio
-//! ([`Findings::noise_of`](crate::lab::sweep::Findings::noise_of) says what is noise), its error by the RMSE over all pixels against the reference of its axis. An error counts as cut or
-//! raised if it changes by a twentieth. Every choice that differs beyond the noise in time, or in
-//! error, falls under one of the rules, so that nothing is passed over in silence.
+//! ([`Findings::noise_of`](crate::lab::sweep::Findings::noise_of) says what is noise), its error by
+//! the RMSE over all pixels against the reference of its axis. An error counts as cut or raised if
+//! it changes by a twentieth. Every choice that differs beyond the noise in time, or in error,
+//! falls under one of the rules, so that nothing is passed over in silence.
 
 use super::Report;
 use crate::accuracy::{AXES, Axis, AxisKind};

@@ -18,8 +18,8 @@ use crate::render::frame::shadows::{Caster, ShadowSource};
 use crate::render::shadow::tracer::Tracer;
 use crate::scene::ItemId;
 
-/// Whether rays begin at the pixels themselves, so that nothing but what a pixel shows decides where
-/// its rays begin.
+/// Whether rays begin at the pixels themselves: only what a pixel shows decides where its rays
+/// begin.
 pub(super) fn is_by_pixel(plan: &FramePlan) -> bool {
     plan.light_at == LightAt::Pixel
         && plan.samples == Samples::One
@@ -48,8 +48,8 @@ pub(super) fn add(before: &FramePlan, after: &FramePlan, tiles: &mut Tiles) -> b
 
 /// The casters that differ between two plans.
 pub(super) struct Changed<'a> {
-    before: Seen<'a>,
-    after: Seen<'a>,
+    before: Drawn<'a>,
+    after: Drawn<'a>,
     /// As they were, and as they are.
     old: Vec<&'a Caster>,
     new: Vec<&'a Caster>,
@@ -69,12 +69,12 @@ impl<'a> Changed<'a> {
         }
         old.extend(left.into_values());
         let is_any = !(old.is_empty() && new.is_empty());
-        let [before, after] = [before, after].map(|plan| Seen::new(plan, is_any));
+        let [before, after] = [before, after].map(|plan| Drawn::new(plan, is_any));
         Self { before, after, old, new }
     }
 
     /// Each with the plan that it belongs to.
-    fn all(&self) -> impl Iterator<Item = (&Seen<'a>, &'a Caster)> {
+    fn all(&self) -> impl Iterator<Item = (&Drawn<'a>, &'a Caster)> {
         let old = self.old.iter().map(|caster| (&self.before, *caster));
         old.chain(self.new.iter().map(|caster| (&self.after, *caster)))
     }
@@ -88,14 +88,14 @@ impl<'a> Changed<'a> {
 }
 
 /// A plan, and what is drawn of it.
-struct Seen<'a> {
+struct Drawn<'a> {
     plan: &'a FramePlan,
     /// The corners of the boxes of all that is drawn, in world space.
     drawn: Vec<DVec3>,
     clip_from_world: DMat4,
 }
 
-impl<'a> Seen<'a> {
+impl<'a> Drawn<'a> {
     /// `is_asked`: whether anything will be added.
     fn new(plan: &'a FramePlan, is_asked: bool) -> Self {
         let world_from_view = plan.view_from_world.inverse();

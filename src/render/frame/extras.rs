@@ -49,8 +49,8 @@ impl Extras {
             && bump.is_none()
     }
 
-    /// Light of its own that is the same at every pixel, 0 without any; `None` if there is something
-    /// else.
+    /// Light of its own that is the same at every pixel, 0 without any; `None` if there is
+    /// something else.
     pub(crate) fn even_glow(&self) -> Option<[f64; 3]> {
         let Self { emission, ambient, specular, exponent, bump } = self;
         let is_else = ambient.is_some() || specular.is_some() || exponent.is_some();

@@ -326,8 +326,7 @@ impl Layers {
         }
         let shift = if samples.are_many() { samples.shift::<FOUR>(sample) } else { [0; 2] };
         dispatch!(level, simd => self.take_large(simd, &mut key, (block, sample, shift), opaque));
-        // A weighted mean needs no order, if all are held.
-        self.block.end(order != Transparency::Weighted)
+        self.block.end()
     }
 
     #[inline(always)]
@@ -460,18 +459,8 @@ impl Held {
         self.add(pixel, key);
     }
 
-    /// Sorts the layers of each pixel, if they are to be `sorted` or are not all. Returns whether
-    /// there are any.
-    fn end(&mut self, sorted: bool) -> bool {
-        let are_all = self.more == 0 && self.floor == [0; BLOCK_PIXELS];
-        if sorted || !are_all {
-            self.sort();
-        }
-        self.floor = self.ceiling;
-        !self.rows.is_empty()
-    }
-
-    fn sort(&mut self) {
+    /// Sorts the layers of each pixel. Returns whether there are any.
+    fn end(&mut self) -> bool {
         let mut column = Vec::new();
         for (pixel, count) in self.counts.iter().enumerate() {
             let sorted = (1..*count).all(|i| self.rows[i - 1][pixel] < self.rows[i][pixel]);
@@ -484,6 +473,8 @@ impl Held {
                 }
             }
         }
+        self.floor = self.ceiling;
+        !self.rows.is_empty()
     }
 }
 
@@ -498,7 +489,7 @@ mod tests {
         while held.more != 0 {
             held.begin();
             keys.iter().for_each(|key| held.add(7, *key));
-            held.end(true);
+            held.end();
             all.extend(held.rows[..held.counts[7]].iter().map(|row| row[7]));
             turns += 1;
         }

@@ -60,13 +60,11 @@ impl Layered {
                 while more {
                     for i in 0..layers.len() {
                         let row = layers.row(plan.transparency, i);
-                        blend.begin_layer(level, || distances(level, plan, &row));
+                        blend.place(level, || distances(level, plan, &row));
                         shader.layer(context, &row, corner, blend);
-                        blend.end_layer(level);
                     }
                     more = layers.take(level, order, at, &opaque);
                 }
-                blend.end(level);
             }
             std::mem::swap(sequence, before);
             (0..BLOCK_PIXELS).for_each(|place| sums.add_parts(place, blend.color(place)));

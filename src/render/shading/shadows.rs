@@ -52,8 +52,8 @@ impl<'a> BatchShadows<'a> {
         Self { tracer, scratch, place, is_placed: false, pixels: None }
     }
 
-    /// The same for a batch of these fragments, each of which is all that its pixel shows, unless
-    /// layers are painted.
+    /// The same for a batch of these fragments. Each is all that its pixel shows, unless layers are
+    /// painted.
     pub(crate) fn of_pixels(self, fragments: &'a Fragments) -> Self {
         let Fragments { len, pixels, x, y, .. } = fragments;
         let of_batch = BatchPixels { first: [x[0], y[0]], places: &pixels[..*len] };

@@ -89,7 +89,7 @@ impl KnownLight {
         Self { source, columns, blocks }
     }
 
-    /// Forgets the tiles of which this is true.
+    /// Forgets the tiles that are stale.
     pub(crate) fn forget(&mut self, is_stale: impl Fn(usize) -> bool) {
         let columns = self.columns / TILE_BLOCKS;
         for (row, blocks) in self.blocks.chunks_mut(self.columns).enumerate() {
