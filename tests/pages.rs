@@ -244,7 +244,7 @@ fn every_path_that_a_page_names_is_there() {
                 let path = self::root().join(root).join(quoted);
                 path.exists() || path.with_extension("rs").exists()
             };
-            assert!(roots.iter().any(|root| there(root)), "{name} names {quoted}");
+            assert!(roots.iter().any(there), "{name} names {quoted}");
             found += 1;
         }
     }

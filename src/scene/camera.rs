@@ -66,7 +66,7 @@ impl Pose {
     pub fn mode_with(&self, selected: Option<ObjectId>) -> CameraMode {
         match self.mode {
             CameraMode::Analysis { target } if Some(target) == selected => self.mode,
-            _ => CameraMode::Fly,
+            CameraMode::Analysis { .. } | CameraMode::Fly => CameraMode::Fly,
         }
     }
 }

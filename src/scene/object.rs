@@ -189,7 +189,7 @@ impl Object {
         let texture = self.texture.as_ref().or_else(|| file?.texture.as_ref());
         let opacity = match self.material {
             MaterialChoice::File => file.map_or(1.0, |file| file.opacity),
-            _ => 1.0,
+            MaterialChoice::Preset(_) | MaterialChoice::Own(_) => 1.0,
         };
         let of_file = self.material == MaterialChoice::File;
         PartLook {

@@ -90,6 +90,35 @@ fn case_78_a_plane_does_not_shade_itself_in_a_shadow_map_with_a_bias() {
     .hold();
 }
 
+#[test]
+fn case_78_a_convex_edge_shades_few_pixels_of_its_steep_side() {
+    // A texel over the edge has the depth of the side that faces the light. A point of the other
+    // side that is compared with it lies deeper, by more than the bias of that texel's own slope:
+    // with it alone, 372 pixels are shaded.
+    let (eye, turn) = (DVec3::Z * 400.0, tilted(30.0));
+    let mut shaded = 0;
+    for elevation in [60.0, 70.0, 80.0] {
+        let (sine, cosine) = f64::to_radians(elevation).sin_cos();
+        let towards = turn.transform_vector3(DVec3::new(0.3 * cosine, sine, cosine));
+        let models = vec![(cube(), turn * at(90.0, 0.0, 0.0, 0.0))];
+        let alone = Shade { models, light: sun(towards), eye };
+        let exact = alone.draw_by(&Settings::default()).shaded;
+        for settings in maps() {
+            let own = alone.draw_by(&settings).shaded;
+            shaded += own.iter().zip(&exact).filter(|(own, exact)| **own && !**exact).count();
+        }
+    }
+    Figure {
+        case: 78,
+        what: "pixels of a lone cube that its shadow maps shade, in three lights",
+        naive: None,
+        ours: shaded as f64,
+        bound: 32.0,
+        unit: "pixels",
+    }
+    .hold();
+}
+
 /// A sheet from -1 to 1 whose map of opacity, black and white, is 8 x 8 fields.
 fn stencil() -> Shared<Model> {
     let field = |i: usize| if (i % 8 + i / 8).is_multiple_of(2) { 255 } else { 0 };

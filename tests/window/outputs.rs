@@ -3,8 +3,11 @@
 //! Catches: options that are not those of the file, a file that is left behind by what was
 //! cancelled, a window that waits.
 
+use std::path::PathBuf;
+
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
+use egui_kittest::kittest::NodeT as _;
 use marraztu::accuracy::{Samples, Settings, Shot};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::Shifted;
@@ -13,7 +16,7 @@ use marraztu::io;
 use marraztu::render::{Renderer, plan_frame, without_ground};
 
 use crate::editor::Editor;
-use crate::panels::click;
+use crate::panels::{click, control};
 
 fn says(editor: &Editor, text: &str) -> bool {
     editor.state().message.as_ref().is_some_and(|message| message.text.contains(text))
@@ -75,11 +78,20 @@ fn a_scene_is_exported_with_notes_on_what_the_format_does_not_say() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("first.glb");
     let mut editor = Editor::small();
+    let proposed = |editor: &Editor| {
+        let path = control(editor, Role::TextInput, "Path").accesskit_node().value();
+        PathBuf::from(path.unwrap()).file_name().unwrap().to_owned()
+    };
     editor.perform(Action::ExportScene);
+    assert_eq!(proposed(&editor), "scene.glb");
     editor.type_path(&path);
     editor.wait_until(|editor| says(editor, "Saved"));
     assert!(std::fs::read(&path).unwrap().starts_with(b"glTF"));
-    editor.wait_until(|editor| editor.shows("first.glb: what it does not say"));
+    editor.wait_until(|editor| editor.shows("first.glb lacks some of the scene"));
+    editor.perform(Action::SaveAs);
+    editor.type_path(&folder.path().join("mine.marraztu"));
+    editor.perform(Action::ExportScene);
+    assert_eq!(proposed(&editor), "mine.glb", "after the scene's file");
     let modifiers = Modifiers::NONE;
     editor.key(Key::Escape, true, modifiers);
     editor.settle();

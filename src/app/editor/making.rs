@@ -144,7 +144,7 @@ impl App {
                 Made::Done(path, notes) => {
                     self.state.tell(Some(format!("Saved {}", path.display())));
                     if !notes.is_empty() {
-                        let text = format!("{}: what it does not say", file_name(&path));
+                        let text = format!("{} lacks some of the scene", file_name(&path));
                         self.state.notices.push(Notice { text, details: notes, offer: None });
                     }
                 }

@@ -218,7 +218,10 @@ impl App {
             FileIntent::SavePicture => self.ask_file(ctx, Wanted::PictureTo, "picture.png"),
             FileIntent::PictureOptions => self.ask_picture(Purpose::Picture),
             FileIntent::Turntable => self.ask_picture(Purpose::Turntable),
-            FileIntent::Export => self.ask_file(ctx, Wanted::ExportTo, "scene.glb"),
+            FileIntent::Export => {
+                let name = format!("{}.glb", self.state.proposed_name());
+                self.ask_file(ctx, Wanted::ExportTo, &name);
+            }
             FileIntent::Recover => self.unless_unsaved(ctx, After::Recover(0)),
             FileIntent::Reload => self.reload_models(ctx, None),
             FileIntent::NewAncestor => self.unless_unsaved(ctx, After::NewAncestor),

@@ -29,7 +29,7 @@ impl App {
     pub(crate) fn save_as(&mut self, ctx: &Context, after: Option<After>) {
         let name = match &self.state.path {
             Some(path) => file_name(path),
-            None => format!("scene.{SCENE_ENDING}"),
+            None => format!("{}.{SCENE_ENDING}", self.state.proposed_name()),
         };
         self.ask_file(ctx, Wanted::SceneTo(after), &name);
     }

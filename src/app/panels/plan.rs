@@ -115,7 +115,7 @@ impl Columns {
     fn of(row: Rect) -> Self {
         let is_roomy = row.width() >= ROOMY;
         let number = if is_roomy { 92.0 } else { 68.0 };
-        let shares = if is_roomy { [0.3, 0.28] } else { [0.36, 0.35] };
+        let shares = if is_roomy { [0.34, 0.26] } else { [0.37, 0.35] };
         let right = row.right() - 4.0;
         let text = (right - 2.0 * number - row.left()).max(120.0);
         let [name, on] = shares.map(|share| (text * share).min(220.0));

@@ -233,6 +233,15 @@ impl State {
         name.map_or_else(|| "new scene".to_owned(), |name| name.to_string_lossy().into_owned())
     }
 
+    /// A name without ending for a file of the scene: that of its scene file, or of its only model.
+    pub(crate) fn proposed_name(&self) -> String {
+        let mut objects = self.scene.objects.iter();
+        let model = objects.next().and_then(|(_, object)| object.model.source.as_deref());
+        let only = model.filter(|_| objects.next().is_none());
+        let stem = self.path.as_deref().or(only).and_then(Path::file_stem);
+        stem.map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned())
+    }
+
     /// Shows a message in the status line.
     pub(crate) fn tell(&mut self, text: Option<String>) {
         self.message = text.map(|text| Message { text, tone: Tone::Done });

@@ -52,7 +52,7 @@ impl Viewport {
             gizmo.show(ui, rect, grab.map(Grab::handle), hovered);
         }
         if let Some(grab) = grab {
-            plate_ui(ui, rect, egui::Align2::CENTER_TOP, grab.said.clone());
+            plate_ui(ui, rect, egui::Align2::CENTER_BOTTOM, grab.said.clone());
         }
         if let Some(area) = self.mouse.selection_box() {
             let accent = theme::accent(ui.visuals());

@@ -111,7 +111,8 @@ fn note_missing_owners(scene: &Scene, findings: &mut Findings) {
         let owner = match *owner {
             SpotOwner::Object(id) if scene.objects.get(id).is_none() => format!("object {}", id.0),
             SpotOwner::Camera(id) if scene.cameras.get(id).is_none() => format!("camera {}", id.0),
-            _ => continue,
+            SpotOwner::Object(_) | SpotOwner::Camera(_) | SpotOwner::Fixed(_) => continue,
+            SpotOwner::SelectedObject | SpotOwner::SelectedCamera => continue,
         };
         note(format!("the light \"{}\" belongs to {owner}", light.name));
     }

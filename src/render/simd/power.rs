@@ -1,4 +1,4 @@
-//! The power of a highlight: a cosine to an exponent, by each variant.
+//! The power of a highlight: a cosine to an exponent (its shininess), by each variant.
 //!
 //! A power is prepared once per material: its exponent is examined and its table is filled before
 //! any pixel is drawn. Results below the floor count as 0 in every variant.

@@ -201,7 +201,9 @@ impl Gizmo {
         let over = self.parts.iter().rev().filter(reached);
         let rank = |part: &&Part| match part.shape {
             Shape::Disk(_) | Shape::Square(_) => 0.0,
-            _ => part.shape.distance(at).unwrap_or(REACH),
+            Shape::Line(_) | Shape::Ring { .. } | Shape::Circle(..) => {
+                part.shape.distance(at).unwrap_or(REACH)
+            }
         };
         over.min_by(|a, b| rank(a).total_cmp(&rank(b))).map(|part| part.handle)
     }
