@@ -74,6 +74,8 @@ struct Desk<P> {
     border: Option<ItemId>,
     news: News<P>,
     busy: bool,
+    /// When the picture that is being drawn was begun.
+    begun: Option<Instant>,
     closed: bool,
     /// Whether nothing is left to refine.
     settled: bool,
@@ -87,8 +89,8 @@ impl<P: Copy + Send + 'static> Worker<P> {
         let news = News::none();
         let (wanted, picks, border) = (None, VecDeque::new(), None);
         let (settled, quiet_at) = (true, Instant::now());
-        let (busy, closed) = (false, false);
-        let desk = Desk { wanted, picks, border, news, busy, closed, settled, quiet_at };
+        let (busy, begun, closed) = (false, None, false);
+        let desk = Desk { wanted, picks, border, news, busy, begun, closed, settled, quiet_at };
         let shared = Arc::new(Shared {
             desk: Mutex::new(desk),
             changed: Condvar::new(),
@@ -121,6 +123,11 @@ impl<P: Copy + Send + 'static> Worker<P> {
     pub(crate) fn is_drawing(&self) -> bool {
         let desk = self.shared.lock();
         desk.busy || desk.has_work()
+    }
+
+    /// How long the requested picture has been drawn, if it is not finished.
+    pub(crate) fn drawing_for(&self) -> Option<Duration> {
+        self.shared.lock().begun.map(|begun| begun.elapsed())
     }
 
     /// The last snapshot requested.
@@ -213,7 +220,7 @@ impl<P> Shared<P> {
     /// Waits for work, or for the time to refine; `None` if the desk is closed.
     fn next(&self) -> Option<Work<P>> {
         let mut desk = self.lock();
-        desk.busy = false;
+        (desk.busy, desk.begun) = (false, None);
         self.changed.notify_all();
         loop {
             if desk.closed {
@@ -221,6 +228,7 @@ impl<P> Shared<P> {
             }
             if desk.has_work() {
                 desk.busy = true;
+                desk.begun = desk.wanted.is_some().then(Instant::now);
                 self.newer.store(false, Ordering::Relaxed);
                 let picks = std::mem::take(&mut desk.picks);
                 return Some(Work::Asked(

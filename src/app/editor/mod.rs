@@ -270,6 +270,8 @@ impl App {
             if let Some(refined) = &news.refined {
                 self.state.statistics.refined = refined.refined;
             }
+            let late = worker.drawing_for().is_some_and(|time| time >= LATE);
+            self.state.statistics.late = late && !self.state.is_animated();
             let failed = news.failed;
             self.viewport.hear(ctx, &self.state, news, requests);
             if failed {
@@ -328,6 +330,12 @@ impl App {
             ctx.request_repaint_after(Duration::from_secs_f64(rest));
         }
         worker.draw(wanted);
+        if worker.is_drawing() {
+            let rest = LATE.saturating_sub(worker.drawing_for().unwrap_or_default());
+            if !rest.is_zero() {
+                ctx.request_repaint_after(rest);
+            }
+        }
     }
 
     fn name_window(&mut self, ctx: &Context) {
@@ -402,6 +410,9 @@ impl Editor for App {
 
 /// The number of consecutive failed frames after which the program gives up.
 const MOST_FAULTS: u32 = 10;
+
+/// The time after which the status line says that a picture is being drawn.
+const LATE: Duration = Duration::from_millis(300);
 
 const FAULT: &str = "This is a bug in the program. Your last action may not have been done; \
     everything else is unchanged. Save the scene now.";

@@ -102,6 +102,10 @@ fn parts(state: &State) -> Vec<String> {
         let lost = lost.unwrap_or_default();
         parts.push(format!("while moving: {}{lost}", statistics.reduction.words()));
     }
+    if statistics.late {
+        parts.push("drawing".to_owned());
+        return parts;
+    }
     parts.extend(refined(state));
     if statistics.pictures > 0 {
         parts.push(format!("{:.1} ms", statistics.time.as_secs_f64() * 1000.0));
@@ -274,6 +278,18 @@ mod tests {
         state.statistics.lost = Some(3.12);
         let said = "  |  while moving: light per vertex, half size (error 3.1 of 255)  |  0.0 ms";
         assert!(parts(&state).join(BETWEEN).ends_with(said));
+    }
+
+    #[test]
+    fn while_a_picture_takes_long_no_figures_of_the_last_one_are_said() {
+        let (scene, view) = crate::io::default_scene();
+        let mut state = State::new(scene, view);
+        state.statistics.pictures = 1;
+        let said = |state: &State| parts(state).last().cloned().unwrap_or_default();
+        assert!(said(&state).ends_with("ms"));
+        state.statistics.late = true;
+        assert_eq!(said(&state), "drawing");
+        assert!(!parts(&state).iter().any(|part| part.starts_with("refin")));
     }
 
     #[test]

@@ -21,6 +21,8 @@ pub struct Statistics {
     pub size: Size,
     /// The number of pictures drawn.
     pub pictures: u64,
+    /// Whether the picture of what there is now takes so long that the last one is still shown.
+    pub late: bool,
     /// The number of pictures shown in the last second.
     pub rate: u32,
     /// The number of triangles drawn.
@@ -41,6 +43,7 @@ impl Default for Statistics {
             time: Duration::ZERO,
             size: Size::new(0, 0),
             pictures: 0,
+            late: false,
             rate: 0,
             triangles: 0,
             reduction: Reduction::NONE,
@@ -59,6 +62,7 @@ impl Statistics {
             time: drawn.time,
             size: Size::new(width, height),
             pictures: self.pictures + 1,
+            late: false,
             rate,
             triangles: drawn.triangles,
             reduction: drawn.reduction,
