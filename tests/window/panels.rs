@@ -481,7 +481,9 @@ fn an_explained_pixel_stays_within_the_picture_and_leads_to_those_beside_it() {
         editor.perform(Action::ExplainPixel);
         let at = editor.at(0.2, 0.5);
         editor.click(at, PointerButton::Primary);
-        editor.harness.run_steps(10);
+        editor.wait_until(|editor| editor.shows("Copy as text"));
+        // The window finds its size and its place.
+        editor.harness.run_steps(30);
         let copy = control(&editor, Role::Button, "Copy as text").rect();
         let picture = editor.picture();
         assert!(picture.contains_rect(copy), "{copy} in {picture}");
