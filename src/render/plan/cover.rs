@@ -32,9 +32,15 @@ impl Cover {
                 Self::Nothing("its opacity is below one half")
             }
             Transparency::Threshold => Self::Threshold(opacity),
-            _ if opacity == 0.0 => Self::Nothing("its opacity is 0"),
-            _ if opacity < 1.0 || fades => Self::Transparent(opacity),
-            _ => Self::Threshold(opacity),
+            Transparency::Weighted | Transparency::Objects | Transparency::Exact => {
+                if opacity == 0.0 {
+                    Self::Nothing("its opacity is 0")
+                } else if opacity < 1.0 || fades {
+                    Self::Transparent(opacity)
+                } else {
+                    Self::Threshold(opacity)
+                }
+            }
         }
     }
 

@@ -154,7 +154,7 @@ impl fmt::Display for EffectState {
             Self::LeftOut { class: Class::Bounded(steps), .. } => {
                 write!(f, ": at most {steps:.4} of a step")
             }
-            _ => Ok(()),
+            Self::On(_) | Self::LeftOut { class: Class::Exact, .. } => Ok(()),
         }
     }
 }

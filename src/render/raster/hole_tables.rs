@@ -51,7 +51,7 @@ impl Surface {
         let same = |a: &Option<Shared<Texture>>, b: &Option<Shared<Texture>>| match (a, b) {
             (Some(a), Some(b)) => Shared::same(a, b),
             (None, None) => true,
-            _ => false,
+            (Some(_), None) | (None, Some(_)) => false,
         };
         shaded.cutout.is_some_and(|opacity| opacity.to_bits() == self.opacity.to_bits())
             && same(&self.pictures[0], &shaded.texture)
@@ -95,7 +95,7 @@ impl HoleTable {
         let same = |(own, shaded): (&Option<Surface>, Option<&Shaded>)| match (own, shaded) {
             (Some(own), Some(shaded)) => own.is_of(shaded),
             (None, None) => true,
-            _ => false,
+            (Some(_), None) | (None, Some(_)) => false,
         };
         Shared::same(&self.model, &draw.model)
             && self.filter == plan.filter

@@ -202,7 +202,7 @@ pub(super) fn add_other<T>(
 ) {
     let color = match seen_number(number) {
         Visible::Line(line) => context.frame.line_color(context.plan, line),
-        _ => context.plan.background.opaque(),
+        Visible::Background | Visible::Triangle(_) => context.plan.background.opaque(),
     };
     sums.add(place, color, share);
 }

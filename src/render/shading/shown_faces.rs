@@ -36,7 +36,9 @@ pub(crate) fn have_colors(plan: &FramePlan) -> bool {
     let mut pipelines = plan.pipelines.iter();
     match plan.light_at {
         LightAt::Face => pipelines.any(|pipeline| is_uniform(plan, pipeline)),
-        _ => pipelines.all(|pipeline| is_uniform(plan, pipeline)),
+        LightAt::Vertex | LightAt::Pixel | LightAt::Sample => {
+            pipelines.all(|pipeline| is_uniform(plan, pipeline))
+        }
     }
 }
 

@@ -149,7 +149,7 @@ impl DrawOrder {
     pub const fn points(&self, source: NormalSource) -> &Points {
         match source {
             NormalSource::File if !self.filed.normals.is_empty() => &self.filed,
-            _ => &self.smooth,
+            NormalSource::File | NormalSource::Computed => &self.smooth,
         }
     }
 
