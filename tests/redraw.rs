@@ -595,6 +595,24 @@ fn rays_again(
     renderer.rays().traced * 100 / fresh.rays().traced
 }
 
+/// Catches: shadows of a picture that are kept for one of another size.
+#[test]
+fn shadows_are_not_kept_for_a_picture_of_another_size() {
+    let (mut scene, view) = shaded_stage();
+    let settings = Settings::default();
+    let mut renderer = Renderer::default();
+    for (i, [width, height]) in [[640, 480], [64, 64], [700, 300], [640, 480]].iter().enumerate() {
+        edit(&mut scene, ObjectId(11), |object| {
+            let step = DMat4::from_translation(DVec3::X * i as f64);
+            object.placement = object.placement.replaced(step * *object.placement.now());
+        });
+        let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(*width, *height)));
+        renderer.redraw(&plan, &|| true).unwrap();
+        let mut fresh = Renderer::default();
+        assert!(fresh.render(&plan) == renderer.picture(), "{width} x {height}");
+    }
+}
+
 /// Catches: a light that is traced because another one moved, or because its colour changed; rays
 /// of a whole picture for an object that moves; shadows that stay where their caster was, their
 /// light was, or another surface was seen.

@@ -6,8 +6,6 @@
 
 use std::ops::RangeInclusive;
 
-use super::image::Size;
-
 /// The side of the finest cells, as a power of two.
 const FINEST: u32 = 2;
 /// Cells along a side that a rectangle reaches into, at most.
@@ -53,10 +51,10 @@ impl Cells {
 }
 
 impl ByteBounds {
-    /// The bounds of a grid of this size, whose bytes stand row by row; each may be bounded itself.
+    /// The bounds of bytes that stand in rows of `width`; each may be bounded itself.
     #[must_use]
-    pub fn new(size: Size, bytes: impl Iterator<Item = [u8; 2]>) -> Self {
-        let mut levels = vec![Cells::new(size.width, 1 << FINEST, bytes.take(size.area()))];
+    pub fn new(width: usize, bytes: impl Iterator<Item = [u8; 2]>) -> Self {
+        let mut levels = vec![Cells::new(width, 1 << FINEST, bytes)];
         while let Some(last) = levels.last()
             && last.bounds.len() > 1
         {
@@ -93,6 +91,7 @@ impl ByteBounds {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::image::Size;
     use crate::base::rng::Rng;
 
     const SIZES: [Size; 5] = [
@@ -125,7 +124,7 @@ mod tests {
         let mut rng = Rng::new(5);
         for size in SIZES {
             let bytes: Vec<u8> = (0..size.area()).map(|_| rng.bits().to_le_bytes()[0]).collect();
-            let bounds = ByteBounds::new(size, bytes.iter().map(|byte| [*byte; 2]));
+            let bounds = ByteBounds::new(size.width, bytes.iter().map(|byte| [*byte; 2]));
             for _ in 0..300 {
                 let (columns, rows) = (range(&mut rng, size.width), range(&mut rng, size.height));
                 let [low, high] = bounds.over(&columns, &rows);
@@ -145,7 +144,7 @@ mod tests {
 
     #[test]
     fn of_nothing_the_least_is_above_the_largest() {
-        let bounds = ByteBounds::new(Size::new(0, 5), std::iter::empty());
+        let bounds = ByteBounds::new(0, std::iter::empty());
         assert_eq!(bounds.over(&(0..=0), &(0..=0)), NOTHING);
     }
 }

@@ -137,7 +137,7 @@ impl Picture {
     }
 
     fn bounds(&self, of: impl Fn(&[u8; 4]) -> [u8; 2]) -> ByteBounds {
-        ByteBounds::new(self.size(), self.pixels.iter().map(of))
+        ByteBounds::new(self.width, self.pixels.iter().map(of))
     }
 
     fn found(&self) -> Found {

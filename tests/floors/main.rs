@@ -31,6 +31,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "lists",
             "shared",
             "color",
+            "byte_bounds",
             "image",
             "math",
             "rng",

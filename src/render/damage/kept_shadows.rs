@@ -30,13 +30,12 @@ impl KeptShadows {
             return self.forget();
         }
         let before = self.plan.replace(plan.clone());
-        let Some(before) = before.filter(|before| shadow_reach::is_known(before, plan)) else {
+        let holds =
+            |before: &FramePlan| before.size == plan.size && shadow_reach::is_known(before, plan);
+        let Some(before) = before.filter(holds) else {
             self.known.forget();
             return self.known.keep(plan.size, &plan.shadows.sources);
         };
-        if before.size != plan.size {
-            self.known.forget();
-        }
         self.known.keep(plan.size, &plan.shadows.sources);
         let damage = Damage::between(&before, plan);
         let changed = Changed::between(&before, plan);

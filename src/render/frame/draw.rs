@@ -10,7 +10,6 @@ use super::extras::{Extras, bits};
 use crate::accuracy::{LightAt, Tangents};
 use crate::base::{Shared, color::Color};
 use crate::render::lights::{self, LightRow, PhongMaterial};
-use crate::render::texture::opacity::Opacity;
 use crate::scene::{Derived, ItemId, Model, NormalSource, Normals, Texture};
 
 /// One mesh of a frame.
@@ -63,9 +62,6 @@ impl Draw {
             // What alphas its pictures have is asked at every fragment.
             let pictures = shaded.texture.iter().chain(&shaded.opacity_map);
             pictures.for_each(|texture| _ = texture.picture.least_alpha());
-        }
-        for opacity in shaded.iter().filter_map(|shaded| Opacity::of(shaded, plan.filter)) {
-            opacity.prepare();
         }
         let lit = shaded.iter().any(|shaded| shaded.light.is_some());
         let flat = lit && plan.light_at == LightAt::Face;

@@ -75,6 +75,8 @@ impl HoleTable {
         let mesh = &draw.model.mesh;
         let parts: Vec<Option<Opacity<'_>>> =
             with_holes(draw, plan).map(|shaded| Opacity::of(shaded?, plan.filter)).collect();
+        // Outside of the parallel section.
+        parts.iter().flatten().for_each(Opacity::prepare);
         let of = |triangle: usize| {
             let triangle = number(triangle);
             let part = mesh.polygon_parts()[mesh.polygon_of(triangle) as usize];

@@ -1,5 +1,5 @@
-//! The opacity of a surface that has holes: the material's, times the texture's alpha, times the map
-//! of opacity.
+//! The opacity of a surface that has holes: the material's, times the texture's alpha, times the
+//! map of opacity.
 
 use std::ops::RangeInclusive;
 

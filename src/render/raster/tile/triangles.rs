@@ -15,7 +15,7 @@ use crate::render::raster::visibility_buffer::word;
 use crate::render::screen::coverage::{Grid, PixelBox, Snapped, Triangle};
 use crate::render::texture::opacity::Holes;
 
-/// Where a triangle has holes in a block, for all samples.
+/// In which pixels of a block a triangle has holes, for all samples.
 #[inline(always)]
 fn holes_in_block<const N: usize>(
     tests: &[Option<AlphaTest<'_, '_>>; N],
