@@ -209,7 +209,7 @@ mod tests {
     fn texture(rng: &mut Rng, size: Size, wrap: Wrap) -> Texture {
         let field = 1 + rng.index(9);
         let pixels = (0..size.area()).map(|i| {
-            let open = (i % size.width / field + i / size.width / field) % 2 == 0;
+            let open = (i % size.width / field + i / size.width / field).is_multiple_of(2);
             let byte = if rng.one_in(50) { 120 } else { 255 * u8::from(open) };
             [byte, byte, byte, 255 - byte / 2 * u8::from(rng.one_in(2))]
         });
