@@ -11,7 +11,8 @@ const FINEST: u32 = 2;
 /// Cells along a side that a rectangle reaches into, at most.
 const MOST: usize = 4;
 
-/// See the [module](self).
+/// The least and the largest byte of rectangles of a grid: bounds that may be too wide, but never
+/// too narrow.
 #[derive(Clone, Debug)]
 pub struct ByteBounds {
     /// From the finest cells to the only one.
