@@ -130,8 +130,11 @@ fn list_ui(
         }
     });
     ui.separator();
-    let steps = if pointed == 1 { "step" } else { "steps" };
-    ui.weak(format!("{name} {pointed} {steps}"));
+    ui.weak(match pointed {
+        0 => format!("{name} how many steps?"),
+        1 => format!("{name} 1 step"),
+        _ => format!("{name} {pointed} steps"),
+    });
     chosen
 }
 
