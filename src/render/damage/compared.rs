@@ -8,7 +8,6 @@ use crate::base::math::same_bits;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Draw, Lines, Pipeline, Shaded};
 use crate::render::lights::{PhongMaterial, ViewLight};
-use crate::scene::Texture;
 
 /// Two plans whose draws are compared.
 pub(super) struct Compared<'a> {
@@ -128,8 +127,8 @@ impl Compared<'_> {
             opacity_map,
             extras,
         } = after;
-        let textures = alike_maps(texture.as_ref(), before.texture.as_ref())
-            && alike_maps(opacity_map.as_ref(), before.opacity_map.as_ref());
+        let textures = Shared::both_same(texture.as_ref(), before.texture.as_ref())
+            && Shared::both_same(opacity_map.as_ref(), before.opacity_map.as_ref());
         let stages = match (light, &before.light) {
             (Some(after), Some(before)) => {
                 after.len() == before.len()
@@ -168,21 +167,13 @@ fn alike_holes(before: &Pipeline, after: &Pipeline) -> bool {
             let both = is_solid(before) && is_solid(after);
             both || (alike(before.cutout.as_slice(), after.cutout.as_slice())
                 && alike(before.opacity.as_slice(), after.opacity.as_slice())
-                && alike_maps(before.texture.as_ref(), after.texture.as_ref())
-                && alike_maps(before.opacity_map.as_ref(), after.opacity_map.as_ref()))
+                && Shared::both_same(before.texture.as_ref(), after.texture.as_ref())
+                && Shared::both_same(before.opacity_map.as_ref(), after.opacity_map.as_ref()))
         }
         (Pipeline::Flat(_), Pipeline::Flat(_)) => true,
         (Pipeline::Flat(_), Pipeline::Shaded(_)) | (Pipeline::Shaded(_), Pipeline::Flat(_)) => {
             false
         }
-    }
-}
-
-fn alike_maps(a: Option<&Shared<Texture>>, b: Option<&Shared<Texture>>) -> bool {
-    match (a, b) {
-        (Some(a), Some(b)) => Shared::same(a, b),
-        (None, None) => true,
-        (Some(_), None) | (None, Some(_)) => false,
     }
 }
 

@@ -241,7 +241,7 @@ impl<'a> NormalsInObject<'a> {
         Self { draw, view_from_object, object_from_view: view_from_object.inverse() }
     }
 
-    /// Where a normal begins and ends.
+    /// The two ends of a normal.
     #[inline(always)]
     fn ends(&self, normal: &DrawnNormal) -> [DVec3; 2] {
         let DrawnNormal { polygon, point } = *normal;

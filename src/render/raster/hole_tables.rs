@@ -48,14 +48,9 @@ impl Surface {
     }
 
     fn is_of(&self, shaded: &Shaded) -> bool {
-        let same = |a: &Option<Shared<Texture>>, b: &Option<Shared<Texture>>| match (a, b) {
-            (Some(a), Some(b)) => Shared::same(a, b),
-            (None, None) => true,
-            (Some(_), None) | (None, Some(_)) => false,
-        };
         shaded.cutout.is_some_and(|opacity| opacity.to_bits() == self.opacity.to_bits())
-            && same(&self.pictures[0], &shaded.texture)
-            && same(&self.pictures[1], &shaded.opacity_map)
+            && Shared::both_same(self.pictures[0].as_ref(), shaded.texture.as_ref())
+            && Shared::both_same(self.pictures[1].as_ref(), shaded.opacity_map.as_ref())
     }
 }
 
@@ -148,7 +143,7 @@ impl HoleTables {
         }
     }
 
-    /// Where the triangles of a draw have holes; nothing if none has.
+    /// What is known of each triangle of a draw; empty if the draw has no holes.
     pub(crate) fn of_draw(&self, draw: usize) -> &[Holes] {
         let table = self.of_draws.get(draw).copied().flatten();
         table.map_or(&[], |table| &self.tables[table].holes)

@@ -86,7 +86,7 @@ impl<'a> Opacity<'a> {
         layers.fold(self.of_material, |opacity, layer| opacity * layer.at(uv, self.filter))
     }
 
-    /// Where there are holes between the least and the largest texture coordinates.
+    /// The holes of the part between the least and the largest texture coordinates.
     #[inline(always)]
     pub(crate) fn holes(&self, between: [[f64; 2]; 2]) -> Holes {
         let [mut low, mut high] = [self.of_material; 2];
