@@ -4,18 +4,22 @@
 
 mod common;
 
-use common::{at, ball, covered, draw, edit, scene, square};
+use common::{at, ball, covered, draw, edit, model_of, scene, square};
 use glam::{DMat4, DVec3};
 use marraztu::accuracy::Shot;
 use marraztu::accuracy::{
     ACCURACY_PRESETS, AXES, Arithmetic, Axis, Coverage, DepthFormat, Filter, Interpolation,
     NormalMatrix, Rounding, Settings, SpecularPower, Subpixels, VertexArithmetic,
 };
+use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::io::lesson_scene;
 use marraztu::render::Renderer;
 use marraztu::render::plan_frame;
-use marraztu::scene::{Light, LightId, LightKind, Material, MaterialChoice, ObjectId, Scene, View};
+use marraztu::scene::{
+    Light, LightId, LightKind, Material, MaterialChoice, MeshSource, Model, NONE, Object, ObjectId,
+    Part, Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
+};
 
 const FIRST: ObjectId = ObjectId(10);
 const SECOND: ObjectId = ObjectId(11);
@@ -53,6 +57,86 @@ fn differing(a: &[u32], b: &[u32]) -> f64 {
 fn steps_apart(a: &Picture, b: &Picture) -> u8 {
     let pairs = a.pixels().as_flattened().iter().zip(b.pixels().as_flattened());
     pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
+}
+
+/// A square from -1 to 1 of `side` x `side` squares, with the whole of a texture on it.
+fn chart(side: u32) -> Shared<Model> {
+    let row = side + 1;
+    let at = |i: u32| [i % row, i / row].map(|i| i as f32 / side as f32);
+    let corner = |i| SourceCorner { position: i, uv: i, normal: NONE };
+    let square = |i: u32| {
+        let first = i / side * row + i % side;
+        [first, first + 1, first + row + 1, first + row]
+    };
+    let count = (side * side) as usize;
+    model_of(
+        "chart",
+        MeshSource {
+            positions: (0..row * row)
+                .map(at)
+                .map(|[x, y]| [2.0 * x - 1.0, 2.0 * y - 1.0, 0.0])
+                .collect(),
+            uvs: (0..row * row).map(at).collect(),
+            corners: (0..side * side).flat_map(square).map(corner).collect(),
+            arities: vec![4; count],
+            polygon_parts: vec![0; count],
+            parts: vec![Part { name: "chart".to_owned(), material: None }],
+            ..MeshSource::default()
+        },
+    )
+}
+
+/// Fields of this many texels, every second one a hole.
+fn fields(texels: usize, wrap: Wrap) -> Shared<Texture> {
+    let size = Size::new(200, 136);
+    let texel = |i: usize| {
+        let open = (i % size.width / texels + i / size.width / texels).is_multiple_of(2);
+        [200, 90, 40, if open { 0 } else { 255 }]
+    };
+    let texels = (0..size.area()).map(texel).collect();
+    Shared::new(Texture {
+        source: "fields".into(),
+        picture: Picture::from_pixels(size, texels).expect("as many as it has").into(),
+        wrap,
+        offset: [0.3, -0.1],
+        scale: [1.5, -1.0],
+    })
+}
+
+/// Catches: holes of a block, or of a triangle, that are taken from a part of it; texels that lie
+/// elsewhere than the bounds that are read. The other coverage tests each pixel of two triangles by
+/// itself.
+#[test]
+fn what_is_known_of_the_holes_of_blocks_and_triangles_is_what_each_pixel_says() {
+    let turn = DMat4::from_rotation_y(0.5) * DMat4::from_rotation_x(0.3);
+    let holes_of = |object: &mut Object, texels, wrap| {
+        object.surface = Surface::Texture;
+        object.sides = Sides::Two;
+        object.texture = Some(fields(texels, wrap));
+    };
+    for (texels, wrap) in [(7, Wrap::Repeat), (40, Wrap::Repeat), (40, Wrap::Clamp)] {
+        for filter in [Filter::Nearest, Filter::Bilinear] {
+            let shown = |side, coverage| {
+                let place = DMat4::from_scale(DVec3::splat(150.0)) * turn;
+                let (mut scene, view) = scene(&[(chart(side), place)]);
+                edit(&mut scene, FIRST, |object| holes_of(object, texels, wrap));
+                let settings = Settings { filter, coverage, ..Settings::default() };
+                primitives(&scene, &unmarked(view), &settings, 500)
+            };
+            let each = shown(1, Coverage::F32Edges);
+            let count = each.iter().filter(|seen| **seen != 0).count();
+            assert!((20_000..180_000).contains(&count), "{count} pixels are seen");
+            for side in [1, 9, 60] {
+                let own = shown(side, Coverage::Exact);
+                let apart = own.iter().zip(&each).filter(|(a, b)| (**a == 0) != (**b == 0)).count();
+                // Corners are snapped to a 256th of a pixel, so borders of texels move by less.
+                assert!(
+                    apart * 1000 <= count,
+                    "{side}, {texels}, {wrap:?}, {filter:?}: {apart} of {count}"
+                );
+            }
+        }
+    }
 }
 
 #[test]
