@@ -81,7 +81,7 @@ impl<'a> Sampler<'a> {
         match self.filter {
             Filter::Nearest => self.nearest::<S, D>(simd, position),
             Filter::Bilinear => {
-                let level = MipLevel::of(self, simd, i32x16::splat(simd, 0));
+                let level = MipLevel::first(self, simd);
                 let color = level.bilinear::<D>(simd, self, position);
                 color.times(f32x16::splat(simd, 1.0 / 255.0))
             }
@@ -109,18 +109,13 @@ impl<'a> Sampler<'a> {
         of: impl Fn(i32x16<S>) -> f32x16<S>,
     ) -> f32x16<S> {
         let position = [self.reduced(position[0], 0), self.reduced(position[1], 1)];
-        let level = MipLevel::of(self, simd, i32x16::splat(simd, 0));
+        let level = MipLevel::first(self, simd);
         let number = match self.filter {
             Filter::Nearest => of(level.nearest(simd, self, position)),
             Filter::Bilinear | Filter::Trilinear => {
-                let Footprint { left, right, lower, upper, s, t } = level.footprint(self, position);
-                let at = [[left, lower], [right, lower], [left, upper], [right, upper]];
-                let [a, b, c, d] = [
-                    of(level.fetch(simd, self, at[0])),
-                    of(level.fetch(simd, self, at[1])),
-                    of(level.fetch(simd, self, at[2])),
-                    of(level.fetch(simd, self, at[3])),
-                ];
+                let Footprint { texels, s, t } = level.footprint(simd, self, position);
+                let [[a, b], [c, d]] = texels;
+                let (a, b, c, d) = (of(a), of(b), of(c), of(d));
                 let (below, above) = (a + (b - a) * s, c + (d - c) * s);
                 below + (above - below) * t
             }
@@ -158,7 +153,7 @@ impl<'a> Sampler<'a> {
 
     #[inline(always)]
     fn nearest<S: Simd, D: Decode>(&self, simd: S, position: Positions<S>) -> Vec3<f32x16<S>> {
-        let level = MipLevel::of(self, simd, i32x16::splat(simd, 0));
+        let level = MipLevel::first(self, simd);
         let Vec3([r, g, b]) = D::channels(level.nearest(simd, self, position));
         Vec3([r / 255.0, g / 255.0, b / 255.0])
     }

@@ -22,14 +22,13 @@ pub(super) struct MipLevel<S: Simd> {
     height: i32x16<S>,
 }
 
-/// The columns and rows of four texels, and the weights of the right and the upper ones.
-#[derive(Clone, Copy)]
+/// The four texels around sixteen positions.
 pub(super) struct Footprint<S: Simd> {
-    pub(super) left: i32x16<S>,
-    pub(super) right: i32x16<S>,
-    pub(super) lower: i32x16<S>,
-    pub(super) upper: i32x16<S>,
+    /// Left and right in the lower row, and in the upper one.
+    pub(super) texels: [[i32x16<S>; 2]; 2],
+    /// The weight of the right ones.
     pub(super) s: f32x16<S>,
+    /// That of the upper ones.
     pub(super) t: f32x16<S>,
 }
 
@@ -44,6 +43,17 @@ impl<S: Simd> MipLevel<S> {
         let [height, up] = sides_of(lanes, heights, numbers, one);
         let (width, height) = (width.to_int(), height.to_int());
         Self { one, numbers, scale: [across, up], width, height }
+    }
+
+    /// The first level, for all pixels.
+    #[inline(always)]
+    pub(super) fn first(sampler: &Sampler<'_>, simd: S) -> Self {
+        let [widths, heights] = &sampler.sizes;
+        let width = f32x16::splat(simd, widths[0]).to_int();
+        let height = f32x16::splat(simd, heights[0]).to_int();
+        let one = f32x16::splat(simd, 1.0);
+        let numbers = i32x16::splat(simd, 0);
+        Self { one: Some(0), numbers, scale: [one, one], width, height }
     }
 
     /// The texels at some positions.
@@ -66,40 +76,35 @@ impl<S: Simd> MipLevel<S> {
         &self,
         simd: S,
         sampler: &Sampler<'_>,
-        [x, y]: Positions<S>,
+        position: Positions<S>,
     ) -> Vec3<f32x16<S>> {
-        let (x, y) = (x * self.scale[0] - 0.5, y * self.scale[1] - 0.5);
-        let (column, row) = (x.floor(), y.floor());
-        let (s, t) = (x - column, y - row);
-        let wrap = sampler.levels[0].wrap;
-        let [left, right] = beside(column.to_int(), self.width, wrap);
-        let [lower, upper] = beside(row.to_int(), self.height, wrap);
-        let [a, b] = self.fetch_beside(simd, sampler, [left, right], lower);
-        let [c, d] = self.fetch_beside(simd, sampler, [left, right], upper);
-        let below = between(D::channels(a), D::channels(b), s);
-        let above = between(D::channels(c), D::channels(d), s);
+        let Footprint { texels: [lower, upper], s, t } = self.footprint(simd, sampler, position);
+        let below = between(D::channels(lower[0]), D::channels(lower[1]), s);
+        let above = between(D::channels(upper[0]), D::channels(upper[1]), s);
         between(below, above, t)
     }
 
     /// The four texels around some positions.
     #[inline(always)]
-    pub(super) fn footprint(&self, sampler: &Sampler<'_>, [x, y]: Positions<S>) -> Footprint<S> {
+    pub(super) fn footprint(
+        &self,
+        simd: S,
+        sampler: &Sampler<'_>,
+        [x, y]: Positions<S>,
+    ) -> Footprint<S> {
         let (x, y) = (x * self.scale[0] - 0.5, y * self.scale[1] - 0.5);
         let (column, row) = (x.floor(), y.floor());
         let wrap = sampler.levels[0].wrap;
-        let [left, right] = beside(column.to_int(), self.width, wrap);
+        let columns = beside(column.to_int(), self.width, wrap);
         let [lower, upper] = beside(row.to_int(), self.height, wrap);
-        Footprint { left, right, lower, upper, s: x - column, t: y - row }
+        let lower = self.fetch_beside(simd, sampler, columns, lower);
+        let upper = self.fetch_beside(simd, sampler, columns, upper);
+        Footprint { texels: [lower, upper], s: x - column, t: y - row }
     }
 
     /// The texels at some columns and rows of the picture; rows count upwards.
     #[inline(always)]
-    pub(super) fn fetch(
-        &self,
-        simd: S,
-        sampler: &Sampler<'_>,
-        [column, row]: [i32x16<S>; 2],
-    ) -> i32x16<S> {
+    fn fetch(&self, simd: S, sampler: &Sampler<'_>, [column, row]: [i32x16<S>; 2]) -> i32x16<S> {
         self.fetch_at(simd, sampler, &self.places([column, row]))
     }
 
