@@ -103,6 +103,33 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
         self.surface.opacity.holes(between(uvs))
     }
 
+    /// Whether its weights follow from edge functions alone.
+    pub(crate) fn has_edges(&self) -> bool {
+        self.weights.follow_from_edges()
+    }
+
+    /// Which of sixteen pixels are opaque, a bit for each, by eight and eight edge functions of the
+    /// second and the third corner. `pixel` gives the pixel of a lane. They are those of two rows
+    /// that begin at `first`; or any, if its weights follow from edge functions.
+    #[inline(always)]
+    pub(crate) fn opaque<S: Simd>(
+        &self,
+        simd: S,
+        first: [i32; 2],
+        edges: [[f64x8<S>; 2]; 2],
+        pixels: u64,
+        pixel: impl Fn(usize) -> [i32; 2],
+    ) -> u64 {
+        let [solid, open] = self.decide(simd, first, edges).unwrap_or([0, u64::MAX]);
+        let (mut solid, mut open) = (solid & !open & pixels, open & pixels);
+        while open != 0 {
+            let lane = open.trailing_zeros() as usize;
+            open &= open - 1;
+            solid |= u64::from(self.is_opaque(pixel(lane))) << lane;
+        }
+        solid
+    }
+
     /// Whether it passes the test at a pixel.
     #[inline(always)]
     pub(crate) fn is_opaque(&self, pixel: [i32; 2]) -> bool {
@@ -159,19 +186,19 @@ impl<S: Simd> large::Holes<S> for BlockHoles<'_, '_, '_> {
     }
 
     #[inline(always)]
-    fn opaque(&self, simd: S, pair: usize, pixels: u64, edges: [[f64x8<S>; 2]; 2]) -> u64 {
+    fn opaque(
+        &mut self,
+        simd: S,
+        pair: usize,
+        pixels: u64,
+        edges: [[f64x8<S>; 2]; 2],
+        _: f32x16<S>,
+    ) -> u64 {
         let [x, y] = self.first;
         let y = y + 2 * i32::try_from(pair).unwrap_or(0);
-        let [solid, open] = self.test.decide(simd, [x, y], edges).unwrap_or([0, u64::MAX]);
-        let (mut solid, mut open) = (solid & !open & pixels, open & pixels);
-        while open != 0 {
-            let lane = open.trailing_zeros();
-            open &= open - 1;
-            let at = lane.cast_signed();
-            if self.test.is_opaque([x + at % BLOCK, y + at / BLOCK]) {
-                solid |= 1 << lane;
-            }
-        }
-        solid
+        self.test.opaque(simd, [x, y], edges, pixels, |lane| {
+            let at = i32::try_from(lane).unwrap_or(0);
+            [x + at % BLOCK, y + at / BLOCK]
+        })
     }
 }

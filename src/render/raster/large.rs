@@ -46,9 +46,16 @@ pub(crate) struct Large {
 pub(crate) trait Holes<S: Simd> {
     /// Whether there may be any.
     fn there_are(&self) -> bool;
-    /// Which of some pixels are opaque: those of two rows of a block, a bit for each, with the edge
-    /// functions of the second and the third corner in each row.
-    fn opaque(&self, simd: S, pair: usize, pixels: u64, edges: [[f64x8<S>; 2]; 2]) -> u64;
+    /// Which of some pixels are opaque: those of two rows of a block, a bit for each, with their
+    /// depths and the edge functions of the second and the third corner in each row.
+    fn opaque(
+        &mut self,
+        simd: S,
+        pair: usize,
+        pixels: u64,
+        edges: [[f64x8<S>; 2]; 2],
+        depth: f32x16<S>,
+    ) -> u64;
 }
 
 /// No holes.
@@ -61,7 +68,7 @@ impl<S: Simd> Holes<S> for Solid {
     }
 
     #[inline(always)]
-    fn opaque(&self, _: S, _: usize, pixels: u64, _: [[f64x8<S>; 2]; 2]) -> u64 {
+    fn opaque(&mut self, _: S, _: usize, pixels: u64, _: [[f64x8<S>; 2]; 2], _: f32x16<S>) -> u64 {
         pixels
     }
 }
@@ -186,7 +193,7 @@ impl Large {
         simd: S,
         (block, shift): (usize, [i32; 2]),
         whole: bool,
-        holes: &impl Holes<S>,
+        holes: &mut impl Holes<S>,
         visibility: &mut [u64; BLOCK_PIXELS],
     ) {
         let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
@@ -217,7 +224,10 @@ impl Large {
                 }
                 let float = |edges: i64x8<S>| edges.to_float::<f64x8<S>>();
                 let rows = [[float(upper[1]), float(upper[2])], [float(lower[1]), float(lower[2])]];
-                let opaque = holes.opaque(simd, pair, front, rows);
+                let opaque = holes.opaque(simd, pair, front, rows, depth);
+                if opaque == 0 {
+                    continue;
+                }
                 covered = mask32x16::from_bitmask(simd, opaque);
             }
             put_rows(format, simd, covered, depth, self.number, visibility);

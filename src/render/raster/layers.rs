@@ -348,7 +348,7 @@ impl Layers {
             plane.fill(0);
             let (at, whole) = ((block, shift), touched.whole >> block & 1 != 0);
             match large {
-                Layer::Large(large) => large.draw(format, simd, at, whole, &Solid, &mut plane),
+                Layer::Large(large) => large.draw(format, simd, at, whole, &mut Solid, &mut plane),
                 Layer::Floats(own) => own.draw(format, simd, at, whole, &Everywhere, &mut plane),
                 Layer::Rows(rows, own) if *own == sample => {
                     rows.draw(format, simd, block, &Everywhere, &mut plane);

@@ -21,6 +21,7 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 
+use self::cutouts::Cutouts;
 use super::bins::Bins;
 use super::depth_format::{Any, Format as _, depths_between, with_format};
 use super::edges_in_floats::FloatTriangle;
@@ -121,7 +122,7 @@ impl Visibility {
                 dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, tile));
             }
         }
-        let mut surface = None;
+        let mut cutouts = Cutouts::default();
         for bins in frame.bins() {
             dispatch!(level, simd => self.draw_hits::<_, N>(simd, bins, tile));
             if plan.variants.coverage != Coverage::Exact {
@@ -135,7 +136,7 @@ impl Visibility {
                 let large = &bins.large[number as usize];
                 if large.cutout {
                     dispatch!(level, simd => {
-                        self.draw_cutout::<_, N>(simd, (plan, frame), large, &mut surface);
+                        self.draw_cutout::<_, N>(simd, (plan, frame), large, &mut cutouts);
                     });
                 }
             }
@@ -309,7 +310,7 @@ impl Visibility {
             let shift = sample_positions.shift::<N>(sample);
             let plane = self.plane::<N>(block, sample);
             with_format!(format, D => {
-                large.draw(D::of(format), simd, (block, shift), whole, &Solid, plane);
+                large.draw(D::of(format), simd, (block, shift), whole, &mut Solid, plane);
             });
         });
     }
@@ -388,6 +389,8 @@ impl Visibility {
     }
 }
 
+mod cutout_fragments;
+mod cutouts;
 #[cfg(test)]
 mod tests;
 mod triangles;

@@ -59,6 +59,11 @@ impl Weights {
         Self { method }
     }
 
+    /// Whether they follow from edge functions alone.
+    pub(crate) const fn follow_from_edges(&self) -> bool {
+        matches!(self.method, Method::Edges(Some(_), _))
+    }
+
     /// The weights at a pixel.
     #[inline(always)]
     pub(crate) fn at(&self, pixel: [i32; 2]) -> DVec3 {

@@ -1,32 +1,15 @@
-//! Draws the triangles of a tile that are not small: medium and large ones, and those with holes.
+//! Draws the triangles of a tile that are not small and have no holes: medium and large ones.
 
 use fearless_simd::{Level, Simd};
 
 use super::{Shown, Visibility};
 use crate::base::math::each;
-use crate::render::frame::FramePlan;
-use crate::render::raster::alpha_test::{AlphaSurface, AlphaTest, BlockHoles};
 use crate::render::raster::bins::LargeTriangle;
-use crate::render::raster::depth_format::{Any, Format as _, with_format};
-use crate::render::raster::geometry::ScreenGeometry;
-use crate::render::raster::large::{Large, Solid, Touched};
+use crate::render::raster::depth_format::{Format as _, with_format};
+use crate::render::raster::large::Large;
 use crate::render::raster::medium::{self, Medium};
 use crate::render::raster::visibility_buffer::word;
 use crate::render::screen::coverage::{Grid, PixelBox, Snapped, Triangle};
-use crate::render::texture::opacity::Holes;
-
-/// In which pixels of a block a triangle has holes, for all samples.
-#[inline(always)]
-fn holes_in_block<const N: usize>(
-    tests: &[Option<AlphaTest<'_, '_>>; N],
-    first: [i32; 2],
-) -> Holes {
-    let mut each = tests
-        .iter()
-        .map(|test| test.as_ref().map_or(Holes::Nowhere, |it| it.holes_in_block(first)));
-    let own = each.next().unwrap_or(Holes::Somewhere);
-    if each.all(|other| other == own) { own } else { Holes::Somewhere }
-}
 
 impl Visibility {
     #[inline(always)]
@@ -98,7 +81,7 @@ impl Visibility {
     /// Draws a triangle into a block that it covers fully; `place` is its index in `large`, once it
     /// has one.
     #[inline(never)]
-    fn draw_full_block<const N: usize>(
+    pub(super) fn draw_full_block<const N: usize>(
         &mut self,
         level: Level,
         large: &Large,
@@ -152,90 +135,12 @@ impl Visibility {
         noted
     }
 
-    /// Draws a triangle with the alpha test in each sample.
-    #[inline(always)]
-    pub(super) fn draw_cutout<'a, S: Simd, const N: usize>(
-        &mut self,
-        simd: S,
-        (plan, frame): (&'a FramePlan, &ScreenGeometry),
-        triangle: &LargeTriangle,
-        surface: &mut Option<AlphaSurface<'a>>,
-    ) {
-        let Some((large, area)) = self.set_up::<N>(triangle) else { return };
-        let Touched { mut some, whole } = large.blocks::<S, N>(simd, area, &self.sample_positions);
-        let (mut blocks, high) = (some, self.key(large.high));
-        while blocks != 0 {
-            let block = blocks.trailing_zeros();
-            blocks &= blocks - 1;
-            if high < self.farthest[block as usize] {
-                some &= !(1 << block);
-            }
-        }
-        if some == 0 {
-            return;
-        }
-        let surface = AlphaSurface::of(surface, plan, frame, triangle.number);
-        let tests: [Option<AlphaTest<'_, '_>>; N] = std::array::from_fn(|sample| {
-            let shift = self.sample_positions.shift::<N>(sample);
-            AlphaTest::of(surface?, (plan, frame), triangle.number, shift)
-        });
-        some &= !self.draw_even_blocks::<N>(simd.level(), &large, some & whole, &tests);
-        while some != 0 {
-            let block = some.trailing_zeros() as usize;
-            some &= some - 1;
-            self.write::<N>(simd.level(), block);
-            let (first, whole) = (self.corner(block), whole >> block & 1 != 0);
-            let format = Any(self.depth_format);
-            for (sample, test) in tests.iter().enumerate() {
-                let at = (block, self.sample_positions.shift::<N>(sample));
-                let plane = self.plane::<N>(block, sample);
-                // Compiled once, whatever `N` is.
-                simd.vectorize(
-                    #[inline(always)]
-                    || match test {
-                        Some(test) => {
-                            large.draw(format, simd, at, whole, &BlockHoles { test, first }, plane);
-                        }
-                        None => large.draw(format, simd, at, whole, &Solid, plane),
-                    },
-                );
-            }
-        }
-    }
-
-    /// Draws a triangle into those of some blocks that it covers fully in which it has no holes.
-    /// Returns them, and those in which it has nothing else.
-    #[inline(always)]
-    fn draw_even_blocks<const N: usize>(
-        &mut self,
-        level: Level,
-        large: &Large,
-        mut blocks: u64,
-        tests: &[Option<AlphaTest<'_, '_>>; N],
-    ) -> u64 {
-        let (mut done, mut place) = (0, None);
-        // Looking costs a tenth of sampling: if it hardly ever helps, it ends.
-        let mut credit = 4;
-        while blocks != 0 && credit > 0 {
-            let block = blocks.trailing_zeros() as usize;
-            blocks &= blocks - 1;
-            let holes = holes_in_block(tests, self.corner(block));
-            if holes == Holes::Somewhere {
-                credit -= 1;
-                continue;
-            }
-            credit += 1;
-            done |= 1 << block;
-            if holes == Holes::Nowhere {
-                self.draw_full_block::<N>(level, large, block, &mut place);
-            }
-        }
-        done
-    }
-
     /// A triangle relative to the tile, and the pixels of its bounding box in it, counted from the
     /// tile's first; `None` if there are none.
-    fn set_up<const N: usize>(&self, triangle: &LargeTriangle) -> Option<(Large, PixelBox)> {
+    pub(super) fn set_up<const N: usize>(
+        &self,
+        triangle: &LargeTriangle,
+    ) -> Option<(Large, PixelBox)> {
         let corners = each(triangle.corners, |corner| corner.at());
         let area = self.reached::<N>(corners)?;
         let edges = Triangle::on(self.grid, corners)?;
