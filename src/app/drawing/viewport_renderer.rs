@@ -273,6 +273,7 @@ mod tests {
     use super::*;
     use crate::accuracy::Settings;
     use crate::app::drawing::border::Run;
+    use crate::app::state::Statistics;
     use crate::base::color::Color;
     use crate::io;
     use crate::scene::Command;
@@ -310,6 +311,25 @@ mod tests {
 
     fn newer() -> Asked {
         Asked::Newer
+    }
+
+    #[test]
+    fn the_time_that_is_shown_is_that_of_the_last_picture_that_was_drawn_in_part_or_whole() {
+        let wanted = snapshot(Size::new(64, 48));
+        let mut renderer = ViewportRenderer::new(Instant::now);
+        let mut statistics = Statistics::default();
+        let first = renderer.draw(&wanted, &this).unwrap();
+        statistics.note(&first, 1);
+        let finer = Snapshot { refined: Some(Samples::Four), ..wanted.clone() };
+        assert!(matches!(renderer.refine(&finer, &|| true), Finer::Refined(_)));
+        // What is no longer wanted finer is shown as it was, and takes no time.
+        let again = renderer.draw(&wanted, &this).unwrap();
+        assert_eq!(again.changes.tiles(), 0);
+        statistics.note(&again, 2);
+        assert_eq!((statistics.time, statistics.pictures), (first.time, 2));
+        let other = renderer.draw(&recolored(&wanted, 9), &this).unwrap();
+        statistics.note(&other, 3);
+        assert_eq!(statistics.time, other.time);
     }
 
     #[test]

@@ -15,7 +15,8 @@ use crate::scene::{Scene, View};
 /// Statistics of the last picture.
 #[derive(Clone, Debug)]
 pub struct Statistics {
-    /// From the snapshot to the finished picture in memory, on the thread that draws.
+    /// From the snapshot to the finished picture in memory, on the thread that draws, of the last
+    /// picture that differs from the one before.
     pub time: Duration,
     /// The size of the picture.
     pub size: Size,
@@ -58,8 +59,10 @@ impl Statistics {
     /// Records a picture, the `rate`th in the last second.
     pub(crate) fn note(&mut self, drawn: &Drawn, rate: u32) {
         let [width, height] = drawn.image.size;
+        // That nothing had to be drawn again tells nothing of how long the picture takes.
+        let is_new = self.pictures == 0 || drawn.changes.tiles() > 0;
         *self = Self {
-            time: drawn.time,
+            time: if is_new { drawn.time } else { self.time },
             size: Size::new(width, height),
             pictures: self.pictures + 1,
             late: false,

@@ -29,6 +29,11 @@ const fn default_color(visuals: &Visuals) -> Color32 {
     if visuals.dark_mode { Color32::from_rgb(230, 159, 0) } else { Color32::from_rgb(213, 94, 0) }
 }
 
+/// The colour of a mark that is not pointed at.
+fn mark_color(visuals: &Visuals, mark: &PanelMark) -> Color32 {
+    if mark.is_default { default_color(visuals) } else { theme::accent(visuals) }
+}
+
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     suite_ui(ui, state, requests);
@@ -119,7 +124,13 @@ fn panel_ui(
     let transform = plot_ui(ui, panels);
     let at: Vec<Pos2> = panel.marks.iter().map(|mark| position(mark, &transform)).collect();
     let line = Stroke::new(1.5, theme::accent(ui.visuals()));
-    let _ = ui.painter().with_clip_rect(*transform.frame()).line(at.clone(), line);
+    let painter = ui.painter().with_clip_rect(*transform.frame());
+    let _ = painter.line(at.clone(), line);
+    for (mark, at) in panel.marks.iter().zip(&at) {
+        let [from, to] = mark.noise.map(|x| transform.position_from_point_x(x));
+        let ink = mark_color(ui.visuals(), mark);
+        painter.hline(from..=to, at.y, Stroke::new(1.0, ink));
+    }
     let is_now = |mark: &PanelMark| report.findings.points[mark.point].settings == state.settings;
     // One stop of Tab: the arrows go from mark to mark.
     let ids: Vec<Id> =
@@ -226,10 +237,9 @@ fn mark_ui(
     let name = format!("Draw with {}", report.findings.points[mark.point].name);
     response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, is_now, &name));
     let visuals = ui.visuals();
-    let ink = match (response.hovered(), mark.is_default) {
-        (true, _) => visuals.strong_text_color(),
-        (false, true) => default_color(visuals),
-        (false, false) => theme::accent(visuals),
+    let ink = match response.hovered() {
+        true => visuals.strong_text_color(),
+        false => mark_color(visuals, mark),
     };
     ui.painter().circle_filled(at, MARK, ink);
     if is_now {
@@ -242,15 +252,14 @@ fn mark_ui(
 /// The figures of a choice, for its tooltip.
 fn tip_ui(ui: &mut Ui, mark: &PanelMark, report: &Report) {
     let point = &report.findings.points[mark.point];
-    let quartiles = &point.ratio.quartiles;
+    let [least, most] = report.findings.noise_of(mark.point);
     ui.strong(&point.name);
     ui.label(format!(
-        "{} ms: {:.3} times the default; interquartile range of {} pairs from {:.3} to {:.3}",
+        "{} ms: {:.3} times the default; by {} pairs, between {least:.3} and {most:.3} times (the \
+         line)",
         brief(point.ms),
-        quartiles.median,
+        point.ratio.quartiles.median,
         point.ratio.pairs,
-        quartiles.lower,
-        quartiles.upper
     ));
     let in_words = crate::app::state::laboratory::in_words;
     ui.label(format!("Error: {}; FLIP {}", in_words(&point.error), brief(point.error.flip)));
