@@ -166,6 +166,10 @@ kinds! {
     MendedMapped:
         "material \"@\": Ks is missing beside map_Ks, and is taken as 1",
         "# materials: Ks is missing beside map_Ks, and is taken as 1";
+    /// `bsdf pbr`: a highlight from roughness and metalness.
+    MendedPacked:
+        "material \"@\": with bsdf pbr, Ks is taken as occlusion, roughness and metalness",
+        "# materials: with bsdf pbr, Ks is taken as occlusion, roughness and metalness";
     /// An illumination model that is not drawn.
     Illumination:
         "material \"@\": illum is not 0, 1 or 2: it is drawn as 2, without mirrors and refraction",
@@ -230,6 +234,7 @@ impl FindingKind {
                 | Self::MendedRange
                 | Self::MendedEmission
                 | Self::MendedMapped
+                | Self::MendedPacked
                 | Self::Illumination
                 | Self::MendedTransparency
                 | Self::Transparent

@@ -8,6 +8,9 @@ use crate::base::Shared;
 use crate::io::findings::{FindingKind, Findings};
 use crate::scene::{FileMaterial, MapKind, Material, SurfaceMaps, Texture};
 
+/// The largest exponent of a highlight that roughness gives, as files have it at most.
+const NARROWEST: f64 = 1000.0;
+
 impl Statements {
     /// The material, with missing and invalid values replaced.
     pub(super) fn mended(
@@ -18,13 +21,16 @@ impl Statements {
         let mut note = |kind| findings.add(kind, &self.name, Some(self.line));
         let diffuse = self.mended_diffuse(&mut note);
         let ambient = self.mended_ambient(diffuse, &mut note);
-        let specular = self.mended_specular(&mut note);
-        let exponent = self.exponent.filter(|exponent| *exponent >= 1.0).unwrap_or(1.0);
-        // Without a highlight, its exponent does not matter.
-        let nonsense = self.exponent.is_some_and(|exponent| exponent < 1.0);
-        if nonsense || (self.exponent.is_none() && specular != [0.0; 3]) {
-            note(FindingKind::MendedExponent);
-        }
+        let (specular, exponent) = match self.packed() {
+            Some(packed) => {
+                note(FindingKind::MendedPacked);
+                highlight(packed, diffuse, self.exponent.filter(|exponent| *exponent >= 1.0))
+            }
+            None => {
+                let specular = self.mended_specular(&mut note);
+                (specular, self.mended_exponent(specular, &mut note))
+            }
+        };
         let opacity = self.mended_opacity(&mut note);
         let emission = self.mended_emission(&mut note);
         if self.illumination.is_some_and(|model| ![0.0, 1.0, 2.0].contains(&model)) {
@@ -96,11 +102,42 @@ impl Statements {
         }
     }
 
+    fn mended_exponent(&self, specular: [f64; 3], note: &mut dyn FnMut(FindingKind)) -> f64 {
+        // Without a highlight, its exponent does not matter.
+        let nonsense = self.exponent.is_some_and(|exponent| exponent < 1.0);
+        if nonsense || (self.exponent.is_none() && specular != [0.0; 3]) {
+            note(FindingKind::MendedExponent);
+        }
+        self.exponent.filter(|exponent| *exponent >= 1.0).unwrap_or(1.0)
+    }
+
+    /// Occlusion, roughness and metalness, if Ks holds them.
+    fn packed(&self) -> Option<[f64; 3]> {
+        self.specular.filter(|_| self.is_packed)
+    }
+
     fn mended_opacity(&self, note: &mut dyn FnMut(FindingKind)) -> f64 {
         let given = self.opacity.or_else(|| self.transparency.map(|x| 1.0 - x)).unwrap_or(1.0);
         let [opacity, ..] = clamped([given; 3], note);
         opacity
     }
+}
+
+/// The colour and the exponent of a highlight as wide and as bright as roughness and metalness say.
+///
+/// Roughness r is that of a lobe with the slope r^2 (Burley, Physically Based Shading at Disney,
+/// 2012), whose Blinn exponent is n = 2 / r^4 - 2 (Karis, Real Shading in Unreal Engine 4, 2013).
+/// The lobe is (n + 8) / 8 times as high as its share of the light (Akenine-Möller, Haines and
+/// Hoffman, Real-Time Rendering, 3rd edition, 7.6), and Phong's exponent is a quarter of Blinn's.
+/// The share is 0.04 of what is no metal, and the colour of metal.
+fn highlight(packed: [f64; 3], diffuse: [f64; 3], given: Option<f64>) -> ([f64; 3], f64) {
+    let [_, roughness, metalness] = packed.map(|x| x.clamp(0.0, 1.0));
+    let blinn = (2.0 / roughness.powi(4) - 2.0).min(4.0 * NARROWEST);
+    let specular = diffuse.map(|color| {
+        let share = 0.04 * (1.0 - metalness) + color * metalness;
+        (share * (blinn + 8.0) / 8.0).min(1.0)
+    });
+    (specular, given.unwrap_or((blinn / 4.0).max(1.0)))
 }
 
 /// Three numbers, clamped to 0 to 1.

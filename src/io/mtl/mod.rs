@@ -15,7 +15,7 @@ use self::map::{Map, map};
 use super::error::{LoadError, shown};
 use super::findings::{Finding, FindingKind, Findings, joined};
 use super::locate::Locator;
-use super::obj::lines::{Line, Lines, decode};
+use super::obj::lines::{Line, Lines, decode, words};
 use super::progress::Progress;
 use super::read::{MOST_WORDS, is_utf_16, read, utf_8};
 use super::texture::{Pictures, Read};
@@ -76,6 +76,8 @@ struct Statements {
     opacity: Option<f64>,
     transparency: Option<f64>,
     illumination: Option<f64>,
+    /// `bsdf pbr`: Ks holds occlusion, roughness and metalness.
+    is_packed: bool,
     map: Option<(u32, Map)>,
     /// The other maps.
     maps: BTreeMap<MapKind, (u32, Map)>,
@@ -152,10 +154,15 @@ impl<'a> Library<'a> {
         (self.materials, joined(findings))
     }
 
-    fn add(&mut self, statements: Statements, folders: [&Path; 2], findings: &mut Findings) {
+    fn add(&mut self, mut statements: Statements, folders: [&Path; 2], findings: &mut Findings) {
         if self.place(&statements.name).is_some() {
             findings.add(FindingKind::MaterialTwice, &statements.name, Some(statements.line));
             return;
+        }
+        if statements.is_packed
+            && let Some((line, _)) = statements.maps.remove(&MapKind::Specular)
+        {
+            findings.add(FindingKind::MapUnused, "map_Ks", Some(line));
         }
         let mut read = |(line, map): &(u32, Map)| {
             for option in &map.ignored {
@@ -275,6 +282,7 @@ impl Statements {
             b"tr" => read = set(&mut self.transparency, statement::opacity(rest)),
             b"illum" => read = set(&mut self.illumination, statement::exponent(rest)),
             b"ke" => read = set(&mut self.emission, statement::emission(rest)),
+            b"bsdf" if words(rest).eq([b"pbr"]) => self.is_packed = true,
             b"map_kd" => {
                 let map = map(rest).map(|map| (line.number, map));
                 read = set(&mut self.map, map);
@@ -388,6 +396,29 @@ mod tests {
     }
 
     #[test]
+    fn packed_roughness_and_metalness_are_no_color_of_highlights() {
+        let packed = |ks| {
+            let text = format!("newmtl m\nbsdf pbr\nKa 0 0 0\nKd .5 .25 1\nKs {ks}\n");
+            let (material, findings) = read(&text);
+            assert_eq!(findings, [FindingKind::MendedPacked], "{ks}");
+            let Material { diffuse, specular, exponent, .. } = material.material;
+            assert_eq!(diffuse, [0.5, 0.25, 1.0]);
+            (specular, exponent)
+        };
+        assert_eq!(packed("0 1 0"), ([0.04; 3], 1.0), "rough");
+        assert_eq!(packed("0 1 1"), ([0.5, 0.25, 1.0], 1.0), "rough metal");
+        assert_eq!(packed("0 .5 0"), ([0.04 * 38.0 / 8.0; 3], 7.5), "2 / 0.25^2 - 2 = 30");
+        assert_eq!(packed("0 .25 0"), ([1.0; 3], 127.5), "smooth");
+        assert_eq!(packed("0 0 0"), ([1.0; 3], 1000.0), "a mirror has some width");
+        let (material, findings) =
+            read("newmtl m\nbsdf pbr\nKa 0 0 0\nKd 1 1 1\nKs 0 1 0\nNs 9\nmap_Ks t.png\n");
+        assert_eq!(material.material.exponent, 9.0, "as the file says");
+        assert_eq!(findings, [FindingKind::MendedPacked, FindingKind::MapUnused]);
+        let (material, _) = read("newmtl m\nbsdf pbr\nKa 0 0 0\nKd 1 1 1\n");
+        assert_eq!(material.material.specular, [0.0; 3], "nothing is packed");
+    }
+
+    #[test]
     fn numbers_keep_more_digits_than_an_f32_has() {
         let (material, _) = read(
             "newmtl m\nKd 0.5882352941176471 0.1 1e-50\nKs 1 1 1\n\
@@ -420,7 +451,7 @@ mod tests {
     #[test]
     fn numbers_that_cannot_be_read_and_stray_statements_are_listed() {
         let (_, findings) =
-            read("Kd 1 1 1\nnewmtl m\nKa 0 0 0\nKd 1 1 1\nKs 0,5 0 0\nKs 0 0 0\nbsdf pbr\n");
+            read("Kd 1 1 1\nnewmtl m\nKa 0 0 0\nKd 1 1 1\nKs 0,5 0 0\nKs 0 0 0\nbsdf new\n");
         assert_eq!(findings, [FindingKind::Unknown, FindingKind::MtlStray, FindingKind::MtlNumber]);
     }
 }
