@@ -6,7 +6,7 @@
 //!
 //! The rooms are floors: each uses itself and those before it in this list.
 //!
-//! * [`simd`]: the numbers that light is computed in, one or sixteen at a time.
+//! * [`simd`]: the numbers that light is computed in, eight or sixteen at a time.
 //! * `texture`: colours of textures at a position, and their mip maps.
 //! * [`lights`]: one file and one table row for each kind of light; the Phong terms.
 //! * `frame`: what a frame draws, as plain data.

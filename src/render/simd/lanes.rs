@@ -1,10 +1,8 @@
 //! Lanes: load numbers from rows in memory, some at a time, and store them.
 
 use super::gather::SLOTS;
-use super::real::Real;
 use super::variant_real::VariantReal;
 use super::vec3::Vec3;
-use crate::base::color::byte;
 
 /// The number of positions that are lit together: those of a block of 8 x 8 pixels. It is small
 /// enough for the L1 cache, and large enough that the call of a light shader costs nothing beside
@@ -64,97 +62,6 @@ pub trait Kernel<T> {
     /// Does the work. Implementations are `#[inline(always)]`, so that they are compiled for the
     /// instruction set of the lanes.
     fn run<M: Lanes<Number = T>>(self, lanes: M);
-}
-
-/// Computes in f64, one number at a time.
-#[derive(Clone, Copy, Debug)]
-pub struct Exact;
-
-impl Lanes for Exact {
-    type Number = f64;
-    type R = f64;
-    type Slots = usize;
-    const LANES: usize = 1;
-
-    #[inline(always)]
-    fn load(self, row: &[f64], at: usize) -> f64 {
-        row[at]
-    }
-
-    #[inline(always)]
-    fn load_four(self, rows: &[[f64; 4]], at: usize) -> [f64; 4] {
-        rows[at]
-    }
-
-    #[inline(always)]
-    fn store_four(self, values: [f64; 4], rows: &mut [[f64; 4]], at: usize) {
-        rows[at] = values;
-    }
-
-    #[inline(always)]
-    fn store(self, value: f64, row: &mut [f64], at: usize) {
-        row[at] = value;
-    }
-
-    #[inline(always)]
-    fn whole(self, row: &[i32], at: usize) -> f64 {
-        f64::from(row[at])
-    }
-
-    #[inline(always)]
-    fn store_pixels(self, color: Vec3<f64>, row: &mut [u32], at: usize) {
-        let [r, g, b] = color.0.map(byte);
-        row[at] = u32::from_le_bytes([r, g, b, 255]);
-    }
-
-    #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped before")]
-    fn store_pixels_by(self, color: Vec3<f64>, threshold: f64, row: &mut [u32], at: usize) {
-        let byte = |x: f64| (Real::min(Real::max(x, 0.0), 1.0) * 255.0 + threshold) as u8;
-        let [r, g, b] = color.0.map(byte);
-        row[at] = u32::from_le_bytes([r, g, b, 255]);
-    }
-
-    #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 2^24")]
-    fn store_parts(
-        self,
-        color: Vec3<f64>,
-        threshold: f64,
-        rows: &mut [[u32; BATCH]; 3],
-        at: usize,
-    ) {
-        for (row, number) in rows.iter_mut().zip(color.0) {
-            let clamped = Real::min(Real::max(number, 0.0), 1.0);
-            row[at] = ((clamped * 255.0 + threshold) * PARTS) as u32;
-        }
-    }
-
-    #[inline(always)]
-    fn lift(self, constant: f64) -> f64 {
-        constant
-    }
-
-    #[inline(always)]
-    fn set(self, number: f64) -> f64 {
-        number
-    }
-
-    #[inline(always)]
-    #[expect(clippy::cast_sign_loss, reason = "places are not negative")]
-    fn slots(self, slots: &[i32], at: usize) -> usize {
-        slots[at] as usize
-    }
-
-    #[inline(always)]
-    fn pick<const PAGES: usize>(self, row: &[f64; SLOTS], slot: usize) -> f64 {
-        row[slot]
-    }
-
-    #[inline(always)]
-    fn any_more(self, a: f64, b: f64) -> bool {
-        a > b
-    }
 }
 
 /// The fixed-point units per step of a byte when colours are added up.

@@ -1,15 +1,18 @@
-//! The numbers that light is computed in, one at a time or sixteen at once.
+//! The numbers that light is computed in, eight or sixteen at once.
 //!
 //! * [`Real`]: the operations of equations of light; `single` implements them in f32.
-//! * [`Lanes`]: loads numbers from memory and stores them; [`Exact`] one f64 at a time, [`Sixteen`]
-//!   sixteen f32 at a time. A [`Kernel`] is work that is compiled for both.
+//! * [`Lanes`]: loads numbers from memory and stores them; [`Eight`] eight f64 at a time,
+//!   [`Sixteen`] sixteen f32. A [`Kernel`] is work that is compiled for both.
 //! * `gather`: gathers numbers from short tables.
 //! * [`Power`], `power_variants`, `reciprocal_root`: powers of cosines and reciprocal roots by each
 //!   variant that the settings choose; `variant_real` and `variant_lanes` bring them into
 //!   equations.
 
 mod doubles;
+mod eight;
 mod encoding;
+#[cfg(test)]
+mod exact;
 pub(crate) mod gather;
 mod lanes;
 mod number;
@@ -24,8 +27,11 @@ mod variant_real;
 mod vec3;
 
 pub(crate) use doubles::in_f64;
+pub use eight::Eight;
 pub(crate) use encoding::Encoding;
-pub use lanes::{BATCH, Exact, Kernel, Lanes};
+#[cfg(test)]
+pub(crate) use exact::Exact;
+pub use lanes::{BATCH, Kernel, Lanes};
 pub use number::Number;
 pub use power::Power;
 pub use real::Real;

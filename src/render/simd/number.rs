@@ -2,7 +2,8 @@
 
 use fearless_simd::{Level, dispatch};
 
-use super::lanes::{Exact, Kernel};
+use super::eight::Eight;
+use super::lanes::Kernel;
 use super::real::Real;
 use super::sixteen::Sixteen;
 use super::variant_lanes::VariantLanes;
@@ -37,14 +38,18 @@ impl Number for f64 {
 
     const POWER: SpecularPower = SpecularPower::Library;
 
-    fn run(_: Level, kernel: impl Kernel<Self>) {
-        kernel.run(Exact);
+    fn run(level: Level, kernel: impl Kernel<Self>) {
+        dispatch!(level, simd => kernel.run(Eight(simd)));
     }
 
     fn run_variant(level: Level, variant: Option<Normalising>, kernel: impl Kernel<Self>) {
         match variant {
             None => Self::run(level, kernel),
-            Some(variant) => kernel.run(VariantLanes { lanes: Exact, variant }),
+            Some(variant) => {
+                dispatch!(level, simd => {
+                    kernel.run(VariantLanes { lanes: Eight(simd), variant });
+                });
+            }
         }
     }
 }

@@ -208,7 +208,7 @@ impl Single for f32 {
 /// Whether the processor's own maximum of a and b is a if a > b, else b, even for NaN and zeros, as
 /// on x86. "Intel 64 and IA-32 Architectures Software Developer's Manual", MAXPS.
 #[inline(always)]
-fn has_own_maximum<S: Simd>(simd: S) -> bool {
+pub(super) fn has_own_maximum<S: Simd>(simd: S) -> bool {
     match simd.level() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Sse2(_) | Level::Sse4_2(_) | Level::Avx2(_) | Level::Avx512(_) => true,

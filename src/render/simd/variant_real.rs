@@ -22,18 +22,6 @@ pub trait VariantReal: Real {
     fn power_by(self, power: &Power) -> Self;
 }
 
-impl VariantReal for f64 {
-    #[inline(always)]
-    fn reciprocal_root_by(self, variant: Normalising) -> Self {
-        reciprocal_root::one(self, variant)
-    }
-
-    #[inline(always)]
-    fn power_by(self, power: &Power) -> Self {
-        power_variants::power(power, self)
-    }
-}
-
 impl<S: Simd> VariantReal for f32x16<S> {
     #[inline(always)]
     fn reciprocal_root_by(self, variant: Normalising) -> Self {
