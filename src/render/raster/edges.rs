@@ -89,10 +89,10 @@ impl EdgeSetup<'_> {
         let number = i32x16::from_slice(simd, &numbers).bitcast();
         for sample in 0..N {
             let [x, y] = bins.sample_positions.shift::<N>(sample);
-            let seen = |[ex, ey, depth]: Ends<S>| [ex - x, ey - y, depth];
+            let seen = [[a[0] - x, a[1] - y, a[2]], [b[0] - x, b[1] - y, b[2]]];
             let (width, nearer) = (self.width, self.nearer());
             let short = Short { some, number, width, nearer, sample };
-            lines::draw_short::<S, N>(seen(a), seen(b), &short, &mut bins.hits);
+            lines::draw_short::<S, N>(seen[0], seen[1], &short, &mut bins.hits);
         }
         let mut long = shown & !some.to_bitmask();
         while long != 0 {

@@ -166,6 +166,12 @@ impl FloatTriangle {
         [self.first[0] + column + x, self.first[1] + row + y]
     }
 
+    /// An edge function, from its part along x.
+    #[inline(always)]
+    fn edge<S: Simd>(&self, i: usize, along: f32x16<S>, y: f32x16<S>) -> f32x16<S> {
+        along + y * self.lines[i][1] + self.lines[i][2]
+    }
+
     /// Draws the triangle into a block of the visibility buffer, for the sample with this offset.
     /// `whole` says that it covers the block fully.
     #[inline(always)]
@@ -185,11 +191,12 @@ impl FloatTriangle {
             [x * self.lines[0][0], x * self.lines[1][0], x * self.lines[2][0]];
         let (pairs, _) = visibility.as_chunks_mut::<16>();
         for (pair, visibility) in pairs.iter_mut().enumerate() {
-            let edge = |i: usize, along: f32x16<S>| along + y * self.lines[i][1] + self.lines[i][2];
-            let (second, third) = (edge(1, along_second), edge(2, along_third));
+            let (second, third) = (self.edge(1, along_second, y), self.edge(2, along_third, y));
             let mut covered = match whole {
                 true => mask32x16::from_bitmask(simd, u64::MAX),
-                false => edge(0, along).simd_ge(0.0) & second.simd_ge(0.0) & third.simd_ge(0.0),
+                false => {
+                    self.edge(0, along, y).simd_ge(0.0) & second.simd_ge(0.0) & third.simd_ge(0.0)
+                }
             };
             y += 2.0;
             if !covered.any_true() {

@@ -73,7 +73,7 @@ impl<S: Simd> Medium<S> {
         // The top-left rule, as in `coverage`.
         let least = |i: usize| i32::from(right[i] < 0 || (right[i] == 0 && down[i] <= 0));
         let (across, below) = (i32x16::from_slice(simd, &ACROSS), i32x16::from_slice(simd, &DOWN));
-        let gain = |i: usize| across * (right[i] * SUBPIXELS) + below * (down[i] * SUBPIXELS);
+        let [by_x, by_y] = [each(right, |by| by * SUBPIXELS), each(down, |by| by * SUBPIXELS)];
         let [a, b, c] = each(large.corners, |corner| corner.depth);
         let per_area = 1.0 / f64::from(area.abs());
         Some(Self {
@@ -81,7 +81,11 @@ impl<S: Simd> Medium<S> {
             least: [least(1), least(2)],
             right,
             down,
-            gains: [gain(0), gain(1), gain(2)],
+            gains: [
+                across * by_x[0] + below * by_y[0],
+                across * by_x[1] + below * by_y[1],
+                across * by_x[2] + below * by_y[2],
+            ],
             depth: f64::from(a),
             to_second: (f64::from(b) - f64::from(a)) * per_area,
             to_third: (f64::from(c) - f64::from(a)) * per_area,

@@ -59,16 +59,13 @@ impl<T: Number> Kernel<T> for Hold<'_, T> {
             let mut place = [x, y];
             if lanes.any_more(outside, zero) {
                 let slots = lanes.slots(&fragments.slots, at);
-                let pick = |row: usize| lanes.pick::<4>(&corners[row], slots);
-                let (u, v) = ([pick(2), pick(3)], [pick(4), pick(5)]);
+                let [x0, y0, ux, uy, vx, vy] = picked(lanes, &corners, slots);
                 let per_pixel = lanes.lift(f64::from(parts));
-                let from = [pick(0), pick(1)];
-                let d = [(x - left) * per_pixel - from[0], (y - top) * per_pixel - from[1]];
-                let [s, t] = nearest(d, u, v, [first, second, third]);
-                let along = |axis: usize| (from[axis] + u[axis] * s + v[axis] * t) / per_pixel;
+                let d = [(x - left) * per_pixel - x0, (y - top) * per_pixel - y0];
+                let [s, t] = nearest(d, [ux, uy], [vx, vy], [first, second, third]);
                 place = [
-                    outside.if_more(zero, left + along(0), x),
-                    outside.if_more(zero, top + along(1), y),
+                    outside.if_more(zero, left + (x0 + ux * s + vx * t) / per_pixel, x),
+                    outside.if_more(zero, top + (y0 + uy * s + vy * t) / per_pixel, y),
                 ];
                 lanes.store(outside.if_more(zero, s, second), &mut to.linear[0], at);
                 lanes.store(outside.if_more(zero, t, third), &mut to.linear[1], at);
@@ -107,6 +104,23 @@ fn corners<T: Number, M: Lanes<Number = T>>(
     corners
 }
 
+/// The corners of the triangles in some slots.
+#[inline(always)]
+fn picked<M: Lanes>(
+    lanes: M,
+    [a, b, c, d, e, f]: &[[M::Number; SLOTS]; 6],
+    slots: M::Slots,
+) -> [M::R; 6] {
+    [
+        lanes.pick::<4>(a, slots),
+        lanes.pick::<4>(b, slots),
+        lanes.pick::<4>(c, slots),
+        lanes.pick::<4>(d, slots),
+        lanes.pick::<4>(e, slots),
+        lanes.pick::<4>(f, slots),
+    ]
+}
+
 /// The second and third coordinate of the point of a triangle (with the sides u and v from its
 /// first corner) that is nearest to a point outside, which lies at d from the first corner and has
 /// these coordinates.
@@ -120,18 +134,23 @@ fn nearest<R: Real>(d: [R; 2], u: [R; 2], v: [R; 2], [first, second, third]: [R;
     let on_u = along(d, u);
     let on_v = along(d, v);
     let on_g = along(from_second, g);
-    let clamped = |t: R| Real::min(Real::max(t, zero), one);
     let (beyond_u, beyond_v) = (-third, -second);
     // A side is taken if the point lies beyond it. If the point also lies beyond an earlier side,
     // it is taken only if its nearest point is not the corner between the two.
     let take_v = beyond_u.if_more(zero, on_v, one);
     let take_v = beyond_v.if_more(zero, take_v, zero);
-    let end = clamped(on_v);
-    let (s, t) = (take_v.if_more(zero, zero, clamped(on_u)), take_v.if_more(zero, end, zero));
+    let end = clamped(on_v, [zero, one]);
+    let (s, t) =
+        (take_v.if_more(zero, zero, clamped(on_u, [zero, one])), take_v.if_more(zero, end, zero));
     let take_g = beyond_u.if_more(zero, on_g, beyond_v.if_more(zero, one - on_g, one));
     let take_g = (-first).if_more(zero, take_g, zero);
-    let end = clamped(on_g);
+    let end = clamped(on_g, [zero, one]);
     [take_g.if_more(zero, one - end, s), take_g.if_more(zero, end, t)]
+}
+
+#[inline(always)]
+fn clamped<R: Real>(t: R, [least, most]: [R; 2]) -> R {
+    Real::min(Real::max(t, least), most)
 }
 
 /// The parameter along a triangle's side nearest to a point: 0 at its beginning and 1 at its end.

@@ -123,19 +123,27 @@ impl<S: Simd> Narrow<S> {
             [across * edges[0][1] + down * edges[0][2], across * edges[1][1] + down * edges[1][2]];
         Self { edges, gains, per_area: attributes.per_area[0] }
     }
+
+    /// A coordinate of two rows of pixels, from their first.
+    #[inline(always)]
+    fn at(&self, i: usize, [x, y]: [i32; 2]) -> f32x16<S> {
+        // Modulo 2^32: products may wrap around, but the sum fits.
+        let [c, a, b] = self.edges[i];
+        let first = a.wrapping_mul(x).wrapping_add(b.wrapping_mul(y));
+        (self.gains[i] + first.wrapping_add(c)).to_float::<f32x16<S>>() * self.per_area
+    }
 }
 
 impl<S: Simd> Linear<S> for Narrow<S> {
     #[inline(always)]
     fn block(&self, _: S, [x, y]: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS] {
-        // Modulo 2^32: products may wrap around, but the sum fits.
-        let at = |i: usize, pair: i32| {
-            let [c, a, b] = self.edges[i];
-            let first = a.wrapping_mul(x).wrapping_add(b.wrapping_mul(y + 2 * pair));
-            (self.gains[i] + first.wrapping_add(c)).to_float::<f32x16<S>>() * self.per_area
-        };
-        let pair = |pair| [at(0, pair), at(1, pair)];
-        [pair(0), pair(1), pair(2), pair(3)]
+        let pair = |pair| [x, y + 2 * pair];
+        [
+            [self.at(0, pair(0)), self.at(1, pair(0))],
+            [self.at(0, pair(1)), self.at(1, pair(1))],
+            [self.at(0, pair(2)), self.at(1, pair(2))],
+            [self.at(0, pair(3)), self.at(1, pair(3))],
+        ]
     }
 }
 
@@ -157,13 +165,25 @@ impl<'a, S: Simd> Wide<'a, S> {
     pub(crate) fn new(simd: S, triangle: &'a Triangle) -> Self {
         let [[_, er, fr], [_, ed, fd]] = triangle.steps();
         let columns = f64x8::from_slice(simd, &COLUMNS);
-        let gains = |right: f64, down: f64| [columns * right, columns * right + down];
+        let (e_columns, f_columns) = (columns * er as f64, columns * fr as f64);
         Self {
             triangle,
             per_area: 1.0 / triangle.doubled_area() as f64,
-            gains: [gains(er as f64, ed as f64), gains(fr as f64, fd as f64)],
+            gains: [[e_columns, e_columns + ed as f64], [f_columns, f_columns + fd as f64]],
             down: [f64x8::splat(simd, 2.0 * ed as f64), f64x8::splat(simd, 2.0 * fd as f64)],
         }
+    }
+
+    /// An edge function in the two rows below.
+    #[inline(always)]
+    fn below(&self, i: usize, [a, b]: [f64x8<S>; 2]) -> [f64x8<S>; 2] {
+        [a + self.down[i], b + self.down[i]]
+    }
+
+    /// A coordinate of two rows, from the edge function.
+    #[inline(always)]
+    fn linear(&self, [a, b]: [f64x8<S>; 2]) -> f32x16<S> {
+        (a * self.per_area).narrow(b * self.per_area)
     }
 
     /// The coordinates of sixteen arbitrary pixels.
@@ -189,18 +209,16 @@ impl<S: Simd> Linear<S> for Wide<'_, S> {
     #[expect(clippy::cast_precision_loss, reason = "they have fewer than 53 bits")]
     fn block(&self, _: S, [x, y]: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS] {
         let [_, e, f] = self.triangle.edges_at(x, y);
-        let first = |i: usize, first: f64| [self.gains[i][0] + first, self.gains[i][1] + first];
-        let below = |i: usize, [a, b]: [f64x8<S>; 2]| [a + self.down[i], b + self.down[i]];
-        let linear = |[a, b]: [f64x8<S>; 2]| (a * self.per_area).narrow(b * self.per_area);
-        let (e0, f0) = (first(0, e as f64), first(1, f as f64));
-        let (e1, f1) = (below(0, e0), below(1, f0));
-        let (e2, f2) = (below(0, e1), below(1, f1));
-        let (e3, f3) = (below(0, e2), below(1, f2));
+        let e0 = [self.gains[0][0] + e as f64, self.gains[0][1] + e as f64];
+        let f0 = [self.gains[1][0] + f as f64, self.gains[1][1] + f as f64];
+        let (e1, f1) = (self.below(0, e0), self.below(1, f0));
+        let (e2, f2) = (self.below(0, e1), self.below(1, f1));
+        let (e3, f3) = (self.below(0, e2), self.below(1, f2));
         [
-            [linear(e0), linear(f0)],
-            [linear(e1), linear(f1)],
-            [linear(e2), linear(f2)],
-            [linear(e3), linear(f3)],
+            [self.linear(e0), self.linear(f0)],
+            [self.linear(e1), self.linear(f1)],
+            [self.linear(e2), self.linear(f2)],
+            [self.linear(e3), self.linear(f3)],
         ]
     }
 }
@@ -381,7 +399,9 @@ fn lit<S: Simd>(
                 for ((pair, point), y) in pairs.into_iter().enumerate().zip((y..).step_by(2)) {
                     let (weights, w) = point;
                     if let Some(look) = &look {
-                        let place = [across + x, down + y].map(|i| i.to_float::<f32x16<S>>() + 0.5);
+                        let [x, y] = [across + x, down + y];
+                        let place =
+                            [x.to_float::<f32x16<S>>() + 0.5, y.to_float::<f32x16<S>>() + 0.5];
                         let normal = between(corners, weights);
                         let at = (normal, place, w);
                         match roots {
@@ -447,15 +467,19 @@ fn lit<S: Simd>(
 #[inline(always)]
 fn finished<S: Simd>(
     lanes: Sixteen<S>,
-    color: Vec3<f32x16<S>>,
+    mut color: Vec3<f32x16<S>>,
     glow: Option<[f32; 3]>,
     encoding: Option<&Encoding>,
 ) -> Vec3<f32x16<S>> {
-    let color = glow.map_or(color, |glow| color.plus(set(lanes, glow)));
-    encoding.map_or(color, |encoding| {
+    // No closures here: they would not be compiled for the instruction set of their caller.
+    if let Some(glow) = glow {
+        color = color.plus(set(lanes, glow));
+    }
+    if let Some(encoding) = encoding {
         let Vec3([r, g, b]) = color;
-        Vec3([encoding.of(r), encoding.of(g), encoding.of(b)])
-    })
+        color = Vec3([encoding.of(r), encoding.of(g), encoding.of(b)]);
+    }
+    color
 }
 
 /// Stores the samples of sixteen pixels whose roots are computed by a variant.

@@ -154,10 +154,12 @@ fn lit<T: Number>(level: Level, batch: &Batch<T>, before: &(Rows<T>, Rows<T>)) -
 #[inline(always)]
 fn bit_of_each<S: Simd>(simd: S, numbers: &[u32; BATCH]) -> u64 {
     let zero = u32x16::splat(simd, 0);
-    (0..BATCH).step_by(16).fold(0, |bits, at| {
+    let mut bits = 0;
+    for at in (0..BATCH).step_by(16) {
         let some = u32x16::from_slice(simd, &numbers[at..at + 16]);
-        bits | some.simd_gt(zero).to_bitmask() << at
-    })
+        bits |= some.simd_gt(zero).to_bitmask() << at;
+    }
+    bits
 }
 
 /// Sets the points at which vertices are lit, from their positions in object space.

@@ -92,30 +92,25 @@ impl<'a> Sampler<'a> {
     /// Alpha at sixteen positions in texels, from 0 to 1, of the texture's own size.
     #[inline(always)]
     pub(crate) fn alpha<S: Simd>(&self, simd: S, position: [f32x16<S>; 2]) -> f32x16<S> {
-        self.scalar(simd, position, alpha_of)
+        self.scalar::<S, Alpha>(simd, position)
     }
 
     /// The brightness at sixteen positions in texels, from 0 to 1, of the texture's own size.
     #[inline(always)]
     pub(crate) fn brightness<S: Simd>(&self, simd: S, position: [f32x16<S>; 2]) -> f32x16<S> {
-        self.scalar(simd, position, brightness_of)
+        self.scalar::<S, Brightness>(simd, position)
     }
 
     #[inline(always)]
-    fn scalar<S: Simd>(
-        &self,
-        simd: S,
-        position: [f32x16<S>; 2],
-        of: impl Fn(i32x16<S>) -> f32x16<S>,
-    ) -> f32x16<S> {
+    fn scalar<S: Simd, N: OneNumber>(&self, simd: S, position: [f32x16<S>; 2]) -> f32x16<S> {
         let position = [self.reduced(position[0], 0), self.reduced(position[1], 1)];
         let level = MipLevel::first(self, simd);
         let number = match self.filter {
-            Filter::Nearest => of(level.nearest(simd, self, position)),
+            Filter::Nearest => N::of(level.nearest(simd, self, position)),
             Filter::Bilinear | Filter::Trilinear => {
                 let Footprint { texels, s, t } = level.footprint(simd, self, position);
                 let [[a, b], [c, d]] = texels;
-                let (a, b, c, d) = (of(a), of(b), of(c), of(d));
+                let (a, b, c, d) = (N::of(a), N::of(b), N::of(c), N::of(d));
                 let (below, above) = (a + (b - a) * s, c + (d - c) * s);
                 below + (above - below) * t
             }
@@ -252,17 +247,29 @@ pub(crate) fn prepare_decoding() {
     decoded_bytes();
 }
 
-/// The brightness of texels, from 0 to 255; that of a grey is its byte, exactly. The weights are
-/// those of ITU-R BT.709.
-#[inline(always)]
-fn brightness_of<S: Simd>(texels: i32x16<S>) -> f32x16<S> {
-    brightness(channels(texels))
+/// What texels become if one number of each is read.
+trait OneNumber {
+    /// The numbers, from 0 to 255.
+    fn of<S: Simd>(texels: i32x16<S>) -> f32x16<S>;
 }
 
-/// Alpha of texels, from 0 to 255.
-#[inline(always)]
-fn alpha_of<S: Simd>(texels: i32x16<S>) -> f32x16<S> {
-    ((texels >> 24) & 255).to_float()
+/// Alpha.
+struct Alpha;
+/// The brightness, by the weights of ITU-R BT.709; that of a grey is its byte, exactly.
+struct Brightness;
+
+impl OneNumber for Alpha {
+    #[inline(always)]
+    fn of<S: Simd>(texels: i32x16<S>) -> f32x16<S> {
+        ((texels >> 24) & 255).to_float()
+    }
+}
+
+impl OneNumber for Brightness {
+    #[inline(always)]
+    fn of<S: Simd>(texels: i32x16<S>) -> f32x16<S> {
+        brightness(channels(texels))
+    }
 }
 
 mod mip_level;

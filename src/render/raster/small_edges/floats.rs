@@ -50,10 +50,13 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
 
     #[inline(always)]
     fn bounds(corners: Corners<S>, samples: [[i32; 2]; 2]) -> Boxes<S> {
-        let snap =
-            |x: i32x16<S>| -> i32x16<S> { (x.bitcast::<f32x16<S>>() * SUBPIXELS as f32).to_int() };
-        let snapped = each(corners, |[x, y]| [snap(x), snap(y)]);
-        snapped_bounds(Grid::Usual, snapped, reach(samples, beyond(Coverage::F32Edges)))
+        let [p, q, r] = corners;
+        let corners = [
+            [snapped(p[0]), snapped(p[1])],
+            [snapped(q[0]), snapped(q[1])],
+            [snapped(r[0]), snapped(r[1])],
+        ];
+        snapped_bounds(Grid::Usual, corners, reach(samples, beyond(Coverage::F32Edges)))
     }
 
     #[inline(always)]
@@ -67,11 +70,10 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
         let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
         let one = f32x16::splat(simd, 1.0);
         let sign = area.simd_lt(0.0).select(f32x16::splat(simd, -1.0), one);
-        let float = |x: i32x16<S>| x.to_float::<f32x16<S>>();
         Self {
             lines: [line(q, r, sign), line(r, p, sign), line(p, q, sign)],
-            start: [float(left) + 0.5, float(top) + 0.5],
-            end: [float(right), float(bottom)],
+            start: [left.to_float::<f32x16<S>>() + 0.5, top.to_float::<f32x16<S>>() + 0.5],
+            end: [right.to_float(), bottom.to_float()],
             area: area * sign,
             depth: d0,
             second: d1 - d0,
@@ -140,6 +142,12 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
         ];
         depth + weights[0] * second + weights[1] * third
     }
+}
+
+/// A coordinate in pixels, in parts of a pixel.
+#[inline(always)]
+fn snapped<S: Simd>(x: i32x16<S>) -> i32x16<S> {
+    (x.bitcast::<f32x16<S>>() * SUBPIXELS as f32).to_int()
 }
 
 /// The line through two corners, as a, b and c.
