@@ -11,6 +11,7 @@ use std::process::{Command, Output, Stdio};
 
 use marraztu::accuracy::AXES;
 use marraztu::io;
+use marraztu::lab::suite::SUITE;
 use tempfile::TempDir;
 
 /// Pages for people who use the program or work on it.
@@ -127,11 +128,27 @@ fn the_page_of_accuracy_lists_every_axis_with_every_choice() {
         let words: Vec<String> = words.collect();
         let _ = writeln!(table, "| {} | `--{}` | {} |", axis.what, axis.key, words.join(", "));
     }
+    holds_part("axes", &table);
+}
+
+#[test]
+fn the_page_of_accuracy_lists_every_scene_of_the_suite() {
+    let mut table = String::from("| scene | shows | axes |\n|---|---|---|\n");
+    for scene in SUITE {
+        let _ = writeln!(table, "| {} | {} | {} |", scene.word, scene.what, scene.axes.join(", "));
+    }
+    holds_part("suite", &table);
+}
+
+/// Compares a part of the page of accuracy with what it should be, or writes it.
+#[track_caller]
+fn holds_part(part: &str, expected: &str) {
     let text = page("docs/accuracy.md");
-    let (begin, end) = ("<!-- axes: made by tools/pages.sh -->\n", "<!-- axes: end -->\n");
-    let (before, rest) = text.split_once(begin).unwrap();
-    let (_, after) = rest.split_once(end).unwrap();
-    holds("docs/accuracy.md", &format!("{before}{begin}\n{table}\n{end}{after}"));
+    let [begin, end] =
+        [": made by tools/pages.sh", ": end"].map(|it| format!("<!-- {part}{it} -->\n"));
+    let (before, rest) = text.split_once(&begin).unwrap();
+    let (_, after) = rest.split_once(&end).unwrap();
+    holds("docs/accuracy.md", &format!("{before}{begin}\n{expected}\n{end}{after}"));
 }
 
 #[test]

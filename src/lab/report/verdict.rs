@@ -24,7 +24,6 @@ struct Said<'a> {
     /// Its error and the default's.
     error: f64,
     before: f64,
-    is_finer: bool,
     kind: Kind,
 }
 
@@ -38,7 +37,7 @@ enum Kind {
     Wasted,
     /// Faster, and raises the error.
     Saves,
-    /// Faster, or more exact, at no cost.
+    /// Faster, or finer and more exact, at no cost.
     Free,
     /// No faster, but less exact.
     Worse,
@@ -142,7 +141,7 @@ fn said(report: &Report) -> Vec<Said<'_>> {
             let (error, before) = (rmse(row), rmse(&before));
             let is_finer = finer(axis.chosen(&point.settings).word) > default;
             let Some(kind) = kind(point, [error, before], is_finer) else { continue };
-            said.push(Said { axis, row, point, error, before, is_finer, kind });
+            said.push(Said { axis, row, point, error, before, kind });
         }
     }
     said
@@ -159,7 +158,8 @@ fn kind(point: &Measured, [error, before]: [f64; 2], is_finer: bool) -> Option<K
         (Verdict::Slower, ..) => Kind::Wasted,
         (Verdict::Faster, _, true) => Kind::Saves,
         (Verdict::Faster, ..) => Kind::Free,
-        (Verdict::Alike, true, _) if seen => Kind::Free,
+        // A coarser choice is closer to the reference by chance: a few pixels decide.
+        (Verdict::Alike, true, _) if seen && is_finer => Kind::Free,
         (Verdict::Alike, _, true) => Kind::Worse,
         (Verdict::Alike, ..) => return None,
     })
@@ -233,8 +233,8 @@ fn free(it: &Said<'_>) -> String {
             format!("{name} {saves} {}% and {} no accuracy here.", less(it), it.verb("cost"))
         }
         Verdict::Slower | Verdict::Alike => {
-            let (cut, finer) = (it.verb("cut"), if it.is_finer { "" } else { ", though coarser," });
-            format!("{name}{finer} {cut} {} in the same time.", it.error_change())
+            let cut = it.verb("cut");
+            format!("{name} {cut} {} in the same time.", it.error_change())
         }
     }
 }

@@ -34,6 +34,12 @@ pub struct SuiteScene {
 /// The scenes; each axis of accuracy is measured on at least one.
 pub const SUITE: &[SuiteScene] = &[
     SuiteScene {
+        word: "first",
+        what: "the first scene of the editor",
+        axes: &["samples", "shading", "arithmetic"],
+        make: |_| io::default_scene(),
+    },
+    SuiteScene {
         word: "pixels",
         what: "one lit triangle over the whole picture",
         axes: &["arithmetic", "normalising", "faint", "rounding", "values"],
@@ -92,12 +98,6 @@ pub const SUITE: &[SuiteScene] = &[
         what: "balls on a floor under a sun, a bulb and a spot that cast shadows",
         axes: &["shadow-method", "terminator"],
         make: scenes::shadows,
-    },
-    SuiteScene {
-        word: "first",
-        what: "the first scene of the editor",
-        axes: &["samples", "shading", "arithmetic"],
-        make: |_| io::default_scene(),
     },
 ];
 
