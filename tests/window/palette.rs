@@ -74,6 +74,16 @@ fn items_and_settings_are_found_by_name_and_esc_closes() {
 }
 
 #[test]
+fn the_list_of_keys_says_what_the_mouse_does() {
+    let mut editor = Editor::new();
+    editor.press(Either(Key::H));
+    assert!(editor.shows("Wheel or Pinch: "));
+    type_text(&mut editor, "middle");
+    assert!(editor.shows("Shift+drag or Middle drag: "));
+    assert!(!editor.shows("Wheel or Pinch: "));
+}
+
+#[test]
 fn what_cannot_be_done_says_why() {
     let mut editor = Editor::new();
     editor.press(Command(Key::K));
