@@ -211,18 +211,18 @@ fn a_bad_file_is_reported_in_one_sentence_with_its_line_and_changes_nothing() {
     let mut editor = Editor::new();
     let before = editor.scene();
     editor.ask(Request::LoadFiles(vec![path]));
-    editor.wait_until(|editor| editor.shows("Something went wrong"));
+    editor.wait_until(|editor| editor.shows("The file was not loaded"));
     assert!(editor.shows("bad.obj:2: "));
     assert!(editor.scene() == before);
     editor.press(Named(Key::Enter));
-    assert!(!editor.shows("Something went wrong"), "Enter closes it");
+    assert!(!editor.shows("The file was not loaded"), "Enter closes it");
 }
 
 #[test]
 fn a_missing_file_is_reported() {
     let mut editor = Editor::new();
     editor.ask(Request::LoadFiles(vec![PathBuf::from("nowhere.obj")]));
-    editor.wait_until(|editor| editor.shows("Something went wrong"));
+    editor.wait_until(|editor| editor.shows("The file was not loaded"));
     assert!(editor.shows("there is no such file"));
 }
 

@@ -118,7 +118,7 @@ fn a_model_that_cannot_be_read_leaves_the_first_scene() {
     let mut editor = Editor::new();
     let before = editor.scene();
     editor.open_at_start(&[&path]);
-    editor.wait_until(|editor| editor.shows("Something went wrong"));
+    editor.wait_until(|editor| editor.shows("The file was not loaded"));
     assert!(editor.scene() == before);
 }
 
@@ -147,8 +147,9 @@ fn a_drop_on_the_untouched_first_scene_takes_its_place_and_one_undo_brings_it_ba
     editor.wait_until(|editor| editor.names() == ["second", "cube"]);
     assert_eq!(editor.steps(), 1);
     assert!(editor.view().steps.by_size);
+    assert_eq!(editor.scene().background, Scene::NEUTRAL);
     editor.press(Command(Key::Z));
-    assert!(editor.scene() == first);
+    assert!(editor.scene() == first, "with its blue");
     assert_eq!(editor.view().steps, Steps::DEFAULT, "the first scene has steps of 10");
     assert_eq!(editor.view().object, first_view.object);
     editor.perform(marraztu::app::actions::Action::Redo);

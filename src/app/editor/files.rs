@@ -60,6 +60,7 @@ impl App {
         let mut paths = paths.into_iter();
         match wanted {
             Wanted::Model => self.load_files(ctx, paths.collect()),
+            Wanted::Dropped => self.open_files(ctx, paths.collect()),
             Wanted::Texture(id) => {
                 if let Some(path) = paths.next() {
                     self.load_texture(ctx, id, path);
@@ -239,7 +240,7 @@ impl App {
         match error {
             LoadError::Cancelled => self.state.tell(Some("Loading was cancelled".to_owned())),
             LoadError::File { .. } | LoadError::Line { .. } => {
-                self.dialogs.tell_fault(format!("{error}."));
+                self.dialogs.tell_not_loaded(format!("{error}."));
             }
         }
     }

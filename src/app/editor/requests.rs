@@ -98,6 +98,8 @@ impl App {
             Request::EndRename(name) => self.end_rename(name),
             Request::ChooseTexture(id) => self.ask_file(ctx, Wanted::Texture(id), ""),
             Request::LoadFiles(paths) => self.load_files(ctx, paths),
+            Request::OpenFiles(paths) => self.open_files(ctx, paths),
+            Request::AskModels => self.ask_file(ctx, Wanted::Dropped, ""),
             Request::Details(at) => {
                 if let Some(notice) = state.notices.get(at) {
                     self.dialogs.tell_details(notice.text.clone(), notice.details.clone());
