@@ -170,6 +170,7 @@ impl App {
             Ok(Intent::File(intent)) => self.file(ctx, intent),
             Ok(Intent::AskCamera) => self.dialogs.ask_material(MaterialDialog::of_camera()),
             Ok(Intent::Measure) => self.measure(ctx),
+            Ok(Intent::ChooseTexture(id)) => self.ask_file(ctx, Wanted::Texture(id), ""),
             Ok(Intent::WhyUnseen(id)) => self.why_unseen(ctx, id),
             Ok(Intent::Palette) => self.state.palette ^= true,
             Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),
