@@ -227,6 +227,20 @@ fn a_missing_file_is_reported() {
 }
 
 #[test]
+fn a_notice_names_the_texture_that_is_missing_before_what_was_mended() {
+    let text = "mtllib c.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n";
+    let (folder, path) = folder_with("cube.obj", text);
+    std::fs::write(folder.path().join("c.mtl"), "newmtl m\nNs 0\nmap_Kd none.png\n").unwrap();
+    let mut editor = Editor::new();
+    editor.drop_files(&[&path]);
+    editor.wait_until(|editor| editor.scene().objects.len() == 1);
+    editor.wait_until(|editor| !editor.state().notices.is_empty());
+    let said = &editor.state().notices[0].text;
+    assert!(said.contains("c.mtl: the texture \"none.png\" was not found"), "{said}");
+    assert!(said.ends_with(" more findings"), "{said}");
+}
+
+#[test]
 fn findings_are_announced_and_listed_on_a_click() {
     let text = format!("{CUBE}f 1 2 99\nf 1 2\n");
     let (_folder, path) = folder_with("mended.obj", &text);
