@@ -9,14 +9,16 @@ use std::sync::Arc;
 
 use egui::Key;
 use marraztu::accuracy::{Settings, Shot};
-use marraztu::app::actions::Chord::{Command, Lower};
+use marraztu::app::actions::Chord::{Command, Lower, Named};
 use marraztu::app::actions::Request;
 use marraztu::base::Shared;
 use marraztu::base::image::Size;
 use marraztu::edit::{presenting, steps};
 use marraztu::io::{self, Progress};
 use marraztu::render::{Renderer, plan_frame};
-use marraztu::scene::{LoadOptions, Material, MaterialChoice, Object, Scene, Sides, Steps, View};
+use marraztu::scene::{
+    HALF_APERTURE, LoadOptions, Material, MaterialChoice, Object, Scene, Sides, Steps, View,
+};
 
 use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;
@@ -85,9 +87,16 @@ fn a_model_of_the_command_line_opens_alone_framed_and_with_steps_that_fit() {
     let pose = |scene: &Scene, view: &View| *scene.selected_camera(view).pose.now();
     assert_eq!(pose(&scene, &view), pose(&wanted, &wanted_view));
     assert_eq!(scene.lights, wanted.lights, "it is lit as render lights it");
+    let mut apertures =
+        scene.lights.iter().filter_map(|(_, light)| (HALF_APERTURE.get)(&light.kind));
+    assert!(
+        apertures.all(|angle| angle == HALF_APERTURE.largest),
+        "no edge of a cone from near by"
+    );
     assert_eq!(steps::length(&scene, &view), 0.01, "a hundredth of the cube");
     assert!(editor.shows("step 0.01 by size"));
     assert!(editor.state().history.is_saved());
+    assert_eq!(editor.state().file_name(), "cube.obj", "as the title says");
     assert_eq!(editor.steps(), 0);
     let before = pose(&scene, &view).eye;
     editor.press(Lower(Key::Z));
@@ -120,6 +129,8 @@ fn a_model_that_cannot_be_read_leaves_the_first_scene() {
     editor.open_at_start(&[&path]);
     editor.wait_until(|editor| editor.shows("The file was not loaded"));
     assert!(editor.scene() == before);
+    editor.press(Named(Key::Enter));
+    assert!(editor.shows("Drop a model here"), "the strip says what else can be opened");
 }
 
 #[test]

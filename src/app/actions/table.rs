@@ -50,7 +50,7 @@ actions! {
         "screenshot render resolution size transparent alpha large print wallpaper";
     SaveTurntable File ONCE [Command(Key::F12)]
         "Turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
-        "animation gif apng video movie spin rotate frames orbit";
+        "animation gif apng video movie spin rotate frames";
     ExportScene File ONCE []
         "Export scene..." "Writes the scene for other programs, as OBJ with MTL or as glTF."
         "save obj mtl gltf glb blender three convert";

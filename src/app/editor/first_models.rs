@@ -97,6 +97,8 @@ impl App {
             if arrival == Arrival::Start && self.is_untouched() {
                 let (scene, view) = io::default_scene();
                 self.replace(State::new(scene, view));
+                // What else there is to begin with.
+                self.greet();
             }
             return;
         }
@@ -113,7 +115,7 @@ impl App {
             if let Some(path) = &object.model.source {
                 self.note_recent(path);
             }
-            self.state.tell(Some(format!("Loaded {}: {found}", object.name)));
+            self.tell_loaded(&object.name, &found, &findings);
             if !findings.is_empty() {
                 let text = format!("{}: {found}", object.name);
                 self.state.notices.push(Notice { text, details: findings, offer: None });
