@@ -103,6 +103,12 @@ pub(crate) fn accent(visuals: &Visuals) -> Color32 {
     palette(visuals).accent
 }
 
+/// What marks the selected over the picture, on a dark edge: the same in both themes, since the
+/// picture is.
+pub(crate) const fn accent_on_dark() -> Color32 {
+    DARK.accent
+}
+
 /// What says that something was not done.
 pub(crate) fn error(visuals: &Visuals) -> Color32 {
     palette(visuals).error

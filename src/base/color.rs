@@ -18,6 +18,27 @@ impl Color {
     /// Back faces, and edges of polygons that face away.
     pub const BACK_FACE: Self = Self([255, 0, 0]);
 
+    /// The colours that have a name, as in CSS; gray is written in two ways.
+    pub const NAMED: [(&str, Self); 10] = [
+        ("black", Self::BLACK),
+        ("white", Self::WHITE),
+        ("gray", Self([128, 128, 128])),
+        ("grey", Self([128, 128, 128])),
+        ("red", Self([255, 0, 0])),
+        ("green", Self([0, 128, 0])),
+        ("blue", Self([0, 0, 255])),
+        ("yellow", Self([255, 255, 0])),
+        ("cyan", Self([0, 255, 255])),
+        ("magenta", Self([255, 0, 255])),
+    ];
+
+    /// The colour of this name, in upper or lower case.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let is_it = |(own, _): &&(&str, Self)| own.eq_ignore_ascii_case(name);
+        Self::NAMED.iter().find(is_it).map(|(_, color)| *color)
+    }
+
     /// The factors from 0 to 1 that the bytes stand for.
     #[must_use]
     pub fn factors(self) -> [f64; 3] {

@@ -1,14 +1,15 @@
-//! `marraztu keys`: lists every key of the editor, from the table that the editor itself reads.
+//! `marraztu keys`: lists every key of the editor and what the mouse does, from the tables that the
+//! editor itself reads.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use clap::Args;
-use marraztu::app::actions::{ActionInfo, Group};
+use marraztu::app::actions::{ActionInfo, Group, MouseInfo};
 
 use super::failure::Failure;
 
-/// Lists every key of the editor.
+/// Lists every key of the editor, and what the mouse does.
 #[derive(Debug, Args)]
 pub(crate) struct Keys {
     /// As Markdown, a table for each group
@@ -49,6 +50,10 @@ fn plain() -> String {
             let _ = writeln!(text, "  {:22}{:26}{}", names(&look).join(" "), look.label, look.hint);
         }
     }
+    let _ = writeln!(text, "\n{}", MouseInfo::HEADING);
+    for MouseInfo { inputs, label, hint, .. } in MouseInfo::ALL {
+        let _ = writeln!(text, "  {:26}{label:22}{hint}", inputs.join(", "));
+    }
     text
 }
 
@@ -61,6 +66,10 @@ fn markdown() -> String {
             let keys: Vec<String> = names(&look).iter().map(|key| format!("`{key}`")).collect();
             let _ = writeln!(text, "| {} | {} | {} |", keys.join(" "), look.label, look.hint);
         }
+    }
+    let _ = writeln!(text, "\n| {} | | |\n|---|---|---|", MouseInfo::HEADING);
+    for MouseInfo { inputs, label, hint, .. } in MouseInfo::ALL {
+        let _ = writeln!(text, "| {} | {label} | {hint} |", inputs.join(", "));
     }
     text
 }

@@ -8,20 +8,6 @@ use marraztu::base::image::Size;
 /// The longest side that a picture may have.
 const LONGEST_SIDE: usize = 16_384;
 
-/// Colours that have a name, as in CSS.
-const COLORS: [(&str, [u8; 3]); 10] = [
-    ("black", [0, 0, 0]),
-    ("white", [255, 255, 255]),
-    ("gray", [128, 128, 128]),
-    ("grey", [128, 128, 128]),
-    ("red", [255, 0, 0]),
-    ("green", [0, 128, 0]),
-    ("blue", [0, 0, 255]),
-    ("yellow", [255, 255, 0]),
-    ("cyan", [0, 255, 255]),
-    ("magenta", [255, 0, 255]),
-];
-
 /// Whether a file's name stands for standard input or output.
 pub(crate) fn is_standard(file: &Path) -> bool {
     file == Path::new("-")
@@ -42,12 +28,11 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
 /// A colour: "255,128,0", "#ff8000", "#f80", or a name.
 pub(super) fn color(text: &str) -> Result<Color, String> {
     let text = text.trim();
-    let named = COLORS.iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
     let color = match text.strip_prefix('#') {
-        Some(digits) => hexadecimal(digits),
-        None => named.map(|(_, color)| *color).or_else(|| decimal(text)),
+        Some(digits) => hexadecimal(digits).map(Color),
+        None => Color::named(text).or_else(|| decimal(text).map(Color)),
     };
-    color.map(Color).ok_or_else(|| {
+    color.ok_or_else(|| {
         "write red,green,blue, each from 0 to 255; or #rrggbb, #rgb, black, white, gray, red, \
          green, blue, yellow, cyan or magenta"
             .to_owned()

@@ -20,8 +20,8 @@ use super::items::change_light;
 use super::{Refusal, framing};
 use crate::base::color::Color;
 use crate::scene::{
-    Anchor, AnchorMut, Attenuation, Command, Light, LightOrigin, Object, ObjectId, Scene,
-    SpotOwner, Tracked, View,
+    Anchor, AnchorMut, Attenuation, Command, HALF_APERTURE, Light, LightOrigin, Object, ObjectId,
+    Scene, SpotOwner, Tracked, View,
 };
 
 /// The distance of the first scene's camera, for which its lights are made.
@@ -42,7 +42,7 @@ const MOST_SUBSETS: usize = 8;
 /// Places and balances the first scene's lights for the models of a scene, which its camera frames.
 ///
 /// The bulb and the spot of the selected object are switched off: one stands in the picture, the
-/// other inside a model.
+/// other inside a model. The spot of the camera loses the edge of its cone.
 ///
 /// # Errors
 /// If there is nothing to light.
@@ -84,6 +84,11 @@ fn place(light: &mut Light, centre: DVec3, scale: f64) {
         }
         AnchorMut::Owner(SpotOwner::SelectedObject) => light.on = false,
         AnchorMut::Everywhere | AnchorMut::Owner(_) => {}
+    }
+    // The cone of the camera's spot holds models that are framed. From near by, its edge would be a
+    // hard circle in the picture.
+    if let Some(half_aperture) = (HALF_APERTURE.get_mut)(&mut light.kind) {
+        *half_aperture = HALF_APERTURE.largest;
     }
 }
 

@@ -1,4 +1,4 @@
-//! Shows models that come without a scene: alone, framed and lit.
+//! Shows models that come without a scene: alone, framed and lit, before a neutral background.
 //!
 //! The window with files on the command line, a model dropped on the untouched first scene, and
 //! `render` show the same.
@@ -7,8 +7,8 @@ use super::items::insert_objects;
 use super::{Refusal, framing, lighting, selection};
 use crate::scene::{Command, ItemId, Object, Observer, Scene, Subject, View};
 
-/// Replaces all objects by these, frames them and lights them. Returns the change, and the view of
-/// the changed scene, whose steps go by its size.
+/// Replaces all objects by these, frames them and lights them, before a neutral background. Returns
+/// the change, and the view of the changed scene, whose steps go by its size.
 ///
 /// # Errors
 /// If the scene cannot be changed that way.
@@ -18,6 +18,7 @@ pub fn alone(scene: &Scene, view: &View, objects: Vec<Object>) -> Result<(Comman
         scratch.change(Command::Remove(ItemId::Object(id)))?;
     }
     scratch.change(insert_objects(&scratch.scene, objects))?;
+    scratch.change(Command::Background(Scene::NEUTRAL))?;
     scratch.view.observer = Observer::Camera;
     scratch.view.subject = Subject::Camera;
     scratch.view.steps.by_size = true;

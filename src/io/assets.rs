@@ -100,13 +100,15 @@ pub fn default_scene() -> (Scene, View) {
     let x_wing = object(&X_WING, PresetId::EMERALD, DVec3::new(100.0, 0.0, 0.0));
     let r_falke = object(&R_FALKE, PresetId::RUBY, DVec3::new(-100.0, 0.0, 0.0));
     let (mut scene, _) = empty_scene();
+    scene.background = Scene::BACKGROUND;
     scene.objects =
         List::from_iter([(ObjectId(2), r_falke), (ObjectId(1), x_wing), (ObjectId(0), cam)]);
     let view = scene.first_view();
     (scene, view)
 }
 
-/// The first scene without its objects, with its view.
+/// The first scene without its objects, with its view, and a background on which all models stand
+/// out.
 #[must_use]
 pub fn empty_scene() -> (Scene, View) {
     let camera = Camera {
@@ -122,7 +124,7 @@ pub fn empty_scene() -> (Scene, View) {
         objects: List::default(),
         cameras: List::from_iter([(CameraId(3), camera)]),
         lights: lights.collect(),
-        background: Scene::BACKGROUND,
+        background: Scene::NEUTRAL,
         next_id: 9,
         locked: BTreeSet::new(),
     };

@@ -241,6 +241,24 @@ impl FindingKind {
         )
     }
 
+    /// Whether something of a model is lost by it, so that it looks otherwise than its file means.
+    #[must_use]
+    pub const fn is_loss(self) -> bool {
+        matches!(
+            self,
+            Self::VertexNotFinite
+                | Self::FaceRange
+                | Self::FaceUnreadable
+                | Self::NoFaces
+                | Self::MtlMissing
+                | Self::MtlUnreadable
+                | Self::Transparent
+                | Self::TextureMissing
+                | Self::TextureUnreadable
+                | Self::TextureCutOff
+        )
+    }
+
     pub(super) fn text(self, count: usize, name: &str, line: Option<u32>, files: usize) -> String {
         let [one, many] = self.words();
         let words = if count == 1 { one } else { many };

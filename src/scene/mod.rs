@@ -117,6 +117,8 @@ pub struct Scene {
 impl Scene {
     /// The blue of the first scene.
     pub const BACKGROUND: Color = Color([0, 0, 179]);
+    /// Behind models that come without a scene: both black and white ones stand out from it.
+    pub const NEUTRAL: Color = Color([88, 92, 98]);
 
     /// A scene with one camera and nothing else.
     #[must_use]

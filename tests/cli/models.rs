@@ -2,33 +2,35 @@
 
 use std::path::Path;
 
+use marraztu::scene::Scene;
+
 use super::{SQUARE, drawn, ends_with, folder};
 
 #[test]
 fn models_without_a_scene_are_seen_whole_and_in_the_middle() {
     let folder = folder();
-    let blue = [0, 0, 179, 255];
+    let behind = Scene::NEUTRAL.opaque();
     for how in
         [&["square.obj"][..], &["square.obj", "--scale", "1000"], &["square.obj", "square.obj"]]
     {
         let picture = drawn(folder.path(), how);
-        assert_ne!(picture.pixel(80, 60), blue, "{how:?}");
+        assert_ne!(picture.pixel(80, 60), behind, "{how:?}");
         for x in 0..160 {
-            assert_eq!([picture.pixel(x, 0), picture.pixel(x, 119)], [blue, blue], "{how:?}");
+            assert_eq!([picture.pixel(x, 0), picture.pixel(x, 119)], [behind, behind], "{how:?}");
         }
     }
     let through_the_camera = drawn(folder.path(), &["square.obj", "--camera", "1"]);
-    assert_eq!(through_the_camera.pixel(80, 60), blue, "the square is at (5, 5), and small");
+    assert_eq!(through_the_camera.pixel(80, 60), behind, "the square is at (5, 5), and small");
     let marks = ["square.obj", "--camera", "1", "--helpers", "all"];
     assert_eq!(drawn(folder.path(), &marks).pixel(80, 60), [255, 255, 0, 255], "the bulb");
     let one = ["square.obj", "--flip-winding", "--sides", "one"];
-    assert_eq!(drawn(folder.path(), &one).pixel(80, 60), blue, "its back is not drawn");
+    assert_eq!(drawn(folder.path(), &one).pixel(80, 60), behind, "its back is not drawn");
     let red = drawn(folder.path(), &[&one[..], &["--back-faces"]].concat());
     assert_eq!(red.pixel(80, 60), [255, 0, 0, 255]);
     let upright = drawn(folder.path(), &["square.obj", "--up", "z", "--from", "0,0"]);
-    assert_eq!(upright.pixel(80, 60), blue, "it lies, and is seen from its edge");
+    assert_eq!(upright.pixel(80, 60), behind, "it lies, and is seen from its edge");
     let upright = drawn(folder.path(), &["square.obj", "--up", "z"]);
-    assert_ne!(upright.pixel(80, 60), blue, "from above it is seen");
+    assert_ne!(upright.pixel(80, 60), behind, "from above it is seen");
 }
 
 #[test]
@@ -46,9 +48,9 @@ fn both_sides_of_an_open_surface_are_drawn_and_the_front_of_a_closed_one() {
         let all = ["square.obj", "--from", "180,0", "--lights", "0", "--sides", sides];
         drawn(folder.path(), &all)
     };
-    let blue = [0, 0, 179, 255];
-    assert_eq!(back("one").pixel(80, 60), blue);
-    assert_ne!(back("two").pixel(80, 60), blue);
+    let behind = Scene::NEUTRAL.opaque();
+    assert_eq!(back("one").pixel(80, 60), behind);
+    assert_ne!(back("two").pixel(80, 60), behind);
     assert!(back("auto") == back("two"));
     assert!(
         drawn(folder.path(), &["square.obj", "--from", "180,0", "--lights", "0"]) == back("two")
@@ -150,8 +152,8 @@ fn models_without_a_scene_are_seen_from_the_side_that_is_asked_for() {
             folder.path(),
             &["square.obj", "--lights", "0", "--sides", "one", "--from", from],
         );
-        let ground = picture.pixel(0, 0);
-        picture.pixels().iter().filter(|pixel| **pixel != ground).count()
+        let behind = picture.pixel(0, 0);
+        picture.pixels().iter().filter(|pixel| **pixel != behind).count()
     };
     let front = seen("0,0");
     assert!(front > 1000, "{front}");

@@ -211,19 +211,33 @@ fn a_bad_file_is_reported_in_one_sentence_with_its_line_and_changes_nothing() {
     let mut editor = Editor::new();
     let before = editor.scene();
     editor.ask(Request::LoadFiles(vec![path]));
-    editor.wait_until(|editor| editor.shows("Something went wrong"));
+    editor.wait_until(|editor| editor.shows("The file was not loaded"));
     assert!(editor.shows("bad.obj:2: "));
     assert!(editor.scene() == before);
     editor.press(Named(Key::Enter));
-    assert!(!editor.shows("Something went wrong"), "Enter closes it");
+    assert!(!editor.shows("The file was not loaded"), "Enter closes it");
 }
 
 #[test]
 fn a_missing_file_is_reported() {
     let mut editor = Editor::new();
     editor.ask(Request::LoadFiles(vec![PathBuf::from("nowhere.obj")]));
-    editor.wait_until(|editor| editor.shows("Something went wrong"));
+    editor.wait_until(|editor| editor.shows("The file was not loaded"));
     assert!(editor.shows("there is no such file"));
+}
+
+#[test]
+fn a_notice_names_the_texture_that_is_missing_before_what_was_mended() {
+    let text = "mtllib c.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n";
+    let (folder, path) = folder_with("cube.obj", text);
+    std::fs::write(folder.path().join("c.mtl"), "newmtl m\nNs 0\nmap_Kd none.png\n").unwrap();
+    let mut editor = Editor::new();
+    editor.drop_files(&[&path]);
+    editor.wait_until(|editor| editor.scene().objects.len() == 1);
+    editor.wait_until(|editor| !editor.state().notices.is_empty());
+    let said = &editor.state().notices[0].text;
+    assert!(said.contains("c.mtl: the texture \"none.png\" was not found"), "{said}");
+    assert!(said.ends_with(" more findings"), "{said}");
 }
 
 #[test]

@@ -9,14 +9,16 @@ use std::sync::Arc;
 
 use egui::Key;
 use marraztu::accuracy::{Settings, Shot};
-use marraztu::app::actions::Chord::{Command, Lower};
+use marraztu::app::actions::Chord::{Command, Lower, Named};
 use marraztu::app::actions::Request;
 use marraztu::base::Shared;
 use marraztu::base::image::Size;
 use marraztu::edit::{presenting, steps};
 use marraztu::io::{self, Progress};
 use marraztu::render::{Renderer, plan_frame};
-use marraztu::scene::{LoadOptions, Material, MaterialChoice, Object, Scene, Sides, Steps, View};
+use marraztu::scene::{
+    HALF_APERTURE, LoadOptions, Material, MaterialChoice, Object, Scene, Sides, Steps, View,
+};
 
 use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;
@@ -85,9 +87,16 @@ fn a_model_of_the_command_line_opens_alone_framed_and_with_steps_that_fit() {
     let pose = |scene: &Scene, view: &View| *scene.selected_camera(view).pose.now();
     assert_eq!(pose(&scene, &view), pose(&wanted, &wanted_view));
     assert_eq!(scene.lights, wanted.lights, "it is lit as render lights it");
+    let mut apertures =
+        scene.lights.iter().filter_map(|(_, light)| (HALF_APERTURE.get)(&light.kind));
+    assert!(
+        apertures.all(|angle| angle == HALF_APERTURE.largest),
+        "no edge of a cone from near by"
+    );
     assert_eq!(steps::length(&scene, &view), 0.01, "a hundredth of the cube");
     assert!(editor.shows("step 0.01 by size"));
     assert!(editor.state().history.is_saved());
+    assert_eq!(editor.state().file_name(), "cube.obj", "as the title says");
     assert_eq!(editor.steps(), 0);
     let before = pose(&scene, &view).eye;
     editor.press(Lower(Key::Z));
@@ -118,8 +127,10 @@ fn a_model_that_cannot_be_read_leaves_the_first_scene() {
     let mut editor = Editor::new();
     let before = editor.scene();
     editor.open_at_start(&[&path]);
-    editor.wait_until(|editor| editor.shows("Something went wrong"));
+    editor.wait_until(|editor| editor.shows("The file was not loaded"));
     assert!(editor.scene() == before);
+    editor.press(Named(Key::Enter));
+    assert!(editor.shows("Drop a model here"), "the strip says what else can be opened");
 }
 
 #[test]
@@ -147,8 +158,9 @@ fn a_drop_on_the_untouched_first_scene_takes_its_place_and_one_undo_brings_it_ba
     editor.wait_until(|editor| editor.names() == ["second", "cube"]);
     assert_eq!(editor.steps(), 1);
     assert!(editor.view().steps.by_size);
+    assert_eq!(editor.scene().background, Scene::NEUTRAL);
     editor.press(Command(Key::Z));
-    assert!(editor.scene() == first);
+    assert!(editor.scene() == first, "with its blue");
     assert_eq!(editor.view().steps, Steps::DEFAULT, "the first scene has steps of 10");
     assert_eq!(editor.view().object, first_view.object);
     editor.perform(marraztu::app::actions::Action::Redo);

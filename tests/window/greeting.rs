@@ -5,7 +5,9 @@
 use egui::Key;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::Lower;
+use marraztu::scene::Scene;
 
+use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;
 
 fn greeted() -> Editor {
@@ -43,6 +45,25 @@ fn the_strip_offers_lessons_and_is_dismissed() {
     assert!(!is_shown(&editor), "without overlays the picture is alone");
     editor.perform(Action::ToggleOverlays);
     editor.click_label("Dismiss");
+    assert!(!is_shown(&editor));
+}
+
+#[test]
+fn the_strip_opens_a_model_alone_as_a_drop_does() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = greeted();
+    editor.click_label("Open model...");
+    editor.type_path(&path);
+    editor.wait_until(|editor| editor.scene().objects.len() == 1);
+    assert_eq!(editor.scene().background, Scene::NEUTRAL);
+    assert!(editor.view().steps.by_size && !is_shown(&editor));
+}
+
+#[test]
+fn the_strip_opens_an_example() {
+    let mut editor = greeted();
+    editor.click_label("Chess");
+    editor.wait_until(|editor| editor.scene().objects.len() > 20);
     assert!(!is_shown(&editor));
 }
 

@@ -164,6 +164,25 @@ fn plus_and_minus_go_by_the_text_on_every_layout() {
 }
 
 #[test]
+fn a_sign_that_needs_shift_acts_again_if_shift_was_let_go_first() {
+    let mut editor = Editor::new();
+    let event = |editor: &Editor, key, pressed, modifiers| {
+        let physical_key = Some(Key::Equals);
+        let event = Event::Key { key, physical_key, pressed, repeat: false, modifiers };
+        editor.harness.event(event);
+    };
+    let with_shift = Modifiers { shift: true, ..Modifiers::CTRL | Modifiers::COMMAND };
+    for presses in 1..4_u8 {
+        event(&editor, Key::Plus, true, with_shift);
+        editor.settle();
+        event(&editor, Key::Equals, false, Modifiers::CTRL | Modifiers::COMMAND);
+        editor.settle();
+        let zoom = editor.state().zoom;
+        assert!((zoom - (1.0 + 0.1 * f32::from(presses))).abs() < 1e-3, "{zoom}");
+    }
+}
+
+#[test]
 fn signs_under_alt_ask_for_nothing() {
     let mut editor = Editor::new();
     let before = editor.view();

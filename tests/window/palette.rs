@@ -10,10 +10,11 @@ use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
 use marraztu::accuracy::LightAt;
 use marraztu::app::actions::Chord::{Command, Either, Lower, Named};
 use marraztu::app::actions::{Action, Request};
+use marraztu::base::color::Color;
 use marraztu::scene::{ItemId, LightKind, MaterialChoice, SpotOwner, Subject};
 
 use crate::editor::Editor;
-use crate::panels::{control, type_text};
+use crate::panels::{click, control, type_text};
 
 /// What the palette lists, from the top.
 pub(crate) fn listed(editor: &Editor) -> Vec<String> {
@@ -71,6 +72,44 @@ fn items_and_settings_are_found_by_name_and_esc_closes() {
     editor.press(Named(Key::Escape));
     assert!(!editor.shows("Search everything"));
     assert!(!editor.state().palette);
+}
+
+#[test]
+fn the_background_and_the_selection_take_a_colour_by_its_name() {
+    let mut editor = Editor::new();
+    editor.perform(Action::SubjectObject);
+    editor.press(Command(Key::K));
+    type_text(&mut editor, "background");
+    assert!(listed(&editor).contains(&"Background: gray".to_owned()), "{:?}", listed(&editor));
+    type_text(&mut editor, " white");
+    assert_eq!(listed(&editor)[0], "Background: white");
+    editor.press(Named(Key::Enter));
+    assert_eq!(editor.scene().background, Color::WHITE);
+    editor.press(Command(Key::K));
+    type_text(&mut editor, "colour grey");
+    assert_eq!(listed(&editor)[0], "Colour of r_falke: gray");
+    editor.press(Named(Key::Enter));
+    let scene = editor.scene();
+    let object = scene.objects.get(editor.view().object.unwrap()).unwrap();
+    assert!(matches!(object.material, MaterialChoice::Own(_)));
+    assert_eq!(editor.steps(), 2);
+}
+
+#[test]
+fn a_click_on_search_in_the_bar_opens_the_palette() {
+    let mut editor = Editor::new();
+    click(&mut editor, Role::Button, Action::Palette.info().label);
+    assert!(control(&editor, Role::TextInput, "Search everything").is_focused());
+}
+
+#[test]
+fn the_list_of_keys_says_what_the_mouse_does() {
+    let mut editor = Editor::new();
+    editor.press(Either(Key::H));
+    assert!(editor.shows("Wheel or Pinch: "));
+    type_text(&mut editor, "middle");
+    assert!(editor.shows("Shift+drag or Middle drag: "));
+    assert!(!editor.shows("Wheel or Pinch: "));
 }
 
 #[test]

@@ -16,7 +16,7 @@ use marraztu::scene::{LightKind, MaterialChoice, Normals, Scene, SpotOwner};
 
 use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;
-use crate::panels::{click, middle, type_text};
+use crate::panels::{click, control, middle, type_text};
 use crate::undo_buttons::pull_to;
 
 /// An editor, and the steps that were taken in it.
@@ -173,7 +173,14 @@ fn a_spot_is_aimed() {
 fn shading_is_flat_or_smooth() {
     let mut keys = Hand::after(&[]);
     keys.press(Either(Key::I));
-    let mut mouse = Hand::at(Editor::tall());
+    // In a window of the usual size, and in a small one, it is in sight.
+    let in_sight = |editor: &Editor, height: f32| {
+        let button = control(editor, Role::RadioButton, "Normals: Face").rect();
+        button.bottom() < height - 30.0
+    };
+    assert!(in_sight(&Editor::of_size(1024.0, 640.0), 640.0));
+    let mut mouse = Hand::at(Editor::of_size(1280.0, 800.0));
+    assert!(in_sight(&mouse.editor, 800.0));
     mouse.click(Role::RadioButton, "Normals: Face");
     for hand in [&keys, &mouse] {
         assert_eq!(hand.editor.view().normals, Normals::Face);

@@ -45,6 +45,8 @@ pub(crate) enum Intent {
     AskCamera,
     /// The effects of the picture are measured, or no longer.
     Measure,
+    /// A picture is chosen as the texture of an object.
+    ChooseTexture(ObjectId),
     /// The reason why nothing of an object is seen is looked for.
     WhyUnseen(ObjectId),
     /// The list of everything that can be asked for opens or closes.

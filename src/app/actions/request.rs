@@ -64,6 +64,11 @@ pub enum Request {
     ChooseTexture(ObjectId),
     /// Loads these files, or opens the scene among them.
     LoadFiles(Vec<PathBuf>),
+    /// Opens these files as if they were dropped: on the untouched first scene, models take its
+    /// place.
+    OpenFiles(Vec<PathBuf>),
+    /// Asks for models, and opens them as if they were dropped.
+    AskModels,
     /// Lists all that the notice at this place has to say.
     Details(usize),
     /// Gives up loading the file that stands at this place.

@@ -90,6 +90,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
                 items::remove(scene, selection::selected(view).ok_or(Refusal::Gone)?)
             })
         }
+        Action::ChooseTexture => object(state).map(Intent::ChooseTexture),
         Action::Split => items::split(scene, object(state)?).map(Intent::Change),
         Action::ToggleVisible => {
             selected(state)?;

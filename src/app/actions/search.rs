@@ -138,7 +138,7 @@ mod tests {
     }
 
     /// The words that people use, and the action that they mean.
-    const WORDS: [(&str, Action); 66] = [
+    const WORDS: [(&str, Action); 69] = [
         ("flat", Action::ToggleLightNormals),
         ("smooth", Action::ToggleLightNormals),
         ("faceted", Action::ToggleLightNormals),
@@ -204,6 +204,9 @@ mod tests {
         ("numeric", Action::TypeAmount),
         ("target", Action::AimAtSelection),
         ("font size", Action::LargerText),
+        ("mouse", Action::Panel(Panel::CheatSheet)),
+        ("brightness", Action::SubjectLight),
+        ("texture", Action::ChooseTexture),
         ("benchmark", Action::Panel(Panel::Laboratory)),
     ];
 

@@ -50,7 +50,7 @@ actions! {
         "screenshot render resolution size transparent alpha large print wallpaper";
     SaveTurntable File ONCE [Command(Key::F12)]
         "Turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
-        "animation gif apng video movie spin rotate frames orbit";
+        "animation gif apng video movie spin rotate frames";
     ExportScene File ONCE []
         "Export scene..." "Writes the scene for other programs, as OBJ with MTL or as glTF."
         "save obj mtl gltf glb blender three convert";
@@ -91,6 +91,9 @@ actions! {
     SelectNone Edit ONCE []
         "Select one" "Selects only the item that the keys act on."
         "none deselect clear single nothing";
+    ChooseTexture Edit ONCE []
+        "Texture..." "Chooses a picture as the texture of the selected object."
+        "texture image map picture skin uv wrap paint";
     ToggleVisible Edit ONCE []
         "Visible" "Shows or hides the selected object or camera."
         "hide show eye"
@@ -154,7 +157,7 @@ actions! {
         "subject model mesh";
     SubjectLight Select ONCE []
         "Lights" "Makes the keys act on the selected light."
-        "subject lamp";
+        "subject lamp brightness intensity";
 
     Translate Transform ONCE [Either(Key::T)]
         "Move" "Makes the keys x, y and z move."

@@ -25,6 +25,8 @@ const AT_ONCE: Duration = Duration::from_millis(400);
 pub(crate) enum Wanted {
     /// Models to be loaded.
     Model,
+    /// Models to be opened as if they were dropped.
+    Dropped,
     /// A scene in place of this one.
     Scene,
     /// Where to save the scene, and what to do then.
@@ -107,14 +109,19 @@ enum Dialog {
     Unsaved(After),
     Material(Box<MaterialDialog>),
     Picture(Box<PictureDialog>),
-    Fault(String),
+    Fault(&'static str, String),
     Details(String, Vec<String>),
 }
 
 impl Dialogs {
     /// Reports an error in one sentence.
     pub(crate) fn tell_fault(&mut self, sentence: String) {
-        self.open.push(Dialog::Fault(sentence));
+        self.open.push(Dialog::Fault("Something went wrong", sentence));
+    }
+
+    /// Reports in one sentence why a file was not loaded.
+    pub(crate) fn tell_not_loaded(&mut self, sentence: String) {
+        self.open.push(Dialog::Fault("The file was not loaded", sentence));
     }
 
     /// Shows the details of a notice.
@@ -306,6 +313,7 @@ impl Wanted {
         let pictures = || io::PICTURE_FORMATS.iter().map(|format| format.endings[0]).collect();
         match self {
             Self::Model => ("Load a model", Mode::Open, models()),
+            Self::Dropped => ("Open a model", Mode::Open, models()),
             Self::Scene => ("Open a scene", Mode::Open, scenes()),
             Self::SceneTo(_) => ("Save the scene", Mode::Save, scenes()),
             Self::PictureTo | Self::PictureWithOptionsTo => {
@@ -357,9 +365,9 @@ impl Dialog {
                 }
                 picture_dialog::End::Cancelled => End::Cancelled,
             }),
-            Self::Fault(sentence) => {
+            Self::Fault(title, sentence) => {
                 ui.set_max_width(420.0);
-                heading(ui, "Something went wrong");
+                heading(ui, *title);
                 ui.label(sentence.as_str());
                 ui.add_space(4.0);
                 close_ui(ui)

@@ -10,7 +10,7 @@ use crate::app::widgets::spheres::{self, Sphere};
 use crate::app::widgets::text::{file_name, grouped};
 use crate::base::color::Color;
 use crate::edit::items;
-use crate::io::Loaded;
+use crate::io::{Finding, Loaded};
 use crate::scene::{
     Crease, LoadOptions, Material, MaterialChoice, PresetId, Scale, UpAxis, Winding,
 };
@@ -197,16 +197,26 @@ pub(crate) fn own_or_silver(loaded: &Loaded) -> MaterialChoice {
     }
 }
 
-/// "6,320 faces, 3,644 vertices; 2 findings"; of one finding its file and what it says.
+/// "6,320 faces, 3,644 vertices; 2 findings"; of a single finding, and of the first by which
+/// something is lost, its file and what it says.
 pub(crate) fn summary(loaded: &Loaded) -> String {
     let mesh = &loaded.model.mesh;
     let faces = mesh.polygon_count();
     let counts = format!("{} faces, {} vertices", grouped(faces), grouped(mesh.positions().len()));
     match loaded.findings.as_slice() {
         [] => counts,
-        [one] => format!("{counts}; {}: {}", file_name(Path::new(&one.file)), one.text),
-        more => format!("{counts}; {} findings", more.len()),
+        [one] => format!("{counts}; {}", short(one)),
+        all => match (all.iter().find(|it| it.kind.is_loss()), all.len() - 1) {
+            (Some(lost), 1) => format!("{counts}; {}; 1 more finding", short(lost)),
+            (Some(lost), more) => format!("{counts}; {}; {more} more findings", short(lost)),
+            (None, _) => format!("{counts}; {} findings", all.len()),
+        },
     }
+}
+
+/// A finding with the name of its file, without folders.
+fn short(finding: &Finding) -> String {
+    format!("{}: {}", file_name(Path::new(&finding.file)), finding.text)
 }
 
 /// Ka, Kd, Ks and Ns of one's own.

@@ -146,10 +146,12 @@ impl PictureDialog {
             ui.end_row();
         });
         let Size { width, height } = self.choices.whole();
-        ui.weak(match is_picture {
+        let what = match is_picture {
             true => format!("{width} x {height} pixels"),
             false => format!("{} pictures of {width} x {height} pixels", self.choices.frames),
-        });
+        };
+        let said = egui::RichText::new(format!("{what}, in {}", self.folder.display())).weak();
+        ui.add(egui::Label::new(said).truncate());
         ui.add_space(6.0);
         let mut end = None;
         ui.horizontal(|ui| {

@@ -60,6 +60,7 @@ impl App {
         let mut paths = paths.into_iter();
         match wanted {
             Wanted::Model => self.load_files(ctx, paths.collect()),
+            Wanted::Dropped => self.open_files(ctx, paths.collect()),
             Wanted::Texture(id) => {
                 if let Some(path) = paths.next() {
                     self.load_texture(ctx, id, path);
@@ -239,9 +240,17 @@ impl App {
         match error {
             LoadError::Cancelled => self.state.tell(Some("Loading was cancelled".to_owned())),
             LoadError::File { .. } | LoadError::Line { .. } => {
-                self.dialogs.tell_fault(format!("{error}."));
+                self.dialogs.tell_not_loaded(format!("{error}."));
             }
         }
+    }
+
+    /// Says that a model was loaded; if there are findings, a notice says the rest.
+    pub(crate) fn tell_loaded(&mut self, name: &str, found: &str, findings: &[String]) {
+        self.state.tell(Some(match findings {
+            [] => format!("Loaded {name}: {found}"),
+            _ => format!("Loaded {name}"),
+        }));
     }
 
     /// Adds a loaded model to the scene, and reports the findings about its file.
@@ -266,7 +275,7 @@ impl App {
         let command = items::insert_object(&self.state.scene, object);
         self.change(command, Gesture::Whole, &format!("Load {name}"));
         let Some(id) = self.state.view.object else { return };
-        self.state.tell(Some(format!("Loaded {name}: {found}")));
+        self.tell_loaded(&name, &found, &details);
         // Two notices, since framing the object dismisses only one of them.
         if !details.is_empty() {
             let text = format!("{name}: {found}");

@@ -1,5 +1,5 @@
 //! Models that open alone: those of the command line, and those dropped on the untouched first
-//! scene.
+//! scene, or opened from the strip over it.
 //!
 //! They are shown as `render` shows them: without the first scene's objects, framed and lit. The
 //! key `f` and the menu add a model to the scene as it is, also to the first one.
@@ -41,14 +41,17 @@ impl App {
         }
     }
 
-    /// Loads files that were dropped onto the window. On the untouched first scene, models take its
-    /// place.
+    /// Opens files that were dropped onto the window.
     pub(crate) fn take_dropped(&mut self, ctx: &Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_owned()).collect();
-        if paths.is_empty() {
-            return;
+        if !paths.is_empty() {
+            self.open_files(ctx, paths);
         }
+    }
+
+    /// Opens files. On the untouched first scene, models take its place.
+    pub(crate) fn open_files(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
         if self.is_untouched() && !paths.iter().any(|path| is_scene(path)) {
             self.load_alone(ctx, paths, Arrival::Dropped);
         } else {
@@ -94,6 +97,8 @@ impl App {
             if arrival == Arrival::Start && self.is_untouched() {
                 let (scene, view) = io::default_scene();
                 self.replace(State::new(scene, view));
+                // What else there is to begin with.
+                self.greet();
             }
             return;
         }
@@ -110,7 +115,7 @@ impl App {
             if let Some(path) = &object.model.source {
                 self.note_recent(path);
             }
-            self.state.tell(Some(format!("Loaded {}: {found}", object.name)));
+            self.tell_loaded(&object.name, &found, &findings);
             if !findings.is_empty() {
                 let text = format!("{}: {found}", object.name);
                 self.state.notices.push(Notice { text, details: findings, offer: None });

@@ -98,6 +98,8 @@ impl App {
             Request::EndRename(name) => self.end_rename(name),
             Request::ChooseTexture(id) => self.ask_file(ctx, Wanted::Texture(id), ""),
             Request::LoadFiles(paths) => self.load_files(ctx, paths),
+            Request::OpenFiles(paths) => self.open_files(ctx, paths),
+            Request::AskModels => self.ask_file(ctx, Wanted::Dropped, ""),
             Request::Details(at) => {
                 if let Some(notice) = state.notices.get(at) {
                     self.dialogs.tell_details(notice.text.clone(), notice.details.clone());
@@ -168,6 +170,7 @@ impl App {
             Ok(Intent::File(intent)) => self.file(ctx, intent),
             Ok(Intent::AskCamera) => self.dialogs.ask_material(MaterialDialog::of_camera()),
             Ok(Intent::Measure) => self.measure(ctx),
+            Ok(Intent::ChooseTexture(id)) => self.ask_file(ctx, Wanted::Texture(id), ""),
             Ok(Intent::WhyUnseen(id)) => self.why_unseen(ctx, id),
             Ok(Intent::Palette) => self.state.palette ^= true,
             Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),

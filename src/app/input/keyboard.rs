@@ -132,7 +132,7 @@ impl Keyboard {
 
     /// Notes a key, and says whether the viewport keeps it from egui.
     fn key(&mut self, owner: Owner, key: Key, modifiers: Modifiers, repeat: bool) -> bool {
-        self.last_was_repeat = repeat || !self.down.insert(key);
+        self.last_was_repeat = repeat;
         let left_by_escape = std::mem::take(&mut self.left_by_escape);
         if key == Key::Escape {
             // A dialog that Esc closes may be the question whether to leave: Esc asks it again.
@@ -231,11 +231,12 @@ impl egui::Plugin for Keyboard {
             input.events.retain(|event| !is_key(event));
         }
         input.events.retain(|event| match event {
-            Event::Key { key, pressed: true, modifiers, repeat, .. } => {
-                !self.key(owner, *key, *modifiers, *repeat)
+            Event::Key { key, physical_key, pressed: true, modifiers, repeat } => {
+                let held = !self.down.insert(physical_key.unwrap_or(*key));
+                !self.key(owner, *key, *modifiers, *repeat || held)
             }
-            Event::Key { key, pressed: false, .. } => {
-                self.down.remove(key);
+            Event::Key { key, physical_key, pressed: false, .. } => {
+                self.down.remove(&physical_key.unwrap_or(*key));
                 true
             }
             Event::Text(text) => {

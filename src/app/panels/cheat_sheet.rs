@@ -1,9 +1,10 @@
-//! The cheat sheet: every key, with what it would do now. Keys are changed here, too.
+//! The cheat sheet: what the mouse does, and every key with what it would do now. Keys are
+//! changed here, too.
 
 use egui::{Id, Key, RichText, ScrollArea, TextStyle, Ui, Window, vec2};
 
-use crate::app::actions::search::Search;
-use crate::app::actions::{Action, Group, KeyRequest, Request};
+use crate::app::actions::search::{Search, Texts};
+use crate::app::actions::{Action, Group, KeyRequest, MouseInfo, Request};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::input::keymap::Keymap;
 use crate::app::panels::Panel;
@@ -12,7 +13,7 @@ use crate::app::theme;
 use crate::app::widgets::controls;
 
 const WIDTH: f32 = 900.0;
-const KEYS: f32 = 160.0;
+const KEYS: f32 = 170.0;
 const LABEL: f32 = 150.0;
 const NOW: f32 = 36.0;
 
@@ -70,7 +71,8 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.add_space(theme::GAP);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let mut search = Search::new(&wanted);
-        let mut found = false;
+        // The mouse has no keys to change.
+        let mut found = !changes && mouse_ui(ui, &mut search);
         for group in Group::ALL {
             let actions: Vec<Action> = group
                 .actions()
@@ -169,6 +171,63 @@ fn change_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>, action: 
     });
 }
 
+/// What the mouse does over the picture; says whether any of it is searched for.
+fn mouse_ui(ui: &mut Ui, search: &mut Search) -> bool {
+    let mut fits = |mouse: &&MouseInfo| {
+        let words = format!("{} {}", mouse.words, mouse.inputs.join(" ").to_lowercase());
+        search.score(Texts { label: mouse.label, words: &words, hint: mouse.hint }).is_some()
+    };
+    let all: Vec<&MouseInfo> = MouseInfo::ALL.iter().filter(&mut fits).collect();
+    if all.is_empty() {
+        return false;
+    }
+    ui.add_space(theme::GAP);
+    ui.label(RichText::new(MouseInfo::HEADING).strong());
+    for mouse in &all {
+        let size = vec2(ui.available_width(), theme::ROW);
+        let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
+        let said = format!("{}: {}", mouse.inputs.join(" or "), mouse.hint);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &said));
+        let inputs = mouse.inputs.iter().map(|input| (*input).to_owned());
+        let columns = Columns { label: mouse.label, now: "", hint: mouse.hint, enabled: true };
+        columns.show(ui, rect, inputs);
+        if rect.width() < WIDTH / 2.0 {
+            response.on_hover_text(mouse.hint);
+        }
+    }
+    true
+}
+
+/// What stands in a line, after the keys.
+struct Columns<'a> {
+    label: &'a str,
+    now: &'a str,
+    hint: &'a str,
+    enabled: bool,
+}
+
+impl Columns<'_> {
+    fn show(&self, ui: &Ui, rect: egui::Rect, keys: impl IntoIterator<Item = String>) {
+        let Self { label, now, hint, enabled } = *self;
+        let mut left = rect.left() + theme::GAP;
+        for key in keys {
+            let width = controls::key_width(ui, &key);
+            let at = egui::pos2(left + width, rect.center().y);
+            controls::key_cap(ui, at, &key, enabled);
+            left += width + theme::GAP;
+        }
+        let color = controls::text_color(ui, enabled);
+        let text = |text: &str, width| controls::text(ui, text, TextStyle::Body, width);
+        let name = rect.with_min_x(rect.left() + KEYS).with_max_x(rect.left() + KEYS + LABEL);
+        controls::put_text(ui, name, text(label, name.width()), color);
+        let now_rect = rect.with_min_x(name.right() + theme::GAP);
+        controls::put_text(ui, now_rect, text(now, NOW), color);
+        let rest = rect.with_min_x(name.right() + NOW).with_max_x(rect.right() - theme::GAP);
+        let weak = ui.visuals().weak_text_color();
+        controls::put_text(ui, rest, text(hint, rest.width()), weak);
+    }
+}
+
 /// One action: a click does it.
 fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action) {
     let info = action.info();
@@ -187,33 +246,16 @@ fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action)
     if enabled && response.hovered() {
         ui.painter().rect_filled(rect, 4.0, ui.visuals().widgets.inactive.bg_fill);
     }
-    let mut left = rect.left() + theme::GAP;
-    let mut cap = |ui: &Ui, key: &str| {
-        let width = controls::key_width(ui, key);
-        let at = egui::pos2(left + width, rect.center().y);
-        controls::key_cap(ui, at, key, enabled);
-        left += width + theme::GAP;
-    };
-    let keymap = Keyboard::keymap(ui.ctx());
-    for key in keymap.keys(action).iter().flat_map(|key| key.names()) {
-        cap(ui, &key);
-    }
-    let color = controls::text_color(ui, enabled);
-    let label = rect.with_min_x(rect.left() + KEYS).with_max_x(rect.left() + KEYS + LABEL);
-    let text = |ui: &Ui, text: &str, width| controls::text(ui, text, TextStyle::Body, width);
-    controls::put_text(ui, label, text(ui, info.label, label.width()), color);
     let now = match on {
         Some(true) => "on",
         Some(false) => "off",
         None => "",
     };
-    let now_rect = rect.with_min_x(label.right() + theme::GAP);
-    controls::put_text(ui, now_rect, text(ui, now, NOW), color);
-    let rest = rect.with_min_x(label.right() + NOW).with_max_x(rect.right() - theme::GAP);
     let hint =
         available.as_ref().err().map_or(info.hint.to_owned(), |why| format!("Not now: {why}."));
-    let weak = ui.visuals().weak_text_color();
-    controls::put_text(ui, rest, text(ui, &hint, rest.width()), weak);
+    let keymap = Keyboard::keymap(ui.ctx());
+    let keys = keymap.keys(action).iter().flat_map(|key| key.names());
+    Columns { label: info.label, now, hint: &hint, enabled }.show(ui, rect, keys);
     controls::focus_ring(ui, rect, &response);
     if action.explain(response, state).clicked() {
         requests.push(action.into());

@@ -7,8 +7,10 @@ use super::status_line::middle_elided;
 use crate::accuracy::Axis;
 use crate::app::actions::{Action, LabRequest, Request};
 use crate::app::state::State;
+use crate::app::theme;
 use crate::app::widgets::regions;
 use crate::app::widgets::text::file_name;
+use crate::io::EXAMPLES;
 
 /// The lessons that are offered, by their axes, and what they are about.
 const LESSONS: [(&str, &str); 3] =
@@ -38,22 +40,30 @@ pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Req
     });
 }
 
-/// What can be opened, and what can be learned; one row each.
+/// What can be opened, what is there to be seen, and what can be learned; one row each.
 fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.horizontal_wrapped(|ui| {
         ui.weak("Drop a model here, or");
-        for action in [Action::Load, Action::Open] {
-            requests.extend(action.button(ui, state).map(Request::from));
+        let hint = "Shows a model alone, framed and lit";
+        if ui.button("Open model...").on_hover_text(hint).clicked() {
+            requests.push(Request::AskModels);
         }
+        requests.extend(Action::Open.button(ui, state).map(Request::from));
         for path in state.recent.iter().take(RECENT) {
             let name = middle_elided(&file_name(path), 24);
             let button = ui.button(name);
             if button.on_hover_text(path.display().to_string()).clicked() {
-                requests.push(Request::LoadFiles(vec![path.clone()]));
+                requests.push(Request::OpenFiles(vec![path.clone()]));
             }
         }
-        if ui.button("Dismiss").on_hover_text("Puts this strip away").clicked() {
-            requests.push(Request::EndGreeting);
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.weak("Or open an example:");
+        for example in EXAMPLES {
+            let hint = "Opens it in place of this scene";
+            if ui.button(example.title).on_hover_text(hint).clicked() {
+                requests.push(Request::LoadFiles(vec![example.path.into()]));
+            }
         }
     });
     ui.horizontal_wrapped(|ui| {
@@ -63,6 +73,10 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             if ui.button(about).on_hover_text(hint).clicked() {
                 requests.push(Request::Lab(LabRequest::ShowLesson(key)));
             }
+        }
+        ui.add_space(3.0 * theme::GAP);
+        if ui.button("Dismiss").on_hover_text("Puts this strip away").clicked() {
+            requests.push(Request::EndGreeting);
         }
     });
 }

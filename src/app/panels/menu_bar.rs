@@ -1,13 +1,19 @@
 //! The menus, made from the table of actions, and the buttons beside them.
 
-use egui::{Atom, IdSalt, MenuBar, Role, ScrollArea, Ui, WidgetInfo, vec2};
+use egui::{
+    Align, Atom, IdSalt, Layout, MenuBar, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind,
+    TextStyle, Ui, WidgetInfo, pos2, vec2,
+};
 
 use super::{history, undo_buttons};
 use crate::accuracy::AXES;
 use crate::app::actions::{Action, Group, LabRequest, Request};
+use crate::app::input::buttons::first_key;
 use crate::app::panels::Panel;
 use crate::app::state::State;
 use crate::app::theme;
+use crate::app::widgets::controls;
+use crate::app::widgets::icons::Icon;
 use crate::app::widgets::text::file_name;
 use crate::io::EXAMPLES;
 
@@ -43,6 +49,9 @@ const PARTS: [Action; 22] = [
     Action::RedUp,
 ];
 
+/// Those of File that begin a scene, or add to it.
+const OPENS: [Action; 4] = [Action::New, Action::NewAncestor, Action::Open, Action::Load];
+
 /// How large the interface is.
 const SIZES: [Action; 3] = [Action::LargerText, Action::SmallerText, Action::NormalText];
 
@@ -51,10 +60,14 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     MenuBar::new().ui(ui, |ui| {
         ui.spacing_mut().button_padding.x = 8.0;
         menu(ui, "File", |ui| {
-            group_ui(ui, state, requests, Group::File);
-            ui.separator();
+            // What else can be opened stands after the actions that open; Quit is the last.
+            let (begin, rest): (Vec<Action>, Vec<Action>) =
+                Group::File.actions().partition(|action| OPENS.contains(action));
+            items(ui, state, requests, begin);
             submenu(ui, "Recent files", |ui| recent_ui(ui, state, requests));
             submenu(ui, "Examples", |ui| examples_ui(ui, requests));
+            ui.separator();
+            items(ui, state, requests, rest);
         });
         menu(ui, "Edit", |ui| {
             group_ui(ui, state, requests, Group::Edit);
@@ -103,7 +116,39 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         if ui.available_width() >= 2.0 * theme::ROW + theme::GAP {
             undo_buttons::show(ui, state, requests);
         }
+        if ui.available_width() >= SEARCH + theme::GAP {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                search_ui(ui, state, requests);
+            });
+        }
     });
+}
+
+/// The width of the button that opens the palette.
+const SEARCH: f32 = 170.0;
+
+/// Opens the palette. It looks like the field that it opens, so that it is seen to search.
+fn search_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let action = Action::Palette;
+    let (rect, response) = ui.allocate_exact_size(vec2(SEARCH, theme::ROW), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, action.info().label));
+    let visuals = ui.visuals();
+    let hovered = response.hovered();
+    let (field, weak) = (visuals.extreme_bg_color, visuals.weak_text_color());
+    let line = Stroke::new(1.0, if hovered { weak } else { theme::line(visuals) });
+    ui.painter().rect(rect.shrink(0.5), 4.0, field, line, StrokeKind::Inside);
+    let icon = Rect::from_min_size(rect.min, vec2(theme::ROW, rect.height()));
+    Icon::Search.paint(ui.painter(), icon, 12.0, weak);
+    let key = first_key(ui, action).unwrap_or_default();
+    let end = pos2(rect.right() - theme::GAP, rect.center().y);
+    let right = controls::key_cap(ui, end, &key, true) - theme::GAP;
+    let room = rect.with_min_x(icon.right()).with_max_x(right);
+    let name = controls::text(ui, "Search", TextStyle::Body, room.width());
+    controls::put_text(ui, room, name, weak);
+    controls::focus_ring(ui, rect, &response);
+    if action.explain(response, state).clicked() {
+        requests.push(action.into());
+    }
 }
 
 fn menu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {

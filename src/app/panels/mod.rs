@@ -89,8 +89,8 @@ macro_rules! each_panel {
         $then! {
             CheatSheet cheat_sheet "cheat_sheet" [Dock::Floating] false
                 [Either(Key::H), Text("?"), Named(Key::F1)]
-                "Keys" "Lists every key and what it would do now."
-                "shortcuts help hotkeys keyboard bindings";
+                "Keys" "Lists every key with what it would do now, and what the mouse does."
+                "shortcuts help hotkeys keyboard mouse bindings";
             Outline outline "outline" [Dock::Beside(Side::Outline)] true []
                 "Outline" "Shows or hides the list of objects, cameras and lights."
                 "tree hierarchy list scene layers";

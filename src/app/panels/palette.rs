@@ -165,9 +165,17 @@ fn found(keymap: &Keymap, state: &State, query: &str) -> Vec<Entry> {
     if !search.is_empty() {
         settings(state, &mut search, &mut entries);
         materials(state, &mut search, &mut entries);
+        for (name, color) in Color::NAMED.into_iter().filter(|(name, _)| *name != "grey") {
+            let words =
+                if name == "gray" { "colour color paint grey" } else { "colour color paint" };
+            let score = |label: &str| search.score(Texts { label, words, hint: "" });
+            colors(state, (name, color), score, &mut entries);
+        }
     }
     if let Some(color) = hexadecimal(query).filter(|_| query.trim().starts_with('#')) {
-        colors(state, color, &mut entries);
+        let Color([r, g, b]) = color;
+        let written = format!("#{r:02x}{g:02x}{b:02x}");
+        colors(state, (&written, color), |_| Some(u32::MAX), &mut entries);
     }
     entries.sort_by_key(|entry| std::cmp::Reverse(entry.score));
     entries.truncate(MOST);
@@ -233,13 +241,17 @@ fn of_objects(state: &State, id: ObjectId, label: String, change: impl Fn(&mut O
     }
 }
 
-/// What can have a colour that was typed: `#ff8000`.
-fn colors(state: &State, color: Color, entries: &mut Vec<Entry>) {
-    let Color([r, g, b]) = color;
-    let written = format!("#{r:02x}{g:02x}{b:02x}");
+/// What can have a colour, which is written as `#ff8000` or by its name.
+fn colors(
+    state: &State,
+    (written, color): (&str, Color),
+    mut score: impl FnMut(&str) -> Option<u32>,
+    entries: &mut Vec<Entry>,
+) {
     let mut add = |what: String, hint: &str, request: Request| {
         let (label, hint) = (format!("{what}: {written}"), hint.to_owned());
-        let (kind, key, on, refused, score) = ("Colour", String::new(), false, None, u32::MAX);
+        let Some(score) = score(&label) else { return };
+        let (kind, key, on, refused) = ("Colour", String::new(), false, None);
         entries.push(Entry { label, kind, hint, key, on, refused, score, request });
     };
     let name = state.acted_on_name();

@@ -1,7 +1,8 @@
-//! The status line: what the next key would do, and the last message.
+//! The status line: what the next key would do, and the last message; without one, what the mouse
+//! does over the picture.
 //!
 //! If there is no room for all parts, the least important ones in the middle are left out; no part
-//! is cut off.
+//! is cut off. What the mouse does has the room that is left.
 
 use egui::{Align, Layout, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
@@ -33,19 +34,47 @@ pub(crate) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Request>) {
                 message_ui(ui, &message, ui.available_width() * 0.5);
             } else if let Some(message) = &state.message {
                 message_ui(ui, message, ui.available_width() * 0.5);
+            } else {
+                mouse_ui(ui, state);
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| line_ui(ui, state));
         });
     });
 }
 
+fn width(ui: &Ui, text: &str) -> f32 {
+    controls::text(ui, RichText::new(text), TextStyle::Body, f32::INFINITY).size().x
+}
+
+/// As much of what the mouse does as there is room for beside the whole line.
+fn mouse_ui(ui: &mut Ui, state: &State) {
+    let used = width(ui, &parts(state).join(BETWEEN)) + 8.0 * theme::GAP;
+    let room = ui.available_width() - used;
+    let all = mouse_hints(state);
+    let shown = (1..=all.len()).rev().map(|count| all[..count].join(BETWEEN));
+    let Some(text) = shown.into_iter().find(|text| width(ui, text) <= room) else { return };
+    ui.add(egui::Label::new(RichText::new(text).weak()))
+        .on_hover_text("What the mouse does over the picture; the list of keys has all of it");
+}
+
+/// What the mouse does over the picture, from what is needed first.
+fn mouse_hints(state: &State) -> Vec<&'static str> {
+    let view = &state.view;
+    if view.observer == Observer::Object {
+        return vec!["Click: select", "Right click: menu"];
+    }
+    let pose = state.scene.selected_camera(view).pose.now();
+    let [drag, other] = match pose.mode_with(view.object) {
+        CameraMode::Fly => ["Drag: look around", "Alt+drag: orbit"],
+        CameraMode::Analysis { .. } => ["Drag: orbit", "Right held: fly"],
+    };
+    vec![drag, "Wheel: zoom", other, "Shift+drag: pan", "Right click: menu"]
+}
+
 fn line_ui(ui: &mut Ui, state: &State) {
     let parts = parts(state);
-    let width = |text: &str| {
-        controls::text(ui, RichText::new(text), TextStyle::Body, f32::INFINITY).size().x
-    };
     let room = ui.available_width() - 2.0 * theme::GAP;
-    let text = fitted(&parts, |text| width(text) <= room);
+    let text = fitted(&parts, |text| width(ui, text) <= room);
     let whole = parts.join(BETWEEN);
     let response = ui.add(egui::Label::new(text).truncate());
     response.widget_info(|| WidgetInfo::labeled(Role::Status, true, &whole));
@@ -290,6 +319,18 @@ mod tests {
         state.statistics.late = true;
         assert_eq!(said(&state), "drawing");
         assert!(!parts(&state).iter().any(|part| part.starts_with("refin")));
+    }
+
+    #[test]
+    fn what_a_drag_does_is_said_for_the_mode_of_the_camera() {
+        let (scene, view) = crate::io::default_scene();
+        let mut state = State::new(scene, view);
+        assert_eq!(mouse_hints(&state)[0], "Drag: look around");
+        let command = transform::toggle_analysis(&state.scene, &state.view);
+        command.unwrap().apply(&mut state.scene).unwrap();
+        assert_eq!(mouse_hints(&state)[0], "Drag: orbit");
+        state.view.observer = Observer::Object;
+        assert!(!mouse_hints(&state).iter().any(|hint| hint.contains("rag:")));
     }
 
     #[test]

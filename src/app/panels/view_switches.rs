@@ -26,11 +26,12 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         section(ui, "View", true, |ui| {
             observer_ui(ui, state, requests);
             projection_ui(ui, state, requests);
+            normals_ui(ui, state, requests);
             background_ui(ui, state, requests);
         });
         section(ui, "Display", true, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            // Flat shading is a choice in the section of light.
+            // Flat shading is a choice in the section above.
             let here = |action: &Action| {
                 *action != Action::ToggleLightNormals && !Group::OVER_PICTURE.contains(action)
             };
@@ -47,7 +48,6 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         section(ui, "Light", true, |ui| {
             slots_ui(ui, state, requests);
             action_switch(ui, state, requests, Action::ToggleAllShadows);
-            normals_ui(ui, state, requests);
             for axis in AXES.iter().filter(|axis| is_of_light(axis)) {
                 axis_ui(ui, axis, state, requests);
             }

@@ -226,19 +226,23 @@ impl State {
         self.scene.name(id)
     }
 
-    /// The file name of the scene, or a placeholder.
+    /// The file name of the scene, or of its only model; or a placeholder.
     #[must_use]
     pub fn file_name(&self) -> String {
-        let name = self.path.as_deref().and_then(Path::file_name);
+        let name = self.path.as_deref().or(self.only_model()).and_then(Path::file_name);
         name.map_or_else(|| "new scene".to_owned(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// The file of the only model.
+    fn only_model(&self) -> Option<&Path> {
+        let mut objects = self.scene.objects.iter();
+        let model = objects.next().and_then(|(_, object)| object.model.source.as_deref());
+        model.filter(|_| objects.next().is_none())
     }
 
     /// A name without ending for a file of the scene: that of its scene file, or of its only model.
     pub(crate) fn proposed_name(&self) -> String {
-        let mut objects = self.scene.objects.iter();
-        let model = objects.next().and_then(|(_, object)| object.model.source.as_deref());
-        let only = model.filter(|_| objects.next().is_none());
-        let stem = self.path.as_deref().or(only).and_then(Path::file_stem);
+        let stem = self.path.as_deref().or(self.only_model()).and_then(Path::file_stem);
         stem.map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned())
     }
 

@@ -130,7 +130,7 @@ pub(super) fn dimensions_ui(ui: &Ui, state: &State, onto: &Projection) {
         return;
     }
     let painter = ui.painter().with_clip_rect(onto.rect());
-    let stroke = Stroke::new(1.0, theme::accent(ui.visuals()));
+    let stroke = Stroke::new(1.0, theme::accent_on_dark());
     let mut ids: Vec<ItemId> = state.selected().into_iter().chain(state.others()).collect();
     if !ids.iter().any(|id| matches!(id, ItemId::Object(_))) {
         ids.extend(state.view.object.map(ItemId::Object));

@@ -149,7 +149,7 @@ pub(super) fn lights_at(marks: &[Mark], at: Pos2) -> [Vec<ItemId>; 2] {
 /// Draws the marks, and what the selected light shines at.
 pub(super) fn show(ui: &Ui, state: &State, projection: &Projection, marks: &[Mark]) {
     let painter = ui.painter().with_clip_rect(projection.rect);
-    let accent = theme::accent(ui.visuals());
+    let accent = theme::accent_on_dark();
     if state.helpers.directions && state.shows_overlays() {
         for id in state.scene.lights.ids().filter(|id| !state.is_selected(ItemId::Light(*id))) {
             let light = state.scene.lights.get(id).filter(|light| light.on);

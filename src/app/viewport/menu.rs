@@ -50,6 +50,7 @@ const fn actions_on(item: ItemId) -> &'static [Action] {
             Action::Rename,
             Action::Duplicate,
             Action::Split,
+            Action::ChooseTexture,
             Action::DropToGround,
             Action::AddObjectSpot,
             Action::TakeBack,

@@ -55,7 +55,7 @@ impl Viewport {
             plate_ui(ui, rect, egui::Align2::CENTER_BOTTOM, grab.said.clone());
         }
         if let Some(area) = self.mouse.selection_box() {
-            let accent = theme::accent(ui.visuals());
+            let accent = theme::accent_on_dark();
             let painter = ui.painter().with_clip_rect(rect);
             let dark = egui::Color32::from_black_alpha(110);
             let kind = egui::StrokeKind::Middle;
@@ -158,7 +158,7 @@ impl Viewport {
         helpers::dimensions_ui(ui, state, projection);
         let first = state.outlined().first().copied();
         let [own, others] = &self.outline;
-        let accent = theme::accent(ui.visuals());
+        let accent = theme::accent_on_dark();
         // Those beside it are weaker: it is the one that the keys act on.
         let borders = [(others, accent.gamma_multiply(0.6)), (own, accent)];
         for (border, color) in borders {

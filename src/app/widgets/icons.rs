@@ -40,6 +40,8 @@ pub(crate) enum Icon {
     Undo,
     /// Redo.
     Redo,
+    /// Search.
+    Search,
     /// Up.
     Up,
     /// Down.
@@ -101,6 +103,7 @@ impl Icon {
             Self::Bin => icons::ICON_DELETE,
             Self::Undo => icons::ICON_UNDO,
             Self::Redo => icons::ICON_REDO,
+            Self::Search => icons::ICON_SEARCH,
             Self::Up => icons::ICON_KEYBOARD_ARROW_UP,
             Self::Down => icons::ICON_KEYBOARD_ARROW_DOWN,
             Self::Left => icons::ICON_KEYBOARD_ARROW_LEFT,

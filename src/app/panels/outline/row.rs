@@ -296,6 +296,7 @@ fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &R
                 Action::WhyUnseen,
                 Action::DropToGround,
                 Action::Split,
+                Action::ChooseTexture,
             ]);
         }
         for action in actions {

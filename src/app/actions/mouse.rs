@@ -1,0 +1,96 @@
+//! What the mouse does over the picture, in words: for the cheat sheet, the status line and the
+//! list of keys. `app/viewport/mouse` does it.
+
+/// Something that the mouse does over the picture.
+#[derive(Clone, Copy, Debug)]
+pub struct MouseInfo {
+    /// Every way to ask for it; the first is the one that is shown.
+    pub inputs: &'static [&'static str],
+    /// One to three words.
+    pub label: &'static str,
+    /// One sentence.
+    pub hint: &'static str,
+    /// Other words that people use for it, for searches.
+    pub words: &'static str,
+}
+
+impl MouseInfo {
+    /// The heading of the list.
+    pub const HEADING: &'static str = "Mouse over the picture";
+
+    /// Everything that the mouse does, from what is needed first.
+    pub const ALL: [Self; 12] = [
+        Self {
+            inputs: &["Click"],
+            label: "Select",
+            hint: "Selects what is under the pointer; another click selects what is behind it.",
+            words: "mouse pick choose left",
+        },
+        Self {
+            inputs: &["Double click"],
+            label: "Frame",
+            hint: "Brings the object under the pointer into view; beside it, everything.",
+            words: "mouse zoom fit focus left",
+        },
+        Self {
+            inputs: &["Drag"],
+            label: "Look around",
+            hint: "Turns the camera; a camera in analysis goes round the selected object.",
+            words: "mouse orbit turn rotate view left",
+        },
+        Self {
+            inputs: &["Alt+drag"],
+            label: "Orbit",
+            hint: "Goes round the selected object, in fly too.",
+            words: "mouse turn rotate around view left",
+        },
+        Self {
+            inputs: &["Shift+drag", "Middle drag"],
+            label: "Pan",
+            hint: "Moves the camera sideways.",
+            words: "mouse shift move view left",
+        },
+        Self {
+            inputs: &["Wheel", "Pinch"],
+            label: "Zoom",
+            hint: "Goes towards what is under the pointer, or away from it.",
+            words: "mouse scroll near closer far dolly",
+        },
+        Self {
+            inputs: &["Right click"],
+            label: "Menu",
+            hint: "Opens a menu of what is under the pointer.",
+            words: "mouse context",
+        },
+        Self {
+            inputs: &["Right held"],
+            label: "Fly",
+            hint: "W A S D Q E fly; Shift is fast, Alt is slow, the wheel changes the speed.",
+            words: "mouse walk game first person wasd",
+        },
+        Self {
+            inputs: &["Drag a handle"],
+            label: "Use the gizmo",
+            hint: "Moves, rotates or scales the selection; Ctrl snaps, and x 12 Enter types.",
+            words: "mouse move rotate scale handle",
+        },
+        Self {
+            inputs: &["Shift+click"],
+            label: "Select also",
+            hint: "Selects one more, or one less.",
+            words: "mouse several multiple add left",
+        },
+        Self {
+            inputs: &["Ctrl+drag"],
+            label: "Select in a box",
+            hint: "Selects everything in a box.",
+            words: "mouse several multiple rectangle marquee left",
+        },
+        Self {
+            inputs: &["Esc", "Right click"],
+            label: "Cancel a drag",
+            hint: "Goes back to where the drag began.",
+            words: "mouse abort stop undo",
+        },
+    ];
+}
