@@ -238,6 +238,8 @@ fn a_notice_names_the_texture_that_is_missing_before_what_was_mended() {
     let said = &editor.state().notices[0].text;
     assert!(said.contains("c.mtl: the texture \"none.png\" was not found"), "{said}");
     assert!(said.ends_with(" more findings"), "{said}");
+    let first = &editor.state().notices[0].details[0];
+    assert!(first.contains("none.png"), "{first}");
 }
 
 #[test]

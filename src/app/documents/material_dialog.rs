@@ -214,6 +214,13 @@ pub(crate) fn summary(loaded: &Loaded) -> String {
     }
 }
 
+/// Everything that was found, a line each; what is lost comes first.
+pub(crate) fn details(findings: &[Finding]) -> Vec<String> {
+    let (lost, mended): (Vec<&Finding>, Vec<&Finding>) =
+        findings.iter().partition(|finding| finding.kind.is_loss());
+    lost.into_iter().chain(mended).map(ToString::to_string).collect()
+}
+
 /// A finding with the name of its file, without folders.
 fn short(finding: &Finding) -> String {
     format!("{}: {}", file_name(Path::new(&finding.file)), finding.text)

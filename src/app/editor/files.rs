@@ -13,7 +13,7 @@ use crate::accuracy::{AccuracyPreset, Settings, Shot};
 use crate::app::documents::dialogs::{After, Answer, Wanted};
 use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wish, is_scene};
 use crate::app::documents::material_dialog::{
-    MaterialChoices, MaterialDialog, own_or_silver, summary,
+    MaterialChoices, MaterialDialog, details, own_or_silver, summary,
 };
 use crate::app::drawing::images;
 use crate::app::state::{Notice, Offer, Reduction, State};
@@ -266,7 +266,7 @@ impl App {
             self.note_recent(&path);
         }
         let material = settled(material, &loaded);
-        let details = loaded.findings.iter().map(ToString::to_string).collect::<Vec<_>>();
+        let details = details(&loaded.findings);
         let mut object = Object::new(Shared::new(loaded.model), material);
         object.texture = texture;
         let name = object.name.clone();

@@ -11,7 +11,7 @@ use egui::Context;
 
 use super::App;
 use crate::app::documents::loading::{Arrival, Arrived, Fetched, Wish, is_scene};
-use crate::app::documents::material_dialog::{own_or_silver, summary};
+use crate::app::documents::material_dialog::{details, own_or_silver, summary};
 use crate::app::state::{Notice, State};
 use crate::app::widgets::text::file_name;
 use crate::base::Shared;
@@ -194,7 +194,7 @@ fn arrived(path: &Path, progress: &Progress) -> Result<Arrived, LoadError> {
     let material = own_or_silver(&loaded);
     let Loaded { model, findings } = loaded;
     let object = Object::new(Shared::new(model), material);
-    Ok(Arrived { object, found, findings: findings.iter().map(ToString::to_string).collect() })
+    Ok(Arrived { object, found, findings: details(&findings) })
 }
 
 #[expect(clippy::cast_precision_loss, reason = "the number of files on a command line")]
