@@ -121,16 +121,22 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Colours a block, whose upper left pixel is `corner`, into a tile from index `at` on. Pixels
-    /// that show the background are left as they are. Returns whether any pixel shows something
-    /// else.
+    /// that show the background get the colour `fill`; without one, they are left as they are.
+    /// Returns whether any pixel shows something else.
     pub(crate) fn block(
         &mut self,
         context: &ShadingContext<'_, T>,
         visibility: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
         (canvas, at): (&mut Canvas<'_>, usize),
+        fill: Option<Color>,
     ) -> bool {
         let shown = self.fragments.list(context.level, visibility, corner);
+        if let Some(color) = fill
+            && (shown.triangles | shown.lines) != u64::MAX
+        {
+            canvas.fill(at, color);
+        }
         let mut lines = shown.lines;
         while lines != 0 {
             let i = lines.trailing_zeros() as usize;
