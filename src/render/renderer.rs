@@ -13,11 +13,10 @@ use fearless_simd::Level;
 use super::shading::context::ShadingContext;
 use super::shading::face_colors::FaceColors;
 use super::shading::light::Lit;
-use super::shading::painter::{Band, Painter, TileSums};
+use super::shading::painter::{Band, Filled, Painter, TileSums};
 use super::shading::shown_faces::have_colors;
 use crate::accuracy::Arithmetic;
 use crate::base::cancellation::Cancellation;
-use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
 use crate::base::work_stealing::{own, together};
 use crate::render::damage::kept_shadows::KeptShadows;
@@ -41,8 +40,8 @@ pub struct Renderer {
     level: Level,
     picture: Picture,
     frame: ScreenGeometry,
-    /// For each tile the colour that fills all of it, if one is known to.
-    filled: Vec<Option<Color>>,
+    /// For each tile the blocks that are filled with one colour.
+    filled: Vec<Filled>,
     caches: ShadingCaches,
     /// The plan of the last finished picture.
     plan: Option<FramePlan>,
@@ -152,7 +151,7 @@ impl Renderer {
             self.picture.resize(size);
             let [columns, rows] = [size.width, size.height].map(|n| n.div_ceil(TILE_SIDE));
             self.filled.clear();
-            self.filled.resize(columns * rows, None);
+            self.filled.resize(columns * rows, Filled::default());
         }
     }
 

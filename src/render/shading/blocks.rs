@@ -6,7 +6,6 @@
 use super::context::ShadingContext;
 use super::full_blocks::{BlockLight, Blocks, Canvas, Corners, ROW};
 use super::groups::{Group, group_of};
-use super::interpolate::Look;
 use super::interpolated::ShadingNumber;
 use super::map_texels::{TexelSource, TexturePlacement};
 use super::shown_faces::is_uniform;
@@ -163,6 +162,7 @@ impl<T: ShadingNumber> Shader<T> {
             self.take_vertex_colors(group, plan.variants.decoding());
         }
         let cut = self.cut_weights(context, group);
+        let look = self.look_of(plan, group);
         let Self { tile, attributes, batch, placed, vertex_colors, .. } = self;
         let TexturePlacement { placement, far } = placed;
         let lights = is_lit.then(|| tile.light(plan, group.pipeline, shaded));
@@ -175,7 +175,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
         let light = BlockLight {
             by: by(context, cut.as_ref()),
-            look: needs_positions.then(|| Look::new(plan, group.draw)),
+            look: needs_positions.then_some(look),
             roots: plan.variants.root_variant(),
             tint: shaded.tint.map(T::from_f64),
             texture: sampler.as_ref().map(|sampler| PlacedTexture { placement, far, sampler }),

@@ -10,7 +10,7 @@ use light_ray::{World, first, light_terms, plus, reflect, vec3};
 
 use super::context::ShadingContext;
 use super::groups::{Group, group_of};
-use super::interpolate::{Mixed, mix, surface_samples};
+use super::interpolate::{Look, Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::run;
 use super::lit_points::place_fragments;
@@ -190,7 +190,8 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         attributes.carry_normals(group.draw);
         attributes.spread(level);
         batch.len = 1;
-        surface_samples(level, (plan, group.draw), fragments, attributes, barycentrics, batch);
+        let (look, roots) = (Look::new(plan, group.draw), plan.variants.root_variant());
+        surface_samples((level, roots), look, fragments, attributes, barycentrics, batch);
         let world = World::new(plan);
         let w: f64 = barycentrics.w[0].into();
         let position = vec3(&batch.position);

@@ -44,6 +44,8 @@ pub(crate) struct Fragments {
     table: [u64; TABLE],
     /// The number of the list, as it stands in the table.
     list: u64,
+    /// Whether the next list may go on with these slots.
+    goes_on: bool,
 }
 
 /// Masks of the pixels that show triangles or lines: bit i stands for pixel i.
@@ -80,6 +82,7 @@ impl Default for Fragments {
             numbers: [0; SLOTS],
             table: [0; TABLE],
             list: NEXT_LIST,
+            goes_on: false,
         }
     }
 }
@@ -92,7 +95,19 @@ impl Fragments {
         visibility: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
     ) -> Shown {
-        dispatch!(level, simd => self.find(simd, visibility, corner))
+        self.list_on(level, visibility, corner, 0)
+    }
+
+    /// The same, but triangles of the list before keep their slots if no more than about `most` are
+    /// then in use.
+    pub(crate) fn list_on(
+        &mut self,
+        level: Level,
+        visibility: &[u64; BLOCK_PIXELS],
+        corner: [i32; 2],
+        most: usize,
+    ) -> Shown {
+        dispatch!(level, simd => self.find(simd, visibility, corner, most))
     }
 
     #[inline(always)]
@@ -101,16 +116,25 @@ impl Fragments {
         simd: S,
         visibility: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
+        most: usize,
     ) -> Shown {
         self.shared = false;
-        let Runs { numbers, triangles, background, left, .. } = Runs::find(simd, visibility);
+        let runs = Runs::find(simd, visibility);
+        let Runs { numbers, triangles, background, left, .. } = runs;
         if triangles == 0 {
             return Shown { triangles, lines: !background };
         }
         if triangles == u64::MAX && left | 1 == u64::MAX {
             self.list_full_block(numbers[MARGIN], corner);
         } else {
-            self.share_out(&numbers, triangles & (!left | FIRST_COLUMN));
+            let starts = triangles & (!left | FIRST_COLUMN);
+            let new = runs.new_starts().count_ones() as usize;
+            // Of triangles that replace each other in the table, each run takes another slot.
+            let room = self.count + starts.count_ones() as usize <= SLOTS;
+            if !(self.goes_on && room && self.count + new <= most) {
+                self.begin_list();
+            }
+            self.share_out(&numbers, starts);
             if triangles == u64::MAX {
                 self.put_all(corner);
             } else {
@@ -122,7 +146,7 @@ impl Fragments {
 
     /// Lists some triangles, each as if it showed in one pixel of no position.
     pub(crate) fn list_faces(&mut self, numbers: &[u32]) {
-        self.shared = false;
+        (self.shared, self.goes_on) = (false, false);
         (self.len, self.count) = (numbers.len(), numbers.len());
         self.numbers[..numbers.len()].copy_from_slice(numbers);
         for (slot, i) in self.slots.iter_mut().zip(0..) {
@@ -132,7 +156,7 @@ impl Fragments {
 
     /// Lists all pixels of a block that one triangle covers fully.
     pub(crate) fn list_full_block(&mut self, number: u32, corner: [i32; 2]) {
-        self.shared = false;
+        (self.shared, self.goes_on) = (false, false);
         self.count = 1;
         self.numbers[0] = number;
         self.slots.fill(0);
@@ -142,7 +166,7 @@ impl Fragments {
     /// Assigns slots to the runs of pixels that begin at `starts`.
     #[inline(always)]
     fn share_out(&mut self, numbers: &[u32; MARGIN + BLOCK_PIXELS], mut starts: u64) {
-        self.begin_list();
+        self.goes_on = true;
         while starts != 0 {
             let at = starts.trailing_zeros() as usize % BLOCK_PIXELS;
             starts &= starts - 1;
@@ -154,7 +178,7 @@ impl Fragments {
     /// Forgets the slots of the list before.
     #[inline(always)]
     fn begin_list(&mut self) {
-        self.count = 0;
+        (self.count, self.goes_on) = (0, false);
         self.list = (self.list + NEXT_LIST) & LISTS;
         if self.list == 0 {
             (self.table, self.list) = ([0; TABLE], NEXT_LIST);
@@ -255,7 +279,7 @@ impl Fragments {
     /// Copies the fragments of another list whose slots have a true `keep`.
     pub(crate) fn take_from(&mut self, other: &Self, keep: &[bool; SLOTS], corner: [i32; 2]) {
         let mut new = [0; SLOTS];
-        self.count = 0;
+        (self.count, self.goes_on) = (0, false);
         for slot in (0..other.count).filter(|slot| keep[*slot]) {
             self.numbers[self.count] = other.numbers[slot];
             new[slot] = i32::try_from(self.count).expect("there are 64 slots");
@@ -347,6 +371,39 @@ mod tests {
     /// A sample of the visibility buffer that shows a triangle.
     fn word(number: u32) -> u64 {
         1 << 62 | u64::from(!number)
+    }
+
+    #[test]
+    fn triangles_of_neighbouring_blocks_keep_their_slots() {
+        let mut state = 1_u64;
+        let mut fragments = Fragments::default();
+        let mut went_on = 0;
+        for round in 0..4000 {
+            let first = round / 20 * 3;
+            // At times some replace each other in the table.
+            let step = if round % 3 == 0 { 64 } else { 1 };
+            // Bands of three columns, some with holes.
+            let band = (state >> 40) as u32;
+            let visibility: [u64; BLOCK_PIXELS] = std::array::from_fn(|i| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                match (state >> 40) as u32 % 8 {
+                    0 if round % 2 == 0 => 0,
+                    _ => word(first + step * ((band % 7 + i as u32 % 8 / 3) % 7)),
+                }
+            });
+            let before = fragments.numbers[..fragments.count].to_vec();
+            fragments.list_on(Level::new(), &visibility, [0, 0], 32);
+            assert!(fragments.count <= SLOTS);
+            went_on += usize::from(fragments.numbers[..fragments.count].starts_with(&before));
+            for (k, place) in fragments.pixels[..fragments.len].iter().enumerate() {
+                let number = fragments.numbers[fragments.slots[k] as usize];
+                assert_eq!(word(number), visibility[usize::from(*place)], "{round}");
+            }
+            if round % 50 == 0 {
+                fragments.list_full_block(9, [0, 0]);
+            }
+        }
+        assert!((500..4000).contains(&went_on), "{went_on}");
     }
 
     #[test]

@@ -30,10 +30,14 @@ pub(crate) fn one_group<'a, T>(
     let group = group_of(context, fragments.numbers[0]);
     let end = context.frame.draw_of(fragments.numbers[0]).1.end;
     let numbers = &fragments.numbers[..fragments.count];
-    let alike = |number: &u32| {
-        (group.base..end).contains(number)
-            && (group.draw.uniform.is_some()
-                || group.draw.pipeline_of(number - group.base) == group.pipeline)
-    };
-    numbers.iter().all(alike).then_some(group)
+    let is_uniform = group.draw.uniform.is_some();
+    if is_uniform && context.plan.draws.len() == 1 {
+        return Some(group);
+    }
+    // Without a branch for each, so that several are compared at once.
+    let of_draw = |number: &u32| (group.base <= *number) & (*number < end);
+    let alike = |number: &u32| group.draw.pipeline_of(number - group.base) == group.pipeline;
+    let is_one = numbers.iter().fold(true, |all, number| all & of_draw(number))
+        && (is_uniform || numbers.iter().all(alike));
+    is_one.then_some(group)
 }

@@ -15,6 +15,7 @@ use super::colors::Colors;
 use super::fragments::Fragments;
 use super::texels::product;
 use super::triangle_attributes::{TriangleAttributes, picked};
+use crate::accuracy::Normalising;
 use crate::render::frame::draw::Draw;
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::lights::{Batch, Rows, Sample, load, set, store};
@@ -137,15 +138,13 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Multiply<'_, T, PAGES> {
 /// Computes position, normal and direction to the observer of every pixel, from normals at the
 /// corners.
 pub(crate) fn surface_samples<T: Number>(
-    level: Level,
-    (plan, draw): (&FramePlan, &Draw),
+    (level, variant): (Level, Option<Normalising>),
+    look: Look<T>,
     fragments: &Fragments,
     attributes: &TriangleAttributes<T>,
     barycentrics: &Barycentrics<T>,
     batch: &mut Batch<T>,
 ) {
-    let look = Look::new(plan, draw);
-    let variant = plan.variants.root_variant();
     match (fragments.shared, variant) {
         (true, Some(_)) => {
             let kernel =

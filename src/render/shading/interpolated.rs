@@ -1,6 +1,9 @@
 //! Computes barycentric coordinates of fragments, in each of the two precisions.
 
-use fearless_simd::{Level, Simd, SimdBase as _, SimdInt as _, dispatch, f32x16, i32x16};
+use fearless_simd::{
+    Level, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, SimdNarrow as _,
+    dispatch, f32x16, f64x8, i32x16,
+};
 use glam::DVec3;
 
 use super::barycentrics::{Barycentrics, Clamp, Weigh};
@@ -17,7 +20,7 @@ use crate::render::lights::{Batch, Light, Rows, set};
 use crate::render::screen::coverage::Triangle;
 use crate::render::screen::weights::{HomogeneousWeights, barycentric, cut_place};
 use crate::render::simd::gather::{SLOTS, paged, pick};
-use crate::render::simd::{Lanes as _, Sixteen};
+use crate::render::simd::{Lanes as _, Sixteen, in_f64};
 use crate::render::texture::lanes::{Linear, Stored};
 
 /// Numbers in which attributes are interpolated.
@@ -237,7 +240,7 @@ impl Interpolated for f32 {
             });
             return true;
         }
-        if (attributes.wide | attributes.cut) != 0 {
+        if attributes.cut != 0 {
             return false;
         }
         paged!(attributes.count, PAGES => {
@@ -245,6 +248,19 @@ impl Interpolated for f32 {
                 find_narrow::<_, PAGES>(interpolation, simd, fragments, attributes, to);
             });
         });
+        let mut wide = attributes.wide;
+        while wide != 0 {
+            let slot = wide.trailing_zeros();
+            wide &= wide - 1;
+            let corners = attributes.corners(slot as usize);
+            let Some(triangle) = Triangle::on(attributes.grid, corners) else { continue };
+            paged!(attributes.count, PAGES => {
+                dispatch!(level, simd => {
+                    let of = (slot.cast_signed(), &triangle);
+                    find_among::<_, PAGES>(interpolation, simd, fragments, of, attributes, to);
+                });
+            });
+        }
         true
     }
 
@@ -334,6 +350,49 @@ fn find_narrow<S: Simd, const PAGES: usize>(
     }
 }
 
+/// Computes the coordinates in one triangle, whose edge functions need more bits, of a list that
+/// shows others, too. Those in the others are known.
+#[inline(always)]
+#[expect(clippy::cast_precision_loss, reason = "they have fewer than 53 bits")]
+fn find_among<S: Simd, const PAGES: usize>(
+    interpolation: Interpolation,
+    simd: S,
+    fragments: &Fragments,
+    (slot, triangle): (i32, &Triangle),
+    attributes: &TriangleAttributes<f32>,
+    to: &mut Barycentrics<f32>,
+) {
+    let lanes = Sixteen(simd);
+    let [[_, er, fr], [_, ed, fd]] = triangle.steps();
+    let [left, top] = [fragments.x[0], fragments.y[0]];
+    let [_, e, f] = triangle.edges_at(left, top);
+    let per_area = 1.0 / triangle.doubled_area() as f64;
+    let second = [er as f64, ed as f64, e as f64, per_area];
+    let third = [fr as f64, fd as f64, f as f64, per_area];
+    for at in (0..fragments.len).step_by(16) {
+        let slots = lanes.slots(&fragments.slots, at);
+        let own = slots.simd_eq(slot);
+        if !own.any_true() {
+            continue;
+        }
+        let x = in_f64(i32x16::from_slice(simd, &fragments.x[at..at + 16]) - left);
+        let y = in_f64(i32x16::from_slice(simd, &fragments.y[at..at + 16]) - top);
+        let second = own.select(plane(second, x, y), lanes.load(&to.linear[0], at));
+        let third = own.select(plane(third, x, y), lanes.load(&to.linear[1], at));
+        lanes.store(second, &mut to.linear[0], at);
+        lanes.store(third, &mut to.linear[1], at);
+        let by_w = picked::<_, PAGES>(lanes, &attributes.by_w, slots);
+        to.put(interpolation, lanes, at, [second, third], by_w);
+    }
+}
+
+/// (a x + b y + c) d at sixteen places: the sum is of integers that f64 holds exactly.
+#[inline(always)]
+fn plane<S: Simd>([a, b, c, d]: [f64; 4], x: [f64x8<S>; 2], y: [f64x8<S>; 2]) -> f32x16<S> {
+    let low = (x[0] * a + y[0] * b + c) * d;
+    low.narrow((x[1] * a + y[1] * b + c) * d)
+}
+
 /// An edge function of narrow triangles. It is exact in 32 bits: products may wrap around, but the
 /// sum fits.
 #[inline(always)]
@@ -381,3 +440,48 @@ fn find_in_one<S: Simd>(
 pub(crate) trait ShadingNumber: Light + Interpolated {}
 
 impl<T: Light + Interpolated> ShadingNumber for T {}
+
+#[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+mod tests {
+    use super::*;
+    use crate::render::screen::clip::ScreenVertex;
+    use crate::render::screen::coverage::Snapped;
+    use crate::render::simd::Kernel as _;
+
+    #[test]
+    fn wide_triangles_among_others_have_the_coordinates_that_they_have_alone() {
+        let level = Level::new();
+        let corner = |[x, y]: [i32; 2], inverse_w| {
+            ScreenVertex::placed(Snapped { x: x * 256, y: y * 256 }, 0.5, inverse_w)
+        };
+        let vertices = [
+            corner([0, 0], 0.5),
+            corner([64, 1], 0.25),
+            corner([3, 64], 0.125),
+            corner([-7, -1000], 0.75),
+            corner([1500, 700], 0.5),
+            corner([-2000, 900], 0.25),
+        ];
+        let attributes = TriangleAttributes::<f32>::of(level, &[[0, 1, 2], [3, 4, 5]], &vertices);
+        assert_eq!((attributes.cut, attributes.wide), (0, 0b10));
+        let wide = Triangle::on(attributes.grid, attributes.corners(1)).unwrap();
+        let word = |i: usize| 1 << 62 | u64::from(!u32::from(i % 5 > 2));
+        let mut fragments = Fragments::default();
+        fragments.list(level, &std::array::from_fn(word), [8, 16]);
+        let interpolation = Interpolation::Perspective;
+        let mut found = Barycentrics::default();
+        assert!(f32::find(interpolation, level, &fragments, &attributes, &mut found));
+        let mut linear = Barycentrics::default();
+        f32::find_linear(level, &fragments, &attributes, &mut linear);
+        for i in (0..fragments.len).filter(|i| fragments.slots[*i] == 1) {
+            let [second, third] = barycentric(&wide, [fragments.x[i], fragments.y[i]]);
+            (linear.linear[0][i], linear.linear[1][i]) = (second as f32, third as f32);
+        }
+        assert!(found.linear == linear.linear);
+        let (fragments, attributes) = (&fragments, &attributes);
+        let all = Weigh::<f32, 1> { interpolation, fragments, attributes, to: &mut linear };
+        dispatch!(level, simd => all.run(Sixteen(simd)));
+        assert!(found.weights == linear.weights && found.w == linear.w);
+    }
+}

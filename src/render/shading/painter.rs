@@ -1,7 +1,7 @@
 //! Paints tiles: visibility, shading, and the copy into the picture.
 //!
 //! Each thread keeps its painter from frame to frame, so a frame allocates and clears nothing for
-//! its tiles. A tile that showed only background and still does is not touched. Tiles are painted
+//! its tiles. A block that showed only background and still does is not touched. Tiles are painted
 //! straight into the picture. If another thread works in the same rows, or the picture ends inside
 //! of the tile, they are painted into a buffer and copied.
 
@@ -39,8 +39,24 @@ pub(crate) fn bounds_of(tile: usize, size: Size) -> PixelBox {
 #[derive(Debug)]
 pub(crate) struct Band<'a> {
     pub(crate) pixels: &'a mut [[u8; 4]],
-    /// For each of its tiles the colour that fills all of it, if one is known to.
-    pub(crate) filled: &'a mut [Option<Color>],
+    /// For each of its tiles the blocks that are filled with one colour.
+    pub(crate) filled: &'a mut [Filled],
+}
+
+/// Blocks of a tile that are known to be filled with a colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Filled {
+    color: Color,
+    /// A bit for each.
+    blocks: u64,
+}
+
+impl Filled {
+    /// Those that are filled with this colour.
+    const fn with(self, Color([r, g, b]): Color) -> u64 {
+        let Color([own_r, own_g, own_b]) = self.color;
+        if own_r == r && own_g == g && own_b == b { self.blocks } else { 0 }
+    }
 }
 
 /// Locks a band for this thread.
@@ -148,19 +164,21 @@ impl<T: ShadingNumber> Painter<T> {
             // Straight into the picture, since no other thread works in these rows.
             let Band { pixels, filled } = &mut *band;
             let mut canvas = Canvas { pixels: &mut pixels[columns.start..], stride: size.width };
-            let shows = self.blocks(context, bounds, &mut canvas);
-            filled[column] = Some(background).filter(|_| !shows);
+            let blocks = std::mem::take(&mut filled[column]).with(background);
+            let blocks = self.blocks(context, bounds, &mut canvas, blocks);
+            filled[column] = Filled { color: background, blocks };
             return;
         }
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
-        let shows = self.blocks(context, bounds, &mut canvas);
+        let blocks = self.blocks(context, bounds, &mut canvas, 0);
         self.pixels = pixels;
         let mut band = locked(band);
-        if shows {
-            self.copy(tile, size, &mut band);
-        } else {
+        if blocks == u64::MAX {
             Self::fill(tile, size, background, &mut band);
+        } else {
+            self.copy(tile, size, &mut band);
+            band.filled[column] = Filled { color: background, blocks };
         }
     }
 
@@ -184,44 +202,41 @@ impl<T: ShadingNumber> Painter<T> {
         true
     }
 
-    /// Colours the blocks of a tile. Returns whether it shows anything but the background.
+    /// Colours the blocks of a tile. Those in `filled` are filled with the background already.
+    /// Returns the blocks that show nothing else.
     fn blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
         bounds: PixelBox,
         canvas: &mut Canvas<'_>,
-    ) -> bool {
+        filled: u64,
+    ) -> u64 {
         let layered = self.layered.layers.touched();
-        let mut whole = self.visibility.full_blocks() & !layered;
+        let whole = self.visibility.full_blocks();
         let background = u32::from_le_bytes(context.plan.background.opaque());
         let mut colors = [0; BLOCK_PIXELS + ROW];
         if let Some(faces) = context.faces {
             self.shader.light_shown_faces(context, faces, &self.visibility);
         }
-        let mut shows = whole != 0;
+        self.fully_covered(context, bounds, canvas, layered);
+        let mut background_blocks = 0;
         for block in 0..BLOCK_PIXELS {
             let at = canvas.offset(corner_in_tile(block));
+            // What has to be filled in.
+            let fill = Some(context.plan.background).filter(|_| filled >> block & 1 == 0);
+            let mut shows = true;
             if layered >> block & 1 != 0 {
                 let mut sums = Sums::new(context.plan.variants.are_linear());
                 let corner = self.visibility.corner(block);
                 let Self { shader, visibility, layered, .. } = self;
                 layered.add(context, (shader, visibility), (block, corner), &mut sums);
                 canvas.put(at, &sums.means(context.frame.sample_positions().count().ilog2()));
-                shows = true;
-            } else if let Some(number) = self.visibility.whole(block) {
-                if whole >> block & 1 != 0 {
-                    let which = (block..BLOCK_PIXELS)
-                        .filter(|other| self.visibility.whole(*other) == Some(number))
-                        .filter(|other| layered >> other & 1 == 0)
-                        .fold(0, |which, other| which | 1 << other);
-                    whole &= !which;
-                    let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
-                    self.shader.full_blocks(context, number, blocks, canvas);
-                }
+            } else if whole >> block & 1 != 0 {
+                continue;
             } else if self.visibility.shows(block) {
                 let corner = self.visibility.corner(block);
-                shows |= if context.frame.sample_positions().are_many() {
-                    self.block_of_samples(context, (block, corner), canvas, at)
+                shows = if context.frame.sample_positions().are_many() {
+                    self.block_of_samples(context, (block, corner), (canvas, at), fill)
                 } else {
                     let visibility = self.visibility.block(block);
                     let runs = (visibility, self.shader.runs[block]);
@@ -230,15 +245,43 @@ impl<T: ShadingNumber> Painter<T> {
                         canvas.put(at, &colors[..BLOCK_PIXELS]);
                         visibility.iter().any(|word| *word != 0)
                     } else {
-                        canvas.fill(at, context.plan.background);
-                        self.shader.block(context, visibility, corner, (canvas, at))
+                        self.shader.block(context, visibility, corner, (canvas, at), fill)
                     }
                 };
             } else {
-                canvas.fill(at, context.plan.background);
+                if let Some(color) = fill {
+                    canvas.fill(at, color);
+                }
+                shows = false;
             }
+            background_blocks |= u64::from(!shows) << block;
         }
-        shows
+        background_blocks
+    }
+
+    /// Colours the blocks of a tile that one triangle covers fully, without layers: for each
+    /// triangle all of them at once.
+    fn fully_covered(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        bounds: PixelBox,
+        canvas: &mut Canvas<'_>,
+        layered: u64,
+    ) {
+        let mut left = self.visibility.full_blocks() & !layered;
+        while left != 0 {
+            let first = left.trailing_zeros() as usize;
+            let Some(number) = self.visibility.whole(first) else { return };
+            let (mut others, mut which) = (left, 0);
+            while others != 0 {
+                let block = others.trailing_zeros() as usize;
+                others &= others - 1;
+                which |= u64::from(self.visibility.whole(block) == Some(number)) << block;
+            }
+            left &= !which;
+            let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
+            self.shader.full_blocks(context, number, blocks, canvas);
+        }
     }
 
     /// Colours a block whose pixels have four samples.
@@ -246,14 +289,13 @@ impl<T: ShadingNumber> Painter<T> {
         &mut self,
         context: &ShadingContext<'_, T>,
         (block, corner): (usize, [i32; 2]),
-        canvas: &mut Canvas<'_>,
-        at: usize,
+        (canvas, at): (&mut Canvas<'_>, usize),
+        fill: Option<Color>,
     ) -> bool {
         let Self { shader, visibility, samples, .. } = self;
         let planes = visibility.planes(block);
         if samples.compare(context.level, planes) {
-            canvas.fill(at, context.plan.background);
-            return shader.block(context, &planes[0], corner, (canvas, at));
+            return shader.block(context, &planes[0], corner, (canvas, at), fill);
         }
         let mut sums = Sums::new(context.plan.variants.are_linear());
         let shows = shader.add_samples(context, (samples, planes), corner, &mut sums);
@@ -270,7 +312,7 @@ impl<T: ShadingNumber> Painter<T> {
     ) {
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
-        self.blocks(context, bounds, &mut canvas);
+        self.blocks(context, bounds, &mut canvas, 0);
         for (block, to) in to.iter_mut().enumerate() {
             let rows = canvas.pixels[canvas.offset(corner_in_tile(block))..].chunks(TILE_SIDE);
             let own = rows.take(ROW).flat_map(|row| &row[..ROW]);
@@ -347,7 +389,7 @@ impl<T: ShadingNumber> Painter<T> {
     /// Copies the buffer of a tile into its band.
     fn copy(&self, tile: usize, size: Size, band: &mut Band<'_>) {
         let (column, columns) = Self::columns(tile, size);
-        band.filled[column] = None;
+        band.filled[column] = Filled::default();
         for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width)) {
             to[columns.clone()].copy_from_slice(&from[..columns.len()]);
         }
@@ -356,8 +398,8 @@ impl<T: ShadingNumber> Painter<T> {
     /// Fills a tile with a colour, unless it is filled with it already.
     fn fill(tile: usize, size: Size, color: Color, band: &mut Band<'_>) {
         let (column, columns) = Self::columns(tile, size);
-        if band.filled[column] != Some(color) {
-            band.filled[column] = Some(color);
+        if band.filled[column].with(color) != u64::MAX {
+            band.filled[column] = Filled { color, blocks: u64::MAX };
             for row in band.pixels.chunks_mut(size.width) {
                 row[columns.clone()].fill(color.opaque());
             }

@@ -13,7 +13,7 @@ use super::context::ShadingContext;
 use super::fragments::Fragments;
 use super::full_blocks::Canvas;
 use super::groups::{Group, group_of, one_group};
-use super::interpolate::{CornerValues, Mixed, mix, surface_samples};
+use super::interpolate::{CornerValues, Look, Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::kept::Kept;
 use super::light::{Lighting, Table, run};
@@ -26,6 +26,7 @@ use super::shadows::{BatchShadows, place_faces};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
 use crate::base::color::Color;
+use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Back, Pipeline, Shaded, Stage};
 use crate::render::lights::{Batch, Rows};
 use crate::render::plan::tile::TilePlan;
@@ -34,7 +35,7 @@ use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::shadow::rays::{Origins, RayCount, RayScratch};
 use crate::render::simd::BATCH;
-use crate::render::simd::gather::SLOTS;
+use crate::render::simd::gather::{SLOTS, most_gathered};
 
 /// Shades blocks. Each thread has its own.
 #[derive(Debug)]
@@ -56,6 +57,10 @@ pub(crate) struct Shader<T> {
     pub(super) maps: Box<MapRows<T>>,
     pub(super) colors: Colors,
     thresholds: Thresholds<T>,
+    /// How pixels of a draw become positions and normals.
+    look: Option<(u32, Look<T>)>,
+    /// Whether nothing but corners, normals and light is prepared for the triangles of the list.
+    prepares_little: bool,
     /// The triangles of a tile that have to be lit.
     pub(super) new_faces: Vec<u32>,
     /// Where runs of pixels that show the same begin in each block of a tile, if colours of
@@ -102,6 +107,8 @@ impl<T: ShadingNumber> Default for Shader<T> {
             maps: Box::default(),
             colors: Colors::default(),
             thresholds: Thresholds::default(),
+            look: None,
+            prepares_little: false,
             new_faces: Vec::new(),
             runs: [0; BLOCK_PIXELS],
         }
@@ -112,6 +119,7 @@ impl<T: ShadingNumber> Shader<T> {
     /// Begins a frame.
     pub(crate) fn begin(&mut self) {
         self.attributes.forget();
+        self.look = None;
         self.rays.count = RayCount::default();
     }
 
@@ -121,16 +129,23 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Colours a block, whose upper left pixel is `corner`, into a tile from index `at` on. Pixels
-    /// that show the background are left as they are. Returns whether any pixel shows something
-    /// else.
+    /// that show the background get the colour `fill`; without one, they are left as they are.
+    /// Returns whether any pixel shows something else.
     pub(crate) fn block(
         &mut self,
         context: &ShadingContext<'_, T>,
         visibility: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
         (canvas, at): (&mut Canvas<'_>, usize),
+        fill: Option<Color>,
     ) -> bool {
-        let shown = self.fragments.list(context.level, visibility, corner);
+        let most = self.most_slots(context);
+        let shown = self.fragments.list_on(context.level, visibility, corner, most);
+        if let Some(color) = fill
+            && (shown.triangles | shown.lines) != u64::MAX
+        {
+            canvas.fill(at, color);
+        }
         let mut lines = shown.lines;
         while lines != 0 {
             let i = lines.trailing_zeros() as usize;
@@ -141,9 +156,27 @@ impl<T: ShadingNumber> Shader<T> {
             }
         }
         if shown.triangles != 0 {
-            self.color_fragments(context, corner, &mut Out::Tile(canvas, at));
+            let out = &mut Out::Tile(canvas, at);
+            if let Some(group) = one_group(context, &self.fragments) {
+                self.color_group(context, &group, out);
+            } else {
+                if most > 0 {
+                    // Some slots are of a draw that the block may not show.
+                    self.fragments.list(context.level, visibility, corner);
+                }
+                self.color_fragments(context, corner, out);
+            }
         }
         (shown.triangles | shown.lines) != 0
+    }
+
+    /// The number of slots up to which triangles of neighbouring blocks share a list, so that those
+    /// which reach into several blocks are prepared once; 0 if that does not pay: with light per
+    /// face, all slots are lit for each block.
+    fn most_slots(&self, context: &ShadingContext<'_, T>) -> usize {
+        let is_lit_once = context.plan.light_at == LightAt::Face;
+        let pays = !is_lit_once && self.prepares_little && self.attributes.may_go_on();
+        if pays { most_gathered(context.level) } else { 0 }
     }
 
     /// Colours the fragments of the list.
@@ -294,6 +327,7 @@ impl<T: ShadingNumber> Shader<T> {
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let located = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
         let new = self.take(context, group, located);
+        self.prepares_little = !textured && extras.is_empty();
         if located {
             self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
         }
@@ -368,6 +402,18 @@ impl<T: ShadingNumber> Shader<T> {
         new
     }
 
+    /// How pixels of a group become positions and normals; computed once for each draw in turn.
+    pub(super) fn look_of(&mut self, plan: &FramePlan, group: &Group<'_>) -> Look<T> {
+        match self.look {
+            Some((draw, look)) if draw == group.draw_index => look,
+            _ => {
+                let look = Look::new(plan, group.draw);
+                self.look = Some((group.draw_index, look));
+                look
+            }
+        }
+    }
+
     /// Phong shading: lights every pixel.
     fn light_pixels(
         &mut self,
@@ -380,6 +426,7 @@ impl<T: ShadingNumber> Shader<T> {
         if shaded.extras.exponent.is_some() {
             self.map_exponents(context, group, shaded, new);
         }
+        let look = self.look_of(plan, group);
         let Self { tile, fragments, attributes, barycentrics, batch, maps, rays, .. } = self;
         let light = tile.light(plan, group.pipeline, shaded);
         if light.needs_positions {
@@ -387,7 +434,8 @@ impl<T: ShadingNumber> Shader<T> {
                 attributes.carry_normals(group.draw);
                 attributes.spread(level);
             }
-            surface_samples(level, (plan, group.draw), fragments, attributes, barycentrics, batch);
+            let roots = plan.variants.root_variant();
+            surface_samples((level, roots), look, fragments, attributes, barycentrics, batch);
             if let Some(bump) = &shaded.extras.bump {
                 let points = Points { fragments, attributes, barycentrics };
                 bend(context, group, &points, (bump, new), (maps, batch));
@@ -419,6 +467,10 @@ impl<T: ShadingNumber> Shader<T> {
     ) -> Mixture {
         let ShadingContext { level, plan, .. } = *context;
         let tables = context.lit.tables(group.draw_index, group.pipeline);
+        if !tables[0].is_colored() {
+            // The attributes are those of specular light.
+            self.attributes.keep_none();
+        }
         if new || !tables[0].is_colored() {
             self.carry_diffuse(context, group, shaded, tables);
             self.attributes.spread(level);

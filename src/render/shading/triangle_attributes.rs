@@ -30,6 +30,8 @@ const NARROW_SIDE: i32 = 1 << 20;
 #[repr(align(64))]
 pub(crate) struct TriangleAttributes<T> {
     pub(crate) count: usize,
+    /// The first slots hold triangles of the list before, which are prepared already.
+    kept: usize,
     /// Their numbers in the mesh.
     pub(crate) numbers: [u32; SLOTS],
     /// Whether their corners were fetched.
@@ -68,6 +70,7 @@ impl<T: Number> Default for TriangleAttributes<T> {
         let row = [T::default(); SLOTS];
         Self {
             count: 0,
+            kept: 0,
             numbers: [0; SLOTS],
             has_corners: false,
             ids: [[0; 3]; SLOTS],
@@ -87,6 +90,18 @@ impl<T: Number> Default for TriangleAttributes<T> {
     }
 }
 
+impl<T> TriangleAttributes<T> {
+    /// The slots of new triangles.
+    fn new_slots(&self) -> std::ops::Range<usize> {
+        self.kept..self.count
+    }
+
+    /// A bit for each slot that is not new.
+    const fn kept_bits(&self) -> u64 {
+        (1 << self.kept) - 1
+    }
+}
+
 /// Numbers in which attributes are stored.
 pub(crate) trait AttributeNumber: Number {
     /// Whether barycentric coordinates are computed from integers in f64, one by one.
@@ -96,13 +111,33 @@ pub(crate) trait AttributeNumber: Number {
 }
 
 impl<T: AttributeNumber> TriangleAttributes<T> {
+    /// Triangles with these corners, for tests.
+    #[cfg(test)]
+    pub(crate) fn of(level: Level, ids: &[[u32; 3]], vertices: &[ScreenVertex]) -> Self {
+        let mut attributes = Self { count: ids.len(), ..Self::default() };
+        attributes.ids[..ids.len()].copy_from_slice(ids);
+        T::prepare(level, &mut attributes, vertices);
+        attributes
+    }
+
     /// Forgets the triangles of the last block.
     pub(crate) const fn forget(&mut self) {
         self.draw = None;
     }
 
+    /// Prepares the triangles of the list before again, too.
+    pub(crate) const fn keep_none(&mut self) {
+        self.kept = 0;
+    }
+
+    /// Whether more triangles may be added to these: with clipped ones, all are interpolated more
+    /// slowly.
+    pub(crate) const fn may_go_on(&self) -> bool {
+        self.draw.is_some() && self.cut == 0
+    }
+
     /// Sets the triangles to those of a list, all of one draw whose numbers begin at `base`, with
-    /// their corners if an order is given. Returns whether they differ from those before.
+    /// their corners if an order is given. Returns whether there are others than before.
     pub(crate) fn take(
         &mut self,
         fragments: &Fragments,
@@ -111,20 +146,25 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         base: u32,
     ) -> bool {
         let count = fragments.count;
-        let same = self.draw == Some(draw)
+        // Without a branch for each, so that several are compared at once.
+        let differ = |(own, number): (&u32, &u32)| own ^ number.wrapping_sub(base);
+        let before = self.numbers[..self.count].iter().zip(&fragments.numbers);
+        let goes_on = self.draw == Some(draw)
             && (self.has_corners || order.is_none())
-            && count == 1
-            && self.count == 1
-            && self.numbers[0] == fragments.numbers[0] - base;
-        if same {
+            && self.count <= count
+            && before.fold(0, |all, pair| all | differ(pair)) == 0;
+        self.kept = if goes_on { self.count } else { 0 };
+        if self.kept == count {
             return false;
         }
         (self.draw, self.count, self.has_corners) = (Some(draw), count, order.is_some());
-        for (own, number) in self.numbers.iter_mut().zip(&fragments.numbers[..count]) {
+        let new = self.kept..count;
+        let numbers = &fragments.numbers[new.clone()];
+        for (own, number) in self.numbers[new.clone()].iter_mut().zip(numbers) {
             *own = number - base;
         }
         if let Some(order) = order {
-            for (ids, number) in self.ids.iter_mut().zip(&self.numbers[..count]) {
+            for (ids, number) in self.ids[new.clone()].iter_mut().zip(&self.numbers[new]) {
                 *ids = order.vertices_of(*number);
             }
         }
@@ -139,14 +179,16 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         plan: &FramePlan,
         vertices: &[ScreenVertex],
     ) {
-        self.back = 0;
+        let kept = self.kept_bits();
+        self.back &= kept;
         if draw.back == Back::Culled {
             return;
         }
-        let ids = &self.ids;
-        let (front, odd) = dispatch!(level, simd => fronts(simd, ids, self.count, vertices));
-        self.back = if draw.mirrored { front } else { !front };
-        let mut odd = odd & (u64::MAX >> (SLOTS - self.count.max(1)));
+        let (ids, new) = (&self.ids, self.new_slots());
+        let (front, odd) = dispatch!(level, simd => fronts(simd, ids, new, vertices));
+        let back = if draw.mirrored { front } else { !front };
+        self.back |= back & !kept;
+        let mut odd = odd & (u64::MAX >> (SLOTS - self.count.max(1))) & !kept;
         while odd != 0 {
             let slot = odd.trailing_zeros();
             odd &= odd - 1;
@@ -171,7 +213,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         }
         let order = draw.model.mesh.draw_order();
         let screen = Screen::new(draw.clip_from_object, plan.size);
-        for (slot, ids) in self.ids[..self.count].iter().enumerate() {
+        for (slot, ids) in self.ids[..self.count].iter().enumerate().skip(self.kept) {
             for (corner, vertex) in ids.iter().copied().enumerate() {
                 let place = order.position(vertex);
                 if T::EXACT {
@@ -190,7 +232,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         let mesh = &draw.model.mesh;
         let order = mesh.draw_order();
         let points = order.points(draw.normal_source);
-        for (slot, number) in self.numbers[..self.count].iter().enumerate() {
+        for (slot, number) in self.numbers[..self.count].iter().enumerate().skip(self.kept) {
             let normals = match draw.normals {
                 Normals::Face => {
                     let polygon = mesh.polygon_of(*number);
@@ -216,7 +258,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         let mesh = &draw.model.mesh;
         let order = mesh.draw_order();
         let points = order.points(draw.normal_source);
-        for (slot, number) in self.numbers[..self.count].iter().enumerate() {
+        for (slot, number) in self.numbers[..self.count].iter().enumerate().skip(self.kept) {
             let places = match draw.normals {
                 Normals::Face => mesh.triangles()[*number as usize].corners,
                 Normals::Vertex => points.of(order, *number, self.ids[slot]),
@@ -251,7 +293,8 @@ impl<T: Number> Kernel<T> for Spread<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self(attributes) = self;
-        for at in (0..attributes.count).step_by(M::LANES) {
+        for at in attributes.new_slots().step_by(M::LANES) {
+            let at = at.min(SLOTS - M::LANES);
             let a = carried(lanes, &attributes.carried[0], at);
             let b = carried(lanes, &attributes.carried[1], at);
             let c = carried(lanes, &attributes.carried[2], at);
@@ -289,8 +332,8 @@ impl AttributeNumber for f64 {
     const EXACT: bool = true;
 
     fn prepare(_: Level, attributes: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]) {
-        attributes.cut = 0;
-        for slot in 0..attributes.count {
+        attributes.cut &= attributes.kept_bits();
+        for slot in attributes.new_slots() {
             let own = attributes.corners_among(slot, vertices);
             let inside = own.iter().all(ScreenVertex::is_inside);
             attributes.cut |= u64::from(!inside) << slot;
@@ -306,25 +349,29 @@ impl AttributeNumber for f32 {
     const EXACT: bool = false;
 
     fn prepare(level: Level, attributes: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]) {
-        (attributes.cut, attributes.wide) = (0, 0);
+        let kept = attributes.kept_bits();
+        (attributes.cut, attributes.wide) = (attributes.cut & kept, attributes.wide & kept);
         dispatch!(level, simd => prepare(simd, attributes, vertices));
+        let used = u64::MAX >> (SLOTS - attributes.count.max(1));
+        (attributes.cut, attributes.wide) = (attributes.cut & used, attributes.wide & used);
     }
 }
 
 /// The largest sides of a bounding box, in subpixels, whose doubled area fits 31 bits.
 const NARROW_BOX: i32 = 1 << 14;
 
-/// Which of the first `count` triangles turn their fronts to the observer if nothing is mirrored, a
+/// Which of the triangles in some slots turn their fronts to the observer if nothing is mirrored, a
 /// bit for each; and for which that has to be found out one by one.
 #[inline(always)]
 fn fronts<S: Simd>(
     simd: S,
     ids: &[[u32; 3]; SLOTS],
-    count: usize,
+    slots: std::ops::Range<usize>,
     vertices: &[ScreenVertex],
 ) -> (u64, u64) {
     let (mut front, mut odd) = (0, 0);
-    for at in (0..count).step_by(16) {
+    for at in slots.step_by(16) {
+        let at = at.min(SLOTS - 16);
         let [[x0, y0, ..], [x1, y1, ..], [x2, y2, ..]] = corners(simd, ids, at, vertices);
         let low = [x0.min(x1).min(x2), y0.min(y1).min(y2)];
         let high = [x0.max(x1).max(x2), y0.max(y1).max(y2)];
@@ -352,7 +399,8 @@ fn is_front(ids: [u32; 3], draw: &Draw, plan: &FramePlan, vertices: &[ScreenVert
 /// The edge functions of sixteen triangles at a time.
 #[inline(always)]
 fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices: &[ScreenVertex]) {
-    for at in (0..attributes.count).step_by(16) {
+    for at in attributes.new_slots().step_by(16) {
+        let at = at.min(SLOTS - 16);
         let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =
             corners(simd, &attributes.ids, at, vertices);
         for ([own_x, own_y], (x, y)) in

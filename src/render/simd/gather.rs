@@ -76,6 +76,11 @@ pub(crate) fn permute<S: Simd>(of: i32x16<S>, lanes: i32x16<S>) -> i32x16<S> {
     }
 }
 
+/// The number of slots up to which gathering takes no longer than from a few.
+pub(crate) fn most_gathered(level: Level) -> usize {
+    if level.as_avx512().is_some() { 32 } else { 16 }
+}
+
 /// Sixteen numbers of a row.
 #[inline(always)]
 fn page<S: Simd>(simd: S, row: &[i32; SLOTS], page: usize) -> i32x16<S> {
