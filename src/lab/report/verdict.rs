@@ -158,7 +158,7 @@ fn kind(point: &Measured, [error, before]: [f64; 2], is_finer: bool) -> Option<K
         (Verdict::Slower, ..) => Kind::Wasted,
         (Verdict::Faster, _, true) => Kind::Saves,
         (Verdict::Faster, ..) => Kind::Free,
-        // A coarser choice is closer to the reference by chance: a few pixels decide.
+        // A coarser choice that is closer to the reference is so in a few pixels.
         (Verdict::Alike, true, _) if seen && is_finer => Kind::Free,
         (Verdict::Alike, _, true) => Kind::Worse,
         (Verdict::Alike, ..) => return None,

@@ -359,8 +359,8 @@ mod tests {
                         let one = made(|made| All { row, slots, power, made }.run(lanes));
                         let eight = made(|made| {
                             dispatch!(*level, simd => {
-                                let lanes = Eight(simd);
-                                All { row, slots, power, made }.run(VariantLanes { lanes, variant });
+                                let lanes = VariantLanes { lanes: Eight(simd), variant };
+                                All { row, slots, power, made }.run(lanes);
                             });
                         });
                         assert_eq!(eight, one, "{exponent} {power:?} {variant:?} {level:?}");

@@ -1,8 +1,8 @@
 //! A real number, or several of them side by side.
 //!
-//! Every equation of light is written once, over [`Real`], and compiled twice: for `f64x8`, eight at
-//! a time, the reference that pictures are judged by, and for `f32x16`, sixteen at a time, what the
-//! editor shows. `f64` and `f32` do to one number what these do to eight and sixteen.
+//! Every equation of light is written once, over [`Real`], and compiled twice: for `f64x8`, eight
+//! at a time, the reference that pictures are judged by, and for `f32x16`, sixteen at a time, what
+//! the editor shows. `f64` and `f32` do to one number what these do to eight and sixteen.
 //!
 //! There is no fused multiply-add here. It rounds once where `a * b + c` rounds twice, and only
 //! some processors have it; without it a picture is the same, bit for bit, on all of them. Nor are
