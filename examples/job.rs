@@ -11,7 +11,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Parser;
 use cpu_time::ProcessTime;
@@ -25,7 +25,7 @@ use marraztu::io::{self, LoadError, Progress, SaveError};
 use marraztu::lab::instructions;
 use marraztu::lab::statistics::median;
 use marraztu::lab::timing::time;
-use marraztu::render::{RayCount, Renderer, plan_frame};
+use marraztu::render::{RayCount, Renderer, Timings, plan_frame};
 use marraztu::scene::{
     Aim, Attenuation, Camera, CameraId, Command, CommandError, Crease, Fill, Item, Lens, Light,
     LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource, Model, NONE,
@@ -80,6 +80,18 @@ struct Job {
     /// difference, rays and occluded rays of the first frame
     #[arg(long)]
     shadows: bool,
+    /// Draw this many objects of the mesh, side by side in a square
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        value_parser = clap::value_parser!(u32).range(1..=10_000)
+    )]
+    copies: u32,
+    /// Print a second line: T, label, and the median milliseconds of each stage: vertices, set-up,
+    /// lines, tiles, and all else (plan and damage)
+    #[arg(long)]
+    stages: bool,
     /// How it is decided whether a light is seen: exact, map-2048, map-2048-pcf and others, as
     /// `marraztu render --shadow-method`
     #[arg(long, value_name = "METHOD", default_value = "exact")]
@@ -189,7 +201,11 @@ fn run(job: &Job) -> Result<String, Failure> {
     let Job { label, msaa, .. } = job;
     let (mesh, mode) = (job.mesh.display(), &job.mode);
     let drawn = format!("{label},{mesh},{triangles},{mode},{width}x{height},{msaa}");
-    let line = format!("R,{drawn},{frames},{times},{times},{covered}");
+    let mut line = format!("R,{drawn},{frames},{times},{times},{covered}");
+    if job.stages {
+        let stages = measured.stages().map(|ms| format!(",{ms:.4}")).concat();
+        line += &format!("\nT,{label}{stages}");
+    }
     let Some(plain) = measured.plain else { return Ok(line) };
     let RayCount { traced, occluded } = measured.rays;
     let drawn = format!("{label},{mesh},{triangles},{mode},{width}x{height},{frames}");
@@ -228,6 +244,8 @@ fn method(job: &Job) -> Option<&'static Choice> {
 struct Measured {
     /// The time of each frame in milliseconds.
     frames: Vec<f64>,
+    /// How much of it each stage took.
+    timings: Vec<Timings>,
     /// Milliseconds of all processors together that a frame took on average.
     processor: f64,
     /// The shortest time of a frame without shadows, if those with shadows were measured.
@@ -236,6 +254,25 @@ struct Measured {
     rays: RayCount,
     /// The first picture.
     picture: Picture,
+}
+
+impl Measured {
+    /// The median time of each stage, and of all else, in milliseconds.
+    fn stages(&self) -> [f64; 5] {
+        let of = |stage: &dyn Fn(f64, &Timings) -> f64| {
+            let times = self.frames.iter().zip(&self.timings);
+            let times: Vec<f64> = times.map(|(all, timings)| stage(*all, timings)).collect();
+            median(&times).unwrap_or(f64::NAN)
+        };
+        let ms = |time: Duration| time.as_secs_f64() * 1e3;
+        [
+            of(&|_, it| ms(it.vertices)),
+            of(&|_, it| ms(it.set_up)),
+            of(&|_, it| ms(it.lines)),
+            of(&|_, it| ms(it.tiles)),
+            of(&|all, it| all - ms(it.vertices + it.set_up + it.lines + it.tiles)),
+        ]
+    }
 }
 
 /// The colour of pixels that the mesh does not cover.
@@ -266,11 +303,12 @@ fn measure(
         frame(&mut renderer, scene, i + 1)?;
     }
     let (begun, processor) = (Instant::now(), ProcessTime::now());
-    let mut frames = Vec::new();
+    let (mut frames, mut timings) = (Vec::new(), Vec::new());
     let mut plain = None;
     while frames.len() < job.frames.max(1) && begun.elapsed().as_secs_f64() * 1e3 < job.budget {
         let i = job.warm + 1 + frames.len();
         frames.push(frame(&mut renderer, scene, i)?);
+        timings.push(renderer.timings());
         if job.shadows {
             plain = Some(frame(&mut other, &unshaded, i)?.min(plain.unwrap_or(f64::INFINITY)));
         }
@@ -279,7 +317,7 @@ fn measure(
     let processor = processor.elapsed().as_secs_f64() * 1e3 / frames.len() as f64;
     frame(&mut renderer, scene, 0)?;
     let (picture, rays) = (renderer.picture().clone(), renderer.rays());
-    Ok(Measured { frames, processor, plain, rays, picture })
+    Ok(Measured { frames, timings, processor, plain, rays, picture })
 }
 
 /// The same scene, whose lights cast no shadows.
@@ -403,11 +441,14 @@ fn stage(
         }
         _ => object.surface = Surface::Material,
     }
-    let item = Item::Object(ObjectId(1), Box::new(object));
-    Command::Insert { at: 0, item }.apply(&mut scene)?;
-    for (i, mut light) in (0..).zip(lights(mode)) {
+    for (i, placement) in (1..).zip(placements(job.copies)) {
+        let object = Object { placement: Tracked::new(placement), ..object.clone() };
+        let item = Item::Object(ObjectId(i), Box::new(object));
+        Command::Insert { at: usize::MAX, item }.apply(&mut scene)?;
+    }
+    for (i, mut light) in (1 + job.copies..).zip(lights(mode)) {
         light.shadows = job.shadows && light.can_cast_shadows();
-        let item = Item::Light(LightId(2 + i), Box::new(light));
+        let item = Item::Light(LightId(i), Box::new(light));
         Command::Insert { at: usize::MAX, item }.apply(&mut scene)?;
     }
     let view = View {
@@ -423,6 +464,17 @@ fn stage(
         Mode::Phong | Mode::Textured(_) | Mode::Depth | Mode::Wire => LightAt::Pixel,
     };
     Ok((scene, view, settings))
+}
+
+/// Where copies of the mesh stand: one where it is; more in a square of the size of two, smaller.
+fn placements(copies: u32) -> impl Iterator<Item = DMat4> {
+    let side = (1..).find(|side| side * side >= copies).unwrap_or(copies);
+    let scale = if copies == 1 { 1.0 } else { 2.0 / f64::from(side) };
+    let at = move |i: u32| (f64::from(i) - f64::from(side - 1) / 2.0) * 150.0 * scale;
+    (0..copies).map(move |i| {
+        let place = DVec3::new(at(i % side), at(i / side), 0.0);
+        DMat4::from_translation(place) * DMat4::from_scale(DVec3::splat(scale))
+    })
 }
 
 fn lights(mode: Mode) -> Vec<Light> {
@@ -510,6 +562,23 @@ mod tests {
         assert!(cells[14].parse::<u32>().unwrap() > 100, "{cells:?}");
         assert!(square(3, &["--mode", "phong", "--instructions", "plain"]).1 == best);
         assert!(square(2, &["--mode", "flat"]).1 != best);
+    }
+
+    #[test]
+    fn copies_stand_side_by_side_and_the_time_of_each_stage_is_told() {
+        let covered = |copies| {
+            let options = ["--mode", "phong", "--dist", "300", "--stages", "--copies", copies];
+            let (cells, pixels) = drawn(2, SQUARE, &options).unwrap();
+            assert_eq!(cells.len(), 15 + 6, "{cells:?}");
+            assert!(cells[16..].iter().all(|ms| ms.parse::<f64>().unwrap() >= 0.0), "{cells:?}");
+            let columns = pixels.as_chunks::<3>().0.as_chunks::<96>().0;
+            let background = |x: &usize| columns.iter().all(|row| row[*x] == [26, 26, 31]);
+            let (count, _) = cells[14].split_once('\n').unwrap();
+            (count.parse::<u32>().unwrap(), (44..52).any(|x| background(&x)))
+        };
+        let ((one, one_parts), (four, four_parts)) = (covered("1"), covered("4"));
+        assert!(one > 100 && four > 100, "{one} {four}");
+        assert!(!one_parts && four_parts, "a column of background parts four copies");
     }
 
     #[test]

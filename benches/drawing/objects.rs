@@ -1,14 +1,16 @@
 //! Benchmarks of scenes of many objects: `objects/N` draws a frame, `objects/100 in view of N` a
-//! frame that has the others out of view, `objects/insert/N` inserts them into a scene,
+//! frame that has the others out of view, `objects/N knots` one with as many knots of a million
+//! triangles, which share their mesh, `objects/insert/N` inserts them into a scene,
 //! `objects/move/N` is one command on one of them, with the editor's work after it.
 
 use criterion::{BenchmarkId, Criterion};
 use glam::{DMat4, DVec3};
 use marraztu::base::Shared;
+use marraztu::base::image::Size;
 use marraztu::base::math::Axis;
 use marraztu::edit::transform::{self, Sign};
 use marraztu::edit::{GesturePhase, items, selection};
-use marraztu::scene::{MaterialChoice, Model, Object, PresetId, Tracked};
+use marraztu::scene::{Command, ItemId, MaterialChoice, Model, Object, PresetId, Tracked};
 
 use super::shapes;
 use super::stage::{FULL, Stage};
@@ -52,6 +54,29 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         let name = format!("{SEEN} in view of {count}");
         group.bench_function(BenchmarkId::from_parameter(name), |b| stage.measure(b));
     }
+    let knot = shapes::knot(1_000_000);
+    for count in [1, 20] {
+        let stage = knots(&knot, count);
+        let name = if count == 1 { "1 knot".to_owned() } else { format!("{count} knots") };
+        group.bench_function(BenchmarkId::from_parameter(name), |b| stage.measure(b));
+    }
+}
+
+/// Copies of a knot, five in a row, at 1280 x 720.
+fn knots(knot: &Shared<Model>, count: u32) -> Stage {
+    let mut stage = Stage::new(knot, Size::new(1280, 720));
+    let only = stage.view.object.expect("the stage has one object");
+    Command::Remove(ItemId::Object(only)).apply(&mut stage.scene).expect("it is there");
+    let copy = |i: u32| {
+        let mut object = Object::new(knot.clone(), MaterialChoice::Preset(PresetId::RUBY));
+        let place = DVec3::new(f64::from(i % 5) - 2.0, f64::from(i / 5) - 1.5, 0.0) * 9.0;
+        let placement = DMat4::from_translation(place) * DMat4::from_scale(DVec3::splat(5.0));
+        object.placement = Tracked::new(placement);
+        object
+    };
+    let command = items::insert_objects(&stage.scene, (0..count).map(copy).collect());
+    command.apply(&mut stage.scene).expect("they fit");
+    stage
 }
 
 /// How many objects are in view where most are not.

@@ -67,7 +67,7 @@ pub(crate) fn objects(measured: &Measured) -> Result<String, String> {
     for (count, ms) in rows {
         let _ = writeln!(text, "| {count} | {} |", brief(ms));
     }
-    for name in ["100 in view of 100", "100 in view of 10000"] {
+    for name in ["100 in view of 100", "100 in view of 10000", "1 knot", "20 knots"] {
         let _ = writeln!(text, "| {name} | {} |", brief(measured.of("objects", name)?));
     }
     Ok(text)
