@@ -52,6 +52,9 @@ pub struct Touch(Arc<Touches>);
 /// Time for what follows a touch, such as showing the window.
 const AFTERMATH: Duration = Duration::from_millis(40);
 
+/// A touch is waited for no longer than this.
+const PATIENCE: Duration = Duration::from_secs(1);
+
 impl Watch {
     /// The same with the progress of other work.
     #[must_use]
@@ -77,9 +80,16 @@ impl Watch {
         self.touches.count.load(Ordering::Relaxed)
     }
 
-    /// Waits for the aftermath of the last touch, but only once: touches without pause must not
-    /// stop the work.
-    fn settle(&self) {
+    /// Waits for the touch of now to end, and for the aftermath of the last one, but only once:
+    /// touches without pause must not stop the work. `endless` is the touch that did not end.
+    fn settle(&self, endless: &mut Option<u64>) {
+        let (touch, begun) = (self.touches(), Instant::now());
+        while !touch.is_multiple_of(2) && *endless != Some(touch) && self.touches() == touch {
+            if begun.elapsed() > PATIENCE {
+                *endless = Some(touch);
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
         let last = *self.touches.last.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(rest) = last.and_then(|last| AFTERMATH.checked_sub(last.elapsed())) {
             std::thread::sleep(rest);
@@ -180,6 +190,7 @@ pub fn abba(
     run(0)?;
     run(1)?;
     let (mut ratios, mut of_a, mut thrown, mut spent) = (Vec::new(), Vec::new(), 0, 0.0);
+    let mut endless = None;
     while ratios.len() < limits.pairs && thrown < MOST_THROWN * limits.pairs {
         if ratios.len() >= limits.least && spent >= limits.time.as_secs_f64() * 1e3 {
             break;
@@ -187,7 +198,7 @@ pub fn abba(
         if watch.progress.is_cancelled() {
             return Err(Unmeasured::Cancelled);
         }
-        watch.settle();
+        watch.settle(&mut endless);
         let before = watch.touches();
         let [a1, b1, b2, a2] = [run(0)?, run(1)?, run(1)?, run(0)?];
         let pair = a1 + b1 + b2 + a2;
@@ -270,6 +281,21 @@ mod tests {
         let disturbed = abba(&LIMITS, &watch, &mut |_| Ok(1.0));
         drop(touch);
         assert_eq!(disturbed, Err(Unmeasured::Disturbed));
+    }
+
+    /// Short pairs would all be over before a window that takes long is shown.
+    #[test]
+    fn a_touch_that_takes_longer_than_all_pairs_is_waited_for() {
+        let watch = Watch::default();
+        let touch = watch.touch();
+        let shown = std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_millis(50));
+            drop(touch);
+        });
+        let limits = Limits { pairs: 1, least: 1, time: Duration::ZERO };
+        let ratio = abba(&limits, &watch, &mut |_| Ok(0.001)).unwrap();
+        shown.join().unwrap();
+        assert_eq!((ratio.pairs, ratio.thrown), (1, 0));
     }
 
     #[test]
