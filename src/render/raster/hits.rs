@@ -4,11 +4,10 @@
 //! are drawn. The pixels that they cover are hits. They are stored in pages, which are allocated to
 //! tiles as needed and reused in the next frame.
 
-use fearless_simd::{
-    Bytes as _, Simd, SimdBase as _, SimdMask as _, f32x16, i32x16, mask32x16, u32x16,
-};
+use fearless_simd::{Bytes as _, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16, u32x16};
 
 use super::depth_format::Format;
+use super::visibility_buffer::{keys_and_numbers, put_words, word};
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::tiles::{TILE, lanes_place};
 
@@ -29,10 +28,8 @@ const FEW_TILES: i32 = 6;
 struct Page {
     /// The index of the sample in the tile's visibility buffer.
     place: [u32; PAGE],
-    /// The bits of the depth.
-    depth: [u32; PAGE],
-    /// The number of the primitive.
-    number: [u32; PAGE],
+    /// The entry in the visibility buffer, if keys are the bits of depths.
+    word: [u64; PAGE],
     count: usize,
     /// The page before it of the same tile, or [`FULL`].
     previous: u32,
@@ -40,7 +37,7 @@ struct Page {
 
 impl Page {
     const fn new(count: usize) -> Self {
-        Self { place: [0; PAGE], depth: [0; PAGE], number: [0; PAGE], count, previous: FULL }
+        Self { place: [0; PAGE], word: [0; PAGE], count, previous: FULL }
     }
 
     /// Adds those of sixteen hits that are in a mask.
@@ -48,8 +45,8 @@ impl Page {
     fn add<S: Simd>(&mut self, place: u32x16<S>, pixels: &Pixels<S>, some: mask32x16<S>) {
         let to = self.count..self.count + PACK;
         place.compress(some).store_slice(&mut self.place[to.clone()]);
-        pixels.depth.compress(some).store_slice(&mut self.depth[to.clone()]);
-        pixels.number.compress(some).store_slice(&mut self.number[to]);
+        let (depth, number) = (pixels.depth.compress(some), pixels.number.compress(some));
+        put_words(depth, number, &mut self.word[to]);
         self.count += some.to_bitmask().count_ones() as usize;
     }
 
@@ -58,8 +55,7 @@ impl Page {
     fn add_first<S: Simd>(&mut self, place: u32x16<S>, pixels: &Pixels<S>, count: usize) {
         let to = self.count..self.count + PACK;
         place.store_slice(&mut self.place[to.clone()]);
-        pixels.depth.store_slice(&mut self.depth[to.clone()]);
-        pixels.number.store_slice(&mut self.number[to]);
+        put_words(pixels.depth, pixels.number, &mut self.word[to]);
         self.count += count;
     }
 }
@@ -206,8 +202,7 @@ impl Hits {
                     let page = self.page(tile[lane] as usize);
                     let at = page.count;
                     page.place[at] = place[lane];
-                    page.depth[at] = pixels.depth[lane];
-                    page.number[at] = pixels.number[lane];
+                    page.word[at] = word(pixels.depth[lane], pixels.number[lane]);
                     page.count = at + 1;
                 }
             }
@@ -239,31 +234,34 @@ impl Hits {
         page
     }
 
-    /// Calls `take` with the index, the key of the depth and the number of each hit in a tile.
+    /// Calls `take` with the index and the entry of each hit in a tile.
     #[inline(always)]
     pub(crate) fn each<S: Simd, D: Format>(
         &self,
         (format, simd): (D, S),
         tile: usize,
-        mut take: impl FnMut(u32, u32, u32),
+        mut take: impl FnMut(u32, u64),
     ) {
         let mut page = self.last[tile];
-        let mut keys = [0; PAGE];
         while page != FULL {
-            let Page { place, depth, number, count, previous } = &self.pages[page as usize];
-            let mut depth = depth;
-            if !D::KEEPS_BITS {
+            let Page { place, word, count, previous } = &self.pages[page as usize];
+            let rows = place[..*count].iter().zip(word);
+            if D::KEEPS_BITS {
+                rows.for_each(
+                    #[inline(always)]
+                    |(place, word)| take(*place, *word),
+                );
+            } else {
+                let mut words = [0; PAGE];
                 for at in (0..*count).step_by(PACK) {
-                    let row = f32x16::from_slice(simd, bytemuck::cast_slice(&depth[at..at + PACK]));
-                    let own = u32x16::from_slice(simd, &number[at..at + PACK]);
-                    let bias = (own >> 31) * format.lines_nearer();
-                    (format.keys(row) + bias).store_slice(&mut keys[at..at + PACK]);
+                    let (depth, number) = keys_and_numbers(simd, &word[at..at + PACK]);
+                    let lines = (number >> 31) * format.lines_nearer();
+                    let keys = format.keys(depth.bitcast()) + lines;
+                    put_words(keys, number, &mut words[at..at + PACK]);
                 }
-                depth = &keys;
-            }
-            let rows = place[..*count].iter().zip(depth).zip(number);
-            for ((place, key), number) in rows {
-                take(*place, *key, *number);
+                for (place, word) in place[..*count].iter().zip(&words) {
+                    take(*place, *word);
+                }
             }
             page = *previous;
         }

@@ -136,8 +136,8 @@ impl Layers {
         for bins in frame.transparent_bins() {
             let samples = self.sample_positions.count();
             let format = Any(self.depth_format);
-            dispatch!(level, simd => bins.hits.each((format, simd), tile, |place, key, number| {
-                self.add_hit(place as usize, samples, word(key, number));
+            dispatch!(level, simd => bins.hits.each((format, simd), tile, |place, word| {
+                self.add_hit(place as usize, samples, word);
             }));
             for &number in &bins.tiles[tile].large {
                 let triangle = &bins.large[number as usize];

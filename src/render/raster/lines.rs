@@ -411,7 +411,7 @@ mod tests {
                 pixels.push((x, tile / 2 * TILE + block / 8 * 8 + within / 8));
             };
             dispatch!(Level::new(), simd => {
-                hits.each((Reversed, simd), tile, |place, _, _| take(place));
+                hits.each((Reversed, simd), tile, |place, _| take(place));
             });
         }
         pixels.sort_unstable();

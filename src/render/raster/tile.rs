@@ -365,14 +365,14 @@ impl Visibility {
             (D::of(self.depth_format), simd),
             tile,
             #[inline(always)]
-            |place, key, number| {
+            |place, word| {
                 let place = place as usize % (N * PIXELS);
                 let block = place / (N * BLOCK_PIXELS);
                 if self.written >> block & 1 == 0 {
                     self.write::<N>(simd.level(), block);
                 }
                 let old = &mut self.buffer.0[place];
-                *old = word(key, number).max(*old);
+                *old = word.max(*old);
             },
         ));
     }

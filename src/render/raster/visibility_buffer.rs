@@ -52,6 +52,25 @@ pub(crate) fn word(key: u32, number: u32) -> u64 {
     u64::from(key) << 32 | u64::from(!number)
 }
 
+/// Stores the entries of sixteen primitives with these keys and numbers.
+#[inline(always)]
+pub(crate) fn put_words<S: Simd>(keys: u32x16<S>, numbers: u32x16<S>, to: &mut [u64]) {
+    let (first, last) = (!numbers).interleave(keys);
+    let to: &mut [u32] = bytemuck::cast_slice_mut(to);
+    first.store_slice(&mut to[..16]);
+    last.store_slice(&mut to[16..32]);
+}
+
+/// The keys and the numbers of sixteen entries.
+#[inline(always)]
+pub(crate) fn keys_and_numbers<S: Simd>(simd: S, words: &[u64]) -> (u32x16<S>, u32x16<S>) {
+    let halves: &[u32] = bytemuck::cast_slice(words);
+    let first = u32x16::from_slice(simd, &halves[..16]);
+    let last = u32x16::from_slice(simd, &halves[16..32]);
+    let (numbers, keys) = first.deinterleave(last);
+    (keys, !numbers)
+}
+
 /// The depth test of sixteen entries, those of two rows of a block: writes the ones that a triangle
 /// with these depths covers, where it is in front.
 ///

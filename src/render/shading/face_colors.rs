@@ -6,6 +6,7 @@
 //! as a batch holds; then its pixels are looked up. If two threads light the same triangle, both
 //! get the same colour.
 
+use std::hint::select_unpredictable;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::full_blocks::ROW;
@@ -18,7 +19,8 @@ const MARK: u32 = 24;
 #[derive(Debug)]
 pub(crate) struct FaceColors {
     /// Red, green and blue, and in place of alpha the mark of the frame: an even number if the
-    /// colour is known, the odd one below it if some thread is about to light the triangle.
+    /// colour is known, the odd one below it if some thread is about to light the triangle. The
+    /// last entry is no triangle's.
     entries: Vec<AtomicU32>,
     /// The mark of entries whose colour is known.
     known: u32,
@@ -34,20 +36,23 @@ impl FaceColors {
     /// Begins a frame of this many triangles: forgets all colours.
     pub(crate) fn begin(&mut self, triangles: usize) {
         self.known += 2;
-        if self.known > 0xff || self.entries.capacity() < triangles {
+        if self.known > 0xff || self.entries.capacity() <= triangles {
             *self = Self::default();
         }
-        self.entries.resize_with(triangles, AtomicU32::default);
+        self.entries.resize_with(triangles + 1, AtomicU32::default);
+        *self.entries[triangles].get_mut() = self.known << MARK;
     }
 
     /// Whether a triangle has to be lit; if so, no later call for this tile says so again.
+    ///
+    /// Without a branch: which triangles are new cannot be predicted.
     #[inline(always)]
     pub(crate) fn claim(&self, number: u32) -> bool {
-        let Some(entry) = self.entries.get(number as usize) else { return false };
-        let is_new = entry.load(Ordering::Relaxed) >> MARK < self.known - 1;
-        if is_new {
-            entry.store((self.known - 1) << MARK, Ordering::Relaxed);
-        }
+        let last = self.entries.len() - 1;
+        let place = (number as usize).min(last);
+        let is_new = self.entries[place].load(Ordering::Relaxed) >> MARK < self.known - 1;
+        let to = select_unpredictable(is_new, place, last);
+        self.entries[to].store((self.known - 1) << MARK, Ordering::Relaxed);
         is_new
     }
 

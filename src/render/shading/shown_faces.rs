@@ -13,7 +13,7 @@ use crate::accuracy::{LightAt, Rounding};
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Pipeline;
 use crate::render::raster::tile::Visibility;
-use crate::render::screen::tiles::BLOCK_PIXELS;
+use crate::render::screen::tiles::{BLOCK_PIXELS, PIXELS};
 use crate::render::simd::gather::SLOTS;
 
 /// Whether all pixels of a triangle have one colour.
@@ -52,9 +52,8 @@ impl<T: ShadingNumber> Shader<T> {
         visibility: &Visibility,
     ) {
         let mut new = std::mem::take(&mut self.new_faces);
-        new.clear();
-        list(context.level, faces, visibility, (&mut new, &mut self.runs));
-        let mut left = &new[..];
+        let count = list(context.level, faces, visibility, (&mut new, &mut self.runs));
+        let mut left = &new[..count];
         while let Some(first) = left.first() {
             let group = group_of(context, *first);
             let end = context.frame.draw_of(*first).1.end;
@@ -81,14 +80,14 @@ impl<T: ShadingNumber> Shader<T> {
 }
 
 /// Lists the triangles of a tile that have to be lit, and finds where runs of pixels begin that
-/// show the same, a bit for each pixel of each block.
+/// show the same, a bit for each pixel of each block. Returns the number of those triangles.
 fn list(
     level: Level,
     faces: &FaceColors,
     visibility: &Visibility,
     to: (&mut Vec<u32>, &mut [u64; BLOCK_PIXELS]),
-) {
-    dispatch!(level, simd => list_in(simd, faces, visibility, to));
+) -> usize {
+    dispatch!(level, simd => list_in(simd, faces, visibility, to))
 }
 
 #[inline(always)]
@@ -97,7 +96,10 @@ fn list_in<S: Simd>(
     faces: &FaceColors,
     visibility: &Visibility,
     (to, all_runs): (&mut Vec<u32>, &mut [u64; BLOCK_PIXELS]),
-) {
+) -> usize {
+    // Each triangle is written, and the next one over it unless it is new.
+    to.resize(PIXELS, 0);
+    let mut count = 0;
     let shown = |block: &usize| visibility.shows(*block) && visibility.whole(*block).is_none();
     for block in (0..BLOCK_PIXELS).filter(shown) {
         let runs = Runs::find(simd, visibility.block(block));
@@ -106,9 +108,9 @@ fn list_in<S: Simd>(
         while starts != 0 {
             let number = runs.number(starts.trailing_zeros() as usize);
             starts &= starts - 1;
-            if faces.claim(number) {
-                to.push(number);
-            }
+            to[count % PIXELS] = number;
+            count += usize::from(faces.claim(number));
         }
     }
+    count
 }
