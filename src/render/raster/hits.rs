@@ -7,7 +7,7 @@
 use fearless_simd::{Bytes as _, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16, u32x16};
 
 use super::depth_format::Format;
-use super::visibility_buffer::{keys_and_numbers, put_words, word};
+use super::entries::{keys_and_numbers, put_words, word};
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::tiles::{TILE, lanes_place};
 

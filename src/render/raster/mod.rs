@@ -18,6 +18,7 @@ mod culling;
 pub(crate) mod depth_format;
 mod edges;
 mod edges_in_floats;
+pub(crate) mod entries;
 mod facing;
 pub(crate) mod geometry;
 mod hits;

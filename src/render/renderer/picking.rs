@@ -13,7 +13,7 @@ use crate::base::image::Size;
 use crate::render::frame::FramePlan;
 use crate::render::plan::uses::EffectUse;
 use crate::render::raster::visibility_buffer::Visible;
-use crate::render::raster::{depth_format, visibility_buffer};
+use crate::render::raster::{depth_format, entries, visibility_buffer};
 use crate::render::screen::sample_positions::passes;
 use crate::render::screen::tiles::{BLOCK_PIXELS, TILE, block_at, tiles_of};
 use crate::render::shading::context::ShadingContext;
@@ -72,7 +72,7 @@ impl Renderer {
             }
         });
         let (draw, polygon) = self.seen(plan, word)?;
-        let depth = depth_format::depth(plan.variants.depth, visibility_buffer::key(word));
+        let depth = depth_format::depth(plan.variants.depth, entries::key(word));
         Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
     }
 

@@ -16,9 +16,10 @@ use super::surface::{Out, Shader};
 use crate::accuracy::Transparency;
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::raster::depth_format;
+use crate::render::raster::entries::key;
 use crate::render::raster::layers::Layers;
 use crate::render::raster::tile::Visibility;
-use crate::render::raster::visibility_buffer::{Visible, key, seen};
+use crate::render::raster::visibility_buffer::{Visible, seen};
 use crate::render::screen::tiles::BLOCK_PIXELS;
 
 /// The layers of a tile, and the colours of one sample of a block.

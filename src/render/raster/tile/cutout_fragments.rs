@@ -10,8 +10,8 @@ use fearless_simd::{
 
 use crate::render::raster::alpha_test::AlphaTest;
 use crate::render::raster::depth_format::Format;
+use crate::render::raster::entries::word;
 use crate::render::raster::large;
-use crate::render::raster::visibility_buffer::word;
 use crate::render::screen::sample_positions::FOUR;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS};
 use crate::render::simd::UP_TO_SIXTEEN;

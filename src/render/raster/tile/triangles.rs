@@ -6,9 +6,9 @@ use super::{Shown, Visibility};
 use crate::base::math::each;
 use crate::render::raster::bins::LargeTriangle;
 use crate::render::raster::depth_format::{Format as _, with_format};
+use crate::render::raster::entries::word;
 use crate::render::raster::large::Large;
 use crate::render::raster::medium::{self, Medium};
-use crate::render::raster::visibility_buffer::word;
 use crate::render::screen::coverage::{Grid, PixelBox, Snapped, Triangle};
 
 impl Visibility {
