@@ -22,7 +22,7 @@ use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{BATCH, Encoding, Lanes as _, Sixteen, VariantLanes, Vec3};
-use crate::render::texture::lanes::Stored;
+use crate::render::texture::lanes::{Stored, TexelPlaces};
 
 /// The pixels of a tile, in rows that begin `stride` pixels apart.
 #[derive(Debug)]
@@ -389,7 +389,8 @@ fn lit<S: Simd>(
     let [left, top] = blocks.corner;
     batch.len = BLOCK_PIXELS;
     let mut is_lit = false;
-    let mut texels = [[0.0; BATCH]; 3];
+    let mut places = TexelPlaces::default();
+    let (mut texels, mut colors) = ([[0.0; BATCH]; 3], [[0.0; BATCH]; 3]);
     blocks.each(
         #[inline(always)]
         |[column, row]| {
@@ -418,23 +419,23 @@ fn lit<S: Simd>(
                             }
                         }
                     }
-                    let mut own = tint;
                     if let Some(texture) = &texture {
                         let way = texture.way(simd, &OfFirst, weights);
                         let position = match texture.far.first() {
                             Some(far) => far.of_two_rows(simd, [x, y]),
                             None => texture.position(simd, &OfFirst, way),
                         };
-                        let texel = texture.texel::<S, Stored>(simd, &OfFirst, (way, w), position);
-                        own = product(own, texel);
+                        let to = (&mut places, 16 * pair);
+                        texture.put(simd, &OfFirst, (way, w), position, to);
                     }
                     if let Some(values) = vertex_colors {
-                        own = product(own, between(self::corners(lanes, values), weights));
-                    }
-                    if is_colored {
-                        store(lanes, own, &mut texels, 16 * pair);
+                        let color = between(self::corners(lanes, values), weights);
+                        store(lanes, color, &mut colors, 16 * pair);
                     }
                 }
+            }
+            if let Some(texture) = &texture {
+                texture.sampler.sample::<S, Stored>(simd, &mut places, BLOCK_PIXELS, &mut texels);
             }
             if let Some(lights) = &lights
                 && (look.is_some() || !is_lit)
@@ -446,7 +447,13 @@ fn lit<S: Simd>(
             let mut at = canvas.offset([column as usize, row as usize]);
             for pair in 0..PAIRS {
                 let mut pixels = [0; 16];
-                let own = if is_colored { load(lanes, &texels, 16 * pair) } else { tint };
+                let mut own = tint;
+                if texture.is_some() {
+                    own = product(own, load(lanes, &texels, 16 * pair));
+                }
+                if vertex_colors.is_some() {
+                    own = product(own, load(lanes, &colors, 16 * pair));
+                }
                 let mut color = match lights {
                     Some(_) => reflected(lanes, own, batch, 16 * pair),
                     None => own,

@@ -14,8 +14,8 @@ use crate::render::lights::{Rows, load, store};
 use crate::render::screen::coverage::doubled_area;
 use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{Lanes as _, Real, Sixteen, Vec3};
-use crate::render::texture::lanes::{Decode, Sampler, Stored};
+use crate::render::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3};
+use crate::render::texture::lanes::{Decode, Sampler, Stored, TexelPlaces};
 use crate::render::texture::placement::{Placement, Steps};
 use crate::render::texture::sample::brightness;
 use crate::render::texture::uv::Uvs;
@@ -47,6 +47,20 @@ impl TextureSamples<'_, f32> {
         simd: S,
         to: &mut Rows<f32>,
     ) {
+        let Self { fragments, texture, .. } = *self;
+        let lanes = Sixteen(simd);
+        let (mut places, mut texels) = (TexelPlaces::default(), [[0.0; BATCH]; 3]);
+        self.place::<S, PAGES>(simd, &mut places);
+        texture.sampler.sample::<S, D>(simd, &mut places, fragments.len, &mut texels);
+        for at in (0..fragments.len).step_by(16) {
+            let texel = load(lanes, &texels, at);
+            store(lanes, product(load(lanes, to, at), texel), to, at);
+        }
+    }
+
+    /// Finds the places of all fragments.
+    #[inline(always)]
+    fn place<S: Simd, const PAGES: usize>(&self, simd: S, to: &mut TexelPlaces) {
         let Self { fragments, barycentrics, texture, .. } = *self;
         let lanes = Sixteen(simd);
         for at in (0..fragments.len).step_by(16) {
@@ -59,35 +73,38 @@ impl TextureSamples<'_, f32> {
             if !texture.far.is_empty() {
                 position = self.far_positions(simd, at, position);
             }
-            let texel = texture.texel::<S, D>(simd, &slots, (way, w), position);
-            store(lanes, product(load(lanes, to, at), texel), to, at);
+            texture.put(simd, &slots, (way, w), position, (to, at));
         }
     }
 
     /// The slopes of heights at all fragments, per texel along u and v, in the first two rows.
     #[inline(always)]
     pub(crate) fn slopes<S: Simd, const PAGES: usize>(&self, simd: S, to: &mut Rows<f32>) {
-        let Self { fragments, barycentrics, texture, .. } = *self;
+        let Self { fragments, texture, .. } = *self;
         let lanes = Sixteen(simd);
+        let (mut places, mut texels) = (TexelPlaces::default(), [[0.0; BATCH]; 3]);
+        self.place::<S, PAGES>(simd, &mut places);
+        let own = places.position;
+        let mut heights = [[0.0; BATCH]; 4];
+        let beside = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+        for (heights, beside) in heights.iter_mut().zip(beside) {
+            for axis in 0..2 {
+                for at in (0..fragments.len).step_by(16) {
+                    let position = lanes.load(&own[axis], at) + beside[axis];
+                    lanes.store(position, &mut places.position[axis], at);
+                }
+            }
+            texture.sampler.sample::<S, Stored>(simd, &mut places, fragments.len, &mut texels);
+            for at in (0..fragments.len).step_by(16) {
+                lanes.store(brightness(load(lanes, &texels, at)), heights, at);
+            }
+        }
+        let [right, left, above, below] = &heights;
         for at in (0..fragments.len).step_by(16) {
-            let slots = OfSlots::<S, PAGES>(lanes.slots(&fragments.slots, at));
-            let second = lanes.load(&barycentrics.weights[0], at);
-            let third = lanes.load(&barycentrics.weights[1], at);
-            let w = lanes.load(&barycentrics.w, at);
-            let way = texture.way(simd, &slots, [second, third]);
-            let mut position = texture.position(simd, &slots, way);
-            if !texture.far.is_empty() {
-                position = self.far_positions(simd, at, position);
-            }
-            let [x, y] = position;
-            let mut heights = [x; 4];
-            let beside = [[x + 1.0, y], [x - 1.0, y], [x, y + 1.0], [x, y - 1.0]];
-            for (height, position) in heights.iter_mut().zip(beside) {
-                *height = brightness(texture.texel::<S, Stored>(simd, &slots, (way, w), position));
-            }
-            let [right, left, above, below] = heights;
-            lanes.store((right - left) * 0.5, &mut to[0], at);
-            lanes.store((above - below) * 0.5, &mut to[1], at);
+            let across = (lanes.load(right, at) - lanes.load(left, at)) * 0.5;
+            let up = (lanes.load(above, at) - lanes.load(below, at)) * 0.5;
+            lanes.store(across, &mut to[0], at);
+            lanes.store(up, &mut to[1], at);
         }
     }
 }
@@ -147,22 +164,25 @@ impl<S: Simd> Triangles<S> for OfFirst {
 }
 
 impl PlacedTexture<'_> {
-    /// Red, green and blue, as factors, at sixteen positions on the texture, these texels from the
-    /// first corner and with this w.
+    /// Puts sixteen places on the texture into a row, at some positions, these texels from the first
+    /// corner and with this w.
     #[inline(always)]
-    pub(crate) fn texel<S: Simd, D: Decode>(
+    pub(crate) fn put<S: Simd>(
         &self,
         simd: S,
         of: &impl Triangles<S>,
-        at: ([f32x16<S>; 2], f32x16<S>),
+        way: ([f32x16<S>; 2], f32x16<S>),
         position: [f32x16<S>; 2],
-    ) -> Vec3<f32x16<S>> {
-        self.sampler.sample::<S, D>(
-            simd,
-            position,
-            #[inline(always)]
-            || Real::max(self.squared_step(simd, of, at, 0), self.squared_step(simd, of, at, 1)),
-        )
+        (to, at): (&mut TexelPlaces, usize),
+    ) {
+        let lanes = Sixteen(simd);
+        lanes.store(position[0], &mut to.position[0], at);
+        lanes.store(position[1], &mut to.position[1], at);
+        if self.sampler.reads_mips() {
+            let (right, below) =
+                (self.squared_step(simd, of, way, 0), self.squared_step(simd, of, way, 1));
+            lanes.store(Real::max(right, below), &mut to.footprint, at);
+        }
     }
 
     /// The texels from the first corner to the point with these weights of the second and third.

@@ -47,6 +47,12 @@ pub(crate) fn pick<S: Simd, const PAGES: usize>(
     }
 }
 
+/// Whether one instruction permutes sixteen lanes.
+#[inline(always)]
+pub(crate) fn permutes(level: Level) -> bool {
+    level.as_avx512().is_some()
+}
+
 /// Gathers the numbers in some lanes, all below sixteen.
 #[inline(always)]
 pub(crate) fn permute<S: Simd>(of: i32x16<S>, lanes: i32x16<S>) -> i32x16<S> {

@@ -13,8 +13,9 @@ use self::mip_level::{Footprint, MipLevel};
 use super::sample::{brightness, linear_factors};
 use crate::accuracy::Filter;
 use crate::base::once::get_or_compute;
+use crate::render::lights::{Rows, load, store};
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{Real, Vec3, log2};
+use crate::render::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3, log2};
 use crate::scene::{Texture, Wrap};
 
 /// Mip levels, at most: textures have at most 32,768 texels a side.
@@ -52,40 +53,57 @@ impl<'a> Sampler<'a> {
         self.filter == Filter::Trilinear
     }
 
-    /// Red, green and blue, as factors, at sixteen positions in texels; `footprint` gives the
-    /// square of the texels that a pixel covers.
+    /// Red, green and blue, as factors, at the first `len` places.
+    ///
+    /// Each step is done for all places before the next one: how soon a step ends depends on the
+    /// one before, and processors overlap only what is near.
     ///
     /// Compiled as a function of its own, since many kernels sample.
     #[inline(always)]
     pub(crate) fn sample<S: Simd, D: Decode>(
         &self,
         simd: S,
-        position: [f32x16<S>; 2],
-        footprint: impl FnOnce() -> f32x16<S>,
-    ) -> Vec3<f32x16<S>> {
-        let footprint = if self.reads_mips() { footprint() } else { position[0] };
+        places: &mut TexelPlaces,
+        len: usize,
+        to: &mut Rows<f32>,
+    ) {
         simd.vectorize(
             #[inline(always)]
-            || self.sample_in::<S, D>(simd, position, footprint),
-        )
+            || self.sample_in::<S, D>(simd, places, len, to),
+        );
     }
 
     #[inline(always)]
     fn sample_in<S: Simd, D: Decode>(
         &self,
         simd: S,
-        position: [f32x16<S>; 2],
-        footprint: f32x16<S>,
-    ) -> Vec3<f32x16<S>> {
-        let position = [self.reduced(position[0], 0), self.reduced(position[1], 1)];
-        match self.filter {
-            Filter::Nearest => self.nearest::<S, D>(simd, position),
-            Filter::Bilinear => {
-                let level = MipLevel::first(self, simd);
-                let color = level.bilinear::<D>(simd, self, position);
-                color.times(f32x16::splat(simd, 1.0 / 255.0))
+        places: &mut TexelPlaces,
+        len: usize,
+        to: &mut Rows<f32>,
+    ) {
+        let lanes = Sixteen(simd);
+        for axis in 0..2 {
+            let row = &mut places.position[axis];
+            for at in (0..len).step_by(16) {
+                lanes.store(self.reduced(lanes.load(row, at), axis), row, at);
             }
-            Filter::Trilinear => self.trilinear::<S, D>(simd, position, footprint),
+        }
+        let first = MipLevel::first(self, simd);
+        match self.filter {
+            Filter::Nearest => {
+                for at in (0..len).step_by(16) {
+                    let texels = first.nearest(simd, self, places.at(lanes, at));
+                    let Vec3([r, g, b]) = D::channels(texels);
+                    store(lanes, Vec3([r / 255.0, g / 255.0, b / 255.0]), to, at);
+                }
+            }
+            Filter::Bilinear => {
+                for at in (0..len).step_by(16) {
+                    let color = first.bilinear::<D>(simd, self, places.at(lanes, at));
+                    store(lanes, color.times(lanes.set(1.0 / 255.0)), to, at);
+                }
+            }
+            Filter::Trilinear => self.trilinear::<S, D>(simd, places, len, to),
         }
     }
 
@@ -146,37 +164,85 @@ impl<'a> Sampler<'a> {
         }
     }
 
+    /// Compiled as a function of its own: inside of a larger one it takes longer, if the levels of
+    /// sixteen places differ.
     #[inline(always)]
-    fn nearest<S: Simd, D: Decode>(&self, simd: S, position: Positions<S>) -> Vec3<f32x16<S>> {
-        let level = MipLevel::first(self, simd);
-        let Vec3([r, g, b]) = D::channels(level.nearest(simd, self, position));
-        Vec3([r / 255.0, g / 255.0, b / 255.0])
+    fn bilinear<S: Simd, D: Decode>(
+        &self,
+        simd: S,
+        level: &MipLevel<S>,
+        position: Positions<S>,
+    ) -> Vec3<f32x16<S>> {
+        simd.vectorize(
+            #[inline(always)]
+            || level.bilinear::<D>(simd, self, position),
+        )
     }
 
     #[inline(always)]
     fn trilinear<S: Simd, D: Decode>(
         &self,
         simd: S,
-        position: Positions<S>,
-        footprint: f32x16<S>,
-    ) -> Vec3<f32x16<S>> {
-        let one = f32x16::splat(simd, 1.0);
+        places: &TexelPlaces,
+        len: usize,
+        to: &mut Rows<f32>,
+    ) {
+        let lanes = Sixteen(simd);
         #[expect(clippy::cast_precision_loss, reason = "at most 16")]
-        let last = f32x16::splat(simd, (self.levels.len() - 1) as f32);
-        let level = log2(Real::max(footprint, one)) * 0.5;
-        let level = Real::max(Real::min(level, last), f32x16::splat(simd, 0.0));
-        let below = level.floor();
-        let part = level - below;
-        let below: i32x16<S> = below.to_int();
-        let near = MipLevel::of(self, simd, below).bilinear::<D>(simd, self, position);
-        let color = if part.simd_gt(0.0).any_true() {
-            let next = (below + 1).min(last.to_int::<i32x16<S>>());
-            let far = MipLevel::of(self, simd, next).bilinear::<D>(simd, self, position);
-            between(near, far, part)
-        } else {
-            near
-        };
-        color.times(f32x16::splat(simd, 1.0 / 255.0))
+        let last = lanes.set((self.levels.len() - 1) as f32);
+        let (zero, one) = (lanes.set(0.0), lanes.set(1.0));
+        let (mut below, mut part) = ([0.0; BATCH], [0.0; BATCH]);
+        // Of each sixteen places, the least and the largest level.
+        let mut bounds = [[0; 2]; BATCH / 16];
+        for (at, bounds) in (0..len).step_by(16).zip(&mut bounds) {
+            let level = log2(Real::max(lanes.load(&places.footprint, at), one)) * 0.5;
+            let level = Real::max(Real::min(level, last), zero);
+            let own = level.floor();
+            lanes.store(own, &mut below, at);
+            lanes.store(level - own, &mut part, at);
+            let number: i32x16<S> = own.to_int();
+            *bounds = [number.reduce_min(), number.reduce_max()];
+        }
+        for (at, bounds) in (0..len).step_by(16).zip(bounds) {
+            let level = MipLevel::of(self, simd, lanes.load(&below, at), bounds);
+            let color = self.bilinear::<S, D>(simd, &level, places.at(lanes, at));
+            store(lanes, color, to, at);
+        }
+        for (at, [low, high]) in (0..len).step_by(16).zip(bounds) {
+            let (near, part) = (load(lanes, to, at), lanes.load(&part, at));
+            let mut color = near;
+            if part.simd_gt(0.0).any_true() {
+                let next = Real::min(lanes.load(&below, at) + 1.0, last);
+                let end = i32::try_from(self.levels.len() - 1).unwrap_or(0);
+                let bounds = [(low + 1).min(end), (high + 1).min(end)];
+                let level = MipLevel::of(self, simd, next, bounds);
+                let far = self.bilinear::<S, D>(simd, &level, places.at(lanes, at));
+                color = between(near, far, part);
+            }
+            store(lanes, color.times(lanes.set(1.0 / 255.0)), to, at);
+        }
+    }
+}
+
+/// Places on a texture.
+#[derive(Debug)]
+pub(crate) struct TexelPlaces {
+    /// In texels of its own size.
+    pub(crate) position: [[f32; BATCH]; 2],
+    /// The square of the texels that a pixel covers, if the filter reads mip maps.
+    pub(crate) footprint: [f32; BATCH],
+}
+
+impl Default for TexelPlaces {
+    fn default() -> Self {
+        Self { position: [[0.0; BATCH]; 2], footprint: [0.0; BATCH] }
+    }
+}
+
+impl TexelPlaces {
+    #[inline(always)]
+    fn at<S: Simd>(&self, lanes: Sixteen<S>, at: usize) -> Positions<S> {
+        [lanes.load(&self.position[0], at), lanes.load(&self.position[1], at)]
     }
 }
 
