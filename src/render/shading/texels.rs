@@ -164,8 +164,8 @@ impl<S: Simd> Triangles<S> for OfFirst {
 }
 
 impl PlacedTexture<'_> {
-    /// Puts sixteen places on the texture into a row, at some positions, these texels from the first
-    /// corner and with this w.
+    /// Puts sixteen places on the texture into a row, at some positions, with the way to them in
+    /// texels from the first corner and with their w.
     #[inline(always)]
     pub(crate) fn put<S: Simd>(
         &self,

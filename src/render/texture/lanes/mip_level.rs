@@ -34,7 +34,7 @@ pub(super) struct Footprint<S: Simd> {
 }
 
 impl<S: Simd> MipLevel<S> {
-    /// Levels by their numbers, of which the least and the largest are known.
+    /// Levels by their numbers, whose least and largest are known.
     #[inline(always)]
     pub(super) fn of(
         sampler: &Sampler<'_>,
