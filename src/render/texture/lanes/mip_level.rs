@@ -128,7 +128,7 @@ impl<S: Simd> MipLevel<S> {
         columns: [i32x16<S>; N],
         rows: [i32x16<S>; N],
     ) -> Option<[[i32x16<S>; N]; N]> {
-        let Some(level) = self.one.filter(|_| permutes(simd.level())) else { return None };
+        let level = self.one.filter(|_| permutes(simd.level()))?;
         let (left, first) = (least(&columns), least(&rows));
         let (mut wide, mut high) = (columns[0] - left, rows[0] - first);
         for i in 1..N {
