@@ -228,6 +228,8 @@ const MOST_THROWN: usize = 3;
 
 #[cfg(test)]
 mod tests {
+    use std::thread::Builder;
+
     use super::*;
 
     const LIMITS: Limits = Limits { pairs: 9, least: 3, time: Duration::from_millis(40) };
@@ -288,10 +290,11 @@ mod tests {
     fn a_touch_that_takes_longer_than_all_pairs_is_waited_for() {
         let watch = Watch::default();
         let touch = watch.touch();
-        let shown = std::thread::spawn(move || {
+        let show = move || {
             std::thread::sleep(Duration::from_millis(50));
             drop(touch);
-        });
+        };
+        let shown = Builder::new().name("window".to_owned()).spawn(show).unwrap();
         let limits = Limits { pairs: 1, least: 1, time: Duration::ZERO };
         let ratio = abba(&limits, &watch, &mut |_| Ok(0.001)).unwrap();
         shown.join().unwrap();
