@@ -11,6 +11,7 @@ use std::sync::{Mutex, PoisonError};
 use fearless_simd::Level;
 
 use super::shading::context::ShadingContext;
+use super::shading::corner_light::VertexLight;
 use super::shading::face_colors::FaceColors;
 use super::shading::light::Lit;
 use super::shading::painter::{Band, Filled, Painter, TileSums};
@@ -23,6 +24,7 @@ use crate::render::damage::kept_shadows::KeptShadows;
 use crate::render::damage::{Damage, DamageCause};
 use crate::render::frame::{FramePlan, Rules};
 use crate::render::raster::geometry::ScreenGeometry;
+use crate::render::raster::hit_colors::CornerLight;
 use crate::render::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::render::screen::tiles::{TILE_SIDE, tiles_of};
 use crate::render::shading::interpolated::ShadingNumber;
@@ -173,10 +175,20 @@ impl Renderer {
         if plan.lit_by_sample {
             return self.draw_each_sample(plan, damage, &sums, watch);
         }
+        self.prepare(plan);
         // The first pass comes last, so that picking reads its geometry.
         for (i, sample_positions) in passes.iter().enumerate().rev() {
-            if !self.built {
-                self.timings += self.frame.build(self.level, plan, *sample_positions, watch);
+            if self.built {
+                self.frame.forget_colors();
+            } else {
+                let ShadingCache { lit, terms, .. } = &self.caches.fast;
+                let one = passes.len() == 1 && !sample_positions.are_many();
+                // Hits are coloured wherever they are: not if few of them are painted.
+                let pays = one && 2 * damage.tiles() >= self.filled.len();
+                let light = pays.then(|| VertexLight::new(self.level, plan, lit, terms)).flatten();
+                let light = light.as_ref().map(|light| light as &dyn CornerLight);
+                self.timings +=
+                    self.frame.build(self.level, plan, (*sample_positions, light), watch);
             }
             if watch.is_given_up() {
                 return;
@@ -197,7 +209,9 @@ impl Renderer {
         let last = shifts.len() - 1;
         for (i, shift) in shifts.enumerate() {
             let own = plan.seen_from(shift);
-            self.timings += self.frame.build(self.level, &own, SamplePositions::default(), watch);
+            self.prepare(&own);
+            let one = (SamplePositions::default(), None);
+            self.timings += self.frame.build(self.level, &own, one, watch);
             if watch.is_given_up() {
                 return;
             }
@@ -251,6 +265,14 @@ impl Renderer {
         self.frame.triangles()
     }
 
+    /// Prepares the light of a plan.
+    fn prepare(&mut self, plan: &FramePlan) {
+        match plan.arithmetic {
+            Arithmetic::F32 => self.caches.fast.prepare(plan),
+            Arithmetic::F64 => self.caches.exact.prepare(plan),
+        }
+    }
+
     /// Draws tiles in parallel: each thread has its own painter.
     fn draw<T: Painted>(
         &mut self,
@@ -262,8 +284,6 @@ impl Renderer {
         let mut laps = Laps::start();
         self.maps.update(self.level, plan, watch);
         let ShadingCache { terms, lit, faces, painters } = T::cache(&mut self.caches);
-        terms.prepare(plan);
-        lit.prepare(plan);
         let looks_up = have_colors(plan) && !self.frame.sample_positions().are_many();
         if looks_up {
             faces.begin(self.frame.triangle_numbers());
@@ -328,6 +348,13 @@ struct ShadingCache<T> {
     faces: FaceColors,
     /// One for each thread.
     painters: Vec<Painter<T>>,
+}
+
+impl<T: ShadingNumber> ShadingCache<T> {
+    fn prepare(&mut self, plan: &FramePlan) {
+        self.terms.prepare(plan);
+        self.lit.prepare(plan);
+    }
 }
 
 #[derive(Debug, Default)]

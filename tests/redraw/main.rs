@@ -18,7 +18,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use common::{at, ball, cube, edit, model_of, scene, square};
 use glam::{DMat4, DVec3};
 use marraztu::accuracy::Shot;
-use marraztu::accuracy::{AXES, Arithmetic, Filter, LightAt, Samples, Settings, SpecularForm};
+use marraztu::accuracy::{
+    AXES, Arithmetic, Filter, LightAt, LightValues, Rounding, Samples, Settings, SpecularForm,
+};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
@@ -394,6 +396,40 @@ fn after_any_commands_a_partial_redraw_gives_the_same_bytes_as_a_full_one() {
 fn agrees(renderer: &mut Renderer, plan: &FramePlan) {
     let changes = renderer.redraw(plan, &|| true).unwrap();
     assert!(Renderer::default().render(plan) == renderer.picture(), "{changes:?}");
+}
+
+/// With light at vertices, small triangles are coloured when they are set up, or once it is known
+/// which are visible, if geometry is kept or most of the picture is.
+#[test]
+fn small_triangles_have_the_same_colors_whenever_they_are_colored() {
+    let (mut scene, view) = scene(&[
+        (ball(40), at(60.0, -60.0, 40.0, 0.0)),
+        (ball(40), at(40.0, 50.0, 20.0, 10.0)),
+        (ball(30), at(50.0, 20.0, -60.0, -30.0)),
+        (plates(), at(60.0, 80.0, 60.0, 0.0)),
+    ]);
+    for (light_values, rounding, sides) in [
+        (LightValues::Stored, Rounding::Truncated, Sides::One),
+        (LightValues::Stored, Rounding::Dithered, Sides::Two),
+        (LightValues::Linear, Rounding::Nearest, Sides::One),
+    ] {
+        let settings =
+            Settings { light: LightAt::Vertex, light_values, rounding, ..Settings::default() };
+        for id in [10, 11, 12] {
+            edit(&mut scene, ObjectId(id), |object| object.sides = sides);
+        }
+        let plan =
+            |scene: &Scene| plan_frame(&Shot::new(scene, &view, &settings, Size::new(330, 260)));
+        let mut renderer = Renderer::default();
+        renderer.render(&plan(&scene));
+        for name in ["ruby", "jade", "brass"] {
+            let material = || MaterialChoice::Preset(PresetId::named(name).unwrap());
+            for id in [10, 11, 12] {
+                edit(&mut scene, ObjectId(id), |object| object.material = material());
+            }
+            agrees(&mut renderer, &plan(&scene));
+        }
+    }
 }
 
 #[test]

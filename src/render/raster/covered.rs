@@ -18,3 +18,15 @@ impl Default for Covered {
         Self { pixels: [0; MOST + PACK], count: 0 }
     }
 }
+
+impl Covered {
+    /// The lanes of the triangles that cover any, a bit for each.
+    #[inline(always)]
+    pub(super) fn lanes(&self) -> u64 {
+        let mut lanes = 0_u32;
+        for pixel in &self.pixels[..self.count] {
+            lanes |= 1 << (pixel & 15);
+        }
+        u64::from(lanes)
+    }
+}

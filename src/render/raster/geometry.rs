@@ -10,11 +10,12 @@ use rayon::prelude::*;
 
 use super::bins::Bins;
 use super::edges::{self, DrawnNormal};
+use super::hit_colors::CornerLight;
 use super::hole_tables::HoleTables;
 use super::lines::LineNumber;
 use super::parts::{Parts, share_out};
 use super::rule::{Rule as _, with_rule};
-use super::starts::{Start, number};
+use super::starts::{self, Start, number};
 use super::vertex_variants;
 use super::vertices::Vertices;
 use super::work::{What, WorkList, piece_of};
@@ -94,12 +95,13 @@ impl ScreenGeometry {
     }
 
     /// Transforms and bins everything that the plan draws, for a pass with these samples, unless it
-    /// is cancelled. Vertices that are still valid are kept. Returns how long it took.
+    /// is cancelled; hits are coloured by the `light` at vertices, if there is any. Vertices that
+    /// are still valid are kept. Returns how long it took.
     pub(crate) fn build(
         &mut self,
         level: Level,
         plan: &FramePlan,
-        sample_positions: SamplePositions,
+        (sample_positions, light): (SamplePositions, Option<&dyn CornerLight>),
         watch: &Cancellation<'_>,
     ) -> Timings {
         let mut laps = Laps::start();
@@ -107,7 +109,7 @@ impl ScreenGeometry {
         self.number(plan);
         self.place(level, plan, watch);
         let vertices = laps.lap();
-        self.set_up(level, plan, watch);
+        self.set_up(level, plan, light, watch);
         let set_up = laps.lap();
         if !watch.is_given_up() {
             self.add_lines(level, plan, watch);
@@ -218,7 +220,13 @@ impl ScreenGeometry {
 
     /// Sets up triangles into bins, one set for each thread, and finds which polygons face the
     /// observer, for their outlines.
-    fn set_up(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
+    fn set_up(
+        &mut self,
+        level: Level,
+        plan: &FramePlan,
+        light: Option<&dyn CornerLight>,
+        watch: &Cancellation<'_>,
+    ) {
         self.set_up.clear();
         for (i, draw) in plan.draws.iter().enumerate() {
             let mesh = &draw.model.mesh;
@@ -246,7 +254,7 @@ impl ScreenGeometry {
         }
         self.holes.update(plan);
         let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
-        let parts = parts.with_holes(&self.holes);
+        let parts = parts.with_holes(&self.holes).with_light(light);
         share_out(level, self.set_up.sorted(), &parts, &mut self.bins, watch);
     }
 
@@ -277,6 +285,11 @@ impl ScreenGeometry {
             let parts = parts.with_normals(&self.normals);
             share_out(level, self.lines.sorted(), &parts, &mut self.bins, watch);
         }
+    }
+
+    /// Forgets the colours of hits, which belong to the frame that the geometry was built for.
+    pub(crate) fn forget_colors(&mut self) {
+        self.bins.iter_mut().for_each(|bins| bins.hits.forget_colors());
     }
 
     /// Distributes the tiles of the picture, so that each thread mostly draws what it has set up.
@@ -312,8 +325,7 @@ impl ScreenGeometry {
     /// The draw that a triangle belongs to, and where its numbers begin.
     #[inline(always)]
     pub(crate) fn draw_of(&self, triangle: u32) -> (u32, Start) {
-        let draw = self.starts.partition_point(|start| start.end <= triangle);
-        (number(draw), self.starts[draw])
+        starts::draw_of(&self.starts, triangle)
     }
 
     /// The number after that of the last triangle.

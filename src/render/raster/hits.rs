@@ -60,6 +60,16 @@ impl Page {
     }
 }
 
+/// The [colours](super::hit_colors) of the hits of a page. They begin in other lines of the cache
+/// than those of the page before.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+struct ColorRow([u32; PAGE + PACK]);
+
+impl ColorRow {
+    const NONE: Self = Self([0; PAGE + PACK]);
+}
+
 /// A pixel of each of sixteen primitives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pixels<S: Simd> {
@@ -69,6 +79,8 @@ pub(crate) struct Pixels<S: Simd> {
     pub(crate) depth: u32x16<S>,
     /// The number of the primitive.
     pub(crate) number: u32x16<S>,
+    /// The colour, or 0 if it is not known; `None` if hits have none.
+    pub(crate) color: Option<u32x16<S>>,
 }
 
 /// Which tiles sixteen primitives may reach into.
@@ -92,14 +104,26 @@ pub(crate) struct Hits {
     /// The last page of each tile.
     last: Vec<u32>,
     pages: Vec<Page>,
+    /// The colours of the hits of each page, if hits have colours.
+    colors: Vec<ColorRow>,
     /// How many pages are handed out.
     used: usize,
+    /// Whether hits have colours.
+    colored: bool,
 }
 
 impl Default for Hits {
     fn default() -> Self {
         let pages = vec![Page::new(PAGE)];
-        Self { extent: [0; 2], tiles: [0; 2], last: Vec::new(), pages, used: 1 }
+        Self {
+            extent: [0; 2],
+            tiles: [0; 2],
+            last: Vec::new(),
+            pages,
+            colors: Vec::new(),
+            used: 1,
+            colored: false,
+        }
     }
 }
 
@@ -110,6 +134,23 @@ impl Hits {
         self.last.clear();
         self.last.resize(usize::try_from(tiles[0] * tiles[1]).expect("not negative"), FULL);
         self.used = 1;
+        self.colored = false;
+    }
+
+    /// From now on, the hits that are added have colours.
+    pub(crate) const fn begin_colors(&mut self) {
+        self.colored = true;
+    }
+
+    /// Forgets the colours of all hits.
+    pub(crate) const fn forget_colors(&mut self) {
+        self.colored = false;
+    }
+
+    /// Whether hits have colours.
+    #[inline(always)]
+    pub(crate) const fn are_colored(&self) -> bool {
+        self.colored
     }
 
     /// Columns and rows of the picture.
@@ -158,6 +199,9 @@ impl Hits {
         let Pixels { x, y, .. } = *pixels;
         if let Reach::One(tile) = *reach {
             let place = lanes_place::<S, N>(x & (TILE - 1), y & (TILE - 1), sample).bitcast();
+            if let Some(color) = pixels.color {
+                color.store_slice(self.next_colors(tile));
+            }
             self.page(tile).add_first(place, pixels, count);
         } else {
             let covered = mask32x16::from_bitmask(x.simd, (1 << count) - 1);
@@ -179,7 +223,7 @@ impl Hits {
         let (column, row) = (x >> 6, y >> 6);
         let [width, height] = self.extent;
         match *reach {
-            Reach::One(tile) => self.page(tile).add(place, pixels, covered),
+            Reach::One(tile) => self.add_to(tile, place, pixels, covered),
             Reach::Few(tiles) => {
                 let covered = covered & x.simd_lt(width) & y.simd_lt(height);
                 for own_row in tiles.top..tiles.bottom {
@@ -187,7 +231,7 @@ impl Hits {
                         let some = covered & row.simd_eq(own_row) & column.simd_eq(own_column);
                         if some.any_true() {
                             let tile = (own_row * self.tiles[0] + own_column) as usize;
-                            self.page(tile).add(place, pixels, some);
+                            self.add_to(tile, place, pixels, some);
                         }
                     }
                 }
@@ -199,7 +243,11 @@ impl Hits {
                 while left != 0 {
                     let lane = left.trailing_zeros() as usize;
                     left &= left - 1;
-                    let page = self.page(tile[lane] as usize);
+                    let tile = tile[lane] as usize;
+                    if let Some(color) = pixels.color {
+                        self.next_colors(tile)[0] = color[lane];
+                    }
+                    let page = self.page(tile);
                     let at = page.count;
                     page.place[at] = place[lane];
                     page.word[at] = word(pixels.depth[lane], pixels.number[lane]);
@@ -207,6 +255,28 @@ impl Hits {
                 }
             }
         }
+    }
+
+    /// Adds those of sixteen hits of a tile that are in a mask.
+    #[inline(always)]
+    fn add_to<S: Simd>(
+        &mut self,
+        tile: usize,
+        place: u32x16<S>,
+        pixels: &Pixels<S>,
+        some: mask32x16<S>,
+    ) {
+        if let Some(color) = pixels.color {
+            color.compress(some).store_slice(self.next_colors(tile));
+        }
+        self.page(tile).add(place, pixels, some);
+    }
+
+    /// The colours of the sixteen hits that are added to a tile next.
+    #[inline(always)]
+    fn next_colors(&mut self, tile: usize) -> &mut [u32] {
+        let at = self.page(tile).count;
+        &mut self.colors[self.last[tile] as usize].0[at..at + PACK]
     }
 
     /// The last page of a tile, which has room for sixteen hits.
@@ -226,6 +296,9 @@ impl Hits {
         if self.used == self.pages.len() {
             self.pages.push(Page::new(0));
         }
+        if self.colored && self.colors.len() < self.pages.len() {
+            self.colors.resize(self.pages.len(), ColorRow::NONE);
+        }
         let new = u32::try_from(self.used).expect("fewer than 2^32 pages");
         let page = &mut self.pages[self.used];
         page.count = 0;
@@ -242,15 +315,54 @@ impl Hits {
         tile: usize,
         mut take: impl FnMut(u32, u64),
     ) {
-        let mut page = self.last[tile];
-        while page != FULL {
-            let Page { place, word, count, previous } = &self.pages[page as usize];
-            let rows = place[..*count].iter().zip(word);
-            if D::KEEPS_BITS {
-                rows.for_each(
+        self.each_page(
+            (format, simd),
+            tile,
+            #[inline(always)]
+            |_, places, words| {
+                places.iter().zip(words).for_each(
                     #[inline(always)]
                     |(place, word)| take(*place, *word),
                 );
+            },
+        );
+    }
+
+    /// Calls `take` with the index, the entry and the colour of each hit in a tile, if hits have
+    /// colours.
+    #[inline(always)]
+    pub(crate) fn each_colored<S: Simd, D: Format>(
+        &self,
+        (format, simd): (D, S),
+        tile: usize,
+        mut take: impl FnMut(u32, u64, u32),
+    ) {
+        self.each_page(
+            (format, simd),
+            tile,
+            #[inline(always)]
+            |page, places, words| {
+                places.iter().zip(words).zip(&self.colors[page].0).for_each(
+                    #[inline(always)]
+                    |((place, word), color)| take(*place, *word, *color),
+                );
+            },
+        );
+    }
+
+    /// Calls `take` with each page of a tile: its number, the indices and the entries of its hits.
+    #[inline(always)]
+    fn each_page<S: Simd, D: Format>(
+        &self,
+        (format, simd): (D, S),
+        tile: usize,
+        mut take: impl FnMut(usize, &[u32], &[u64; PAGE]),
+    ) {
+        let mut page = self.last[tile];
+        while page != FULL {
+            let Page { place, word, count, previous } = &self.pages[page as usize];
+            if D::KEEPS_BITS {
+                take(page as usize, &place[..*count], word);
             } else {
                 let mut words = [0; PAGE];
                 for at in (0..*count).step_by(PACK) {
@@ -259,9 +371,7 @@ impl Hits {
                     let keys = format.keys(depth.bitcast()) + lines;
                     put_words(keys, number, &mut words[at..at + PACK]);
                 }
-                for (place, word) in place[..*count].iter().zip(&words) {
-                    take(*place, *word);
-                }
+                take(page as usize, &place[..*count], &words);
             }
             page = *previous;
         }

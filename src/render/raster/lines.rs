@@ -293,7 +293,11 @@ pub(crate) fn draw_short<S: Simd, const N: usize>(
         for side in 0..lines.width {
             let v = v + side;
             let (x, y) = (steep.select(v, u), steep.select(u, v));
-            let pixels = Pixels { x, y, depth, number: lines.number };
+            let color = hits.are_colored().then(
+                #[inline(always)]
+                || u32x16::splat(x.simd, 0),
+            );
+            let pixels = Pixels { x, y, depth, number: lines.number, color };
             hits.add::<S, N>(&reach, (&pixels, lines.sample), covered);
         }
     }

@@ -2,9 +2,9 @@
 //!
 //! `geometry` transforms the `vertices` of a frame; threads then set up its `parts`, one piece of
 //! `work` after another: `setup` and `edges` put primitives that may be visible into `bins`, and
-//! `small` rasterizes small triangles at once, to `hits`. A `tile` then draws its hits, `large`
-//! triangles and `lines` with a depth test; the nearest primitive stays in the `visibility_buffer`.
-//! `layers` are the transparent triangles in front of it.
+//! `small` rasterizes small triangles at once, to `hits`, which may have `hit_colors`. A `tile`
+//! then draws its hits, `large` triangles and `lines` with a depth test; the nearest primitive
+//! stays in the `visibility_buffer`. `layers` are the transparent triangles in front of it.
 //!
 //! What the settings can choose beside the defaults are variants of the same kernels: each `rule`
 //! of coverage and each `depth_format` is a type for which they are compiled. `vertex_variants`
@@ -21,7 +21,8 @@ mod edges_in_floats;
 pub(crate) mod entries;
 mod facing;
 pub(crate) mod geometry;
-mod hits;
+pub(crate) mod hit_colors;
+pub(crate) mod hits;
 mod hole_tables;
 mod large;
 pub(crate) mod layers;
@@ -34,7 +35,7 @@ mod scan_lines;
 mod setup;
 mod small;
 mod small_edges;
-mod starts;
+pub(crate) mod starts;
 pub(crate) mod tile;
 mod vertex_variants;
 pub(crate) mod vertices;

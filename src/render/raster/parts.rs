@@ -9,10 +9,11 @@ use super::bins::Bins;
 use super::culling::Culling;
 use super::edges::{DrawnNormal, EdgeSetup};
 use super::facing::Facing;
+use super::hit_colors::{Brush, CornerLight};
 use super::hole_tables::HoleTables;
 use super::rule::with_rule;
 use super::setup::{self, Setup};
-use super::starts::{Start, number};
+use super::starts::{DrawCorners, Start, number};
 use super::vertices::Vertices;
 use super::work::{What, Work};
 use crate::base::cancellation::Cancellation;
@@ -34,13 +35,17 @@ pub(crate) fn share_out(
     let all: Vec<Mutex<&mut Bins>> = bins.iter_mut().map(Mutex::new).collect();
     together(all.len(), || {
         let bins = &mut own(&all);
+        let brush = &mut Brush::new(parts.light, parts.corners());
+        if parts.light.is_some() {
+            bins.hits.begin_colors();
+        }
         while let Some(work) = shares.next().map(|i| &work[i]) {
             if !watch.goes_on() {
                 return;
             }
-            parts.run(level, work, bins);
+            parts.run(level, work, bins, brush);
         }
-        with_rule!(parts.plan.variants, R => setup::finish::<R>(level, bins));
+        with_rule!(parts.plan.variants, R => setup::finish::<R>(level, bins, brush));
     });
 }
 
@@ -53,6 +58,8 @@ pub(crate) struct Parts<'a> {
     outlines: &'a [AtomicU8],
     holes: Option<&'a HoleTables>,
     normals: &'a [DrawnNormal],
+    /// The light at corners, if hits have colours.
+    light: Option<&'a dyn CornerLight>,
 }
 
 impl<'a> Parts<'a> {
@@ -62,7 +69,7 @@ impl<'a> Parts<'a> {
         starts: &'a [Start],
         outlines: &'a [AtomicU8],
     ) -> Self {
-        Self { plan, vertices, starts, outlines, holes: None, normals: &[] }
+        Self { plan, vertices, starts, outlines, holes: None, normals: &[], light: None }
     }
 
     /// The same, with what is known of holes.
@@ -75,7 +82,12 @@ impl<'a> Parts<'a> {
         Self { normals, ..self }
     }
 
-    fn run(&self, level: Level, work: &Work<What>, bins: &mut Bins) {
+    /// The same, with the light that hits are coloured by.
+    pub(crate) fn with_light(self, light: Option<&'a dyn CornerLight>) -> Self {
+        Self { light, ..self }
+    }
+
+    fn run(&self, level: Level, work: &Work<What>, bins: &mut Bins, brush: &mut Brush<'_>) {
         let Work { draw: i, what, from, to, .. } = *work;
         let draw = &self.plan.draws[i];
         let mesh = &draw.model.mesh;
@@ -83,7 +95,7 @@ impl<'a> Parts<'a> {
         match what {
             What::Triangles => {
                 let pipelines = &self.plan.pipelines;
-                let corners = self.corners_of(i);
+                let corners = self.corners().of(i);
                 let setup = Setup::new(draw, pipelines, corners, size, self.starts[i].number);
                 let mut setup = setup.seen_from(self.plan.shift, self.plan.variants.grid());
                 setup.coverage = self.plan.variants.coverage;
@@ -94,12 +106,12 @@ impl<'a> Parts<'a> {
                 let order = mesh.draw_order();
                 let triangles = &order.triangles[from..to];
                 with_rule!(self.plan.variants, R => if order.clusters.is_empty() {
-                    setup.run::<R>(level, triangles, pipelines, bins);
+                    setup.run::<R>(level, triangles, pipelines, (bins, brush));
                 } else {
                     let clusters = &order.clusters[from / CLUSTER..];
                     let culling = Culling::new(draw, setup.screen);
                     culling.each_left(clusters, triangles, |some| {
-                        setup.run::<R>(level, some, pipelines, bins);
+                        setup.run::<R>(level, some, pipelines, (bins, brush));
                     });
                 });
             }
@@ -138,10 +150,9 @@ impl<'a> Parts<'a> {
         &self.vertices.usual[vertex..vertex_end]
     }
 
-    /// The corners of a draw's triangles.
-    fn corners_of(&self, draw: usize) -> &'a [ScreenVertex] {
-        let Start { vertex, vertex_end, .. } = self.starts[draw];
-        &self.vertices.corners()[vertex..vertex_end]
+    /// The corners of all triangles.
+    fn corners(&self) -> DrawCorners<'a> {
+        DrawCorners { corners: self.vertices.corners(), starts: self.starts }
     }
 
     /// The outlines of a draw; empty if its edges are not drawn.

@@ -18,6 +18,8 @@ pub(crate) type Pack<S> = [i32x16<S>; ROWS];
 #[repr(align(64))]
 pub(crate) struct Queue {
     rows: [[i32; WAITING + PACK]; ROWS],
+    /// The vertices of their corners, if hits have colours.
+    vertices: [[i32; WAITING + PACK]; 3],
     pub(super) count: usize,
 }
 
@@ -26,20 +28,27 @@ pub(super) const WAITING: usize = 128;
 
 impl Default for Queue {
     fn default() -> Self {
-        Self { rows: [[0; WAITING + PACK]; ROWS], count: 0 }
+        let row = [0; WAITING + PACK];
+        Self { rows: [row; ROWS], vertices: [row; 3], count: 0 }
     }
 }
 
 impl Queue {
-    /// Adds some of sixteen triangles. Returns whether the queue is full.
+    /// Adds some of sixteen triangles, with the vertices of their corners if hits have colours.
+    /// Returns whether the queue is full.
     #[inline(always)]
     pub(crate) fn add<S: Simd>(
         &mut self,
-        pack: &Pack<S>,
+        (pack, vertices): (&Pack<S>, Option<&[i32x16<S>; 3]>),
         some: mask32x16<S>,
         count: usize,
     ) -> bool {
         let at = self.count % WAITING;
+        if let Some(vertices) = vertices {
+            for (row, values) in self.vertices.iter_mut().zip(vertices) {
+                values.compress(some).store_slice(&mut row[at..at + PACK]);
+            }
+        }
         for (row, values) in self.rows.iter_mut().zip(pack) {
             values.compress(some).store_slice(&mut row[at..at + PACK]);
         }
@@ -62,6 +71,16 @@ impl Queue {
         pack
     }
 
+    /// The vertices of sixteen of them, corner by corner, from `at` on.
+    #[inline(always)]
+    pub(super) fn vertices(&self, at: usize) -> [[u32; PACK]; 3] {
+        let mut vertices = [[0; PACK]; 3];
+        for (to, row) in vertices.iter_mut().zip(&self.vertices) {
+            to.copy_from_slice(bytemuck::cast_slice(&row[at..at + PACK]));
+        }
+        vertices
+    }
+
     /// Removes up to [`WAITING`] triangles; the others move up.
     #[inline(always)]
     pub(super) fn forget(&mut self) {
@@ -69,7 +88,7 @@ impl Queue {
             self.count = 0;
             return;
         }
-        for row in &mut self.rows {
+        for row in self.rows.iter_mut().chain(&mut self.vertices) {
             let (first, others) = row.split_at_mut(WAITING);
             first[..PACK].copy_from_slice(others);
         }

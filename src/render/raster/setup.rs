@@ -9,6 +9,7 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16,
 
 use super::beyond;
 use super::bins::{Bins, LargeTriangle};
+use super::hit_colors::Brush;
 use super::hits::PACK;
 use super::queue::{Pack, SMALL};
 use super::rule::Rule;
@@ -101,12 +102,12 @@ impl<'a> Setup<'a> {
         level: Level,
         triangles: &[DrawTriangle],
         pipelines: &[Pipeline],
-        bins: &mut Bins,
+        into: (&mut Bins, &mut Brush<'_>),
     ) {
-        if bins.sample_positions.are_many() {
-            dispatch!(level, simd => self.all::<_, R, FOUR>(simd, triangles, pipelines, bins));
+        if into.0.sample_positions.are_many() {
+            dispatch!(level, simd => self.all::<_, R, FOUR>(simd, triangles, pipelines, into));
         } else {
-            dispatch!(level, simd => self.all::<_, R, 1>(simd, triangles, pipelines, bins));
+            dispatch!(level, simd => self.all::<_, R, 1>(simd, triangles, pipelines, into));
         }
     }
 
@@ -116,7 +117,7 @@ impl<'a> Setup<'a> {
         simd: S,
         triangles: &[DrawTriangle],
         pipelines: &[Pipeline],
-        bins: &mut Bins,
+        (bins, brush): (&mut Bins, &mut Brush<'_>),
     ) {
         for some in triangles.chunks(PACK) {
             let mut last = [some[0]; PACK];
@@ -124,7 +125,7 @@ impl<'a> Setup<'a> {
                 last[..some.len()].copy_from_slice(some);
                 &last
             });
-            self.sixteen::<S, R, N>(simd, sixteen, some.len(), pipelines, bins);
+            self.sixteen::<S, R, N>(simd, (sixteen, some.len()), pipelines, bins, brush);
         }
     }
 
@@ -133,10 +134,10 @@ impl<'a> Setup<'a> {
     fn sixteen<S: Simd, R: Rule, const N: usize>(
         &self,
         simd: S,
-        triangles: &[DrawTriangle; PACK],
-        count: usize,
+        (triangles, count): (&[DrawTriangle; PACK], usize),
         pipelines: &[Pipeline],
         bins: &mut Bins,
+        brush: &mut Brush<'_>,
     ) {
         let [x0, y0, d0, _] = self.corners(simd, triangles, 0);
         let [x1, y1, d1, _] = self.corners(simd, triangles, 1);
@@ -170,7 +171,7 @@ impl<'a> Setup<'a> {
         let odd = (beyond | (wide & seen)) & there;
         let plain = seen & faces & there & !odd;
         if plain.any_true() {
-            let [_, _, _, number] = fetch(
+            let [v0, v1, v2, number] = fetch(
                 simd,
                 #[inline(always)]
                 |lane| triangles[lane].row(),
@@ -190,7 +191,8 @@ impl<'a> Setup<'a> {
                 if some | cutout != 0 {
                     let some = (mask32x16::from_bitmask(simd, some), side);
                     let bins = bins.of(transparent);
-                    self.sort::<S, R, N>(simd, triangles, &pack, some, cutout, bins);
+                    let rows = (&pack, &[v0, v1, v2]);
+                    self.sort::<S, R, N>(triangles, rows, (some, cutout), bins, brush);
                 }
             }
         }
@@ -243,12 +245,11 @@ impl<'a> Setup<'a> {
     #[inline(always)]
     fn sort<S: Simd, R: Rule, const N: usize>(
         &self,
-        simd: S,
         triangles: &[DrawTriangle; PACK],
-        pack: &Pack<S>,
-        (plain, side): (mask32x16<S>, i32x16<S>),
-        cutout: u64,
+        (pack, vertices): (&Pack<S>, &[i32x16<S>; 3]),
+        ((plain, side), cutout): ((mask32x16<S>, i32x16<S>), u64),
         bins: &mut Bins,
+        brush: &mut Brush<'_>,
     ) {
         let mut above = 0;
         let queues = if self.has_small::<R>() { R::QUEUES } else { 0 };
@@ -260,8 +261,9 @@ impl<'a> Setup<'a> {
                 continue;
             }
             bins.drawn += count;
-            if bins.queues[queue].add(pack, some, count) {
-                small::draw_queue::<S, R, N>(simd, queue, bins);
+            let vertices = bins.hits.are_colored().then_some(vertices);
+            if bins.queues[queue].add((pack, vertices), some, count) {
+                small::draw_queue::<S, R, N>(side.simd, queue, bins, brush);
             }
         }
         let mut large = (plain & side.simd_gt(above)).to_bitmask() | cutout;
@@ -422,16 +424,16 @@ impl<'a> Setup<'a> {
 }
 
 /// Draws the small triangles that are still waiting.
-pub(crate) fn finish<R: Rule>(level: Level, bins: &mut Bins) {
+pub(crate) fn finish<R: Rule>(level: Level, bins: &mut Bins, brush: &mut Brush<'_>) {
     if bins.transparent().is_some() {
-        finish::<R>(level, bins.of(true));
+        finish::<R>(level, bins.of(true), brush);
     }
     let many = bins.sample_positions.are_many();
     dispatch!(level, simd => {
         for queue in 0..R::QUEUES {
             match many {
-                true => small::draw_queue::<_, R, FOUR>(simd, queue, bins),
-                false => small::draw_queue::<_, R, 1>(simd, queue, bins),
+                true => small::draw_queue::<_, R, FOUR>(simd, queue, bins, brush),
+                false => small::draw_queue::<_, R, 1>(simd, queue, bins, brush),
             }
         }
     });

@@ -8,11 +8,13 @@
 //! How edge functions are computed depends on the rule of coverage: see `small_edges`.
 
 use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, SimdMask as _, f32x16, i32x16, mask32x16, u32x16,
+    Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, f32x16, i32x16,
+    mask32x16, u32x16,
 };
 
 use super::bins::Bins;
 use super::covered::{Covered, MOST};
+use super::hit_colors::{Brush, Triangles};
 use super::hits::{PACK, Pixels};
 use super::queue::{Pack, SMALL, WAITING};
 use super::rule::Rule;
@@ -25,59 +27,126 @@ use crate::render::simd::{Real, UP_TO_SIXTEEN};
 ///
 /// Compiled as a function of its own, since what calls it does so at several places.
 #[inline(always)]
-pub(crate) fn draw_queue<S: Simd, R: Rule, const N: usize>(simd: S, queue: usize, bins: &mut Bins) {
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            let count = bins.queues[queue].count.min(WAITING);
-            for at in (0..count).step_by(PACK) {
-                let mut pack = bins.queues[queue].pack(simd, at);
-                if count - at < PACK {
-                    let there = mask32x16::from_bitmask(simd, (1 << (count - at)) - 1);
-                    // An empty box holds no pixels.
-                    let nothing = i32x16::splat(simd, 0);
-                    for row in &mut pack {
-                        *row = there.select(*row, nothing);
-                    }
-                }
-                draw::<S, R, N>(simd, queue, &pack, bins);
-            }
-            bins.queues[queue].forget();
-        },
-    );
+pub(crate) fn draw_queue<S: Simd, R: Rule, const N: usize>(
+    simd: S,
+    queue: usize,
+    bins: &mut Bins,
+    brush: &mut Brush<'_>,
+) {
+    if N == 1 && bins.hits.are_colored() {
+        simd.vectorize(
+            #[inline(always)]
+            || draw_packs::<S, R, 1, true>(simd, queue, bins, brush),
+        );
+    } else {
+        simd.vectorize(
+            #[inline(always)]
+            || draw_packs::<S, R, N, false>(simd, queue, bins, brush),
+        );
+    }
 }
 
-/// Draws sixteen triangles of a queue.
 #[inline(always)]
-pub(crate) fn draw<S: Simd, R: Rule, const N: usize>(
+fn draw_packs<S: Simd, R: Rule, const N: usize, const COLORED: bool>(
     simd: S,
+    queue: usize,
+    bins: &mut Bins,
+    brush: &mut Brush<'_>,
+) {
+    let count = bins.queues[queue].count.min(WAITING);
+    for at in (0..count).step_by(PACK) {
+        let mut pack = bins.queues[queue].pack(simd, at);
+        if count - at < PACK {
+            let there = mask32x16::from_bitmask(simd, (1 << (count - at)) - 1);
+            // An empty box holds no pixels.
+            let nothing = i32x16::splat(simd, 0);
+            for row in &mut pack {
+                *row = there.select(*row, nothing);
+            }
+        }
+        if queue + 1 == SMALL.len() {
+            draw::<S, R::LastEdges<S>, N, COLORED>((queue, at), &pack, bins, brush);
+        } else {
+            draw::<S, R::Edges<S>, N, COLORED>((queue, at), &pack, bins, brush);
+        }
+    }
+    bins.queues[queue].forget();
+}
+
+/// Draws sixteen triangles of the size of a queue, without colours.
+#[cfg(test)]
+#[inline(always)]
+pub(super) fn draw_pack<S: Simd, R: Rule, const N: usize>(
     queue: usize,
     pack: &Pack<S>,
     bins: &mut Bins,
 ) {
+    let brush = &mut Brush::without_light();
     if queue + 1 == SMALL.len() {
-        draw_by::<S, R::LastEdges<S>, N>(simd, pack, bins);
+        draw::<S, R::LastEdges<S>, N, false>((queue, 0), pack, bins, brush);
     } else {
-        draw_by::<S, R::Edges<S>, N>(simd, pack, bins);
+        draw::<S, R::Edges<S>, N, false>((queue, 0), pack, bins, brush);
     }
 }
 
+/// Draws sixteen triangles of a queue, from `at` on.
 #[inline(always)]
-fn draw_by<S: Simd, E: Edges<S>, const N: usize>(simd: S, pack: &Pack<S>, bins: &mut Bins) {
+fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
+    (queue, at): (usize, usize),
+    pack: &Pack<S>,
+    bins: &mut Bins,
+    brush: &mut Brush<'_>,
+) {
+    let simd = pack[0].simd;
     let sample_positions = bins.sample_positions;
     let lanes = Lanes::<S, E>::new(simd, pack, sample_positions.reach::<N>());
     let reach = bins.hits.reach(lanes.bounds());
-    let Bins { hits, covered, .. } = bins;
+    let Bins { hits, covered, queues, .. } = bins;
     let shifts = lanes.edges.shifts::<N>(&sample_positions);
     for (sample, shift) in shifts.iter().enumerate() {
         lanes.scan::<N>(shift, covered);
-        lanes.each_pixel::<N>(
-            shift,
-            covered,
-            #[inline(always)]
-            |pixels, count| hits.add_first::<S, N>(&reach, (pixels, sample), count),
-        );
+        if COLORED {
+            if covered.count == 0 {
+                continue;
+            }
+            let (per_area, clockwise) = areas(pack);
+            let triangles = Triangles {
+                numbers: &lanes.number.into(),
+                vertices: &queues[queue].vertices(at),
+                some: covered.lanes(),
+                clockwise,
+            };
+            let mix = brush.mix(per_area, &triangles);
+            lanes.each_pixel::<N>(
+                shift,
+                covered,
+                #[inline(always)]
+                |own, by, pixel| match (&mix, lanes.edges.functions(own, by)) {
+                    (Some(mix), Some(functions)) => Some(mix.colors(own, functions, pixel)),
+                    _ => Some(u32x16::splat(simd, 0)),
+                },
+                #[inline(always)]
+                |pixels, count| hits.add_first::<S, N>(&reach, (pixels, sample), count),
+            );
+        } else {
+            lanes.each_pixel::<N>(
+                shift,
+                covered,
+                #[inline(always)]
+                |_, _, _| None,
+                #[inline(always)]
+                |pixels, count| hits.add_first::<S, N>(&reach, (pixels, sample), count),
+            );
+        }
     }
+}
+
+/// 1 / the doubled areas of sixteen triangles, and which of them run clockwise on the screen.
+#[inline(always)]
+fn areas<S: Simd>([x0, y0, x1, y1, x2, y2, ..]: &Pack<S>) -> (f32x16<S>, u64) {
+    let area = (*x1 - *x0) * (*y2 - *y0) - (*y1 - *y0) * (*x2 - *x0);
+    let doubled: f32x16<S> = area.max(i32x16::splat(x0.simd, 0) - area).to_float();
+    (f32x16::splat(x0.simd, 1.0) / doubled, area.simd_gt(0).to_bitmask())
 }
 
 /// Sixteen small triangles, set up for rasterization.
@@ -151,12 +220,15 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
         covered.count = count;
     }
 
-    /// Calls `take` with the pixels of a list, sixteen at a time, and their number.
+    /// Calls `take` with the pixels of a list, sixteen at a time, and their number. `color` gives
+    /// their colours by the lanes of their triangles, their distances from the first pixels of the
+    /// boxes, and their columns and rows.
     #[inline(always)]
     fn each_pixel<const N: usize>(
         &self,
         shift: &E::Shift,
         covered: &Covered,
+        color: impl Fn(i32x16<S>, [i32x16<S>; 2], [i32x16<S>; 2]) -> Option<u32x16<S>>,
         mut take: impl FnMut(&Pixels<S>, usize),
     ) {
         let shift = (N > 1).then_some(shift);
@@ -170,11 +242,14 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
             // Clamped to the depths of the corners.
             let depth = depth.simd_gt(low).select(depth, low);
             let depth = depth.simd_lt(high).select(depth, high);
+            let x = permute(self.left, lanes) + by[0];
+            let y = permute(self.top, lanes) + by[1];
             let pixels = Pixels {
-                x: permute(self.left, lanes) + by[0],
-                y: permute(self.top, lanes) + by[1],
+                x,
+                y,
                 depth: depth.bitcast(),
                 number: permute(self.number.bitcast(), lanes).bitcast(),
+                color: color(lanes, by, [x, y]),
             };
             take(&pixels, (covered.count - at).min(PACK));
         }

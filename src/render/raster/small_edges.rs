@@ -44,6 +44,12 @@ pub(crate) trait Edges<S: Simd>: Copy {
     fn moved(&self, at: Self::At, shift: Self::Shift) -> Self::At;
     /// Which triangles cover it.
     fn covered(&self, at: Self::At) -> mask32x16<S>;
+    /// The edge functions of the second and the third corner of the triangles in some lanes, at
+    /// pixels this far from the first of their boxes; `None` if hits have no colours by this rule.
+    #[inline(always)]
+    fn functions(&self, _: i32x16<S>, _: [i32x16<S>; 2]) -> Option<[f32x16<S>; 2]> {
+        None
+    }
     /// The depths, linear on the screen, of the triangles in some lanes at pixels this far from the
     /// first of their boxes, in the sample with an offset, if there are several.
     fn depths(

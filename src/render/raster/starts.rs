@@ -1,5 +1,7 @@
 //! Where the numbers of each draw begin among those of all.
 
+use crate::render::screen::clip::ScreenVertex;
+
 /// Where the numbers of a draw begin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Start {
@@ -18,6 +20,33 @@ pub(crate) struct Start {
     pub(crate) line_end: u32,
     /// Where its normals begin among those of all draws.
     pub(crate) normal_place: usize,
+}
+
+/// The draw that a triangle belongs to, and where its numbers begin.
+#[inline(always)]
+pub(crate) fn draw_of(starts: &[Start], triangle: u32) -> (u32, Start) {
+    let draw = starts.partition_point(|start| start.end <= triangle);
+    (number(draw), starts[draw])
+}
+
+/// The corners of the triangles of all draws.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DrawCorners<'a> {
+    pub(super) corners: &'a [ScreenVertex],
+    pub(super) starts: &'a [Start],
+}
+
+impl<'a> DrawCorners<'a> {
+    /// The draw that a triangle belongs to, and where its numbers begin.
+    pub(crate) fn draw_of(&self, triangle: u32) -> (u32, Start) {
+        draw_of(self.starts, triangle)
+    }
+
+    /// Those of one draw.
+    pub(crate) fn of(&self, draw: usize) -> &'a [ScreenVertex] {
+        let Start { vertex, vertex_end, .. } = self.starts[draw];
+        &self.corners[vertex..vertex_end]
+    }
 }
 
 /// A number of the frame, or of a draw.

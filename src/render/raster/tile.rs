@@ -22,6 +22,7 @@
 use fearless_simd::{Level, Simd, dispatch};
 
 use self::cutouts::Cutouts;
+use self::hits::HitColors;
 use super::bins::Bins;
 use super::depth_format::{Any, Format as _, depths_between, with_format};
 use super::edges_in_floats::FloatTriangle;
@@ -51,6 +52,12 @@ pub(crate) struct Visibility {
     shown: [u32; BLOCK_PIXELS],
     /// Triangles that cover a block fully.
     large: Vec<Shown>,
+    /// The colours of pixels in the blocks of `colored`.
+    colors: Box<HitColors>,
+    /// The blocks in which hits with colours came last, a bit for each.
+    colored: u64,
+    /// The colour of pixels that show nothing.
+    background: u32,
     /// The format of the depths.
     depth_format: DepthFormat,
     /// The grid of corners.
@@ -84,6 +91,9 @@ impl Default for Visibility {
             whole: 0,
             shown: [0; BLOCK_PIXELS],
             large: Vec::new(),
+            colors: Box::default(),
+            colored: 0,
+            background: 0,
             depth_format: DepthFormat::default(),
             grid: Grid::default(),
             farthest: [0; BLOCK_PIXELS],
@@ -103,6 +113,7 @@ impl Visibility {
         (tile, bounds): (usize, PixelBox),
     ) {
         self.clear(bounds, frame.sample_positions());
+        self.background = u32::from_le_bytes(plan.background.opaque());
         (self.depth_format, self.grid) = (plan.variants.depth, plan.variants.grid());
         match self.sample_positions.are_many() {
             true => self.draw_in::<FOUR>(level, plan, frame, tile),
@@ -147,7 +158,7 @@ impl Visibility {
 
     fn clear(&mut self, bounds: PixelBox, sample_positions: SamplePositions) {
         self.sample_positions = sample_positions;
-        (self.written, self.whole) = (0, 0);
+        (self.written, self.whole, self.colored) = (0, 0, 0);
         self.large.clear();
         self.farthest.fill(0);
         self.bounds = bounds;
@@ -266,10 +277,12 @@ impl Visibility {
         }
     }
 
-    /// Ensures that a block has valid entries for `N` samples per pixel.
+    /// Ensures that a block has valid entries for `N` samples per pixel, before something is drawn
+    /// into it. The colours of hits are forgotten.
     #[inline(always)]
     fn write<const N: usize>(&mut self, level: Level, block: usize) {
         let bit = 1 << block;
+        self.colored &= !bit;
         if self.written & bit == 0 {
             self.written |= bit;
             for sample in 0..N {
@@ -359,25 +372,6 @@ impl Visibility {
         });
     }
 
-    /// Draws the small triangles of a tile, and lines that are short.
-    #[inline(always)]
-    fn draw_hits<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
-        with_format!(self.depth_format, D => bins.hits.each(
-            (D::of(self.depth_format), simd),
-            tile,
-            #[inline(always)]
-            |place, word| {
-                let place = place as usize % (N * PIXELS);
-                let block = place / (N * BLOCK_PIXELS);
-                if self.written >> block & 1 == 0 {
-                    self.write::<N>(simd.level(), block);
-                }
-                let old = &mut self.buffer.0[place];
-                *old = word.max(*old);
-            },
-        ));
-    }
-
     /// Draws the large triangles of a tile that need no alpha test.
     #[inline(always)]
     fn draw_plain<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
@@ -392,6 +386,7 @@ impl Visibility {
 
 mod cutout_fragments;
 mod cutouts;
+mod hits;
 #[cfg(test)]
 mod tests;
 mod triangles;

@@ -44,7 +44,7 @@ impl Renderer {
         if let (false, Some(plan)) = (self.built, &self.plan) {
             let sample_positions = passes(plan.samples)[0];
             let watch = Cancellation::new(&|| true);
-            self.frame.build(self.level, plan, sample_positions, &watch);
+            self.frame.build(self.level, plan, (sample_positions, None), &watch);
             self.maps.update(self.level, plan, &watch);
             self.built = true;
         }

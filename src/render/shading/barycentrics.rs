@@ -1,15 +1,13 @@
 //! Barycentric coordinates of pixels in the triangles that they show.
 //!
 //! First linear on the screen, from integer edge functions; then perspective-correct.
-//!
-//! Perspective: Heckbert and Moreton, "Interpolation for Polygon Texture Mapping and Shading",
-//! 1991.
 
 use glam::DVec3;
 
 use super::fragments::Fragments;
 use super::triangle_attributes::{TriangleAttributes, picked};
 use crate::accuracy::Interpolation;
+use crate::render::screen::perspective::weighed;
 use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 
 /// The barycentric coordinates of a list of fragments.
@@ -39,30 +37,6 @@ impl<T: Number> Barycentrics<T> {
     pub(crate) fn weights(&self, i: usize) -> DVec3 {
         let (b, c): (f64, f64) = (self.weights[0][i].into(), self.weights[1][i].into());
         DVec3::new(1.0 - b - c, b, c)
-    }
-}
-
-/// The weights of the second and the third corner, and w, from coordinates that are linear on the
-/// screen. With perspective:
-///
-///   m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; and 1 / the sum, which is the
-///   pixel's own w.
-///
-/// Affine weights are the coordinates themselves. The distance is exact nevertheless: what is lit,
-/// is lit where it is. Spans of sixteen pixels begin with perspective.
-#[inline(always)]
-pub(crate) fn weighed<M: Lanes>(
-    interpolation: Interpolation,
-    lanes: M,
-    [second, third]: [M::R; 2],
-    Vec3([w0, w1, w2]): Vec3<M::R>,
-) -> ([M::R; 2], M::R) {
-    let w = lanes.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0));
-    match interpolation {
-        Interpolation::Affine => ([second, third], w),
-        Interpolation::Perspective | Interpolation::EverySixteen => {
-            ([second * w1 * w, third * w2 * w], w)
-        }
     }
 }
 

@@ -8,8 +8,7 @@ use fearless_simd::{
     Level, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, dispatch, f32x16, f64x8, i32x16,
 };
 
-use super::barycentrics::weighed;
-use super::interpolate::{CornerValues, Look, between, depth_between};
+use super::interpolate::{CornerValues, Look, depth_between};
 use super::quantize::reflected;
 use super::texels::{OfFirst, PlacedTexture, product};
 use super::triangle_attributes::TriangleAttributes;
@@ -18,6 +17,7 @@ use crate::base::color::Color;
 use crate::render::lights::{Batch, LightTerm, load, set, store};
 use crate::render::plan::tile::TileLight;
 use crate::render::screen::coverage::Triangle;
+use crate::render::screen::perspective::{between, weighed};
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;

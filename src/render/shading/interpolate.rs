@@ -20,6 +20,7 @@ use crate::render::frame::draw::Draw;
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::lights::{Batch, Rows, Sample, load, set, store};
 use crate::render::screen::coverage::SUBPIXELS;
+use crate::render::screen::perspective::between;
 use crate::render::simd::gather::{SLOTS, paged};
 use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 
@@ -39,12 +40,6 @@ fn mixed<M: Lanes, const PAGES: usize>(
     let b = picked::<M, PAGES>(lanes, &rows[1], slots);
     let c = picked::<M, PAGES>(lanes, &rows[2], slots);
     between([a, b, c], weights)
-}
-
-/// The attribute of the first corner, plus the weighted differences of the others from it.
-#[inline(always)]
-pub(crate) fn between<R: Real>([a, b, c]: [Vec3<R>; 3], [second, third]: [R; 2]) -> Vec3<R> {
-    a.plus(b.times(second)).plus(c.times(third))
 }
 
 /// The destination of interpolated attributes.

@@ -16,6 +16,7 @@ mod bumps;
 mod clamp_to_triangle;
 pub(crate) mod colors;
 pub(crate) mod context;
+pub(crate) mod corner_light;
 pub(crate) mod explain;
 pub(crate) mod face_colors;
 mod far_texture;

@@ -233,6 +233,13 @@ impl<T: ShadingNumber> Painter<T> {
                 canvas.put(at, &sums.means(context.frame.sample_positions().count().ilog2()));
             } else if whole >> block & 1 != 0 {
                 continue;
+            } else if let Some((colors, are_known)) = self.visibility.colors(block) {
+                canvas.put(at, colors);
+                if !are_known {
+                    let (others, corner) =
+                        (self.visibility.uncolored(block), self.visibility.corner(block));
+                    self.shader.block(context, &others, corner, (canvas, at), None);
+                }
             } else if self.visibility.shows(block) {
                 let corner = self.visibility.corner(block);
                 shows = if context.frame.sample_positions().are_many() {

@@ -99,7 +99,12 @@ impl MapDraws {
             draw.clip_from_object = view.clip_from_view * draw.view_from_object;
             draw.mirrored = DMat3::from_mat4(draw.view_from_object).determinant() < 0.0;
         }
-        geometry.build(level, plan, SamplePositions::default(), &Cancellation::new(&|| true));
+        geometry.build(
+            level,
+            plan,
+            (SamplePositions::default(), None),
+            &Cancellation::new(&|| true),
+        );
         let (plan, geometry) = (&*plan, &*geometry);
         let [columns, rows] = tiles_of(plan.size);
         let count = usize::try_from(columns * rows).expect("not negative");

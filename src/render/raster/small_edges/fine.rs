@@ -133,6 +133,11 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
     }
 
     #[inline(always)]
+    fn functions(&self, lanes: i32x16<S>, by: [i32x16<S>; 2]) -> Option<[f32x16<S>; 2]> {
+        Some([self.edge(1, lanes, by, None), self.edge(2, lanes, by, None)])
+    }
+
+    #[inline(always)]
     fn depths(
         &self,
         lanes: i32x16<S>,

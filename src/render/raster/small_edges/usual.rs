@@ -124,6 +124,12 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
     }
 
     #[inline(always)]
+    fn functions(&self, lanes: i32x16<S>, by: [i32x16<S>; 2]) -> Option<[f32x16<S>; 2]> {
+        let by = [by[0].to_float(), by[1].to_float()];
+        Some([self.edge(1, lanes, by, None), self.edge(2, lanes, by, None)])
+    }
+
+    #[inline(always)]
     fn depths(
         &self,
         lanes: i32x16<S>,

@@ -2,8 +2,8 @@
 //! `medium`, to the same bits.
 
 use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, SimdNarrow as _, SimdWiden as _, f32x16, f64x8,
-    i32x16, mask32x16, u32x16,
+    Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, SimdWiden as _,
+    f32x16, f64x8, i32x16, mask32x16, u32x16,
 };
 
 use super::{Boxes, Corners, Edges, of_lanes, snapped_bounds, whole_edge};
@@ -34,15 +34,21 @@ type Doubles<S> = [i32x16<S>; 2];
 impl<S: Simd> WholeEdges<S> {
     /// An edge function of the triangles in some lanes, this far from their first pixels.
     #[inline(always)]
-    fn edge(
+    fn edge(&self, i: usize, lanes: i32x16<S>, [dx, dy]: [i32x16<S>; 2]) -> i32x16<S> {
+        let first = permute(self.first[i] + self.least[i - 1], lanes);
+        first + permute(self.a[i], lanes) * dx + permute(self.b[i], lanes) * dy
+    }
+
+    /// The same in f64, in the sample with an offset.
+    #[inline(always)]
+    fn edge_in_f64(
         &self,
         i: usize,
         lanes: i32x16<S>,
-        [dx, dy]: [i32x16<S>; 2],
+        by: [i32x16<S>; 2],
         shift: Option<&[i32x16<S>; 3]>,
     ) -> [f64x8<S>; 2] {
-        let first = permute(self.first[i] + self.least[i - 1], lanes);
-        let at = first + permute(self.a[i], lanes) * dx + permute(self.b[i], lanes) * dy;
+        let at = self.edge(i, lanes, by);
         in_f64(match shift {
             Some(shift) => at + permute(shift[i], lanes),
             None => at,
@@ -129,14 +135,19 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
     }
 
     #[inline(always)]
+    fn functions(&self, lanes: i32x16<S>, by: [i32x16<S>; 2]) -> Option<[f32x16<S>; 2]> {
+        Some([self.edge(1, lanes, by).to_float(), self.edge(2, lanes, by).to_float()])
+    }
+
+    #[inline(always)]
     fn depths(
         &self,
         lanes: i32x16<S>,
         by: [i32x16<S>; 2],
         shift: Option<&Self::Shift>,
     ) -> f32x16<S> {
-        let second = self.edge(1, lanes, by, shift);
-        let third = self.edge(2, lanes, by, shift);
+        let second = self.edge_in_f64(1, lanes, by, shift);
+        let third = self.edge_in_f64(2, lanes, by, shift);
         let (low, high) = of_lanes(self.depth, lanes).widen();
         let to_second = doubles(self.to_second, lanes);
         let to_third = doubles(self.to_third, lanes);

@@ -80,8 +80,8 @@ fn small_by<R: Rule>(
             *values = i32x16::from_slice(simd, row);
         }
         match sample_positions.are_many() {
-            true => small::draw::<_, R, FOUR>(simd, queue, &pack, &mut bins),
-            false => small::draw::<_, R, 1>(simd, queue, &pack, &mut bins),
+            true => small::draw_pack::<_, R, FOUR>(queue, &pack, &mut bins),
+            false => small::draw_pack::<_, R, 1>(queue, &pack, &mut bins),
         }
     });
     bins
