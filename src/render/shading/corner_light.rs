@@ -159,10 +159,10 @@ fn put<S: Simd>(simd: S, colors: &[[[f32; 4]; PACK]; 3], to: &mut [[[f32; PACK];
 }
 
 /// The pixels for each triangle of a model, in the box around it on the screen, for which it pays
-/// to colour hidden pixels, too. A sphere of a million triangles gains a quarter at 1.5 and 0.1 at
-/// 0.5, a knot whose surfaces hide each other loses a third at 0.5; above, most pixels are those of
-/// triangles that are not small.
-const USUAL_PIXELS: RangeInclusive<f64> = 0.75..=40.0;
+/// to colour hidden pixels, too. A knot whose surfaces hide each other loses a third at 0.5 and a
+/// sixth at 0.9, a sphere gains at both; above, most pixels are those of triangles that are not
+/// small.
+const USUAL_PIXELS: RangeInclusive<f64> = 2.0..=40.0;
 
 /// Whether most pixels are those of small triangles, and few of these are hidden.
 fn are_small(plan: &FramePlan) -> bool {
