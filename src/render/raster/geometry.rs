@@ -248,6 +248,10 @@ impl ScreenGeometry {
         for bins in &mut self.bins {
             let transparent = plan.is_transparent().then(|| bins.take_transparent());
             bins.clear(plan.size, self.sample_positions);
+            if light.is_some() {
+                // Of every thread: one that takes no triangles may still take lines.
+                bins.hits.begin_colors();
+            }
             if let Some(transparent) = transparent {
                 bins.clear_transparent(transparent, plan.size);
             }

@@ -36,9 +36,6 @@ pub(crate) fn share_out(
     together(all.len(), || {
         let bins = &mut own(&all);
         let brush = &mut Brush::new(parts.light, parts.corners());
-        if parts.light.is_some() {
-            bins.hits.begin_colors();
-        }
         while let Some(work) = shares.next().map(|i| &work[i]) {
             if !watch.goes_on() {
                 return;
