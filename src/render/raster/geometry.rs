@@ -15,7 +15,7 @@ use super::hole_tables::HoleTables;
 use super::lines::LineNumber;
 use super::parts::{Parts, share_out};
 use super::rule::{Rule as _, with_rule};
-use super::starts::{self, Start, number};
+use super::starts::{DrawCorners, Start, number};
 use super::vertex_variants;
 use super::vertices::Vertices;
 use super::work::{What, WorkList, piece_of};
@@ -329,7 +329,7 @@ impl ScreenGeometry {
     /// The draw that a triangle belongs to, and where its numbers begin.
     #[inline(always)]
     pub(crate) fn draw_of(&self, triangle: u32) -> (u32, Start) {
-        starts::draw_of(&self.starts, triangle)
+        self.corners().draw_of(triangle)
     }
 
     /// The number after that of the last triangle.
@@ -347,8 +347,11 @@ impl ScreenGeometry {
 
     /// The corners of a draw's triangles: on the finer grid, if there is one.
     pub(crate) fn corners_of(&self, draw: u32) -> &[ScreenVertex] {
-        let Start { vertex, vertex_end, .. } = self.starts[draw as usize];
-        &self.vertices.corners()[vertex..vertex_end]
+        self.corners().of(draw as usize)
+    }
+
+    fn corners(&self) -> DrawCorners<'_> {
+        DrawCorners { corners: self.vertices.corners(), starts: &self.starts }
     }
 
     /// The colour of a line.

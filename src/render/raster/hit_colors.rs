@@ -69,8 +69,8 @@ pub(crate) struct Conversion<'a> {
     pub(crate) encoding: Option<&'a Encoding>,
 }
 
-/// What one thread colours hits with.
-#[derive(Debug)]
+/// What one thread colours hits with; by default nothing.
+#[derive(Debug, Default)]
 pub(crate) struct Brush<'a> {
     /// `None` if hits have no colours.
     own: Option<(Box<dyn LookUp + 'a>, Conversion<'a>)>,
@@ -81,12 +81,6 @@ impl<'a> Brush<'a> {
     pub(crate) fn new(light: Option<&'a dyn CornerLight>, corners: DrawCorners<'a>) -> Self {
         let own = light.map(|light| (light.begin(corners), light.conversion()));
         Self { own, corners: Corners::default() }
-    }
-
-    /// One that knows no colours.
-    #[cfg(test)]
-    pub(crate) fn without_light() -> Self {
-        Self { own: None, corners: Corners::default() }
     }
 
     /// What colours the pixels of some triangles, if their colours are known.

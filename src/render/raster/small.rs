@@ -64,32 +64,26 @@ fn draw_packs<S: Simd, R: Rule, const N: usize, const COLORED: bool>(
                 *row = there.select(*row, nothing);
             }
         }
-        if queue + 1 == SMALL.len() {
-            draw::<S, R::LastEdges<S>, N, COLORED>((queue, at), &pack, bins, brush);
-        } else {
-            draw::<S, R::Edges<S>, N, COLORED>((queue, at), &pack, bins, brush);
-        }
+        draw_pack::<S, R, N, COLORED>((queue, at), &pack, bins, brush);
     }
     bins.queues[queue].forget();
 }
 
-/// Draws sixteen triangles of the size of a queue, without colours.
-#[cfg(test)]
+/// Draws sixteen triangles of a queue, from `at` on.
 #[inline(always)]
-pub(super) fn draw_pack<S: Simd, R: Rule, const N: usize>(
-    queue: usize,
+pub(super) fn draw_pack<S: Simd, R: Rule, const N: usize, const COLORED: bool>(
+    (queue, at): (usize, usize),
     pack: &Pack<S>,
     bins: &mut Bins,
+    brush: &mut Brush<'_>,
 ) {
-    let brush = &mut Brush::without_light();
     if queue + 1 == SMALL.len() {
-        draw::<S, R::LastEdges<S>, N, false>((queue, 0), pack, bins, brush);
+        draw::<S, R::LastEdges<S>, N, COLORED>((queue, at), pack, bins, brush);
     } else {
-        draw::<S, R::Edges<S>, N, false>((queue, 0), pack, bins, brush);
+        draw::<S, R::Edges<S>, N, COLORED>((queue, at), pack, bins, brush);
     }
 }
 
-/// Draws sixteen triangles of a queue, from `at` on.
 #[inline(always)]
 fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
     (queue, at): (usize, usize),
@@ -105,10 +99,8 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
     let shifts = lanes.edges.shifts::<N>(&sample_positions);
     for (sample, shift) in shifts.iter().enumerate() {
         lanes.scan::<N>(shift, covered);
-        if COLORED {
-            if covered.count == 0 {
-                continue;
-            }
+        let mut mix = None;
+        if COLORED && covered.count > 0 {
             let (per_area, clockwise) = areas(pack);
             let triangles = Triangles {
                 numbers: &lanes.number.into(),
@@ -116,28 +108,20 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
                 some: covered.lanes(),
                 clockwise,
             };
-            let mix = brush.mix(per_area, &triangles);
-            lanes.each_pixel::<N>(
-                shift,
-                covered,
-                #[inline(always)]
-                |own, by, pixel| match (&mix, lanes.edges.functions(own, by)) {
-                    (Some(mix), Some(functions)) => Some(mix.colors(own, functions, pixel)),
-                    _ => Some(u32x16::splat(simd, 0)),
-                },
-                #[inline(always)]
-                |pixels, count| hits.add_first::<S, N>(&reach, (pixels, sample), count),
-            );
-        } else {
-            lanes.each_pixel::<N>(
-                shift,
-                covered,
-                #[inline(always)]
-                |_, _, _| None,
-                #[inline(always)]
-                |pixels, count| hits.add_first::<S, N>(&reach, (pixels, sample), count),
-            );
+            mix = brush.mix(per_area, &triangles);
         }
+        lanes.each_pixel::<N>(
+            shift,
+            covered,
+            #[inline(always)]
+            |own, by, pixel| match (&mix, lanes.edges.functions(own, by)) {
+                _ if !COLORED => None,
+                (Some(mix), Some(functions)) => Some(mix.colors(own, functions, pixel)),
+                _ => Some(u32x16::splat(simd, 0)),
+            },
+            #[inline(always)]
+            |pixels, count| hits.add_first::<S, N>(&reach, (pixels, sample), count),
+        );
     }
 }
 

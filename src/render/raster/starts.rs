@@ -22,13 +22,6 @@ pub(crate) struct Start {
     pub(crate) normal_place: usize,
 }
 
-/// The draw that a triangle belongs to, and where its numbers begin.
-#[inline(always)]
-pub(crate) fn draw_of(starts: &[Start], triangle: u32) -> (u32, Start) {
-    let draw = starts.partition_point(|start| start.end <= triangle);
-    (number(draw), starts[draw])
-}
-
 /// The corners of the triangles of all draws.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DrawCorners<'a> {
@@ -38,8 +31,10 @@ pub(crate) struct DrawCorners<'a> {
 
 impl<'a> DrawCorners<'a> {
     /// The draw that a triangle belongs to, and where its numbers begin.
+    #[inline(always)]
     pub(crate) fn draw_of(&self, triangle: u32) -> (u32, Start) {
-        draw_of(self.starts, triangle)
+        let draw = self.starts.partition_point(|start| start.end <= triangle);
+        (number(draw), self.starts[draw])
     }
 
     /// Those of one draw.

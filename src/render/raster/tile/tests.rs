@@ -6,6 +6,7 @@ use crate::base::image::Size;
 use crate::render::raster::bins::LargeTriangle;
 use crate::render::raster::depth_format::Reversed;
 use crate::render::raster::edges_in_floats::{Everywhere, FloatTriangle};
+use crate::render::raster::hit_colors::Brush;
 use crate::render::raster::queue::{ROWS, SMALL};
 use crate::render::raster::rule::{Fine, Rule, Unsnapped, Usual};
 use crate::render::raster::scan_lines::ScanLines;
@@ -79,9 +80,10 @@ fn small_by<R: Rule>(
         for (row, values) in rows.iter().zip(&mut pack) {
             *values = i32x16::from_slice(simd, row);
         }
+        let brush = &mut Brush::default();
         match sample_positions.are_many() {
-            true => small::draw_pack::<_, R, FOUR>(queue, &pack, &mut bins),
-            false => small::draw_pack::<_, R, 1>(queue, &pack, &mut bins),
+            true => small::draw_pack::<_, R, FOUR, false>((queue, 0), &pack, &mut bins, brush),
+            false => small::draw_pack::<_, R, 1, false>((queue, 0), &pack, &mut bins, brush),
         }
     });
     bins
