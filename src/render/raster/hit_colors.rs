@@ -4,8 +4,8 @@
 //! That is when the triangle, its neighbours and the light of their vertices are in the nearest
 //! cache, and when its edge functions are at hand. A visible pixel that has a colour needs no list
 //! of triangles any more, and nothing is fetched for it: a model of 70,000 triangles takes 0.8 to
-//! 0.9 of the time. What is hidden is coloured in vain, so this does not pay for triangles that are mostly
-//! smaller than a pixel: [`CornerLight`] decides.
+//! 0.9 of the time. What is hidden is coloured in vain, so this does not pay for triangles that are
+//! mostly smaller than a pixel: whoever makes the [`CornerLight`] decides.
 //!
 //! The bits are those of a pixel that is coloured later. A colour that is not known is 0.
 
