@@ -401,12 +401,16 @@ fn agrees(renderer: &mut Renderer, plan: &FramePlan) {
 /// With light at vertices, small triangles are coloured when they are set up, or once it is known
 /// which are visible, if geometry is kept or most of the picture is.
 #[test]
-fn small_triangles_have_the_same_colors_whenever_they_are_colored() {
+fn triangles_of_all_sizes_have_the_same_colors_whenever_they_are_colored() {
     let (mut scene, view) = scene(&[
         (ball(40), at(60.0, -60.0, 40.0, 0.0)),
         (ball(40), at(40.0, 50.0, 20.0, 10.0)),
         (ball(30), at(50.0, 20.0, -60.0, -30.0)),
         (plates(), at(60.0, 80.0, 60.0, 0.0)),
+        (ball(12), at(70.0, -50.0, -50.0, 20.0)),
+        (ball(5), at(90.0, 60.0, -20.0, -20.0)),
+        (cube(), at(400.0, 0.0, 0.0, -900.0)),
+        (square(), at(90.0, -70.0, 10.0, 30.0)),
     ]);
     for (light_values, rounding, sides) in [
         (LightValues::Stored, Rounding::Truncated, Sides::One),
@@ -415,7 +419,7 @@ fn small_triangles_have_the_same_colors_whenever_they_are_colored() {
     ] {
         let settings =
             Settings { light: LightAt::Vertex, light_values, rounding, ..Settings::default() };
-        for id in [10, 11, 12] {
+        for id in [10, 11, 12, 14, 15, 16, 17] {
             edit(&mut scene, ObjectId(id), |object| object.sides = sides);
         }
         let plan =
@@ -424,7 +428,7 @@ fn small_triangles_have_the_same_colors_whenever_they_are_colored() {
         renderer.render(&plan(&scene));
         for name in ["ruby", "jade", "brass"] {
             let material = || MaterialChoice::Preset(PresetId::named(name).unwrap());
-            for id in [10, 11, 12] {
+            for id in [10, 11, 12, 14, 15, 16, 17] {
                 edit(&mut scene, ObjectId(id), |object| object.material = material());
             }
             agrees(&mut renderer, &plan(&scene));

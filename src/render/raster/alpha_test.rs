@@ -179,9 +179,9 @@ pub(crate) struct BlockHoles<'a, 'b, 'c> {
     pub(crate) first: [i32; 2],
 }
 
-impl<S: Simd> large::Holes<S> for BlockHoles<'_, '_, '_> {
+impl<S: Simd> large::InFront<S> for BlockHoles<'_, '_, '_> {
     #[inline(always)]
-    fn there_are(&self) -> bool {
+    fn matters(&self) -> bool {
         true
     }
 

@@ -4,6 +4,7 @@
 //! another. Visibility does not depend on the order in which a tile reads them.
 
 use super::covered::Covered;
+use super::hit_colors::CornerColors;
 use super::hits::Hits;
 use super::lines::{self, ScreenLine};
 use super::queue::{Queue, SMALL};
@@ -42,6 +43,8 @@ pub(crate) struct Bins {
     pub(crate) tiles: Vec<Bin>,
     pub(crate) hits: Hits,
     pub(crate) large: Vec<LargeTriangle>,
+    /// The colours at their corners, if they are known; empty if hits have no colours.
+    pub(crate) large_colors: Vec<Option<CornerColors>>,
     /// The corners of those triangles in pixels, before they were snapped, if the rule of coverage
     /// needs them.
     pub(crate) unsnapped: Vec<[[f32; 2]; 3]>,
@@ -71,6 +74,7 @@ impl Bins {
             .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
         self.hits.clear(extent, [self.columns, self.rows]);
         self.large.clear();
+        self.large_colors.clear();
         self.unsnapped.clear();
         self.lines.clear();
         // A cancelled frame leaves some behind.
@@ -122,6 +126,13 @@ impl Bins {
         self.drawn += 1;
         self.large.push(triangle);
         self.each(bounds, |bin| bin.large.push(number));
+    }
+
+    /// Sets the colours at the corners of the triangle that [`Self::add_large`] adds next, if they
+    /// are known.
+    pub(crate) fn color_next(&mut self, colors: Option<CornerColors>) {
+        self.large_colors.resize(self.large.len(), None);
+        self.large_colors.push(colors);
     }
 
     /// Adds a line of a width in pixels to the tiles that it crosses.

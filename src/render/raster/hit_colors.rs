@@ -34,7 +34,14 @@ pub(crate) trait LookUp: Debug {
     /// Sets the colours at the corners of some triangles. Returns whether all of these are known;
     /// if not, none is set.
     fn set(&mut self, triangles: &Triangles<'_>, to: &mut Corners) -> bool;
+    /// The colours at the corners of one triangle, if they are known: its number in the frame, its
+    /// vertices in the draw order of its mesh, and whether it runs clockwise on the screen.
+    fn corners(&mut self, number: u32, vertices: [u32; 3], clockwise: bool)
+    -> Option<CornerColors>;
 }
+
+/// Red, green and blue at the corners of a triangle, and a fourth number of no meaning.
+pub(crate) type CornerColors = [[f32; 4]; 3];
 
 /// Some of sixteen triangles.
 #[derive(Clone, Copy, Debug)]
@@ -94,6 +101,17 @@ impl<'a> Brush<'a> {
         let is_known = look_up.set(triangles, &mut self.corners);
         is_known.then(|| Mix::new(&self.corners, per_area, *conversion))
     }
+
+    /// The colours at the corners of one triangle, as [`LookUp::corners`].
+    pub(crate) fn corners(
+        &mut self,
+        number: u32,
+        vertices: [u32; 3],
+        clockwise: bool,
+    ) -> Option<CornerColors> {
+        let (look_up, _) = self.own.as_mut()?;
+        look_up.corners(number, vertices, clockwise)
+    }
 }
 
 /// Colours pixels of sixteen triangles.
@@ -143,21 +161,37 @@ impl<'a, S: Simd> Mix<'a, S> {
         let per_area = of_lanes(self.per_area, lanes);
         let linear = [second * per_area, third * per_area];
         let by_w = Vec3([of_lanes(*w0, lanes), of_lanes(*w1, lanes), of_lanes(*w2, lanes)]);
-        let Conversion { interpolation, thresholds, encoding } = self.conversion;
-        let (weights, _) = weighed(interpolation, Sixteen(simd), linear, by_w);
         let corners = [colors(a, lanes), colors(b, lanes), colors(c, lanes)];
-        let mut color = between(corners, weights);
-        if let Some(encoding) = encoding {
-            let Vec3([r, g, b]) = color;
-            color = Vec3([encoding.of(r), encoding.of(g), encoding.of(b)]);
-        }
         let threshold = match self.threshold {
             Some(threshold) => f32x16::splat(simd, threshold),
             None => {
                 let place = (y & (BLOCK - 1)) * BLOCK + (x & (BLOCK - 1));
-                pick::<S, 4>(simd, bytemuck::cast_ref(thresholds), place).bitcast()
+                let thresholds = bytemuck::cast_ref(self.conversion.thresholds);
+                pick::<S, 4>(simd, thresholds, place).bitcast()
             }
         };
+        self.conversion.pixels(simd, linear, (by_w, corners), threshold)
+    }
+}
+
+impl Conversion<'_> {
+    /// The colours of sixteen pixels, from the linear coordinates of the second and the third
+    /// corner there, and from 1/w and the colours of the corners: those of the first, and the
+    /// differences of the others from them.
+    #[inline(always)]
+    pub(super) fn pixels<S: Simd>(
+        &self,
+        simd: S,
+        linear: [f32x16<S>; 2],
+        (by_w, corners): (Vec3<f32x16<S>>, [Vec3<f32x16<S>>; 3]),
+        threshold: f32x16<S>,
+    ) -> u32x16<S> {
+        let (weights, _) = weighed(self.interpolation, Sixteen(simd), linear, by_w);
+        let mut color = between(corners, weights);
+        if let Some(encoding) = self.encoding {
+            let Vec3([r, g, b]) = color;
+            color = Vec3([encoding.of(r), encoding.of(g), encoding.of(b)]);
+        }
         let mut pixels = [0; PACK];
         Sixteen(simd).store_pixels_by(color, threshold, &mut pixels, 0);
         u32x16::from_slice(simd, &pixels)

@@ -42,12 +42,14 @@ pub(crate) struct Large {
     pub(crate) number: u32,
 }
 
-/// What lets through what is behind a triangle.
-pub(crate) trait Holes<S: Simd> {
-    /// Whether there may be any.
-    fn there_are(&self) -> bool;
-    /// Which of some pixels are opaque: those of two rows of a block, a bit for each, with their
-    /// depths and the edge functions of the second and the third corner in each row.
+/// What happens where a triangle is in front: holes let through what is behind, and what is lit
+/// already is coloured.
+pub(crate) trait InFront<S: Simd> {
+    /// Whether anything happens.
+    fn matters(&self) -> bool;
+    /// Which of the pixels in which the triangle is in front are opaque: those of two rows of a
+    /// block, a bit for each, with their depths and the edge functions of the second and the third
+    /// corner in each row.
     fn opaque(
         &mut self,
         simd: S,
@@ -58,12 +60,12 @@ pub(crate) trait Holes<S: Simd> {
     ) -> u64;
 }
 
-/// No holes.
+/// Nothing happens.
 pub(crate) struct Solid;
 
-impl<S: Simd> Holes<S> for Solid {
+impl<S: Simd> InFront<S> for Solid {
     #[inline(always)]
-    fn there_are(&self) -> bool {
+    fn matters(&self) -> bool {
         false
     }
 
@@ -185,7 +187,7 @@ impl Large {
     }
 
     /// Draws the triangle into a block of the visibility buffer, for the sample with this offset;
-    /// the triangle covers the block fully or in part, and may have holes.
+    /// the triangle covers the block fully or in part.
     #[inline(always)]
     pub(crate) fn draw<S: Simd>(
         &self,
@@ -193,7 +195,7 @@ impl Large {
         simd: S,
         (block, shift): (usize, [i32; 2]),
         whole: bool,
-        holes: &mut impl Holes<S>,
+        in_front_of: &mut impl InFront<S>,
         visibility: &mut [u64; BLOCK_PIXELS],
     ) {
         let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
@@ -217,14 +219,14 @@ impl Large {
             let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
             let covered = (covered[0] & 0xff) | (covered[1] & 0xff) << 8;
             let mut covered = mask32x16::from_bitmask(simd, covered);
-            if holes.there_are() {
+            if in_front_of.matters() {
                 let front = in_front(format, simd, covered, depth, self.number, visibility);
                 if front == 0 {
                     continue;
                 }
                 let float = |edges: i64x8<S>| edges.to_float::<f64x8<S>>();
                 let rows = [[float(upper[1]), float(upper[2])], [float(lower[1]), float(lower[2])]];
-                let opaque = holes.opaque(simd, pair, front, rows, depth);
+                let opaque = in_front_of.opaque(simd, pair, front, rows, depth);
                 if opaque == 0 {
                     continue;
                 }

@@ -5,13 +5,15 @@
 //! functions in f64, which holds these integers exactly.
 
 use fearless_simd::{
-    Select as _, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8, i32x16,
+    Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8,
+    i32x16,
 };
 
 use super::bins::LargeTriangle;
 use super::depth_format::Format;
 use super::large::Touched;
-use super::visibility_buffer::put_rows;
+use super::paint::Painted;
+use super::visibility_buffer::{in_front, put_rows};
 use crate::base::math::each;
 use crate::render::screen::coverage::{PixelBox, SUBPIXELS};
 use crate::render::screen::sample_positions::SamplePositions;
@@ -148,7 +150,8 @@ impl<S: Simd> Medium<S> {
     }
 
     /// Draws the triangle into those rows of a block that `area` reaches into, for the sample with
-    /// this offset. `area` is in pixels from the tile's first.
+    /// this offset, and paints those pixels in which it is in front. `area` is in pixels from the
+    /// tile's first.
     #[inline(always)]
     pub(crate) fn draw(
         &self,
@@ -156,6 +159,7 @@ impl<S: Simd> Medium<S> {
         simd: S,
         (block, shift): (usize, [i32; 2]),
         area: PixelBox,
+        mut painted: Option<Painted<'_>>,
         visibility: &mut [u64; BLOCK_PIXELS],
     ) {
         let block = i32::try_from(block % BLOCK_PIXELS).unwrap_or(0);
@@ -172,8 +176,17 @@ impl<S: Simd> Medium<S> {
         for pair in first..end {
             let covered = (a | b | c).simd_ge(0);
             if covered.any_true() {
-                let depth = self.depths(simd, b + self.least[0], c + self.least[1]);
-                put_rows(format, simd, covered, depth, self.number, &mut pairs[pair as usize % 4]);
+                let (second, third) = (b + self.least[0], c + self.least[1]);
+                let depth = self.depths(simd, second, third);
+                let pair = pair as usize % 4;
+                let entries = &mut pairs[pair];
+                if let Some(painted) = &mut painted {
+                    let front = in_front(format, simd, covered, depth, self.number, entries);
+                    if front != 0 {
+                        painted.put(pair, front, [second.to_float(), third.to_float()]);
+                    }
+                }
+                put_rows(format, simd, covered, depth, self.number, entries);
             }
             (a, b, c) = (a + two_down(0), b + two_down(1), c + two_down(2));
         }

@@ -187,12 +187,13 @@ impl<'a> Setup<'a> {
             let side = (right - left).max(bottom - top);
             let front = if self.draw.mirrored { area.simd_gt(0) } else { area.simd_lt(0) };
             let (plain, front) = (plain.to_bitmask(), front.to_bitmask());
+            let clockwise = area.simd_gt(0).to_bitmask();
             for (some, cutout, transparent) in self.kinds(triangles, plain, front, pipelines) {
                 if some | cutout != 0 {
                     let some = (mask32x16::from_bitmask(simd, some), side);
                     let bins = bins.of(transparent);
                     let rows = (&pack, &[v0, v1, v2]);
-                    self.sort::<S, R, N>(triangles, rows, (some, cutout), bins, brush);
+                    self.sort::<S, R, N>(triangles, rows, (some, cutout, clockwise), bins, brush);
                 }
             }
         }
@@ -200,7 +201,7 @@ impl<'a> Setup<'a> {
         while odd != 0 {
             let lane = odd.trailing_zeros() as usize;
             odd &= odd - 1;
-            self.add_odd::<R, N>(&triangles[lane], pipelines, bins);
+            self.add_odd::<R, N>(&triangles[lane], pipelines, (bins, brush));
         }
     }
 
@@ -247,7 +248,7 @@ impl<'a> Setup<'a> {
         &self,
         triangles: &[DrawTriangle; PACK],
         (pack, vertices): (&Pack<S>, &[i32x16<S>; 3]),
-        ((plain, side), cutout): ((mask32x16<S>, i32x16<S>), u64),
+        ((plain, side), cutout, clockwise): ((mask32x16<S>, i32x16<S>), u64, u64),
         bins: &mut Bins,
         brush: &mut Brush<'_>,
     ) {
@@ -276,6 +277,11 @@ impl<'a> Setup<'a> {
             if R::UNSNAPPED {
                 let own = each(triangles[lane].vertices, |i| self.unsnapped[i as usize]);
                 bins.unsnapped.push(own);
+            }
+            if N == 1 && bins.hits.are_colored() {
+                let clockwise = clockwise >> lane & 1 == 1;
+                let colors = brush.corners(number, triangles[lane].vertices, clockwise);
+                bins.color_next(colors);
             }
             self.add_large::<R, N>(LargeTriangle { corners, number, cutout }, bins);
         }
@@ -352,7 +358,7 @@ impl<'a> Setup<'a> {
         &self,
         triangle: &DrawTriangle,
         pipelines: &[Pipeline],
-        bins: &mut Bins,
+        (bins, brush): (&mut Bins, &mut Brush<'_>),
     ) {
         let kind = self.kind(triangle.number, pipelines);
         if kind == Kind::Not {
@@ -360,7 +366,8 @@ impl<'a> Setup<'a> {
         }
         let vertices = triangle.vertices.map(|vertex| self.vertices[vertex as usize]);
         let (mut pieces, mut unsnapped) = (Vec::new(), Vec::new());
-        if vertices.iter().all(ScreenVertex::is_inside) {
+        let is_whole = vertices.iter().all(ScreenVertex::is_inside);
+        if is_whole {
             pieces.extend(vertices);
             if R::UNSNAPPED {
                 unsnapped.extend(triangle.vertices.map(|i| self.unsnapped[i as usize]));
@@ -383,6 +390,9 @@ impl<'a> Setup<'a> {
             let bins = bins.of(kind == Kind::Transparent);
             let number = self.base + triangle.number;
             let cutout = kind == Kind::Cutout;
+            if N == 1 && is_whole && bins.hits.are_colored() {
+                bins.color_next(brush.corners(number, triangle.vertices, area > 0));
+            }
             if R::UNSNAPPED {
                 bins.unsnapped.push([unsnapped[0], unsnapped[i - 1], unsnapped[i]]);
             }

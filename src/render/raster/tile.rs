@@ -28,8 +28,10 @@ use super::depth_format::{Any, Format as _, depths_between, with_format};
 use super::edges_in_floats::FloatTriangle;
 use super::entries::word;
 use super::geometry::ScreenGeometry;
+use super::hit_colors::Conversion;
 use super::large::{Large, Solid};
 use super::lines;
+use super::paint::Paint;
 use super::visibility_buffer::{Planes, depths_of, seen};
 use crate::accuracy::{Coverage, DepthFormat};
 use crate::render::frame::FramePlan;
@@ -54,7 +56,7 @@ pub(crate) struct Visibility {
     large: Vec<Shown>,
     /// The colours of pixels in the blocks of `colored`.
     colors: Box<HitColors>,
-    /// The blocks in which hits with colours came last, a bit for each.
+    /// The blocks in which what was drawn last has colours, a bit for each.
     colored: u64,
     /// The colour of pixels that show nothing.
     background: u32,
@@ -111,13 +113,14 @@ impl Visibility {
         plan: &FramePlan,
         frame: &ScreenGeometry,
         (tile, bounds): (usize, PixelBox),
+        conversion: Option<Conversion<'_>>,
     ) {
         self.clear(bounds, frame.sample_positions());
         self.background = u32::from_le_bytes(plan.background.opaque());
         (self.depth_format, self.grid) = (plan.variants.depth, plan.variants.grid());
         match self.sample_positions.are_many() {
-            true => self.draw_in::<FOUR>(level, plan, frame, tile),
-            false => self.draw_in::<1>(level, plan, frame, tile),
+            true => self.draw_in::<FOUR>(level, plan, frame, (tile, conversion)),
+            false => self.draw_in::<1>(level, plan, frame, (tile, conversion)),
         }
     }
 
@@ -127,11 +130,11 @@ impl Visibility {
         level: Level,
         plan: &FramePlan,
         frame: &ScreenGeometry,
-        tile: usize,
+        (tile, conversion): (usize, Option<Conversion<'_>>),
     ) {
         if plan.variants.coverage == Coverage::Exact {
             for bins in frame.bins() {
-                dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, tile));
+                dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, (tile, conversion)));
             }
         }
         let mut cutouts = Cutouts::default();
@@ -278,7 +281,7 @@ impl Visibility {
     }
 
     /// Ensures that a block has valid entries for `N` samples per pixel, before something is drawn
-    /// into it. The colours of hits are forgotten.
+    /// into it. Its colours are forgotten.
     #[inline(always)]
     fn write<const N: usize>(&mut self, level: Level, block: usize) {
         let bit = 1 << block;
@@ -374,11 +377,40 @@ impl Visibility {
 
     /// Draws the large triangles of a tile that need no alpha test.
     #[inline(always)]
-    fn draw_plain<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
+    fn draw_plain<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        bins: &Bins,
+        (tile, conversion): (usize, Option<Conversion<'_>>),
+    ) {
+        if let Some(conversion) = conversion.filter(|_| N == 1 && bins.hits.are_colored()) {
+            return simd.vectorize(
+                #[inline(always)]
+                || self.paint_plain(simd, bins, (tile, conversion)),
+            );
+        }
         for &number in &bins.tiles[tile].large {
             let large = &bins.large[number as usize];
             if !large.cutout {
-                self.draw_large::<S, N>(simd, large);
+                self.draw_large::<S, N>(simd, large, None);
+            }
+        }
+    }
+
+    /// The same, with colours where they are known.
+    #[inline(always)]
+    fn paint_plain<S: Simd>(
+        &mut self,
+        simd: S,
+        bins: &Bins,
+        (tile, conversion): (usize, Conversion<'_>),
+    ) {
+        for &number in &bins.tiles[tile].large {
+            let large = &bins.large[number as usize];
+            if !large.cutout {
+                let colors = bins.large_colors.get(number as usize).and_then(Option::as_ref);
+                let paint = colors.map(|colors| Paint::new(large, colors, conversion));
+                self.draw_large::<S, 1>(simd, large, paint.as_ref());
             }
         }
     }

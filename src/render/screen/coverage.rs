@@ -271,6 +271,20 @@ pub fn doubled_area([p, q, r]: [Snapped; 3]) -> i64 {
     (qx - px) * (ry - py) - (qy - py) * (rx - px)
 }
 
+/// The largest doubled area, in square subpixels, whose edge functions fit 31 bits at every pixel
+/// of the triangle, and the longest side whose products fit.
+pub(crate) const NARROW_AREA: f32 = (1 << 30) as f32;
+pub(crate) const NARROW_SIDE: i32 = 1 << 20;
+
+/// Whether a triangle exceeds one of them.
+#[expect(clippy::cast_precision_loss, reason = "as it is found for sixteen triangles at a time")]
+pub(crate) fn is_wide([p, q, r]: [Snapped; 3]) -> bool {
+    let (ux, uy, vx, vy) = (q.x - p.x, q.y - p.y, r.x - p.x, r.y - p.y);
+    let rough = ux as f32 * vy as f32 - uy as f32 * vx as f32;
+    let is_long = [ux, uy, vx, vy].iter().any(|side| side.abs() > NARROW_SIDE);
+    rough.abs() > NARROW_AREA || is_long
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

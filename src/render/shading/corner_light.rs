@@ -1,6 +1,6 @@
-//! The light at vertices for pixels that are coloured while their triangles are set up.
+//! The light at vertices for pixels that are coloured when their triangles are set up or drawn.
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 
 use fearless_simd::{Level, Simd, SimdBase as _, dispatch};
 
@@ -11,7 +11,9 @@ use crate::base::image::Size;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Back, Draw, Pipeline};
 use crate::render::lights::Batch;
-use crate::render::raster::hit_colors::{Conversion, CornerLight, Corners, LookUp, Triangles};
+use crate::render::raster::hit_colors::{
+    Conversion, CornerColors, CornerLight, Corners, LookUp, Triangles,
+};
 use crate::render::raster::hits::PACK;
 use crate::render::raster::starts::DrawCorners;
 use crate::render::screen::clip::{Screen, ScreenVertex};
@@ -29,8 +31,7 @@ pub(crate) struct VertexLight<'a> {
 }
 
 impl<'a> VertexLight<'a> {
-    /// The light of a frame with one sample per pixel, if colouring its small triangles at once
-    /// pays.
+    /// The light of a frame with one sample per pixel, if colouring its triangles at once pays.
     pub(crate) fn new(
         level: Level,
         plan: &'a FramePlan,
@@ -43,18 +44,14 @@ impl<'a> VertexLight<'a> {
             && variants.coverage == Coverage::Exact
             && variants.interpolation != Interpolation::EverySixteen
             && !plan.shadows.are_cast();
-        let pays = is_usual && are_small(plan);
+        let pays = is_usual && few_are_hidden(plan);
         pays.then_some(Self { level, plan, lit, terms })
     }
 }
 
 impl CornerLight for VertexLight<'_> {
     fn conversion(&self) -> Conversion<'_> {
-        Conversion {
-            interpolation: self.plan.variants.interpolation,
-            thresholds: self.terms.thresholds(),
-            encoding: self.terms.encoding(),
-        }
+        self.terms.conversion(self.plan)
     }
 
     fn begin<'a>(&'a self, corners: DrawCorners<'a>) -> Box<dyn LookUp + 'a> {
@@ -109,6 +106,37 @@ impl<'a> LitDraw<'a> {
     }
 }
 
+impl<'a> Worker<'a> {
+    /// The draw of a triangle, and the colours at its corners.
+    #[inline(always)]
+    fn look_up(
+        &mut self,
+        number: u32,
+        vertices: [u32; 3],
+        clockwise: bool,
+    ) -> Option<(&LitDraw<'a>, CornerColors)> {
+        if !self.numbers.contains(&number) {
+            let (draw, start) = self.corners.draw_of(number);
+            self.numbers = start.number..start.end;
+            self.draw = LitDraw::new(self.frame, self.corners, draw);
+        }
+        let own = self.draw.as_ref()?;
+        let number = number - self.numbers.start;
+        let places = match own.draw.normals {
+            Normals::Face => own.draw.model.mesh.triangles()[number as usize].corners,
+            Normals::Vertex => own.points.of(own.order, number, vertices),
+        };
+        let turned = clockwise != own.draw.mirrored;
+        let table = own.tables[usize::from(turned && own.draw.back == Back::Lit)];
+        let mut colors = [[0.0; 4]; 3];
+        for (color, place) in colors.iter_mut().zip(places) {
+            let scratch = (&mut self.batch, &mut self.rays);
+            *color = table.diffuse(place, &own.lighting, scratch);
+        }
+        Some((own, colors))
+    }
+}
+
 impl LookUp for Worker<'_> {
     fn set(&mut self, triangles: &Triangles<'_>, to: &mut Corners) -> bool {
         let Triangles { numbers, vertices, some, clockwise } = *triangles;
@@ -117,29 +145,27 @@ impl LookUp for Worker<'_> {
         while left != 0 {
             let lane = left.trailing_zeros() as usize % PACK;
             left &= left - 1;
-            let number = numbers[lane];
-            if !self.numbers.contains(&number) {
-                let (draw, start) = self.corners.draw_of(number);
-                self.numbers = start.number..start.end;
-                self.draw = LitDraw::new(self.frame, self.corners, draw);
-            }
-            let Some(own) = &self.draw else { return false };
             let corners = vertices.map(|row| row[lane]);
-            let number = number - self.numbers.start;
-            let places = match own.draw.normals {
-                Normals::Face => own.draw.model.mesh.triangles()[number as usize].corners,
-                Normals::Vertex => own.points.of(own.order, number, corners),
+            let clockwise = clockwise >> lane & 1 == 1;
+            let Some((own, known)) = self.look_up(numbers[lane], corners, clockwise) else {
+                return false;
             };
-            let turned = (clockwise >> lane & 1 == 1) != own.draw.mirrored;
-            let table = own.tables[usize::from(turned && own.draw.back == Back::Lit)];
-            for (corner, place) in places.into_iter().enumerate() {
+            for corner in 0..3 {
                 to.by_w[corner][lane] = own.vertices[corners[corner] as usize].inverse_w;
-                let scratch = (&mut self.batch, &mut self.rays);
-                colors[corner][lane] = table.diffuse(place, &own.lighting, scratch);
+                colors[corner][lane] = known[corner];
             }
         }
         dispatch!(self.frame.level, simd => put(simd, &colors, &mut to.colors));
         true
+    }
+
+    fn corners(
+        &mut self,
+        number: u32,
+        vertices: [u32; 3],
+        clockwise: bool,
+    ) -> Option<CornerColors> {
+        Some(self.look_up(number, vertices, clockwise)?.1)
     }
 }
 
@@ -158,20 +184,19 @@ fn put<S: Simd>(simd: S, colors: &[[[f32; 4]; PACK]; 3], to: &mut [[[f32; PACK];
     }
 }
 
-/// The pixels for each triangle of a model, in the box around it on the screen, for which it pays
-/// to colour hidden pixels, too. A knot whose surfaces hide each other loses a third at 0.5 and a
-/// sixth at 0.9, a sphere gains at both; above, most pixels are those of triangles that are not
-/// small.
-const USUAL_PIXELS: RangeInclusive<f64> = 2.0..=40.0;
+/// The pixels for each triangle of a model, in the box around it on the screen, from which on it
+/// pays to colour hidden pixels, too. A knot whose surfaces hide each other loses a third at 0.5
+/// and a sixth at 0.9; a sphere gains at both.
+const ENOUGH_PIXELS: f64 = 2.0;
 
-/// Whether most pixels are those of small triangles, and few of these are hidden.
-fn are_small(plan: &FramePlan) -> bool {
+/// Whether few pixels are coloured in vain.
+fn few_are_hidden(plan: &FramePlan) -> bool {
     let (mut pixels, mut triangles) = (0.0, 0.0);
     for draw in &plan.draws {
         pixels += box_on_screen(draw, plan.size);
         triangles += draw.model.mesh.triangle_count() as f64;
     }
-    USUAL_PIXELS.contains(&(pixels / triangles))
+    pixels / triangles >= ENOUGH_PIXELS
 }
 
 /// The pixels of the box around a draw on the screen, also those outside of the picture; infinite

@@ -9,6 +9,7 @@ use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Pipeline, Shaded};
 use crate::render::frame::variants::Decoding;
 use crate::render::lights::{LightTerm, PhongMaterial};
+use crate::render::raster::hit_colors::Conversion;
 use crate::render::simd::power::{Power, Tables};
 use crate::render::simd::{BATCH, Encoding, Number};
 use crate::render::texture::lanes::prepare_decoding;
@@ -84,6 +85,15 @@ impl<T: Number> LightTerms<T> {
     /// The mip maps of a texture, if the filter needs them.
     pub(crate) fn mips_of(&self, texture: &Shared<Texture>, decoding: Decoding) -> Option<&Mips> {
         self.mips.iter().find(|mips| mips.are_of(texture, decoding))
+    }
+
+    /// How interpolated colours become bytes.
+    pub(crate) fn conversion(&self, plan: &FramePlan) -> Conversion<'_> {
+        Conversion {
+            interpolation: plan.variants.interpolation,
+            thresholds: self.thresholds(),
+            encoding: self.encoding(),
+        }
     }
 
     /// How colours are encoded, if they are linear.

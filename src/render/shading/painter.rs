@@ -189,7 +189,8 @@ impl<T: ShadingNumber> Painter<T> {
             return false;
         }
         let Self { shader, visibility, layered: Layered { layers, .. }, .. } = self;
-        visibility.draw(level, plan, frame, (tile, bounds));
+        let conversion = Some(context.terms.conversion(plan));
+        visibility.draw(level, plan, frame, (tile, bounds), conversion);
         if frame.is_layered(tile) {
             layers.begin(level, plan, frame, (tile, bounds));
         } else {

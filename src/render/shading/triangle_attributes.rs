@@ -15,15 +15,10 @@ use crate::render::frame::draw::{Back, Draw};
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::raster::vertices::fetch_vertices;
 use crate::render::screen::clip::{Screen, ScreenVertex, faces_observer};
-use crate::render::screen::coverage::{Grid, Snapped, doubled_area};
+use crate::render::screen::coverage::{Grid, NARROW_AREA, NARROW_SIDE, Snapped, doubled_area};
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{Kernel, Lanes, Number, Vec3};
 use crate::scene::{DrawOrder, Normals};
-
-/// The largest doubled area, in square subpixels, whose edge functions fit 31 bits at every pixel
-/// of the triangle, and the longest side whose products fit.
-const NARROW_AREA: f32 = (1 << 30) as f32;
-const NARROW_SIDE: i32 = 1 << 20;
 
 /// The attributes of some triangles of one draw. See the [module](self).
 #[derive(Debug)]

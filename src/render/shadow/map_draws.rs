@@ -186,7 +186,7 @@ impl Tile<'_> {
         let at = i32::try_from(tile).expect("a map has few tiles");
         let (left, top) = (at % columns * TILE, at / columns * TILE);
         let bounds = PixelBox { left, top, right: left + TILE, bottom: top + TILE };
-        visibility.draw(level, plan, geometry, (tile, bounds));
+        visibility.draw(level, plan, geometry, (tile, bounds), None);
         let blocks = depths.chunks_mut(BLOCK_PIXELS).zip(slopes.chunks_mut(BLOCK_PIXELS));
         for (block, (depths, slopes)) in blocks.enumerate() {
             if !visibility.shows(block) {

@@ -45,9 +45,9 @@ pub(super) struct List<'a> {
     pub(super) first: usize,
 }
 
-impl<S: Simd> large::Holes<S> for List<'_> {
+impl<S: Simd> large::InFront<S> for List<'_> {
     #[inline(always)]
-    fn there_are(&self) -> bool {
+    fn matters(&self) -> bool {
         true
     }
 

@@ -1,8 +1,8 @@
 //! Draws the hits of a tile: pixels of small triangles and of short lines.
 //!
-//! Hits may have [colours](super::super::hit_colors). Then those of the nearest stay beside their
-//! entries, in blocks that a hit reaches; whatever else is drawn into such a block later forgets
-//! them.
+//! Hits may have [colours](super::super::hit_colors), like other triangles that are
+//! [painted](super::super::paint). Then those of the nearest stay beside their entries, in blocks
+//! that one of them reaches; whatever else is drawn into such a block later forgets them.
 
 use std::hint::select_unpredictable;
 
@@ -22,6 +22,14 @@ pub(super) struct HitColors([u32; PIXELS + BLOCK_PIXELS]);
 impl Default for HitColors {
     fn default() -> Self {
         Self([0; PIXELS + BLOCK_PIXELS])
+    }
+}
+
+impl HitColors {
+    /// Those of a block.
+    #[inline(always)]
+    pub(super) fn block_mut(&mut self, block: usize) -> &mut [u32; BLOCK_PIXELS] {
+        &mut self.0.as_chunks_mut().0[block]
     }
 }
 
@@ -61,9 +69,7 @@ impl Visibility {
             |place, word, color| {
                 let place = place as usize % PIXELS;
                 let block = place / BLOCK_PIXELS;
-                if self.colored >> block & 1 == 0 {
-                    self.begin_colors(simd.level(), block);
-                }
+                self.color(simd.level(), block);
                 let old = &mut self.buffer.0[place];
                 let to = select_unpredictable(word > *old, place, PIXELS);
                 self.colors.0[to] = color;
@@ -72,13 +78,25 @@ impl Visibility {
         ));
     }
 
-    /// Ensures that a block has entries and colours: those of what was drawn before are not known.
+    /// Ensures that a block has entries and colours.
+    #[inline(always)]
+    pub(super) fn color(&mut self, level: Level, block: usize) {
+        if self.colored >> block & 1 == 0 {
+            self.begin_colors(level, block);
+        }
+    }
+
+    /// The same for a block that has no colours: those of what was drawn before are not known.
     #[inline(never)]
     fn begin_colors(&mut self, level: Level, block: usize) {
+        let is_empty = !self.shows(block);
         self.write::<1>(level, block);
         self.colored |= 1 << block;
         let entries = &self.buffer.0.as_chunks::<BLOCK_PIXELS>().0[block];
         let colors = &mut self.colors.0.as_chunks_mut::<BLOCK_PIXELS>().0[block];
+        if is_empty {
+            return colors.fill(self.background);
+        }
         for (color, entry) in colors.iter_mut().zip(entries) {
             *color = if *entry == 0 { self.background } else { 0 };
         }

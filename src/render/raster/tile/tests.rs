@@ -100,11 +100,11 @@ fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
         visibility.clear(own, bins.sample_positions);
         dispatch!(Level::new(), simd => match bins.sample_positions.are_many() {
             true => {
-                visibility.draw_plain::<_, FOUR>(simd, bins, tile as usize);
+                visibility.draw_plain::<_, FOUR>(simd, bins, (tile as usize, None));
                 visibility.draw_hits::<_, FOUR>(simd, bins, tile as usize);
             }
             false => {
-                visibility.draw_plain::<_, 1>(simd, bins, tile as usize);
+                visibility.draw_plain::<_, 1>(simd, bins, (tile as usize, None));
                 visibility.draw_hits::<_, 1>(simd, bins, tile as usize);
             }
         });
@@ -193,11 +193,11 @@ fn entries(bins: &Bins) -> Vec<u64> {
     visibility.clear(TILE_BOX, bins.sample_positions);
     dispatch!(Level::new(), simd => match bins.sample_positions.are_many() {
         true => {
-            visibility.draw_plain::<_, FOUR>(simd, bins, 0);
+            visibility.draw_plain::<_, FOUR>(simd, bins, (0, None));
             visibility.draw_hits::<_, FOUR>(simd, bins, 0);
         }
         false => {
-            visibility.draw_plain::<_, 1>(simd, bins, 0);
+            visibility.draw_plain::<_, 1>(simd, bins, (0, None));
             visibility.draw_hits::<_, 1>(simd, bins, 0);
         }
     });
@@ -255,8 +255,8 @@ fn on_the_fine_grid_small_and_large_triangles_cover_what_the_rule_says() {
                 let corners = corners.map(|corner| ScreenVertex::new(corner, 0.5));
                 let large = LargeTriangle { corners, number: 0, cutout: false };
                 dispatch!(Level::new(), simd => match sample_positions.are_many() {
-                    true => visibility.draw_large::<_, FOUR>(simd, &large),
-                    false => visibility.draw_large::<_, 1>(simd, &large),
+                    true => visibility.draw_large::<_, FOUR>(simd, &large, None),
+                    false => visibility.draw_large::<_, 1>(simd, &large, None),
                 });
                 for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
                     let (words, count) = visibility.samples(Level::new(), x, y);
@@ -392,8 +392,8 @@ fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
         visibility.clear(TILE_BOX, sample_positions);
         for large in &triangles {
             dispatch!(Level::new(), simd => match sample_positions.are_many() {
-                true => visibility.draw_large::<_, FOUR>(simd, large),
-                false => visibility.draw_large::<_, 1>(simd, large),
+                true => visibility.draw_large::<_, FOUR>(simd, large, None),
+                false => visibility.draw_large::<_, 1>(simd, large, None),
             });
         }
         let want = one_by_one(&triangles, &sample_positions);

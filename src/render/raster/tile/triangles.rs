@@ -1,27 +1,36 @@
 //! Draws the triangles of a tile that are not small and have no holes: medium and large ones.
 
-use fearless_simd::{Level, Simd};
+use fearless_simd::{Level, Simd, dispatch};
 
 use super::{Shown, Visibility};
 use crate::base::math::each;
 use crate::render::raster::bins::LargeTriangle;
 use crate::render::raster::depth_format::{Format as _, with_format};
 use crate::render::raster::entries::word;
-use crate::render::raster::large::Large;
+use crate::render::raster::large::{Large, Touched};
 use crate::render::raster::medium::{self, Medium};
+use crate::render::raster::paint::{Paint, Painted};
 use crate::render::screen::coverage::{Grid, PixelBox, Snapped, Triangle};
+use crate::render::screen::tiles::BLOCK_PIXELS;
 
 impl Visibility {
+    /// Draws a triangle that is not small and has no holes, and colours its pixels if it has a
+    /// paint; with one sample per pixel.
     #[inline(always)]
-    pub(super) fn draw_large<S: Simd, const N: usize>(&mut self, simd: S, large: &LargeTriangle) {
-        let corners = each(large.corners, |corner| corner.at());
+    pub(super) fn draw_large<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        triangle: &LargeTriangle,
+        paint: Option<&Paint<'_>>,
+    ) {
+        let corners = each(triangle.corners, |corner| corner.at());
         let reached = PixelBox::reached(corners, self.sample_positions.reach::<N>());
         // The fine grid needs more bits.
         let is_medium = reached.width() <= medium::LONGEST && reached.height() <= medium::LONGEST;
         if is_medium && self.grid == Grid::Usual {
-            return self.draw_medium::<S, N>(simd, large);
+            return self.draw_medium::<S, N>(simd, triangle, paint);
         }
-        let Some((large, area)) = self.set_up::<N>(large) else { return };
+        let Some((large, area)) = self.set_up::<N>(triangle) else { return };
         let touched = large.blocks::<S, N>(simd, area, &self.sample_positions);
         let (mut some, high) = (touched.some, self.key(large.high));
         let mut place = None;
@@ -31,56 +40,86 @@ impl Visibility {
             if high < self.farthest[block] {
                 continue;
             }
-            if touched.whole >> block & 1 != 0 {
-                self.draw_full_block::<N>(simd.level(), &large, block, &mut place);
-            } else {
-                self.write::<N>(simd.level(), block);
-                self.draw_planes::<N>(simd.level(), &large, block, false);
+            let whole = touched.whole >> block & 1 != 0;
+            if !(whole && self.note_full_block::<N>(&large, block, &mut place)) {
+                match paint {
+                    Some(paint) => self.paint_block(simd.level(), &large, block, whole, paint),
+                    None => {
+                        self.write::<N>(simd.level(), block);
+                        self.draw_planes::<N>(simd.level(), &large, block, whole);
+                    }
+                }
             }
         }
     }
 
     /// Draws a triangle whose bounding box is at most as large as a tile.
     #[inline(always)]
-    fn draw_medium<S: Simd, const N: usize>(&mut self, simd: S, triangle: &LargeTriangle) {
+    fn draw_medium<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        triangle: &LargeTriangle,
+        paint: Option<&Paint<'_>>,
+    ) {
         let corners = each(triangle.corners, |corner| corner.at());
         let Some(area) = self.reached::<N>(corners) else { return };
         let first = [self.bounds.left, self.bounds.top];
         let Some(medium) = Medium::new(simd, triangle, first) else { return };
-        let touched = medium.blocks::<N>(simd, area, &self.sample_positions);
-        let (mut some, mut whole) = (touched.some & !touched.whole, touched.whole);
+        let Touched { mut some, whole } = medium.blocks::<N>(simd, area, &self.sample_positions);
         let high = self.key(medium.high);
+        let (mut large, mut place) = (None, None);
         with_format!(self.depth_format, D => while some != 0 {
-            let block = some.trailing_zeros() as usize;
+            let block = some.trailing_zeros() as usize % BLOCK_PIXELS;
             some &= some - 1;
             if high < self.farthest[block] {
                 continue;
             }
-            self.write::<N>(simd.level(), block);
+            if whole >> block & 1 != 0 {
+                large = large
+                    .or_else(|| Some(Large::new(triangle, &Triangle::new(corners)?, first)));
+                if large.is_some_and(|it| self.note_full_block::<N>(&it, block, &mut place)) {
+                    continue;
+                }
+            }
             let format = D::of(self.depth_format);
+            if let Some(paint) = paint {
+                self.color(simd.level(), block);
+                let entries = &mut self.buffer.0.as_chunks_mut().0[block];
+                let painted = Painted { paint, colors: self.colors.block_mut(block) };
+                medium.draw(format, simd, (block, [0; 2]), area, Some(painted), entries);
+                continue;
+            }
+            self.write::<N>(simd.level(), block);
             for sample in 0..N {
                 let shift = self.sample_positions.shift::<N>(sample);
                 let plane = self.plane::<N>(block, sample);
-                medium.draw(format, simd, (block, shift), area, plane);
+                medium.draw(format, simd, (block, shift), area, None, plane);
             }
         });
-        if whole == 0 {
-            return;
-        }
-        let Some(edges) = Triangle::new(corners) else { return };
-        let (large, mut place) = (Large::new(triangle, &edges, first), None);
-        while whole != 0 {
-            let block = whole.trailing_zeros() as usize;
-            whole &= whole - 1;
-            if high >= self.farthest[block] {
-                self.draw_full_block::<N>(simd.level(), &large, block, &mut place);
-            }
-        }
+    }
+
+    /// Draws a triangle into a block that it covers fully or in part, and colours it, with one
+    /// sample per pixel.
+    #[inline(never)]
+    fn paint_block(
+        &mut self,
+        level: Level,
+        large: &Large,
+        block: usize,
+        whole: bool,
+        paint: &Paint<'_>,
+    ) {
+        self.color(level, block);
+        let entries = &mut self.buffer.0.as_chunks_mut().0[block];
+        let mut painted = Painted { paint, colors: self.colors.block_mut(block) };
+        let format = self.depth_format;
+        dispatch!(level, simd => with_format!(format, D => {
+            large.draw(D::of(format), simd, (block, [0; 2]), whole, &mut painted, entries);
+        }));
     }
 
     /// Draws a triangle into a block that it covers fully; `place` is its index in `large`, once it
     /// has one.
-    #[inline(never)]
     pub(super) fn draw_full_block<const N: usize>(
         &mut self,
         level: Level,
@@ -88,16 +127,27 @@ impl Visibility {
         block: usize,
         place: &mut Option<u32>,
     ) {
-        let [low, high] = large.depths::<N>(block).map(|depth| self.key(depth));
-        if self.hides(block, high, large.number) {
-            return;
-        }
-        let own = ([low, high], large.number);
-        if !self.show_whole(block, own, place, || Shown::Large(*large)) {
+        if !self.note_full_block::<N>(large, block, place) {
             self.write::<N>(level, block);
             self.draw_planes::<N>(level, large, block, true);
         }
+    }
+
+    /// Draws a triangle into a block that it covers fully if no entries have to be written for
+    /// that: if it is hidden, or alone. Returns whether that was so.
+    #[inline(never)]
+    fn note_full_block<const N: usize>(
+        &mut self,
+        large: &Large,
+        block: usize,
+        place: &mut Option<u32>,
+    ) -> bool {
+        let [low, high] = large.depths::<N>(block).map(|depth| self.key(depth));
+        let own = ([low, high], large.number);
+        let is_done = self.hides(block, high, large.number)
+            || self.show_whole(block, own, place, || Shown::Large(*large));
         self.farthest[block] = self.farthest[block].max(low);
+        is_done
     }
 
     /// Whether a block hides a triangle that reaches up to this key in it. Of equal depths the
