@@ -14,7 +14,7 @@ use super::shading::context::ShadingContext;
 use super::shading::corner_light::VertexLight;
 use super::shading::face_colors::FaceColors;
 use super::shading::light::Lit;
-use super::shading::painter::{Band, Filled, Painter, TileSums};
+use super::shading::painter::{Band, Filled, Painter, TileSums, is_quick};
 use super::shading::shown_faces::have_colors;
 use crate::accuracy::Arithmetic;
 use crate::base::cancellation::Cancellation;
@@ -292,7 +292,8 @@ impl Renderer {
         let tracer = Tracer::new(plan, &self.maps).map(|it| it.with_known(self.shadows.known()));
         let tracer = tracer.as_ref();
         let faces = looks_up.then_some(&*faces);
-        let context = ShadingContext { level, plan, frame, lit, terms, faces, tracer };
+        let quick = is_quick(plan);
+        let context = ShadingContext { level, plan, frame, lit, terms, faces, quick, tracer };
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
         let bands: Vec<Mutex<Band<'_>>> = self

@@ -18,7 +18,7 @@ use super::rule::{Rule as _, with_rule};
 use super::starts::{DrawCorners, Start, number};
 use super::vertex_variants;
 use super::vertices::Vertices;
-use super::work::{What, WorkList, piece_of};
+use super::work::{FEW, FEW_VERTICES, What, WorkList, piece_of};
 use crate::accuracy::Transparency;
 use crate::base::Shared;
 use crate::base::cancellation::Cancellation;
@@ -163,7 +163,7 @@ impl ScreenGeometry {
                 pieces.extend(own.chunks_mut(piece_of(own.len())).map(Mutex::new));
             }
         }
-        let threads = self.placing.threads();
+        let threads = self.placing.threads(FEW_VERTICES);
         let work = self.placing.sorted();
         let shares = WorkStealing::new(work.len(), threads);
         together(threads, || {
@@ -244,7 +244,7 @@ impl ScreenGeometry {
                 add(What::FacingOneByOne, mesh.polygon_count());
             }
         }
-        self.bins.resize_with(self.set_up.threads(), Bins::default);
+        self.bins.resize_with(self.set_up.threads(FEW), Bins::default);
         for bins in &mut self.bins {
             let transparent = plan.is_transparent().then(|| bins.take_transparent());
             bins.clear(plan.size, self.sample_positions);

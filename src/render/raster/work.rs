@@ -25,8 +25,12 @@ pub(crate) fn piece_of(count: usize) -> usize {
     (count / PIECES).next_multiple_of(CLUSTER).clamp(LEAST, MOST)
 }
 
-/// Fewer elements than this are set up by one thread: waking the others would take longer.
-const FEW: usize = 512;
+/// Fewer triangles, polygons or edges than this are set up by one thread: waking the others would
+/// take longer.
+pub(crate) const FEW: usize = 512;
+
+/// The same for vertices, which take a few nanoseconds each.
+pub(crate) const FEW_VERTICES: usize = 8192;
 
 /// A piece of work.
 #[derive(Clone, Copy, Debug)]
@@ -107,9 +111,9 @@ impl<W: Copy> WorkList<W> {
         self.pieces.len()
     }
 
-    /// The number of threads that are worth waking.
-    pub(crate) fn threads(&self) -> usize {
-        if self.count < FEW { 1 } else { rayon::current_num_threads() }
+    /// The number of threads that are worth waking, if it is not for fewer than `few` elements.
+    pub(crate) fn threads(&self, few: usize) -> usize {
+        if self.count < few { 1 } else { rayon::current_num_threads() }
     }
 
     /// Distributes `tiles` tiles, starting each thread where its pieces are at home.

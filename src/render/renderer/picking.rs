@@ -102,7 +102,8 @@ impl Renderer {
         let tracer = Tracer::new(plan, &self.maps);
         let tracer = tracer.as_ref();
         let (lit, terms) = (&lit, &terms);
-        let context = ShadingContext { level, plan, frame, lit, terms, faces: None, tracer };
+        let context =
+            ShadingContext { level, plan, frame, lit, terms, faces: None, quick: true, tracer };
         let [x, y] = at;
         let [columns, _] = tiles_of(plan.size);
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");

@@ -19,6 +19,8 @@ pub(crate) struct ShadingContext<'a, T> {
     pub(crate) terms: &'a LightTerms<T>,
     /// The colours of triangles, if they are looked up.
     pub(crate) faces: Option<&'a FaceColors>,
+    /// Whether little is computed for each pixel.
+    pub(crate) quick: bool,
     /// What casts shadows, if any light does.
     pub(crate) tracer: Option<&'a Tracer<'a>>,
 }

@@ -1,9 +1,14 @@
 //! Paints tiles: visibility, shading, and the copy into the picture.
 //!
 //! Each thread keeps its painter from frame to frame, so a frame allocates and clears nothing for
-//! its tiles. A block that showed only background and still does is not touched. Tiles are painted
-//! straight into the picture. If another thread works in the same rows, or the picture ends inside
-//! of the tile, they are painted into a buffer and copied.
+//! its tiles. A block that showed only background and still does is not touched.
+//!
+//! Tiles are painted into a buffer and copied. Stores to the picture miss the nearest cache, and
+//! what is computed in between has to wait for them: wherever it stores numbers one by one and
+//! loads them sixteen at a time, it cannot get them before earlier stores are done. A whole tile
+//! for which little is left to compute, since it was coloured when it was drawn or since many of
+//! its blocks are filled, is painted straight into the picture if no other thread works in its
+//! rows.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -15,9 +20,11 @@ use super::kept::Kept;
 use super::layers::Layered;
 use super::resolve::Samples;
 use super::surface::{Out, Shader};
+use crate::accuracy::LightAt;
 use crate::base::color::Color;
 use crate::base::image::Size;
 use crate::render::frame::FramePlan;
+use crate::render::frame::draw::Pipeline;
 use crate::render::raster::tile::Visibility;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::sample_positions::{ALL, FOUR};
@@ -110,6 +117,15 @@ const fn corner_in_tile(block: usize) -> [usize; 2] {
     [block % BLOCKS * ROW, block / BLOCKS * ROW]
 }
 
+/// Whether little is computed for a pixel: light and textures are not looked up for each.
+pub(crate) fn is_quick(plan: &FramePlan) -> bool {
+    let is_plain = |pipeline: &Pipeline| match pipeline {
+        Pipeline::Flat(_) => true,
+        Pipeline::Shaded(shaded) => shaded.texture.is_none() && !shaded.extras.reads_texels(),
+    };
+    matches!(plan.light_at, LightAt::Face | LightAt::Vertex) && plan.pipelines.iter().all(is_plain)
+}
+
 /// Draws one tile after another. It is aligned, so that no two painters share a cache line.
 #[derive(Debug)]
 #[repr(align(128))]
@@ -160,26 +176,28 @@ impl<T: ShadingNumber> Painter<T> {
         }
         let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
         let (column, columns) = Self::columns(tile, size);
-        if let (true, Ok(mut band)) = (whole, band.try_lock()) {
-            // Straight into the picture, since no other thread works in these rows.
+        let full = self.visibility.full_blocks().count_ones() as usize;
+        let is_done = plan.light_at == LightAt::Vertex || full >= BLOCK_PIXELS / 4;
+        if whole
+            && context.quick
+            && is_done
+            && let Ok(mut band) = band.try_lock()
+        {
             let Band { pixels, filled } = &mut *band;
             let mut canvas = Canvas { pixels: &mut pixels[columns.start..], stride: size.width };
             let blocks = std::mem::take(&mut filled[column]).with(background);
-            let blocks = self.blocks(context, bounds, &mut canvas, blocks);
+            let blocks = self.blocks(context, bounds, &mut canvas, (blocks, true));
             filled[column] = Filled { color: background, blocks };
             return;
         }
+        let before = locked(band).filled[column].with(background);
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
-        let blocks = self.blocks(context, bounds, &mut canvas, 0);
+        let blocks = self.blocks(context, bounds, &mut canvas, (before, false));
         self.pixels = pixels;
         let mut band = locked(band);
-        if blocks == u64::MAX {
-            Self::fill(tile, size, background, &mut band);
-        } else {
-            self.copy(tile, size, &mut band);
-            band.filled[column] = Filled { color: background, blocks };
-        }
+        self.copy(tile, size, !(before & blocks), &mut band);
+        band.filled[column] = Filled { color: background, blocks };
     }
 
     /// Finds what is visible in a tile. Returns whether it may be more than the background.
@@ -203,14 +221,15 @@ impl<T: ShadingNumber> Painter<T> {
         true
     }
 
-    /// Colours the blocks of a tile. Those in `filled` are filled with the background already.
-    /// Returns the blocks that show nothing else.
+    /// Colours the blocks of a tile. Those in `filled` are filled with the background already: in
+    /// the picture, and so in the canvas if it is `straight` a part of that. Returns the blocks
+    /// that show nothing else.
     fn blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
         bounds: PixelBox,
         canvas: &mut Canvas<'_>,
-        filled: u64,
+        (filled, straight): (u64, bool),
     ) -> u64 {
         let layered = self.layered.layers.touched();
         let whole = self.visibility.full_blocks();
@@ -223,8 +242,9 @@ impl<T: ShadingNumber> Painter<T> {
         let mut background_blocks = 0;
         for block in 0..BLOCK_PIXELS {
             let at = canvas.offset(corner_in_tile(block));
-            // What has to be filled in.
-            let fill = Some(context.plan.background).filter(|_| filled >> block & 1 == 0);
+            // What has to be filled in around what is shown.
+            let is_filled = filled >> block & 1 != 0;
+            let fill = (!(is_filled && straight)).then_some(context.plan.background);
             let mut shows = true;
             if layered >> block & 1 != 0 {
                 let mut sums = Sums::new(context.plan.variants.are_linear());
@@ -257,8 +277,8 @@ impl<T: ShadingNumber> Painter<T> {
                     }
                 };
             } else {
-                if let Some(color) = fill {
-                    canvas.fill(at, color);
+                if !is_filled {
+                    canvas.fill(at, context.plan.background);
                 }
                 shows = false;
             }
@@ -320,7 +340,7 @@ impl<T: ShadingNumber> Painter<T> {
     ) {
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
-        self.blocks(context, bounds, &mut canvas, 0);
+        self.blocks(context, bounds, &mut canvas, (0, false));
         for (block, to) in to.iter_mut().enumerate() {
             let rows = canvas.pixels[canvas.offset(corner_in_tile(block))..].chunks(TILE_SIDE);
             let own = rows.take(ROW).flat_map(|row| &row[..ROW]);
@@ -391,15 +411,25 @@ impl<T: ShadingNumber> Painter<T> {
             let at = canvas.offset(corner_in_tile(block));
             canvas.put(at, &sums.means(samples.count().ilog2()));
         }
-        self.copy(tile, size, &mut locked(band));
+        let mut band = locked(band);
+        self.copy(tile, size, u64::MAX, &mut band);
+        band.filled[tile % size.width.div_ceil(TILE_SIDE)] = Filled::default();
     }
 
-    /// Copies the buffer of a tile into its band.
-    fn copy(&self, tile: usize, size: Size, band: &mut Band<'_>) {
-        let (column, columns) = Self::columns(tile, size);
-        band.filled[column] = Filled::default();
-        for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width)) {
-            to[columns.clone()].copy_from_slice(&from[..columns.len()]);
+    /// Copies those blocks of a tile's buffer that have a bit in `blocks` into its band.
+    fn copy(&self, tile: usize, size: Size, blocks: u64, band: &mut Band<'_>) {
+        let (_, columns) = Self::columns(tile, size);
+        let rows = self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width));
+        for (row, (from, to)) in rows.enumerate() {
+            let mut own = blocks >> (row / ROW * BLOCKS) & 0xff;
+            // Neighbouring blocks at once.
+            while own != 0 {
+                let first = own.trailing_zeros() as usize;
+                let end = first + (own >> first).trailing_ones() as usize;
+                own &= u64::MAX << end;
+                let [first, end] = [first, end].map(|block| columns.len().min(block * ROW));
+                to[columns.start..][first..end].copy_from_slice(&from[first..end]);
+            }
         }
     }
 
