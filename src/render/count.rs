@@ -12,7 +12,8 @@ use rayon::prelude::*;
 
 use crate::accuracy::LightAt;
 use crate::render::frame::FramePlan;
-use crate::render::frame::draw::{Form, Pipeline, Shaded, Stage};
+use crate::render::frame::draw::{Pipeline, Shaded, Stage};
+use crate::render::lights::Form;
 use crate::render::plan::features::{of_surface, presence};
 use crate::render::plan::tile::TilePlan;
 use crate::render::plan::uses::{Effect, EffectUse};

@@ -9,7 +9,7 @@ use super::FramePlan;
 use super::extras::{Extras, bits};
 use crate::accuracy::{LightAt, Tangents};
 use crate::base::{Shared, color::Color};
-use crate::render::lights::{self, LightRow, PhongMaterial};
+use crate::render::lights::{self, Form, LightRow, PhongMaterial};
 use crate::scene::{Derived, ItemId, Model, NormalSource, Normals, Texture};
 
 /// One mesh of a frame.
@@ -300,17 +300,6 @@ impl PartialEq for Stage {
         let key = |stage: &Self| (stage.effect.name, stage.light, stage.highlight, stage.is_mapped);
         key(self) == key(other)
     }
-}
-
-/// The form of a stage's highlight.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Form {
-    /// None: Ks is 0.
-    Plain,
-    /// (R.V)^Ns
-    Reflection,
-    /// (N.H)^Ns
-    HalfVector,
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::batch::{Reflected, Sample, set};
 use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight, max_channel};
 use super::region::Region;
-use super::shader::LightShader;
+use super::shader::{LightShader, Which};
 use crate::render::simd::Lanes;
 
 /// The same light at every position and for every normal: Ia Ka.
@@ -11,6 +11,7 @@ pub(crate) struct Ambient;
 
 impl LightShader for Ambient {
     const NAME: &'static str = "Ambient light";
+    const WHICH: Which = Which::Ambient;
     const READS_POSITIONS: bool = false;
     const HAS_POSITION: bool = false;
 

@@ -5,7 +5,7 @@ use super::phong::{
     Highlight, LightTerm, PhongMaterial, ViewLight, light_is_noop, max_attenuation, phong,
 };
 use super::region::Region;
-use super::shader::LightShader;
+use super::shader::{LightShader, Which};
 use super::turning::Turning;
 use crate::render::simd::{Lanes, Real as _, Vec3};
 
@@ -14,6 +14,7 @@ pub(crate) struct Bulb;
 
 impl LightShader for Bulb {
     const NAME: &'static str = "Bulb";
+    const WHICH: Which = Which::Bulb;
 
     fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
         light_is_noop(light, material)

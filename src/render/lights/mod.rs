@@ -15,13 +15,17 @@ pub(crate) mod region;
 mod shader;
 mod spot;
 mod sun;
+mod together;
 pub(crate) mod turning;
 
 pub use batch::{Batch, Reflected, Sample};
 pub(crate) use batch::{Rows, load, set, store};
-pub use phong::{HalfVector, Highlight, LightTerm, Nothing, PhongMaterial, Reflection, ViewLight};
+pub use phong::{
+    Form, HalfVector, Highlight, LightTerm, Nothing, PhongMaterial, Reflection, ViewLight,
+};
 pub use region::Region;
-pub use shader::{Light, LightRow, LightShader, Variant};
+pub use shader::{Light, LightRow, LightShader, Variant, Which};
+pub(crate) use together::Together;
 pub use turning::Turning;
 
 use crate::scene::LightKind;

@@ -110,6 +110,11 @@ impl<T: Number> LightTerm<T> {
         }
     }
 
+    /// Whether roots are computed by the default.
+    pub(crate) const fn is_usual(&self) -> bool {
+        self.variant.is_none()
+    }
+
     /// The same by a variant, if there is one, with the power of the material's highlight.
     #[must_use]
     pub(crate) fn by(
@@ -128,7 +133,18 @@ impl<T: Number> LightTerm<T> {
 /// The floor of the powers by which spots concentrate their light: less than 2^-24 counts as 0.
 const GATHERED_FLOOR: f64 = -24.0;
 
-/// The form of a specular highlight.
+/// The forms of specular highlights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// None: Ks is 0.
+    Plain,
+    /// (R.V)^Ns
+    Reflection,
+    /// (N.H)^Ns
+    HalfVector,
+}
+
+/// The form of a specular highlight, as a type.
 pub trait Highlight {
     /// Whether the exponent differs from position to position: see [`Sample::exponent`].
     const IS_MAPPED: bool = false;

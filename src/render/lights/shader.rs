@@ -17,6 +17,8 @@ use crate::render::simd::{Kernel, Lanes, Number};
 pub trait LightShader {
     /// Its name in the plan.
     const NAME: &'static str;
+    /// Which of the shaders it is.
+    const WHICH: Which;
     /// Whether it reads positions, normals or directions to the observer.
     const READS_POSITIONS: bool = true;
     /// Whether it has a position, and fades with the distance from it.
@@ -67,6 +69,19 @@ pub trait LightShader {
     ) -> Option<Reflected<M::R>>;
 }
 
+/// The shader of a row of the table of light kinds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// Ambient light.
+    Ambient,
+    /// A sun.
+    Sun,
+    /// A bulb.
+    Bulb,
+    /// A spot.
+    Spot,
+}
+
 /// A light shader compiled for one form of highlight: in f64 for the reference, and in f32 for the
 /// editor.
 #[derive(Clone, Copy, Debug)]
@@ -80,6 +95,8 @@ pub struct Variant {
 pub struct LightRow {
     /// See [`LightShader::NAME`].
     pub name: &'static str,
+    /// See [`LightShader::WHICH`].
+    pub which: Which,
     /// See [`LightShader::READS_POSITIONS`].
     pub reads_positions: bool,
     /// See [`LightShader::HAS_POSITION`].
@@ -115,6 +132,7 @@ impl LightRow {
     pub(super) const fn of<E: LightShader>() -> Self {
         Self {
             name: E::NAME,
+            which: E::WHICH,
             reads_positions: E::READS_POSITIONS,
             has_position: E::HAS_POSITION,
             has_reach: E::HAS_REACH,

@@ -6,7 +6,7 @@ use super::phong::{
     Highlight, LightTerm, PhongMaterial, ViewLight, light_is_noop, max_attenuation, phong,
 };
 use super::region::Region;
-use super::shader::LightShader;
+use super::shader::{LightShader, Which};
 use super::turning::Turning;
 use crate::render::simd::{Lanes, Real};
 
@@ -15,6 +15,7 @@ pub(crate) struct Spot;
 
 impl LightShader for Spot {
     const NAME: &'static str = "Spot";
+    const WHICH: Which = Which::Spot;
     const HAS_REACH: bool = true;
 
     fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {

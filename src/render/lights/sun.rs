@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::batch::{Reflected, Sample, set};
 use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight, light_is_noop, phong};
 use super::region::{EDGE_ON, Region};
-use super::shader::LightShader;
+use super::shader::{LightShader, Which};
 use super::turning::Turning;
 use crate::render::simd::Lanes;
 
@@ -14,6 +14,7 @@ pub(crate) struct Sun;
 
 impl LightShader for Sun {
     const NAME: &'static str = "Sun";
+    const WHICH: Which = Which::Sun;
     const HAS_POSITION: bool = false;
 
     fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {

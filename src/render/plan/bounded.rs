@@ -4,9 +4,9 @@
 //! step at most. One budget is for whole lights, the faintest first, on an object or in a tile. The
 //! other is for the tails of highlights: powers below a common value count as 0.
 
-use crate::render::frame::draw::{Form, Stage};
+use crate::render::frame::draw::Stage;
 use crate::render::lights::region::Region;
-use crate::render::lights::{PhongMaterial, ViewLight};
+use crate::render::lights::{Form, PhongMaterial, ViewLight};
 
 /// Steps of a byte in a factor of 1.
 const STEPS: f64 = 255.0;

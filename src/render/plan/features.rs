@@ -10,7 +10,8 @@ use super::rules::Reading;
 use super::uses::{Effect, EffectState, EffectUse, Thing};
 use crate::accuracy::{Filter, LightAt, Settings, Tangents, Transparency};
 use crate::render::frame::FramePlan;
-use crate::render::frame::draw::{Back, Draw, Form, Pipeline, Shaded, Stage};
+use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
+use crate::render::lights::Form;
 use crate::scene::{ItemId, MapKind, Normals, Object, Sides, Surface};
 
 /// What a row reads.

@@ -6,9 +6,9 @@ use crate::accuracy::LightAt;
 use crate::base::Shared;
 use crate::base::color::linear;
 use crate::render::frame::Rules;
-use crate::render::frame::draw::{Form, Stage};
+use crate::render::frame::draw::Stage;
 use crate::render::frame::extras::{Bump, Extras, Glow};
-use crate::render::lights::PhongMaterial;
+use crate::render::lights::{Form, PhongMaterial};
 use crate::scene::{MapKind, Material, PartLook, SurfaceMap, Texture};
 
 /// A map of a part, if its mesh has texture coordinates.

@@ -17,9 +17,9 @@ use crate::base::{
     Shared,
     color::{self, Color},
 };
-use crate::render::frame::draw::{Form, Pipeline, Shaded, Stage};
-use crate::render::lights::PhongMaterial;
+use crate::render::frame::draw::{Pipeline, Shaded, Stage};
 use crate::render::lights::region::Region;
+use crate::render::lights::{Form, PhongMaterial};
 use crate::scene::{MapKind, PartLook, Surface, Texture, Wrap};
 
 /// A white texture, which leaves a surface as it is.

@@ -17,7 +17,7 @@ use crate::accuracy::{LightAt, Normalising};
 use crate::base::math::each;
 use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
 use crate::render::frame::{Eye, FramePlan};
-use crate::render::lights::{Batch, LightTerm, load, set, store};
+use crate::render::lights::{Batch, LightTerm, Together, load, set, store};
 use crate::render::plan::tile::TileLight;
 use crate::render::shadow::rays::{Origins, RayScratch};
 use crate::render::shadow::tracer::Tracer;
@@ -408,10 +408,7 @@ pub(crate) fn run<T: ShadingNumber>(
     shadows: Option<BatchShadows<'_>>,
 ) {
     let Some(mut shadows) = shadows else {
-        for (stage, term) in stages.iter().zip(terms) {
-            T::add_light(stage.variant(), level, batch, term);
-        }
-        return;
+        return add_lights(stages.iter().zip(terms), level, batch);
     };
     for (stage, term) in stages.iter().zip(terms) {
         shadows.add_light(stage, term, level, batch);
@@ -430,12 +427,31 @@ impl TileLight<'_> {
         let Some(kept) = self.kept else {
             return run(self.stages, terms, level, batch, shadows);
         };
-        for place in kept {
-            let (stage, term) = (&self.stages[*place as usize], &terms[*place as usize]);
-            match &mut shadows {
-                None => T::add_light(stage.variant(), level, batch, term),
-                Some(shadows) => shadows.add_light(stage, term, level, batch),
+        let kept =
+            kept.iter().map(|place| (&self.stages[*place as usize], &terms[*place as usize]));
+        match &mut shadows {
+            None => add_lights(kept, level, batch),
+            Some(shadows) => {
+                kept.for_each(|(stage, term)| shadows.add_light(stage, term, level, batch));
             }
         }
+    }
+}
+
+/// Adds the light of some stages at every position of a batch.
+fn add_lights<'a, T: ShadingNumber>(
+    lights: impl Iterator<Item = (&'a Stage, &'a LightTerm<T>)> + Clone,
+    level: Level,
+    batch: &mut Batch<T>,
+) {
+    let is_usual = |(stage, term): (&Stage, &LightTerm<T>)| !stage.is_mapped && term.is_usual();
+    if lights.clone().all(is_usual) {
+        let lights = lights.map(
+            #[inline(always)]
+            |(stage, term)| (stage.effect.which, stage.highlight, term),
+        );
+        T::run(level, Together { batch, lights });
+    } else {
+        lights.for_each(|(stage, term)| T::add_light(stage.variant(), level, batch, term));
     }
 }

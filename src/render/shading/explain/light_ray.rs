@@ -3,8 +3,8 @@
 use glam::{DMat3, DVec3};
 
 use crate::render::frame::FramePlan;
-use crate::render::frame::draw::{Form, Stage};
-use crate::render::lights::{Batch, Rows, ViewLight, store};
+use crate::render::frame::draw::Stage;
+use crate::render::lights::{Batch, Form, Rows, ViewLight, store};
 use crate::render::shading::context::ShadingContext;
 use crate::render::shading::interpolated::ShadingNumber;
 use crate::render::shading::pixel_color::{LightRay, Part, Term};
