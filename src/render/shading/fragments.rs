@@ -303,7 +303,6 @@ impl Fragments {
 
 /// What the pixels of a block show, and where along its rows that changes.
 #[derive(Debug)]
-#[repr(align(64))]
 pub(crate) struct Runs {
     /// The numbers of the primitives, after a margin.
     numbers: [u32; MARGIN + BLOCK_PIXELS],
