@@ -39,10 +39,11 @@ impl<T: Copy + Default> Default for Batch<T> {
 }
 
 impl<T: Copy + Default> Batch<T> {
-    /// Sets all light to 0.
+    /// Sets the light at all positions to 0.
     pub(crate) fn darken(&mut self) {
+        let end = self.len.next_multiple_of(16).min(BATCH);
         for row in self.diffuse.iter_mut().chain(&mut self.specular) {
-            row.fill(T::default());
+            row[..end].fill(T::default());
         }
     }
 }

@@ -8,9 +8,10 @@ use super::phong::{Form, HalfVector, Highlight, LightTerm, Nothing, Reflection};
 use super::shader::{LightShader, Which};
 use super::spot::Spot;
 use super::sun::Sun;
-use crate::render::simd::{Kernel, Lanes, Number};
+use crate::render::simd::{Kernel, Lanes, Number, Vec3};
 
-/// Adds the light of several shaders at every position of a batch, in the order of an iterator.
+/// Sets the light at every position of a batch to that of several shaders, added in the order of an
+/// iterator.
 pub(crate) struct Together<'a, T, I> {
     pub(crate) batch: &'a mut Batch<T>,
     pub(crate) lights: I,
@@ -23,6 +24,7 @@ where
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { batch, lights } = self;
+        let zero = lanes.lift(0.0);
         for at in (0..batch.len).step_by(M::LANES) {
             let sample = Sample {
                 position: load(lanes, &batch.position, at),
@@ -30,8 +32,7 @@ where
                 to_eye: load(lanes, &batch.to_eye, at),
                 exponent: lanes.lift(1.0),
             };
-            let mut diffuse = load(lanes, &batch.diffuse, at);
-            let mut specular = load(lanes, &batch.specular, at);
+            let (mut diffuse, mut specular) = (Vec3([zero; 3]), Vec3([zero; 3]));
             for (which, form, term) in lights.clone() {
                 let reflected = match form {
                     Form::Plain => reflected::<M, Nothing>(which, lanes, sample, term),

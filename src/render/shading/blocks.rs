@@ -164,7 +164,7 @@ impl<T: ShadingNumber> Shader<T> {
         let cut = self.cut_weights(context, group);
         let look = self.look_of(plan, group);
         let Self { tile, attributes, batch, placed, vertex_colors, .. } = self;
-        let TexturePlacement { placement, far } = placed;
+        let TexturePlacement { placement, far, scratch } = placed;
         let lights = is_lit.then(|| tile.light(plan, group.pipeline, shaded));
         let needs_positions = lights.is_some_and(|lights| lights.needs_positions);
         if !needs_positions {
@@ -185,6 +185,6 @@ impl<T: ShadingNumber> Shader<T> {
             glow: shaded.extras.emission.is_some().then(|| glow.map(T::from_f64)),
             encoding: terms.encoding(),
         };
-        T::light_blocks(level, attributes, blocks, (light, batch), canvas)
+        T::light_blocks(level, attributes, blocks, (light, batch, scratch), canvas)
     }
 }

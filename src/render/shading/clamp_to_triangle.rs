@@ -15,7 +15,7 @@ use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
 use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::BLOCK;
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real};
+use crate::render::simd::{Kernel, Lanes, Number, Real};
 
 impl<T: AttributeNumber> Barycentrics<T> {
     /// Clamps linear coordinates outside of a triangle to its nearest point, and sets the positions
@@ -158,9 +158,6 @@ fn clamped<R: Real>(t: R, [least, most]: [R; 2]) -> R {
 fn along<R: Real>(point: [R; 2], side: [R; 2]) -> R {
     (point[0] * side[0] + point[1] * side[1]) / (side[0] * side[0] + side[1] * side[1])
 }
-
-/// A list of fragments has as many entries as a batch.
-const _: () = assert!(BATCH == SLOTS);
 
 #[cfg(test)]
 mod tests {

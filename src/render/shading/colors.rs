@@ -12,6 +12,7 @@ use fearless_simd::{Level, dispatch};
 use crate::base::color::linear;
 use crate::base::once::get_or_compute;
 use crate::render::screen::tiles::BLOCK_PIXELS;
+use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{BATCH, Lanes, Vec3};
 
 /// The form of colours.
@@ -101,18 +102,18 @@ impl Colors {
 
     /// One of them, in fixed point.
     #[inline(always)]
-    pub(crate) const fn part(&self, i: usize) -> [u32; 3] {
+    pub(crate) fn part(&self, i: usize) -> [u32; 3] {
         let [red, green, blue] = &self.parts;
-        [red[i % BATCH], green[i % BATCH], blue[i % BATCH]]
+        let i = i.min(BATCH - 1);
+        [red[i], green[i], blue[i]]
     }
 
-    /// Replaces each colour by that of the slot with its number: from colours of triangles to
-    /// colours of their pixels.
-    pub(crate) fn hand_out(&mut self, pixels: &[i32]) {
+    /// Replaces the colours of triangles, one for each slot, by those of pixels with these slots.
+    pub(crate) fn hand_out(&mut self, slots: &[i32]) {
         let hand_out = |row: &mut [u32; BATCH]| {
-            let before = *row;
-            for (color, place) in row.iter_mut().zip(pixels) {
-                *color = before[place.cast_unsigned() as usize % BATCH];
+            let before: [u32; SLOTS] = std::array::from_fn(|slot| row[slot]);
+            for (color, slot) in row.iter_mut().zip(slots) {
+                *color = before[slot.cast_unsigned() as usize % SLOTS];
             }
         };
         match self.form {
@@ -239,7 +240,7 @@ impl Sums {
         for (i, (place, samples)) in pixels.iter().zip(samples).enumerate() {
             let sum = &mut self.sums[usize::from(*place) % BLOCK_PIXELS];
             let samples = samples.cast_unsigned();
-            let i = i % BATCH;
+            let i = i.min(BATCH - 1);
             sum[0] += red[i] * samples;
             sum[1] += green[i] * samples;
             sum[2] += blue[i] * samples;
@@ -287,7 +288,7 @@ mod tests {
 
     #[test]
     fn the_mean_of_equal_colours_is_the_byte_that_each_of_them_is() {
-        let indices: [u8; BATCH] = std::array::from_fn(|i| i.to_le_bytes()[0]);
+        let indices: [u8; BLOCK_PIXELS] = std::array::from_fn(|i| i.to_le_bytes()[0]);
         for round in 0..2000_u16 {
             // Around the borders between two bytes, below 0, above 1, and NaN.
             let numbers: [f32; BATCH] = std::array::from_fn(|i| match (round, i) {
@@ -300,7 +301,7 @@ mod tests {
                 let mut sums = Sums::new(false);
                 sums.add_all(&colors, &indices, &[samples / 4; BATCH]);
                 sums.add_all(&colors, &indices, &[samples / 4 * 3; BATCH]);
-                assert_eq!(sums.means(log2), pixels.pixels, "{numbers:?}");
+                assert_eq!(sums.means(log2)[..], pixels.pixels[..BLOCK_PIXELS], "{numbers:?}");
             }
             let mut exact = Colors { form: Form::Parts, ..Colors::default() };
             for (i, number) in numbers.iter().enumerate() {

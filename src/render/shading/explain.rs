@@ -261,10 +261,8 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         let shades = tracer.filter(|_| by_face || lit_places);
         for i in (0..stages.len()).filter(evaluated) {
             let of = (&stages[i..=i], &lights[i..=i]);
-            batch.darken();
             run(of.0, of.1, level, batch, None);
             let bright = [first(&batch.diffuse), first(&batch.specular)];
-            batch.darken();
             let shadows =
                 shades.map(|(tracer, _)| BatchShadows::new(tracer, &mut scratch, &mut place));
             run(of.0, of.1, level, batch, shadows);
@@ -276,12 +274,11 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
             terms.extend(own);
         }
         // All together, in the order of the picture.
-        batch.darken();
-        for i in (0..stages.len()).filter(evaluated) {
-            let shadows =
-                shades.map(|(tracer, _)| BatchShadows::new(tracer, &mut scratch, &mut place));
-            run(&stages[i..=i], &lights[i..=i], level, batch, shadows);
-        }
+        let all = (0..stages.len()).filter(evaluated);
+        let (stages, lights): (Vec<_>, Vec<_>) =
+            all.map(|i| (stages[i], lights[i].clone())).unzip();
+        let shadows = shades.map(|(tracer, _)| BatchShadows::new(tracer, &mut scratch, &mut place));
+        run(&stages, &lights, level, batch, shadows);
         shader.batch.len = 1;
         // A map of Ks multiplies all highlights together.
         let (own, mapped) = (first(&shader.batch.specular), first(&drawn.specular));

@@ -14,8 +14,8 @@ use fearless_simd::{
 };
 
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
-use crate::render::simd::UP_TO_SIXTEEN;
 use crate::render::simd::gather::SLOTS;
+use crate::render::simd::{BATCH, UP_TO_SIXTEEN};
 
 /// The pixels of one block that show triangles. See the [module](self).
 #[derive(Debug)]
@@ -24,17 +24,21 @@ pub(crate) struct Fragments {
     /// The number of fragments.
     pub(crate) len: usize,
     /// Their pixels in the block, counted row by row.
-    pub(crate) pixels: [u8; BLOCK_PIXELS],
+    pub(crate) pixels: [u8; BATCH + AT_ONCE],
     /// Their columns and rows in the picture.
-    pub(crate) x: [i32; BLOCK_PIXELS],
-    pub(crate) y: [i32; BLOCK_PIXELS],
-    /// The slots of the triangles that they show. Entries beyond the last are valid slots, too; the
-    /// last row is room for a run that begins at the last pixel.
-    pub(crate) slots: [i32; BLOCK_PIXELS + ROW],
+    pub(crate) x: [i32; BATCH + AT_ONCE],
+    pub(crate) y: [i32; BATCH + AT_ONCE],
+    /// The slots of the triangles that they show. Entries beyond the last are valid slots, too.
+    pub(crate) slots: [i32; BATCH + AT_ONCE],
+    /// The same for each pixel of the block that is listed, if it shows a triangle. The last row is
+    /// room for a run that begins at the last pixel.
+    own_slots: [i32; BLOCK_PIXELS + ROW],
+    /// Whether they are of several blocks.
+    several: bool,
     /// Whether several fragments may share a pixel: then `shares` says how many samples of its
     /// pixel each of them has.
     pub(crate) shared: bool,
-    pub(crate) shares: [i32; BLOCK_PIXELS],
+    pub(crate) shares: [i32; BATCH],
     /// The number of slots in use.
     pub(crate) count: usize,
     /// The triangles of the slots, by their numbers in the frame.
@@ -63,6 +67,9 @@ const TABLE: usize = 128;
 const LISTS: u64 = 0xffff_ff00;
 const NEXT_LIST: u64 = 0x100;
 
+/// Fragments that are listed at once, for which there is room after the last.
+const AT_ONCE: usize = 16;
+
 /// Padding before the first pixel, so that every pixel has a left neighbour.
 const MARGIN: usize = 16;
 const ROW: usize = BLOCK as usize;
@@ -72,12 +79,14 @@ impl Default for Fragments {
     fn default() -> Self {
         Self {
             len: 0,
-            pixels: [0; BLOCK_PIXELS],
-            x: [0; BLOCK_PIXELS],
-            y: [0; BLOCK_PIXELS],
-            slots: [0; BLOCK_PIXELS + ROW],
+            pixels: [0; BATCH + AT_ONCE],
+            x: [0; BATCH + AT_ONCE],
+            y: [0; BATCH + AT_ONCE],
+            slots: [0; BATCH + AT_ONCE],
+            own_slots: [0; BLOCK_PIXELS + ROW],
+            several: false,
             shared: false,
-            shares: [0; BLOCK_PIXELS],
+            shares: [0; BATCH],
             count: 0,
             numbers: [0; SLOTS],
             table: [0; TABLE],
@@ -107,46 +116,88 @@ impl Fragments {
         corner: [i32; 2],
         most: usize,
     ) -> Shown {
-        dispatch!(level, simd => self.find(simd, visibility, corner, most))
+        dispatch!(level, simd => {
+            let runs = Runs::find(simd, visibility);
+            self.find(simd, &runs, corner, most)
+        })
     }
 
-    #[inline(always)]
-    fn find<S: Simd>(
+    /// Lists the pixels of a block as [`Self::list_on`], from its runs.
+    pub(crate) fn list_runs(
         &mut self,
-        simd: S,
-        visibility: &[u64; BLOCK_PIXELS],
+        level: Level,
+        runs: &Runs,
         corner: [i32; 2],
         most: usize,
     ) -> Shown {
-        self.shared = false;
-        let runs = Runs::find(simd, visibility);
-        let Runs { numbers, triangles, background, left, .. } = runs;
-        if triangles == 0 {
-            return Shown { triangles, lines: !background };
+        dispatch!(level, simd => self.find(simd, runs, corner, most))
+    }
+
+    /// Whether the pixels of another block have room in the list: in a batch, and in about `most`
+    /// slots.
+    pub(crate) const fn have_room(&self, runs: &Runs, most: usize) -> bool {
+        self.goes_on
+            && self.len + runs.triangles.count_ones() as usize <= BATCH
+            && self.slots_suffice(runs, most)
+    }
+
+    /// Adds the pixels of another block to the list. They must have room.
+    pub(crate) fn list_more(&mut self, level: Level, runs: &Runs, corner: [i32; 2]) -> Shown {
+        self.several = true;
+        dispatch!(level, simd => self.put_runs(simd, runs, corner))
+    }
+
+    #[inline(always)]
+    fn find<S: Simd>(&mut self, simd: S, runs: &Runs, corner: [i32; 2], most: usize) -> Shown {
+        self.begin_block();
+        if runs.triangles == u64::MAX && runs.left | 1 == u64::MAX {
+            self.list_full_block(runs.numbers[MARGIN], corner);
+            return runs.shown();
         }
-        if triangles == u64::MAX && left | 1 == u64::MAX {
-            self.list_full_block(numbers[MARGIN], corner);
-        } else {
-            let starts = triangles & (!left | FIRST_COLUMN);
-            let new = runs.new_starts().count_ones() as usize;
-            // Of triangles that replace each other in the table, each run takes another slot.
-            let room = self.count + starts.count_ones() as usize <= SLOTS;
-            if !(self.goes_on && room && self.count + new <= most) {
-                self.begin_list();
-            }
-            self.share_out(&numbers, starts);
-            if triangles == u64::MAX {
+        if runs.triangles != 0 && !(self.goes_on && self.slots_suffice(runs, most)) {
+            self.begin_list();
+        }
+        self.put_runs(simd, runs, corner)
+    }
+
+    /// Whether about `most` slots suffice for these runs, too.
+    #[inline(always)]
+    const fn slots_suffice(&self, runs: &Runs, most: usize) -> bool {
+        // Of triangles that replace each other in the table, each run takes another slot.
+        let room = self.count + runs.starts().count_ones() as usize <= SLOTS;
+        room && self.count + runs.new_starts().count_ones() as usize <= most
+    }
+
+    /// Adds the pixels of a block to the list.
+    #[inline(always)]
+    fn put_runs<S: Simd>(&mut self, simd: S, runs: &Runs, corner: [i32; 2]) -> Shown {
+        if runs.triangles != 0 {
+            self.share_out(&runs.numbers, runs.starts());
+            if runs.triangles == u64::MAX {
                 self.put_all(corner);
             } else {
-                self.put_some(simd, corner, triangles);
+                self.put_some(simd, corner, runs.triangles);
             }
         }
-        Shown { triangles, lines: !triangles & !background }
+        runs.shown()
+    }
+
+    /// Empties the list, for fragments of one block.
+    #[inline(always)]
+    const fn begin_block(&mut self) {
+        (self.len, self.several, self.shared) = (0, false, false);
+    }
+
+    /// Takes back what [`Self::list_more`] has listed: before, there were `len` fragments and
+    /// `count` slots.
+    pub(crate) const fn take_back(&mut self, len: usize, count: usize) {
+        (self.len, self.count, self.goes_on) = (len, count, false);
     }
 
     /// Lists some triangles, each as if it showed in one pixel of no position.
     pub(crate) fn list_faces(&mut self, numbers: &[u32]) {
-        (self.shared, self.goes_on) = (false, false);
+        self.begin_block();
+        self.goes_on = false;
         (self.len, self.count) = (numbers.len(), numbers.len());
         self.numbers[..numbers.len()].copy_from_slice(numbers);
         for (slot, i) in self.slots.iter_mut().zip(0..) {
@@ -156,10 +207,11 @@ impl Fragments {
 
     /// Lists all pixels of a block that one triangle covers fully.
     pub(crate) fn list_full_block(&mut self, number: u32, corner: [i32; 2]) {
-        (self.shared, self.goes_on) = (false, false);
+        self.begin_block();
+        self.goes_on = false;
         self.count = 1;
         self.numbers[0] = number;
-        self.slots.fill(0);
+        self.own_slots.fill(0);
         self.put_all(corner);
     }
 
@@ -171,7 +223,7 @@ impl Fragments {
             let at = starts.trailing_zeros() as usize % BLOCK_PIXELS;
             starts &= starts - 1;
             let slot = self.slot_of(numbers[MARGIN + at]);
-            self.slots[at..][..ROW].fill(slot);
+            self.own_slots[at..][..ROW].fill(slot);
         }
     }
 
@@ -205,22 +257,25 @@ impl Fragments {
         slot as i32
     }
 
-    /// Lists all pixels; their slots are set.
+    /// Adds all pixels of a block. They must have room.
     #[inline(always)]
     fn put_all(&mut self, [left, top]: [i32; 2]) {
-        self.len = BLOCK_PIXELS;
-        self.pixels = ALL_PIXELS;
-        for ((x, y), place) in self.x.iter_mut().zip(&mut self.y).zip(ALL_PIXELS) {
+        let from = self.len.min(BATCH - BLOCK_PIXELS);
+        let to = from..from + BLOCK_PIXELS;
+        self.len = to.end;
+        self.pixels[to.clone()].copy_from_slice(&ALL_PIXELS);
+        self.slots[to.clone()].copy_from_slice(&self.own_slots[..BLOCK_PIXELS]);
+        let places = self.x[to.clone()].iter_mut().zip(&mut self.y[to]);
+        for ((x, y), place) in places.zip(ALL_PIXELS) {
             *x = left + i32::from(place) % BLOCK;
             *y = top + i32::from(place) / BLOCK;
         }
     }
 
-    /// Lists some pixels, whose slots are set at their places in the block.
+    /// Adds some pixels of a block.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 64")]
     fn put_some<S: Simd>(&mut self, simd: S, [left, top]: [i32; 2], pixels: u64) {
-        self.len = 0;
         for at in (0..BLOCK_PIXELS).step_by(16) {
             let some = pixels >> at & 0xffff;
             let mask = mask32x16::from_bitmask(simd, some);
@@ -229,7 +284,7 @@ impl Fragments {
             let to = self.len..self.len + 16;
             ((places & (BLOCK - 1)) + left).store_slice(&mut self.x[to.clone()]);
             ((places >> 3) + top).store_slice(&mut self.y[to.clone()]);
-            let slots = i32x16::from_slice(simd, &self.slots[at..at + 16]).compress(mask);
+            let slots = i32x16::from_slice(simd, &self.own_slots[at..at + 16]).compress(mask);
             slots.store_slice(&mut self.slots[to.clone()]);
             for (pixel, place) in self.pixels[to].iter_mut().zip(<[i32; 16]>::from(places)) {
                 *pixel = place as u8;
@@ -240,7 +295,7 @@ impl Fragments {
 
     #[inline(always)]
     fn put(&mut self, [left, top]: [i32; 2], place: u8, slot: i32) -> usize {
-        let i = self.len % BLOCK_PIXELS;
+        let i = self.len.min(BATCH - 1);
         self.pixels[i] = place;
         self.x[i] = left + i32::from(place) % BLOCK;
         self.y[i] = top + i32::from(place) / BLOCK;
@@ -259,7 +314,8 @@ impl Fragments {
 
     /// Empties the list, for fragments that share pixels.
     pub(crate) fn begin_shared(&mut self) {
-        (self.len, self.shared) = (0, true);
+        self.begin_block();
+        self.shared = true;
         self.begin_list();
     }
 
@@ -285,7 +341,8 @@ impl Fragments {
             new[slot] = i32::try_from(self.count).expect("there are 64 slots");
             self.count += 1;
         }
-        (self.len, self.shared) = (0, other.shared);
+        self.begin_block();
+        self.shared = other.shared;
         for (from, place) in other.pixels[..other.len].iter().enumerate() {
             let slot = other.slots[from].cast_unsigned() as usize;
             if keep[slot] {
@@ -295,9 +352,9 @@ impl Fragments {
         }
     }
 
-    /// Whether the list is the whole block, pixel by pixel in order.
+    /// Whether the list is one whole block, pixel by pixel in order.
     pub(crate) const fn is_whole(&self) -> bool {
-        self.len == BLOCK_PIXELS
+        self.len == BLOCK_PIXELS && !self.several
     }
 }
 
@@ -315,6 +372,11 @@ pub(crate) struct Runs {
 }
 
 impl Runs {
+    /// The runs of a block.
+    pub(crate) fn of(level: Level, visibility: &[u64; BLOCK_PIXELS]) -> Self {
+        dispatch!(level, simd => Self::find(simd, visibility))
+    }
+
     #[inline(always)]
     pub(crate) fn find<S: Simd>(simd: S, visibility: &[u64; BLOCK_PIXELS]) -> Self {
         // The number of the background is not that of any triangle.
@@ -338,6 +400,16 @@ impl Runs {
     /// The pixels at which runs of triangles begin that do not show in the row above.
     pub(crate) const fn new_starts(&self) -> u64 {
         self.triangles & !self.left & !self.above
+    }
+
+    /// The pixels at which runs of triangles begin, in each row of the block.
+    const fn starts(&self) -> u64 {
+        self.triangles & (!self.left | FIRST_COLUMN)
+    }
+
+    /// What the block shows.
+    const fn shown(&self) -> Shown {
+        Shown { triangles: self.triangles, lines: !self.triangles & !self.background }
     }
 
     /// The pixels at which runs of anything begin, in each row of the block.
@@ -404,6 +476,50 @@ mod tests {
             }
         }
         assert!((500..4000).contains(&went_on), "{went_on}");
+    }
+
+    #[test]
+    fn blocks_that_are_listed_together_keep_their_pixels_and_triangles() {
+        let mut state = 1_u64;
+        let mut fragments = Fragments::default();
+        let (mut joined, mut full) = (0, 0);
+        for round in 0..1000_u32 {
+            let first = round * 5;
+            let mut want = Vec::new();
+            for block in 0..12 {
+                // Bands of two columns, some with holes.
+                let visibility: [u64; BLOCK_PIXELS] = std::array::from_fn(|i| {
+                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                    match (state >> 40) as u32 % 4 {
+                        0 if block % 3 != 2 => 0,
+                        _ => word(first + (block + i as u32 % 8 / 2) % 9),
+                    }
+                });
+                let corner = [8 * block.cast_signed(), 16];
+                let runs = Runs::of(Level::new(), &visibility);
+                if block == 0 {
+                    fragments.list_runs(Level::new(), &runs, corner, 32);
+                } else if fragments.have_room(&runs, 32) {
+                    fragments.list_more(Level::new(), &runs, corner);
+                    joined += 1;
+                } else {
+                    full += 1;
+                    break;
+                }
+                let shown = (0..BLOCK_PIXELS).filter(|i| visibility[*i] != 0);
+                want.extend(shown.map(|i| {
+                    let (x, y) = (corner[0] + i as i32 % 8, 16 + i as i32 / 8);
+                    (i as u8, x, y, visibility[i])
+                }));
+            }
+            assert!(fragments.len <= BATCH && !fragments.is_whole());
+            let got = (0..fragments.len).map(|k| {
+                let number = fragments.numbers[fragments.slots[k] as usize];
+                (fragments.pixels[k], fragments.x[k], fragments.y[k], word(number))
+            });
+            assert_eq!(got.collect::<Vec<_>>(), want, "{round}");
+        }
+        assert!(joined > 2000 && full > 900, "{joined} {full}");
     }
 
     #[test]

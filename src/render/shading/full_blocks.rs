@@ -10,7 +10,7 @@ use fearless_simd::{
 
 use super::interpolate::{CornerValues, Look, depth_between};
 use super::quantize::reflected;
-use super::texels::{OfFirst, PlacedTexture, product};
+use super::texels::{OfFirst, PlacedTexture, TexelScratch, product};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{Interpolation, Normalising};
 use crate::base::color::Color;
@@ -21,8 +21,8 @@ use crate::render::screen::perspective::{between, weighed};
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{BATCH, Encoding, Lanes as _, Sixteen, VariantLanes, Vec3};
-use crate::render::texture::lanes::{Stored, TexelPlaces};
+use crate::render::simd::{Encoding, Lanes as _, Sixteen, VariantLanes, Vec3};
+use crate::render::texture::lanes::Stored;
 
 /// The pixels of a tile, in rows that begin `stride` pixels apart.
 #[derive(Debug)]
@@ -312,7 +312,7 @@ pub(crate) struct Corners<'a> {
     /// By which interpolation, if not.
     pub(crate) interpolation: Interpolation,
     /// The rounding thresholds of a block's pixels.
-    pub(crate) thresholds: &'a [f32; BATCH],
+    pub(crate) thresholds: &'a [f32; BLOCK_PIXELS],
 }
 
 /// Interpolates the colours of the first triangle in blocks that it covers fully. Returns false,
@@ -360,11 +360,11 @@ pub(crate) fn light(
     level: Level,
     attributes: &TriangleAttributes<f32>,
     blocks: Blocks,
-    (light, batch): (BlockLight<'_, f32>, &mut Batch<f32>),
+    (light, batch, scratch): (BlockLight<'_, f32>, &mut Batch<f32>, &mut TexelScratch),
     canvas: &mut Canvas<'_>,
 ) -> bool {
     with_points!(level, attributes, light.by, simd, points => {
-        lit(simd, attributes, points, blocks, (light, &mut *batch), canvas);
+        lit(simd, attributes, points, blocks, (light, &mut *batch, &mut *scratch), canvas);
     })
 }
 
@@ -374,7 +374,7 @@ fn lit<S: Simd>(
     attributes: &TriangleAttributes<f32>,
     points: impl Points<S>,
     blocks: Blocks,
-    (light, batch): (BlockLight<'_, f32>, &mut Batch<f32>),
+    (light, batch, scratch): (BlockLight<'_, f32>, &mut Batch<f32>, &mut TexelScratch),
     canvas: &mut Canvas<'_>,
 ) {
     let lanes = Sixteen(simd);
@@ -389,8 +389,7 @@ fn lit<S: Simd>(
     let [left, top] = blocks.corner;
     batch.len = BLOCK_PIXELS;
     let mut is_lit = false;
-    let mut places = TexelPlaces::default();
-    let (mut texels, mut colors) = ([[0.0; BATCH]; 3], [[0.0; BATCH]; 3]);
+    let TexelScratch { places, texels, colors } = scratch;
     blocks.each(
         #[inline(always)]
         |[column, row]| {
@@ -425,23 +424,22 @@ fn lit<S: Simd>(
                             Some(far) => far.of_two_rows(simd, [x, y]),
                             None => texture.position(simd, &OfFirst, way),
                         };
-                        let to = (&mut places, 16 * pair);
+                        let to = (&mut *places, 16 * pair);
                         texture.put(simd, &OfFirst, (way, w), position, to);
                     }
                     if let Some(values) = vertex_colors {
                         let color = between(self::corners(lanes, values), weights);
-                        store(lanes, color, &mut colors, 16 * pair);
+                        store(lanes, color, colors, 16 * pair);
                     }
                 }
             }
             if let Some(texture) = &texture {
-                texture.sampler.sample::<S, Stored>(simd, &mut places, BLOCK_PIXELS, &mut texels);
+                texture.sampler.sample::<S, Stored>(simd, places, BLOCK_PIXELS, texels);
             }
             if let Some(lights) = &lights
                 && (look.is_some() || !is_lit)
             {
                 is_lit = true;
-                batch.darken();
                 lights.light_batch(terms, simd.level(), batch, None);
             }
             let mut at = canvas.offset([column as usize, row as usize]);
@@ -449,10 +447,10 @@ fn lit<S: Simd>(
                 let mut pixels = [0; 16];
                 let mut own = tint;
                 if texture.is_some() {
-                    own = product(own, load(lanes, &texels, 16 * pair));
+                    own = product(own, load(lanes, texels, 16 * pair));
                 }
                 if vertex_colors.is_some() {
-                    own = product(own, load(lanes, &colors, 16 * pair));
+                    own = product(own, load(lanes, colors, 16 * pair));
                 }
                 let mut color = match lights {
                     Some(_) => reflected(lanes, own, batch, 16 * pair),
@@ -525,7 +523,7 @@ fn mixed<S: Simd>(
     attributes: &TriangleAttributes<f32>,
     points: impl Points<S>,
     blocks: Blocks,
-    (thresholds, canvas): (&[f32; BATCH], &mut Canvas<'_>),
+    (thresholds, canvas): (&[f32; BLOCK_PIXELS], &mut Canvas<'_>),
 ) {
     let lanes = Sixteen(simd);
     let corners = corners(lanes, &attributes.values);

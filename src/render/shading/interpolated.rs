@@ -10,7 +10,7 @@ use super::barycentrics::{Barycentrics, Clamp, Weigh};
 use super::fragments::Fragments;
 use super::full_blocks::{self, BlockLight, Blocks, Canvas, Corners, Linear as _, Wide};
 use super::spans::interpolate_spans;
-use super::texels::TextureSamples;
+use super::texels::{TexelScratch, TextureSamples};
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
 use crate::accuracy::{Coverage, Interpolation, Settings};
 use crate::render::frame::FramePlan;
@@ -56,7 +56,7 @@ pub(crate) trait Interpolated: AttributeNumber {
         level: Level,
         attributes: &TriangleAttributes<Self>,
         blocks: Blocks,
-        light: (BlockLight<'_, Self>, &mut Batch<Self>),
+        light: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
         to: &mut Canvas<'_>,
     ) -> bool;
     /// Multiplies the colours of fragments by those of a texture, if that can be done sixteen
@@ -65,14 +65,14 @@ pub(crate) trait Interpolated: AttributeNumber {
         level: Level,
         count: usize,
         samples: &TextureSamples<'_, Self>,
-        to: &mut Rows<Self>,
+        to: (&mut TexelScratch, &mut Rows<Self>),
     ) -> u64;
     /// The slopes of heights at fragments, as [`TextureSamples::slopes`], likewise.
     fn find_slopes(
         level: Level,
         count: usize,
         samples: &TextureSamples<'_, Self>,
-        to: &mut Rows<Self>,
+        to: (&mut TexelScratch, &mut Rows<Self>),
     ) -> u64;
 }
 
@@ -205,7 +205,7 @@ impl Interpolated for f64 {
         _: Level,
         _: &TriangleAttributes<Self>,
         _: Blocks,
-        _: (BlockLight<'_, Self>, &mut Batch<Self>),
+        _: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
         _: &mut Canvas<'_>,
     ) -> bool {
         false
@@ -215,12 +215,17 @@ impl Interpolated for f64 {
         _: Level,
         _: usize,
         _: &TextureSamples<'_, Self>,
-        _: &mut Rows<Self>,
+        _: (&mut TexelScratch, &mut Rows<Self>),
     ) -> u64 {
         0
     }
 
-    fn find_slopes(_: Level, _: usize, _: &TextureSamples<'_, Self>, _: &mut Rows<Self>) -> u64 {
+    fn find_slopes(
+        _: Level,
+        _: usize,
+        _: &TextureSamples<'_, Self>,
+        _: (&mut TexelScratch, &mut Rows<Self>),
+    ) -> u64 {
         0
     }
 }
@@ -292,7 +297,7 @@ impl Interpolated for f32 {
         level: Level,
         attributes: &TriangleAttributes<Self>,
         blocks: Blocks,
-        light: (BlockLight<'_, Self>, &mut Batch<Self>),
+        light: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
         to: &mut Canvas<'_>,
     ) -> bool {
         full_blocks::light(level, attributes, blocks, light, to)
@@ -302,14 +307,14 @@ impl Interpolated for f32 {
         level: Level,
         count: usize,
         samples: &TextureSamples<'_, Self>,
-        to: &mut Rows<Self>,
+        (scratch, to): (&mut TexelScratch, &mut Rows<Self>),
     ) -> u64 {
         match samples.decoding {
             Decoding::Stored => paged!(count, PAGES => {
-                dispatch!(level, simd => samples.multiply::<_, Stored, PAGES>(simd, to));
+                dispatch!(level, simd => samples.multiply::<_, Stored, PAGES>(simd, scratch, to));
             }),
             Decoding::Linear => paged!(count, PAGES => {
-                dispatch!(level, simd => samples.multiply::<_, Linear, PAGES>(simd, to));
+                dispatch!(level, simd => samples.multiply::<_, Linear, PAGES>(simd, scratch, to));
             }),
         }
         samples.texture.placement.known
@@ -319,9 +324,11 @@ impl Interpolated for f32 {
         level: Level,
         count: usize,
         samples: &TextureSamples<'_, Self>,
-        to: &mut Rows<Self>,
+        (scratch, to): (&mut TexelScratch, &mut Rows<Self>),
     ) -> u64 {
-        paged!(count, PAGES => dispatch!(level, simd => samples.slopes::<_, PAGES>(simd, to)));
+        paged!(count, PAGES => {
+            dispatch!(level, simd => samples.slopes::<_, PAGES>(simd, scratch, to));
+        });
         samples.texture.placement.known
     }
 }

@@ -164,7 +164,7 @@ impl<T: ShadingNumber> Shader<T> {
         if context.frame.sample_positions().are_many() {
             self.fragments.share(&ONE);
         } else {
-            self.fragments.shares = ONE;
+            self.fragments.shares.fill(1);
         }
     }
 }

@@ -21,7 +21,7 @@ use crate::render::lights::{Batch, LightTerm, Together, load, set, store};
 use crate::render::plan::tile::TileLight;
 use crate::render::shadow::rays::{Origins, RayScratch};
 use crate::render::shadow::tracer::Tracer;
-use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
+use crate::render::simd::{Kernel, Lanes, Number, Real, Vec3};
 use crate::scene::{Facet, Normals, dvec3};
 
 /// Light at the vertices of a frame, and the transforms that lighting faces needs.
@@ -34,8 +34,11 @@ pub(crate) struct Lit<T> {
     to_view: Vec<ToView<T>>,
 }
 
-/// The light of a batch of vertices.
-type Lights<T> = [[T; 4]; BATCH];
+/// The number of vertices that are lit together: few enough that most of them are needed.
+const CHUNK: usize = 64;
+
+/// The light of some vertices.
+type Lights<T> = [[T; 4]; CHUNK];
 
 /// The light on one side of one draw by one pipeline, at its points or, with face normals, at its
 /// corners.
@@ -147,7 +150,7 @@ impl<T: ShadingNumber> Table<T> {
 
     /// Clears the table for a draw.
     fn clear(&mut self, draw: &Draw, shaded: &Shaded) {
-        let count = place_count(draw).div_ceil(BATCH);
+        let count = place_count(draw).div_ceil(CHUNK);
         let colored =
             shaded.texture.is_none() && !shaded.vertex_colors && !shaded.extras.reads_texels();
         self.tint = colored.then(|| shaded.tint.map(T::from_f64));
@@ -165,7 +168,7 @@ impl<T: ShadingNumber> Table<T> {
         lighting: &Lighting<'_, T>,
         (batch, scratch): (&mut Batch<T>, &mut RayScratch),
     ) -> [T; 4] {
-        let (chunk, at) = (place as usize / BATCH, place as usize % BATCH);
+        let (chunk, at) = (place as usize / CHUNK, place as usize % CHUNK);
         match self.diffuse[chunk].get() {
             Some(lights) => lights[at],
             None => self.light(chunk, lighting, (batch, scratch))[at],
@@ -175,8 +178,8 @@ impl<T: ShadingNumber> Table<T> {
     /// The specular light of a vertex whose diffuse light was read before.
     #[inline(always)]
     pub(crate) fn specular(&self, place: u32) -> [T; 4] {
-        let lights = self.specular[place as usize / BATCH].get();
-        lights.expect("it comes with diffuse light")[place as usize % BATCH]
+        let lights = self.specular[place as usize / CHUNK].get();
+        lights.expect("it comes with diffuse light")[place as usize % CHUNK]
     }
 
     /// Lights a batch of vertices, unless another thread does.
@@ -195,10 +198,9 @@ impl<T: ShadingNumber> Table<T> {
         let Lighting { level, draw, stages, terms, tracer } = *lighting;
         let to_view = self.to_view.expect("it was made ready");
         self.diffuse[chunk].get_or_init(|| {
-            put_places(draw, chunk * BATCH, batch);
+            put_places(draw, chunk * CHUNK, batch);
             let (positions, count) = (tracer.map(|_| batch.position), batch.len);
             T::run_variant(level, to_view.variant, Place { batch, to_view });
-            batch.darken();
             let mut place = |origins: &mut Origins| {
                 if let (Some(tracer), Some(positions)) = (tracer, &positions) {
                     place_vertices(tracer, positions, count, origins);
@@ -206,8 +208,8 @@ impl<T: ShadingNumber> Table<T> {
             };
             let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, scratch, &mut place));
             run(stages, terms, level, batch, shadows);
-            let mut diffuse = [[T::default(); 4]; BATCH];
-            let mut specular = [[T::default(); 4]; BATCH];
+            let mut diffuse = [[T::default(); 4]; CHUNK];
+            let mut specular = [[T::default(); 4]; CHUNK];
             let (tint, batch) = (self.tint, &*batch);
             T::run(level, Keep { batch, tint, to: [&mut diffuse, &mut specular] });
             if let Some(place) = self.specular.get(chunk) {
@@ -231,7 +233,7 @@ fn place_count(draw: &Draw) -> usize {
 /// Fills a batch with vertices of a draw, from `first` on.
 fn put_places<T: Number>(draw: &Draw, first: usize, batch: &mut Batch<T>) {
     let mesh = &draw.model.mesh;
-    batch.len = (place_count(draw) - first).min(BATCH);
+    batch.len = (place_count(draw) - first).min(CHUNK);
     match draw.normals {
         Normals::Vertex => {
             let order = mesh.draw_order();
@@ -399,7 +401,7 @@ impl<T: Number> Kernel<T> for Place<'_, T> {
     }
 }
 
-/// Adds the light of some stages at every position of a batch that sees it.
+/// Sets the light at every position of a batch to that of the stages which it sees.
 pub(crate) fn run<T: ShadingNumber>(
     stages: &[Stage],
     terms: &[LightTerm<T>],
@@ -408,15 +410,17 @@ pub(crate) fn run<T: ShadingNumber>(
     shadows: Option<BatchShadows<'_>>,
 ) {
     let Some(mut shadows) = shadows else {
-        return add_lights(stages.iter().zip(terms), level, batch);
+        return set_lights(stages.iter().zip(terms), level, batch);
     };
+    batch.darken();
     for (stage, term) in stages.iter().zip(terms) {
         shadows.add_light(stage, term, level, batch);
     }
 }
 
 impl TileLight<'_> {
-    /// Adds the light that reaches a tile at every position of a batch that sees it.
+    /// Sets the light at every position of a batch to that which reaches the tile and is seen
+    /// there.
     pub(crate) fn light_batch<T: ShadingNumber>(
         &self,
         terms: &[LightTerm<T>],
@@ -430,16 +434,17 @@ impl TileLight<'_> {
         let kept =
             kept.iter().map(|place| (&self.stages[*place as usize], &terms[*place as usize]));
         match &mut shadows {
-            None => add_lights(kept, level, batch),
+            None => set_lights(kept, level, batch),
             Some(shadows) => {
+                batch.darken();
                 kept.for_each(|(stage, term)| shadows.add_light(stage, term, level, batch));
             }
         }
     }
 }
 
-/// Adds the light of some stages at every position of a batch.
-fn add_lights<'a, T: ShadingNumber>(
+/// Sets the light at every position of a batch to that of some stages.
+fn set_lights<'a, T: ShadingNumber>(
     lights: impl Iterator<Item = (&'a Stage, &'a LightTerm<T>)> + Clone,
     level: Level,
     batch: &mut Batch<T>,
@@ -452,6 +457,7 @@ fn add_lights<'a, T: ShadingNumber>(
         );
         T::run(level, Together { batch, lights });
     } else {
+        batch.darken();
         lights.for_each(|(stage, term)| T::add_light(stage.variant(), level, batch, term));
     }
 }

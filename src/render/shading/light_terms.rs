@@ -10,8 +10,9 @@ use crate::render::frame::draw::{Pipeline, Shaded};
 use crate::render::frame::variants::Decoding;
 use crate::render::lights::{LightTerm, PhongMaterial};
 use crate::render::raster::hit_colors::Conversion;
+use crate::render::screen::tiles::BLOCK_PIXELS;
 use crate::render::simd::power::{Power, Tables};
-use crate::render::simd::{BATCH, Encoding, Number};
+use crate::render::simd::{Encoding, Number};
 use crate::render::texture::lanes::prepare_decoding;
 use crate::render::texture::mips::Mips;
 use crate::scene::Texture;
@@ -24,15 +25,15 @@ pub(crate) struct LightTerms<T> {
     /// Mip maps, if the filter needs them.
     mips: Vec<Mips>,
     /// The rounding thresholds of a block's pixels.
-    thresholds: Option<(Rounding, [f32; BATCH])>,
+    thresholds: Option<(Rounding, [f32; BLOCK_PIXELS])>,
     /// How colours are encoded, if they are linear.
     encoding: Option<Encoding>,
 }
 
 impl<T> LightTerms<T> {
     /// The rounding thresholds of a block's pixels; only after [`prepare`](Self::prepare).
-    pub(crate) fn thresholds(&self) -> &[f32; BATCH] {
-        self.thresholds.as_ref().map_or(&[0.5; BATCH], |(_, thresholds)| thresholds)
+    pub(crate) fn thresholds(&self) -> &[f32; BLOCK_PIXELS] {
+        self.thresholds.as_ref().map_or(&[0.5; BLOCK_PIXELS], |(_, thresholds)| thresholds)
     }
 }
 

@@ -8,7 +8,7 @@ use super::far_texture::FarTexture;
 use super::fragments::Fragments;
 use super::groups::Group;
 use super::interpolated::ShadingNumber;
-use super::texels::{PlacedTexture, TextureSamples, footprint, steps};
+use super::texels::{PlacedTexture, TexelScratch, TextureSamples, footprint, steps};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::Filter;
 use crate::base::Shared;
@@ -89,6 +89,8 @@ pub(crate) struct TexturePlacement {
     pub(super) placement: Placement,
     /// The triangles that f32 is not enough for.
     pub(super) far: Vec<FarTexture>,
+    /// For reading it.
+    pub(super) scratch: TexelScratch,
 }
 
 /// What is read from a map.
@@ -124,8 +126,9 @@ impl<T: ShadingNumber> Points<'_, T> {
             if new {
                 place(context, group, attributes, (source.texture, &sampler), placed);
             }
-            let texture =
-                PlacedTexture { placement: &placed.placement, far: &placed.far, sampler: &sampler };
+            let TexturePlacement { placement, far, scratch } = placed;
+            let texture = PlacedTexture { placement, far, sampler: &sampler };
+            let to = (scratch, &mut *to);
             let decoding = source.decoding;
             let samples = TextureSamples { fragments, barycentrics, texture, decoding };
             done = match what {
@@ -202,7 +205,7 @@ pub(super) fn place<T: ShadingNumber>(
     group: &Group<'_>,
     attributes: &TriangleAttributes<T>,
     (texture, sampler): (&Texture, &Sampler<'_>),
-    TexturePlacement { placement, far }: &mut TexturePlacement,
+    TexturePlacement { placement, far, .. }: &mut TexturePlacement,
 ) {
     placement.clear();
     far.clear();

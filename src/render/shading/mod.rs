@@ -5,6 +5,7 @@
 //! (`barycentrics`), interpolates attributes (`interpolate`), lights fragments per pixel, face or
 //! vertex (`light`) if they see the light (`shadows`), and multiplies with the colour of the
 //! surface (`textured`). `quantize` converts the result to bytes, and `resolve` averages samples.
+//! Blocks that show the same surface are `waiting` for each other, and coloured together.
 //! Blocks that one triangle covers fully (`blocks`) take all of these steps in one pass, without a
 //! list (`full_blocks`). Blocks that transparent triangles reach are coloured layer by layer
 //! (`layers`), each with its `opacity`, which `blend` lays over what is behind.
@@ -46,3 +47,4 @@ pub(crate) mod surface;
 mod texels;
 mod textured;
 pub(crate) mod triangle_attributes;
+mod waiting;

@@ -247,6 +247,7 @@ impl<T: ShadingNumber> Painter<T> {
             let fill = (!(is_filled && straight)).then_some(context.plan.background);
             let mut shows = true;
             if layered >> block & 1 != 0 {
+                self.shader.finish_waiting(context, canvas);
                 let mut sums = Sums::new(context.plan.variants.are_linear());
                 let corner = self.visibility.corner(block);
                 let Self { shader, visibility, layered, .. } = self;
@@ -257,6 +258,7 @@ impl<T: ShadingNumber> Painter<T> {
             } else if let Some((colors, are_known)) = self.visibility.colors(block) {
                 canvas.put(at, colors);
                 if !are_known {
+                    self.shader.finish_waiting(context, canvas);
                     let (others, corner) =
                         (self.visibility.uncolored(block), self.visibility.corner(block));
                     self.shader.block(context, &others, corner, (canvas, at), None);
@@ -273,7 +275,7 @@ impl<T: ShadingNumber> Painter<T> {
                         canvas.put(at, &colors[..BLOCK_PIXELS]);
                         visibility.iter().any(|word| *word != 0)
                     } else {
-                        self.shader.block(context, visibility, corner, (canvas, at), fill)
+                        self.shader.block_later(context, visibility, corner, (canvas, at), fill)
                     }
                 };
             } else {
@@ -284,6 +286,7 @@ impl<T: ShadingNumber> Painter<T> {
             }
             background_blocks |= u64::from(!shows) << block;
         }
+        self.shader.finish_waiting(context, canvas);
         background_blocks
     }
 

@@ -12,6 +12,7 @@ use super::fragments::Fragments;
 use super::quantize::SurfaceColor;
 use crate::accuracy::Rounding;
 use crate::render::lights::{Batch, load};
+use crate::render::screen::tiles::BLOCK_PIXELS;
 use crate::render::simd::{BATCH, Kernel, Lanes, Number, Vec3};
 
 /// The threshold that is added to 255 c at a pixel before it is truncated.
@@ -67,10 +68,12 @@ impl<T: Number> Thresholds<T> {
 }
 
 /// The thresholds of all pixels of a block, which are the same for every block.
-pub(crate) fn block_thresholds(rounding: Rounding) -> [f32; BATCH] {
+pub(crate) fn block_thresholds(rounding: Rounding) -> [f32; BLOCK_PIXELS] {
     let mut fragments = Fragments::default();
     fragments.list_full_block(0, [0; 2]);
-    *Thresholds::default().of(rounding, &fragments)
+    let mut thresholds = Thresholds::default();
+    let all = thresholds.of(rounding, &fragments);
+    std::array::from_fn(|i| all[i])
 }
 
 /// Converts colours to bytes, like [`Quantize`](super::quantize::Quantize), with a threshold per

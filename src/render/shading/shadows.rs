@@ -19,6 +19,7 @@ use crate::render::frame::draw::{Draw, Stage};
 use crate::render::lights::{Batch, LightTerm, Rows};
 use crate::render::shadow::known::{BatchPixels, KnownPixels};
 use crate::render::shadow::map_face::TAPS;
+use crate::render::shadow::packet::POINTS;
 use crate::render::shadow::patches::bits;
 use crate::render::shadow::rays::{Origins, RayScratch};
 use crate::render::shadow::tracer::Tracer;
@@ -99,7 +100,7 @@ impl<'a> BatchShadows<'a> {
         let Some(light) = self.tracer.light(stage.light) else {
             return T::add_light(stage.variant(), level, batch, term);
         };
-        let before = (batch.diffuse, batch.specular);
+        let before = (first(&batch.diffuse), first(&batch.specular));
         T::add_light(stage.variant(), level, batch, term);
         let lit = lit(level, batch, &before);
         if lit == 0 {
@@ -116,7 +117,10 @@ impl<'a> BatchShadows<'a> {
         };
         if shaded == lit {
             // What is not lit has not changed.
-            (batch.diffuse, batch.specular) = before;
+            let rows = batch.diffuse.iter_mut().chain(&mut batch.specular);
+            for (row, before) in rows.zip(before.0.iter().chain(&before.1)) {
+                row[..POINTS].copy_from_slice(before);
+            }
             return;
         }
         for i in bits(shaded) {
@@ -137,9 +141,16 @@ impl<'a> BatchShadows<'a> {
     }
 }
 
-/// The positions of a batch whose light has changed, a bit for each.
-fn lit<T: Number>(level: Level, batch: &Batch<T>, before: &(Rows<T>, Rows<T>)) -> u64 {
-    let mut changed = [0_u32; BATCH];
+/// The first numbers of three rows: a batch that shadows fall on has no more.
+type Firsts<T> = [[T; POINTS]; 3];
+
+fn first<T: Number>(rows: &Rows<T>) -> Firsts<T> {
+    std::array::from_fn(|i| *rows[i].first_chunk().expect("a batch has room for more"))
+}
+
+/// The positions of a batch, of [`POINTS`] at most, whose light has changed, a bit for each.
+fn lit<T: Number>(level: Level, batch: &Batch<T>, before: &(Firsts<T>, Firsts<T>)) -> u64 {
+    let mut changed = [0_u32; POINTS];
     let rows = batch.diffuse.iter().chain(&batch.specular);
     for (row, before) in rows.zip(before.0.iter().chain(&before.1)) {
         for ((changed, now), before) in changed.iter_mut().zip(row).zip(before) {
@@ -147,15 +158,15 @@ fn lit<T: Number>(level: Level, batch: &Batch<T>, before: &(Rows<T>, Rows<T>)) -
         }
     }
     let lit = dispatch!(level, simd => bit_of_each(simd, &changed));
-    lit & u64::MAX >> (BATCH - batch.len)
+    lit & u64::MAX >> (POINTS - batch.len)
 }
 
 /// A bit for each number that is not 0.
 #[inline(always)]
-fn bit_of_each<S: Simd>(simd: S, numbers: &[u32; BATCH]) -> u64 {
+fn bit_of_each<S: Simd>(simd: S, numbers: &[u32; POINTS]) -> u64 {
     let zero = u32x16::splat(simd, 0);
     let mut bits = 0;
-    for at in (0..BATCH).step_by(16) {
+    for at in (0..POINTS).step_by(16) {
         let some = u32x16::from_slice(simd, &numbers[at..at + 16]);
         bits |= some.simd_gt(zero).to_bitmask() << at;
     }

@@ -56,9 +56,8 @@ impl<T: ShadingNumber> Shader<T> {
         let mut left = &new[..count];
         while let Some(first) = left.first() {
             let group = group_of(context, *first);
-            let end = context.frame.draw_of(*first).1.end;
             let is_alike = |number: &u32| {
-                (group.base..end).contains(number)
+                (group.base..group.end).contains(number)
                     && (group.draw.uniform.is_some()
                         || group.draw.pipeline_of(number - group.base) == group.pipeline)
             };

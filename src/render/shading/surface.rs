@@ -10,7 +10,7 @@ use super::blend::Blend;
 use super::bumps::bend;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
-use super::fragments::Fragments;
+use super::fragments::{Fragments, Shown};
 use super::full_blocks::Canvas;
 use super::groups::{Group, group_of, one_group};
 use super::interpolate::{CornerValues, Look, Mixed, mix, surface_samples};
@@ -63,9 +63,18 @@ pub(crate) struct Shader<T> {
     prepares_little: bool,
     /// The triangles of a tile that have to be lit.
     pub(super) new_faces: Vec<u32>,
+    /// The blocks whose pixels are listed and wait to be coloured.
+    pub(super) waiting: Vec<Waiting>,
     /// Where runs of pixels that show the same begin in each block of a tile, if colours of
     /// triangles are looked up.
     pub(super) runs: [u64; BLOCK_PIXELS],
+}
+
+/// A block whose pixels are listed: from a fragment on, for a place in the tile.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Waiting {
+    pub(super) from: usize,
+    pub(super) at: usize,
 }
 
 /// The destination of a block's colours.
@@ -73,6 +82,8 @@ pub(crate) struct Shader<T> {
 pub(crate) enum Out<'a, 'b> {
     /// A tile, from an index on.
     Tile(&'a mut Canvas<'b>, usize),
+    /// The blocks of a tile that wait.
+    Waiting(&'a mut Canvas<'b>),
     /// The sums over several samples.
     Sums(&'a mut Sums),
     /// The same, and what later passes need not light again.
@@ -110,6 +121,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             look: None,
             prepares_little: false,
             new_faces: Vec::new(),
+            waiting: Vec::new(),
             runs: [0; BLOCK_PIXELS],
         }
     }
@@ -141,20 +153,7 @@ impl<T: ShadingNumber> Shader<T> {
     ) -> bool {
         let most = self.most_slots(context);
         let shown = self.fragments.list_on(context.level, visibility, corner, most);
-        if let Some(color) = fill
-            && (shown.triangles | shown.lines) != u64::MAX
-        {
-            canvas.fill(at, color);
-        }
-        let mut lines = shown.lines;
-        while lines != 0 {
-            let i = lines.trailing_zeros() as usize;
-            lines &= lines - 1;
-            if let Visible::Line(line) = seen(visibility[i]) {
-                canvas.pixels[at + canvas.offset(in_block(i))] =
-                    context.frame.line_color(context.plan, line);
-            }
-        }
+        put_others(context, visibility, shown, (canvas, at), fill);
         if shown.triangles != 0 {
             let out = &mut Out::Tile(canvas, at);
             if let Some(group) = one_group(context, &self.fragments) {
@@ -170,10 +169,10 @@ impl<T: ShadingNumber> Shader<T> {
         (shown.triangles | shown.lines) != 0
     }
 
-    /// The number of slots up to which triangles of neighbouring blocks share a list, so that those
-    /// which reach into several blocks are prepared once; 0 if that does not pay: with light per
-    /// face, all slots are lit for each block.
-    fn most_slots(&self, context: &ShadingContext<'_, T>) -> usize {
+    /// The number of slots up to which triangles of a list keep theirs for the next one, so that
+    /// those which reach into several blocks are prepared once; 0 if that does not pay: with light
+    /// per face, all slots are lit for each list.
+    pub(super) fn most_slots(&self, context: &ShadingContext<'_, T>) -> usize {
         let is_lit_once = context.plan.light_at == LightAt::Face;
         let pays = !is_lit_once && self.prepares_little && self.attributes.may_go_on();
         if pays { most_gathered(context.level) } else { 0 }
@@ -202,7 +201,7 @@ impl<T: ShadingNumber> Shader<T> {
         out: &mut Out<'_, '_>,
     ) {
         self.fragments.list_full_block(number, corner);
-        self.fragments.shares = [ALL; BLOCK_PIXELS];
+        self.fragments.shares = [ALL; BATCH];
         self.color_group(context, &group_of(context, number), out);
     }
 
@@ -214,13 +213,14 @@ impl<T: ShadingNumber> Shader<T> {
         out: &mut Out<'_, '_>,
     ) {
         self.colors.form = match out {
-            Out::Tile(..) => Form::Pixels,
+            Out::Tile(..) | Out::Waiting(_) => Form::Pixels,
             Out::Sums(_) | Out::Kept(..) | Out::Layer(_) => Form::Parts,
         };
         self.colors.linear = context.plan.variants.are_linear();
         self.group(context, group);
         match out {
             Out::Tile(canvas, at) => self.copy(canvas, *at),
+            Out::Waiting(canvas) => self.copy_waiting(canvas),
             Out::Sums(sums) => {
                 let Fragments { len, pixels, shares, .. } = &self.fragments;
                 sums.add_all(&self.colors, &pixels[..*len], &shares[..*len]);
@@ -266,10 +266,9 @@ impl<T: ShadingNumber> Shader<T> {
                 continue;
             }
             let group = group_of(context, all.numbers[slot]);
-            let end = context.frame.draw_of(all.numbers[slot]).1.end;
             let mut keep = [false; SLOTS];
             for (other, number) in all.numbers[..all.count].iter().enumerate().skip(slot) {
-                keep[other] = (group.base..end).contains(number)
+                keep[other] = (group.base..group.end).contains(number)
                     && group.draw.pipeline_of(number - group.base) == group.pipeline;
                 done[other] |= keep[other];
             }
@@ -282,7 +281,7 @@ impl<T: ShadingNumber> Shader<T> {
     /// Copies the colours into the tile.
     fn copy(&self, canvas: &mut Canvas<'_>, at: usize) {
         if self.fragments.is_whole() {
-            canvas.put(at, &self.colors.pixels);
+            canvas.put(at, &self.colors.pixels[..BLOCK_PIXELS]);
         } else {
             let pixels = &self.fragments.pixels[..self.fragments.len];
             for (i, color) in pixels.iter().zip(&self.colors.pixels) {
@@ -375,7 +374,7 @@ impl<T: ShadingNumber> Shader<T> {
             T::run(level, QuantizeWithThresholds { batch, lit, own, thresholds, colors });
         }
         if !(located || each) {
-            self.colors.hand_out(&self.fragments.slots);
+            self.colors.hand_out(&self.fragments.slots[..self.fragments.len]);
         }
     }
 
@@ -444,7 +443,6 @@ impl<T: ShadingNumber> Shader<T> {
             // The attributes were not fetched, so the next block must not reuse them.
             attributes.forget();
         }
-        batch.darken();
         let tracer = context.tracer_of(group.draw_index).filter(|_| light.needs_positions);
         let mut place = |origins: &mut Origins| {
             if let Some(tracer) = tracer {
@@ -531,7 +529,6 @@ impl<T: ShadingNumber> Shader<T> {
         let Self { fragments, attributes, batch, rays, .. } = self;
         batch.len = attributes.count;
         lit.place_faces(level, (group.draw_index, group.draw), attributes, batch);
-        batch.darken();
         let tracer = context.tracer_of(group.draw_index);
         let mut place = |origins: &mut Origins| {
             if let Some(tracer) = tracer {
@@ -552,7 +549,32 @@ impl<T: ShadingNumber> Shader<T> {
     }
 }
 
+/// Colours the pixels of a block that show no triangles, as [`Shader::block`].
+#[inline(always)]
+pub(super) fn put_others<T>(
+    context: &ShadingContext<'_, T>,
+    visibility: &[u64; BLOCK_PIXELS],
+    shown: Shown,
+    (canvas, at): (&mut Canvas<'_>, usize),
+    fill: Option<Color>,
+) {
+    if let Some(color) = fill
+        && (shown.triangles | shown.lines) != u64::MAX
+    {
+        canvas.fill(at, color);
+    }
+    let mut lines = shown.lines;
+    while lines != 0 {
+        let i = lines.trailing_zeros() as usize;
+        lines &= lines - 1;
+        if let Visible::Line(line) = seen(visibility[i]) {
+            canvas.pixels[at + canvas.offset(in_block(i))] =
+                context.frame.line_color(context.plan, line);
+        }
+    }
+}
+
 /// Column and row of pixel `i` of a block.
-const fn in_block(i: usize) -> [usize; 2] {
+pub(super) const fn in_block(i: usize) -> [usize; 2] {
     [i % BLOCK as usize, i / BLOCK as usize]
 }

@@ -38,6 +38,22 @@ pub(crate) struct TextureSamples<'a, T> {
     pub(crate) decoding: Decoding,
 }
 
+/// What sampling writes. It is kept from list to list, so that none of it has to be cleared.
+#[derive(Debug)]
+pub(crate) struct TexelScratch {
+    pub(crate) places: TexelPlaces,
+    pub(crate) texels: Rows<f32>,
+    /// The vertex colours of a full block.
+    pub(crate) colors: Rows<f32>,
+}
+
+impl Default for TexelScratch {
+    fn default() -> Self {
+        let rows = [[0.0; BATCH]; 3];
+        Self { places: TexelPlaces::default(), texels: rows, colors: rows }
+    }
+}
+
 impl TextureSamples<'_, f32> {
     /// Multiplies colours by the texels of all fragments; those of triangles whose placement is not
     /// known get arbitrary factors.
@@ -45,15 +61,15 @@ impl TextureSamples<'_, f32> {
     pub(crate) fn multiply<S: Simd, D: Decode, const PAGES: usize>(
         &self,
         simd: S,
+        TexelScratch { places, texels, .. }: &mut TexelScratch,
         to: &mut Rows<f32>,
     ) {
         let Self { fragments, texture, .. } = *self;
         let lanes = Sixteen(simd);
-        let (mut places, mut texels) = (TexelPlaces::default(), [[0.0; BATCH]; 3]);
-        self.place::<S, PAGES>(simd, &mut places);
-        texture.sampler.sample::<S, D>(simd, &mut places, fragments.len, &mut texels);
+        self.place::<S, PAGES>(simd, places);
+        texture.sampler.sample::<S, D>(simd, places, fragments.len, texels);
         for at in (0..fragments.len).step_by(16) {
-            let texel = load(lanes, &texels, at);
+            let texel = load(lanes, texels, at);
             store(lanes, product(load(lanes, to, at), texel), to, at);
         }
     }
@@ -79,11 +95,15 @@ impl TextureSamples<'_, f32> {
 
     /// The slopes of heights at all fragments, per texel along u and v, in the first two rows.
     #[inline(always)]
-    pub(crate) fn slopes<S: Simd, const PAGES: usize>(&self, simd: S, to: &mut Rows<f32>) {
+    pub(crate) fn slopes<S: Simd, const PAGES: usize>(
+        &self,
+        simd: S,
+        TexelScratch { places, texels, .. }: &mut TexelScratch,
+        to: &mut Rows<f32>,
+    ) {
         let Self { fragments, texture, .. } = *self;
         let lanes = Sixteen(simd);
-        let (mut places, mut texels) = (TexelPlaces::default(), [[0.0; BATCH]; 3]);
-        self.place::<S, PAGES>(simd, &mut places);
+        self.place::<S, PAGES>(simd, places);
         let own = places.position;
         let mut heights = [[0.0; BATCH]; 4];
         let beside = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
@@ -94,9 +114,9 @@ impl TextureSamples<'_, f32> {
                     lanes.store(position, &mut places.position[axis], at);
                 }
             }
-            texture.sampler.sample::<S, Stored>(simd, &mut places, fragments.len, &mut texels);
+            texture.sampler.sample::<S, Stored>(simd, places, fragments.len, texels);
             for at in (0..fragments.len).step_by(16) {
-                lanes.store(brightness(load(lanes, &texels, at)), heights, at);
+                lanes.store(brightness(load(lanes, texels, at)), heights, at);
             }
         }
         let [right, left, above, below] = &heights;

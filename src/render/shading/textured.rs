@@ -24,7 +24,7 @@ impl<T: ShadingNumber> Shader<T> {
         new: bool,
     ) {
         for (row, tint) in self.texels.iter_mut().zip(shaded.tint) {
-            row.fill(T::from_f64(tint));
+            row[..self.fragments.len].fill(T::from_f64(tint));
         }
         if let Some(texture) = &shaded.texture {
             let source = TexelSource::of_colors(context, texture);

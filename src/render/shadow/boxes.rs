@@ -8,8 +8,8 @@
 use fearless_simd::{Simd, SimdBase as _, SimdMask as _, f32x16};
 use glam::{DMat4, DVec3};
 
+use super::packet::POINTS;
 use super::rays::LocalRays;
-use crate::render::simd::BATCH;
 use crate::scene::Bounds;
 
 /// The error of a position and of a parameter in f32, relative to the largest coordinate: four
@@ -31,16 +31,16 @@ impl LocalRays {
     pub(super) fn set(
         &mut self,
         object_from_world: &DMat4,
-        (at, light): (&[[f64; BATCH]; 3], DVec3),
+        (at, light): (&[[f64; POINTS]; 3], DVec3),
         (bounds, reach): (Bounds, f64),
     ) {
         let m = object_from_world;
         let end = m.transform_point3(light);
-        let (mut ways, mut length, mut largest) = ([[0.0; BATCH]; 3], [0.0; BATCH], DVec3::ZERO);
+        let (mut ways, mut length, mut largest) = ([[0.0; POINTS]; 3], [0.0; POINTS], DVec3::ZERO);
         for axis in 0..3 {
             let [a, b, c, d] = [m.x_axis[axis], m.y_axis[axis], m.z_axis[axis], m.w_axis[axis]];
             let mut most = [0.0; 8];
-            for first in (0..BATCH).step_by(8) {
+            for first in (0..POINTS).step_by(8) {
                 for i in first..first + 8 {
                     let from = at[0][i] * a + at[1][i] * b + at[2][i] * c + d;
                     let way = end[axis] - from;
@@ -81,7 +81,7 @@ impl LocalRays {
         mask: u64,
     ) -> u64 {
         let mut met = 0;
-        for at in (0..BATCH).step_by(16) {
+        for at in (0..POINTS).step_by(16) {
             if mask >> at & 0xffff == 0 {
                 continue;
             }

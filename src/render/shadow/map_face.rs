@@ -2,8 +2,8 @@
 
 use glam::DMat4;
 
+use super::packet::POINTS;
 use crate::render::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE_SIDE};
-use crate::render::simd::BATCH;
 
 /// A picture of depths; 0 where nothing is.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ pub(crate) struct Reading {
     /// Those that some texels do, and others do not.
     pub(crate) partly: u64,
     /// For those the number of texels that do.
-    pub(crate) open: [u8; BATCH],
+    pub(crate) open: [u8; POINTS],
 }
 
 impl Face {
@@ -79,17 +79,17 @@ impl LightMap {
         clippy::cast_precision_loss,
         reason = "inside of a map"
     )]
-    pub(crate) fn read(&self, at: &[[f64; BATCH]; 3], mask: u64) -> Reading {
-        let mut reading = Reading { occluded: 0, partly: 0, open: [0; BATCH] };
-        let [mut x, mut y, mut z] = [[0.0_f64; BATCH]; 3];
+    pub(crate) fn read(&self, at: &[[f64; POINTS]; 3], mask: u64) -> Reading {
+        let mut reading = Reading { occluded: 0, partly: 0, open: [0; POINTS] };
+        let [mut x, mut y, mut z] = [[0.0_f64; POINTS]; 3];
         let mut left = mask;
         for face in &self.faces {
             let side = face.side as f64;
-            let mut is_inside = [0_u8; BATCH];
+            let mut is_inside = [0_u8; POINTS];
             let row = |row: &[f64; 4], i: usize| {
                 row[0] * at[0][i] + row[1] * at[1][i] + row[2] * at[2][i] + row[3]
             };
-            for i in 0..BATCH {
+            for i in 0..POINTS {
                 let w = row(&face.rows[3], i);
                 let by = 1.0 / w;
                 (x[i], y[i]) = (row(&face.rows[0], i) * by, row(&face.rows[1], i) * by);

@@ -6,9 +6,9 @@
 
 use glam::DVec3;
 
+use super::packet::POINTS;
 use super::shaft::Around;
 use crate::base::math::each;
-use crate::render::simd::BATCH;
 
 /// Points that lie close to each other.
 #[derive(Clone, Copy, Debug)]
@@ -29,12 +29,12 @@ const EMPTY: u32 = 4;
 /// tells the normal of the triangle that a point lies in, if it lies in one.
 #[inline(always)]
 pub(super) fn find_patches(
-    at: &[[f64; BATCH]; 3],
+    at: &[[f64; POINTS]; 3],
     len: usize,
     normal: impl Fn(usize) -> Option<DVec3>,
     patches: &mut Vec<Patch>,
 ) {
-    let mut open = vec![u64::MAX >> (BATCH - len)];
+    let mut open = vec![u64::MAX >> (POINTS - len)];
     while let Some(points) = open.pop() {
         let around = if points.count_ones() as usize == len {
             around(at, points, &normal)
@@ -50,9 +50,9 @@ pub(super) fn find_patches(
 }
 
 /// The points of a mask; in place of all others, the first of them.
-fn only(at: &[[f64; BATCH]; 3], points: u64) -> [[f64; BATCH]; 3] {
+fn only(at: &[[f64; POINTS]; 3], points: u64) -> [[f64; POINTS]; 3] {
     let first = nth(points, 0);
-    let mut some = each([0, 1, 2], |axis: usize| [at[axis][first]; BATCH]);
+    let mut some = each([0, 1, 2], |axis: usize| [at[axis][first]; POINTS]);
     for i in bits(points) {
         for (to, from) in some.iter_mut().zip(at) {
             to[i] = from[i];
@@ -64,7 +64,7 @@ fn only(at: &[[f64; BATCH]; 3], points: u64) -> [[f64; BATCH]; 3] {
 /// The box of some points, which are all that a list has: along the triangle of one in their middle
 /// or, if that is unknown, along three of the points.
 #[inline(always)]
-fn around(at: &[[f64; BATCH]; 3], points: u64, normal: impl Fn(usize) -> Option<DVec3>) -> Around {
+fn around(at: &[[f64; POINTS]; 3], points: u64, normal: impl Fn(usize) -> Option<DVec3>) -> Around {
     let count = points.count_ones() as usize;
     let point = |n: usize| {
         let i = nth(points, n);
@@ -78,13 +78,13 @@ fn around(at: &[[f64; BATCH]; 3], points: u64, normal: impl Fn(usize) -> Option<
 /// The points on both sides of the first wide gap along their box, if there is one.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 16")]
-fn divided(at: &[[f64; BATCH]; 3], points: u64, around: &Around) -> Option<[u64; 2]> {
+fn divided(at: &[[f64; POINTS]; 3], points: u64, around: &Around) -> Option<[u64; 2]> {
     let [a, b, c] = around.halves.map(DVec3::length_squared);
     let longest = around.halves[if a >= b && a >= c { 0 } else { usize::from(c > b) + 1 }];
     // Along the longest edge, from -1 to 1.
     let along = longest / longest.length_squared();
     let offset = 1.0 - around.centre.dot(along);
-    let mut places = [0; BATCH];
+    let mut places = [0; POINTS];
     for (i, place) in places.iter_mut().enumerate() {
         let x = at[0][i] * along.x + at[1][i] * along.y + at[2][i] * along.z;
         *place = ((x + offset) * 8.0) as u32;

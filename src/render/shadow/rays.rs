@@ -2,21 +2,21 @@
 
 use glam::DVec3;
 
+use super::packet::POINTS;
 use super::patches::{Patch, find_patches};
 use super::prepared_block::PreparedBlock;
 use super::shaft::Shaft;
-use crate::render::simd::BATCH;
 use crate::scene::TreeChild;
 
-/// The origins of up to 64 rays, in world space, all on one object.
+/// The origins of up to [`POINTS`] rays, in world space, all on one object.
 #[derive(Debug)]
 pub(crate) struct Origins {
-    pub(crate) at: [[f64; BATCH]; 3],
+    pub(crate) at: [[f64; POINTS]; 3],
     /// The caster that they lie on, if it casts shadows itself.
     pub(crate) caster: Option<u32>,
     /// The triangles of that caster that each lies on: from the first to the one before `end`.
-    pub(crate) first: [u32; BATCH],
-    pub(crate) end: [u32; BATCH],
+    pub(crate) first: [u32; POINTS],
+    pub(crate) end: [u32; POINTS],
     /// Whether each point lies in the one triangle that `first` names. Otherwise it is exact.
     pub(crate) in_triangle: bool,
     /// The largest coordinate of the triangles that they lie in.
@@ -31,10 +31,10 @@ pub(crate) struct Origins {
 impl Default for Origins {
     fn default() -> Self {
         Self {
-            at: [[0.0; BATCH]; 3],
+            at: [[0.0; POINTS]; 3],
             caster: None,
-            first: [0; BATCH],
-            end: [0; BATCH],
+            first: [0; POINTS],
+            end: [0; POINTS],
             in_triangle: false,
             reach: 0.0,
             lifted: 0,
@@ -79,7 +79,7 @@ impl Origins {
     /// in, if it lies in one.
     #[inline(always)]
     pub(super) fn find_patches(&mut self, normal: impl Fn(&Self, usize) -> Option<DVec3>) {
-        let len = self.len.clamp(1, BATCH);
+        let len = self.len.clamp(1, POINTS);
         // What is left of the lists repeats the first point.
         for row in &mut self.at {
             let first = row[0];
@@ -126,11 +126,11 @@ pub(crate) struct RayScratch {
 #[derive(Debug)]
 pub(super) struct LocalRays {
     /// The origins in the space of the caster.
-    pub(super) origin: [[f32; BATCH]; 3],
+    pub(super) origin: [[f32; POINTS]; 3],
     /// 1 / direction, which is scaled so that its largest component is 1.
-    pub(super) inverse: [[f32; BATCH]; 3],
+    pub(super) inverse: [[f32; POINTS]; 3],
     /// The parameter of the light.
-    pub(super) end: [f32; BATCH],
+    pub(super) end: [f32; POINTS],
     /// How far boxes are padded, for all errors of f32.
     pub(super) pad: [f32; 3],
     /// The largest coordinate of the origins and of the caster's bounds.
@@ -139,7 +139,7 @@ pub(super) struct LocalRays {
 
 impl Default for LocalRays {
     fn default() -> Self {
-        let rows = [[0.0; BATCH]; 3];
-        Self { origin: rows, inverse: rows, end: [0.0; BATCH], pad: [0.0; 3], far: 0.0 }
+        let rows = [[0.0; POINTS]; 3];
+        Self { origin: rows, inverse: rows, end: [0.0; POINTS], pad: [0.0; 3], far: 0.0 }
     }
 }

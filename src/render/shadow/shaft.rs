@@ -14,8 +14,8 @@
 use fearless_simd::{Simd, SimdBase as _, SimdMask as _, f32x16};
 use glam::{DMat4, DVec3, Vec3};
 
+use super::packet::POINTS;
 use crate::base::math::{each, unit};
-use crate::render::simd::BATCH;
 
 /// A box that holds the points of a packet.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,7 +32,7 @@ const ROUNDED: f64 = 1.0 / (1_u64 << 44) as f64;
 impl Around {
     /// The box of some points along a plane with this normal, and along a direction in it.
     #[inline(always)]
-    pub(super) fn new(at: &[[f64; BATCH]; 3], normal: DVec3, along: DVec3) -> Self {
+    pub(super) fn new(at: &[[f64; POINTS]; 3], normal: DVec3, along: DVec3) -> Self {
         let normal = unit(normal).unwrap_or(DVec3::Z);
         let across = unit(normal.cross(along)).unwrap_or_else(|| normal.any_orthonormal_vector());
         let axes = [across.cross(normal), across, normal];
@@ -40,7 +40,7 @@ impl Around {
         let (mut centre, mut lengths) = (first, [0.0; 3]);
         for (axis, length) in axes.iter().zip(&mut lengths) {
             let (mut low, mut high) = ([0.0; 8], [0.0; 8]);
-            for i in (0..BATCH).step_by(8) {
+            for i in (0..POINTS).step_by(8) {
                 for j in 0..8 {
                     let x = (at[0][i + j] - first.x) * axis.x
                         + (at[1][i + j] - first.y) * axis.y

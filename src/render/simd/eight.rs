@@ -269,8 +269,8 @@ mod tests {
 
     /// Everything that lanes do, to a row of numbers.
     struct All<'a> {
-        row: &'a [f64; BATCH],
-        slots: &'a [i32; BATCH],
+        row: &'a [f64; SLOTS],
+        slots: &'a [i32; SLOTS],
         power: &'a Power,
         made: &'a mut Made,
     }
@@ -281,7 +281,7 @@ mod tests {
             let Self { row, slots, power, made } = self;
             let mut rows = [[0.0; BATCH]; 9];
             let mut fours = [[0.0; 4]; BATCH];
-            for at in (0..BATCH).step_by(M::LANES) {
+            for at in (0..SLOTS).step_by(M::LANES) {
                 let x = lanes.load(row, at);
                 let picked = lanes.pick::<4>(row, lanes.slots(slots, at));
                 let values = [
@@ -333,12 +333,12 @@ mod tests {
         let levels: Vec<Level> = older.into_iter().flatten().chain([best]).collect();
         let mut tables = Tables::default();
         for (round, exponent) in (0_u32..).zip([0.5, 1.0, 27.9, 32.0, 1000.0]) {
-            let row: &[f64; BATCH] = &std::array::from_fn(|i| match odd.get(i) {
+            let row: &[f64; SLOTS] = &std::array::from_fn(|i| match odd.get(i) {
                 Some(odd) if round > 0 => *odd,
                 _ => ((i as f64 + f64::from(round)) * 0.754_877).fract(),
             });
-            let slots: &[i32; BATCH] =
-                &std::array::from_fn(|i| ((i * 29 + 5) % BATCH).try_into().unwrap());
+            let slots: &[i32; SLOTS] =
+                &std::array::from_fn(|i| ((i * 29 + 5) % SLOTS).try_into().unwrap());
             for power in [
                 SpecularPower::Library,
                 SpecularPower::Polynomial,

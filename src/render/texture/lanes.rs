@@ -183,7 +183,7 @@ impl<'a> Sampler<'a> {
     fn trilinear<S: Simd, D: Decode>(
         &self,
         simd: S,
-        places: &TexelPlaces,
+        places: &mut TexelPlaces,
         len: usize,
         to: &mut Rows<f32>,
     ) {
@@ -191,28 +191,27 @@ impl<'a> Sampler<'a> {
         #[expect(clippy::cast_precision_loss, reason = "at most 16")]
         let last = lanes.set((self.levels.len() - 1) as f32);
         let (zero, one) = (lanes.set(0.0), lanes.set(1.0));
-        let (mut below, mut part) = ([0.0; BATCH], [0.0; BATCH]);
         // Of each sixteen places, the least and the largest level.
         let mut bounds = [[0; 2]; BATCH / 16];
         for (at, bounds) in (0..len).step_by(16).zip(&mut bounds) {
             let level = log2(Real::max(lanes.load(&places.footprint, at), one)) * 0.5;
             let level = Real::max(Real::min(level, last), zero);
             let own = level.floor();
-            lanes.store(own, &mut below, at);
-            lanes.store(level - own, &mut part, at);
+            lanes.store(own, &mut places.levels[0], at);
+            lanes.store(level - own, &mut places.levels[1], at);
             let number: i32x16<S> = own.to_int();
             *bounds = [number.reduce_min(), number.reduce_max()];
         }
         for (at, bounds) in (0..len).step_by(16).zip(bounds) {
-            let level = MipLevel::of(self, simd, lanes.load(&below, at), bounds);
+            let level = MipLevel::of(self, simd, lanes.load(&places.levels[0], at), bounds);
             let color = self.bilinear::<S, D>(simd, &level, places.at(lanes, at));
             store(lanes, color, to, at);
         }
         for (at, [low, high]) in (0..len).step_by(16).zip(bounds) {
-            let (near, part) = (load(lanes, to, at), lanes.load(&part, at));
+            let (near, part) = (load(lanes, to, at), lanes.load(&places.levels[1], at));
             let mut color = near;
             if part.simd_gt(0.0).any_true() {
-                let next = Real::min(lanes.load(&below, at) + 1.0, last);
+                let next = Real::min(lanes.load(&places.levels[0], at) + 1.0, last);
                 let end = i32::try_from(self.levels.len() - 1).unwrap_or(0);
                 let bounds = [(low + 1).min(end), (high + 1).min(end)];
                 let level = MipLevel::of(self, simd, next, bounds);
@@ -231,11 +230,14 @@ pub(crate) struct TexelPlaces {
     pub(crate) position: [[f32; BATCH]; 2],
     /// The square of the texels that a pixel covers, if the filter reads mip maps.
     pub(crate) footprint: [f32; BATCH],
+    /// The finer of the levels that trilinear filtering mixes, and the part of the coarser.
+    levels: [[f32; BATCH]; 2],
 }
 
 impl Default for TexelPlaces {
     fn default() -> Self {
-        Self { position: [[0.0; BATCH]; 2], footprint: [0.0; BATCH] }
+        let row = [0.0; BATCH];
+        Self { position: [row; 2], footprint: row, levels: [row; 2] }
     }
 }
 
