@@ -258,10 +258,9 @@ impl<T: ShadingNumber> Painter<T> {
             } else if let Some((colors, are_known)) = self.visibility.colors(block) {
                 canvas.put(at, colors);
                 if !are_known {
-                    self.shader.finish_waiting(context, canvas);
                     let (others, corner) =
                         (self.visibility.uncolored(block), self.visibility.corner(block));
-                    self.shader.block(context, &others, corner, (canvas, at), None);
+                    self.shader.block_later(context, &others, corner, (canvas, at), None);
                 }
             } else if self.visibility.shows(block) {
                 let corner = self.visibility.corner(block);
@@ -326,8 +325,9 @@ impl<T: ShadingNumber> Painter<T> {
         let Self { shader, visibility, samples, .. } = self;
         let planes = visibility.planes(block);
         if samples.compare(context.level, planes) {
-            return shader.block(context, &planes[0], corner, (canvas, at), fill);
+            return shader.block_later(context, &planes[0], corner, (canvas, at), fill);
         }
+        shader.finish_waiting(context, canvas);
         let mut sums = Sums::new(context.plan.variants.are_linear());
         let shows = shader.add_samples(context, (samples, planes), corner, &mut sums);
         canvas.put(at, &sums.means(FOUR.ilog2()));

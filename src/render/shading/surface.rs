@@ -10,7 +10,7 @@ use super::blend::Blend;
 use super::bumps::bend;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
-use super::fragments::{Fragments, Shown};
+use super::fragments::Fragments;
 use super::full_blocks::Canvas;
 use super::groups::{Group, group_of, one_group};
 use super::interpolate::{CornerValues, Look, Mixed, mix, surface_samples};
@@ -30,7 +30,6 @@ use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Back, Pipeline, Shaded, Stage};
 use crate::render::lights::{Batch, Rows};
 use crate::render::plan::tile::TilePlan;
-use crate::render::raster::visibility_buffer::{Visible, seen};
 use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::shadow::rays::{Origins, RayCount, RayScratch};
@@ -138,35 +137,6 @@ impl<T: ShadingNumber> Shader<T> {
     /// The rays of shadows since the frame began.
     pub(crate) const fn ray_count(&self) -> RayCount {
         self.rays.count
-    }
-
-    /// Colours a block, whose upper left pixel is `corner`, into a tile from index `at` on. Pixels
-    /// that show the background get the colour `fill`; without one, they are left as they are.
-    /// Returns whether any pixel shows something else.
-    pub(crate) fn block(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        visibility: &[u64; BLOCK_PIXELS],
-        corner: [i32; 2],
-        (canvas, at): (&mut Canvas<'_>, usize),
-        fill: Option<Color>,
-    ) -> bool {
-        let most = self.most_slots(context);
-        let shown = self.fragments.list_on(context.level, visibility, corner, most);
-        put_others(context, visibility, shown, (canvas, at), fill);
-        if shown.triangles != 0 {
-            let out = &mut Out::Tile(canvas, at);
-            if let Some(group) = one_group(context, &self.fragments) {
-                self.color_group(context, &group, out);
-            } else {
-                if most > 0 {
-                    // Some slots are of a draw that the block may not show.
-                    self.fragments.list(context.level, visibility, corner);
-                }
-                self.color_fragments(context, corner, out);
-            }
-        }
-        (shown.triangles | shown.lines) != 0
     }
 
     /// The number of slots up to which triangles of a list keep theirs for the next one, so that
@@ -545,31 +515,6 @@ impl<T: ShadingNumber> Shader<T> {
                 }
             }
             batch.len = fragments.len;
-        }
-    }
-}
-
-/// Colours the pixels of a block that show no triangles, as [`Shader::block`].
-#[inline(always)]
-pub(super) fn put_others<T>(
-    context: &ShadingContext<'_, T>,
-    visibility: &[u64; BLOCK_PIXELS],
-    shown: Shown,
-    (canvas, at): (&mut Canvas<'_>, usize),
-    fill: Option<Color>,
-) {
-    if let Some(color) = fill
-        && (shown.triangles | shown.lines) != u64::MAX
-    {
-        canvas.fill(at, color);
-    }
-    let mut lines = shown.lines;
-    while lines != 0 {
-        let i = lines.trailing_zeros() as usize;
-        lines &= lines - 1;
-        if let Visible::Line(line) = seen(visibility[i]) {
-            canvas.pixels[at + canvas.offset(in_block(i))] =
-                context.frame.line_color(context.plan, line);
         }
     }
 }

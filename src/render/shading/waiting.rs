@@ -11,10 +11,11 @@ use super::fragments::{Runs, Shown};
 use super::full_blocks::Canvas;
 use super::groups::{Group, are_of, group_of, one_group};
 use super::interpolated::ShadingNumber;
-use super::surface::{Out, Shader, Waiting, in_block, put_others};
+use super::surface::{Out, Shader, Waiting, in_block};
 use crate::accuracy::{Interpolation, LightAt};
 use crate::base::color::Color;
 use crate::render::frame::draw::{Back, Pipeline};
+use crate::render::raster::visibility_buffer::{Visible, seen};
 use crate::render::screen::tiles::BLOCK_PIXELS;
 use crate::render::simd::gather::most_gathered;
 
@@ -22,8 +23,10 @@ use crate::render::simd::gather::most_gathered;
 const MANY_TRIANGLES: usize = 24;
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Colours a block of a tile as [`Shader::block`] does, at the latest when
-    /// [`Shader::finish_waiting`] is called.
+    /// Colours a block, whose upper left pixel is `corner`, into a tile from index `at` on: at the
+    /// latest when [`Shader::finish_waiting`] is called. Pixels that show the background get the
+    /// colour `fill`; without one, they are left as they are. Returns whether any pixel shows
+    /// something else.
     pub(crate) fn block_later(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -132,4 +135,29 @@ fn may_wait<T: ShadingNumber>(context: &ShadingContext<'_, T>, group: &Group<'_>
         && shaded.extras.is_empty()
         && group.draw.back != Back::Red
         && context.tracer_of(group.draw_index).is_none()
+}
+
+/// Colours the pixels of a block that show no triangles, as [`Shader::block_later`].
+#[inline(always)]
+fn put_others<T>(
+    context: &ShadingContext<'_, T>,
+    visibility: &[u64; BLOCK_PIXELS],
+    shown: Shown,
+    (canvas, at): (&mut Canvas<'_>, usize),
+    fill: Option<Color>,
+) {
+    if let Some(color) = fill
+        && (shown.triangles | shown.lines) != u64::MAX
+    {
+        canvas.fill(at, color);
+    }
+    let mut lines = shown.lines;
+    while lines != 0 {
+        let i = lines.trailing_zeros() as usize;
+        lines &= lines - 1;
+        if let Visible::Line(line) = seen(visibility[i]) {
+            canvas.pixels[at + canvas.offset(in_block(i))] =
+                context.frame.line_color(context.plan, line);
+        }
+    }
 }
