@@ -300,7 +300,8 @@ impl<T: ShadingNumber> Shader<T> {
         if located {
             self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
         }
-        self.batch.len = self.fragments.len;
+        let is_by_slot = !(located || each);
+        self.batch.len = if is_by_slot { self.fragments.count } else { self.fragments.len };
         let mut tint = shaded.tint;
         match light {
             None => {}
@@ -343,7 +344,7 @@ impl<T: ShadingNumber> Shader<T> {
             let thresholds = thresholds.of(rounding, &self.fragments);
             T::run(level, QuantizeWithThresholds { batch, lit, own, thresholds, colors });
         }
-        if !(located || each) {
+        if is_by_slot {
             self.colors.hand_out(&self.fragments.slots[..self.fragments.len]);
         }
     }
