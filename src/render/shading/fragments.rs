@@ -50,6 +50,9 @@ pub(crate) struct Fragments {
     list: u64,
     /// Whether the next list may go on with these slots.
     goes_on: bool,
+    /// Whether triangles have no slots: each fragment has its own in `each`.
+    tiny: bool,
+    each: [u32; BATCH + AT_ONCE],
 }
 
 /// Masks of the pixels that show triangles or lines: bit i stands for pixel i.
@@ -92,6 +95,8 @@ impl Default for Fragments {
             table: [0; TABLE],
             list: NEXT_LIST,
             goes_on: false,
+            tiny: false,
+            each: [0; BATCH + AT_ONCE],
         }
     }
 }
@@ -185,13 +190,45 @@ impl Fragments {
     /// Empties the list, for fragments of one block.
     #[inline(always)]
     const fn begin_block(&mut self) {
-        (self.len, self.several, self.shared) = (0, false, false);
+        (self.len, self.several, self.shared, self.tiny) = (0, false, false, false);
     }
 
     /// Takes back what [`Self::list_more`] has listed: before, there were `len` fragments and
     /// `count` slots.
     pub(crate) const fn take_back(&mut self, len: usize, count: usize) {
         (self.len, self.count, self.goes_on) = (len, count, false);
+    }
+
+    /// Begins a list without slots, for [tiny](super::tiny) triangles.
+    pub(crate) const fn begin_tiny(&mut self) {
+        self.begin_block();
+        (self.count, self.goes_on, self.tiny) = (0, false, true);
+    }
+
+    /// Whether the list has no slots.
+    pub(crate) const fn are_tiny(&self) -> bool {
+        self.tiny
+    }
+
+    /// Whether the pixels of another block have room in a list without slots.
+    pub(crate) const fn have_room_for_tiny(&self, runs: &Runs) -> bool {
+        self.tiny && self.len + runs.triangles.count_ones() as usize <= BATCH
+    }
+
+    /// Adds the pixels of a block to a list without slots. They must have room.
+    pub(crate) fn list_tiny(&mut self, level: Level, runs: &Runs, corner: [i32; 2]) {
+        self.several = true;
+        dispatch!(level, simd => self.put_tiny(simd, runs, corner));
+    }
+
+    /// The triangles of the fragments of a list without slots.
+    pub(crate) fn each(&self) -> &[u32] {
+        &self.each[..self.len]
+    }
+
+    /// Shortens a list without slots.
+    pub(crate) const fn shorten(&mut self, len: usize) {
+        self.len = len;
     }
 
     /// Lists some triangles, each as if it showed in one pixel of no position.
@@ -286,6 +323,27 @@ impl Fragments {
             ((places >> 3) + top).store_slice(&mut self.y[to.clone()]);
             let slots = i32x16::from_slice(simd, &self.own_slots[at..at + 16]).compress(mask);
             slots.store_slice(&mut self.slots[to.clone()]);
+            for (pixel, place) in self.pixels[to].iter_mut().zip(<[i32; 16]>::from(places)) {
+                *pixel = place as u8;
+            }
+            self.len += some.count_ones() as usize;
+        }
+    }
+
+    /// Adds the pixels of a block that show triangles, with their triangles.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 64")]
+    fn put_tiny<S: Simd>(&mut self, simd: S, runs: &Runs, [left, top]: [i32; 2]) {
+        for at in (0..BLOCK_PIXELS).step_by(16) {
+            let some = runs.triangles >> at & 0xffff;
+            let mask = mask32x16::from_bitmask(simd, some);
+            let first = i32x16::splat(simd, ALL_PIXELS[at].into());
+            let places = (i32x16::from_slice(simd, &UP_TO_SIXTEEN) + first).compress(mask);
+            let to = self.len..self.len + 16;
+            ((places & (BLOCK - 1)) + left).store_slice(&mut self.x[to.clone()]);
+            ((places >> 3) + top).store_slice(&mut self.y[to.clone()]);
+            let numbers = u32x16::from_slice(simd, &runs.numbers[MARGIN + at..][..16]);
+            numbers.compress(mask).store_slice(&mut self.each[to.clone()]);
             for (pixel, place) in self.pixels[to].iter_mut().zip(<[i32; 16]>::from(places)) {
                 *pixel = place as u8;
             }
@@ -408,8 +466,13 @@ impl Runs {
     }
 
     /// What the block shows.
-    const fn shown(&self) -> Shown {
+    pub(crate) const fn shown(&self) -> Shown {
         Shown { triangles: self.triangles, lines: !self.triangles & !self.background }
+    }
+
+    /// The number of the first triangle.
+    pub(crate) const fn first_triangle(&self) -> u32 {
+        self.number(self.triangles.trailing_zeros() as usize)
     }
 
     /// The pixels at which runs of anything begin, in each row of the block.

@@ -46,5 +46,6 @@ mod spans;
 pub(crate) mod surface;
 mod texels;
 mod textured;
+mod tiny;
 pub(crate) mod triangle_attributes;
 mod waiting;

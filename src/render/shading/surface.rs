@@ -23,6 +23,7 @@ use super::map_texels::{Points, TexturePlacement};
 use super::quantize::{Finish, Quantize, SurfaceColor};
 use super::rounding::{QuantizeWithThresholds, Thresholds};
 use super::shadows::{BatchShadows, place_faces};
+use super::tiny::TinyTriangles;
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
 use crate::base::color::Color;
@@ -55,7 +56,9 @@ pub(crate) struct Shader<T> {
     /// For surfaces with further maps, or light of their own.
     pub(super) maps: Box<MapRows<T>>,
     pub(super) colors: Colors,
-    thresholds: Thresholds<T>,
+    pub(super) thresholds: Thresholds<T>,
+    /// The triangles of a list in which each pixel has its own.
+    pub(super) tiny: TinyTriangles,
     /// How pixels of a draw become positions and normals.
     look: Option<(u32, Look<T>)>,
     /// Whether nothing but corners, normals and light is prepared for the triangles of the list.
@@ -117,6 +120,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             maps: Box::default(),
             colors: Colors::default(),
             thresholds: Thresholds::default(),
+            tiny: TinyTriangles::default(),
             look: None,
             prepares_little: false,
             new_faces: Vec::new(),
@@ -290,9 +294,8 @@ impl<T: ShadingNumber> Shader<T> {
         let fades = shaded.opacity.is_some() && shaded.opacity_map.is_some();
         let textured =
             shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels() || fades;
-        let rounding = plan.variants.rounding;
         // Every pixel has its own colour.
-        let each = textured || rounding == Rounding::Dithered;
+        let each = textured || plan.variants.rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let located = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
         let new = self.take(context, group, located);
@@ -325,14 +328,27 @@ impl<T: ShadingNumber> Shader<T> {
                 self.find_glow(context, group, shaded, new);
             }
         }
-        let encoding = context.terms.encoding();
-        let Self { batch, texels, colors, maps, thresholds, .. } = self;
-        let own = if textured {
-            SurfaceColor::Texels(texels)
-        } else {
-            SurfaceColor::Tint(tint.map(T::from_f64))
-        };
         let lit = light.is_some();
+        self.quantize(context, if textured { None } else { Some(tint) }, (lit, glows));
+        if is_by_slot {
+            self.colors.hand_out(&self.fragments.slots[..self.fragments.len]);
+        }
+    }
+
+    /// Converts the light of the list, times a tint or the texels, and with what glows, to colours.
+    pub(super) fn quantize(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        tint: Option<[f64; 3]>,
+        (lit, glows): (bool, bool),
+    ) {
+        let ShadingContext { level, plan, terms, .. } = *context;
+        let (rounding, encoding) = (plan.variants.rounding, terms.encoding());
+        let Self { batch, texels, colors, maps, thresholds, .. } = self;
+        let own = match tint {
+            None => SurfaceColor::Texels(texels),
+            Some(tint) => SurfaceColor::Tint(tint.map(T::from_f64)),
+        };
         if glows || encoding.is_some() {
             let thresholds =
                 (rounding != Rounding::Nearest).then(|| thresholds.of(rounding, &self.fragments));
@@ -343,9 +359,6 @@ impl<T: ShadingNumber> Shader<T> {
         } else {
             let thresholds = thresholds.of(rounding, &self.fragments);
             T::run(level, QuantizeWithThresholds { batch, lit, own, thresholds, colors });
-        }
-        if is_by_slot {
-            self.colors.hand_out(&self.fragments.slots[..self.fragments.len]);
         }
     }
 

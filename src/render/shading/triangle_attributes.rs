@@ -5,7 +5,7 @@
 //! triangles at a time are prepared for the pixels that gather from them.
 
 use fearless_simd::{
-    Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, f32x16, i32x16,
+    Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, f32x16, i32x16, mask32x16,
 };
 use glam::DVec3;
 
@@ -367,7 +367,7 @@ fn fronts<S: Simd>(
     let (mut front, mut odd) = (0, 0);
     for at in slots.step_by(16) {
         let at = at.min(SLOTS - 16);
-        let [[x0, y0, ..], [x1, y1, ..], [x2, y2, ..]] = corners(simd, ids, at, vertices);
+        let [[x0, y0, ..], [x1, y1, ..], [x2, y2, ..]] = corners(simd, &ids[at..], vertices);
         let low = [x0.min(x1).min(x2), y0.min(y1).min(y2)];
         let high = [x0.max(x1).max(x2), y0.max(y1).max(y2)];
         // Corners that are beyond the clipping planes have the least of all numbers as x.
@@ -397,7 +397,7 @@ fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices:
     for at in attributes.new_slots().step_by(16) {
         let at = at.min(SLOTS - 16);
         let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =
-            corners(simd, &attributes.ids, at, vertices);
+            corners(simd, &attributes.ids[at..], vertices);
         for ([own_x, own_y], (x, y)) in
             attributes.corners.iter_mut().zip([(x0, y0), (x1, y1), (x2, y2)])
         {
@@ -407,6 +407,36 @@ fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices:
         for (row, w) in attributes.by_w.iter_mut().zip([w0, w1, w2]) {
             w.bitcast::<f32x16<S>>().store_slice(&mut row[at..at + 16]);
         }
+        let edges = Edges::new(attributes.grid, [[x0, y0], [x1, y1], [x2, y2]]);
+        attributes.cut |= edges.cut.to_bitmask() << at;
+        attributes.wide |= (edges.wide.to_bitmask() & !edges.cut.to_bitmask()) << at;
+        edges.per_area().store_slice(&mut attributes.per_area[at..at + 16]);
+        for (rows, functions) in attributes.edges.iter_mut().zip(edges.functions) {
+            for (row, numbers) in rows.iter_mut().zip(functions) {
+                numbers.store_slice(&mut row[at..at + 16]);
+            }
+        }
+    }
+}
+
+/// The edge functions of sixteen triangles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edges<S: Simd> {
+    /// a, b and c of those of the second and the third corner, as [`TriangleAttributes::edges`].
+    pub(super) functions: [[i32x16<S>; 3]; 2],
+    /// The doubled area: negative if they run clockwise on the screen. It is meaningless if they
+    /// are clipped or wide.
+    pub(super) area: i32x16<S>,
+    /// Which of them are clipped.
+    pub(super) cut: mask32x16<S>,
+    /// Which of the others have edge functions that do not fit 31 bits.
+    pub(super) wide: mask32x16<S>,
+}
+
+impl<S: Simd> Edges<S> {
+    /// Of triangles with these corners, on a grid.
+    #[inline(always)]
+    pub(super) fn new(grid: Grid, [[x0, y0], [x1, y1], [x2, y2]]: [[i32x16<S>; 2]; 3]) -> Self {
         let beyond = x0.simd_eq(ScreenVertex::BEYOND)
             | x1.simd_eq(ScreenVertex::BEYOND)
             | x2.simd_eq(ScreenVertex::BEYOND);
@@ -416,35 +446,32 @@ fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices:
         let large = rough.simd_gt(NARROW_AREA) | rough.simd_lt(-NARROW_AREA);
         let (low, high) = (ux.min(uy).min(vx).min(vy), ux.max(uy).max(vx).max(vy));
         let wide = large | low.simd_lt(-NARROW_SIDE) | high.simd_gt(NARROW_SIDE);
-        attributes.cut |= beyond.to_bitmask() << at;
-        attributes.wide |= (wide.to_bitmask() & !beyond.to_bitmask()) << at;
-
-        let area = ux * vy - uy * vx;
-        let per_area = f32x16::splat(simd, 1.0) / area.to_float::<f32x16<S>>();
-        per_area.store_slice(&mut attributes.per_area[at..at + 16]);
         // a (x - p.x) + b (y - p.y) with x and y at the centre of a pixel.
-        let parts = attributes.grid.parts();
+        let parts = grid.parts();
         let (half, log2) = (parts / 2, parts.trailing_zeros());
-        let second = (vy, x0 - x2, half - x2, half - y2);
-        let third = (y0 - y1, ux, half - x0, half - y0);
-        for (rows, (a, b, x, y)) in attributes.edges.iter_mut().zip([second, third]) {
-            (a << log2).store_slice(&mut rows[0][at..at + 16]);
-            (b << log2).store_slice(&mut rows[1][at..at + 16]);
-            (a * x + b * y).store_slice(&mut rows[2][at..at + 16]);
-        }
+        let (a, b) = (vy, x0 - x2);
+        let second = [a << log2, b << log2, a * (half - x2) + b * (half - y2)];
+        let (a, b) = (y0 - y1, ux);
+        let third = [a << log2, b << log2, a * (half - x0) + b * (half - y0)];
+        Self { functions: [second, third], area: ux * vy - uy * vx, cut: beyond, wide }
+    }
+
+    /// 1 / the doubled area.
+    #[inline(always)]
+    pub(super) fn per_area(&self) -> f32x16<S> {
+        f32x16::splat(self.area.simd, 1.0) / self.area.to_float::<f32x16<S>>()
     }
 }
 
-/// x, y, depth and 1/w of the corners of sixteen triangles. Unused slots name vertices of other
-/// draws, so what is fetched for them is meaningless.
+/// x, y, depth and 1/w of the corners of sixteen triangles, the first of some. Unused slots name
+/// vertices of other draws, so what is fetched for them is meaningless.
 #[inline(always)]
-fn corners<S: Simd>(
+pub(super) fn corners<S: Simd>(
     simd: S,
-    ids: &[[u32; 3]; SLOTS],
-    at: usize,
+    ids: &[[u32; 3]],
     vertices: &[ScreenVertex],
 ) -> [[i32x16<S>; 4]; 3] {
-    let ids = &ids[at..at + 16];
+    let ids = &ids[..16];
     [
         fetch_vertices(
             simd,

@@ -36,6 +36,10 @@ impl<T: ShadingNumber> Shader<T> {
         fill: Option<Color>,
     ) -> bool {
         let runs = Runs::of(context.level, visibility);
+        if self.wait_tiny(context, &runs, corner, (canvas, at)) {
+            put_others(context, visibility, runs.shown(), (canvas, at), fill);
+            return true;
+        }
         if !self.waiting.is_empty() {
             if let Some(shown) = self.join(context, &runs, corner, at) {
                 put_others(context, visibility, shown, (canvas, at), fill);
@@ -117,8 +121,12 @@ impl<T: ShadingNumber> Shader<T> {
         canvas: &mut Canvas<'_>,
     ) {
         if !self.waiting.is_empty() {
-            let group = group_of(context, self.fragments.numbers[0]);
-            self.color_group(context, &group, &mut Out::Waiting(canvas));
+            if self.fragments.are_tiny() {
+                self.finish_tiny(context, canvas);
+            } else {
+                let group = group_of(context, self.fragments.numbers[0]);
+                self.color_group(context, &group, &mut Out::Waiting(canvas));
+            }
             self.waiting.clear();
         }
     }
