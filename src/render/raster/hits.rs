@@ -6,6 +6,8 @@
 
 use fearless_simd::{Bytes as _, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16, u32x16};
 
+use prefetch_index::prefetch_index;
+
 use super::depth_format::Format;
 use super::entries::{keys_and_numbers, put_words, word};
 use crate::render::screen::coverage::PixelBox;
@@ -38,6 +40,17 @@ struct Page {
 impl Page {
     const fn new(count: usize) -> Self {
         Self { place: [0; PAGE], word: [0; PAGE], count, previous: FULL }
+    }
+
+    /// Asks the cache for its first lines; those after them follow by themselves.
+    #[inline(always)]
+    fn prefetch(&self) {
+        for at in (0..64).step_by(16) {
+            prefetch_index(&self.place, at);
+        }
+        for at in (0..64).step_by(8) {
+            prefetch_index(&self.word, at);
+        }
     }
 
     /// Adds those of sixteen hits that are in a mask.
@@ -361,6 +374,7 @@ impl Hits {
         let mut page = self.last[tile];
         while page != FULL {
             let Page { place, word, count, previous } = &self.pages[page as usize];
+            self.pages[*previous as usize].prefetch();
             if D::KEEPS_BITS {
                 take(page as usize, &place[..*count], word);
             } else {

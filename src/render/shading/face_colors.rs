@@ -9,6 +9,8 @@
 use std::hint::select_unpredictable;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use prefetch_index::prefetch_index;
+
 use super::full_blocks::ROW;
 use crate::render::screen::tiles::BLOCK_PIXELS;
 
@@ -41,6 +43,12 @@ impl FaceColors {
         }
         self.entries.resize_with(triangles + 1, AtomicU32::default);
         *self.entries[triangles].get_mut() = self.known << MARK;
+    }
+
+    /// Asks the cache for a triangle's entry.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, number: u32) {
+        prefetch_index(&self.entries, number as usize);
     }
 
     /// Whether a triangle has to be lit; if so, no later call for this tile says so again.

@@ -460,6 +460,16 @@ impl Runs {
         self.triangles & !self.left & !self.above
     }
 
+    /// Calls `take` with the triangles of the runs that do not show in the row above.
+    #[inline(always)]
+    pub(crate) fn each_new(&self, mut take: impl FnMut(u32)) {
+        let mut starts = self.new_starts();
+        while starts != 0 {
+            take(self.number(starts.trailing_zeros() as usize));
+            starts &= starts - 1;
+        }
+    }
+
     /// The pixels at which runs of triangles begin, in each row of the block.
     const fn starts(&self) -> u64 {
         self.triangles & (!self.left | FIRST_COLUMN)

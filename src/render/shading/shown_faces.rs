@@ -1,12 +1,13 @@
 //! Lights the faces that a tile shows, if each of them has one colour.
 
 use fearless_simd::{Level, Simd, dispatch};
+use prefetch_index::prefetch_index;
 
 use super::colors::Form;
 use super::context::ShadingContext;
 use super::face_colors::FaceColors;
 use super::fragments::Runs;
-use super::groups::group_of;
+use super::groups::{Group, group_of};
 use super::interpolated::ShadingNumber;
 use super::surface::Shader;
 use crate::accuracy::{LightAt, Rounding};
@@ -67,6 +68,7 @@ impl<T: ShadingNumber> Shader<T> {
             if !is_uniform(context.plan, &context.plan.pipelines[group.pipeline as usize]) {
                 continue;
             }
+            prefetch_facets(&group, &left[..left.len().min(SLOTS)]);
             self.fragments.list_faces(own);
             self.colors.form = Form::Pixels;
             self.group(context, &group);
@@ -75,6 +77,16 @@ impl<T: ShadingNumber> Shader<T> {
             }
         }
         self.new_faces = new;
+    }
+}
+
+/// Asks the cache for what lighting some faces reads, if they are of a group.
+fn prefetch_facets(group: &Group<'_>, numbers: &[u32]) {
+    let mesh = &group.draw.model.mesh;
+    let facets = mesh.facets();
+    let own = numbers.iter().filter(|number| (group.base..group.end).contains(number));
+    for number in own {
+        prefetch_index(facets, mesh.polygon_of(number - group.base) as usize);
     }
 }
 
@@ -99,17 +111,31 @@ fn list_in<S: Simd>(
     // Each triangle is written, and the next one over it unless it is new.
     to.resize(PIXELS, 0);
     let mut count = 0;
+    let mut claim = |runs: &Runs| {
+        runs.each_new(
+            #[inline(always)]
+            |number| {
+                to[count % PIXELS] = number;
+                count += usize::from(faces.claim(number));
+            },
+        );
+    };
     let shown = |block: &usize| visibility.shows(*block) && visibility.whole(*block).is_none();
+    // A block behind, so that the entries have arrived.
+    let mut before: Option<Runs> = None;
     for block in (0..BLOCK_PIXELS).filter(shown) {
         let runs = Runs::find(simd, visibility.block(block));
         all_runs[block] = runs.starts_in_rows();
-        let mut starts = runs.new_starts();
-        while starts != 0 {
-            let number = runs.number(starts.trailing_zeros() as usize);
-            starts &= starts - 1;
-            to[count % PIXELS] = number;
-            count += usize::from(faces.claim(number));
+        runs.each_new(
+            #[inline(always)]
+            |number| faces.prefetch(number),
+        );
+        if let Some(before) = before.replace(runs) {
+            claim(&before);
         }
+    }
+    if let Some(last) = before {
+        claim(&last);
     }
     count
 }

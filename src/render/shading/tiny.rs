@@ -2,31 +2,31 @@
 //!
 //! Triangles of about a pixel gain nothing from slots: each would be looked up, prepared, stored,
 //! and gathered again for one pixel. Here, lane i of sixteen holds the triangle of pixel i, from its
-//! vertices to its normals, and lists reach over several blocks, so that what is fetched for them
-//! overlaps. The bits are those of triangles with slots.
+//! vertices to its normals. Lists reach over several blocks, and what is read for them is asked for
+//! before, since most of it is in no near cache. The bits are those of triangles with slots.
 //!
 //! Clipped triangles, and those whose edge functions need more than 32 bits, are not tiny: if there
 //! is one, the blocks of its list are coloured one by one.
 
 use fearless_simd::{
-    Bytes as _, Level, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, f32x16,
-    i32x16, mask32x16,
+    Bytes as _, Level, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch,
+    f32x16, i32x16, mask32x16,
 };
+use prefetch_index::prefetch_index;
 
 use super::barycentrics::Barycentrics;
+use super::colors::{Colors, Form};
 use super::context::ShadingContext;
-use super::fragments::Fragments;
+use super::fragments::{Fragments, Runs};
 use super::full_blocks::Canvas;
 use super::groups::{Group, are_of, group_of};
 use super::interpolate::Look;
 use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table};
-use super::rounding::Thresholds;
 use super::surface::{Out, Shader, Waiting};
 use super::triangle_attributes::{Edges, corners};
-use super::{colors::Colors, colors::Form, fragments::Runs};
 use crate::accuracy::{Coverage, Interpolation, LightAt};
-use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded};
+use crate::render::frame::draw::{Back, Pipeline, Shaded};
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::lights::Batch;
 use crate::render::raster::entries::word;
@@ -58,21 +58,27 @@ impl Default for TinyTriangles {
 }
 
 impl TinyTriangles {
-    /// Sets the triangles to those of a list, all of one draw whose numbers begin at `base`.
-    /// `corners` gives the places of a triangle's corners, by its number in the mesh and its
-    /// vertices.
+    /// Sets the triangles to those of a list, all of one draw whose numbers begin at `base`, and
+    /// asks the cache for their vertices and for what is at their corners. `corners` gives the
+    /// places of a triangle's corners, by its number in the mesh and its vertices; `prefetch` asks
+    /// for what is at one.
     #[inline(always)]
     fn take(
         &mut self,
-        order: &DrawOrder,
+        (order, vertices): (&DrawOrder, &[ScreenVertex]),
         (numbers, base): (&[u32], u32),
         corners: impl Fn(u32, [u32; 3]) -> [u32; 3],
+        prefetch: impl Fn(u32),
     ) {
         for (ids, number) in self.ids.iter_mut().zip(numbers) {
             *ids = order.vertices_of(number - base);
+            ids.iter().for_each(|id| prefetch_index(vertices, *id as usize));
         }
         let own = self.places.iter_mut().zip(&self.ids).zip(numbers);
-        own.for_each(|((places, ids), number)| *places = corners(number - base, *ids));
+        for ((places, ids), number) in own {
+            *places = corners(number - base, *ids);
+            places.iter().for_each(|place| prefetch(*place));
+        }
     }
 }
 
@@ -347,11 +353,6 @@ fn lit<'a>(plan: &'a FramePlan, group: &Group<'_>) -> Option<&'a Shaded> {
     }
 }
 
-/// Whether back faces of a draw have a side of their own.
-fn turns(draw: &Draw) -> bool {
-    draw.back == Back::Lit
-}
-
 impl<T: ShadingNumber> Shader<T> {
     /// Lists a block of tiny triangles, to be coloured when [`Shader::finish_waiting`] is called.
     /// Returns whether it has listed it: it does not if they are not tiny, or of several groups.
@@ -375,10 +376,13 @@ impl<T: ShadingNumber> Shader<T> {
         let from = self.fragments.len;
         self.fragments.list_tiny(context.level, runs, corner);
         let each = self.fragments.each();
-        if !are_of(context, &group_of(context, each[0]), &each[from..]) {
+        let group = group_of(context, each[0]);
+        if !are_of(context, &group, &each[from..]) {
             self.fragments.shorten(from);
             return false;
         }
+        let order = group.draw.model.mesh.draw_order();
+        each[from..].iter().for_each(|number| order.prefetch(number - group.base));
         self.waiting.push(Waiting { from, at });
         true
     }
@@ -438,29 +442,29 @@ impl<T: ShadingNumber> Shader<T> {
         group: &Group<'_>,
         shaded: &Shaded,
     ) -> bool {
-        let ShadingContext { level, plan, terms, .. } = *context;
-        let look = self.look_of(plan, group);
+        let ShadingContext { level, plan, frame, terms, .. } = *context;
         self.batch.len = self.fragments.len;
         if self.tile.light(plan, group.pipeline, shaded).needs_positions {
+            let look = self.look_of(plan, group);
             let mesh = &group.draw.model.mesh;
             let order = mesh.draw_order();
             let points = order.points(group.draw.normal_source);
+            let by_vertex = group.draw.normals == Normals::Vertex;
+            let normals = if by_vertex { &points.normals } else { mesh.polygon_normals() };
             let list = (self.fragments.each(), group.base);
-            let normals = match group.draw.normals {
-                Normals::Face => {
-                    self.tiny.take(order, list, |number, _| [mesh.polygon_of(number); 3]);
-                    mesh.polygon_normals()
-                }
-                Normals::Vertex => {
-                    self.tiny.take(order, list, |number, ids| points.of(order, number, ids));
-                    &points.normals
-                }
-            };
+            let from = (order, frame.corners_of(group.draw_index));
+            let prefetch = |place: u32| prefetch_index(normals, place as usize);
+            if by_vertex {
+                let corners = |number, ids| points.of(order, number, ids);
+                self.tiny.take(from, list, corners, prefetch);
+            } else {
+                self.tiny.take(from, list, |number, _| [mesh.polygon_of(number); 3], prefetch);
+            }
             if !self.weigh_tiny(context, group) {
                 return false;
             }
             let Self { fragments, tiny, barycentrics, batch, .. } = self;
-            let normals = (normals, turns(group.draw));
+            let normals = (normals, group.draw.back == Back::Lit);
             T::sample(level, &look, (fragments, tiny), normals, barycentrics, batch);
         }
         let light = self.tile.light(plan, group.pipeline, shaded);
@@ -476,35 +480,36 @@ impl<T: ShadingNumber> Shader<T> {
         group: &Group<'_>,
         shaded: &Shaded,
     ) -> bool {
-        let ShadingContext { level, plan, lit, terms, .. } = *context;
+        let ShadingContext { level, plan, frame, lit, terms, .. } = *context;
         let mesh = &group.draw.model.mesh;
         let order = mesh.draw_order();
         let points = order.points(group.draw.normal_source);
+        let tables = lit.tables(group.draw_index, group.pipeline);
         let list = (self.fragments.each(), group.base);
+        let from = (order, frame.corners_of(group.draw_index));
+        let prefetch = |place: u32| tables[0].prefetch(place);
         match group.draw.normals {
-            Normals::Face => self
-                .tiny
-                .take(order, list, |number, _| mesh.triangles()[number as usize].corners),
+            Normals::Face => {
+                let triangles = mesh.triangles();
+                let corners = |number: u32, _: [u32; 3]| triangles[number as usize].corners;
+                self.tiny.take(from, list, corners, prefetch);
+            }
             Normals::Vertex => {
-                self.tiny.take(order, list, |number, ids| points.of(order, number, ids));
+                let corners = |number, ids| points.of(order, number, ids);
+                self.tiny.take(from, list, corners, prefetch);
             }
         }
         if !self.weigh_tiny(context, group) {
             return false;
         }
-        let lighting = Lighting {
-            level,
-            draw: group.draw,
-            stages: shaded.light.as_deref().unwrap_or_default(),
-            terms: terms.of(group.pipeline),
-            tracer: None,
-        };
-        let light = LitVertices { tables: lit.tables(group.draw_index, group.pipeline), lighting };
+        let stages = shaded.light.as_deref().unwrap_or_default();
+        let terms = terms.of(group.pipeline);
+        let lighting = Lighting { level, draw: group.draw, stages, terms, tracer: None };
+        let light = LitVertices { tables, lighting };
         let Self { fragments, tiny, barycentrics, batch, rays, colors, thresholds, .. } = self;
-        let thresholds: &mut Thresholds<T> = thresholds;
         let thresholds = thresholds.of(plan.variants.rounding, fragments);
-        let to = (colors, thresholds);
-        T::mix(level, &light, (fragments, tiny), barycentrics, (batch, rays), to);
+        let of = (&*fragments, &*tiny);
+        T::mix(level, &light, of, barycentrics, (batch, rays), (colors, thresholds));
         true
     }
 }

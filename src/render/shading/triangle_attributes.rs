@@ -5,7 +5,8 @@
 //! triangles at a time are prepared for the pixels that gather from them.
 
 use fearless_simd::{
-    Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, f32x16, i32x16, mask32x16,
+    Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, f32x16, i32x16,
+    mask32x16,
 };
 use glam::DVec3;
 

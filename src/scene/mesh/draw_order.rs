@@ -6,6 +6,7 @@
 //! Computer Oriented Geodetic Data Base", IBM 1966.
 
 use glam::DVec3;
+use prefetch_index::prefetch_index;
 use rayon::prelude::*;
 
 use super::clusters::{Cluster, DrawTriangle, clusters};
@@ -126,6 +127,12 @@ impl DrawOrder {
             order.filed = order.points_of(mesh, |corner| mesh.corners.filed(vertices, corner));
         }
         order
+    }
+
+    /// Asks the cache for what [`Self::vertices_of`] reads.
+    #[inline(always)]
+    pub fn prefetch(&self, number: u32) {
+        prefetch_index(&self.vertices_by_number, number as usize);
     }
 
     /// The vertices of a triangle of the mesh, as indices into [`Self::x`].
