@@ -10,7 +10,7 @@ use super::barycentrics::{Barycentrics, Clamp, Weigh};
 use super::fragments::Fragments;
 use super::full_blocks::{self, BlockLight, Blocks, Canvas, Corners, Linear as _, Wide};
 use super::spans::interpolate_spans;
-use super::texels::{TexelScratch, TextureSamples};
+use super::texels::{TexelScratch, TextureSamples, lane_steps};
 use super::tiny::Tiny;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
 use crate::accuracy::{Coverage, Interpolation, Settings};
@@ -23,6 +23,8 @@ use crate::render::screen::weights::{HomogeneousWeights, barycentric, cut_place}
 use crate::render::simd::gather::{SLOTS, paged, pick};
 use crate::render::simd::{Lanes as _, Sixteen, in_f64};
 use crate::render::texture::lanes::{Linear, Stored};
+use crate::render::texture::placement::{Placement, UvRows};
+use crate::scene::Texture;
 
 /// Numbers in which attributes are interpolated.
 pub(crate) trait Interpolated: AttributeNumber {
@@ -60,6 +62,15 @@ pub(crate) trait Interpolated: AttributeNumber {
         light: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
         to: &mut Canvas<'_>,
     ) -> bool;
+    /// Places a texture on triangles whose corners have these texture coordinates, sixteen at a
+    /// time; steps are only needed for mip maps. Returns the slots, a bit for each, of the triangles
+    /// that it was done for.
+    fn place_texture(
+        level: Level,
+        attributes: &TriangleAttributes<Self>,
+        texture: (&Texture, (&UvRows, bool)),
+        to: &mut Placement,
+    ) -> u64;
     /// Multiplies the colours of fragments by those of a texture, if that can be done sixteen
     /// pixels at a time. Returns the slots, a bit for each, of the triangles that it was done for.
     fn multiply_texels(
@@ -212,6 +223,15 @@ impl Interpolated for f64 {
         false
     }
 
+    fn place_texture(
+        _: Level,
+        _: &TriangleAttributes<Self>,
+        _: (&Texture, (&UvRows, bool)),
+        _: &mut Placement,
+    ) -> u64 {
+        0
+    }
+
     fn multiply_texels(
         _: Level,
         _: usize,
@@ -302,6 +322,21 @@ impl Interpolated for f32 {
         to: &mut Canvas<'_>,
     ) -> bool {
         full_blocks::light(level, attributes, blocks, light, to)
+    }
+
+    fn place_texture(
+        level: Level,
+        attributes: &TriangleAttributes<Self>,
+        (texture, (uvs, reads_mips)): (&Texture, (&UvRows, bool)),
+        to: &mut Placement,
+    ) -> u64 {
+        let mut done = 0;
+        dispatch!(level, simd => for at in (0..attributes.count).step_by(16) {
+            let steps = reads_mips.then(|| lane_steps(simd, attributes, at));
+            let (steps, odd) = steps.map_or((None, 0), |(steps, odd)| (Some(steps), odd));
+            done |= (to.set_sixteen(simd, (uvs, at), texture, steps) & !odd) << at;
+        });
+        done
     }
 
     fn multiply_texels(

@@ -12,6 +12,7 @@ use super::texels::{PlacedTexture, TexelScratch, TextureSamples, footprint, step
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::Filter;
 use crate::base::Shared;
+use crate::base::math::each;
 use crate::render::frame::variants::Decoding;
 use crate::render::lights::Rows;
 use crate::render::screen::weights::HomogeneousWeights;
@@ -21,7 +22,7 @@ use crate::render::texture::lanes::Sampler;
 use crate::render::texture::mips::Mips;
 use crate::render::texture::placement::{Placement, fits_f32, texels};
 use crate::render::texture::sample::{brightness, sample_as};
-use crate::render::texture::uv::{Uvs, uv, uvs};
+use crate::render::texture::uv::{uv, uvs};
 use crate::scene::Texture;
 
 /// A texture, and how its texels are read.
@@ -209,21 +210,31 @@ pub(super) fn place<T: ShadingNumber>(
 ) {
     placement.clear();
     far.clear();
-    let mut corners: [Option<Uvs>; SLOTS] = [None; SLOTS];
+    let mut rows = [[[0.0; SLOTS]; 2]; 3];
     // One after another, so that the processor fetches many at once.
-    for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count]) {
-        *corners = uvs(group.draw, *number);
+    for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
+        let own = group.draw.model.mesh.triangle_uvs(*number);
+        placement.known |= u64::from(own.is_some()) << slot;
+        for (rows, [u, v]) in rows.iter_mut().zip(own.unwrap_or_default()) {
+            (rows[0][slot], rows[1][slot]) = (u, v);
+        }
     }
     let reads_mips = sampler.reads_mips();
+    let uvs = (&rows, reads_mips);
+    let done = T::place_texture(context.level, attributes, (texture, uvs), placement);
+    let mut others = placement.known & !done;
     // Dispatched so that rounding down uses the processor's instruction, if it has one.
-    dispatch!(context.level, _ => for (slot, uvs) in corners.iter().enumerate() {
-        let Some(uvs) = *uvs else { continue };
+    dispatch!(context.level, _ => while others != 0 {
+        let slot = others.trailing_zeros() as usize;
+        others &= others - 1;
+        let uvs = each([0, 1, 2], |corner| rows[corner].map(|row| f64::from(row[slot])));
         let texels = texels(uvs, texture);
         if !fits_f32(&texels) {
             let Some(own) = FarTexture::new(slot, uvs, texture, || {
                 let number = attributes.numbers[slot];
                 HomogeneousWeights::new(context.plan, group.draw, number, [0; 2])
             }) else {
+                placement.known &= !(1 << slot);
                 continue;
             };
             far.push(own);

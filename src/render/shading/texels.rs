@@ -1,6 +1,6 @@
 //! Texels of fragments, sixteen at a time; the footprint of a pixel on its texture.
 
-use fearless_simd::{Simd, SimdBase as _, f32x16, i32x16};
+use fearless_simd::{Simd, SimdBase as _, SimdMask as _, SimdWiden as _, f32x16, f64x8, i32x16};
 use glam::DVec3;
 
 use super::barycentrics::Barycentrics;
@@ -14,9 +14,9 @@ use crate::render::lights::{Rows, load, store};
 use crate::render::screen::coverage::doubled_area;
 use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3};
+use crate::render::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3, in_f64};
 use crate::render::texture::lanes::{Decode, Sampler, Stored, TexelPlaces};
-use crate::render::texture::placement::{Placement, Steps};
+use crate::render::texture::placement::{Doubles, LaneSteps, Placement, Steps, less};
 use crate::render::texture::sample::brightness;
 use crate::render::texture::uv::Uvs;
 
@@ -292,6 +292,53 @@ pub(crate) fn steps<T: AttributeNumber>(
             [-(second + third) * by_w[0], second * by_w[1], third * by_w[2]]
         }),
     )
+}
+
+/// The [`Steps`] of sixteen triangles, from slot `at` on, with the bits of [`steps`]; and a bit for
+/// each of them whose steps are meaningless: it is clipped, wide, or has no area.
+#[inline(always)]
+pub(super) fn lane_steps<S: Simd>(
+    simd: S,
+    attributes: &TriangleAttributes<f32>,
+    at: usize,
+) -> (LaneSteps<S>, u64) {
+    let [ax, ay] = places(simd, &attributes.corners[0], at);
+    let [bx, by] = places(simd, &attributes.corners[1], at);
+    let [cx, cy] = places(simd, &attributes.corners[2], at);
+    let [w0, w1, w2] = &attributes.by_w;
+    let by_w = [wide(simd, w0, at), wide(simd, w1, at), wide(simd, w2, at)];
+    let (b, c) = ([less(bx, ax), less(by, ay)], [less(cx, ax), less(cy, ay)]);
+    let parts = f64::from(attributes.grid.parts());
+    let zero = f64x8::splat(simd, 0.0);
+    let (mut steps, mut flat) = ([[[zero; 2]; 3]; 2], 0);
+    for half in 0..2 {
+        // Sides of triangles that are not wide have 20 bits, so that this is exact.
+        let area = b[0][half] * c[1][half] - b[1][half] * c[0][half];
+        flat |= area.simd_eq(0.0).to_bitmask() << (8 * half);
+        let per_pixel = f64x8::splat(simd, parts) / area;
+        let right = [(cy[half] - ay[half]) * per_pixel, (ay[half] - by[half]) * per_pixel];
+        let down = [(ax[half] - cx[half]) * per_pixel, (bx[half] - ax[half]) * per_pixel];
+        for (steps, [second, third]) in steps.iter_mut().zip([right, down]) {
+            steps[0][half] = -(second + third) * by_w[0][half];
+            steps[1][half] = second * by_w[1][half];
+            steps[2][half] = third * by_w[2][half];
+        }
+    }
+    (steps, flat | (attributes.cut | attributes.wide) >> at & 0xffff)
+}
+
+/// x and y of one corner of sixteen triangles.
+#[inline(always)]
+fn places<S: Simd>(simd: S, [x, y]: &[[i32; SLOTS]; 2], at: usize) -> [Doubles<S>; 2] {
+    let (x, y) = (&x[at..at + 16], &y[at..at + 16]);
+    [in_f64(i32x16::from_slice(simd, x)), in_f64(i32x16::from_slice(simd, y))]
+}
+
+/// Sixteen numbers of a row.
+#[inline(always)]
+fn wide<S: Simd>(simd: S, row: &[f32; SLOTS], at: usize) -> Doubles<S> {
+    let (low, high) = Sixteen(simd).load(row, at).widen();
+    [low, high]
 }
 
 /// The footprint of a pixel with these perspective-correct weights and this w: the differences of

@@ -3,6 +3,11 @@
 //! Coordinates of a texture that repeats are moved by whole repetitions, so that f32 keeps their
 //! digits however far from 0 they are.
 
+use fearless_simd::{
+    Simd, SimdBase as _, SimdFloat as _, SimdMask as _, SimdNarrow as _, SimdWiden as _, f32x16,
+    f64x8,
+};
+
 use super::uv::Uvs;
 use crate::base::math::each;
 use crate::render::simd::gather::SLOTS;
@@ -77,6 +82,102 @@ impl Placement {
         }
         self.known |= 1 << slot;
     }
+}
+
+/// Texture coordinates of the corners of the triangles of a list: u and v of each corner.
+pub(crate) type UvRows = [[[f32; SLOTS]; 2]; 3];
+
+/// Sixteen numbers.
+pub(crate) type Doubles<S> = [f64x8<S>; 2];
+
+/// [`Steps`] of sixteen triangles.
+pub(crate) type LaneSteps<S> = [[Doubles<S>; 3]; 2];
+
+impl Placement {
+    /// Sets the coordinates of sixteen triangles, from slot `at` on, as [`Self::set`] does. Returns
+    /// a bit for each of them for which f32 is enough; those of the others are meaningless.
+    #[inline(always)]
+    pub(crate) fn set_sixteen<S: Simd>(
+        &mut self,
+        simd: S,
+        (uvs, at): (&UvRows, usize),
+        texture: &Texture,
+        steps: Option<LaneSteps<S>>,
+    ) -> u64 {
+        let mut fits = u64::MAX;
+        let mut ways = [[[f64x8::splat(simd, 0.0); 2]; 2]; 2];
+        for axis in 0..2 {
+            let own = [&uvs[0][axis], &uvs[1][axis], &uvs[2][axis]];
+            let [a, b, c] = lanes_along(simd, own, at, (texture, axis));
+            fits &= all_near(a) & all_near(b) & all_near(c);
+            let (second, third) = (less(b, a), less(c, a));
+            let low = [a[0].min(b[0]).min(c[0]), a[1].min(b[1]).min(c[1])];
+            let high = [a[0].max(b[0]).max(c[0]), a[1].max(b[1]).max(c[1])];
+            let rows = [&mut self.first, &mut self.second, &mut self.third];
+            for (rows, [x, y]) in rows.into_iter().zip([a, second, third]) {
+                x.narrow(y).store_slice(&mut rows[axis][at..at + 16]);
+            }
+            for (rows, [x, y]) in [&mut self.low, &mut self.high].into_iter().zip([low, high]) {
+                x.narrow(y).store_slice(&mut rows[axis][at..at + 16]);
+            }
+            ways[axis] = [second, third];
+        }
+        if let Some(steps) = steps {
+            for (which, [first, second, third]) in steps.into_iter().enumerate() {
+                for (axis, [to_second, to_third]) in ways.into_iter().enumerate() {
+                    let x = to_second[0] * second[0] + to_third[0] * third[0];
+                    let y = to_second[1] * second[1] + to_third[1] * third[1];
+                    x.narrow(y).store_slice(&mut self.steps[which][axis][at..at + 16]);
+                }
+                let (x, y) = (first[0] + second[0] + third[0], first[1] + second[1] + third[1]);
+                x.narrow(y).store_slice(&mut self.by_w_steps[which][at..at + 16]);
+            }
+        }
+        fits & 0xffff
+    }
+}
+
+/// The differences of sixteen numbers.
+#[inline(always)]
+pub(crate) fn less<S: Simd>(a: Doubles<S>, b: Doubles<S>) -> Doubles<S> {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+/// Which of sixteen coordinates f32 is enough for, a bit for each.
+#[inline(always)]
+fn all_near<S: Simd>([x, y]: Doubles<S>) -> u64 {
+    let (x, y) = (x.abs().simd_le(FARTHEST), y.abs().simd_le(FARTHEST));
+    x.to_bitmask() | y.to_bitmask() << 8
+}
+
+/// The coordinates of the corners of sixteen triangles in texels along an axis, as [`along`].
+#[inline(always)]
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+fn lanes_along<S: Simd>(
+    simd: S,
+    rows: [&[f32; SLOTS]; 3],
+    at: usize,
+    (texture, axis): (&Texture, usize),
+) -> [Doubles<S>; 3] {
+    let size = texture.picture.size();
+    let side = [size.width, size.height][axis] as f64;
+    let (scale, offset) = (texture.scale[axis], texture.offset[axis]);
+    let mut own = [[f64x8::splat(simd, 0.0); 2]; 3];
+    for (own, row) in own.iter_mut().zip(rows) {
+        let (low, high) = f32x16::from_slice(simd, &row[at..at + 16]).widen();
+        *own = [low * scale + offset, high * scale + offset];
+    }
+    let [a, b, c] = own;
+    for half in 0..2 {
+        let repetitions = match texture.wrap {
+            Wrap::Repeat => a[half].min(b[half]).min(c[half]).floor(),
+            Wrap::Clamp => f64x8::splat(simd, 0.0),
+        };
+        for own in &mut own {
+            own[half] = (own[half] - repetitions) * side;
+        }
+    }
+    own
 }
 
 /// The coordinates of a triangle's corners in texels, along u and v.
