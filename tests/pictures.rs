@@ -183,6 +183,61 @@ fn back_faces_are_left_out_or_red_or_lit() {
     assert_ne!(lit, scene.background.opaque());
 }
 
+/// A waved sheet of 80,000 triangles that faces +Z, and perhaps one triangle more.
+fn fine_sheet(another: Option<[[f32; 3]; 3]>) -> Shared<Model> {
+    const SIDE: u32 = 200;
+    let mut positions = Vec::new();
+    for (row, column) in (0..=SIDE).flat_map(|row| (0..=SIDE).map(move |column| (row, column))) {
+        let [x, y] = [column, row].map(|at| at as f32 / 100.0 - 1.0);
+        positions.push([x, y, 0.03 * (9.0 * x).sin() * (7.0 * y).cos()]);
+    }
+    let mut polygons: Vec<Vec<u32>> = Vec::new();
+    for (row, column) in (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| (row, column))) {
+        let at = |row: u32, column: u32| row * (SIDE + 1) + column;
+        let [a, b] = [at(row, column), at(row, column + 1)];
+        polygons.push(vec![a, b, at(row + 1, column + 1)]);
+        polygons.push(vec![a, at(row + 1, column + 1), at(row + 1, column)]);
+    }
+    let first = positions.len() as u32;
+    polygons.extend(another.map(|_| vec![first, first + 1, first + 2]));
+    positions.extend(another.into_iter().flatten());
+    let polygons: Vec<&[u32]> = polygons.iter().map(Vec::as_slice).collect();
+    model("sheet", &positions, &polygons)
+}
+
+#[test]
+fn pixels_that_show_a_triangle_each_have_the_colors_of_triangles_on_many_pixels() {
+    let place = at(60.0, 0.0, 0.0, 0.0);
+    // A floor that reaches behind the camera. With it, vertices are lit when they are drawn.
+    let floor = [[-90.0, -0.9, 30.0], [90.0, -0.9, 30.0], [0.0, -0.9, -5.0]];
+    for (light, floor) in [(LightAt::Pixel, Some(floor)), (LightAt::Vertex, None)] {
+        let (mut scene, view) = scene(&[(fine_sheet(floor), place)]);
+        let view = without_marks(view);
+        for normals in [Normals::Vertex, Normals::Face] {
+            let view = View { normals, ..view.clone() };
+            let settings = Settings { light, ..Settings::default() };
+            edit(&mut scene, FIRST, |object| {
+                object.sides = Sides::One;
+                object.placement = object.placement.replaced(place);
+            });
+            let front = draw(&scene, &view, &settings, 200);
+            // Where back faces would be red, triangles are listed with slots.
+            let red = View { back_faces: true, ..view.clone() };
+            assert!(front == draw(&scene, &red, &settings, 200), "{light:?} {normals:?}");
+            edit(&mut scene, FIRST, |object| object.sides = Sides::Two);
+            assert!(front == draw(&scene, &view, &settings, 200), "{light:?} {normals:?}: lit");
+            edit(&mut scene, FIRST, |object| {
+                let turned = place * DMat4::from_rotation_y(std::f64::consts::PI);
+                object.placement = object.placement.replaced(turned);
+            });
+            let back = draw(&scene, &view, &settings, 200);
+            let exact = Settings { arithmetic: Arithmetic::F64, ..settings };
+            let steps = steps_apart(&back, &draw(&scene, &view, &exact, 200));
+            assert!(steps <= 1, "{steps} steps: {light:?} {normals:?}");
+        }
+    }
+}
+
 #[test]
 fn a_mirrored_object_is_not_inside_out() {
     let (mut scene, view) = scene(&[(ball(8), at(80.0, 0.0, 0.0, 0.0))]);

@@ -46,10 +46,10 @@ impl Page {
     #[inline(always)]
     fn prefetch(&self) {
         for at in (0..64).step_by(16) {
-            prefetch_index(&self.place, at);
+            prefetch_index(self.place.as_slice(), at);
         }
         for at in (0..64).step_by(8) {
-            prefetch_index(&self.word, at);
+            prefetch_index(self.word.as_slice(), at);
         }
     }
 

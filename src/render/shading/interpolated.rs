@@ -63,8 +63,8 @@ pub(crate) trait Interpolated: AttributeNumber {
         to: &mut Canvas<'_>,
     ) -> bool;
     /// Places a texture on triangles whose corners have these texture coordinates, sixteen at a
-    /// time; steps are only needed for mip maps. Returns the slots, a bit for each, of the triangles
-    /// that it was done for.
+    /// time; steps are only needed for mip maps. Returns the slots, a bit for each, of the
+    /// triangles that it was done for.
     fn place_texture(
         level: Level,
         attributes: &TriangleAttributes<Self>,

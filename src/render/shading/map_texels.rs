@@ -9,7 +9,7 @@ use super::fragments::Fragments;
 use super::groups::Group;
 use super::interpolated::ShadingNumber;
 use super::texels::{PlacedTexture, TexelScratch, TextureSamples, footprint, steps};
-use super::triangle_attributes::TriangleAttributes;
+use super::triangle_attributes::{TriangleAttributes, asks_ahead};
 use crate::accuracy::Filter;
 use crate::base::Shared;
 use crate::base::math::each;
@@ -210,10 +210,18 @@ pub(super) fn place<T: ShadingNumber>(
 ) {
     placement.clear();
     far.clear();
+    let mesh = &group.draw.model.mesh;
     let mut rows = [[[0.0; SLOTS]; 2]; 3];
-    // One after another, so that the processor fetches many at once.
-    for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
-        let own = group.draw.model.mesh.triangle_uvs(*number);
+    let mut uv_places = [None; SLOTS];
+    let ahead = asks_ahead(attributes.count);
+    for (places, number) in uv_places.iter_mut().zip(&attributes.numbers[..attributes.count]) {
+        *places = mesh.uv_places(*number);
+        if let Some(places) = places.filter(|_| ahead) {
+            mesh.prefetch_uvs(places);
+        }
+    }
+    for (slot, places) in uv_places[..attributes.count].iter().enumerate() {
+        let own = places.and_then(|places| mesh.uvs_at(places));
         placement.known |= u64::from(own.is_some()) << slot;
         for (rows, [u, v]) in rows.iter_mut().zip(own.unwrap_or_default()) {
             (rows[0][slot], rows[1][slot]) = (u, v);

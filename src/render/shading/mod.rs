@@ -5,7 +5,8 @@
 //! (`barycentrics`), interpolates attributes (`interpolate`), lights fragments per pixel, face or
 //! vertex (`light`) if they see the light (`shadows`), and multiplies with the colour of the
 //! surface (`textured`). `quantize` converts the result to bytes, and `resolve` averages samples.
-//! Blocks that show the same surface are `waiting` for each other, and coloured together.
+//! Blocks that show the same surface are `waiting` for each other, and coloured together; those of
+//! triangles of about a pixel (`tiny_blocks`) without looking triangles up (`tiny`).
 //! Blocks that one triangle covers fully (`blocks`) take all of these steps in one pass, without a
 //! list (`full_blocks`). Blocks that transparent triangles reach are coloured layer by layer
 //! (`layers`), each with its `opacity`, which `blend` lays over what is behind.
@@ -47,5 +48,6 @@ pub(crate) mod surface;
 mod texels;
 mod textured;
 mod tiny;
+mod tiny_blocks;
 pub(crate) mod triangle_attributes;
 mod waiting;

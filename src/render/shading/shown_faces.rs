@@ -65,10 +65,13 @@ impl<T: ShadingNumber> Shader<T> {
             let count = left.iter().take(SLOTS).take_while(|number| is_alike(number)).count();
             let (own, others) = left.split_at(count);
             left = others;
-            if !is_uniform(context.plan, &context.plan.pipelines[group.pipeline as usize]) {
+            let pipeline = &context.plan.pipelines[group.pipeline as usize];
+            if !is_uniform(context.plan, pipeline) {
                 continue;
             }
-            prefetch_facets(&group, &left[..left.len().min(SLOTS)]);
+            if is_lit(pipeline) {
+                prefetch_facets(&group, &left[..left.len().min(SLOTS)]);
+            }
             self.fragments.list_faces(own);
             self.colors.form = Form::Pixels;
             self.group(context, &group);
@@ -78,6 +81,11 @@ impl<T: ShadingNumber> Shader<T> {
         }
         self.new_faces = new;
     }
+}
+
+/// Whether a surface whose triangles have one colour each is lit.
+fn is_lit(pipeline: &Pipeline) -> bool {
+    matches!(pipeline, Pipeline::Shaded(shaded) if shaded.light.is_some())
 }
 
 /// Asks the cache for what lighting some faces reads, if they are of a group.

@@ -23,8 +23,8 @@ use super::map_texels::{Points, TexturePlacement};
 use super::quantize::{Finish, Quantize, SurfaceColor};
 use super::rounding::{QuantizeWithThresholds, Thresholds};
 use super::shadows::{BatchShadows, place_faces};
-use super::tiny::TinyTriangles;
-use super::triangle_attributes::TriangleAttributes;
+use super::tiny::{CornerRows, TinyTriangles};
+use super::triangle_attributes::{TriangleAttributes, asks_ahead};
 use crate::accuracy::{LightAt, Rounding};
 use crate::base::color::Color;
 use crate::render::frame::FramePlan;
@@ -59,6 +59,8 @@ pub(crate) struct Shader<T> {
     pub(super) thresholds: Thresholds<T>,
     /// The triangles of a list in which each pixel has its own.
     pub(super) tiny: TinyTriangles,
+    /// The colours of their corners, with light at vertices.
+    pub(super) corner_colors: Box<CornerRows<T>>,
     /// How pixels of a draw become positions and normals.
     look: Option<(u32, Look<T>)>,
     /// Whether nothing but corners, normals and light is prepared for the triangles of the list.
@@ -121,6 +123,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             colors: Colors::default(),
             thresholds: Thresholds::default(),
             tiny: TinyTriangles::default(),
+            corner_colors: Box::new([[[T::default(); 4]; BATCH]; 3]),
             look: None,
             prepares_little: false,
             new_faces: Vec::new(),
@@ -298,6 +301,11 @@ impl<T: ShadingNumber> Shader<T> {
         let each = textured || plan.variants.rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let located = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
+        if shaded.texture.is_some() && asks_ahead(self.fragments.count) {
+            let mesh = &group.draw.model.mesh;
+            let numbers = &self.fragments.numbers[..self.fragments.count];
+            numbers.iter().for_each(|number| mesh.prefetch_uv_places(number - group.base));
+        }
         let new = self.take(context, group, located);
         self.prepares_little = !textured && extras.is_empty();
         if located {
@@ -377,6 +385,9 @@ impl<T: ShadingNumber> Shader<T> {
         let new = self.attributes.take(&self.fragments, order, draw_index, base);
         if new {
             let vertices = frame.corners_of(draw_index);
+            if located && plan.light_at == LightAt::Pixel && asks_ahead(self.fragments.count) {
+                self.attributes.prefetch_normals(draw);
+            }
             self.attributes.find_sides(level, draw, plan, vertices);
             if located {
                 self.attributes.locate(level, draw, plan, vertices);

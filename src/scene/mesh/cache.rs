@@ -5,6 +5,7 @@
 
 use std::sync::OnceLock;
 
+use prefetch_index::prefetch_index;
 use rayon::prelude::*;
 
 use super::closed::is_closed;
@@ -156,10 +157,34 @@ impl Mesh {
     #[inline(always)]
     #[must_use]
     pub fn triangle_uvs(&self, number: u32) -> Option<[[f32; 2]; 3]> {
+        self.uvs_at(self.uv_places(number)?)
+    }
+
+    /// Asks the cache for what [`Self::uv_places`] reads.
+    #[inline(always)]
+    pub(crate) fn prefetch_uv_places(&self, number: u32) {
+        let [first, ..] = self.triangle(number as usize);
+        prefetch_index(&self.shape.corner_uvs, first);
+    }
+
+    /// The places of the uv coordinates of a triangle's corners, for [`Self::uvs_at`].
+    #[inline(always)]
+    pub(crate) fn uv_places(&self, number: u32) -> Option<[u32; 3]> {
         let [a, b, c] = self.triangle(number as usize);
-        let of = |corner: usize| -> Option<[f32; 2]> {
-            self.shape.uvs.get(*self.shape.corner_uvs.get(corner)? as usize).copied()
-        };
+        let of = |corner: usize| self.shape.corner_uvs.get(corner).copied();
+        Some([of(a)?, of(b)?, of(c)?])
+    }
+
+    /// Asks the cache for what [`Self::uvs_at`] reads.
+    #[inline(always)]
+    pub(crate) fn prefetch_uvs(&self, places: [u32; 3]) {
+        places.iter().for_each(|place| prefetch_index(&self.shape.uvs, *place as usize));
+    }
+
+    /// The uv coordinates at three places; `None` if there is none at one.
+    #[inline(always)]
+    pub(crate) fn uvs_at(&self, [a, b, c]: [u32; 3]) -> Option<[[f32; 2]; 3]> {
+        let of = |place: u32| self.shape.uvs.get(place as usize).copied();
         Some([of(a)?, of(b)?, of(c)?])
     }
 

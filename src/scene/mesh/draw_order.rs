@@ -64,6 +64,14 @@ impl Points {
     pub fn of(&self, order: &DrawOrder, number: u32, vertices: [u32; 3]) -> [u32; 3] {
         if self.of.is_empty() { vertices } else { self.of[order.place(number) as usize] }
     }
+
+    /// Asks the cache for the normals at some vertices, if they have the numbers of these.
+    #[inline(always)]
+    pub fn prefetch(&self, vertices: [u32; 3]) {
+        if self.of.is_empty() {
+            vertices.iter().for_each(|vertex| prefetch_index(&self.normals, *vertex as usize));
+        }
+    }
 }
 
 impl DrawOrder {
