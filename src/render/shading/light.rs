@@ -9,7 +9,6 @@ use std::sync::OnceLock;
 
 use fearless_simd::Level;
 use glam::{DMat3, DVec3};
-use prefetch_index::prefetch_index;
 
 use super::interpolated::ShadingNumber;
 use super::shadows::{BatchShadows, place_vertices};
@@ -173,14 +172,6 @@ impl<T: ShadingNumber> Table<T> {
         match self.diffuse[chunk].get() {
             Some(lights) => lights[at],
             None => self.light(chunk, lighting, (batch, scratch))[at],
-        }
-    }
-
-    /// Asks the cache for the diffuse light or final colour of a vertex, if it is lit.
-    #[inline(always)]
-    pub(crate) fn prefetch(&self, place: u32) {
-        if let Some(lights) = self.diffuse[place as usize / CHUNK].get() {
-            prefetch_index(lights, place as usize % CHUNK);
         }
     }
 

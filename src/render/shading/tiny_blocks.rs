@@ -190,16 +190,15 @@ impl<T: ShadingNumber> Shader<T> {
         let tables = lit.tables(group.draw_index, group.pipeline);
         let list = (self.fragments.each(), group.base);
         let from = (order, frame.corners_of(group.draw_index));
-        let prefetch = |place: u32| tables[0].prefetch(place);
         match group.draw.normals {
             Normals::Face => {
                 let triangles = mesh.triangles();
                 let corners = |number: u32, _: [u32; 3]| triangles[number as usize].corners;
-                self.tiny.take(from, list, corners, prefetch);
+                self.tiny.take(from, list, corners, |_| {});
             }
             Normals::Vertex => {
                 let corners = |number, ids| points.of(order, number, ids);
-                self.tiny.take(from, list, corners, prefetch);
+                self.tiny.take(from, list, corners, |_| {});
             }
         }
         if !self.weigh_tiny(context, group) {
