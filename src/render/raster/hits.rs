@@ -42,7 +42,7 @@ impl Page {
         Self { place: [0; PAGE], word: [0; PAGE], count, previous: FULL }
     }
 
-    /// Asks the cache for its first lines; those after them follow by themselves.
+    /// Asks the cache for its first lines; processors fetch the lines after them by themselves.
     #[inline(always)]
     fn prefetch(&self) {
         for at in (0..64).step_by(16) {

@@ -181,7 +181,7 @@ impl Mesh {
         places.iter().for_each(|place| prefetch_index(&self.shape.uvs, *place as usize));
     }
 
-    /// The uv coordinates at three places; `None` if there is none at one.
+    /// The uv coordinates at three places; `None` if a place has none.
     #[inline(always)]
     pub(crate) fn uvs_at(&self, [a, b, c]: [u32; 3]) -> Option<[[f32; 2]; 3]> {
         let of = |place: u32| self.shape.uvs.get(place as usize).copied();
