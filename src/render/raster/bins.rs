@@ -8,6 +8,7 @@ use super::hit_colors::CornerColors;
 use super::hits::Hits;
 use super::lines::{self, ScreenLine};
 use super::queue::{Queue, SMALL};
+use super::tile_queues::TileQueues;
 use crate::base::image::Size;
 use crate::render::screen::clip::ScreenVertex;
 use crate::render::screen::coverage::PixelBox;
@@ -42,6 +43,8 @@ pub(crate) struct Bins {
     pub(crate) sample_positions: SamplePositions,
     pub(crate) tiles: Vec<Bin>,
     pub(crate) hits: Hits,
+    /// Small triangles that are rasterized when their tile is drawn.
+    pub(crate) tile_queues: TileQueues,
     pub(crate) large: Vec<LargeTriangle>,
     /// The colours at their corners, if they are known; empty if hits have no colours.
     pub(crate) large_colors: Vec<Option<CornerColors>>,
@@ -73,6 +76,7 @@ impl Bins {
         let extent = [size.width, size.height]
             .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
         self.hits.clear(extent, [self.columns, self.rows]);
+        self.tile_queues.clear([self.columns, self.rows], sample_positions.are_many());
         self.large.clear();
         self.large_colors.clear();
         self.unsnapped.clear();
@@ -88,6 +92,7 @@ impl Bins {
     /// Empties the bins of transparent triangles, or makes them.
     pub(crate) fn clear_transparent(&mut self, mut bins: Box<Self>, size: Size) {
         bins.clear(size, self.sample_positions);
+        bins.tile_queues.clear([0; 2], false);
         self.transparent = Some(bins);
     }
 
@@ -115,6 +120,7 @@ impl Bins {
     pub(crate) fn is_empty(&self, tile: usize) -> bool {
         let bin = &self.tiles[tile];
         self.hits.is_empty(tile)
+            && self.tile_queues.is_empty(tile)
             && bin.large.is_empty()
             && bin.lines.is_empty()
             && self.transparent().is_none_or(|bins| bins.is_empty(tile))

@@ -39,6 +39,7 @@ mod small;
 mod small_edges;
 pub(crate) mod starts;
 pub(crate) mod tile;
+mod tile_queues;
 mod vertex_variants;
 pub(crate) mod vertices;
 pub(crate) mod visibility_buffer;

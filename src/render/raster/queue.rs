@@ -1,6 +1,6 @@
 //! Queues of small triangles that wait to be drawn sixteen at a time.
 
-use fearless_simd::{Simd, SimdBase as _, i32x16, mask32x16};
+use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16};
 
 use super::hits::PACK;
 
@@ -56,17 +56,32 @@ impl Queue {
         self.count >= WAITING
     }
 
+    /// The number of triangles that are drawn next.
+    #[inline(always)]
+    pub(super) fn waiting(&self) -> usize {
+        self.count.min(WAITING)
+    }
+
     /// Empties the queue.
     pub(crate) const fn clear(&mut self) {
         self.count = 0;
     }
 
-    /// Sixteen of them, from `at` on.
+    /// Sixteen of them, from `at` on; of the last, fewer, beside triangles without pixels.
     #[inline(always)]
     pub(super) fn pack<S: Simd>(&self, simd: S, at: usize) -> Pack<S> {
         let mut pack = [i32x16::splat(simd, 0); ROWS];
         for (values, row) in pack.iter_mut().zip(&self.rows) {
             *values = i32x16::from_slice(simd, &row[at..at + PACK]);
+        }
+        let left = self.waiting() - at;
+        if left < PACK {
+            let there = mask32x16::from_bitmask(simd, (1 << left) - 1);
+            // An empty box holds no pixels.
+            let nothing = i32x16::splat(simd, 0);
+            for row in &mut pack {
+                *row = there.select(*row, nothing);
+            }
         }
         pack
     }

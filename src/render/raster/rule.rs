@@ -21,6 +21,8 @@ pub(crate) trait Rule: Copy {
     const UNSNAPPED: bool = false;
     /// The number of queues of small triangles that are used.
     const QUEUES: usize = SMALL.len() - 1;
+    /// Whether small triangles may wait for their tiles.
+    const IN_TILES: bool = false;
     /// The edge functions of small triangles.
     type Edges<S: Simd>: Edges<S>;
     /// Those of the last queue, whose boxes are larger.
@@ -33,6 +35,7 @@ pub(crate) struct Usual;
 
 impl Rule for Usual {
     const QUEUES: usize = SMALL.len();
+    const IN_TILES: bool = true;
     type Edges<S: Simd> = UsualEdges<S>;
     type LastEdges<S: Simd> = WholeEdges<S>;
 }

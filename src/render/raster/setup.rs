@@ -14,6 +14,7 @@ use super::hits::PACK;
 use super::queue::{Pack, SMALL};
 use super::rule::Rule;
 use super::small;
+use super::tile_queues::FIRST_SIZE;
 use super::vertices::{fetch, fetch_vertices};
 use crate::accuracy::Coverage;
 use crate::base::image::Size;
@@ -47,6 +48,18 @@ pub(crate) struct Setup<'a> {
     pub(crate) holes: &'a [Holes],
     /// Whether all triangles that are drawn are transparent.
     pub(crate) transparent: bool,
+}
+
+/// Those of sixteen triangles that may be visible.
+#[derive(Clone, Copy, Debug)]
+struct Visible<S: Simd> {
+    /// Those that need no alpha test, and those that do.
+    plain: mask32x16<S>,
+    cutout: u64,
+    /// Those that run clockwise on the screen.
+    clockwise: u64,
+    /// Their bounding boxes: left, top, right and bottom.
+    boxes: [i32x16<S>; 4],
 }
 
 /// How a triangle is drawn.
@@ -184,16 +197,17 @@ impl<'a> Setup<'a> {
                     (pack[2 * corner], pack[2 * corner + 1]) = (x, y);
                 }
             }
-            let side = (right - left).max(bottom - top);
+            let boxes = [left, top, right, bottom];
             let front = if self.draw.mirrored { area.simd_gt(0) } else { area.simd_lt(0) };
             let (plain, front) = (plain.to_bitmask(), front.to_bitmask());
             let clockwise = area.simd_gt(0).to_bitmask();
             for (some, cutout, transparent) in self.kinds(triangles, plain, front, pipelines) {
                 if some | cutout != 0 {
-                    let some = (mask32x16::from_bitmask(simd, some), side);
+                    let plain = mask32x16::from_bitmask(simd, some);
+                    let visible = Visible { plain, cutout, clockwise, boxes };
                     let bins = bins.of(transparent);
                     let rows = (&pack, &[v0, v1, v2]);
-                    self.sort::<S, R, N>(triangles, rows, (some, cutout, clockwise), bins, brush);
+                    self.sort::<S, R, N>(triangles, rows, visible, bins, brush);
                 }
             }
         }
@@ -242,16 +256,20 @@ impl<'a> Setup<'a> {
     }
 
     /// Sorts visible triangles by the larger sides of their bounding boxes: into the queues of
-    /// small ones, or to the large ones; those with a bit in `cutout` need the alpha test.
+    /// small ones, of this thread or of the tiles that they reach into, or to the large ones.
     #[inline(always)]
     fn sort<S: Simd, R: Rule, const N: usize>(
         &self,
         triangles: &[DrawTriangle; PACK],
         (pack, vertices): (&Pack<S>, &[i32x16<S>; 3]),
-        ((plain, side), cutout, clockwise): ((mask32x16<S>, i32x16<S>), u64, u64),
+        Visible { plain, cutout, clockwise, boxes }: Visible<S>,
         bins: &mut Bins,
         brush: &mut Brush<'_>,
     ) {
+        let [left, top, right, bottom] = boxes;
+        let side = (right - left).max(bottom - top);
+        let in_tiles = N > 1 && R::IN_TILES && bins.tile_queues.are_used();
+        let tiles = bins.tile_queues.boxes(boxes);
         let mut above = 0;
         let queues = if self.has_small::<R>() { R::QUEUES } else { 0 };
         for (queue, limit) in SMALL[..queues].iter().copied().enumerate() {
@@ -262,6 +280,10 @@ impl<'a> Setup<'a> {
                 continue;
             }
             bins.drawn += count;
+            if in_tiles && queue >= FIRST_SIZE {
+                bins.tile_queues.add(queue - FIRST_SIZE, (pack, &tiles), some);
+                continue;
+            }
             let vertices = bins.hits.are_colored().then_some(vertices);
             if bins.queues[queue].add((pack, vertices), some, count) {
                 small::draw_queue::<S, R, N>(side.simd, queue, bins, brush);

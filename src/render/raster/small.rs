@@ -13,13 +13,14 @@ use fearless_simd::{
 };
 
 use super::bins::Bins;
-use super::covered::{Covered, MOST};
+use super::covered::{Covered, MOST, SAMPLES};
 use super::hit_colors::{Brush, Triangles};
 use super::hits::{PACK, Pixels};
-use super::queue::{Pack, SMALL, WAITING};
+use super::queue::{Pack, SMALL};
 use super::rule::Rule;
 use super::small_edges::Edges;
 use crate::render::screen::coverage::PixelBox;
+use crate::render::screen::sample_positions::SamplePositions;
 use crate::render::simd::gather::permute;
 use crate::render::simd::{Real, UP_TO_SIXTEEN};
 
@@ -53,17 +54,8 @@ fn draw_packs<S: Simd, R: Rule, const N: usize, const COLORED: bool>(
     bins: &mut Bins,
     brush: &mut Brush<'_>,
 ) {
-    let count = bins.queues[queue].count.min(WAITING);
-    for at in (0..count).step_by(PACK) {
-        let mut pack = bins.queues[queue].pack(simd, at);
-        if count - at < PACK {
-            let there = mask32x16::from_bitmask(simd, (1 << (count - at)) - 1);
-            // An empty box holds no pixels.
-            let nothing = i32x16::splat(simd, 0);
-            for row in &mut pack {
-                *row = there.select(*row, nothing);
-            }
-        }
+    for at in (0..bins.queues[queue].waiting()).step_by(PACK) {
+        let pack = bins.queues[queue].pack(simd, at);
         draw_pack::<S, R, N, COLORED>((queue, at), &pack, bins, brush);
     }
     bins.queues[queue].forget();
@@ -97,8 +89,9 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
     let reach = bins.hits.reach(lanes.bounds());
     let Bins { hits, covered, queues, .. } = bins;
     let shifts = lanes.edges.shifts::<N>(&sample_positions);
-    for (sample, shift) in shifts.iter().enumerate() {
-        lanes.scan::<N>(shift, covered);
+    for (sample, shift) in shifts.into_iter().enumerate() {
+        let shift = (N > 1).then_some([shift]);
+        lanes.scan(shift.as_ref(), covered);
         let mut mix = None;
         if COLORED && covered.count > 0 {
             let (per_area, clockwise) = areas(pack);
@@ -110,19 +103,40 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
             };
             mix = brush.mix(per_area, &triangles);
         }
-        lanes.each_pixel::<N>(
-            shift,
+        lanes.each_pixel(
+            shift.as_ref(),
             covered,
             #[inline(always)]
-            |own, by, pixel| match (&mix, lanes.edges.functions(own, by)) {
-                _ if !COLORED => None,
-                (Some(mix), Some(functions)) => Some(mix.colors(own, functions, pixel)),
-                _ => Some(u32x16::splat(simd, 0)),
+            |own, count| {
+                let CoveredPixels { x, y, number, depth: [depth], .. } = *own;
+                let color = match (&mix, lanes.edges.functions(own.lanes, own.by)) {
+                    _ if !COLORED => None,
+                    (Some(mix), Some(functions)) => Some(mix.colors(own.lanes, functions, [x, y])),
+                    _ => Some(u32x16::splat(simd, 0)),
+                };
+                let pixels = Pixels { x, y, depth: depth.bitcast(), number, color };
+                hits.add_first::<S, N>(&reach, (&pixels, sample), count);
             },
-            #[inline(always)]
-            |pixels, count| hits.add_first::<S, N>(&reach, (pixels, sample), count),
         );
     }
+}
+
+/// Calls `take` with the pixels of a box that sixteen triangles cover in any of `N` samples,
+/// sixteen at a time, and their number.
+#[inline(always)]
+pub(super) fn each_in<S: Simd, E: Edges<S>, const N: usize>(
+    (pack, within): (&Pack<S>, PixelBox),
+    sample_positions: &SamplePositions,
+    covered: &mut Covered,
+    take: impl FnMut(&CoveredPixels<S, N>, usize),
+) {
+    let lanes = Lanes::<S, E>::new(pack[0].simd, pack, sample_positions.reach::<N>());
+    let shifts = lanes.edges.shifts::<N>(sample_positions);
+    lanes.scan(Some(&shifts), covered);
+    if lanes.bounds().intersection(within) != lanes.bounds() {
+        lanes.keep(within, covered);
+    }
+    lanes.each_pixel(Some(&shifts), covered, take);
 }
 
 /// 1 / the doubled areas of sixteen triangles, and which of them run clockwise on the screen.
@@ -177,13 +191,14 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
         }
     }
 
-    /// Lists the pixels that the triangles cover in the sample with an offset.
+    /// Lists the pixels that the triangles cover in any of the samples with these offsets, by
+    /// default at their centres.
     #[inline(always)]
-    fn scan<const N: usize>(&self, shift: &E::Shift, covered: &mut Covered) {
+    fn scan<const N: usize>(&self, shifts: Option<&[E::Shift; N]>, covered: &mut Covered) {
         let columns = (self.right - self.left).reduce_max();
         let rows = (self.bottom - self.top).reduce_max();
         let mut row = self.edges.first();
-        if N > 1 {
+        if let Some([shift]) = shifts.map(<[_; N]>::as_slice) {
             row = self.edges.moved(row, *shift);
         }
         let mut count = 0;
@@ -191,9 +206,12 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
         for _ in 0..rows {
             let (mut at, mut pixels) = (row, row_pixels);
             for _ in 0..columns {
-                let some = self.edges.covered(at);
+                let (some, listed) = match shifts {
+                    Some(shifts) if N > 1 => self.covered_samples(shifts, at, pixels),
+                    _ => (self.edges.covered(at), pixels),
+                };
                 let to = count % MOST;
-                pixels.compress(some).store_slice(&mut covered.pixels[to..to + PACK]);
+                listed.compress(some).store_slice(&mut covered.pixels[to..to + PACK]);
                 count = to + some.to_bitmask().count_ones() as usize;
                 at = self.edges.right(at);
                 pixels += 1 << 4;
@@ -204,38 +222,108 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
         covered.count = count;
     }
 
-    /// Calls `take` with the pixels of a list, sixteen at a time, and their number. `color` gives
-    /// their colours by the lanes of their triangles, their distances from the first pixels of the
-    /// boxes, and their columns and rows.
+    /// Which triangles cover any sample of a pixel, and the pixel as it is listed, with a bit for
+    /// each sample that they cover.
+    #[inline(always)]
+    fn covered_samples<const N: usize>(
+        &self,
+        shifts: &[E::Shift; N],
+        at: E::At,
+        pixels: i32x16<S>,
+    ) -> (mask32x16<S>, i32x16<S>) {
+        let (mut any, mut listed) = (mask32x16::splat(pixels.simd, false), pixels);
+        for (bit, shift) in (SAMPLES..).zip(shifts) {
+            let some = self.edges.covered(self.edges.moved(at, *shift));
+            listed = some.select(listed | (1 << bit), listed);
+            any |= some;
+        }
+        (any, listed)
+    }
+
+    /// Removes the listed pixels that are not in a box.
+    #[inline(always)]
+    fn keep(&self, within: PixelBox, covered: &mut Covered) {
+        let mut kept = 0;
+        for at in (0..covered.count).step_by(PACK) {
+            let pixels = i32x16::from_slice(self.left.simd, &covered.pixels[at..at + PACK]);
+            let [x, y] = self.place(pixels);
+            let inside = x.simd_ge(within.left)
+                & x.simd_lt(within.right)
+                & y.simd_ge(within.top)
+                & y.simd_lt(within.bottom)
+                & first(self.left.simd, covered.count - at);
+            pixels.compress(inside).store_slice(&mut covered.pixels[kept..kept + PACK]);
+            kept += inside.to_bitmask().count_ones() as usize;
+        }
+        covered.count = kept;
+    }
+
+    /// Columns and rows of listed pixels.
+    #[inline(always)]
+    fn place(&self, pixels: i32x16<S>) -> [i32x16<S>; 2] {
+        let lanes = pixels & 15;
+        let by = [(pixels >> 4) & 15, (pixels >> 8) & 15];
+        [permute(self.left, lanes) + by[0], permute(self.top, lanes) + by[1]]
+    }
+
+    /// Calls `take` with the pixels of a list, sixteen at a time, and their number.
     #[inline(always)]
     fn each_pixel<const N: usize>(
         &self,
-        shift: &E::Shift,
+        shifts: Option<&[E::Shift; N]>,
         covered: &Covered,
-        color: impl Fn(i32x16<S>, [i32x16<S>; 2], [i32x16<S>; 2]) -> Option<u32x16<S>>,
-        mut take: impl FnMut(&Pixels<S>, usize),
+        mut take: impl FnMut(&CoveredPixels<S, N>, usize),
     ) {
-        let shift = (N > 1).then_some(shift);
         for at in (0..covered.count).step_by(PACK) {
             let pixels = i32x16::from_slice(self.left.simd, &covered.pixels[at..at + PACK]);
-            let by = [(pixels >> 4) & 15, pixels >> 8];
+            let by = [(pixels >> 4) & 15, (pixels >> 8) & 15];
             let lanes = pixels & 15;
-            let depth = self.edges.depths(lanes, by, shift);
             let low = permute(self.low.bitcast(), lanes).bitcast::<f32x16<S>>();
             let high = permute(self.high.bitcast(), lanes).bitcast::<f32x16<S>>();
-            // Clamped to the depths of the corners.
-            let depth = depth.simd_gt(low).select(depth, low);
-            let depth = depth.simd_lt(high).select(depth, high);
-            let x = permute(self.left, lanes) + by[0];
-            let y = permute(self.top, lanes) + by[1];
-            let pixels = Pixels {
-                x,
-                y,
-                depth: depth.bitcast(),
-                number: permute(self.number.bitcast(), lanes).bitcast(),
-                color: color(lanes, by, [x, y]),
-            };
-            take(&pixels, (covered.count - at).min(PACK));
+            let mut depth = [low; N];
+            for (sample, depth) in depth.iter_mut().enumerate() {
+                let shift = shifts.map(|shifts| &shifts[sample]);
+                let linear = self.edges.depths(lanes, by, shift);
+                // Clamped to the depths of the corners.
+                let linear = linear.simd_gt(low).select(linear, low);
+                *depth = linear.simd_lt(high).select(linear, high);
+            }
+            let [x, y] = self.place(pixels);
+            let number = permute(self.number.bitcast(), lanes).bitcast();
+            let own = CoveredPixels { lanes, by, x, y, number, depth, samples: pixels >> SAMPLES };
+            take(&own, (covered.count - at).min(PACK));
         }
     }
+}
+
+/// Sixteen pixels that some of sixteen triangles cover in any of `N` samples.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CoveredPixels<S: Simd, const N: usize> {
+    /// The lanes of their triangles.
+    lanes: i32x16<S>,
+    /// Their distances from the first pixels of the boxes.
+    by: [i32x16<S>; 2],
+    pub(super) x: i32x16<S>,
+    pub(super) y: i32x16<S>,
+    /// The numbers of their triangles.
+    pub(super) number: u32x16<S>,
+    /// Their depths in each sample.
+    pub(super) depth: [f32x16<S>; N],
+    /// The samples that are covered, a bit for each of several.
+    samples: i32x16<S>,
+}
+
+impl<S: Simd, const N: usize> CoveredPixels<S, N> {
+    /// Which of the first `count` are covered in one of several samples.
+    #[inline(always)]
+    pub(super) fn covered(&self, sample: usize, count: usize) -> mask32x16<S> {
+        let bit = 1 << sample;
+        (self.samples & bit).simd_eq(bit) & first(self.x.simd, count)
+    }
+}
+
+/// The first lanes, up to sixteen.
+#[inline(always)]
+fn first<S: Simd>(simd: S, count: usize) -> mask32x16<S> {
+    mask32x16::from_bitmask(simd, (1 << count.min(PACK)) - 1)
 }

@@ -23,6 +23,7 @@ use fearless_simd::{Level, Simd, dispatch};
 
 use self::cutouts::Cutouts;
 use self::hits::HitColors;
+use self::small::SmallTriangles;
 use super::bins::Bins;
 use super::depth_format::{Any, Format as _, depths_between, with_format};
 use super::edges_in_floats::FloatTriangle;
@@ -44,6 +45,8 @@ use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at
 #[derive(Debug)]
 pub(crate) struct Visibility {
     buffer: Box<Buffer>,
+    /// For drawing small triangles with four samples per pixel, once that is needed.
+    small: Option<Box<SmallTriangles>>,
     /// The samples of the pass.
     sample_positions: SamplePositions,
     /// The blocks whose entries are valid, a bit for each.
@@ -88,6 +91,7 @@ impl Default for Visibility {
     fn default() -> Self {
         Self {
             buffer: Box::new(Buffer([0; FOUR * PIXELS])),
+            small: None,
             sample_positions: SamplePositions::default(),
             written: 0,
             whole: 0,
@@ -136,6 +140,9 @@ impl Visibility {
             for bins in frame.bins() {
                 dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, (tile, conversion)));
             }
+        }
+        if N == FOUR {
+            dispatch!(level, simd => self.draw_small(simd, frame.bins(), tile));
         }
         let mut cutouts = Cutouts::default();
         for bins in frame.bins() {
@@ -419,6 +426,7 @@ impl Visibility {
 mod cutout_fragments;
 mod cutouts;
 mod hits;
+mod small;
 #[cfg(test)]
 mod tests;
 mod triangles;

@@ -21,6 +21,9 @@ pub(crate) enum Visible {
     Line(LineNumber),
 }
 
+/// The number of the background, whose entry is 0.
+pub(crate) const BACKGROUND: u32 = u32::MAX;
+
 /// The primitive of an entry.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
@@ -33,7 +36,7 @@ pub(crate) const fn seen(word: u64) -> Visible {
 #[inline(always)]
 pub(crate) const fn seen_number(number: u32) -> Visible {
     match LineNumber::of(number) {
-        _ if number == u32::MAX => Visible::Background,
+        _ if number == BACKGROUND => Visible::Background,
         Some(line) => Visible::Line(line),
         None => Visible::Triangle(number),
     }

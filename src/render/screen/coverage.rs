@@ -34,8 +34,8 @@ impl Snapped {
     }
 }
 
-/// A rectangle of pixels: columns `left..right` of rows `top..bottom`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A rectangle of pixels: columns `left..right` of rows `top..bottom`; by default none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PixelBox {
     /// The first column.
     pub left: i32,

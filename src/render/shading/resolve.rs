@@ -12,12 +12,9 @@ use super::context::ShadingContext;
 use super::interpolated::ShadingNumber;
 use super::kept::Kept;
 use super::surface::{Out, Shader};
-use crate::render::raster::visibility_buffer::{Planes, Visible, seen_number};
+use crate::render::raster::visibility_buffer::{BACKGROUND, Planes, Visible, seen_number};
 use crate::render::screen::sample_positions::FOUR;
 use crate::render::screen::tiles::BLOCK_PIXELS;
-
-/// The number of the background in the visibility buffer.
-const BACKGROUND: u32 = u32::MAX;
 
 /// What the samples of a block's pixels show.
 #[derive(Debug)]

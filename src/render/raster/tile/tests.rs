@@ -1,4 +1,4 @@
-use fearless_simd::{SimdBase as _, i32x16};
+use fearless_simd::{SimdBase as _, SimdMask as _, i32x16, mask32x16};
 
 use super::*;
 use crate::accuracy::Samples;
@@ -11,6 +11,7 @@ use crate::render::raster::queue::{ROWS, SMALL};
 use crate::render::raster::rule::{Fine, Rule, Unsnapped, Usual};
 use crate::render::raster::scan_lines::ScanLines;
 use crate::render::raster::small;
+use crate::render::raster::tile_queues::FIRST_SIZE;
 use crate::render::raster::visibility_buffer::Visible;
 use crate::render::screen::clip::ScreenVertex;
 use crate::render::screen::coverage::{Grid, Snapped, Triangle};
@@ -66,14 +67,7 @@ fn small_by<R: Rule>(
     triangles: &[[([i32; 2], f32); 3]],
     sample_positions: SamplePositions,
 ) -> Bins {
-    let mut rows = [[0; 16]; ROWS];
-    for ((lane, corners), number) in triangles.iter().enumerate().zip(0..) {
-        for (i, ([x, y], depth)) in corners.iter().enumerate() {
-            (rows[2 * i][lane], rows[2 * i + 1][lane]) = (*x, *y);
-            rows[6 + i][lane] = depth.to_bits().cast_signed();
-        }
-        rows[9][lane] = number;
-    }
+    let rows = rows_of(triangles);
     let mut bins = bins(sample_positions);
     dispatch!(Level::new(), simd => {
         let mut pack = [i32x16::splat(simd, 0); ROWS];
@@ -85,6 +79,46 @@ fn small_by<R: Rule>(
             true => small::draw_pack::<_, R, FOUR, false>((queue, 0), &pack, &mut bins, brush),
             false => small::draw_pack::<_, R, 1, false>((queue, 0), &pack, &mut bins, brush),
         }
+    });
+    bins
+}
+
+/// Triangles lane by lane, numbered from 0 on.
+fn rows_of(triangles: &[[([i32; 2], f32); 3]]) -> [[i32; 16]; ROWS] {
+    let mut rows = [[0; 16]; ROWS];
+    for ((lane, corners), number) in triangles.iter().enumerate().zip(0..) {
+        for (i, ([x, y], depth)) in corners.iter().enumerate() {
+            (rows[2 * i][lane], rows[2 * i + 1][lane]) = (*x, *y);
+            rows[6 + i][lane] = depth.to_bits().cast_signed();
+        }
+        rows[9][lane] = number;
+    }
+    rows
+}
+
+/// The bins with some triangles of a queue that wait for their tiles, sixteen at the most.
+fn waiting(
+    queue: usize,
+    triangles: &[[ScreenVertex; 3]],
+    sample_positions: SamplePositions,
+) -> Bins {
+    let number = |corner: ScreenVertex| ([corner.at().x, corner.at().y], corner.depth);
+    let corners: Vec<_> = triangles.iter().map(|corners| corners.map(number)).collect();
+    let rows = rows_of(&corners);
+    let mut boxes = [[0; 16]; 4];
+    for (lane, corners) in triangles.iter().enumerate() {
+        let PixelBox { left, top, right, bottom } =
+            reached(corners.map(|corner| corner.at()), &sample_positions);
+        for (row, side) in boxes.iter_mut().zip([left, top, right, bottom]) {
+            row[lane] = side;
+        }
+    }
+    let mut bins = bins(sample_positions);
+    dispatch!(Level::new(), simd => {
+        let pack = rows.map(|row| i32x16::from_slice(simd, &row));
+        let boxes = bins.tile_queues.boxes(boxes.map(|row| i32x16::from_slice(simd, &row)));
+        let some = mask32x16::from_bitmask(simd, (1 << triangles.len()) - 1);
+        bins.tile_queues.add(queue - FIRST_SIZE, (&pack, &boxes), some);
     });
     bins
 }
@@ -102,6 +136,7 @@ fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
             true => {
                 visibility.draw_plain::<_, FOUR>(simd, bins, (tile as usize, None));
                 visibility.draw_hits::<_, FOUR>(simd, bins, tile as usize);
+                visibility.draw_small(simd, std::slice::from_ref(bins), tile as usize);
             }
             false => {
                 visibility.draw_plain::<_, 1>(simd, bins, (tile as usize, None));
@@ -181,6 +216,12 @@ fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
         let nearer = |pixel: &(i32, i32, usize)| !got.contains(pixel);
         assert!(!want.iter().any(nearer), "{corners:?} among others");
         assert_eq!(got.len(), want.len(), "{corners:?} among others");
+        if sample_positions.are_many() && queue >= FIRST_SIZE {
+            for some in [&all[..1], &all] {
+                let got = seen_in(&waiting(queue, some, sample_positions));
+                assert_eq!(got, want, "{corners:?} waits with {} others", some.len() - 1);
+            }
+        }
     }
     let mut bins = bins(sample_positions);
     bins.add_large(LargeTriangle { corners: flat(corners), number: 0, cutout: false }, bounds);
@@ -195,6 +236,7 @@ fn entries(bins: &Bins) -> Vec<u64> {
         true => {
             visibility.draw_plain::<_, FOUR>(simd, bins, (0, None));
             visibility.draw_hits::<_, FOUR>(simd, bins, 0);
+            visibility.draw_small(simd, std::slice::from_ref(bins), 0);
         }
         false => {
             visibility.draw_plain::<_, 1>(simd, bins, (0, None));
@@ -225,6 +267,10 @@ fn triangles_of_sixteen_pixels_have_the_same_depths_as_larger_ones() {
             alone.add_large(LargeTriangle { corners, number: 0, cutout: false }, bounds);
             let last = small(SMALL.len() - 1, &[corners], sample_positions);
             assert_eq!(entries(&last), entries(&alone), "{corners:?}");
+            if sample_positions.are_many() {
+                let waits = waiting(SMALL.len() - 1, &[corners], sample_positions);
+                assert_eq!(entries(&waits), entries(&alone), "{corners:?}");
+            }
         }
     }
 }
