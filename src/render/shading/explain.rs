@@ -109,7 +109,7 @@ fn one<T: ShadingNumber>(
             let mut shader = Shader::<T>::default();
             shader.tile.begin(plan, asked.bounds, || asked.depths);
             let place = usize::try_from((y & 7) * 8 + (x & 7)).unwrap_or(0);
-            shader.fragments.begin_shared();
+            shader.fragments.begin_shared(0);
             shader.fragments.add(number, [x & !7, y & !7], place, 1);
             shader.fragments.shared = false;
             let group = group_of(context, number);

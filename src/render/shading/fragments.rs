@@ -245,10 +245,9 @@ impl Fragments {
     /// Lists all pixels of a block that one triangle covers fully.
     pub(crate) fn list_full_block(&mut self, number: u32, corner: [i32; 2]) {
         self.begin_block();
-        self.goes_on = false;
-        self.count = 1;
-        self.numbers[0] = number;
-        self.own_slots.fill(0);
+        self.begin_list();
+        let slot = self.slot_of(number);
+        self.own_slots.fill(slot);
         self.put_all(corner);
     }
 
@@ -370,19 +369,23 @@ impl Fragments {
         }
     }
 
-    /// Empties the list, for fragments that share pixels.
-    pub(crate) fn begin_shared(&mut self) {
+    /// Empties the list, for fragments that share pixels. Triangles keep their slots if fewer than
+    /// `most` are in use.
+    pub(crate) fn begin_shared(&mut self, most: usize) {
         self.begin_block();
         self.shared = true;
-        self.begin_list();
+        if !(self.goes_on && self.count < most) {
+            self.begin_list();
+        }
     }
 
-    /// Whether the list is full.
-    pub(crate) const fn is_full(&self) -> bool {
-        self.len == BLOCK_PIXELS
+    /// Whether the list has `most` fragments, or no slot for the triangle of another.
+    pub(crate) const fn is_full(&self, most: usize) -> bool {
+        self.len == most || self.count == SLOTS
     }
 
-    /// Adds a fragment that has `share` samples of its pixel. The list must not be full.
+    /// Adds a fragment that has `share` samples of its pixel. The list must not be full, and its
+    /// triangles must have slots.
     #[inline(always)]
     pub(crate) fn add(&mut self, number: u32, corner: [i32; 2], place: usize, share: i32) {
         let slot = self.slot_of(number);
@@ -549,6 +552,26 @@ mod tests {
             }
         }
         assert!((500..4000).contains(&went_on), "{went_on}");
+    }
+
+    #[test]
+    fn other_triangles_are_added_to_a_full_block() {
+        let mut fragments = Fragments::default();
+        for number in 0..200 {
+            let others = [number + 1, number + 2, number, number + 1];
+            if number % 3 == 0 {
+                // In the table, they have other slots now.
+                fragments.begin_shared(0);
+                others.iter().rev().for_each(|other| fragments.add(*other, [0, 0], 5, 1));
+            }
+            fragments.list_full_block(number, [8, 16]);
+            fragments.share(&[3; BLOCK_PIXELS]);
+            others.iter().for_each(|other| fragments.add(*other, [8, 16], 9, 1));
+            let shown = fragments.slots[..fragments.len].iter();
+            let shown: Vec<u32> = shown.map(|slot| fragments.numbers[*slot as usize]).collect();
+            assert_eq!(shown[..BLOCK_PIXELS], [number; BLOCK_PIXELS]);
+            assert_eq!((&shown[BLOCK_PIXELS..], fragments.count), (&others[..], 3));
+        }
     }
 
     #[test]

@@ -2,19 +2,22 @@
 //!
 //! Most blocks show the same triangle in all samples of each pixel, and cost no more than with one
 //! sample. In other blocks a pixel is lit once for each triangle that any of its samples shows:
-//! first the triangles of the first samples, all pixels together; then all others, in lists of
-//! sixty-four fragments.
+//! first the triangles of the first samples, all pixels together, and beside them all others, as
+//! far as they have room in a batch.
 
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16};
 
 use super::colors::Sums;
 use super::context::ShadingContext;
+use super::fragments::Shown;
+use super::groups::one_group;
 use super::interpolated::ShadingNumber;
 use super::kept::Kept;
 use super::surface::{Out, Shader};
 use crate::render::raster::visibility_buffer::{BACKGROUND, Planes, Visible, seen_number};
 use crate::render::screen::sample_positions::FOUR;
 use crate::render::screen::tiles::BLOCK_PIXELS;
+use crate::render::simd::BATCH;
 
 /// What the samples of a block's pixels show.
 #[derive(Debug)]
@@ -145,14 +148,11 @@ impl<T: ShadingNumber> Shader<T> {
         corner: [i32; 2],
         (sums, kept): (&mut Sums, Option<&mut Kept>),
     ) -> bool {
-        let mut shown = self.fragments.list(context.level, unlit.entries, corner);
-        if shown.triangles != 0 {
+        let mut shown = self.list_first(context, unlit.entries, corner);
+        if shown.triangles == 0 {
+            self.fragments.begin_shared(0);
+        } else {
             self.fragments.share(&samples.shares[0]);
-            let mut out = match kept {
-                Some(kept) => Out::Kept(sums, kept),
-                None => Out::Sums(sums),
-            };
-            self.color_fragments(context, corner, &mut out);
         }
         let mut others = unlit.pixels[0] & !shown.triangles;
         while others != 0 {
@@ -161,7 +161,14 @@ impl<T: ShadingNumber> Shader<T> {
             let (number, share) = (samples.numbers[0][place], samples.shares[0][place]);
             add_other(context, number, place, share, sums);
         }
-        self.fragments.begin_shared();
+        // What is known of shadows has one bit for each pixel, and so has what is kept.
+        let mut most = if context.plan.shadows.are_cast() { BLOCK_PIXELS } else { BATCH };
+        if let Some(kept) = kept {
+            most = BLOCK_PIXELS;
+            self.color_list(context, corner, &mut Out::Kept(sums, kept));
+        } else if most == BLOCK_PIXELS {
+            self.color_list(context, corner, &mut Out::Sums(sums));
+        }
         for sample in 1..FOUR {
             let mut pixels = unlit.pixels[sample];
             while pixels != 0 {
@@ -175,17 +182,50 @@ impl<T: ShadingNumber> Shader<T> {
                     continue;
                 }
                 shown.triangles |= 1 << place;
-                self.fragments.add(number, corner, place, share);
-                if self.fragments.is_full() {
-                    self.color_fragments(context, corner, &mut Out::Sums(sums));
-                    self.fragments.begin_shared();
+                if self.fragments.is_full(most) {
+                    self.color_list(context, corner, &mut Out::Sums(sums));
                 }
+                self.fragments.add(number, corner, place, share);
             }
         }
-        if self.fragments.len > 0 {
-            self.color_fragments(context, corner, &mut Out::Sums(sums));
-        }
+        self.color_list(context, corner, &mut Out::Sums(sums));
         (shown.triangles | shown.lines) != 0
+    }
+
+    /// Lists the pixels of a block that show triangles in their first sample. Triangles of the list
+    /// before keep their slots, if that pays.
+    fn list_first(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        entries: &[u64; BLOCK_PIXELS],
+        corner: [i32; 2],
+    ) -> Shown {
+        let most = self.most_slots(context);
+        let shown = self.fragments.list_on(context.level, entries, corner, most);
+        if most > 0 && shown.triangles != 0 && one_group(context, &self.fragments).is_none() {
+            // Some slots are of a draw that the block may not show.
+            return self.fragments.list(context.level, entries, corner);
+        }
+        shown
+    }
+
+    /// Colours the fragments that are listed, and begins another list.
+    fn color_list(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        corner: [i32; 2],
+        out: &mut Out<'_, '_>,
+    ) {
+        let mut most = 0;
+        if self.fragments.len > 0 {
+            if let Some(group) = one_group(context, &self.fragments) {
+                self.color_group(context, &group, out);
+                most = self.most_slots(context);
+            } else {
+                self.color_groups(context, corner, out);
+            }
+        }
+        self.fragments.begin_shared(most);
     }
 }
 

@@ -230,7 +230,7 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Colours a block that shows several draws or pipelines, group by group.
-    fn color_groups(
+    pub(super) fn color_groups(
         &mut self,
         context: &ShadingContext<'_, T>,
         corner: [i32; 2],
@@ -250,7 +250,10 @@ impl<T: ShadingNumber> Shader<T> {
                 done[other] |= keep[other];
             }
             self.fragments.take_from(&all, &keep, corner);
-            self.color_group(context, &group, out);
+            // Triangles of the list before, which keep their slots, may show nowhere.
+            if self.fragments.len > 0 {
+                self.color_group(context, &group, out);
+            }
         }
         self.fragments = all;
     }
