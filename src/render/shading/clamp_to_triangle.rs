@@ -14,7 +14,7 @@ use super::fragments::Fragments;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
 use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::BLOCK;
-use crate::render::simd::gather::SLOTS;
+use crate::render::simd::gather::{SLOTS, paged};
 use crate::render::simd::{Kernel, Lanes, Number, Real};
 
 impl<T: AttributeNumber> Barycentrics<T> {
@@ -42,6 +42,14 @@ struct Hold<'a, T> {
 impl<T: Number> Kernel<T> for Hold<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        paged!(self.attributes.count, PAGES => self.hold::<M, PAGES>(lanes));
+    }
+}
+
+impl<T: Number> Hold<'_, T> {
+    /// The same for triangles in the first `PAGES` pages of slots.
+    #[inline(always)]
+    fn hold<M: Lanes<Number = T>, const PAGES: usize>(self, lanes: M) {
         let Self { fragments, attributes, origin, to } = self;
         let parts = attributes.grid.parts();
         let corners = corners(lanes, attributes, origin.map(|pixel| pixel * parts));
@@ -59,7 +67,7 @@ impl<T: Number> Kernel<T> for Hold<'_, T> {
             let mut place = [x, y];
             if lanes.any_more(outside, zero) {
                 let slots = lanes.slots(&fragments.slots, at);
-                let [x0, y0, ux, uy, vx, vy] = picked(lanes, &corners, slots);
+                let [x0, y0, ux, uy, vx, vy] = picked::<M, PAGES>(lanes, &corners, slots);
                 let per_pixel = lanes.lift(f64::from(parts));
                 let d = [(x - left) * per_pixel - x0, (y - top) * per_pixel - y0];
                 let [s, t] = nearest(d, [ux, uy], [vx, vy], [first, second, third]);
@@ -106,18 +114,18 @@ fn corners<T: Number, M: Lanes<Number = T>>(
 
 /// The corners of the triangles in some slots.
 #[inline(always)]
-fn picked<M: Lanes>(
+fn picked<M: Lanes, const PAGES: usize>(
     lanes: M,
     [a, b, c, d, e, f]: &[[M::Number; SLOTS]; 6],
     slots: M::Slots,
 ) -> [M::R; 6] {
     [
-        lanes.pick::<4>(a, slots),
-        lanes.pick::<4>(b, slots),
-        lanes.pick::<4>(c, slots),
-        lanes.pick::<4>(d, slots),
-        lanes.pick::<4>(e, slots),
-        lanes.pick::<4>(f, slots),
+        lanes.pick::<PAGES>(a, slots),
+        lanes.pick::<PAGES>(b, slots),
+        lanes.pick::<PAGES>(c, slots),
+        lanes.pick::<PAGES>(d, slots),
+        lanes.pick::<PAGES>(e, slots),
+        lanes.pick::<PAGES>(f, slots),
     ]
 }
 
