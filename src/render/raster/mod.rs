@@ -2,10 +2,11 @@
 //!
 //! `geometry` transforms the `vertices` of a frame; threads then set up its `parts`, one piece of
 //! `work` after another: `setup` and `edges` put primitives that may be visible into `bins`, and
-//! `small` rasterizes small triangles at once, to `hits`, which may have `hit_colors`. A `tile`
-//! then draws its hits, `large` triangles, which may have a `paint`, and `lines` with a depth test;
-//! the nearest primitive stays in the `visibility_buffer`. `layers` are the transparent triangles
-//! in front of it.
+//! `small` rasterizes small triangles at once, to `hits`, which may have `hit_colors`, or, with
+//! several samples per pixel, they wait for their tile in `tile_queues`. A `tile` then draws its
+//! hits and queues, `large` triangles, which may have a `paint`, and `lines` with a depth test; the
+//! nearest primitive stays in the `visibility_buffer`. `layers` are the transparent triangles in
+//! front of it.
 //!
 //! What the settings can choose beside the defaults are variants of the same kernels: each `rule`
 //! of coverage and each `depth_format` is a type for which they are compiled. `vertex_variants`

@@ -4,7 +4,10 @@
 //! boxes. When there are sixteen, their edge functions are stepped together over the pixels of the
 //! boxes, and the pixels that they cover are listed: few lanes of a step cover theirs. Then each
 //! lane takes a pixel of the list, computes its depth and adds it to the hits of the bins: set-up
-//! of triangles of 5 pixels takes 0.55 of what it takes if each step computes depths (AVX-512).
+//! of triangles of 5 pixels takes 0.55 of what it takes if each step computes depths (AVX-512). If
+//! pixels have several samples, triangles of more than a few pixels wait for their tile instead
+//! (`tile_queues`), whose pixels are listed once for all samples.
+//!
 //! How edge functions are computed depends on the rule of coverage: see `small_edges`.
 
 use fearless_simd::{

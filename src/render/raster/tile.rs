@@ -8,9 +8,9 @@
 //! Coverage and depth are computed in one of two ways, chosen by the triangle's size alone: in f32,
 //! in which integers below 2^24 are exact, for bounding boxes up to 8 x 8 pixels; and in integers,
 //! with depths from f64, for all others. Boxes up to 16 x 16 pixels are rasterized sixteen at a
-//! time (`small`), all others a block of 8 x 8 pixels at a time: in 32 bits for boxes up to 64 x 64
-//! pixels (`medium`), else in 64 bits (`large`), with the same result. So neither tiles nor threads
-//! nor instruction sets show in the picture.
+//! time (`small`), here or when they are set up, all others a block of 8 x 8 pixels at a time: in
+//! 32 bits for boxes up to 64 x 64 pixels (`medium`), else in 64 bits (`large`), with the same
+//! result. So neither tiles nor threads nor instruction sets show in the picture.
 //!
 //! A block that nothing reaches is never touched. For a block that a single large triangle covers
 //! no depths are computed: only the triangle is noted, until another primitive comes near.
