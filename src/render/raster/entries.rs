@@ -21,10 +21,10 @@ pub(crate) const fn key(word: u64) -> u32 {
 /// Stores the entries of sixteen primitives with these keys and numbers.
 #[inline(always)]
 pub(crate) fn put_words<S: Simd>(keys: u32x16<S>, numbers: u32x16<S>, to: &mut [u64]) {
-    let (first, last) = (!numbers).interleave(keys);
-    let to: &mut [u32] = bytemuck::cast_slice_mut(to);
-    first.store_slice(&mut to[..16]);
-    last.store_slice(&mut to[16..32]);
+    let [first, last] = halves(keys, numbers);
+    let to: &mut [f64] = bytemuck::cast_slice_mut(to);
+    first.store_slice(&mut to[..8]);
+    last.store_slice(&mut to[8..16]);
 }
 
 /// The same for four samples of sixteen pixels: the entries of a pixel's samples lie side by side.

@@ -385,7 +385,8 @@ impl<T: ShadingNumber> Painter<T> {
             if kept.are_all_of(number) {
                 sums.add_to_all(context.level, kept.parts(), &[ALL; BLOCK_PIXELS]);
             } else {
-                shader.full_block(context, number, corner, &mut Out::Kept(sums, kept));
+                let mut out = Out::Kept(sums, kept, BLOCK_PIXELS);
+                shader.full_block(context, number, corner, &mut out);
             }
         } else {
             let planes = visibility.planes(block);

@@ -146,7 +146,7 @@ impl<T: ShadingNumber> Shader<T> {
         context: &ShadingContext<'_, T>,
         (samples, unlit): (&Samples, &Unlit<'_>),
         corner: [i32; 2],
-        (sums, kept): (&mut Sums, Option<&mut Kept>),
+        (sums, mut kept): (&mut Sums, Option<&mut Kept>),
     ) -> bool {
         let mut shown = self.list_first(context, unlit.entries, corner);
         if shown.triangles == 0 {
@@ -161,13 +161,19 @@ impl<T: ShadingNumber> Shader<T> {
             let (number, share) = (samples.numbers[0][place], samples.shares[0][place]);
             add_other(context, number, place, share, sums);
         }
-        // What is known of shadows has one bit for each pixel, and so has what is kept.
-        let mut most = if context.plan.shadows.are_cast() { BLOCK_PIXELS } else { BATCH };
-        if let Some(kept) = kept {
-            most = BLOCK_PIXELS;
-            self.color_list(context, corner, &mut Out::Kept(sums, kept));
-        } else if most == BLOCK_PIXELS {
-            self.color_list(context, corner, &mut Out::Sums(sums));
+        let mut first = self.fragments.len;
+        let mut color = |shader: &mut Self, sums: &mut Sums| {
+            let mut out = match kept.as_deref_mut() {
+                Some(kept) => Out::Kept(sums, kept, std::mem::take(&mut first)),
+                None => Out::Sums(sums),
+            };
+            shader.color_list(context, corner, &mut out);
+        };
+        // Shadows are traced for as many points at once as a mask has bits.
+        let are_cast = context.plan.shadows.are_cast();
+        let most = if are_cast { BLOCK_PIXELS } else { BATCH };
+        if are_cast {
+            color(self, sums);
         }
         for sample in 1..FOUR {
             let mut pixels = unlit.pixels[sample];
@@ -183,12 +189,12 @@ impl<T: ShadingNumber> Shader<T> {
                 }
                 shown.triangles |= 1 << place;
                 if self.fragments.is_full(most) {
-                    self.color_list(context, corner, &mut Out::Sums(sums));
+                    color(self, sums);
                 }
                 self.fragments.add(number, corner, place, share);
             }
         }
-        self.color_list(context, corner, &mut Out::Sums(sums));
+        color(self, sums);
         (shown.triangles | shown.lines) != 0
     }
 

@@ -90,8 +90,8 @@ pub(crate) enum Out<'a, 'b> {
     Waiting(&'a mut Canvas<'b>),
     /// The sums over several samples.
     Sums(&'a mut Sums),
-    /// The same, and what later passes need not light again.
-    Kept(&'a mut Sums, &'a mut Kept),
+    /// The same, and what later passes need not light again: this number of fragments, the first.
+    Kept(&'a mut Sums, &'a mut Kept, usize),
     /// What is behind a layer.
     Layer(&'a mut Blend),
 }
@@ -202,11 +202,11 @@ impl<T: ShadingNumber> Shader<T> {
                 let Fragments { len, pixels, shares, .. } = &self.fragments;
                 sums.add_all(&self.colors, &pixels[..*len], &shares[..*len]);
             }
-            Out::Kept(sums, kept) => {
+            Out::Kept(sums, kept, first) => {
                 let Fragments { len, pixels, shares, slots, numbers, .. } = &self.fragments;
                 let pixels = &pixels[..*len];
                 sums.add_all(&self.colors, pixels, &shares[..*len]);
-                kept.keep(&self.colors, pixels, slots, numbers);
+                kept.keep(&self.colors, &pixels[..*len.min(first)], slots, numbers);
             }
             Out::Layer(blend) => {
                 let opacities = self.opacities(context, group);
