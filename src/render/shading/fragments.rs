@@ -310,44 +310,46 @@ impl Fragments {
 
     /// Adds some pixels of a block.
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 64")]
-    fn put_some<S: Simd>(&mut self, simd: S, [left, top]: [i32; 2], pixels: u64) {
+    fn put_some<S: Simd>(&mut self, simd: S, corner: [i32; 2], pixels: u64) {
         for at in (0..BLOCK_PIXELS).step_by(16) {
-            let some = pixels >> at & 0xffff;
-            let mask = mask32x16::from_bitmask(simd, some);
-            let first = i32x16::splat(simd, ALL_PIXELS[at].into());
-            let places = (i32x16::from_slice(simd, &UP_TO_SIXTEEN) + first).compress(mask);
-            let to = self.len..self.len + 16;
-            ((places & (BLOCK - 1)) + left).store_slice(&mut self.x[to.clone()]);
-            ((places >> 3) + top).store_slice(&mut self.y[to.clone()]);
-            let slots = i32x16::from_slice(simd, &self.own_slots[at..at + 16]).compress(mask);
-            slots.store_slice(&mut self.slots[to.clone()]);
-            for (pixel, place) in self.pixels[to].iter_mut().zip(<[i32; 16]>::from(places)) {
-                *pixel = place as u8;
-            }
-            self.len += some.count_ones() as usize;
+            let (some, to) = self.put_places(simd, corner, (at, pixels >> at & 0xffff));
+            let slots = i32x16::from_slice(simd, &self.own_slots[at..at + 16]).compress(some);
+            slots.store_slice(&mut self.slots[to..to + 16]);
         }
     }
 
     /// Adds the pixels of a block that show triangles, with their triangles.
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 64")]
-    fn put_tiny<S: Simd>(&mut self, simd: S, runs: &Runs, [left, top]: [i32; 2]) {
+    fn put_tiny<S: Simd>(&mut self, simd: S, runs: &Runs, corner: [i32; 2]) {
         for at in (0..BLOCK_PIXELS).step_by(16) {
-            let some = runs.triangles >> at & 0xffff;
-            let mask = mask32x16::from_bitmask(simd, some);
-            let first = i32x16::splat(simd, ALL_PIXELS[at].into());
-            let places = (i32x16::from_slice(simd, &UP_TO_SIXTEEN) + first).compress(mask);
-            let to = self.len..self.len + 16;
-            ((places & (BLOCK - 1)) + left).store_slice(&mut self.x[to.clone()]);
-            ((places >> 3) + top).store_slice(&mut self.y[to.clone()]);
+            let (some, to) = self.put_places(simd, corner, (at, runs.triangles >> at & 0xffff));
             let numbers = u32x16::from_slice(simd, &runs.numbers[MARGIN + at..][..16]);
-            numbers.compress(mask).store_slice(&mut self.each[to.clone()]);
-            for (pixel, place) in self.pixels[to].iter_mut().zip(<[i32; 16]>::from(places)) {
-                *pixel = place as u8;
-            }
-            self.len += some.count_ones() as usize;
+            numbers.compress(some).store_slice(&mut self.each[to..to + 16]);
         }
+    }
+
+    /// Adds the places of some of a block's sixteen pixels from `at` on. Returns which they are,
+    /// and where they are listed.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 64")]
+    fn put_places<S: Simd>(
+        &mut self,
+        simd: S,
+        [left, top]: [i32; 2],
+        (at, some): (usize, u64),
+    ) -> (mask32x16<S>, usize) {
+        let mask = mask32x16::from_bitmask(simd, some);
+        let first = i32x16::splat(simd, ALL_PIXELS[at].into());
+        let places = (i32x16::from_slice(simd, &UP_TO_SIXTEEN) + first).compress(mask);
+        let from = self.len;
+        let to = from..from + 16;
+        ((places & (BLOCK - 1)) + left).store_slice(&mut self.x[to.clone()]);
+        ((places >> 3) + top).store_slice(&mut self.y[to.clone()]);
+        for (pixel, place) in self.pixels[to].iter_mut().zip(<[i32; 16]>::from(places)) {
+            *pixel = place as u8;
+        }
+        self.len += some.count_ones() as usize;
+        (mask, from)
     }
 
     #[inline(always)]
