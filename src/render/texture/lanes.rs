@@ -9,11 +9,11 @@ use fearless_simd::{
     Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _, f32x16, i32x16,
 };
 
-use self::mip_level::{Footprint, MipLevel};
+use self::mip_level::{Footprint, ManyAround, MipLevel};
 use super::sample::{brightness, linear_factors};
 use crate::accuracy::Filter;
 use crate::base::once::get_or_compute;
-use crate::render::lights::{Rows, load, store};
+use crate::render::lights::{Rows, store};
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3, log2};
 use crate::scene::{Texture, Wrap};
@@ -28,6 +28,8 @@ pub(crate) struct Sampler<'a> {
     filter: Filter,
     /// Width and height of each level.
     sizes: [[f32; SLOTS]; 2],
+    /// The same over those of the first level.
+    scales: [[f32; SLOTS]; 2],
 }
 
 /// Sixteen positions on the texture in texels of its own size, reduced to one repetition.
@@ -45,7 +47,11 @@ impl<'a> Sampler<'a> {
             (sizes[0][i], sizes[1][i]) = (size.width as f32, size.height as f32);
         }
         let has_texels = levels.first()?.picture.size().area() > 0;
-        has_texels.then_some(Self { levels, filter, sizes })
+        let mut scales = sizes;
+        for (scales, sides) in scales.iter_mut().zip(&sizes) {
+            scales[..LEVELS].iter_mut().for_each(|side| *side /= sides[0]);
+        }
+        has_texels.then_some(Self { levels, filter, sizes, scales })
     }
 
     /// Whether the filter reads mip maps.
@@ -99,7 +105,12 @@ impl<'a> Sampler<'a> {
             }
             Filter::Bilinear => {
                 for at in (0..len).step_by(16) {
-                    let color = first.bilinear::<D>(simd, self, places.at(lanes, at));
+                    let around = first.around(simd, places.at(lanes, at));
+                    places.finer.store(at, &around);
+                }
+                for at in (0..len).step_by(16) {
+                    let around = places.finer.load(simd, at);
+                    let color = first.texels(simd, self, &around).color::<D>();
                     store(lanes, color.times(lanes.set(1.0 / 255.0)), to, at);
                 }
             }
@@ -164,21 +175,6 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Compiled as a function of its own: inside of a larger one it takes longer, if the levels of
-    /// sixteen places differ.
-    #[inline(always)]
-    fn bilinear<S: Simd, D: Decode>(
-        &self,
-        simd: S,
-        level: &MipLevel<S>,
-        position: Positions<S>,
-    ) -> Vec3<f32x16<S>> {
-        simd.vectorize(
-            #[inline(always)]
-            || level.bilinear::<D>(simd, self, position),
-        )
-    }
-
     #[inline(always)]
     fn trilinear<S: Simd, D: Decode>(
         &self,
@@ -191,35 +187,70 @@ impl<'a> Sampler<'a> {
         #[expect(clippy::cast_precision_loss, reason = "at most 16")]
         let last = lanes.set((self.levels.len() - 1) as f32);
         let (zero, one) = (lanes.set(0.0), lanes.set(1.0));
-        // Of each sixteen places, the least and the largest level.
-        let mut bounds = [[0; 2]; BATCH / 16];
-        for (at, bounds) in (0..len).step_by(16).zip(&mut bounds) {
+        // Of each sixteen places, the level, if it is the same.
+        let mut same = [None; BATCH / 16];
+        for (at, same) in (0..len).step_by(16).zip(&mut same) {
             let level = log2(Real::max(lanes.load(&places.footprint, at), one)) * 0.5;
             let level = Real::max(Real::min(level, last), zero);
             let own = level.floor();
             lanes.store(own, &mut places.levels[0], at);
             lanes.store(level - own, &mut places.levels[1], at);
             let number: i32x16<S> = own.to_int();
-            *bounds = [number.reduce_min(), number.reduce_max()];
+            let first = number[0];
+            *same = number.simd_eq(first).all_true().then_some(first.cast_unsigned() as usize);
         }
-        for (at, bounds) in (0..len).step_by(16).zip(bounds) {
-            let level = MipLevel::of(self, simd, lanes.load(&places.levels[0], at), bounds);
-            let color = self.bilinear::<S, D>(simd, &level, places.at(lanes, at));
-            store(lanes, color, to, at);
+        for (at, same) in (0..len).step_by(16).zip(same) {
+            let position = places.at(lanes, at);
+            let around = self.finer_level(simd, places, at, same).around(simd, position);
+            places.finer.store(at, &around);
+            if lanes.load(&places.levels[1], at).simd_gt(0.0).any_true() {
+                let around = self.coarser_level(simd, places, at, same).around(simd, position);
+                places.coarser.store(at, &around);
+            }
         }
-        for (at, [low, high]) in (0..len).step_by(16).zip(bounds) {
-            let (near, part) = (load(lanes, to, at), lanes.load(&places.levels[1], at));
-            let mut color = near;
+        for (at, same) in (0..len).step_by(16).zip(same) {
+            let around = places.finer.load(simd, at);
+            let mut color =
+                self.finer_level(simd, places, at, same).texels(simd, self, &around).color::<D>();
+            let part = lanes.load(&places.levels[1], at);
             if part.simd_gt(0.0).any_true() {
-                let next = Real::min(lanes.load(&places.levels[0], at) + 1.0, last);
-                let end = i32::try_from(self.levels.len() - 1).unwrap_or(0);
-                let bounds = [(low + 1).min(end), (high + 1).min(end)];
-                let level = MipLevel::of(self, simd, next, bounds);
-                let far = self.bilinear::<S, D>(simd, &level, places.at(lanes, at));
-                color = between(near, far, part);
+                let around = places.coarser.load(simd, at);
+                let far = self
+                    .coarser_level(simd, places, at, same)
+                    .texels(simd, self, &around)
+                    .color::<D>();
+                color = between(color, far, part);
             }
             store(lanes, color.times(lanes.set(1.0 / 255.0)), to, at);
         }
+    }
+
+    /// The finer of the levels of sixteen places; `same` is its number, if all have the same.
+    #[inline(always)]
+    fn finer_level<S: Simd>(
+        &self,
+        simd: S,
+        places: &TexelPlaces,
+        at: usize,
+        same: Option<usize>,
+    ) -> MipLevel<S> {
+        MipLevel::of(self, simd, Sixteen(simd).load(&places.levels[0], at), same)
+    }
+
+    /// The coarser of the levels of sixteen places: the next, if there is one.
+    #[inline(always)]
+    #[expect(clippy::cast_precision_loss, reason = "at most 16")]
+    fn coarser_level<S: Simd>(
+        &self,
+        simd: S,
+        places: &TexelPlaces,
+        at: usize,
+        same: Option<usize>,
+    ) -> MipLevel<S> {
+        let lanes = Sixteen(simd);
+        let end = self.levels.len() - 1;
+        let next = Real::min(lanes.load(&places.levels[0], at) + 1.0, lanes.set(end as f32));
+        MipLevel::of(self, simd, next, same.map(|level| (level + 1).min(end)))
     }
 }
 
@@ -232,12 +263,21 @@ pub(crate) struct TexelPlaces {
     pub(crate) footprint: [f32; BATCH],
     /// The finer of the levels that trilinear filtering mixes, and the part of the coarser.
     levels: [[f32; BATCH]; 2],
+    /// The texels around the positions, on the finer level and on the coarser.
+    finer: ManyAround,
+    coarser: ManyAround,
 }
 
 impl Default for TexelPlaces {
     fn default() -> Self {
         let row = [0.0; BATCH];
-        Self { position: [row; 2], footprint: row, levels: [row; 2] }
+        Self {
+            position: [row; 2],
+            footprint: row,
+            levels: [row; 2],
+            finer: ManyAround::default(),
+            coarser: ManyAround::default(),
+        }
     }
 }
 

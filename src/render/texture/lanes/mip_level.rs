@@ -8,7 +8,7 @@ use fearless_simd::{
 use super::{Decode, LEVELS, Positions, Sampler, between};
 use crate::base::image::Size;
 use crate::render::simd::gather::{SLOTS, permute, permutes};
-use crate::render::simd::{Lanes as _, Sixteen, Vec3};
+use crate::render::simd::{BATCH, Lanes as _, Sixteen, Vec3};
 use crate::scene::Wrap;
 
 /// The mip levels that sixteen pixels read.
@@ -23,6 +23,77 @@ pub(super) struct MipLevel<S: Simd> {
     height: i32x16<S>,
 }
 
+/// Where the four texels around sixteen positions are.
+pub(super) struct Around<S: Simd> {
+    /// The lower left one, at least -1: wrapping is still to come.
+    column: i32x16<S>,
+    row: i32x16<S>,
+    /// The weight of the right ones, and that of the upper ones.
+    weights: [f32x16<S>; 2],
+    window: Window,
+}
+
+/// Columns and rows of a level among which texels of sixteen positions are, if they lie near each
+/// other.
+#[derive(Clone, Copy, Debug, Default)]
+struct Window {
+    left: i32,
+    first: i32,
+    /// Four, eight, or none if the texels do not lie near each other.
+    rows: i32,
+}
+
+/// The columns of a [`Window`].
+const COLUMNS: i32 = 16;
+
+/// Where the texels around many positions are.
+#[derive(Debug)]
+pub(super) struct ManyAround {
+    columns: [i32; BATCH],
+    rows: [i32; BATCH],
+    weights: [[f32; BATCH]; 2],
+    windows: [Window; BATCH / 16],
+}
+
+impl Default for ManyAround {
+    fn default() -> Self {
+        Self {
+            columns: [0; BATCH],
+            rows: [0; BATCH],
+            weights: [[0.0; BATCH]; 2],
+            windows: [Window::default(); BATCH / 16],
+        }
+    }
+}
+
+impl ManyAround {
+    /// Stores where the texels around sixteen positions are.
+    #[inline(always)]
+    pub(super) fn store<S: Simd>(&mut self, at: usize, around: &Around<S>) {
+        around.column.store_slice(&mut self.columns[at..at + 16]);
+        around.row.store_slice(&mut self.rows[at..at + 16]);
+        for (row, weights) in self.weights.iter_mut().zip(around.weights) {
+            weights.store_slice(&mut row[at..at + 16]);
+        }
+        self.windows[at / 16] = around.window;
+    }
+
+    /// What was stored.
+    #[inline(always)]
+    pub(super) fn load<S: Simd>(&self, simd: S, at: usize) -> Around<S> {
+        let [s, t] = &self.weights;
+        Around {
+            column: i32x16::from_slice(simd, &self.columns[at..at + 16]),
+            row: i32x16::from_slice(simd, &self.rows[at..at + 16]),
+            weights: [
+                f32x16::from_slice(simd, &s[at..at + 16]),
+                f32x16::from_slice(simd, &t[at..at + 16]),
+            ],
+            window: self.windows[at / 16],
+        }
+    }
+}
+
 /// The four texels around sixteen positions.
 pub(super) struct Footprint<S: Simd> {
     /// Left and right in the lower row, and in the upper one.
@@ -33,21 +104,30 @@ pub(super) struct Footprint<S: Simd> {
     pub(super) t: f32x16<S>,
 }
 
+impl<S: Simd> Footprint<S> {
+    /// Interpolates between the texels: red, green and blue from 0 to 255.
+    #[inline(always)]
+    pub(super) fn color<D: Decode>(self) -> Vec3<f32x16<S>> {
+        let Self { texels: [lower, upper], s, t } = self;
+        let below = between(D::channels(lower[0]), D::channels(lower[1]), s);
+        let above = between(D::channels(upper[0]), D::channels(upper[1]), s);
+        between(below, above, t)
+    }
+}
+
 impl<S: Simd> MipLevel<S> {
-    /// Levels by their numbers, whose least and largest are known.
+    /// Levels by their numbers; `one` is that of all lanes, if they have the same.
     #[inline(always)]
     pub(super) fn of(
         sampler: &Sampler<'_>,
         simd: S,
         numbers: f32x16<S>,
-        [low, high]: [i32; 2],
+        one: Option<usize>,
     ) -> Self {
-        let [widths, heights] = &sampler.sizes;
         let lanes = Sixteen(simd);
         let numbers = numbers.to_int();
-        let one = (low == high).then(|| low.cast_unsigned() as usize % LEVELS);
-        let [width, across] = sides_of(lanes, widths, numbers, one);
-        let [height, up] = sides_of(lanes, heights, numbers, one);
+        let [across, up] = each_level(lanes, &sampler.scales, numbers, one);
+        let [width, height] = each_level(lanes, &sampler.sizes, numbers, one);
         let (width, height) = (width.to_int(), height.to_int());
         Self { one, numbers, scale: [across, up], width, height }
     }
@@ -74,24 +154,11 @@ impl<S: Simd> MipLevel<S> {
         // A position on the upper border is that of the last texel.
         let column = x.to_int::<i32x16<S>>().min(self.width - 1);
         let row = y.to_int::<i32x16<S>>().min(self.height - 1);
-        match self.fetch_near(simd, sampler, [column], [row]) {
+        let window = self.window::<1>(simd, column, row);
+        match self.fetch_near::<1>(simd, sampler, (column, row), window) {
             Some([[texels]]) => texels,
             None => self.fetch(simd, sampler, [column, row]),
         }
-    }
-
-    /// Interpolates between four texels: red, green and blue from 0 to 255.
-    #[inline(always)]
-    pub(super) fn bilinear<D: Decode>(
-        &self,
-        simd: S,
-        sampler: &Sampler<'_>,
-        position: Positions<S>,
-    ) -> Vec3<f32x16<S>> {
-        let Footprint { texels: [lower, upper], s, t } = self.footprint(simd, sampler, position);
-        let below = between(D::channels(lower[0]), D::channels(lower[1]), s);
-        let above = between(D::channels(upper[0]), D::channels(upper[1]), s);
-        between(below, above, t)
     }
 
     /// The four texels around some positions.
@@ -100,56 +167,91 @@ impl<S: Simd> MipLevel<S> {
         &self,
         simd: S,
         sampler: &Sampler<'_>,
-        [x, y]: Positions<S>,
+        position: Positions<S>,
     ) -> Footprint<S> {
+        self.texels(simd, sampler, &self.around(simd, position))
+    }
+
+    /// Where the four texels around some positions are.
+    #[inline(always)]
+    pub(super) fn around(&self, simd: S, [x, y]: Positions<S>) -> Around<S> {
         let (x, y) = (x * self.scale[0] - 0.5, y * self.scale[1] - 0.5);
-        let (column, row) = (x.floor(), y.floor());
-        let wrap = sampler.levels[0].wrap;
-        let columns = beside(column.to_int(), self.width, wrap);
-        let rows = beside(row.to_int(), self.height, wrap);
-        let (s, t) = (x - column, y - row);
-        if let Some(texels) = self.fetch_near(simd, sampler, columns, rows) {
+        let (left, lower) = (x.floor(), y.floor());
+        let (column, row) = (left.to_int(), lower.to_int());
+        let window = self.window::<2>(simd, column, row);
+        Around { column, row, weights: [x - left, y - lower], window }
+    }
+
+    /// The texels of a footprint.
+    #[inline(always)]
+    pub(super) fn texels(
+        &self,
+        simd: S,
+        sampler: &Sampler<'_>,
+        around: &Around<S>,
+    ) -> Footprint<S> {
+        let Around { column, row, weights: [s, t], window } = *around;
+        if let Some(texels) = self.fetch_near::<2>(simd, sampler, (column, row), window) {
             return Footprint { texels, s, t };
         }
-        let lower = self.fetch_beside(simd, sampler, columns, rows[0]);
-        let upper = self.fetch_beside(simd, sampler, columns, rows[1]);
+        let wrap = sampler.levels[0].wrap;
+        let columns = beside(column, self.width, wrap);
+        let [lower, upper] = beside(row, self.height, wrap);
+        let lower = self.fetch_beside(simd, sampler, columns, lower);
+        let upper = self.fetch_beside(simd, sampler, columns, upper);
         Footprint { texels: [lower, upper], s, t }
     }
 
-    /// The texels at each of some columns in each of some rows, if all of them lie near each other:
-    /// then sixteen texels of each row are loaded at once, and each lane takes its own from them.
-    /// With textures as large as on the screen, a frame of one triangle takes 0.85 of the time
-    /// (nearest, AVX-512).
+    /// The window of the texels at some columns and rows, with the next ones on the right and above
+    /// if `N` is 2.
+    #[inline(always)]
+    fn window<const N: i32>(&self, simd: S, column: i32x16<S>, row: i32x16<S>) -> Window {
+        if self.one.is_none() || !permutes(simd.level()) {
+            return Window::default();
+        }
+        let more = N - 1;
+        let left = column.reduce_min();
+        if (column - left).simd_ge(COLUMNS - more).any_true() {
+            return Window::default();
+        }
+        let first = row.reduce_min();
+        let high = row - first;
+        let mut far = high.simd_ge(8 - more);
+        if N > 1 {
+            far = far | column.simd_ge(self.width - more) | row.simd_ge(self.height - more);
+        }
+        let rows = match (far.any_true(), high.simd_ge(4 - more).any_true()) {
+            (true, _) => 0,
+            (false, true) => 8,
+            (false, false) => 4,
+        };
+        Window { left, first, rows }
+    }
+
+    /// The texels at some columns and rows, with the next ones on the right and above if `N` is 2,
+    /// if all of them lie near each other: then sixteen texels of each row are loaded at once, and
+    /// each lane takes its own from them. With textures as large as on the screen, a frame of one
+    /// triangle takes 0.85 of the time (nearest, AVX-512).
     #[inline(always)]
     fn fetch_near<const N: usize>(
         &self,
         simd: S,
         sampler: &Sampler<'_>,
-        columns: [i32x16<S>; N],
-        rows: [i32x16<S>; N],
+        (column, row): (i32x16<S>, i32x16<S>),
+        Window { left, first, rows }: Window,
     ) -> Option<[[i32x16<S>; N]; N]> {
-        let level = self.one.filter(|_| permutes(simd.level()))?;
-        let (left, first) = (least(&columns), least(&rows));
-        let (mut wide, mut high) = (columns[0] - left, rows[0] - first);
-        for i in 1..N {
-            (wide, high) = (wide.max(columns[i] - left), high.max(rows[i] - first));
-        }
-        if wide.simd_ge(16).any_true() {
-            return None;
-        }
+        let level = self.one.filter(|_| permutes(simd.level()) && rows > 0)?;
         let picture = &sampler.levels[level].picture;
         let Size { width, height } = picture.size();
         let (from, above) = (usize::try_from(left).ok()?, usize::try_from(first).ok()?);
         // The picture's own rows run down.
         let at = height.checked_sub(above + 1)? * width + from;
-        let source = (picture.pixels(), [at, width], [left, first]);
-        if high.simd_lt(4).all_true() {
-            Some(from_rows::<S, N, 4>(simd, source, columns, rows))
-        } else if high.simd_lt(8).all_true() {
-            Some(from_rows::<S, N, 8>(simd, source, columns, rows))
-        } else {
-            None
-        }
+        let source = (picture.pixels(), at, width);
+        let place = [column - left, row - first];
+        Some(match rows {
+            4 => from_rows::<S, N, 4>(simd, source, place),
+            _ => from_rows::<S, N, 8>(simd, source, place),
+        })
     }
 
     /// The texels at some columns and rows of the picture; rows count upwards.
@@ -225,50 +327,38 @@ impl<S: Simd> MipLevel<S> {
     }
 }
 
-/// The sides of some levels, and those over the first level's; `one` is the level of all lanes, if
-/// they have the same.
+/// The numbers of two rows for some levels; `one` is the level of all lanes, if they have the same.
 #[inline(always)]
-fn sides_of<S: Simd>(
+fn each_level<S: Simd>(
     lanes: Sixteen<S>,
-    sides: &[f32; SLOTS],
+    [first, second]: &[[f32; SLOTS]; 2],
     numbers: i32x16<S>,
     one: Option<usize>,
 ) -> [f32x16<S>; 2] {
     if let Some(level) = one {
-        return [lanes.set(sides[level]), lanes.set(sides[level] / sides[0])];
+        return [lanes.set(first[level % LEVELS]), lanes.set(second[level % LEVELS])];
     }
-    let side = lanes.pick::<1>(sides, numbers);
-    [side, side / lanes.set(sides[0])]
+    [lanes.pick::<1>(first, numbers), lanes.pick::<1>(second, numbers)]
 }
 
-/// The least number in some lanes.
-#[inline(always)]
-fn least<S: Simd, const N: usize>(of: &[i32x16<S>; N]) -> i32 {
-    let mut least = of[0];
-    for own in &of[1..] {
-        least = least.min(*own);
-    }
-    least.reduce_min()
-}
-
-/// The texels at each of some columns in each of some rows, out of sixteen columns and `ROWS` rows
-/// of the picture; `at` is the place of the first of them, and `width` that of a row.
+/// The texels at some columns and rows, with the next ones on the right and above if `N` is 2, out
+/// of sixteen columns and `ROWS` rows of the picture; `at` is the place of the first of them, and
+/// `width` that of a row.
 #[inline(always)]
 fn from_rows<S: Simd, const N: usize, const ROWS: i32>(
     simd: S,
-    (pixels, [at, width], [left, first]): (&[[u8; 4]], [usize; 2], [i32; 2]),
-    columns: [i32x16<S>; N],
-    rows: [i32x16<S>; N],
+    (pixels, at, width): (&[[u8; 4]], usize, usize),
+    [column, row]: [i32x16<S>; 2],
 ) -> [[i32x16<S>; N]; N] {
     let mut texels = [[i32x16::splat(simd, 0); N]; N];
     let mut at = at;
-    for row in 0..ROWS {
+    for this in 0..ROWS {
         let sixteen = sixteen_from(simd, pixels, at);
         at = at.saturating_sub(width);
-        for i in 0..N {
-            let own = permute(sixteen, columns[i] - left);
-            for j in 0..N {
-                texels[j][i] = rows[j].simd_eq(first + row).select(own, texels[j][i]);
+        for (i, right) in (0..N).zip(0..) {
+            let own = permute(sixteen, column + right);
+            for (j, up) in (0..N).zip(0..) {
+                texels[j][i] = row.simd_eq(this - up).select(own, texels[j][i]);
             }
         }
     }
