@@ -29,6 +29,7 @@ use crate::render::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::render::screen::tiles::{TILE_SIDE, tiles_of};
 use crate::render::shading::interpolated::ShadingNumber;
 use crate::render::shading::light_terms::LightTerms;
+use crate::render::shading::tiny_blocks::Tiny;
 use crate::render::shadow::maps::ShadowMaps;
 use crate::render::shadow::rays::RayCount;
 use crate::render::shadow::tracer::Tracer;
@@ -365,7 +366,7 @@ struct ShadingCaches {
 }
 
 /// Numbers that pictures are painted in.
-trait Painted: ShadingNumber {
+trait Painted: ShadingNumber + Tiny {
     fn cache(caches: &mut ShadingCaches) -> &mut ShadingCache<Self>;
 }
 

@@ -11,7 +11,6 @@ use super::fragments::Fragments;
 use super::full_blocks::{self, BlockLight, Blocks, Canvas, Corners, Linear as _, Wide};
 use super::spans::interpolate_spans;
 use super::texels::{TexelScratch, TextureSamples, lane_steps};
-use super::tiny::Tiny;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
 use crate::accuracy::{Coverage, Interpolation, Settings};
 use crate::render::frame::FramePlan;
@@ -480,9 +479,9 @@ fn find_in_one<S: Simd>(
 }
 
 /// Numbers that fragments are shaded in.
-pub(crate) trait ShadingNumber: Light + Interpolated + Tiny {}
+pub(crate) trait ShadingNumber: Light + Interpolated {}
 
-impl<T: Light + Interpolated + Tiny> ShadingNumber for T {}
+impl<T: Light + Interpolated> ShadingNumber for T {}
 
 #[cfg(test)]
 #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]

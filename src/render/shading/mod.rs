@@ -48,6 +48,6 @@ pub(crate) mod surface;
 mod texels;
 mod textured;
 mod tiny;
-mod tiny_blocks;
+pub(crate) mod tiny_blocks;
 pub(crate) mod triangle_attributes;
 mod waiting;

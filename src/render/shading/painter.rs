@@ -20,6 +20,7 @@ use super::kept::Kept;
 use super::layers::Layered;
 use super::resolve::Samples;
 use super::surface::{Out, Shader};
+use super::tiny_blocks::Tiny;
 use crate::accuracy::LightAt;
 use crate::base::color::Color;
 use crate::base::image::Size;
@@ -150,7 +151,7 @@ impl<T: ShadingNumber> Default for Painter<T> {
     }
 }
 
-impl<T: ShadingNumber> Painter<T> {
+impl<T: ShadingNumber + Tiny> Painter<T> {
     /// Begins a frame.
     pub(crate) fn begin(&mut self) {
         self.shader.begin();

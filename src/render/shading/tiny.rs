@@ -24,7 +24,7 @@ use crate::render::raster::vertices::fetch;
 use crate::render::screen::clip::ScreenVertex;
 use crate::render::screen::coverage::Grid;
 use crate::render::screen::perspective::between;
-use crate::render::simd::{BATCH, Lanes as _, Number, Sixteen, Vec3};
+use crate::render::simd::{BATCH, Lanes as _, Sixteen, Vec3};
 use crate::scene::DrawOrder;
 
 /// The triangles of a list of pixels, one for each pixel.
@@ -84,100 +84,43 @@ pub(crate) struct Weighing<'a> {
     pub(super) vertices: &'a [ScreenVertex],
 }
 
-/// Numbers in which tiny triangles are interpolated, if they are.
-pub(crate) trait Tiny: Number {
-    /// Computes the barycentric coordinates of a list, and which triangles are back faces. Returns
-    /// false if one is clipped or wide: then they are meaningless.
-    fn weigh(
-        level: Level,
-        by: Weighing<'_>,
-        fragments: &Fragments,
-        triangles: &mut TinyTriangles,
-        to: &mut Barycentrics<Self>,
-    ) -> bool;
-    /// Computes position, normal and direction to the observer of every pixel, from the normals at
-    /// corners, which are reversed on back faces if those are lit.
-    fn sample(
-        level: Level,
-        look: &Look<Self>,
-        of: (&Fragments, &TinyTriangles),
-        normals: (&[[f32; 3]], bool),
-        weights: &Barycentrics<Self>,
-        to: &mut Batch<Self>,
-    );
-    /// Interpolates the colours at the corners of a number of pixels.
-    fn mix(
-        level: Level,
-        of: (&CornerRows<Self>, usize),
-        weights: &Barycentrics<Self>,
-        to: (&mut Colors, &[Self; BATCH]),
-    );
+/// Computes the barycentric coordinates of a list, and which triangles are back faces. Returns
+/// false if one is clipped or wide: then they are meaningless.
+pub(super) fn weigh(
+    level: Level,
+    by: Weighing<'_>,
+    fragments: &Fragments,
+    triangles: &mut TinyTriangles,
+    to: &mut Barycentrics<f32>,
+) -> bool {
+    dispatch!(level, simd => weigh_in(simd, by, fragments, triangles, to))
 }
 
-impl Tiny for f64 {
-    fn weigh(
-        _: Level,
-        _: Weighing<'_>,
-        _: &Fragments,
-        _: &mut TinyTriangles,
-        _: &mut Barycentrics<Self>,
-    ) -> bool {
-        false
-    }
-
-    fn sample(
-        _: Level,
-        _: &Look<Self>,
-        _: (&Fragments, &TinyTriangles),
-        _: (&[[f32; 3]], bool),
-        _: &Barycentrics<Self>,
-        _: &mut Batch<Self>,
-    ) {
-    }
-
-    fn mix(
-        _: Level,
-        _: (&CornerRows<Self>, usize),
-        _: &Barycentrics<Self>,
-        _: (&mut Colors, &[Self; BATCH]),
-    ) {
-    }
+/// Computes position, normal and direction to the observer of every pixel, from the normals at
+/// corners, which are reversed on back faces if those are lit.
+pub(super) fn sample(
+    level: Level,
+    look: &Look<f32>,
+    of: (&Fragments, &TinyTriangles),
+    normals: (&[[f32; 3]], bool),
+    weights: &Barycentrics<f32>,
+    to: &mut Batch<f32>,
+) {
+    dispatch!(level, simd => sample_in(simd, look, of, normals, weights, to));
 }
 
-impl Tiny for f32 {
-    fn weigh(
-        level: Level,
-        by: Weighing<'_>,
-        fragments: &Fragments,
-        triangles: &mut TinyTriangles,
-        to: &mut Barycentrics<Self>,
-    ) -> bool {
-        dispatch!(level, simd => weigh(simd, by, fragments, triangles, to))
-    }
-
-    fn sample(
-        level: Level,
-        look: &Look<Self>,
-        of: (&Fragments, &TinyTriangles),
-        normals: (&[[f32; 3]], bool),
-        weights: &Barycentrics<Self>,
-        to: &mut Batch<Self>,
-    ) {
-        dispatch!(level, simd => sample(simd, look, of, normals, weights, to));
-    }
-
-    fn mix(
-        level: Level,
-        of: (&CornerRows<Self>, usize),
-        weights: &Barycentrics<Self>,
-        to: (&mut Colors, &[Self; BATCH]),
-    ) {
-        dispatch!(level, simd => mix(simd, of, weights, to));
-    }
+/// Interpolates the colours at the corners of a number of pixels.
+pub(super) fn mix(
+    level: Level,
+    of: (&CornerRows<f32>, usize),
+    weights: &Barycentrics<f32>,
+    to: (&mut Colors, &[f32; BATCH]),
+) {
+    dispatch!(level, simd => mix_in(simd, of, weights, to));
 }
 
 #[inline(always)]
-fn weigh<S: Simd>(
+fn weigh_in<S: Simd>(
     simd: S,
     by: Weighing<'_>,
     fragments: &Fragments,
@@ -206,7 +149,7 @@ fn weigh<S: Simd>(
 }
 
 #[inline(always)]
-fn sample<S: Simd>(
+fn sample_in<S: Simd>(
     simd: S,
     look: &Look<f32>,
     (fragments, triangles): (&Fragments, &TinyTriangles),
@@ -265,7 +208,7 @@ fn turned<S: Simd>(Vec3([x, y, z]): Vec3<f32x16<S>>, some: mask32x16<S>) -> Vec3
 }
 
 #[inline(always)]
-fn mix<S: Simd>(
+fn mix_in<S: Simd>(
     simd: S,
     (rows, len): (&CornerRows<f32>, usize),
     weights: &Barycentrics<f32>,

@@ -10,10 +10,9 @@ use super::context::ShadingContext;
 use super::fragments::Runs;
 use super::full_blocks::Canvas;
 use super::groups::{Group, are_of, group_of};
-use super::interpolated::ShadingNumber;
 use super::light::Lighting;
 use super::surface::{Out, Shader, Waiting};
-use super::tiny::Weighing;
+use super::tiny::{self, Weighing};
 use crate::accuracy::{Coverage, Interpolation, LightAt};
 use crate::render::frame::draw::{Back, Pipeline, Shaded};
 use crate::render::frame::{Eye, FramePlan};
@@ -26,7 +25,7 @@ const MANY: u32 = 32;
 
 /// Whether triangles of a group may be drawn as tiny ones: their light is looked up for pixels, or
 /// is the colour of vertices, and nothing else is computed from slots.
-fn may_be_tiny<T: ShadingNumber>(context: &ShadingContext<'_, T>, group: &Group<'_>) -> bool {
+fn may_be_tiny(context: &ShadingContext<'_, f32>, group: &Group<'_>) -> bool {
     let plan = context.plan;
     let Some(shaded) = lit(plan, group) else { return false };
     let light = match plan.light_at {
@@ -34,8 +33,7 @@ fn may_be_tiny<T: ShadingNumber>(context: &ShadingContext<'_, T>, group: &Group<
         LightAt::Vertex => !plan.variants.are_linear(),
         LightAt::Face | LightAt::Sample => false,
     };
-    !T::EXACT
-        && light
+    light
         && plan.eye == Eye::Point
         && plan.variants.coverage == Coverage::Exact
         && plan.variants.interpolation != Interpolation::EverySixteen
@@ -56,12 +54,39 @@ fn lit<'a>(plan: &'a FramePlan, group: &Group<'_>) -> Option<&'a Shaded> {
     }
 }
 
-impl<T: ShadingNumber> Shader<T> {
+/// Numbers that triangles are shaded in. Tiny ones are shaded in f32.
+pub(crate) trait Tiny: Sized {
+    /// The same shader and context, if their numbers are f32.
+    fn single<'s, 'c, 'a>(
+        shader: &'s mut Shader<Self>,
+        context: &'c ShadingContext<'a, Self>,
+    ) -> Option<(&'s mut Shader<f32>, &'c ShadingContext<'a, f32>)>;
+}
+
+impl Tiny for f32 {
+    fn single<'s, 'c, 'a>(
+        shader: &'s mut Shader<Self>,
+        context: &'c ShadingContext<'a, Self>,
+    ) -> Option<(&'s mut Shader<Self>, &'c ShadingContext<'a, Self>)> {
+        Some((shader, context))
+    }
+}
+
+impl Tiny for f64 {
+    fn single<'s, 'c, 'a>(
+        _: &'s mut Shader<Self>,
+        _: &'c ShadingContext<'a, Self>,
+    ) -> Option<(&'s mut Shader<f32>, &'c ShadingContext<'a, f32>)> {
+        None
+    }
+}
+
+impl Shader<f32> {
     /// Lists a block of tiny triangles, to be coloured when [`Shader::finish_waiting`] is called.
     /// Returns whether it has listed it: it does not if they are not tiny, or of several groups.
     pub(super) fn wait_tiny(
         &mut self,
-        context: &ShadingContext<'_, T>,
+        context: &ShadingContext<'_, f32>,
         runs: &Runs,
         corner: [i32; 2],
         (canvas, at): (&mut Canvas<'_>, usize),
@@ -91,7 +116,11 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Colours the blocks of tiny triangles that wait.
-    pub(super) fn finish_tiny(&mut self, context: &ShadingContext<'_, T>, canvas: &mut Canvas<'_>) {
+    pub(super) fn finish_tiny(
+        &mut self,
+        context: &ShadingContext<'_, f32>,
+        canvas: &mut Canvas<'_>,
+    ) {
         let group = group_of(context, self.fragments.each()[0]);
         self.colors.form = Form::Pixels;
         self.colors.linear = context.plan.variants.are_linear();
@@ -111,7 +140,7 @@ impl<T: ShadingNumber> Shader<T> {
 
     /// Colours the blocks that wait one after the other, with slots.
     #[cold]
-    fn color_one_by_one(&mut self, context: &ShadingContext<'_, T>, canvas: &mut Canvas<'_>) {
+    fn color_one_by_one(&mut self, context: &ShadingContext<'_, f32>, canvas: &mut Canvas<'_>) {
         let all = std::mem::take(&mut self.fragments);
         for block in 0..self.waiting.len() {
             let Waiting { from, at } = self.waiting[block];
@@ -127,7 +156,7 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Computes the barycentric coordinates of the list. Returns whether all triangles are tiny.
-    fn weigh_tiny(&mut self, context: &ShadingContext<'_, T>, group: &Group<'_>) -> bool {
+    fn weigh_tiny(&mut self, context: &ShadingContext<'_, f32>, group: &Group<'_>) -> bool {
         let ShadingContext { level, plan, frame, .. } = *context;
         let by = Weighing {
             interpolation: plan.variants.interpolation,
@@ -135,13 +164,13 @@ impl<T: ShadingNumber> Shader<T> {
             mirrored: group.draw.mirrored,
             vertices: frame.corners_of(group.draw_index),
         };
-        T::weigh(level, by, &self.fragments, &mut self.tiny, &mut self.barycentrics)
+        tiny::weigh(level, by, &self.fragments, &mut self.tiny, &mut self.barycentrics)
     }
 
     /// Phong shading, as [`Shader::light_pixels`].
     fn light_tiny(
         &mut self,
-        context: &ShadingContext<'_, T>,
+        context: &ShadingContext<'_, f32>,
         group: &Group<'_>,
         shaded: &Shaded,
     ) -> bool {
@@ -168,7 +197,7 @@ impl<T: ShadingNumber> Shader<T> {
             }
             let Self { fragments, tiny, barycentrics, batch, .. } = self;
             let normals = (normals, group.draw.back == Back::Lit);
-            T::sample(level, &look, (fragments, tiny), normals, barycentrics, batch);
+            tiny::sample(level, &look, (fragments, tiny), normals, barycentrics, batch);
         }
         let light = self.tile.light(plan, group.pipeline, shaded);
         light.light_batch(terms.of(group.pipeline), level, &mut self.batch, None);
@@ -179,7 +208,7 @@ impl<T: ShadingNumber> Shader<T> {
     /// Gouraud shading, as [`Shader::mix_light`].
     fn mix_tiny(
         &mut self,
-        context: &ShadingContext<'_, T>,
+        context: &ShadingContext<'_, f32>,
         group: &Group<'_>,
         shaded: &Shaded,
     ) -> bool {
@@ -227,7 +256,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
         let thresholds = thresholds.of(plan.variants.rounding, fragments);
         let of = (&**corner_colors, fragments.len);
-        T::mix(level, of, barycentrics, (colors, thresholds));
+        tiny::mix(level, of, barycentrics, (colors, thresholds));
         true
     }
 }

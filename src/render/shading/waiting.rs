@@ -12,6 +12,7 @@ use super::full_blocks::Canvas;
 use super::groups::{Group, are_of, group_of, one_group};
 use super::interpolated::ShadingNumber;
 use super::surface::{Out, Shader, Waiting, in_block};
+use super::tiny_blocks::Tiny;
 use crate::accuracy::{Interpolation, LightAt};
 use crate::base::color::Color;
 use crate::render::frame::draw::{Back, Pipeline};
@@ -22,7 +23,7 @@ use crate::render::simd::gather::most_gathered;
 /// A block that shows more triangles than this is coloured by itself.
 const MANY_TRIANGLES: usize = 24;
 
-impl<T: ShadingNumber> Shader<T> {
+impl<T: ShadingNumber + Tiny> Shader<T> {
     /// Colours a block, whose upper left pixel is `corner`, into a tile from index `at` on: at the
     /// latest when [`Shader::finish_waiting`] is called. Pixels that show the background get the
     /// colour `fill`; without one, they are left as they are. Returns whether any pixel shows
@@ -36,7 +37,9 @@ impl<T: ShadingNumber> Shader<T> {
         fill: Option<Color>,
     ) -> bool {
         let runs = Runs::of(context.level, visibility);
-        if self.wait_tiny(context, &runs, corner, (canvas, at)) {
+        if let Some((shader, context)) = T::single(self, context)
+            && shader.wait_tiny(context, &runs, corner, (canvas, at))
+        {
             put_others(context, visibility, runs.shown(), (canvas, at), fill);
             return true;
         }
@@ -69,6 +72,27 @@ impl<T: ShadingNumber> Shader<T> {
         true
     }
 
+    /// Colours the blocks that wait.
+    pub(crate) fn finish_waiting(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        canvas: &mut Canvas<'_>,
+    ) {
+        if !self.waiting.is_empty() {
+            if self.fragments.are_tiny()
+                && let Some((shader, context)) = T::single(self, context)
+            {
+                shader.finish_tiny(context, canvas);
+            } else {
+                let group = group_of(context, self.fragments.numbers[0]);
+                self.color_group(context, &group, &mut Out::Waiting(canvas));
+            }
+            self.waiting.clear();
+        }
+    }
+}
+
+impl<T: ShadingNumber> Shader<T> {
     /// Lists a block beside those that wait, if it shows the same surface and has room.
     fn join(
         &mut self,
@@ -111,23 +135,6 @@ impl<T: ShadingNumber> Shader<T> {
                 let offset = canvas.offset(in_block(usize::from(*i)));
                 canvas.pixels[at + offset] = color.to_le_bytes();
             }
-        }
-    }
-
-    /// Colours the blocks that wait.
-    pub(crate) fn finish_waiting(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        canvas: &mut Canvas<'_>,
-    ) {
-        if !self.waiting.is_empty() {
-            if self.fragments.are_tiny() {
-                self.finish_tiny(context, canvas);
-            } else {
-                let group = group_of(context, self.fragments.numbers[0]);
-                self.color_group(context, &group, &mut Out::Waiting(canvas));
-            }
-            self.waiting.clear();
         }
     }
 }
