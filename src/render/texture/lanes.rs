@@ -14,7 +14,6 @@ use super::sample::{brightness, linear_factors};
 use crate::accuracy::Filter;
 use crate::base::once::get_or_compute;
 use crate::render::lights::{Rows, store};
-use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3, log2};
 use crate::scene::{Texture, Wrap};
 
@@ -27,9 +26,9 @@ pub(crate) struct Sampler<'a> {
     levels: &'a [Texture],
     filter: Filter,
     /// Width and height of each level.
-    sizes: [[f32; SLOTS]; 2],
+    sizes: [[f32; LEVELS]; 2],
     /// The same over those of the first level.
-    scales: [[f32; SLOTS]; 2],
+    scales: [[f32; LEVELS]; 2],
 }
 
 /// Sixteen positions on the texture in texels of its own size, reduced to one repetition.
@@ -41,7 +40,7 @@ impl<'a> Sampler<'a> {
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
     pub(crate) fn new(levels: &'a [Texture], filter: Filter) -> Option<Self> {
         let levels = &levels[..levels.len().min(LEVELS)];
-        let mut sizes = [[1.0; SLOTS]; 2];
+        let mut sizes = [[1.0; LEVELS]; 2];
         for (i, level) in levels.iter().enumerate() {
             let size = level.picture.size();
             (sizes[0][i], sizes[1][i]) = (size.width as f32, size.height as f32);
@@ -49,7 +48,7 @@ impl<'a> Sampler<'a> {
         let has_texels = levels.first()?.picture.size().area() > 0;
         let mut scales = sizes;
         for (scales, sides) in scales.iter_mut().zip(&sizes) {
-            scales[..LEVELS].iter_mut().for_each(|side| *side /= sides[0]);
+            scales.iter_mut().for_each(|side| *side /= sides[0]);
         }
         has_texels.then_some(Self { levels, filter, sizes, scales })
     }

@@ -7,7 +7,7 @@ use fearless_simd::{
 
 use super::{Decode, LEVELS, Positions, Sampler, between};
 use crate::base::image::Size;
-use crate::render::simd::gather::{SLOTS, permute, permutes};
+use crate::render::simd::gather::{permute, permutes};
 use crate::render::simd::{BATCH, Lanes as _, Sixteen, Vec3};
 use crate::scene::Wrap;
 
@@ -331,14 +331,15 @@ impl<S: Simd> MipLevel<S> {
 #[inline(always)]
 fn each_level<S: Simd>(
     lanes: Sixteen<S>,
-    [first, second]: &[[f32; SLOTS]; 2],
+    [first, second]: &[[f32; LEVELS]; 2],
     numbers: i32x16<S>,
     one: Option<usize>,
 ) -> [f32x16<S>; 2] {
     if let Some(level) = one {
         return [lanes.set(first[level % LEVELS]), lanes.set(second[level % LEVELS])];
     }
-    [lanes.pick::<1>(first, numbers), lanes.pick::<1>(second, numbers)]
+    let first = permute(lanes.load(first, 0).bitcast(), numbers).bitcast();
+    [first, permute(lanes.load(second, 0).bitcast(), numbers).bitcast()]
 }
 
 /// The texels at some columns and rows, with the next ones on the right and above if `N` is 2, out
