@@ -9,10 +9,10 @@
 use std::hint::select_unpredictable;
 
 use fearless_simd::{
-    Level, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, dispatch, i32x16, mask32x16,
-    u32x16, u64x8,
+    Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16, u32x16,
 };
 
+use super::runs::{MARGIN, Runs, Shown};
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{BATCH, UP_TO_SIXTEEN};
@@ -55,13 +55,6 @@ pub(crate) struct Fragments {
     each: [u32; BATCH + AT_ONCE],
 }
 
-/// Masks of the pixels that show triangles or lines: bit i stands for pixel i.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Shown {
-    pub(crate) triangles: u64,
-    pub(crate) lines: u64,
-}
-
 /// Entries of the table that maps triangles to slots. Of two triangles with the same entry, the
 /// later one has it.
 const TABLE: usize = 128;
@@ -73,10 +66,7 @@ const NEXT_LIST: u64 = 0x100;
 /// Fragments that are listed at once, for which there is room after the last.
 const AT_ONCE: usize = 16;
 
-/// Padding before the first pixel, so that every pixel has a left neighbour.
-const MARGIN: usize = 16;
 const ROW: usize = BLOCK as usize;
-const FIRST_COLUMN: u64 = 0x0101_0101_0101_0101;
 
 impl Default for Fragments {
     fn default() -> Self {
@@ -421,87 +411,6 @@ impl Fragments {
     }
 }
 
-/// What the pixels of a block show, and where along its rows that changes.
-#[derive(Debug)]
-pub(crate) struct Runs {
-    /// The numbers of the primitives, after a margin.
-    numbers: [u32; MARGIN + BLOCK_PIXELS],
-    /// The pixels that show triangles, nothing, the same as their left neighbours, and the same as
-    /// those above.
-    triangles: u64,
-    background: u64,
-    left: u64,
-    above: u64,
-}
-
-impl Runs {
-    /// The runs of a block.
-    pub(crate) fn of(level: Level, visibility: &[u64; BLOCK_PIXELS]) -> Self {
-        dispatch!(level, simd => Self::find(simd, visibility))
-    }
-
-    #[inline(always)]
-    pub(crate) fn find<S: Simd>(simd: S, visibility: &[u64; BLOCK_PIXELS]) -> Self {
-        // The number of the background is not that of any triangle.
-        let mut before = u32x16::splat(simd, u32::MAX);
-        let mut numbers = [u32::MAX; MARGIN + BLOCK_PIXELS];
-        let (mut triangles, mut background, mut left, mut above) = (0, 0, 0, 0);
-        for at in (0..BLOCK_PIXELS).step_by(16) {
-            let words = |at| u64x8::from_slice(simd, &visibility[at..at + 8]);
-            let own = !words(at).narrow(words(at + 8));
-            own.store_slice(&mut numbers[MARGIN + at..][..16]);
-            triangles |= own.simd_lt(1 << 31).to_bitmask() << at;
-            background |= own.simd_eq(u32::MAX).to_bitmask() << at;
-            // The last lane of those before, and all but the last of its own.
-            left |= own.simd_eq(before.slide::<15>(own)).to_bitmask() << at;
-            above |= own.simd_eq(before.slide::<ROW>(own)).to_bitmask() << at;
-            before = own;
-        }
-        Self { numbers, triangles, background, left, above }
-    }
-
-    /// The pixels at which runs of triangles begin that do not show in the row above.
-    pub(crate) const fn new_starts(&self) -> u64 {
-        self.triangles & !self.left & !self.above
-    }
-
-    /// Calls `take` with the triangles of the runs that do not show in the row above.
-    #[inline(always)]
-    pub(crate) fn each_new(&self, mut take: impl FnMut(u32)) {
-        let mut starts = self.new_starts();
-        while starts != 0 {
-            take(self.number(starts.trailing_zeros() as usize));
-            starts &= starts - 1;
-        }
-    }
-
-    /// The pixels at which runs of triangles begin, in each row of the block.
-    const fn starts(&self) -> u64 {
-        self.triangles & (!self.left | FIRST_COLUMN)
-    }
-
-    /// What the block shows.
-    pub(crate) const fn shown(&self) -> Shown {
-        Shown { triangles: self.triangles, lines: !self.triangles & !self.background }
-    }
-
-    /// The number of the first triangle.
-    pub(crate) const fn first_triangle(&self) -> u32 {
-        self.number(self.triangles.trailing_zeros() as usize)
-    }
-
-    /// The pixels at which runs of anything begin, in each row of the block.
-    pub(crate) const fn starts_in_rows(&self) -> u64 {
-        !self.left | FIRST_COLUMN
-    }
-
-    /// The number of the primitive at a pixel.
-    #[inline(always)]
-    pub(crate) const fn number(&self, pixel: usize) -> u32 {
-        self.numbers[MARGIN + pixel % BLOCK_PIXELS]
-    }
-}
-
 /// The pixels of a block, in order.
 const ALL_PIXELS: [u8; BLOCK_PIXELS] = {
     let mut pixels = [0; BLOCK_PIXELS];
@@ -514,154 +423,4 @@ const ALL_PIXELS: [u8; BLOCK_PIXELS] = {
 };
 
 #[cfg(test)]
-#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
-mod tests {
-    use super::*;
-
-    /// A sample of the visibility buffer that shows a triangle.
-    fn word(number: u32) -> u64 {
-        1 << 62 | u64::from(!number)
-    }
-
-    #[test]
-    fn triangles_of_neighbouring_blocks_keep_their_slots() {
-        let mut state = 1_u64;
-        let mut fragments = Fragments::default();
-        let mut went_on = 0;
-        for round in 0..4000 {
-            let first = round / 20 * 3;
-            // At times some replace each other in the table.
-            let step = if round % 3 == 0 { 64 } else { 1 };
-            // Bands of three columns, some with holes.
-            let band = (state >> 40) as u32;
-            let visibility: [u64; BLOCK_PIXELS] = std::array::from_fn(|i| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                match (state >> 40) as u32 % 8 {
-                    0 if round % 2 == 0 => 0,
-                    _ => word(first + step * ((band % 7 + i as u32 % 8 / 3) % 7)),
-                }
-            });
-            let before = fragments.numbers[..fragments.count].to_vec();
-            fragments.list_on(Level::new(), &visibility, [0, 0], 32);
-            assert!(fragments.count <= SLOTS);
-            went_on += usize::from(fragments.numbers[..fragments.count].starts_with(&before));
-            for (k, place) in fragments.pixels[..fragments.len].iter().enumerate() {
-                let number = fragments.numbers[fragments.slots[k] as usize];
-                assert_eq!(word(number), visibility[usize::from(*place)], "{round}");
-            }
-            if round % 50 == 0 {
-                fragments.list_full_block(9, [0, 0]);
-            }
-        }
-        assert!((500..4000).contains(&went_on), "{went_on}");
-    }
-
-    #[test]
-    fn other_triangles_are_added_to_a_full_block() {
-        let mut fragments = Fragments::default();
-        for number in 0..200 {
-            let others = [number + 1, number + 2, number, number + 1];
-            if number % 3 == 0 {
-                // In the table, they have other slots now.
-                fragments.begin_shared(0);
-                others.iter().rev().for_each(|other| fragments.add(*other, [0, 0], 5, 1));
-            }
-            fragments.list_full_block(number, [8, 16]);
-            fragments.share(&[3; BLOCK_PIXELS]);
-            others.iter().for_each(|other| fragments.add(*other, [8, 16], 9, 1));
-            let shown = fragments.slots[..fragments.len].iter();
-            let shown: Vec<u32> = shown.map(|slot| fragments.numbers[*slot as usize]).collect();
-            assert_eq!(shown[..BLOCK_PIXELS], [number; BLOCK_PIXELS]);
-            assert_eq!((&shown[BLOCK_PIXELS..], fragments.count), (&others[..], 3));
-        }
-    }
-
-    #[test]
-    fn blocks_that_are_listed_together_keep_their_pixels_and_triangles() {
-        let mut state = 1_u64;
-        let mut fragments = Fragments::default();
-        let (mut joined, mut full) = (0, 0);
-        for round in 0..1000_u32 {
-            let first = round * 5;
-            let mut want = Vec::new();
-            for block in 0..12 {
-                // Bands of two columns, some with holes.
-                let visibility: [u64; BLOCK_PIXELS] = std::array::from_fn(|i| {
-                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                    match (state >> 40) as u32 % 4 {
-                        0 if block % 3 != 2 => 0,
-                        _ => word(first + (block + i as u32 % 8 / 2) % 9),
-                    }
-                });
-                let corner = [8 * block.cast_signed(), 16];
-                let runs = Runs::of(Level::new(), &visibility);
-                if block == 0 {
-                    fragments.list_runs(Level::new(), &runs, corner, 32);
-                } else if fragments.have_room(&runs, 32) {
-                    fragments.list_more(Level::new(), &runs, corner);
-                    joined += 1;
-                } else {
-                    full += 1;
-                    break;
-                }
-                let shown = (0..BLOCK_PIXELS).filter(|i| visibility[*i] != 0);
-                want.extend(shown.map(|i| {
-                    let (x, y) = (corner[0] + i as i32 % 8, 16 + i as i32 / 8);
-                    (i as u8, x, y, visibility[i])
-                }));
-            }
-            assert!(fragments.len <= BATCH && !fragments.is_whole());
-            let got = (0..fragments.len).map(|k| {
-                let number = fragments.numbers[fragments.slots[k] as usize];
-                (fragments.pixels[k], fragments.x[k], fragments.y[k], word(number))
-            });
-            assert_eq!(got.collect::<Vec<_>>(), want, "{round}");
-        }
-        assert!(joined > 2000 && full > 900, "{joined} {full}");
-    }
-
-    #[test]
-    fn every_pixel_finds_its_triangle_in_its_slot() {
-        let mut state = 1_u64;
-        for round in 0..2000 {
-            let visibility: [u64; BLOCK_PIXELS] = std::array::from_fn(|i| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                let random = (state >> 40) as u32;
-                match (round % 4, random % 8) {
-                    (0, _) => word(7),
-                    (1, _) => word(random),
-                    (2, 0) => 0,
-                    (3, 0) => word(1 << 31 | random),
-                    _ => word(random % 2 + i as u32 % 8 / 3),
-                }
-            });
-            let mut fragments = Fragments::default();
-            let shown = fragments.list(Level::new(), &visibility, [8, 16]);
-            let is_triangle = |i: &usize| visibility[*i] != 0 && !(visibility[*i] as u32) < 1 << 31;
-            let want: Vec<usize> = (0..BLOCK_PIXELS).filter(is_triangle).collect();
-            let bits = want.iter().fold(0, |bits, i| bits | 1_u64 << i);
-            let lines = (0..BLOCK_PIXELS).filter(|i| visibility[*i] != 0 && !is_triangle(i));
-            assert_eq!((shown.triangles, fragments.len), (bits, want.len()));
-            assert_eq!(shown.lines, lines.fold(0, |bits, i| bits | 1_u64 << i));
-            for (k, i) in want.into_iter().enumerate() {
-                let slot = fragments.slots[k] as usize;
-                assert!(slot < fragments.count);
-                assert_eq!(word(fragments.numbers[slot]), visibility[i] & !(1 << 63));
-                let (x, y) = (8 + i as i32 % 8, 16 + i as i32 / 8);
-                assert_eq!(
-                    (usize::from(fragments.pixels[k]), fragments.x[k], fragments.y[k]),
-                    (i, x, y)
-                );
-            }
-            // Small numbers have table entries of their own.
-            let mut different = fragments.numbers[..fragments.count].to_vec();
-            different.sort_unstable();
-            different.dedup();
-            assert!(
-                round % 4 == 1 || different.len() == fragments.count,
-                "{:?}",
-                fragments.numbers
-            );
-        }
-    }
-}
+mod tests;

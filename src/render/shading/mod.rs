@@ -1,15 +1,16 @@
 //! Shading: from what is visible in a tile to its colours in the picture.
 //!
-//! A `painter` draws tiles. For each block, `surface` lists the fragments (`fragments`), fetches
-//! the attributes of their triangles (`triangle_attributes`), computes barycentric coordinates
-//! (`barycentrics`), interpolates attributes (`interpolate`), lights fragments per pixel, face or
-//! vertex (`light`) if they see the light (`shadows`), and multiplies with the colour of the
-//! surface (`textured`). `quantize` converts the result to bytes, and `resolve` averages samples.
-//! Blocks that show the same surface are `waiting` for each other, and coloured together; those of
-//! triangles of about a pixel (`tiny_blocks`) without looking triangles up (`tiny`).
-//! Blocks that one triangle covers fully (`blocks`) take all of these steps in one pass, without a
-//! list (`full_blocks`). Blocks that transparent triangles reach are coloured layer by layer
-//! (`layers`), each with its `opacity`, which `blend` lays over what is behind.
+//! A `painter` draws tiles. For each block, `surface` lists the fragments (`fragments`) from its
+//! `runs` of pixels that show the same, fetches the attributes of their triangles
+//! (`triangle_attributes`), computes barycentric coordinates (`barycentrics`), interpolates
+//! attributes (`interpolate`), lights fragments per pixel, face or vertex (`light`) if they see the
+//! light (`shadows`), and multiplies with the colour of the surface (`textured`). `quantize`
+//! converts the result to bytes, and `resolve` averages samples. Blocks that show the same surface
+//! are `waiting` for each other, and coloured together; those of triangles of about a pixel
+//! (`tiny_blocks`) without looking triangles up (`tiny`). Blocks that one triangle covers fully
+//! (`blocks`) take all of these steps in one pass, without a list (`full_blocks`). Blocks that
+//! transparent triangles reach are coloured layer by layer (`layers`), each with its `opacity`,
+//! which `blend` lays over what is behind.
 
 pub(crate) mod barycentrics;
 mod blend;
@@ -41,6 +42,7 @@ pub(crate) mod pixel_color;
 pub(crate) mod quantize;
 mod resolve;
 pub(crate) mod rounding;
+mod runs;
 pub(crate) mod shadows;
 pub(crate) mod shown_faces;
 mod spans;

@@ -9,10 +9,10 @@ use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, disp
 
 use super::colors::Sums;
 use super::context::ShadingContext;
-use super::fragments::Shown;
 use super::groups::one_group;
 use super::interpolated::ShadingNumber;
 use super::kept::Kept;
+use super::runs::Shown;
 use super::surface::{Out, Shader};
 use crate::render::raster::visibility_buffer::{BACKGROUND, Planes, Visible, seen_number};
 use crate::render::screen::sample_positions::FOUR;

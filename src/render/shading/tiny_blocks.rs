@@ -7,10 +7,10 @@ use prefetch_index::prefetch_index;
 
 use super::colors::Form;
 use super::context::ShadingContext;
-use super::fragments::Runs;
 use super::full_blocks::Canvas;
 use super::groups::{Group, are_of, group_of};
 use super::light::Lighting;
+use super::runs::Runs;
 use super::surface::{Out, Shader, Waiting};
 use super::tiny::{self, Weighing};
 use crate::accuracy::{Coverage, Interpolation, LightAt};

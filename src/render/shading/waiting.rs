@@ -7,10 +7,10 @@
 //! depends on others of its list.
 
 use super::context::ShadingContext;
-use super::fragments::{Runs, Shown};
 use super::full_blocks::Canvas;
 use super::groups::{Group, are_of, group_of, one_group};
 use super::interpolated::ShadingNumber;
+use super::runs::{Runs, Shown};
 use super::surface::{Out, Shader, Waiting, in_block};
 use super::tiny_blocks::Tiny;
 use crate::accuracy::{Interpolation, LightAt};
