@@ -195,7 +195,9 @@ fn normals_at<S: Simd>(
         #[inline(always)]
         |lane| {
             let [x, y, z] = normals[(places[lane][corner] as usize).min(last)];
-            [x.to_bits().cast_signed(), y.to_bits().cast_signed(), z.to_bits().cast_signed(), 0]
+            let [x, y, z] = [x, y, z].map(|x| x.to_bits().cast_signed());
+            // The fourth is not read.
+            [x, y, z, z]
         },
     );
     Vec3([x.bitcast(), y.bitcast(), z.bitcast()])
