@@ -1,4 +1,4 @@
-//! Colours blocks of [tiny](super::tiny) triangles.
+//! Colours blocks of [tiny] triangles.
 //!
 //! They wait until their pixels fill a list, like other blocks that show one surface. If a triangle
 //! of the list is clipped or wide, its blocks are coloured one by one instead, with slots.
