@@ -200,22 +200,22 @@ impl<'a> Sampler<'a> {
         }
         for (at, same) in (0..len).step_by(16).zip(same) {
             let position = places.at(lanes, at);
-            let around = self.finer_level(simd, places, at, same).around(simd, position);
+            let around = self.level::<S, 0>(simd, places, at, same).around(simd, position);
             places.finer.store(at, &around);
             if lanes.load(&places.levels[1], at).simd_gt(0.0).any_true() {
-                let around = self.coarser_level(simd, places, at, same).around(simd, position);
+                let around = self.level::<S, 1>(simd, places, at, same).around(simd, position);
                 places.coarser.store(at, &around);
             }
         }
         for (at, same) in (0..len).step_by(16).zip(same) {
             let around = places.finer.load(simd, at);
             let mut color =
-                self.finer_level(simd, places, at, same).texels(simd, self, &around).color::<D>();
+                self.level::<S, 0>(simd, places, at, same).texels(simd, self, &around).color::<D>();
             let part = lanes.load(&places.levels[1], at);
             if part.simd_gt(0.0).any_true() {
                 let around = places.coarser.load(simd, at);
                 let far = self
-                    .coarser_level(simd, places, at, same)
+                    .level::<S, 1>(simd, places, at, same)
                     .texels(simd, self, &around)
                     .color::<D>();
                 color = between(color, far, part);
@@ -224,22 +224,11 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// The finer of the levels of sixteen places; `same` is its number, if all have the same.
-    #[inline(always)]
-    fn finer_level<S: Simd>(
-        &self,
-        simd: S,
-        places: &TexelPlaces,
-        at: usize,
-        same: Option<usize>,
-    ) -> MipLevel<S> {
-        MipLevel::of(self, simd, Sixteen(simd).load(&places.levels[0], at), same)
-    }
-
-    /// The coarser of the levels of sixteen places: the next, if there is one.
+    /// The finer of the levels of sixteen places, or the coarser if `UP` is 1: the next, if there is
+    /// one. `same` is the number of the finer, if all have the same.
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "at most 16")]
-    fn coarser_level<S: Simd>(
+    fn level<S: Simd, const UP: usize>(
         &self,
         simd: S,
         places: &TexelPlaces,
@@ -248,8 +237,9 @@ impl<'a> Sampler<'a> {
     ) -> MipLevel<S> {
         let lanes = Sixteen(simd);
         let end = self.levels.len() - 1;
-        let next = Real::min(lanes.load(&places.levels[0], at) + 1.0, lanes.set(end as f32));
-        MipLevel::of(self, simd, next, same.map(|level| (level + 1).min(end)))
+        let finer = lanes.load(&places.levels[0], at);
+        let numbers = if UP == 0 { finer } else { Real::min(finer + 1.0, lanes.set(end as f32)) };
+        MipLevel::of(self, simd, numbers, same.map(|level| (level + UP).min(end)))
     }
 }
 

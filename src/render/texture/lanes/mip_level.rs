@@ -23,7 +23,7 @@ pub(super) struct MipLevel<S: Simd> {
     height: i32x16<S>,
 }
 
-/// Where the four texels around sixteen positions are.
+/// The columns and rows of the four texels around sixteen positions.
 pub(super) struct Around<S: Simd> {
     /// The lower left one, at least -1: wrapping is still to come.
     column: i32x16<S>,
@@ -46,7 +46,7 @@ struct Window {
 /// The columns of a [`Window`].
 const COLUMNS: i32 = 16;
 
-/// Where the texels around many positions are.
+/// [`Around`] many positions.
 #[derive(Debug)]
 pub(super) struct ManyAround {
     columns: [i32; BATCH],
@@ -67,7 +67,7 @@ impl Default for ManyAround {
 }
 
 impl ManyAround {
-    /// Stores where the texels around sixteen positions are.
+    /// Stores those of sixteen positions, from `at` on.
     #[inline(always)]
     pub(super) fn store<S: Simd>(&mut self, at: usize, around: &Around<S>) {
         around.column.store_slice(&mut self.columns[at..at + 16]);
@@ -78,7 +78,7 @@ impl ManyAround {
         self.windows[at / 16] = around.window;
     }
 
-    /// What was stored.
+    /// Those of sixteen positions, from `at` on.
     #[inline(always)]
     pub(super) fn load<S: Simd>(&self, simd: S, at: usize) -> Around<S> {
         let [s, t] = &self.weights;
@@ -172,7 +172,7 @@ impl<S: Simd> MipLevel<S> {
         self.texels(simd, sampler, &self.around(simd, position))
     }
 
-    /// Where the four texels around some positions are.
+    /// The columns and rows of the four texels around some positions.
     #[inline(always)]
     pub(super) fn around(&self, simd: S, [x, y]: Positions<S>) -> Around<S> {
         let (x, y) = (x * self.scale[0] - 0.5, y * self.scale[1] - 0.5);
