@@ -224,8 +224,8 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// The finer of the levels of sixteen places, or the coarser if `UP` is 1: the next, if there is
-    /// one. `same` is the number of the finer, if all have the same.
+    /// The finer of the levels of sixteen places, or the coarser if `UP` is 1: the next, if there
+    /// is one. `same` is the number of the finer, if all have the same.
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "at most 16")]
     fn level<S: Simd, const UP: usize>(
