@@ -372,6 +372,7 @@ fn prepared(model: &Model, raw: bool, textured: bool) -> Model {
     Model {
         name: model.name.clone(),
         source: None,
+        companions: Vec::new(),
         options: model.options,
         mesh: Mesh::new(source).expect("a mesh's own triangles are a mesh"),
         materials: Vec::new(),

@@ -99,7 +99,7 @@ fn a_picture_replaces_neither_a_file_of_another_kind_nor_its_own_source() {
         [&["wood.obj"][..], &["square.obj", "--texture", "wood.png", "-o", "./wood.png"]]
     {
         let (_, err) = ends_with(1, folder.path(), &[&["render"], arguments].concat(), b"");
-        assert!(err.contains("wood.png is read for this picture"), "{err}");
+        assert!(err.contains("the scene is read from it"), "{err}");
         assert_eq!(io::load_picture(&at("wood.png")).unwrap(), texture);
     }
 }

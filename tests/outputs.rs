@@ -13,7 +13,7 @@ use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::edit::items;
 use marraztu::edit::turntable::{Turn, turned};
-use marraztu::io::{self, Progress};
+use marraztu::io::{self, Progress, Sources};
 use marraztu::render::{Renderer, plan_frame, without_ground};
 use marraztu::scene::{Command, LoadOptions, MaterialChoice, Mesh, Object, Scene, Sides, View};
 use serde_json::Value;
@@ -120,7 +120,7 @@ fn an_exported_obj_is_read_back_as_the_same_picture() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("first.obj");
     let (before, view) = scene();
-    let exported = io::export(&path, &before, &view).unwrap();
+    let exported = io::export(&path, &before, &view, &Sources::default()).unwrap();
     assert_eq!(exported.files.last().unwrap(), &path);
     let loaded = io::load(&path, &LoadOptions::default(), &Progress::new()).unwrap();
     assert_eq!(loaded.findings, [], "nothing had to be mended");
@@ -204,7 +204,7 @@ fn an_exported_gltf_is_sound_and_has_every_position_bit_for_bit() {
     let (scene, view) = scene();
     for name in ["first scene.gltf", "first.glb"] {
         let path = folder.path().join(name);
-        let exported = io::export(&path, &scene, &view).unwrap();
+        let exported = io::export(&path, &scene, &view, &Sources::default()).unwrap();
         assert!(exported.notes.iter().any(|note| note.contains("everywhere")));
         // The name of a buffer beside it is escaped: the file has the plain name.
         let (json, buffer) = if name.ends_with("gltf") {

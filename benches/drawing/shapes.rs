@@ -154,6 +154,7 @@ fn build(source: MeshSource) -> Shared<Model> {
     Shared::new(Model {
         name: "shape".to_owned(),
         source: None,
+        companions: Vec::new(),
         options: LoadOptions::default(),
         mesh: Mesh::new(source).expect("shapes are meshes"),
         materials: Vec::new(),

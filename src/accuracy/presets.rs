@@ -1,7 +1,7 @@
 //! Presets of accuracy, the reference of some settings, and how settings are worded.
 
-use crate::accuracy::Settings;
 use crate::accuracy::axes::{AXES, Axis, AxisKind};
+use crate::accuracy::{Coverage, Samples, Settings};
 
 /// Settings with a name.
 #[derive(Debug)]
@@ -141,6 +141,30 @@ impl Settings {
     pub fn sampled(&self) -> Self {
         Self::default().modelled_as(self)
     }
+
+    /// Whether a picture can be refined by more samples per pixel: the ancestors' algorithms have
+    /// one.
+    #[must_use]
+    pub const fn can_refine(&self) -> bool {
+        match self.coverage {
+            Coverage::Exact | Coverage::F32Edges => true,
+            Coverage::ScanLines | Coverage::Points => false,
+        }
+    }
+
+    /// The settings of a picture that is kept: with at least [`Self::REFINED`] samples per pixel, as
+    /// the window shows it once nothing moves.
+    #[must_use]
+    pub const fn refined(self) -> Self {
+        let more = Self::REFINED.count() > self.samples.count();
+        Self {
+            samples: if more && self.can_refine() { Self::REFINED } else { self.samples },
+            ..self
+        }
+    }
+
+    /// The samples per pixel of a picture that is kept.
+    pub const REFINED: Samples = Samples::Sixteen;
 
     /// These settings with the models of `others`.
     #[must_use]

@@ -9,15 +9,26 @@ use marraztu::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Choice, S
 pub(crate) struct Accuracy {
     preset: Option<&'static AccuracyPreset>,
     choices: Vec<&'static Choice>,
+    /// Whether the samples per pixel are among the choices.
+    names_samples: bool,
 }
 
 const PRESET: &str = "preset";
+const SAMPLES: &str = "samples";
 
 impl Accuracy {
     /// The settings with these choices: first the preset, then single axes.
     pub(crate) fn of(&self, settings: &Settings) -> Settings {
         let settings = self.preset.map_or(*settings, |preset| preset.of(settings));
         self.choices.iter().fold(settings, |settings, choice| choice.of(&settings))
+    }
+
+    /// The settings of a picture in a file: refined as in a still window, unless the samples per
+    /// pixel or a quick preset are chosen.
+    pub(crate) fn of_file(&self, settings: &Settings) -> Settings {
+        let settings = self.of(settings);
+        let is_quick = self.preset.is_some_and(|preset| preset.word == "draft");
+        if is_quick || self.names_samples { settings } else { settings.refined() }
     }
 }
 
@@ -68,6 +79,7 @@ impl FromArgMatches for Accuracy {
         self.preset = word(PRESET).and_then(AccuracyPreset::named);
         let chosen = |axis: &Axis| word(axis.key).and_then(|word| axis.choice(word));
         self.choices = AXES.iter().filter_map(chosen).collect();
+        self.names_samples = word(SAMPLES).is_some();
         Ok(())
     }
 }

@@ -13,8 +13,8 @@ use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 use marraztu::io::{self, PICTURE_FORMATS, PictureFormat};
 use marraztu::scene::{
-    Crease, LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Sides, Surface,
-    UpAxis, Winding,
+    BumpMaps, Crease, LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Sides,
+    Surface, UpAxis, View, Winding,
 };
 
 /// A picture, and the file that it goes to.
@@ -91,6 +91,13 @@ pub(crate) struct Reading {
     /// smoothing groups: 60*, 0 for flat faces, 180 to smooth all
     #[arg(long, value_name = "DEGREES", value_parser = crease)]
     crease: Option<Crease>,
+    /// What the pictures of `bump` statements hold: heights, normals, auto* (decided by the picture)
+    #[arg(long, value_name = "WHAT", hide_possible_values = true, value_parser = choice(&[
+        ("auto", BumpMaps::Auto),
+        ("heights", BumpMaps::Heights),
+        ("normals", BumpMaps::Normals),
+    ]))]
+    bump_maps: Option<BumpMaps>,
 }
 
 /// How the surfaces of objects look.
@@ -149,6 +156,10 @@ pub(crate) struct Seeing {
     /// that can, "none*" for none
     #[arg(long, value_name = "SLOTS", value_parser = shadow_slots)]
     pub(crate) shadows: Option<ShadowSlots>,
+    /// How much brighter all light is, in stops (each doubles it), or "fit": the brightest surfaces
+    /// are just below white. 0*
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = exposure)]
+    pub(crate) exposure: Option<Exposure>,
     /// The colour of the background: "0,0,179", "#0000b3", "#fff", or a name such as "white"
     #[arg(long, value_name = "COLOUR", value_parser = color)]
     pub(crate) background: Option<Color>,
@@ -177,6 +188,24 @@ pub(crate) struct Seeing {
     #[arg(long, value_name = "WHICH", hide_possible_values = true)]
     #[arg(value_parser = choice(&[("none", false), ("all", true)]))]
     pub(crate) helpers: Option<bool>,
+}
+
+/// An exposure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Exposure {
+    /// In stops.
+    Stops(f64),
+    /// As it fits the picture.
+    Fit,
+}
+
+fn exposure(text: &str) -> Result<Exposure, String> {
+    let most = View::MOST_EXPOSURE;
+    if text == "fit" {
+        return Ok(Exposure::Fit);
+    }
+    let stops = text.parse().ok().filter(|stops| (-most..=most).contains(stops));
+    stops.map(Exposure::Stops).ok_or_else(|| format!("write stops from -{most} to {most}, or fit"))
 }
 
 /// Files to describe.
@@ -225,12 +254,14 @@ impl Reading {
             scale: self.scale.unwrap_or_default(),
             winding: if self.flip_winding { Winding::Turned } else { Winding::Kept },
             crease: self.crease.unwrap_or_default(),
+            bumps: self.bump_maps.unwrap_or_default(),
         }
     }
 
     /// Whether any of the options was given.
     pub(crate) const fn is_given(&self) -> bool {
-        self.up.is_some() || self.scale.is_some() || self.flip_winding || self.crease.is_some()
+        let crease_or_bumps = self.crease.is_some() || self.bump_maps.is_some();
+        self.up.is_some() || self.scale.is_some() || self.flip_winding || crease_or_bumps
     }
 }
 

@@ -47,15 +47,8 @@ pub(super) fn export(arguments: &Export) -> Result<(), Failure> {
     talk.apply();
     let path = out.clone().unwrap_or_else(|| default_name(files).with_extension("glb"));
     io::check_export_target(&path)?;
-    if let Some(file) = files.iter().find(|file| is_same(file, &path)) {
-        return Err(Failure::Absent(format!(
-            "{} is read for this export and would be replaced by it; choose another name with \
-             --out",
-            file.display()
-        )));
-    }
     let stage = staged(files, reading, surfaces, seeing, &Accuracy::default())?;
-    let exported = io::export(&path, &stage.scene, &stage.view)?;
+    let exported = io::export(&path, &stage.scene, &stage.view, &stage.sources(files))?;
     for text in &exported.notes {
         note(text);
     }
@@ -63,9 +56,4 @@ pub(super) fn export(arguments: &Export) -> Result<(), Failure> {
         note(&format_args!("the scene is in {}", path.display()));
     }
     Ok(())
-}
-
-/// Whether both name the same file, which exists.
-fn is_same(a: &std::path::Path, b: &std::path::Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }

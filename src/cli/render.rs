@@ -3,15 +3,16 @@
 use std::path::PathBuf;
 
 use marraztu::accuracy::Shot;
-use marraztu::base::image::Picture;
+use marraztu::base::image::{Picture, Size};
 use marraztu::edit::{framing, items, lighting};
 use marraztu::io::{self, Progress};
-use marraztu::render::plan_frame;
-use marraztu::render::{Renderer, Unseen, unseen, without_ground};
+use marraztu::render::{Renderer, Unseen, fitted_exposure, plan_frame, unseen, without_ground};
 use marraztu::scene::{CameraId, Command, Fill, ItemId, Object};
 
 use super::accuracy::Accuracy;
-use super::arguments::{PictureArguments, Reading, Render, Seeing, ShadowSlots, Slots, Surfaces};
+use super::arguments::{
+    Exposure, PictureArguments, Reading, Render, Seeing, ShadowSlots, Slots, Surfaces,
+};
 use super::bar::Bar;
 use super::draw_along;
 use super::failure::{Failure, usage};
@@ -23,7 +24,7 @@ use super::target::Target;
 pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     let target = Target::of(arguments)?;
     let stage = stage(&arguments.picture)?;
-    target.spare_inputs(&inputs(&arguments.picture), &stage)?;
+    target.check(&stage.sources(&arguments.picture.files), arguments.transparent)?;
     let progress = Progress::new();
     let bar = Bar::of("drawing", &progress);
     for (_, object) in stage.scene.objects.iter() {
@@ -82,11 +83,6 @@ fn tell_unseen(renderer: &mut Renderer, shot: &Shot) {
     }
 }
 
-/// All files that the arguments name for reading.
-fn inputs(picture: &PictureArguments) -> Vec<PathBuf> {
-    picture.files.iter().chain(&picture.surfaces.texture).cloned().collect()
-}
-
 /// Reads the files, applies the options, and reports the findings in the files.
 pub(super) fn stage(picture: &PictureArguments) -> Result<Stage, Failure> {
     let PictureArguments { files, reading, surfaces, seeing, accuracy, talk, threads, .. } =
@@ -95,7 +91,9 @@ pub(super) fn stage(picture: &PictureArguments) -> Result<Stage, Failure> {
     if threads.is_some() {
         draw_along(*threads);
     }
-    staged(files, reading, surfaces, seeing, accuracy)
+    let mut stage = staged(files, reading, surfaces, seeing, &Accuracy::default())?;
+    stage.settings = accuracy.of_file(&stage.settings);
+    Ok(stage)
 }
 
 /// The scene of these files with the options applied.
@@ -131,7 +129,18 @@ fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
         object.sides = surfaces.sides.unwrap_or(object.sides);
         object.file_normals &= !surfaces.no_file_normals;
     };
-    stage.change(items::change_all_objects(&stage.scene, change))
+    stage.change(items::change_all_objects(&stage.scene, change))?;
+    if let Some(texture) = &surfaces.texture {
+        let objects = stage.scene.objects.iter();
+        for (_, object) in objects.filter(|(_, object)| object.model.mesh.uvs().is_empty()) {
+            note(&format_args!(
+                "{} is not shown on {}, which has no texture coordinates",
+                texture.display(),
+                object.name
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Applies the options for the view.
@@ -161,8 +170,18 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     view.face_normals |= seeing.face_normals;
     view.vertex_normals |= seeing.vertex_normals;
     view.marks = seeing.helpers.unwrap_or(view.marks && !stage.models_alone);
+    match seeing.exposure {
+        Some(Exposure::Stops(stops)) => stage.view.exposure = stops,
+        Some(Exposure::Fit) => {
+            stage.view.exposure = fitted_exposure(&stage.shot(Size::new(FITTED, FITTED)));
+        }
+        None => {}
+    }
     Ok(())
 }
+
+/// The side of the picture that the exposure is fitted to.
+const FITTED: usize = 256;
 
 /// Chooses the camera. Models alone are framed, and lit for that view; a camera that is named sees
 /// them under the first scene's own lights.

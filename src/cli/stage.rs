@@ -8,7 +8,7 @@ use marraztu::accuracy::{Settings, Shot};
 use marraztu::base::Shared;
 use marraztu::base::image::Size;
 use marraztu::edit::{items, selection};
-use marraztu::io::{self, Finding, Input, LoadError, Loaded, Progress};
+use marraztu::io::{self, Finding, Input, LoadError, Loaded, Progress, Sources};
 use marraztu::scene::{Command, LoadOptions, MaterialChoice, Model, Object, Scene, Sides, View};
 use rayon::prelude::*;
 
@@ -34,6 +34,11 @@ impl Stage {
         Shot::new(&self.scene, &self.view, &self.settings, size)
     }
 
+    /// The files that the scene was read from, which the result must not replace.
+    pub(crate) fn sources(&self, files: &[PathBuf]) -> Sources {
+        Sources::of(&self.scene).with(files.iter().filter(|file| !is_standard(file)))
+    }
+
     /// Reads the files.
     pub(crate) fn of(files: &[PathBuf], reading: &Reading) -> Result<Self, Failure> {
         let input = input(files)?;
@@ -51,7 +56,7 @@ impl Stage {
         }
         if models.is_empty() && reading.is_given() {
             return Err(usage(
-                "--up, --scale, --flip-winding and --crease say how models are read: name one",
+                "--up, --scale, --flip-winding, --crease and --bump-maps say how models are read: name one",
             ));
         }
         let mut stage = match scenes.first() {

@@ -5,12 +5,11 @@ use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use marraztu::base::image::Picture;
-use marraztu::io::{self, PICTURE_FORMATS};
-use marraztu::scene::Scene;
+use marraztu::io::{self, PICTURE_FORMATS, Sources};
 
 use super::arguments::Render;
 use super::failure::{Failure, usage};
-use super::stage::{Stage, is_scene};
+use super::stage::is_scene;
 use super::values::is_standard;
 
 /// The picture's name if no file gives it one.
@@ -46,21 +45,15 @@ impl Target {
         }
     }
 
-    /// Refuses to replace a file that the picture is made from.
-    pub(super) fn spare_inputs(&self, files: &[PathBuf], stage: &Stage) -> Result<(), Failure> {
-        let Self::File(target) = self else { return Ok(()) };
-        // A file that does not exist was not read.
-        let Ok(place) = target.canonicalize() else { return Ok(()) };
-        let is_target = |input: &Path| input.canonicalize().is_ok_and(|input| input == place);
-        let textures = textures(&stage.scene);
-        match files.iter().map(PathBuf::as_path).chain(textures).find(|input| is_target(input)) {
-            None => Ok(()),
-            Some(input) => Err(Failure::Absent(format!(
-                "{} is read for this picture and would be replaced by it; choose another name \
-                 with --out",
-                input.display()
-            ))),
+    /// Refuses to replace a file that the picture is made from, and a format without an alpha
+    /// channel if the picture needs one.
+    pub(super) fn check(&self, sources: &Sources, transparent: bool) -> Result<(), Failure> {
+        let Self::File(path) = self else { return Ok(()) };
+        sources.spare(path)?;
+        if transparent {
+            io::check_alpha(path)?;
         }
+        Ok(())
     }
 
     /// Writes the picture.
@@ -93,14 +86,6 @@ pub(super) fn default_name(files: &[PathBuf]) -> PathBuf {
     let mut name = stem.unwrap_or(UNNAMED.as_ref()).to_owned();
     name.push(".png");
     PathBuf::from(name)
-}
-
-/// The files of all textures of a scene, once for each object that shows them.
-fn textures(scene: &Scene) -> impl Iterator<Item = &Path> {
-    scene.objects.iter().flat_map(|(_, object)| {
-        let own = object.model.materials.iter().filter_map(|material| material.texture.as_ref());
-        own.chain(&object.texture).map(|texture| texture.source.as_path())
-    })
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use marraztu::edit::turntable::{Turn, turned};
-use marraztu::io::{Animation, AnimationFormat, AnimationWriter, Progress};
+use marraztu::io::{Animation, AnimationFormat, AnimationWriter, Progress, Sources};
 use marraztu::render::{Renderer, plan_frame, without_ground};
 use marraztu::scene::View;
 
@@ -62,13 +62,16 @@ pub(crate) struct Turntable {
 pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
     let Turntable { out, frames, seconds, turn, transparent, picture } = arguments;
     let path = out.clone().unwrap_or_else(|| default_name(&picture.files).with_extension("gif"));
-    AnimationWriter::check(&path)?;
+    AnimationWriter::check(&path, &Sources::default())?;
     let stage = stage(picture)?;
     let size = picture.size;
     let (frames, seconds, transparent) = (*frames, *seconds, *transparent);
     let animation = Animation { size, frames, seconds, transparent };
     let turn = if turn == "camera" { Turn::Camera } else { Turn::Objects };
-    let mut writer = AnimationWriter::begin(&path, animation)?;
+    let mut writer = AnimationWriter::begin(&path, animation, &stage.sources(&picture.files))?;
+    for text in writer.notes() {
+        note(text);
+    }
     let mut renderer = Renderer::default();
     let progress = Progress::new();
     let bar = Bar::of("drawing", &progress);

@@ -4,14 +4,12 @@ use glam::{DMat4, DVec3};
 
 use super::{GesturePhase, Refusal, set_transform, steps};
 use crate::base::math::Axis;
-use crate::scene::{Bounds, Command, ItemId, Object, ObjectId, Scene, View, dvec3};
+use crate::scene::{Bounds, Command, ItemId, Object, ObjectId, Scene, View};
 
 /// The box around an object in the world.
 #[must_use]
 pub fn world_box(object: &Object, time: f64) -> Option<Bounds> {
-    let world_from_object = object.world_from_object(time);
-    let positions = object.model.mesh.positions();
-    Bounds::of(positions.iter().map(|p| world_from_object.transform_point3(dvec3(*p))))
+    Bounds::of(object.placed_vertices(time))
 }
 
 /// The height of the ground: of the highest level plane of the menu of shapes that is shown, else

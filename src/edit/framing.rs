@@ -14,9 +14,7 @@ use glam::{DMat3, DVec3};
 
 use super::{GesturePhase, Refusal, set_transform};
 use crate::base::math;
-use crate::scene::{
-    CameraMode, Command, Lens, Object, ObjectId, Observer, Pose, Scene, View, dvec3,
-};
+use crate::scene::{CameraMode, Command, Lens, Object, ObjectId, Observer, Pose, Scene, View};
 
 /// The bounding sphere to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -193,8 +191,7 @@ fn framed(
 
 /// The sphere about the mean of an object's vertices, through the one farthest from it.
 fn about_the_mean(object: &Object, time: f64) -> Sphere {
-    let (m, centre) = (object.world_from_object(time), object.centre(time));
-    let positions = object.model.mesh.positions().iter();
-    let squares = positions.map(|p| m.transform_point3(dvec3(*p)).distance_squared(centre));
+    let centre = object.centre(time);
+    let squares = object.placed_vertices(time).map(|p| p.distance_squared(centre));
     Sphere { centre, radius: squares.fold(0.0, f64::max).sqrt() }
 }

@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3};
 use super::items::insert_object;
 use super::steps::{extent, rounded};
 use crate::scene::{
-    Command, MaterialChoice, Object, PresetId, Scene, Shape, Sides, Tracked, View, dvec3,
+    Bounds, Command, MaterialChoice, Object, PresetId, Scene, Shape, Sides, Tracked, View,
 };
 
 /// The size of a shape in a scene without objects, whose camera is made for ships of this size.
@@ -39,15 +39,9 @@ pub fn insert(scene: &Scene, view: &View, shape: Shape) -> Command {
 
 /// The middle of the box around all objects, at the height of its floor.
 fn ground(scene: &Scene, time: f64) -> DVec3 {
-    let vertices = scene.objects.iter().flat_map(|(_, object)| {
-        let m = object.world_from_object(time);
-        object.model.mesh.positions().iter().map(move |p| m.transform_point3(dvec3(*p)))
-    });
-    let around = vertices.fold(None, |around: Option<(DVec3, DVec3)>, p| {
-        Some(around.map_or((p, p), |(min, max)| (min.min(p), max.max(p))))
-    });
-    around.map_or(DVec3::ZERO, |(min, max)| {
-        let middle = (min + max) * 0.5;
-        DVec3::new(middle.x, min.y, middle.z)
+    let vertices = scene.objects.iter().flat_map(|(_, object)| object.placed_vertices(time));
+    Bounds::of(vertices).map_or(DVec3::ZERO, |bounds| {
+        let middle = bounds.centre();
+        DVec3::new(middle.x, bounds.min.y, middle.z)
     })
 }

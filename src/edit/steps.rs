@@ -26,7 +26,8 @@ pub fn length(scene: &Scene, view: &View) -> f64 {
 #[must_use]
 pub fn extent(scene: &Scene) -> f64 {
     let cube = |object: &Object| {
-        let middle = object.model.mesh.bounds()?.centre();
+        let mesh = &object.model.mesh;
+        let middle = mesh.bounds()?.centre() + mesh.offset();
         let half = DVec3::splat(object.largest_extent() / 2.0);
         let centre = object.placement.now().transform_point3(middle);
         Some((centre - half, centre + half))

@@ -101,7 +101,15 @@ fn describe_mesh(mesh: &Mesh, text: &mut Text) {
         Some(bounds) => {
             let place =
                 |p: glam::DVec3| format!("({}, {}, {})", short(p.x), short(p.y), short(p.z));
-            text.line("box", &format!("{} to {}", place(bounds.min), place(bounds.max)));
+            let offset = mesh.offset();
+            let [min, max] = [bounds.min, bounds.max].map(|p| place(p + offset));
+            text.line("box", &format!("{min} to {max}"));
+            if offset != glam::DVec3::ZERO {
+                text.line(
+                    "offset",
+                    &format!("{}, which positions are stored relative to", place(offset)),
+                );
+            }
             let size = bounds.extent();
             let size = [size.x, size.y, size.z].map(short).join(" x ");
             text.line("size", &size);

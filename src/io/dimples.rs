@@ -101,6 +101,7 @@ pub(super) fn model() -> Shared<Model> {
     Shared::new(Model {
         name: NAME.to_owned(),
         source: None,
+        companions: Vec::new(),
         options: LoadOptions::default(),
         mesh: Mesh::new(source()).expect("the coordinates are finite"),
         materials: vec![FileMaterial {

@@ -29,6 +29,27 @@ kinds! {
     VertexNotFinite:
         "a vertex is infinite or NaN and is skipped",
         "# vertices are infinite or NaN and are skipped";
+    /// A vertex whose numbers cannot be read.
+    VertexUnreadable:
+        "a vertex cannot be read (@) and is skipped",
+        "# vertices cannot be read (the first: @) and are skipped";
+    /// A vertex that no face uses.
+    VertexUnused:
+        "a vertex is not used by any face: it does not count for the size and the centre",
+        "# vertices are not used by any face: they do not count for the size and the centre";
+    /// A number in the spelling of another language.
+    NumberOdd:
+        "the number \"@\" is written in an unusual way and is read nevertheless",
+        "# statements have numbers that are written in an unusual way (the first: \"@\") and are read \
+         nevertheless";
+    /// A line that ends in a backslash before a statement.
+    NotContinued:
+        "a statement \"@\" ends in a backslash, but the next line is a statement of its own",
+        "# statements \"@\" end in a backslash, but the next lines are statements of their own";
+    /// Control characters in a line.
+    ControlCharacter:
+        "a line has control characters, which are read as blanks",
+        "# lines have control characters, which are read as blanks";
     /// A face that refers to such a vertex.
     FaceOnLostVertex:
         "a face refers to a skipped vertex and is skipped too",
@@ -79,6 +100,14 @@ kinds! {
     NormalNotFinite:
         "a normal is infinite or NaN and is ignored",
         "# normals are infinite or NaN and are ignored";
+    /// A texture coordinate that cannot be read.
+    UvUnreadable:
+        "a texture coordinate cannot be read and is ignored",
+        "# texture coordinates cannot be read and are ignored";
+    /// A normal that cannot be read.
+    NormalUnreadable:
+        "a normal cannot be read and is ignored",
+        "# normals cannot be read and are ignored";
     /// Only some faces have texture coordinates.
     UvMixed:
         "a face has no texture coordinates, while others have",
@@ -103,6 +132,14 @@ kinds! {
     ColorBytes:
         "vertex colours exceed 1 and are read as 0 to 255",
         "vertex colours exceed 1 and are read as 0 to 255";
+    /// Colours above 1.
+    ColorBright:
+        "vertex colours exceed 1 and are clamped",
+        "vertex colours exceed 1 and are clamped";
+    /// The colours of vertices that ZBrush writes.
+    ColorComments:
+        "a comment #MRGB (vertex colours of ZBrush) is ignored",
+        "# comments #MRGB (vertex colours of ZBrush) are ignored";
     /// A face that refers to a vertex twice.
     FaceRepeats: "a face refers to a vertex twice", "# faces refer to a vertex twice";
     /// A face without area.
@@ -114,12 +151,44 @@ kinds! {
         "a polygon of @ corners crosses itself; its triangles may lie outside of it",
         "# polygons (the first of @ corners) cross themselves; their triangles may lie outside of \
          them";
+    /// Closed bodies that are inside out, all of them.
+    InsideOut:
+        "the closed body is inside out; --flip-winding turns it",
+        "all # closed bodies are inside out; --flip-winding turns them";
+    /// Closed bodies that are inside out, while others are not.
+    InsideOutPartly:
+        "a closed body is inside out, while others are not",
+        "# closed bodies are inside out, while others are not";
+    /// Normals of the file against the winding of their face.
+    NormalsAgainst:
+        "the normals of a face point against its winding; --no-file-normals ignores them",
+        "the normals of # faces point against their winding; --no-file-normals ignores them";
     /// No face at all.
     NoFaces:
         "the file has vertices but no faces: it draws nothing",
         "the file has vertices but no faces: it draws nothing";
     /// An MTL file that is not there.
     MtlMissing: "the material file \"@\" was not found", "the material file \"@\" was not found";
+    /// An MTL file that is not there, while one with the model's name is.
+    MtlRenamed:
+        "the material file \"@\" was not found; the one with the model's name is used",
+        "the material file \"@\" was not found; the one with the model's name is used";
+    /// Materials are named, but no MTL file is; one has the model's name.
+    MtlOfModel:
+        "the file names materials but no material file; \"@\" is used",
+        "the file names materials but no material file; \"@\" is used";
+    /// An MTL file with the model's name that nothing asks for.
+    MtlUnnamed:
+        "the file names no materials; the material file \"@\" is not used",
+        "the file names no materials; the material file \"@\" is not used";
+    /// A picture with the model's name that nothing asks for.
+    PictureUnnamed:
+        "the file names no material file; the picture \"@\" is not used",
+        "the file names no material file; the picture \"@\" is not used";
+    /// Materials, but no `usemtl`.
+    MaterialsUnused:
+        "no face names a material: the one in the material file is not used",
+        "no face names a material: the # in the material files are not used";
     /// More MTL files than are read.
     MtlMany:
         "a statement \"mtllib\" is ignored: 1000 different ones are read at most",
@@ -156,8 +225,26 @@ kinds! {
         "# materials: Ks is missing or switched off by illum, and is taken as 0";
     /// Ns := 1.
     MendedExponent:
-        "material \"@\": Ns is missing or below 1, and is taken as 1",
-        "# materials: Ns is missing or below 1, and is taken as 1";
+        "material \"@\": Ns is below 1 and is taken as 1",
+        "# materials: Ns is below 1 and is taken as 1";
+    /// No highlight.
+    MendedMatt:
+        "material \"@\": Ns is missing or 0: the surface is matt, without the highlight of Ks",
+        "# materials: Ns is missing or 0: the surfaces are matt, without the highlights of Ks";
+    /// Colours from 0 to 255.
+    MendedBytes:
+        "the colours of materials are whole numbers above 16 and are read as 0 to 255",
+        "the colours of materials are whole numbers above 16 and are read as 0 to 255";
+    /// Kd 0 with a texture.
+    DiffuseBlack:
+        "material \"@\": Kd 0 makes its texture black",
+        "# materials: Kd 0 makes their textures black";
+    /// A bump map with a picture of normals.
+    BumpIsNormals:
+        "the bump map \"@\" shows normals and is read as a normal map; --bump-maps heights reads it \
+         as heights",
+        "the bump map \"@\" shows normals and is read as a normal map; --bump-maps heights reads it \
+         as heights";
     /// Ke := 1 with a map.
     MendedEmission:
         "material \"@\": Ke is missing beside map_Ke, and is taken as 1",
@@ -196,6 +283,10 @@ kinds! {
         "the option \"@\" of # maps is ignored";
     /// A texture that is not there.
     TextureMissing: "the texture \"@\" was not found", "the texture \"@\" was not found";
+    /// A texture on faces without texture coordinates.
+    TextureUnmapped:
+        "the texture @ is not shown: its faces have no texture coordinates",
+        "the texture @ is not shown: its faces have no texture coordinates";
     /// More textures than are read.
     TextureMany:
         "a texture is ignored: 10,000 different ones are read at most",
@@ -223,6 +314,8 @@ impl FindingKind {
         matches!(
             self,
             Self::FaceUnreadable
+                | Self::VertexUnreadable
+                | Self::NumberOdd
                 | Self::SmoothingUnreadable
                 | Self::PolygonCrosses
                 | Self::MtlStray
@@ -231,6 +324,8 @@ impl FindingKind {
                 | Self::MendedDiffuse
                 | Self::MendedSpecular
                 | Self::MendedExponent
+                | Self::MendedMatt
+                | Self::DiffuseBlack
                 | Self::MendedRange
                 | Self::MendedEmission
                 | Self::MendedMapped
@@ -247,6 +342,8 @@ impl FindingKind {
         matches!(
             self,
             Self::VertexNotFinite
+                | Self::VertexUnreadable
+                | Self::UvUnreadable
                 | Self::FaceRange
                 | Self::FaceUnreadable
                 | Self::NoFaces
@@ -256,6 +353,7 @@ impl FindingKind {
                 | Self::TextureMissing
                 | Self::TextureUnreadable
                 | Self::TextureCutOff
+                | Self::TextureUnmapped
         )
     }
 

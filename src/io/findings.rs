@@ -110,6 +110,13 @@ impl Findings {
         }
     }
 
+    /// Notes `count` cases without a line. Zero cases are no finding.
+    pub(super) fn note_count(&mut self, kind: FindingKind, count: usize) {
+        if count > 0 {
+            self.add_cases(kind, Cases { count, name: String::new(), line: None });
+        }
+    }
+
     /// Adds the findings of the lines after the first `lines` lines.
     pub(super) fn append(&mut self, following: Self, lines: u32) {
         let placed = |cases: Cases| {

@@ -1,12 +1,17 @@
 //! Finds the file that another file names.
 //!
 //! Names come from other machines: with backslashes, with folders that exist only there, in another
-//! case. A name is therefore first taken as it is, then by its last part beside the file that names
-//! it, then without regard to case.
+//! case, with accents as characters of their own (macOS), with escaped blanks (`my\ wood.png`) or as
+//! a URL (`my%20wood.png`). A name is therefore first taken as it is, then by its last part in the
+//! folder of the file that names it, then without regard to case and accents, then in its other
+//! spellings.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+
+use percent_encoding::percent_decode_str;
+use unicode_normalization::UnicodeNormalization;
 
 /// How many words of a line of names are considered.
 const MOST_WORDS: usize = 1000;
@@ -14,13 +19,21 @@ const MOST_WORDS: usize = 1000;
 /// Looks for files, and caches the content of folders.
 #[derive(Debug, Default)]
 pub(super) struct Locator {
-    /// The names in a folder, by their lower case.
+    /// The names in a folder, by their [`key`].
     listings: BTreeMap<PathBuf, BTreeMap<String, OsString>>,
 }
 
 impl Locator {
     /// The file that `name` refers to, relative to `folder`, if there is one.
     pub(super) fn locate(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
+        self.locate_spelled(folder, name).or_else(|| {
+            let others = spellings(name);
+            others.into_iter().find_map(|name| self.locate_spelled(folder, &name))
+        })
+    }
+
+    /// As [`Self::locate`], without other spellings of the name.
+    fn locate_spelled(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
         let name = plain(name);
         // No system has longer names.
         if name.is_empty() || name.len() > 4096 {
@@ -48,13 +61,13 @@ impl Locator {
                 path.push(part);
                 continue;
             }
-            let name = self.listing(&path).get(&part.to_lowercase())?.clone();
+            let name = self.listing(&path).get(&key(part))?.clone();
             path.push(name);
         }
         path.is_file().then_some(path)
     }
 
-    /// The names in a folder, by their lower case; if two differ only by case, the first.
+    /// The names in a folder, by their [`key`]; if two have the same, the first.
     fn listing(&mut self, folder: &Path) -> &BTreeMap<String, OsString> {
         self.listings.entry(folder.to_owned()).or_insert_with(|| {
             let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -65,7 +78,7 @@ impl Locator {
             // last.
             names.sort();
             names.reverse();
-            names.into_iter().map(|name| (name.to_string_lossy().to_lowercase(), name)).collect()
+            names.into_iter().map(|name| (key(&name.to_string_lossy()), name)).collect()
         })
     }
 
@@ -114,4 +127,60 @@ pub(super) fn plain(name: &str) -> String {
     let lead = if slashes.starts_with('/') { "/" } else { "" };
     let parts: Vec<&str> = slashes.split('/').filter(|part| !part.is_empty()).collect();
     format!("{lead}{}", parts.join("/"))
+}
+
+/// A name in lower case and composed characters (Unicode's NFC), by which names are compared.
+fn key(name: &str) -> String {
+    name.to_lowercase().nfc().collect()
+}
+
+/// Other spellings of a name: without escapes before blanks, and with percent-encoding resolved.
+fn spellings(name: &str) -> Vec<String> {
+    let unescaped = name.replace("\\ ", " ");
+    let decoded = percent_decode_str(name).decode_utf8().map(String::from).unwrap_or_default();
+    let decoded = decoded.strip_prefix("file://").unwrap_or(&decoded).to_owned();
+    let is_other = |other: &String| !other.is_empty() && other != name;
+    [unescaped, decoded].into_iter().filter(is_other).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_found_by_every_spelling_of_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let names = ["my wood.png", "Café.png", "50%.png", "Ça va.mtl"];
+        for name in names {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        let mut locator = Locator::default();
+        for (name, file) in [
+            (r"my\ wood.png", "my wood.png"),
+            ("my%20wood.png", "my wood.png"),
+            ("MY%20Wood.PNG", "my wood.png"),
+            ("file:///home/me/my%20wood.png", "my wood.png"),
+            (r"C:\textures\my wood.png", "my wood.png"),
+            ("Cafe\u{301}.png", "Café.png"),
+            ("caf%C3%A9.png", "Café.png"),
+            ("50%.png", "50%.png"),
+            ("C\u{327}a va.mtl", "Ça va.mtl"),
+        ] {
+            let found = locator.locate(folder.path(), name);
+            assert_eq!(found, Some(folder.path().join(file)), "{name}");
+        }
+        for name in ["my_wood.png", "%zz.png", "", "%2e%2e"] {
+            assert_eq!(locator.locate(folder.path(), name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn escaped_names_in_a_list_are_told_apart() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["my wood.mtl", "b.mtl"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        let found = Locator::default().locate_all(folder.path(), r"my\ wood.mtl b.mtl", ".mtl");
+        assert!(found.len() == 2 && found.iter().all(|(_, path)| path.is_some()), "{found:?}");
+    }
 }

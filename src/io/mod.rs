@@ -24,6 +24,7 @@ mod progress;
 mod read;
 mod replace;
 mod scene_file;
+mod sources;
 mod texture;
 mod window_state;
 
@@ -40,13 +41,16 @@ pub use keeping::{
 };
 pub use lessons::lesson_scene;
 pub use obj::{Loaded, load, parse};
-pub use picture::{PICTURE_FORMATS, PictureFormat, check_picture_target, save_picture};
+pub use picture::{
+    PICTURE_FORMATS, PictureFormat, check_alpha, check_picture_target, save_picture,
+};
 pub use progress::{Cancelled, Progress};
 pub use read::check_file;
 pub use replace::SaveError;
 pub use scene_file::{
     Opened, SCENE_ENDING, SceneFileError, open, open_with, save, save_with_window, to_text,
 };
+pub use sources::Sources;
 pub use texture::{
     load_picture, load_texture, load_texture_with, texture_endings, texture_formats,
 };

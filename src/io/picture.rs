@@ -1,15 +1,17 @@
 //! Saves pictures.
+//!
+//! A PNG or PPM is written in bands of rows, directly into the file: beside a picture of a gigabyte
+//! there is no memory for a copy of it.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Write};
 use std::path::Path;
 
 use image::codecs::jpeg::JpegEncoder;
-use image::codecs::png::PngEncoder;
 use image::codecs::webp::WebPEncoder;
-use image::{ExtendedColorType, ImageEncoder, ImageError};
+use image::{ExtendedColorType, ImageEncoder};
 
-use super::replace::{SaveError, Worth, check_target, replace};
+use super::replace::{SaveError, Worth, check_target, replace_by};
 use crate::base::image::Picture;
 
 /// The quality of a JPEG, from 1 to 100: differences are hardly visible.
@@ -25,19 +27,18 @@ pub struct PictureFormat {
     pub name: &'static str,
     /// How names of such files end, in lower case; the first is the usual one.
     pub endings: &'static [&'static str],
-    encode: fn(&Picture, &mut Vec<u8>) -> Result<(), ImageError>,
+    /// Whether a pixel can be transparent.
+    pub has_alpha: bool,
+    encode: fn(&Picture, &mut dyn Write) -> Result<(), std::io::Error>,
 }
 
 /// The formats that pictures are written in.
 pub static PICTURE_FORMATS: &[PictureFormat] = &[
-    PictureFormat {
-        name: "PNG",
-        endings: &["png"],
-        encode: |picture, to| write(picture, PngEncoder::new(to)),
-    },
+    PictureFormat { name: "PNG", endings: &["png"], has_alpha: true, encode: write_png },
     PictureFormat {
         name: "JPEG",
         endings: &["jpg", "jpeg"],
+        has_alpha: false,
         encode: |picture, to| {
             write_opaque(picture, JpegEncoder::new_with_quality(to, JPEG_QUALITY))
         },
@@ -45,9 +46,13 @@ pub static PICTURE_FORMATS: &[PictureFormat] = &[
     PictureFormat {
         name: "WebP",
         endings: &["webp"],
-        encode: |picture, to| write(picture, WebPEncoder::new_lossless(to)),
+        has_alpha: true,
+        encode: |picture, to| {
+            let picture_to = WebPEncoder::new_lossless(to);
+            write(picture, picture_to)
+        },
     },
-    PictureFormat { name: "PPM", endings: &["ppm"], encode: write_ppm },
+    PictureFormat { name: "PPM", endings: &["ppm"], has_alpha: false, encode: write_ppm },
 ];
 
 impl PictureFormat {
@@ -96,7 +101,26 @@ pub(super) fn either(words: impl Iterator<Item = String>) -> String {
 pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
     let fail = |reason: String| SaveError::new(path, reason);
     let format = PictureFormat::of(path).map_err(fail)?;
-    replace(path, &format.encode(picture).map_err(fail)?, Worth::Product)
+    replace_by(path, Worth::Product, &mut |file| {
+        let mut file = std::io::BufWriter::new(file);
+        (format.encode)(picture, &mut file)?;
+        file.flush()
+    })
+}
+
+/// Checks whether the format of a transparent picture has an alpha channel.
+///
+/// # Errors
+/// If it has none.
+pub fn check_alpha(path: &Path) -> Result<(), SaveError> {
+    let fail = |reason: String| SaveError::new(path, reason);
+    let format = PictureFormat::of(path).map_err(fail)?;
+    if format.has_alpha {
+        return Ok(());
+    }
+    let able = PICTURE_FORMATS.iter().filter(|format| format.has_alpha);
+    let able = either(able.map(|format| format!(".{}", format.endings[0])));
+    Err(fail(format!("{} has no transparent pixels; choose a name in {able}", format.name)))
 }
 
 /// Checks, before anything is drawn, whether a picture could be saved at `path`. An existing file
@@ -119,19 +143,31 @@ pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
     }
 }
 
+/// Rows of a picture that are converted at a time.
+const BAND: usize = 64;
+
+/// Whether a pixel is transparent.
+fn has_alpha(picture: &Picture) -> bool {
+    picture.pixels().iter().any(|pixel| pixel[3] != 255)
+}
+
 /// Writes a picture with an alpha channel only if a pixel needs one.
-fn write(picture: &Picture, encoder: impl ImageEncoder) -> Result<(), ImageError> {
-    if picture.pixels().iter().all(|pixel| pixel[3] == 255) {
+fn write(picture: &Picture, encoder: impl ImageEncoder) -> std::io::Result<()> {
+    if !has_alpha(picture) {
         return write_opaque(picture, encoder);
     }
     let [width, height] = sides(picture);
     let bytes = picture.pixels().as_flattened();
-    encoder.write_image(bytes, width, height, ExtendedColorType::Rgba8)
+    let written = encoder.write_image(bytes, width, height, ExtendedColorType::Rgba8);
+    written.map_err(std::io::Error::other)
 }
 
-fn write_opaque(picture: &Picture, encoder: impl ImageEncoder) -> Result<(), ImageError> {
+fn write_opaque(picture: &Picture, encoder: impl ImageEncoder) -> std::io::Result<()> {
     let [width, height] = sides(picture);
-    encoder.write_image(&opaque_bytes(picture), width, height, ExtendedColorType::Rgb8)
+    let bytes = opaque_bytes(picture.pixels());
+    encoder
+        .write_image(&bytes, width, height, ExtendedColorType::Rgb8)
+        .map_err(std::io::Error::other)
 }
 
 fn sides(picture: &Picture) -> [u32; 2] {
@@ -139,19 +175,38 @@ fn sides(picture: &Picture) -> [u32; 2] {
     [size.width, size.height].map(|side| u32::try_from(side).unwrap_or(u32::MAX))
 }
 
-fn write_ppm(picture: &Picture, to: &mut Vec<u8>) -> Result<(), ImageError> {
-    let size = picture.size();
-    to.extend(format!("P6\n{} {}\n255\n", size.width, size.height).bytes());
-    to.extend(opaque_bytes(picture));
+fn write_png(picture: &Picture, to: &mut dyn Write) -> std::io::Result<()> {
+    let [width, height] = sides(picture);
+    let has_alpha = has_alpha(picture);
+    let mut encoder = png::Encoder::new(to, width, height);
+    encoder.set_color(if has_alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    let mut writer = encoder.write_header()?;
+    let mut stream = writer.stream_writer()?;
+    for band in picture.pixels().chunks(BAND * picture.size().width.max(1)) {
+        match has_alpha {
+            true => stream.write_all(band.as_flattened())?,
+            false => stream.write_all(&opaque_bytes(band))?,
+        }
+    }
+    stream.finish()?;
+    writer.finish()?;
     Ok(())
 }
 
-fn opaque_bytes(picture: &Picture) -> Vec<u8> {
-    let mut bytes = vec![[0; 3]; picture.size().area()];
-    for (bytes, [r, g, b, _]) in bytes.iter_mut().zip(picture.pixels()) {
-        *bytes = [*r, *g, *b];
+fn write_ppm(picture: &Picture, to: &mut dyn Write) -> std::io::Result<()> {
+    let size = picture.size();
+    write!(to, "P6\n{} {}\n255\n", size.width, size.height)?;
+    for band in picture.pixels().chunks(BAND * size.width.max(1)) {
+        to.write_all(&opaque_bytes(band))?;
     }
-    bytes.into_flattened()
+    Ok(())
+}
+
+fn opaque_bytes(pixels: &[[u8; 4]]) -> Vec<u8> {
+    pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect()
 }
 
 #[cfg(test)]

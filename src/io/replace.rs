@@ -62,9 +62,21 @@ pub(super) fn check_target(path: &Path) -> Result<(), SaveError> {
     }
 }
 
-/// The file that is replaced; a link is followed and stays a link.
+/// How many links are followed, as on Linux.
+const MOST_LINKS: usize = 40;
+
+/// The file that is replaced; a link is followed and stays a link, even if its file is missing.
 fn target(path: &Path) -> Result<PathBuf, SaveError> {
-    let target = fs::canonicalize(path).unwrap_or_else(|_new| path.to_owned());
+    let mut target = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = fs::read_link(&target) else { break };
+        // A relative link counts from the folder that it is in.
+        target = folder(&target).join(next);
+    }
+    let target = fs::canonicalize(&target).unwrap_or(target);
+    if target.is_symlink() {
+        return Err(SaveError::new(path, "its links lead in a circle"));
+    }
     if target.is_dir() {
         return Err(SaveError::new(path, "this is a folder, not a file"));
     }
@@ -101,6 +113,18 @@ fn folder_name(target: &Path) -> String {
 
 /// Makes `content` the content of the file at `path`.
 pub(super) fn replace(path: &Path, content: &[u8], worth: Worth) -> Result<(), SaveError> {
+    replace_by(path, worth, &mut |file| file.write_all(content))
+}
+
+/// Writes the content of a file.
+type Content<'a> = dyn FnMut(&mut File) -> std::io::Result<()> + 'a;
+
+/// As [`replace`], with a function that writes the content.
+pub(super) fn replace_by(
+    path: &Path,
+    worth: Worth,
+    content: &mut Content<'_>,
+) -> Result<(), SaveError> {
     let fail = |error: std::io::Error| SaveError::new(path, reason(&error));
     let target = target(path)?;
     check_folder(path, &target)?;
@@ -114,9 +138,14 @@ pub(super) fn replace(path: &Path, content: &[u8], worth: Worth) -> Result<(), S
     written.map_err(fail)
 }
 
-fn write(beside: &Path, target: &Path, content: &[u8], worth: Worth) -> std::io::Result<()> {
+fn write(
+    beside: &Path,
+    target: &Path,
+    content: &mut Content<'_>,
+    worth: Worth,
+) -> std::io::Result<()> {
     let mut file = OpenOptions::new().write(true).create(true).truncate(true).open(beside)?;
-    file.write_all(content)?;
+    content(&mut file)?;
     if let Ok(old) = fs::metadata(target) {
         // The permissions stay as they were, if the file system has any.
         let _ = file.set_permissions(old.permissions());

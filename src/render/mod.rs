@@ -18,11 +18,12 @@
 //! * `shadow`: rays from lit points to lights, and what stands between.
 //! * `shading`: the colours of what is visible, and their bytes in the picture.
 //! * `tile_layers`: what the pixels of a tile show.
-//! * `renderer`, `damage`, `count`, `unseen`, `without_ground`: draw plans, and answer questions
-//!   about what was drawn.
+//! * `renderer`, `damage`, `count`, `unseen`, `exposure`, `without_ground`: draw plans, and answer
+//!   questions about what was drawn.
 
 mod count;
 mod damage;
+mod exposure;
 mod frame;
 pub mod lights;
 pub mod plan;
@@ -40,6 +41,7 @@ mod unseen;
 mod without_ground;
 
 pub use damage::{Change, Damage, DamageCause};
+pub use exposure::fitted_exposure;
 pub use frame::FramePlan;
 pub use plan::{Class, Effect, EffectState, EffectUse, explain_frame, plan_everything, plan_frame};
 pub use renderer::{Cancelled, Hit, Renderer};

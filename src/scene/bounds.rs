@@ -15,14 +15,19 @@ impl Bounds {
     /// The extent of points; `None` if there are none.
     #[must_use]
     pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
-        points.into_iter().fold(None, |bounds: Option<Self>, p| {
-            Some(
-                bounds.map_or(Self { min: p, max: p }, |b| Self {
-                    min: b.min.min(p),
-                    max: b.max.max(p),
-                }),
-            )
-        })
+        points.into_iter().map(Self::at).reduce(|all, p| all.around(&p))
+    }
+
+    /// The box of one point.
+    #[must_use]
+    pub const fn at(point: DVec3) -> Self {
+        Self { min: point, max: point }
+    }
+
+    /// The box around two boxes.
+    #[must_use]
+    pub fn around(&self, other: &Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
     /// The middle of the box.

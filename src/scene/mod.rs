@@ -40,9 +40,10 @@ pub use mesh::edges::Edge;
 pub use mesh::outlines::CornerLists;
 pub use mesh::ray_tree::{RayTree, TREE_BLOCK, TreeBlock, TreeChild, TreeNode, TreeTriangle};
 pub use mesh::{
-    Corner, Mesh, MeshError, MeshSource, NONE, Part, Point, SourceCorner, Triangle, dvec3, newell,
+    ClosedBodies, Corner, Mesh, MeshError, MeshSource, NONE, Part, Point, SourceCorner, Triangle,
+    dvec3, newell, split_positions,
 };
-pub use model::{FileMaterial, LoadOptions, Model, Scale, UpAxis, Winding};
+pub use model::{BumpMaps, FileMaterial, LoadOptions, Model, Scale, UpAxis, Winding};
 pub use object::{Object, PartLook, Sides, Spin, Surface};
 pub use shapes::Shape;
 pub use smoothing::{Crease, Smoothing};

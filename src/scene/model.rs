@@ -1,5 +1,6 @@
 //! A model: the shape, materials and textures of a file, and how the file is read.
 
+use std::ops::Neg;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
@@ -14,6 +15,8 @@ pub struct Model {
     pub name: String,
     /// The file; `None` for the three built-in models.
     pub source: Option<PathBuf>,
+    /// The further files that it was read from: MTL files and textures.
+    pub companions: Vec<PathBuf>,
     /// The options with which it was read.
     pub options: LoadOptions,
     /// Its shape.
@@ -31,6 +34,7 @@ impl Model {
         Self {
             name: self.name.clone(),
             source: self.source.clone(),
+            companions: self.companions.clone(),
             options: LoadOptions { crease, ..self.options },
             mesh: self.mesh.with_crease(crease),
             materials: self.materials.clone(),
@@ -58,6 +62,22 @@ pub struct LoadOptions {
     pub winding: Winding,
     /// The angle up to which its edges are smooth, if it has no smoothing groups.
     pub crease: Crease,
+    /// How its bump maps are read.
+    pub bumps: BumpMaps,
+}
+
+/// How the pictures of `bump` and `map_Bump` are read.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
+pub enum BumpMaps {
+    /// A picture that shows normals in tangent space as normals, others as heights.
+    #[default]
+    Auto,
+    /// As heights.
+    Heights,
+    /// As normals in tangent space.
+    Normals,
 }
 
 /// Which of a file's axes points up. The model is turned by the shortest rotation that brings that
@@ -101,7 +121,7 @@ impl UpAxis {
 
     /// A position or direction of the file, turned so that this axis points up.
     #[must_use]
-    pub fn upright(self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+    pub fn upright<T: Copy + Neg<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match self {
             Self::X => [-y, x, z],
             Self::Y => [x, y, z],

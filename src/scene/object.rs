@@ -146,21 +146,32 @@ impl Object {
         if self.spin.is_on() { placement * DMat4::from_mat3(self.spin.at(time)) } else { placement }
     }
 
+    /// `world_from_mesh` at `time`: it places the positions of the mesh, which are relative to
+    /// [`Mesh::offset`](super::Mesh::offset).
+    #[must_use]
+    pub fn world_from_mesh(&self, time: f64) -> DMat4 {
+        self.world_from_object(time) * self.model.mesh.object_from_mesh()
+    }
+
+    /// The positions of its vertices, placed; without those that no face uses.
+    pub fn placed_vertices(&self, time: f64) -> impl Iterator<Item = DVec3> {
+        let world_from_mesh = self.world_from_mesh(time);
+        self.model.mesh.used_positions().map(move |p| world_from_mesh.transform_point3(p))
+    }
+
     /// The mean of its vertices, placed.
     #[must_use]
     pub fn centre(&self, time: f64) -> DVec3 {
-        self.world_from_object(time).transform_point3(self.model.mesh.mean())
+        self.world_from_mesh(time).transform_point3(self.model.mesh.mean())
     }
 
     /// The middle and the radius of a sphere about the object, placed: about the middle of the
     /// model's box, through the vertex farthest from it. `None` if it has no vertices.
     #[must_use]
     pub fn bounding_sphere(&self, time: f64) -> Option<(DVec3, f64)> {
-        let world_from_object = self.world_from_object(time);
-        let centre = world_from_object.transform_point3(self.model.mesh.bounds()?.centre());
-        let placed = |p: &[f32; 3]| world_from_object.transform_point3(super::dvec3(*p));
-        let squares =
-            self.model.mesh.positions().iter().map(|p| placed(p).distance_squared(centre));
+        let middle = self.model.mesh.bounds()?.centre();
+        let centre = self.world_from_mesh(time).transform_point3(middle);
+        let squares = self.placed_vertices(time).map(|p| p.distance_squared(centre));
         Some((centre, squares.fold(0.0, f64::max).sqrt()))
     }
 

@@ -75,6 +75,7 @@ impl Shape {
             Shared::new(Model {
                 name: self.name().to_owned(),
                 source: None,
+                companions: Vec::new(),
                 options: LoadOptions::default(),
                 mesh: self.mesh(),
                 materials: if self == Self::Ground { ground::materials() } else { Vec::new() },

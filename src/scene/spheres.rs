@@ -55,5 +55,5 @@ fn sphere(object: &Object) -> (DVec3, f64) {
     let radius = bounds.extent().length() * 0.5 * stretch * ROUNDING;
     let still = !object.spin.is_on();
     let radius = if still && radius.is_finite() { radius } else { f64::INFINITY };
-    (placement.transform_point3(bounds.centre()), radius)
+    (placement.transform_point3(bounds.centre() + object.model.mesh.offset()), radius)
 }

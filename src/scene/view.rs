@@ -52,11 +52,23 @@ pub struct View {
     pub wide_lines: bool,
     /// Whether the markers of cameras and bulbs are drawn.
     pub marks: bool,
+    /// How much brighter the lit surfaces are drawn, in stops: each doubles the light. 0 leaves it as
+    /// it is.
+    pub exposure: f64,
     /// Seconds of the scene's clock.
     pub time: f64,
 }
 
 impl View {
+    /// The largest exposure, up and down.
+    pub const MOST_EXPOSURE: f64 = 10.0;
+
+    /// The factor of all light.
+    #[must_use]
+    pub fn light_factor(&self) -> f64 {
+        self.exposure.exp2()
+    }
+
     /// The first view of a scene.
     #[must_use]
     pub const fn new(object: Option<ObjectId>, camera: CameraId, light: Option<LightId>) -> Self {
@@ -82,6 +94,7 @@ impl View {
             normal_length: NormalLength::Units,
             wide_lines: false,
             marks: true,
+            exposure: 0.0,
             time: 0.0,
         }
     }

@@ -40,6 +40,7 @@ pub(crate) fn model_of(name: &str, source: MeshSource) -> Shared<Model> {
     Shared::new(Model {
         name: name.to_owned(),
         source: None,
+        companions: Vec::new(),
         options: LoadOptions::default(),
         mesh: Mesh::new(source).expect("tests make good meshes"),
         materials: Vec::new(),

@@ -24,6 +24,7 @@ pub(crate) fn model() -> Shared<Model> {
     Shared::new(Model {
         name: "plate".to_owned(),
         source: None,
+        companions: Vec::new(),
         options: LoadOptions::default(),
         mesh: Mesh::new(source).unwrap(),
         materials: Vec::new(),

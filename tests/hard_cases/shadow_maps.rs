@@ -149,6 +149,7 @@ fn stencil() -> Shared<Model> {
     Shared::new(Model {
         name: name.clone(),
         source: None,
+        companions: Vec::new(),
         options: LoadOptions::default(),
         mesh: Mesh::new(source).expect("a good mesh"),
         materials: vec![FileMaterial { name, material, opacity, texture, maps, unlit }],

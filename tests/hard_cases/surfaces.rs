@@ -53,6 +53,7 @@ fn sheet(uvs: [[[f32; 2]; 4]; 2], maps: SurfaceMaps, material: Material) -> Shar
     Shared::new(Model {
         name: name.clone(),
         source: None,
+        companions: Vec::new(),
         options: LoadOptions::default(),
         mesh: Mesh::new(source).unwrap(),
         materials: vec![FileMaterial {

@@ -40,6 +40,7 @@ fn model(name: &str, source: MeshSource, materials: Vec<FileMaterial>) -> Shared
     Shared::new(Model {
         name: name.to_owned(),
         source: None,
+        companions: Vec::new(),
         options: LoadOptions::default(),
         mesh: Mesh::new(source).expect("these shapes are meshes"),
         materials,

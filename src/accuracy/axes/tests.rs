@@ -90,6 +90,7 @@ fn a_filter_changes_nothing_without_a_texture_nor_a_highlight_without_ks() {
     let model = Shared::new(Model {
         name: String::new(),
         source: None,
+        companions: Vec::new(),
         options: LoadOptions::default(),
         mesh: Mesh::new(source).unwrap(),
         materials: Vec::new(),

@@ -61,6 +61,8 @@ pub(crate) enum Intent {
     Coarse,
     /// Files are looked at, or no longer.
     Watch,
+    /// The exposure follows the picture.
+    FitExposure,
     /// Other helpers are shown.
     Helpers(Helpers),
     /// An axis and a number are taken from the keyboard.

@@ -56,6 +56,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::RecoverWork => file(FileIntent::Recover),
         Action::ReloadModels => file(FileIntent::Reload),
         Action::ToggleWatch => Ok(Intent::Watch),
+        Action::FitExposure => Ok(Intent::FitExposure),
         Action::Save => file(FileIntent::Save),
         Action::SaveAs => file(FileIntent::SaveAs),
         Action::SavePicture => file(FileIntent::SavePicture),

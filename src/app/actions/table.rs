@@ -353,6 +353,9 @@ actions! {
     SoloLight Light ONCE []
         "Only this light" "Leaves the selected light alone on; once more, the others are back."
         "solo isolate single mute others";
+    FitExposure Light ONCE []
+        "Fit exposure" "Makes all light as bright as it can be without burning out surfaces."
+        "exposure brightness overexposed burnt white tone mapping stops levels auto";
     ToggleAllShadows Light ONCE []
         "Shadows" "Switches the shadows of all lights on or off."
         "shadow cast ray trace occlusion shade";

@@ -12,7 +12,7 @@ use crate::base::color::Color;
 use crate::edit::items;
 use crate::io::{Finding, Loaded};
 use crate::scene::{
-    Crease, LoadOptions, Material, MaterialChoice, PresetId, Scale, UpAxis, Winding,
+    BumpMaps, Crease, LoadOptions, Material, MaterialChoice, PresetId, Scale, UpAxis, Winding,
 };
 
 /// The choice of a material.
@@ -172,6 +172,16 @@ impl MaterialDialog {
                     .on_hover_text(hint)
                     .on_disabled_hover_text(idle.as_deref().unwrap_or(hint));
                 options.crease = Crease::new(self.crease).unwrap_or_default();
+            });
+            ui.horizontal(|ui| {
+                ui.label("Bump maps");
+                for (bumps, label) in [
+                    (BumpMaps::Auto, "As they look"),
+                    (BumpMaps::Heights, "Heights"),
+                    (BumpMaps::Normals, "Normals"),
+                ] {
+                    ui.selectable_value(&mut options.bumps, bumps, label);
+                }
             });
             ui.horizontal(|ui| {
                 let texture = self.choices.texture.as_deref().map(file_name);

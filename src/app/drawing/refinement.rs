@@ -6,16 +6,8 @@
 
 use super::reduction::Shrink;
 use super::snapshot::Snapshot;
-use crate::accuracy::{Coverage, Samples, Settings};
+use crate::accuracy::Samples;
 use crate::base::image::Picture;
-
-/// Whether a window refines pictures of these settings.
-pub(crate) const fn can_refine(settings: &Settings) -> bool {
-    match settings.coverage {
-        Coverage::Exact | Coverage::F32Edges => true,
-        Coverage::ScanLines | Coverage::Points => false,
-    }
-}
 
 /// The next number of samples per pixel, if the picture is refined to `refined`.
 pub(crate) fn next_samples(wanted: &Snapshot, refined: Option<Samples>) -> Option<Samples> {

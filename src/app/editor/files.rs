@@ -300,7 +300,8 @@ impl App {
             self.refuse("no picture has been drawn yet".to_owned());
             return;
         };
-        match io::save_picture(&path, &picture) {
+        let sources = self.state.sources();
+        match sources.spare(&path).and_then(|()| io::save_picture(&path, &picture)) {
             Ok(()) => self.state.tell(Some(format!("Saved {}", path.display()))),
             Err(error) => self.dialogs.tell_fault(format!("{error}.")),
         }

@@ -15,7 +15,7 @@ use crate::app::state::{Notice, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
 use crate::edit::turntable::turned;
-use crate::io::{self, Animation, AnimationWriter, Progress};
+use crate::io::{self, Animation, AnimationWriter, Progress, Sources};
 use crate::render::{Renderer, plan_frame, without_ground};
 use crate::scene::View;
 
@@ -84,6 +84,14 @@ impl App {
     /// Begins to make the picture or the turntable whose options were chosen.
     pub(crate) fn make_picture(&mut self, ctx: &Context, path: PathBuf) {
         let Some(choices) = self.making.choices.take() else { return };
+        let sources = self.state.sources();
+        let may_save = sources.spare(&path).and_then(|()| match choices.purpose {
+            Purpose::Picture if choices.transparent => io::check_alpha(&path),
+            _ => Ok(()),
+        });
+        if let Err(error) = may_save {
+            return self.dialogs.tell_fault(format!("{error}."));
+        }
         if choices.overlays {
             let image = Arc::default();
             self.making.screenshot = Some(Screenshot { path, asked: false, image });
@@ -96,7 +104,7 @@ impl App {
         let label = format!("Drawing {}", file_name(&path));
         self.make(ctx, label, move |progress| match choices.purpose {
             Purpose::Picture => picture(&path, &shot, choices.transparent, progress),
-            Purpose::Turntable => turntable(&path, &shot, &choices, progress),
+            Purpose::Turntable => turntable(&path, &shot, &choices, &sources, progress),
         });
     }
 
@@ -105,7 +113,8 @@ impl App {
         let State { scene, view, .. } = &self.state;
         let (scene, view) = (scene.clone(), view.clone());
         let label = format!("Exporting {}", file_name(&path));
-        self.make(ctx, label, move |_| match io::export(&path, &scene, &view) {
+        let sources = self.state.sources();
+        self.make(ctx, label, move |_| match io::export(&path, &scene, &view, &sources) {
             Ok(exported) => Made::Done(path, exported.notes),
             Err(error) => Made::Failed(error.to_string()),
         });
@@ -182,7 +191,10 @@ impl App {
     }
 
     fn save_these(&mut self, path: &Path, image: &ColorImage) {
-        let saved = images::picture(image).map(|it| io::save_picture(path, &it));
+        let saved = images::picture(image).map(|it| {
+            self.state.sources().spare(path)?;
+            io::save_picture(path, &it)
+        });
         match saved {
             Some(Ok(())) => self.state.tell(Some(format!("Saved {}", path.display()))),
             Some(Err(error)) => self.dialogs.tell_fault(format!("{error}.")),
@@ -222,25 +234,33 @@ fn picture(path: &Path, shot: &Shot, transparent: bool, progress: &Progress) -> 
 }
 
 /// Draws a turn into a file.
-fn turntable(path: &Path, shot: &Shot, choices: &PictureChoices, progress: &Progress) -> Made {
-    match turn_into(path, shot, choices, progress) {
-        Ok(true) => Made::Done(path.to_owned(), Vec::new()),
-        Ok(false) => Made::Cancelled,
+fn turntable(
+    path: &Path,
+    shot: &Shot,
+    choices: &PictureChoices,
+    sources: &Sources,
+    progress: &Progress,
+) -> Made {
+    match turn_into(path, shot, choices, sources, progress) {
+        Ok(Some(notes)) => Made::Done(path.to_owned(), notes),
+        Ok(None) => Made::Cancelled,
         Err(why) => Made::Failed(why),
     }
 }
 
-/// As [`turntable`]; false if it was cancelled.
+/// As [`turntable`]; returns the notes about the file, or `None` if it was cancelled.
 fn turn_into(
     path: &Path,
     shot: &Shot,
     choices: &PictureChoices,
+    sources: &Sources,
     progress: &Progress,
-) -> Result<bool, String> {
+) -> Result<Option<Vec<String>>, String> {
     let PictureChoices { frames, seconds, transparent, turn, .. } = *choices;
     let fail = |error: &dyn std::fmt::Display| error.to_string();
     let animation = Animation { size: shot.size, frames, seconds, transparent };
-    let mut writer = AnimationWriter::begin(path, animation).map_err(|it| fail(&it))?;
+    let mut writer = AnimationWriter::begin(path, animation, sources).map_err(|it| fail(&it))?;
+    let notes = writer.notes().to_vec();
     let mut renderer = Renderer::default();
     for i in 0..frames {
         let part = f64::from(i) / f64::from(frames);
@@ -253,14 +273,14 @@ fn turn_into(
         } else {
             let wanted = || !progress.is_cancelled();
             if renderer.redraw(&plan_frame(&shot), &wanted).is_err() {
-                return Ok(false);
+                return Ok(None);
             }
             writer.push(renderer.picture()).map_err(|it| fail(&it))?;
         }
         if progress.reached(i as usize + 1, frames as usize).is_err() {
-            return Ok(false);
+            return Ok(None);
         }
     }
     writer.finish().map_err(|it| fail(&it))?;
-    Ok(true)
+    Ok(Some(notes))
 }

@@ -5,6 +5,7 @@
 
 mod comparing;
 mod explaining;
+mod exposing;
 mod files;
 mod first_models;
 mod keeping;

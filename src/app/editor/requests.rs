@@ -176,6 +176,7 @@ impl App {
             Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),
             Ok(Intent::Overlays) => self.state.overlays ^= true,
             Ok(Intent::Watch) => self.state.watches ^= true,
+            Ok(Intent::FitExposure) => self.fit_exposure(),
             Ok(Intent::Helpers(helpers)) => self.state.helpers = helpers,
             Ok(Intent::Gizmo) => self.state.gizmo ^= true,
             Ok(Intent::Coarse) => self.state.coarse_while_moving ^= true,
@@ -252,7 +253,7 @@ impl App {
     }
 
     /// Changes the view.
-    fn show_view(&mut self, view: View) {
+    pub(crate) fn show_view(&mut self, view: View) {
         self.state.message = None;
         self.state.view = view;
         selection::settle(&self.state.scene, &mut self.state.view);

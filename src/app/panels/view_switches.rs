@@ -3,15 +3,16 @@
 use egui::{Id, ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
 use crate::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Samples};
-use crate::app::actions::{Action, Group, Request, change};
+use crate::app::actions::{Action, Group, Request, change, change_view};
 use crate::app::input::buttons::{action_choice, action_switch};
 use crate::app::state::{DrawingChoices, State};
 use crate::app::theme;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{self, Choice, choices, choices_in_rows, row, section};
+use crate::app::widgets::number::Number;
 use crate::app::widgets::regions;
 use crate::scene::{
-    CameraMode, Command, Frame, Normals, Observer, Projection, Subject, Transformation,
+    CameraMode, Command, Frame, Normals, Observer, Projection, Subject, Transformation, View,
 };
 
 /// Shows the panel; its requests are added to `requests`.
@@ -47,6 +48,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         });
         section(ui, "Light", true, |ui| {
             slots_ui(ui, state, requests);
+            exposure_ui(ui, state, requests);
             action_switch(ui, state, requests, Action::ToggleAllShadows);
             for axis in AXES.iter().filter(|axis| is_of_light(axis)) {
                 axis_ui(ui, axis, state, requests);
@@ -152,6 +154,24 @@ fn background_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         if let Some((color, gesture)) = changed {
             change(requests, "Set the background", gesture, Ok(Command::Background(color)));
         }
+    });
+}
+
+/// The width of the field of the exposure, in points.
+const EXPOSURE_WIDTH: f32 = 84.0;
+
+/// The brightness of all light, with a button that fits it.
+fn exposure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    row(ui, "Exposure", |ui| {
+        let most = View::MOST_EXPOSURE;
+        let field = Number::new("Exposure", "Stops: each doubles all light")
+            .suffix(" stops")
+            .speed(0.02)
+            .range(-most..=most);
+        if let Some((exposure, _)) = field.ui(ui, EXPOSURE_WIDTH, state.view.exposure) {
+            change_view(requests, state, |view| view.exposure = exposure);
+        }
+        requests.extend(Action::FitExposure.button(ui, state).map(Request::from));
     });
 }
 

@@ -13,11 +13,10 @@ use egui::ThemePreference;
 
 use crate::accuracy::{Samples, Settings};
 pub use crate::app::drawing::reduction::{Reduction, Shrink};
-use crate::app::drawing::refinement::can_refine;
 use crate::app::panels::OpenPanels;
 use crate::edit::several::Others;
 use crate::edit::{Gesture, GesturePhase, History, selection};
-use crate::io::{Helpers, WindowState};
+use crate::io::{Helpers, Sources, WindowState};
 use crate::scene::{ItemId, Light, LightId, Scene, View};
 use laboratory::Laboratory;
 pub use last_picture::{ExplainedPixel, Measured, Plan, Statistics};
@@ -113,7 +112,7 @@ pub struct DrawingChoices {
 impl Default for DrawingChoices {
     /// Without refining: the program's window does what the preferences say.
     fn default() -> Self {
-        Self { refines: false, refined: Samples::Sixteen, budget_ms: 33 }
+        Self { refines: false, refined: Settings::REFINED, budget_ms: 33 }
     }
 }
 
@@ -201,7 +200,7 @@ impl State {
         let is_alone = self.lab.compare == laboratory::Compare::Off && self.lab.running.is_none();
         let more = refined.count() > self.settings.samples.count();
         let wanted = refines && is_alone && more && !self.is_animated();
-        (wanted && can_refine(&self.settings)).then_some(refined)
+        (wanted && self.settings.can_refine()).then_some(refined)
     }
 
     /// The items whose outlines are drawn over the picture: first the one that the keys act on.
@@ -249,6 +248,11 @@ impl State {
     /// Shows a message in the status line.
     pub(crate) fn tell(&mut self, text: Option<String>) {
         self.message = text.map(|text| Message { text, tone: Tone::Done });
+    }
+
+    /// The files that the scene was read from.
+    pub(crate) fn sources(&self) -> Sources {
+        Sources::of(&self.scene).with(&self.path)
     }
 
     /// What a scene file keeps of the window.

@@ -238,14 +238,16 @@ impl Viewport {
     }
 
     fn take(&mut self, ctx: &Context, image: Arc<ColorImage>) {
-        let nearest = TextureOptions::NEAREST;
+        // A picture of the viewport's size is shown as it is; a coarser one is interpolated.
+        let fits = self.place.is_none_or(|(_, size)| [size.width, size.height] == image.size);
+        let filter = if fits { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
         match &mut self.texture {
             Some(texture) if texture.size() == image.size => {
-                texture.set_partial([0, 0], Arc::clone(&image), nearest);
+                texture.set_partial([0, 0], Arc::clone(&image), filter);
             }
-            Some(texture) => texture.set(Arc::clone(&image), nearest),
+            Some(texture) => texture.set(Arc::clone(&image), filter),
             None => {
-                self.texture = Some(ctx.load_texture("viewport", Arc::clone(&image), nearest));
+                self.texture = Some(ctx.load_texture("viewport", Arc::clone(&image), filter));
             }
         }
         self.image = Some(image);

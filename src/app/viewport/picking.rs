@@ -8,9 +8,9 @@ use crate::app::state::State;
 use crate::base::image::Size;
 use crate::scene::{Object, ObjectId, dvec3};
 
-/// The transformations from an object to the picture.
+/// The transformations from an object's mesh to the picture.
 struct Onto {
-    view_from_object: DMat4,
+    view_from_mesh: DMat4,
     clip_from_view: DMat4,
     size: Size,
 }
@@ -21,7 +21,7 @@ impl Onto {
         let view_from_world = scene.observer_frame(view).inverse();
         let lens = scene.selected_camera(view).lens;
         Self {
-            view_from_object: view_from_world * object.world_from_object(view.time),
+            view_from_mesh: view_from_world * object.world_from_mesh(view.time),
             clip_from_view: lens.clip_from_view(view.projection, size),
             size,
         }
@@ -35,7 +35,7 @@ impl Onto {
     }
 
     fn clip(&self, position: [f32; 3]) -> DVec4 {
-        let view = self.view_from_object.transform_point3(dvec3(position));
+        let view = self.view_from_mesh.transform_point3(dvec3(position));
         self.clip_from_view * view.extend(1.0)
     }
 }
@@ -59,10 +59,8 @@ pub(crate) fn objects_at(state: &State, [x, y]: [usize; 2], size: Size) -> Vec<O
 pub(crate) fn objects_within(state: &State, onto: &Projection, area: Rect) -> Vec<ObjectId> {
     let shown = state.scene.objects.iter().filter(|(_, object)| object.visible);
     let touches = |object: &Object| {
-        let world_from_object = object.world_from_object(state.view.time);
-        let at = |p: &[f32; 3]| onto.place(world_from_object.transform_point3(dvec3(*p)));
-        let positions = object.model.mesh.positions();
-        positions.iter().any(|p| at(p).is_some_and(|at| area.contains(at)))
+        let mut vertices = object.placed_vertices(state.view.time);
+        vertices.any(|p| onto.place(p).is_some_and(|at| area.contains(at)))
     };
     shown.filter(|(_, object)| touches(object)).map(|(id, _)| id).collect()
 }

@@ -211,6 +211,7 @@ fn ball() -> Shared<Model> {
     Shared::new(Model {
         name: "ball".to_owned(),
         source: None,
+        companions: Vec::new(),
         options: LoadOptions::default(),
         mesh: Mesh::new(source).expect("all places are finite and all indices in range"),
         materials: Vec::new(),

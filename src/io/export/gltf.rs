@@ -18,10 +18,10 @@ use gltf_json::scene::Node;
 use gltf_json::validation::{Checked, USize64};
 use gltf_json::{Index, Root, image, texture};
 
-use super::Content;
 use super::gltf_buffer::{Buffer, Limits, Vertices, columns, single};
 use super::gltf_surface::{linear, surface};
 use super::look::{Looks, polygons};
+use super::{Content, escaped};
 use crate::base::math;
 use crate::scene::{MapKind, NONE, Object, Scene, Texture, View, Wrap, dvec3};
 
@@ -96,17 +96,6 @@ pub(super) fn written(
         Form::Binary => vec![(format!("{stem}.glb"), binary(text, buffer.bytes)?)],
     };
     Ok(Content { files, notes })
-}
-
-/// A name in a URI: everything but letters, digits, `-`, `_` and `.` as percent and digits.
-fn escaped(name: &str) -> String {
-    let byte = |byte: u8| match byte {
-        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' => {
-            char::from(byte).to_string()
-        }
-        _ => format!("%{byte:02X}"),
-    };
-    name.bytes().map(byte).collect()
 }
 
 /// A .glb file: a header of 12 bytes, and the text and the buffer as chunks.

@@ -3,6 +3,7 @@
 //! Everything visible is exported: objects that are hidden, and hidden parts, are left out. What a
 //! format cannot say is told in notes.
 
+mod companion;
 mod gltf;
 mod gltf_buffer;
 mod gltf_lights;
@@ -12,8 +13,14 @@ mod obj;
 
 use std::path::{Path, PathBuf};
 
+use self::companion::check_companion;
 use super::replace::{SaveError, Worth, check_target, replace};
+use super::sources::Sources;
 use crate::scene::{Scene, View};
+
+/// The first line of the texts that are exported. A companion file that begins with it was written
+/// by this program and may be replaced.
+const SIGNATURE: &str = "# exported by Marraztu\n";
 
 /// The endings of the formats, without the dot.
 pub const EXPORT_ENDINGS: [&str; 3] = ["obj", "gltf", "glb"];
@@ -66,13 +73,21 @@ pub fn check_export_target(path: &Path) -> Result<(), SaveError> {
 }
 
 /// Exports the scene in the format of the name's ending, at the time of the view. Further files
-/// (materials, textures, the buffer of .gltf) stand beside it, and their names begin as its does.
+/// (materials, textures, the buffer of .gltf) are written next to it, under names that begin alike.
 ///
 /// # Errors
-/// If a file cannot be written; the main one is written last.
-pub fn export(path: &Path, scene: &Scene, view: &View) -> Result<Exported, SaveError> {
+/// If a file cannot be written, is one of `sources`, or has the name of a companion file but was not
+/// written by an earlier export. Everything is checked before the first file is written, and the
+/// main one is written last.
+pub fn export(
+    path: &Path,
+    scene: &Scene,
+    view: &View,
+    sources: &Sources,
+) -> Result<Exported, SaveError> {
     let format = Format::of(path)?;
     check_target(path)?;
+    sources.spare(path)?;
     let stem = path.file_stem().map(|it| it.to_string_lossy().into_owned()).unwrap_or_default();
     let content = match format {
         Format::Obj => obj::written(&stem, scene, view),
@@ -80,12 +95,30 @@ pub fn export(path: &Path, scene: &Scene, view: &View) -> Result<Exported, SaveE
         Format::Glb => gltf::written(&stem, scene, view, gltf::Form::Binary),
     };
     let Content { files, notes } = content.map_err(|reason| SaveError::new(path, reason))?;
-    let mut exported = Exported { files: Vec::new(), notes };
     let last = files.len().saturating_sub(1);
-    for (i, (name, bytes)) in files.into_iter().enumerate() {
-        let file = if i == last { path.to_owned() } else { path.with_file_name(name) };
+    let named = |(i, (name, bytes)): (usize, (String, Vec<u8>))| {
+        (if i == last { path.to_owned() } else { path.with_file_name(name) }, bytes)
+    };
+    let files: Vec<(PathBuf, Vec<u8>)> = files.into_iter().enumerate().map(named).collect();
+    for (companion, _) in &files[..last] {
+        sources.spare(companion)?;
+        check_companion(companion, path)?;
+    }
+    let mut exported = Exported { files: Vec::new(), notes };
+    for (file, bytes) in files {
         replace(&file, &bytes, Worth::Product)?;
         exported.files.push(file);
     }
     Ok(exported)
+}
+
+/// A name in a URI: everything but letters, digits, `-`, `_` and `.` as percent and digits.
+fn escaped(name: &str) -> String {
+    let byte = |byte: u8| match byte {
+        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' => {
+            char::from(byte).to_string()
+        }
+        _ => format!("%{byte:02X}"),
+    };
+    name.bytes().map(byte).collect()
 }

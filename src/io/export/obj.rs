@@ -9,8 +9,8 @@ use std::fmt::Write;
 
 use glam::{DMat3, DMat4};
 
-use super::Content;
 use super::look::{Look, Looks, polygons};
+use super::{Content, SIGNATURE};
 use crate::base::math::normal_matrix;
 use crate::scene::{Corner, MapKind, NONE, Object, Scene, Texture, View, Wrap, dvec3};
 
@@ -25,7 +25,7 @@ struct Counts {
 /// The files.
 pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content, String> {
     let mut looks = Looks::default();
-    let mut obj = format!("# exported by Marraztu\nmtllib {stem}.mtl\n");
+    let mut obj = format!("{SIGNATURE}mtllib {stem}.mtl\n");
     let mut counts = Counts::default();
     let mut hidden = 0;
     for (_, object) in scene.objects.iter() {
@@ -35,7 +35,7 @@ pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content,
             hidden += 1;
         }
     }
-    let mut mtl = String::from("# exported by Marraztu\n");
+    let mut mtl = String::from(SIGNATURE);
     for number in 0..looks.all.len() {
         let look = looks.all[number].clone();
         material_to(&mut mtl, number, &look);

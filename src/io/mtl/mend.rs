@@ -6,6 +6,7 @@
 use super::Statements;
 use crate::base::Shared;
 use crate::io::findings::{FindingKind, Findings};
+use crate::io::obj::BYTES_ABOVE;
 use crate::scene::{FileMaterial, MapKind, Material, SurfaceMaps, Texture};
 
 /// The largest exponent of a highlight that roughness gives, as files have it at most.
@@ -28,10 +29,13 @@ impl Statements {
             }
             None => {
                 let specular = self.mended_specular(&mut note);
-                (specular, self.mended_exponent(specular, &mut note))
+                self.mended_highlight(specular, &mut note)
             }
         };
         let opacity = self.mended_opacity(&mut note);
+        if texture.is_some() && self.diffuse == Some([0.0; 3]) {
+            note(FindingKind::DiffuseBlack);
+        }
         let emission = self.mended_emission(&mut note);
         if self.illumination.is_some_and(|model| ![0.0, 1.0, 2.0].contains(&model)) {
             note(FindingKind::Illumination);
@@ -102,13 +106,31 @@ impl Statements {
         }
     }
 
-    fn mended_exponent(&self, specular: [f64; 3], note: &mut dyn FnMut(FindingKind)) -> f64 {
-        // Without a highlight, its exponent does not matter.
-        let nonsense = self.exponent.is_some_and(|exponent| exponent < 1.0);
-        if nonsense || (self.exponent.is_none() && specular != [0.0; 3]) {
-            note(FindingKind::MendedExponent);
+    /// The colour and the exponent of the highlight. Without an exponent there is none: Ns 0 would
+    /// be a highlight of half the body, but exporters mean a matt surface.
+    fn mended_highlight(
+        &self,
+        specular: [f64; 3],
+        note: &mut dyn FnMut(FindingKind),
+    ) -> ([f64; 3], f64) {
+        match self.exponent {
+            Some(exponent) if exponent >= 1.0 => (specular, exponent),
+            Some(exponent) if exponent > 0.0 => {
+                note(FindingKind::MendedExponent);
+                (specular, 1.0)
+            }
+            _ if specular == [0.0; 3] => (specular, 1.0),
+            Some(_) | None => {
+                note(FindingKind::MendedMatt);
+                ([0.0; 3], 1.0)
+            }
         }
-        self.exponent.filter(|exponent| *exponent >= 1.0).unwrap_or(1.0)
+    }
+
+    /// The numbers of Ka, Kd and Ks.
+    fn numbers_of_colors(&mut self) -> impl Iterator<Item = &mut f64> {
+        let Self { ambient, diffuse, specular, .. } = self;
+        [ambient, diffuse, specular].into_iter().flatten().flatten()
     }
 
     /// Occlusion, roughness and metalness, if Ks holds them.
@@ -147,4 +169,19 @@ fn clamped(color: [f64; 3], note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
         note(FindingKind::MendedRange);
     }
     within
+}
+
+/// Divides the colours of all materials by 255 if they count from 0 to 255: if all are whole numbers
+/// and one is above 16.
+pub(super) fn scale_bytes(materials: &mut [Statements], findings: &mut Findings) {
+    let (mut whole, mut largest) = (true, 0.0_f64);
+    for x in materials.iter_mut().flat_map(Statements::numbers_of_colors) {
+        whole &= x.fract() == 0.0;
+        largest = largest.max(*x);
+    }
+    if !whole || largest <= BYTES_ABOVE {
+        return;
+    }
+    findings.add(FindingKind::MendedBytes, "", None);
+    materials.iter_mut().flat_map(Statements::numbers_of_colors).for_each(|x| *x /= 255.0);
 }

@@ -6,22 +6,26 @@
 
 mod map;
 mod mend;
+mod normal_map;
 mod statement;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use self::map::{Map, map};
-use super::error::{LoadError, shown};
+use self::mend::scale_bytes;
+use self::normal_map::shows_normals;
+use super::error::{LoadError, short_name, shown};
 use super::findings::{Finding, FindingKind, Findings, joined};
 use super::locate::Locator;
-use super::obj::lines::{Line, Lines, decode, words};
+use super::obj::is_binary;
+use super::obj::lines::{Line, Lines, Oddity, decode, excerpt, words};
 use super::progress::Progress;
 use super::read::{MOST_WORDS, is_utf_16, read, utf_8};
 use super::texture::{Pictures, Read};
 use crate::base::Shared;
 use crate::base::image::Picture;
-use crate::scene::{FileMaterial, MapKind, NONE, SurfaceMap, Texture, Wrap};
+use crate::scene::{BumpMaps, FileMaterial, MapKind, NONE, SurfaceMap, SurfaceMaps, Texture, Wrap};
 
 /// The most texels of all textures of a model: 2 GB.
 const MOST_TEXELS: usize = 1 << 29;
@@ -43,6 +47,8 @@ pub(super) struct Library<'a> {
     /// The files that were read.
     read: BTreeSet<PathBuf>,
     pictures: &'a mut Pictures,
+    /// How bump maps are read.
+    bumps: BumpMaps,
     /// The files whose texels are counted in `texels`.
     counted: BTreeSet<PathBuf>,
     texels: usize,
@@ -85,7 +91,7 @@ struct Statements {
 
 impl<'a> Library<'a> {
     /// A library without materials, whose textures show `pictures`.
-    pub(super) fn new(pictures: &'a mut Pictures) -> Self {
+    pub(super) fn new(pictures: &'a mut Pictures, bumps: BumpMaps) -> Self {
         Self {
             materials: Vec::new(),
             origins: Vec::new(),
@@ -94,6 +100,7 @@ impl<'a> Library<'a> {
             places: BTreeMap::new(),
             read: BTreeSet::new(),
             pictures,
+            bumps,
             counted: BTreeSet::new(),
             texels: 0,
             found: BTreeMap::new(),
@@ -109,12 +116,14 @@ impl<'a> Library<'a> {
         }
         let mut findings = Findings::new(&shown(path));
         match read(path, MOST_WORDS, &Progress::new()) {
-            Ok(bytes) if !is_utf_16(&bytes) && bytes.contains(&0) => {
+            Ok(bytes) if !is_utf_16(&bytes) && is_binary(&bytes) => {
                 findings.add(FindingKind::MtlUnreadable, "this is not text", None);
             }
             Ok(bytes) => {
                 let folders = [path.parent().unwrap_or(Path::new("")), model_folder];
-                for statements in read_statements(&utf_8(bytes), &mut findings) {
+                let mut materials = read_statements(&utf_8(bytes), &mut findings);
+                scale_bytes(&mut materials, &mut findings);
+                for statements in materials {
                     self.add(statements, folders, &mut findings);
                 }
             }
@@ -126,9 +135,20 @@ impl<'a> Library<'a> {
         self.findings.push(findings);
     }
 
+    /// The number of materials.
+    pub(super) fn count(&self) -> usize {
+        self.materials.len()
+    }
+
     /// The index of the material with this name.
     pub(super) fn place(&self, name: &str) -> Option<u32> {
         self.places.get(name).copied()
+    }
+
+    /// The files that were read: MTL files, and the textures that they name.
+    pub(super) fn files(&self) -> Vec<PathBuf> {
+        let textures: BTreeSet<&PathBuf> = self.found.values().flatten().collect();
+        self.read.iter().chain(textures).cloned().collect()
     }
 
     /// The materials, and the findings in their files. `used` are the indices of those that the
@@ -175,7 +195,8 @@ impl<'a> Library<'a> {
             let (texture, gain) = (read(map)?, map.1.gain);
             Some((*kind, SurfaceMap { texture, gain }))
         });
-        let maps = maps.collect();
+        let mut maps: SurfaceMaps = maps.collect();
+        self.settle_bumps(&mut maps, &statements, findings);
         let place = u32::try_from(self.materials.len()).unwrap_or(NONE);
         self.places.insert(statements.name.clone(), place);
         self.origins.push(Origin {
@@ -184,6 +205,32 @@ impl<'a> Library<'a> {
             hidden_by_tr: statements.opacity.is_none() && statements.transparency == Some(1.0),
         });
         self.materials.push(statements.mended((texture, maps), findings));
+    }
+
+    /// Takes a picture of normals that a file names as a bump map for a normal map, as Blender and
+    /// others write it. A map that the file itself calls a normal map is used first.
+    fn settle_bumps(
+        &self,
+        maps: &mut SurfaceMaps,
+        statements: &Statements,
+        findings: &mut Findings,
+    ) {
+        let Some(bump) = maps.get(&MapKind::Bump) else { return };
+        let has_normals = match self.bumps {
+            BumpMaps::Auto => shows_normals(&bump.texture.picture),
+            BumpMaps::Heights => false,
+            BumpMaps::Normals => true,
+        };
+        if !has_normals {
+            return;
+        }
+        if self.bumps == BumpMaps::Auto && !maps.contains_key(&MapKind::Normal) {
+            let line = statements.maps.get(&MapKind::Bump).map(|(line, _)| *line);
+            findings.add(FindingKind::BumpIsNormals, &short_name(&bump.texture.source), line);
+        }
+        if let Some(bump) = maps.remove(&MapKind::Bump) {
+            maps.entry(MapKind::Normal).or_insert(bump);
+        }
     }
 
     fn texture(
@@ -248,6 +295,9 @@ fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Statements> {
     let mut list: Vec<Statements> = Vec::new();
     for line in Lines::new(bytes) {
         let (keyword, _) = line.statement();
+        if line.oddity == Some(Oddity::NotContinued) {
+            findings.add(FindingKind::NotContinued, &excerpt(keyword), Some(line.number));
+        }
         if keyword == b"newmtl" {
             let (name, line) = (line.name(), line.number);
             list.push(Statements { name, line, ..Statements::default() });
@@ -340,7 +390,7 @@ mod tests {
     fn read(text: &str) -> (FileMaterial, Vec<FindingKind>) {
         let mut findings = Findings::new("a.mtl");
         let mut pictures = Pictures::default();
-        let mut library = Library::new(&mut pictures);
+        let mut library = Library::new(&mut pictures, BumpMaps::Auto);
         for statements in read_statements(text.as_bytes(), &mut findings) {
             library.add(statements, [Path::new("nowhere"); 2], &mut findings);
         }
@@ -364,7 +414,7 @@ mod tests {
     fn each_nonsense_is_mended_by_its_rule_and_listed() {
         use FindingKind::*;
         type Row = (&'static str, FindingKind, fn(&FileMaterial) -> bool);
-        let rows: [Row; 10] = [
+        let rows: [Row; 12] = [
             ("Kd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
             ("Ka 1 1 1\nKd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
             ("Ka .5 0 0\nKd .5 0 0\nKs 0 0 0", MendedAmbient, |m| {
@@ -376,7 +426,9 @@ mod tests {
             ("Ka 0 0 0\nKd 1 1 1\nKs 1 1 1\nillum 1\nNs 9", MendedSpecular, |m| {
                 m.material.specular == [0.0; 3]
             }),
-            ("Ka 0 0 0\nKd 1 1 1\nKs 1 1 1\nNs 0", MendedExponent, |m| m.material.exponent == 1.0),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 1 1 1\nNs .5", MendedExponent, |m| m.material.exponent == 1.0),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 1 1 1\nNs 0", MendedMatt, |m| m.material.specular == [0.0; 3]),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 1 1 1", MendedMatt, |m| m.material.specular == [0.0; 3]),
             ("Ka 0 0 0\nKd 1 -1 9\nKs 0 0 0", MendedRange, |m| {
                 m.material.diffuse == [1.0, 0.0, 1.0]
             }),
@@ -392,6 +444,23 @@ mod tests {
             let (material, findings) = read(&format!("newmtl m\n{text}\n"));
             assert_eq!(findings, [kind], "{text}");
             assert!(right(&material), "{text}: {material:?}");
+        }
+    }
+
+    #[test]
+    fn whole_numbers_above_16_are_bytes_and_other_colors_above_1_are_clamped() {
+        let read = |text: &str| {
+            let mut findings = Findings::new("a.mtl");
+            let mut materials = read_statements(text.as_bytes(), &mut findings);
+            scale_bytes(&mut materials, &mut findings);
+            let colors: Vec<_> = materials.iter().filter_map(|it| it.diffuse).collect();
+            (colors, !findings.into_list().is_empty())
+        };
+        let bytes = "newmtl a\nKd 255 51 0\nKs 0 0 0\nnewmtl b\nKd 1 0 0\n";
+        assert_eq!(read(bytes), (vec![[1.0, 0.2, 0.0], [1.0 / 255.0, 0.0, 0.0]], true));
+        for bright in ["newmtl a\nKd 2 1 0\n", "newmtl a\nKd 40.5 0 0\n", "newmtl a\nKd 16 16 16\n"]
+        {
+            assert!(!read(bright).1, "{bright}");
         }
     }
 

@@ -36,13 +36,13 @@ pub(super) fn exponent(rest: &[u8]) -> Option<f64> {
 
 /// `d x`. Also for `Tr x`, which tobj does not know.
 pub(super) fn opacity(rest: &[u8]) -> Option<f64> {
-    let [opacity] = finite([material("d", plain(words(rest).next()?)?)?.dissolve?])?;
+    let [opacity] = finite([material("d", &plain(words(rest).next()?)?)?.dissolve?])?;
     Some(opacity)
 }
 
 /// A number that is an argument of an option.
 pub(super) fn single(word: &[u8]) -> Option<f64> {
-    let [number] = finite([material("Ns", plain(word)?)?.shininess?])?;
+    let [number] = finite([material("Ns", &plain(word)?)?.shininess?])?;
     Some(number)
 }
 
@@ -60,18 +60,18 @@ fn material(keyword: &str, arguments: &str) -> Option<tobj::Material> {
 
 /// The text of three numbers.
 fn color(rest: &[u8]) -> Option<String> {
-    let numbers: Option<Vec<&str>> = words(rest).take(3).map(plain).collect();
-    match numbers?[..] {
-        [r, g, b] => Some([r, g, b].join(" ")),
-        [grey] => Some([grey; 3].join(" ")),
+    let numbers: Option<Vec<String>> = words(rest).take(3).map(plain).collect();
+    match &numbers?[..] {
+        [r, g, b] => Some([r.as_str(), g, b].join(" ")),
+        [grey] => Some([grey.as_str(); 3].join(" ")),
         _ => None,
     }
 }
 
-/// The text of a number without the comment that may follow at once.
-fn plain(word: &[u8]) -> Option<&str> {
-    let (value, text) = number(word).ok()?;
-    std::str::from_utf8(text).ok().filter(|_| !value.is_nan())
+/// The number of a word as tobj reads it: the shortest text of an f64 gives its value back.
+fn plain(word: &[u8]) -> Option<String> {
+    let value = number(word).ok()?.value;
+    (!value.is_nan()).then(|| format!("{value:e}"))
 }
 
 fn finite<const N: usize>(numbers: [f64; N]) -> Option<[f64; N]> {

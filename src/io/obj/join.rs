@@ -40,13 +40,15 @@ const MOST: usize = 100_000_000;
 /// What a file says.
 #[derive(Debug)]
 pub(super) struct Content {
-    pub(super) positions: Vec<[f32; 3]>,
+    pub(super) positions: Vec<[f64; 3]>,
     pub(super) uvs: Vec<[f32; 2]>,
     pub(super) normals: Vec<[f32; 3]>,
     /// Red, green and blue of the vertices, 0 to 1; empty if none has a colour.
     pub(super) colors: Vec<[f32; 3]>,
-    /// How many vertices the file has, those that are not finite among them.
+    /// The number of vertices in the file, usable or not.
     pub(super) vertices: u32,
+    /// The first vertex that cannot be read, with the reason.
+    pub(super) refused: Option<(u32, String)>,
     pub(super) faces: SoundFaces,
     pub(super) parts: Vec<PartNames>,
     /// Whether any statement `s` says which faces are smooth.
@@ -127,8 +129,8 @@ impl<'a, R: Read + Send> Reading<'a, R> {
                 self.piece(&text, None)?
             };
             match piece.stop {
-                // What follows is of no use.
-                Some(Stop::Wrong(..)) => self.chunks().stop(),
+                // The file is refused.
+                Some(Stop::Unread) => self.chunks().stop(),
                 Some(Stop::CountsBack) => {
                     own.push((number, Piece { text: std::mem::take(&mut text), ..piece }));
                     continue;
@@ -212,10 +214,14 @@ fn joined(
     let mut befores = Vec::new();
     let mut lines = 0_u32;
     let mut smoothing = 0;
+    let mut refused = None;
     for piece in &mut pieces {
-        if let Some(Stop::Wrong(line, reason)) = &piece.stop {
-            return Err(LoadError::line(file, lines.saturating_add(*line), reason));
+        if piece.stop == Some(Stop::Unread) {
+            let reason = "the numbers from here on cannot be read";
+            return Err(LoadError::line(file, lines.saturating_add(1), reason));
         }
+        let at_line = |(line, reason)| (lines.saturating_add(line), reason);
+        refused = refused.or(piece.refused.take().map(at_line));
         let named = std::mem::take(&mut piece.libraries).into_iter();
         libraries.extend(named.map(|(line, name)| (lines.saturating_add(line), name)));
         edge_color = edge_color.or(piece.edge_color);
@@ -253,6 +259,7 @@ fn joined(
         normals,
         colors,
         vertices,
+        refused,
         faces,
         parts,
         has_smoothing,
@@ -270,10 +277,10 @@ fn too_many(what: &str, count: usize) -> Option<String> {
 }
 
 /// The rows of all pieces, and how many there were and which are lost.
-fn all_rows<const N: usize>(
+fn all_rows<const N: usize, T: Copy + Send + Sync>(
     pieces: &mut [Piece],
-    rows: impl Fn(&mut Piece) -> &mut Rows<N>,
-) -> (Vec<[f32; N]>, Totals) {
+    rows: impl Fn(&mut Piece) -> &mut Rows<N, T>,
+) -> (Vec<[T; N]>, Totals) {
     let mut totals = Totals { count: 0, lost: Vec::new() };
     let mut kept = Vec::new();
     for piece in pieces {
@@ -285,7 +292,11 @@ fn all_rows<const N: usize>(
     (concatenated(kept), totals)
 }
 
-/// The colours of all vertices: white for those without one, 0 to 1 for those of 0 to 255.
+/// Colours with a larger number than this, all of them whole, count from 0 to 255. Others above 1
+/// are too bright, as from baked light.
+pub(in crate::io) const BYTES_ABOVE: f64 = 16.0;
+
+/// The colours of all vertices, from 0 to 1: white if a vertex has none.
 fn complete_colors(pieces: &mut [Piece], findings: &mut Findings) -> Vec<[f32; 3]> {
     if pieces.iter().all(|piece| piece.vertices.colors.is_empty()) {
         return Vec::new();
@@ -297,12 +308,17 @@ fn complete_colors(pieces: &mut [Piece], findings: &mut Findings) -> Vec<[f32; 3
         colors.append(&mut piece.vertices.colors);
         colors.resize(all, NO_COLOR);
     }
-    let largest = colors.iter().flatten().fold(0.0, |a: f32, b| a.max(*b));
-    // A rounding error above 1 makes no byte of it.
-    let unit = if largest > 1.01 { 255.0 } else { 1.0 };
-    if unit > 1.0 {
-        findings.add(FindingKind::ColorBytes, "", None);
+    let numbers = || colors.as_flattened().iter().filter(|x| x.is_finite());
+    let are_bytes =
+        numbers().any(|x| f64::from(*x) > BYTES_ABOVE) && numbers().all(|x| x.fract() == 0.0);
+    // A rounding error above 1 is not worth a word.
+    let brighter = numbers().filter(|x| **x > 1.01).count();
+    match (are_bytes, brighter) {
+        (true, _) => findings.add(FindingKind::ColorBytes, "", None),
+        (false, 0) => {}
+        (false, _) => findings.add(FindingKind::ColorBright, "", None),
     }
+    let unit = if are_bytes { 255.0 } else { 1.0 };
     for color in &mut colors {
         if color.iter().all(|x| x.is_finite()) {
             *color = color.map(|x| (x / unit).clamp(0.0, 1.0));

@@ -1,8 +1,9 @@
 //! The lines of an OBJ or MTL file, whichever program wrote it.
 //!
-//! A line ends with LF, CR LF or CR, and goes on with the next if its last character is a back
-//! slash. Bytes that are not UTF-8 are taken as Latin-1; a byte-order mark at the beginning is
-//! skipped.
+//! A line ends with LF, CR LF or CR, and goes on with the next if its last character is a backslash.
+//! A comment does not go on, and neither does a line before one that begins with a keyword: paths
+//! such as `C:\out\` end in a backslash, too. Vertical tabs, form feeds and NUL are blanks. Bytes that
+//! are not UTF-8 are taken as Latin-1; a byte-order mark at the beginning is skipped.
 
 use std::borrow::Cow;
 
@@ -17,6 +18,17 @@ pub(in crate::io) struct Line<'a> {
     text: Cow<'a, [u8]>,
     /// The same, joined by nothing, if it differs: names go on without a blank.
     joined: Option<Vec<u8>>,
+    /// What is odd about its form.
+    pub(in crate::io) oddity: Option<Oddity>,
+}
+
+/// What is odd about the form of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::io) enum Oddity {
+    /// It ends in a backslash, but the next line is a statement.
+    NotContinued,
+    /// It has control characters, which are taken as blanks.
+    Control,
 }
 
 /// Goes through the lines of a file; empty ones are passed over.
@@ -73,8 +85,82 @@ impl<'a> Lines<'a> {
             _ => 1,
         };
         self.at += length + ending;
-        Some(rest[..length].trim_ascii())
+        Some(trimmed(&rest[..length]))
     }
+
+    /// Whether the next line of the file begins with a keyword.
+    fn precedes_statement(&self) -> bool {
+        let rest = &self.bytes[self.at..];
+        let end = memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
+        let (word, arguments) = split_word(trimmed(&rest[..end]));
+        let is_comment = word.starts_with(b"#");
+        is_comment || !arguments.is_empty() && KEYWORDS.contains(&word)
+    }
+}
+
+/// The keywords that a line is not continued with.
+const KEYWORDS: [&[u8]; 32] = [
+    b"v",
+    b"vt",
+    b"vn",
+    b"vp",
+    b"f",
+    b"l",
+    b"p",
+    b"g",
+    b"o",
+    b"s",
+    b"usemtl",
+    b"mtllib",
+    b"newmtl",
+    b"Ka",
+    b"Kd",
+    b"Ks",
+    b"Ke",
+    b"Ns",
+    b"Ni",
+    b"Tr",
+    b"Tf",
+    b"illum",
+    b"map_Ka",
+    b"map_Kd",
+    b"map_Ks",
+    b"map_Ke",
+    b"map_Ns",
+    b"map_d",
+    b"map_Bump",
+    b"map_bump",
+    b"bump",
+    b"norm",
+];
+
+/// A control character that is taken as a blank.
+const fn is_odd_blank(byte: u8) -> bool {
+    matches!(byte, b'\x0B' | b'\x0C' | 0)
+}
+
+/// A line without blanks at its ends.
+fn trimmed(mut line: &[u8]) -> &[u8] {
+    let is_blank = |byte: &u8| byte.is_ascii_whitespace() || is_odd_blank(*byte);
+    while let [first, rest @ ..] = line
+        && is_blank(first)
+    {
+        line = rest;
+    }
+    while let [rest @ .., last] = line
+        && is_blank(last)
+    {
+        line = rest;
+    }
+    line
+}
+
+/// A line with blanks for control characters.
+fn cleaned(line: &[u8]) -> Cow<'_, [u8]> {
+    if !line.iter().copied().any(is_odd_blank) {
+        return Cow::Borrowed(line);
+    }
+    Cow::Owned(line.iter().map(|byte| if is_odd_blank(*byte) { b' ' } else { *byte }).collect())
 }
 
 impl<'a> Iterator for Lines<'a> {
@@ -87,12 +173,26 @@ impl<'a> Iterator for Lines<'a> {
                 continue;
             }
             let number = self.number;
-            let Some(begin) = first.strip_suffix(b"\\") else {
-                return Some(Line { number, text: Cow::Borrowed(first), joined: None });
+            let whole = |first: &'a [u8], oddity: Option<Oddity>| {
+                let text = cleaned(first);
+                let control = matches!(text, Cow::Owned(_)).then_some(Oddity::Control);
+                Some(Line { number, text, joined: None, oddity: oddity.or(control) })
             };
+            let Some(begin) = first.strip_suffix(b"\\") else { return whole(first, None) };
+            if first.starts_with(b"#") {
+                return whole(first, None);
+            }
+            if self.precedes_statement() {
+                return whole(begin, Some(Oddity::NotContinued));
+            }
             let (mut text, mut joined) = (begin.to_vec(), begin.to_vec());
+            let mut oddity = None;
             while let Some(next) = self.physical() {
                 let (part, goes_on) = match next.strip_suffix(b"\\") {
+                    Some(part) if self.precedes_statement() => {
+                        oddity = Some(Oddity::NotContinued);
+                        (part, false)
+                    }
                     Some(part) => (part, true),
                     None => (next, false),
                 };
@@ -103,7 +203,8 @@ impl<'a> Iterator for Lines<'a> {
                     break;
                 }
             }
-            return Some(Line { number, text: Cow::Owned(text), joined: Some(joined) });
+            let text = Cow::Owned(cleaned(&text).into_owned());
+            return Some(Line { number, text, joined: Some(joined), oddity });
         }
     }
 }
@@ -170,28 +271,53 @@ pub(in crate::io) fn excerpt(word: &[u8]) -> String {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::io) struct NoNumber(pub(in crate::io) String);
 
-/// A number of 32 bits, with the part of the word that says it: a comment may follow at once.
+/// A number of a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::io) struct Number {
+    pub(in crate::io) value: f64,
+    /// It is written in a way that the format does not have.
+    pub(in crate::io) is_odd: bool,
+    /// A comment follows at once.
+    pub(in crate::io) ends_line: bool,
+}
+
+/// The number that a word says.
 ///
-/// The spellings of C libraries for infinities and NaN are read as such; the text
-/// is then of no use.
-pub(in crate::io) fn number(word: &[u8]) -> Result<(f32, &[u8]), NoNumber> {
-    let parse = |word: &[u8]| std::str::from_utf8(word).ok()?.parse::<f32>().ok();
+/// The spellings of C libraries for infinities and NaN are read as such. Exponents of Fortran
+/// (`1D0`), decimal commas, the suffix of a C literal and the minus sign of Unicode are read, too,
+/// and said to be odd.
+pub(in crate::io) fn number(word: &[u8]) -> Result<Number, NoNumber> {
+    let parse = |word: &[u8]| std::str::from_utf8(word).ok()?.parse::<f64>().ok();
+    let [plain, odd] =
+        [false, true].map(|is_odd| move |value| Number { value, is_odd, ends_line: false });
     if let Some(value) = parse(word) {
-        return Ok((value, word));
+        return Ok(plain(value));
     }
-    let plain = word.to_ascii_lowercase();
-    if plain.windows(2).any(|two| two == b".#") || plain.windows(4).any(|four| four == b"nan(") {
-        return Ok((f32::NAN, word));
+    let lower = word.to_ascii_lowercase();
+    if lower.windows(2).any(|two| two == b".#") || lower.windows(4).any(|four| four == b"nan(") {
+        return Ok(plain(f64::NAN));
     }
-    let before_comment = word.split(|b| *b == b'#').next().unwrap_or(word);
-    if let Some(value) = parse(before_comment) {
-        return Ok((value, before_comment));
+    if let Some(end) = word.iter().position(|byte| *byte == b'#').filter(|end| *end > 0) {
+        return number(&word[..end]).map(|number| Number { ends_line: true, ..number });
     }
-    let text = excerpt(word);
-    let point = text.replacen(',', ".", 1);
-    Err(NoNumber(if point != text && point.parse::<f32>().is_ok() {
-        format!("\"{text}\" has a decimal comma; write a decimal point")
-    } else {
-        format!("\"{text}\" is not a number")
-    }))
+    if let Some(value) = respelled(&lower).and_then(|word| parse(word.as_bytes())) {
+        return Ok(odd(value));
+    }
+    Err(NoNumber(format!("\"{}\" is not a number", excerpt(word))))
+}
+
+/// A number as Rust spells it, from the spellings of other languages.
+fn respelled(lower: &[u8]) -> Option<String> {
+    let text = std::str::from_utf8(lower).ok()?.replace('\u{2212}', "-");
+    let text = text.trim_end_matches([',', ';']);
+    let text = text.strip_suffix(['f', 'l']).unwrap_or(text);
+    // Words such as "d" or "food" are not numbers, even if a letter is replaced.
+    let starts = text.starts_with(|sign: char| sign.is_ascii_digit() || "+-.,".contains(sign));
+    let commas = text.matches(',').count();
+    let respelled = match commas {
+        0 => text.replacen(['d', 'q'], "e", 1),
+        1 if !text.contains('.') => text.replacen(',', ".", 1),
+        _ => return None,
+    };
+    starts.then_some(respelled)
 }

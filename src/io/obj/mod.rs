@@ -7,8 +7,8 @@
 //! read in order ([`join`]), the faces that can be used are picked ([`sound`]), and a [`Mesh`] is
 //! made of them. A vertex of the mesh is a `v` of the file, used or not.
 //!
-//! A number that cannot be read refuses the file, for the rest would be guesswork. Whatever can be
-//! left out or mended without guessing is, and each such case is a [`Finding`].
+//! Faults that can be left out or mended without guessing are, and each such case is a [`Finding`]: a
+//! vertex that cannot be read loses its faces, not the file.
 //!
 //! The format is that of Wavefront's "Advanced Visualizer", Appendix B1, with the colours of
 //! vertices that MeshLab and others write.
@@ -31,21 +31,21 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-pub(in crate::io) use self::join::MOST_BYTES;
+pub(in crate::io) use self::join::{BYTES_ABOVE, MOST_BYTES};
 
 use self::join::Content;
 use self::parts::PartNames;
 use self::sound::FaceRuns;
-use super::error::{LoadError, shown};
+use super::error::{LoadError, short_name, shown};
 use super::findings::{Finding, FindingKind, Findings, joined};
 use super::mtl::Library;
 use super::packed::{Unpacked, unpacked_name};
 use super::progress::Progress;
 use super::read;
-use super::texture::Pictures;
+use super::texture::{Pictures, texture_endings};
 use crate::scene::{
-    CornerLists, Crease, LoadOptions, Mesh, MeshSource, Model, Part, Smoothing, Winding, dvec3,
-    newell,
+    ClosedBodies, CornerLists, FileMaterial, LoadOptions, Mesh, MeshSource, Model, Part, Scale,
+    Smoothing, Texture, UpAxis, Winding, dvec3, newell, split_positions,
 };
 
 /// Why a file without anything in it is refused.
@@ -90,8 +90,9 @@ pub(super) fn load_with(
         None => content(text, size, &file, &mut findings, &part)?,
     };
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut library = Library::new(pictures);
-    read_libraries(&mut library, &content, folder, &mut findings);
+    let mut library = Library::new(pictures, options.bumps);
+    let missing = read_libraries(&mut library, &content, folder, &mut findings);
+    own_library(&mut library, &content, path, missing, &mut findings);
     let progress = progress.part(0.6, 1.0);
     let mut loaded = model(content, &file, library, options, findings, &progress)?;
     // The path is absolute, so that it stays valid if the current folder changes.
@@ -114,9 +115,11 @@ pub fn parse(
     let mut findings = Findings::new(file);
     let content = content(bytes, bytes.len(), file, &mut findings, &progress.part(0.0, 0.6))?;
     let mut pictures = Pictures::default();
-    let mut library = Library::new(&mut pictures);
+    let mut library = Library::new(&mut pictures, options.bumps);
     if let Some(folder) = folder {
-        read_libraries(&mut library, &content, folder, &mut findings);
+        for (line, name) in read_libraries(&mut library, &content, folder, &mut findings) {
+            findings.add(FindingKind::MtlMissing, &name, Some(line));
+        }
     }
     model(content, file, library, options, findings, &progress.part(0.6, 1.0))
 }
@@ -149,6 +152,10 @@ fn model(
 ) -> Result<Loaded, LoadError> {
     let parts = named_parts(&content.parts, &library, &mut findings);
     let used = parts.iter().filter_map(|part| part.material).collect();
+    if library.count() > 0 && content.parts.iter().all(|part| part.material.is_none()) {
+        findings.note_count(FindingKind::MaterialsUnused, library.count());
+    }
+    let companions = library.files();
     let (materials, of_materials) = library.finish(&used);
     let edge_color = content.edge_color;
     progress.reached(1, 10)?;
@@ -163,11 +170,18 @@ fn model(
         findings.note(FindingKind::FaceNoArea, faces.line(*polygon));
     }
     note_crossings(&mesh, &faces, &mut findings);
+    note_orientation(&mesh, &faces, &mut findings);
+    if !mesh.unused_vertices().is_empty() && mesh.polygon_count() > 0 {
+        let count = mesh.unused_vertices().len();
+        findings.note_count(FindingKind::VertexUnused, count);
+    }
+    note_unmapped(&mesh, &materials, &mut findings);
     progress.reached(1, 1)?;
 
     let name = Path::new(unpacked_name(file).unwrap_or(file)).file_stem().unwrap_or_default();
     let name = name.to_string_lossy().into_owned();
-    let model = Model { name, source: None, options: *options, mesh, materials, edge_color };
+    let options = *options;
+    let model = Model { name, source: None, companions, options, mesh, materials, edge_color };
     let findings = findings.into_list().into_iter().chain(of_materials).collect();
     Ok(Loaded { model, findings: joined(findings) })
 }
@@ -196,9 +210,17 @@ fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
             return Some(format!("this is not an OBJ file but {what}"));
         }
     }
-    bytes[..bytes.len().min(4096)]
-        .contains(&0)
+    is_binary(&bytes[..bytes.len().min(4096)])
         .then(|| "this is not an OBJ file: it is not text".into())
+}
+
+/// Whether bytes are not text. Some programs fill the end of a text with NUL, and a control
+/// character here and there is only a blank.
+pub(in crate::io) fn is_binary(bytes: &[u8]) -> bool {
+    let end = bytes.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
+    let is_control = |byte: &&u8| **byte < b' ' && !byte.is_ascii_whitespace();
+    let controls = bytes[..end].iter().filter(is_control).count();
+    controls * 16 > end
 }
 
 /// Refuses a file if nothing of it would be left.
@@ -213,6 +235,10 @@ fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
     if !content.positions.is_empty() {
         return Ok(());
     }
+    if let Some((line, reason)) = &content.refused {
+        let reason = format!("{reason}; none of the vertices can be used");
+        return Err(LoadError::line(file, *line, reason));
+    }
     Err(LoadError::file(
         file,
         match content.vertices {
@@ -222,13 +248,14 @@ fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
     ))
 }
 
-/// Reads the MTL files that are found in `folder`.
+/// Reads the MTL files that are found in `folder`. Returns those that are missing, with their lines.
 fn read_libraries(
     library: &mut Library<'_>,
     content: &Content,
     folder: &Path,
     findings: &mut Findings,
-) {
+) -> Vec<(u32, String)> {
+    let mut missing = Vec::new();
     let mut seen = BTreeSet::new();
     for (line, names) in &content.libraries {
         // Exporters repeat the statement for every object.
@@ -243,9 +270,49 @@ fn read_libraries(
         for (name, path) in library.locator.locate_all(folder, names, ".mtl") {
             match path {
                 Some(path) => library.read(&path, folder),
-                None => findings.add(FindingKind::MtlMissing, &name, Some(*line)),
+                None => missing.push((*line, name)),
             }
         }
+    }
+    missing
+}
+
+/// Looks for an MTL file or a picture with the model's name.
+///
+/// Files are renamed and lose the MTL file that they name, or never named it. If faces name
+/// materials that no file has, the MTL file with the model's name is read, as Blender does.
+fn own_library(
+    library: &mut Library<'_>,
+    content: &Content,
+    path: &Path,
+    missing: Vec<(u32, String)>,
+    findings: &mut Findings,
+) {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let shown = shown(path);
+    let stem = Path::new(unpacked_name(&shown).unwrap_or(&shown)).file_stem().unwrap_or_default();
+    let stem = stem.to_string_lossy();
+    let mut own = |ending: &str| library.locator.locate(folder, &format!("{stem}.{ending}"));
+    let has_library = !content.libraries.is_empty() && missing.is_empty();
+    let Some(mtl) = (if has_library { None } else { own("mtl") }) else {
+        if content.libraries.is_empty()
+            && let Some(picture) = texture_endings().into_iter().find_map(own)
+        {
+            findings.add(FindingKind::PictureUnnamed, &short_name(&picture), None);
+        }
+        for (line, name) in missing {
+            findings.add(FindingKind::MtlMissing, &name, Some(line));
+        }
+        return;
+    };
+    let names_materials = content.parts.iter().any(|part| part.material.is_some());
+    if missing.is_empty() && !names_materials {
+        return findings.add(FindingKind::MtlUnnamed, &short_name(&mtl), None);
+    }
+    library.read(&mtl, folder);
+    match missing.first() {
+        Some((line, name)) => findings.add(FindingKind::MtlRenamed, name, Some(*line)),
+        None => findings.add(FindingKind::MtlOfModel, &short_name(&mtl), None),
     }
 }
 
@@ -275,9 +342,10 @@ fn source(
     options: &LoadOptions,
 ) -> Option<(MeshSource, CornerLists)> {
     let Content { mut positions, uvs, mut normals, colors, has_smoothing, .. } = content;
-    if (LoadOptions { crease: Crease::default(), ..*options }) != LoadOptions::default() {
+    if placement(options) != placement(&LoadOptions::default()) {
         place(&mut positions, &mut normals, options);
     }
+    let (offset, positions) = split_positions(&positions, &content.faces.corners.positions);
     let (arities, polygon_parts) = (faces.arities(), faces.parts());
     let smoothing = if has_smoothing {
         Smoothing::Groups(faces.smoothing())
@@ -298,6 +366,7 @@ fn source(
     }
     let finite = positions.iter().flatten().all(|x| x.is_finite());
     let source = MeshSource {
+        offset,
         positions,
         colors,
         uvs,
@@ -311,15 +380,18 @@ fn source(
     finite.then_some((source, corners))
 }
 
+/// The options that change positions and normals.
+const fn placement(options: &LoadOptions) -> (UpAxis, Scale, Winding) {
+    (options.up, options.scale, options.winding)
+}
+
 /// Turns and scales the positions and normals of a file as asked for.
-fn place(positions: &mut [[f32; 3]], normals: &mut [[f32; 3]], options: &LoadOptions) {
-    let up = |row| options.up.upright(row);
-    let scale = options.scale.get();
-    #[expect(clippy::cast_possible_truncation, reason = "the caller looks whether it is finite")]
-    let scaled = |x: f32| if scale == 1.0 { x } else { (f64::from(x) * scale) as f32 };
+fn place(positions: &mut [[f64; 3]], normals: &mut [[f32; 3]], options: &LoadOptions) {
+    let LoadOptions { up, scale, .. } = options;
     let turned = options.winding == Winding::Turned;
-    positions.par_iter_mut().for_each(|row| *row = up(*row).map(scaled));
-    normals.par_iter_mut().for_each(|row| *row = up(row.map(|x| if turned { -x } else { x })));
+    positions.par_iter_mut().for_each(|row| *row = up.upright(*row).map(|x| x * scale.get()));
+    let normal = |row: [f32; 3]| up.upright(row.map(|x| if turned { -x } else { x }));
+    normals.par_iter_mut().for_each(|row| *row = normal(*row));
 }
 
 /// Notes polygons whose triangles do not all run the polygon's way: they cross
@@ -333,6 +405,44 @@ fn note_crossings(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
     for polygon in polygons.into_par_iter().filter(crossing).collect::<Vec<_>>() {
         let corners = mesh.corners_of(polygon).len().to_string();
         findings.add(FindingKind::PolygonCrosses, &corners, Some(faces.line(polygon)));
+    }
+}
+
+/// Notes bodies that are inside out, and faces whose normals point against them.
+fn note_orientation(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
+    let ClosedBodies { all, inside_out } = mesh.closed_bodies();
+    let kind = match inside_out == all {
+        true => FindingKind::InsideOut,
+        false => FindingKind::InsideOutPartly,
+    };
+    findings.note_count(kind, inside_out);
+    let against = mesh.polygons_against_normals();
+    if let Some(first) = against.first() {
+        findings.note_all(FindingKind::NormalsAgainst, against.len(), faces.line(*first));
+    }
+}
+
+/// Notes materials with textures whose faces have no texture coordinates.
+fn note_unmapped(mesh: &Mesh, materials: &[FileMaterial], findings: &mut Findings) {
+    let texture = |part: &Part| -> Option<(&FileMaterial, &Texture)> {
+        let material = materials.get(part.material? as usize)?;
+        let map = material.maps.values().map(|map| &map.texture).next();
+        Some((material, material.texture.as_ref().or(map)?))
+    };
+    if !mesh.parts().iter().any(|part| texture(part).is_some()) {
+        return;
+    }
+    let mut seen = vec![[false; 2]; mesh.parts().len()];
+    for (polygon, part) in (0..).zip(mesh.polygon_parts()) {
+        let [is_used, is_mapped] = &mut seen[*part as usize];
+        *is_used = true;
+        *is_mapped = *is_mapped || mesh.has_uvs(polygon);
+    }
+    for (part, seen) in mesh.parts().iter().zip(seen) {
+        if let ([true, false], Some((material, texture))) = (seen, texture(part)) {
+            let name = format!("{} of material \"{}\"", short_name(&texture.source), material.name);
+            findings.add(FindingKind::TextureUnmapped, &name, None);
+        }
     }
 }
 

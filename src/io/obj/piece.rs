@@ -19,9 +19,11 @@ pub(super) struct Piece {
     pub(super) trust: Trust,
     /// How many lines the chunk has, as far as it was read.
     pub(super) lines: u32,
-    pub(super) vertices: Rows<3>,
-    pub(super) uvs: Rows<2>,
-    pub(super) normals: Rows<3>,
+    pub(super) vertices: Rows<3, f64>,
+    pub(super) uvs: Rows<2, f32>,
+    pub(super) normals: Rows<3, f32>,
+    /// The first vertex that cannot be read, with the reason.
+    pub(super) refused: Option<(u32, String)>,
     pub(super) faces: Faces,
     pub(super) parts: Parts,
     /// The smoothing group of the next face: 0 for none, or [`INHERITED`].
@@ -41,24 +43,17 @@ pub(super) struct Piece {
 pub(super) enum Trust {
     /// Those that look like nothing but numbers.
     Plain,
-    /// None: tobj refused such a line, or its rounding is in doubt.
+    /// None: tobj refused such a line.
     Nothing,
 }
 
 /// Why a chunk was not read to its end.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stop {
-    /// A line cannot be taken for what it says it is.
-    Wrong(u32, String),
+    /// tobj refuses the numbers.
+    Unread,
     /// A face counts back, and it is not known from where.
     CountsBack,
-}
-
-impl From<String> for Stop {
-    fn from(reason: String) -> Self {
-        // The line is filled in by the caller, who knows it.
-        Self::Wrong(0, reason)
-    }
 }
 
 impl Piece {
@@ -70,6 +65,7 @@ impl Piece {
             vertices: Rows::new(RowKind::Vertex),
             uvs: Rows::new(RowKind::Uv),
             normals: Rows::new(RowKind::Normal),
+            refused: None,
             faces: Faces::default(),
             parts: Parts::default(),
             smoothing: INHERITED,

@@ -5,9 +5,8 @@
 //! the last one: all rows come back in the order of the file, used or not. tobj reads its text line
 //! by line, and gets the lines directly from the chunk.
 //!
-//! tobj reads numbers in f64 here, so that materials keep their digits. Rounding a coordinate once
-//! more, to f32, gives the f32 that is nearest to its text unless the f64 lies halfway between two
-//! of them. Such a chunk is read again by the tolerant way, which rounds once.
+//! tobj reads numbers in f64. Positions stay in f64 until the offset of the mesh is known; texture
+//! coordinates and normals are rounded to f32.
 
 use std::fmt::Write;
 use std::io::{BufRead, ErrorKind, Read};
@@ -26,21 +25,40 @@ pub(super) enum RowKind {
     Normal,
 }
 
+/// A number as a row keeps it.
+pub(super) trait Number: Copy + Send + Sync + Into<f64> {
+    /// The number nearest to `x`.
+    fn nearest(x: f64) -> Self;
+}
+
+impl Number for f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "the rounding that is meant")]
+    fn nearest(x: f64) -> Self {
+        x as Self
+    }
+}
+
+impl Number for f64 {
+    fn nearest(x: f64) -> Self {
+        x
+    }
+}
+
 /// The statements of one kind in a chunk, each with `N` numbers that count.
 #[derive(Debug)]
-pub(super) struct Rows<const N: usize> {
+pub(super) struct Rows<const N: usize, T> {
     kind: RowKind,
     /// The lines for tobj.
     lines: Vec<RowLine>,
     /// The text of those that do not go to tobj as they stand in the chunk.
     rewritten: String,
     /// The rows that are finite, once tobj has read them.
-    pub(super) kept: Vec<[f32; N]>,
+    pub(super) kept: Vec<[T; N]>,
     /// The colours of vertices; NaN if a vertex has none, and empty if no vertex has one.
     pub(super) colors: Vec<[f32; 3]>,
-    /// How many statements there are, finite or not.
+    /// The number of statements, finite or not.
     pub(super) count: u32,
-    /// The statements that are not finite, ascending.
+    /// The statements that are not finite or cannot be read, ascending.
     pub(super) lost: Vec<u32>,
 }
 
@@ -53,7 +71,7 @@ struct RowLine {
     is_colored: bool,
 }
 
-impl<const N: usize> Rows<N> {
+impl<const N: usize, T: Number> Rows<N, T> {
     pub(super) fn new(kind: RowKind) -> Self {
         Self {
             kind,
@@ -74,10 +92,9 @@ impl<const N: usize> Rows<N> {
     }
 
     /// Takes a row that was read already, if it is finite; says whether it is.
-    pub(super) fn add(&mut self, row: [f32; N], color: Option<[f32; 3]>) -> bool {
-        if !row.iter().all(|x| x.is_finite()) {
-            self.lost.push(self.count);
-            self.count = self.count.saturating_add(1);
+    pub(super) fn add(&mut self, row: [f64; N], color: Option<[f64; 3]>) -> bool {
+        if !row.iter().all(is_finite) {
+            self.lose();
             return false;
         }
         let begin = self.rewritten.len();
@@ -87,11 +104,17 @@ impl<const N: usize> Rows<N> {
             RowKind::Normal => "vn",
         };
         for number in row.iter().chain(color.iter().flatten()) {
-            // An f64 has the very value, and its text gives it back.
-            let _infallible = write!(self.rewritten, " {:e}", f64::from(*number));
+            // The shortest text of an f64 gives its value back.
+            let _infallible = write!(self.rewritten, " {number:e}");
         }
         self.push(begin, self.rewritten.len(), true, color.is_some());
         true
+    }
+
+    /// Counts a row that cannot be used.
+    pub(super) fn lose(&mut self) {
+        self.lost.push(self.count);
+        self.count = self.count.saturating_add(1);
     }
 
     #[inline]
@@ -116,8 +139,7 @@ impl<const N: usize> Rows<N> {
         polygon
     }
 
-    /// Has tobj read the lines; says whether it could, and whether every number is the `f32` that
-    /// is nearest to its text.
+    /// Has tobj read the lines; says whether it could.
     pub(super) fn read(&mut self, chunk: &[u8]) -> bool {
         // Their memory is not needed any longer than this.
         let (lines, rewritten) = (take(&mut self.lines), take(&mut self.rewritten));
@@ -141,19 +163,19 @@ impl<const N: usize> Rows<N> {
         let read = || tobj::load_obj_buf(&mut text, &options, no_library);
         let Ok(Ok((models, _))) = catch_unwind(AssertUnwindSafe(read)) else { return false };
         self.kept.reserve(lines.len());
-        let mut sure = true;
         for tobj::Model { mesh, .. } in &models {
             let numbers = match self.kind {
                 RowKind::Vertex => &mesh.positions,
                 RowKind::Uv => &mesh.texcoords,
                 RowKind::Normal => &mesh.normals,
             };
-            sure &= append(&mut self.kept, numbers) & append(&mut self.colors, &mesh.vertex_color);
+            append(&mut self.kept, numbers);
+            append(&mut self.colors, &mesh.vertex_color);
         }
-        let finite = self.kept.as_flattened().iter().all(|x| x.is_finite());
+        let finite = self.kept.as_flattened().iter().all(|x| is_finite(&(*x).into()));
         // tobj passes over colours that it cannot read.
         let colors = if has_colors { lines.len() } else { 0 };
-        sure && finite && self.kept.len() == lines.len() && self.colors.len() == colors
+        finite && self.kept.len() == lines.len() && self.colors.len() == colors
     }
 }
 
@@ -223,20 +245,14 @@ impl Read for RowText<'_> {
 /// What stands for a vertex without a colour among others.
 pub(super) const NO_COLOR: [f32; 3] = [f32::NAN; 3];
 
-/// Appends rows as `f32`; says whether each number is nearest to its text for certain.
-#[expect(clippy::cast_possible_truncation, reason = "the rounding that is meant")]
-fn append<const N: usize>(rows: &mut Vec<[f32; N]>, numbers: &[f64]) -> bool {
-    let (numbers, _) = numbers.as_chunks::<N>();
-    rows.extend(numbers.iter().map(|row| row.map(|x| x as f32)));
-    !numbers.as_flattened().iter().any(|x| is_halfway(*x))
+/// Whether a number has a finite value as an f32, too: larger ones cannot be drawn.
+fn is_finite(x: &f64) -> bool {
+    f32::nearest(*x).is_finite()
 }
 
-/// Whether a number lies in the middle between two that an `f32` can have.
-#[expect(clippy::cast_possible_truncation, reason = "the rounding that is meant")]
-fn is_halfway(x: f64) -> bool {
-    let nearest = f64::from(x as f32);
-    let across = 2.0 * x - nearest;
-    x != nearest && across == f64::from(across as f32)
+fn append<const N: usize, T: Number>(rows: &mut Vec<[T; N]>, numbers: &[f64]) {
+    let (numbers, _) = numbers.as_chunks::<N>();
+    rows.extend(numbers.iter().map(|row| row.map(T::nearest)));
 }
 
 #[cfg(test)]
@@ -246,7 +262,7 @@ mod tests {
     use super::*;
 
     /// What tobj makes of lines as they stand in a file; `None` if it is not to be relied on.
-    fn read<const N: usize>(kind: RowKind, lines: &[String]) -> Option<Rows<N>> {
+    fn read<const N: usize>(kind: RowKind, lines: &[String]) -> Option<Rows<N, f64>> {
         let mut rows = Rows::new(kind);
         let mut chunk = String::new();
         for line in lines {
@@ -263,11 +279,11 @@ mod tests {
             let lines = |keyword| -> Vec<String> {
                 (0..count).map(|i| format!("{keyword} {i} {} 0.5", i % 2)).collect()
             };
-            let right = |i: usize| [i as f32, (i % 2) as f32, 0.5];
-            let right: Vec<[f32; 3]> = (0..count).map(right).collect();
+            let right = |i: usize| [i as f64, (i % 2) as f64, 0.5];
+            let right: Vec<[f64; 3]> = (0..count).map(right).collect();
             assert_eq!(read(RowKind::Vertex, &lines("v")).unwrap().kept, right);
             assert_eq!(read(RowKind::Normal, &lines("vn")).unwrap().kept, right);
-            let right: Vec<[f32; 2]> = right.iter().map(|[u, v, _]| [*u, *v]).collect();
+            let right: Vec<[f64; 2]> = right.iter().map(|[u, v, _]| [*u, *v]).collect();
             assert_eq!(read(RowKind::Uv, &lines("vt")).unwrap().kept, right);
         }
     }
@@ -285,7 +301,7 @@ mod tests {
             let lines: Vec<String> = (0..begin + 100).map(line).collect();
             let rows = read::<3>(RowKind::Vertex, &lines).unwrap();
             for (i, (position, color)) in rows.kept.iter().zip(&rows.colors).enumerate() {
-                assert_eq!(*position, [i as f32, 0.0, 0.0]);
+                assert_eq!(*position, [i as f64, 0.0, 0.0]);
                 if i < begin || i % 3 == 1 {
                     assert!(color.iter().all(|x| x.is_nan()), "{i}");
                 } else {
@@ -315,35 +331,22 @@ mod tests {
         ) {
             nearest(&text);
         }
-
-        /// Texts that lie as close to the middle between two numbers as their digits allow.
-        #[test]
-        fn middles_between_two_numbers_are_rounded_once(
-            bits in 0..0x7f7f_ffff_u32,
-            digits in 1..17_usize,
-            nudge in -3..4_i64,
-        ) {
-            let [low, high] = [bits, bits + 1].map(|bits| f64::from(f32::from_bits(bits)));
-            let middle = f64::from_bits((0.5 * (low + high)).to_bits().wrapping_add_signed(nudge));
-            nearest(&format!("{middle:.digits$e}"));
-            nearest(&format!("{middle:.digits$}"));
-        }
     }
 
     /// Holds what tobj reads against the standard library.
     fn nearest(text: &str) {
-        let right: f32 = text.parse().unwrap();
+        let right: f64 = text.parse().unwrap();
         match read::<3>(RowKind::Vertex, &[format!("v {text} 0 0")]) {
             Some(rows) => assert_eq!(rows.kept[0][0].to_bits(), right.to_bits(), "{text}"),
-            None => assert!(is_halfway(text.parse().unwrap()) || right.is_infinite(), "{text}"),
+            None => assert!(!is_finite(&right), "{text}"),
         }
     }
 
     #[test]
     fn a_number_that_is_read_already_stays_itself() {
         for bits in [0, 1, 0x8000_0001, 0x007f_ffff, 0x3dcc_cccd, 0x7f7f_ffff, 0x8000_0000] {
-            let mut rows = Rows::<3>::new(RowKind::Vertex);
-            assert!(rows.add([f32::from_bits(bits), 0.0, 1.0], None));
+            let mut rows = Rows::<3, f32>::new(RowKind::Vertex);
+            assert!(rows.add([f64::from(f32::from_bits(bits)), 0.0, 1.0], None));
             assert!(rows.read(b""));
             assert_eq!(rows.kept[0][0].to_bits(), bits);
         }

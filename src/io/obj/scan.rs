@@ -9,7 +9,7 @@
 //! lines are read here, the tolerant way; their numbers reach tobj rewritten.
 
 use super::faces::INHERITED;
-use super::lines::{Line, Lines, excerpt, number, words};
+use super::lines::{Line, Lines, Oddity, excerpt, number, words};
 use super::piece::{Counts, Piece, Stop, Trust};
 use crate::base::color::{Color, byte};
 use crate::io::findings::FindingKind;
@@ -30,7 +30,7 @@ impl Piece {
             piece = Self::new(before, Trust::Nothing);
             piece.scan(chunk, &mut reached)?;
             if !piece.read_rows(chunk) && piece.stop.is_none() {
-                piece.stop = Some(Stop::Wrong(1, "tobj cannot read the numbers from here".into()));
+                piece.stop = Some(Stop::Unread);
             }
         }
         Ok(piece)
@@ -54,10 +54,7 @@ impl Piece {
             }
             let Some(line) = lines.next() else { break };
             if let Err(stop) = self.statement(&line) {
-                self.stop = Some(match stop {
-                    Stop::Wrong(_, reason) => Stop::Wrong(line.number, reason),
-                    Stop::CountsBack => stop,
-                });
+                self.stop = Some(stop);
                 break;
             }
         }
@@ -74,10 +71,17 @@ impl Piece {
 
     fn statement(&mut self, line: &Line<'_>) -> Result<(), Stop> {
         let (keyword, rest) = line.statement();
+        if let Some(oddity) = line.oddity {
+            let (kind, name) = match oddity {
+                Oddity::NotContinued => (FindingKind::NotContinued, excerpt(keyword)),
+                Oddity::Control => (FindingKind::ControlCharacter, String::new()),
+            };
+            self.findings.add(kind, &name, Some(line.number));
+        }
         match keyword {
-            b"v" => self.vertex(rest, line.number)?,
-            b"vt" => self.uv(rest, line.number)?,
-            b"vn" => self.normal(rest, line.number)?,
+            b"v" => self.vertex(rest, line.number),
+            b"vt" => self.uv(rest, line.number),
+            b"vn" => self.normal(rest, line.number),
             b"f" | b"fo" => self.face(rest, line.number)?,
             b"o" => self.parts.rename(|now| {
                 (now.object, now.group) = (Some(line.name()), None);
@@ -99,6 +103,7 @@ impl Piece {
             | b"stech" => {
                 self.findings.note(FindingKind::FreeForm, line.number);
             }
+            b"#MRGB" => self.findings.note(FindingKind::ColorComments, line.number),
             _ if keyword.starts_with(b"#") => self.comment(keyword, rest),
             _ => {
                 self.findings.add(FindingKind::Unknown, &excerpt(keyword), Some(line.number));
@@ -108,11 +113,22 @@ impl Piece {
     }
 
     /// `v x y z`, `v x y z w`, `v x y z r g b` and `v x y z r g b a`.
-    fn vertex(&mut self, rest: &[u8], line: u32) -> Result<(), String> {
-        let Row { values: [x, y, z, more @ ..], count } = row::<7>(rest)?;
-        if count < 3 {
-            return Err(format!("a vertex needs three numbers, but has {count}"));
-        }
+    fn vertex(&mut self, rest: &[u8], line: u32) {
+        let row = row::<7>(rest).and_then(|row| match row.count {
+            count @ ..3 => Err(format!("a vertex needs three numbers, but has {count}")),
+            _ => Ok(row),
+        });
+        let row = match row {
+            Ok(row) => row,
+            Err(reason) => {
+                self.vertices.lose();
+                self.findings.add(FindingKind::VertexUnreadable, &reason, Some(line));
+                self.refused.get_or_insert((line, reason));
+                return;
+            }
+        };
+        self.note_odd(&row, line);
+        let Row { values: [x, y, z, more @ ..], count, .. } = row;
         match count {
             4 if more[0] != 1.0 => self.findings.note(FindingKind::Weight, line),
             5 | 8.. => self.findings.note(FindingKind::ExtraNumbers, line),
@@ -122,33 +138,40 @@ impl Piece {
         if !self.vertices.add([x, y, z], color) {
             self.findings.note(FindingKind::VertexNotFinite, line);
         }
-        Ok(())
     }
 
     /// `vt u`, `vt u v` and `vt u v w`.
-    fn uv(&mut self, rest: &[u8], line: u32) -> Result<(), String> {
-        let Row { values: [u, v], count } = row::<2>(rest)?;
-        match count {
-            0 => return Err("a texture coordinate needs two numbers, but has none".to_owned()),
-            1 => self.findings.note(FindingKind::UvSingle, line),
-            _ => {}
+    fn uv(&mut self, rest: &[u8], line: u32) {
+        let Ok(row @ Row { count: 1.., .. }) = row::<2>(rest) else {
+            self.uvs.lose();
+            return self.findings.note(FindingKind::UvUnreadable, line);
+        };
+        self.note_odd(&row, line);
+        if row.count == 1 {
+            self.findings.note(FindingKind::UvSingle, line);
         }
-        if !self.uvs.add([u, v], None) {
+        if !self.uvs.add(row.values, None) {
             self.findings.note(FindingKind::UvNotFinite, line);
         }
-        Ok(())
     }
 
     /// `vn x y z`.
-    fn normal(&mut self, rest: &[u8], line: u32) -> Result<(), String> {
-        let Row { values, count } = row::<3>(rest)?;
-        if count < 3 {
-            return Err(format!("a normal needs three numbers, but has {count}"));
-        }
-        if !self.normals.add(values, None) {
+    fn normal(&mut self, rest: &[u8], line: u32) {
+        let Ok(row @ Row { count: 3.., .. }) = row::<3>(rest) else {
+            self.normals.lose();
+            return self.findings.note(FindingKind::NormalUnreadable, line);
+        };
+        self.note_odd(&row, line);
+        if !self.normals.add(row.values, None) {
             self.findings.note(FindingKind::NormalNotFinite, line);
         }
-        Ok(())
+    }
+
+    /// Notes a row with a number in the spelling of another language.
+    fn note_odd<const N: usize>(&mut self, row: &Row<'_, N>, line: u32) {
+        if let Some(word) = row.odd {
+            self.findings.add(FindingKind::NumberOdd, &excerpt(word), Some(line));
+        }
     }
 
     /// `s group` and `s off`.
@@ -181,7 +204,7 @@ impl Piece {
     fn edge_color(&mut self, rest: &[u8]) -> bool {
         match row::<3>(rest) {
             Ok(row) if row.count == 3 && row.values.iter().all(|x| x.is_finite()) => {
-                let color = Color(row.values.map(|x| byte(f64::from(x) / 255.0)));
+                let color = Color(row.values.map(|x| byte(x / 255.0)));
                 self.edge_color.get_or_insert(color);
                 true
             }
@@ -190,23 +213,28 @@ impl Piece {
     }
 }
 
-/// The numbers of a statement: at most `N` of them are kept, and 0 stands for missing ones.
-struct Row<const N: usize> {
-    values: [f32; N],
-    /// How many there are.
+/// The numbers of a statement: at most `N` of them are kept, and 0 replaces missing ones.
+#[derive(Clone, Copy)]
+struct Row<'a, const N: usize> {
+    values: [f64; N],
+    /// The number of numbers.
     count: usize,
+    /// The first word that is a number only in the spelling of another language.
+    odd: Option<&'a [u8]>,
 }
 
-fn row<const N: usize>(rest: &[u8]) -> Result<Row<N>, String> {
-    let mut row = Row { values: [0.0; N], count: 0 };
+fn row<const N: usize>(rest: &[u8]) -> Result<Row<'_, N>, String> {
+    let mut row = Row { values: [0.0; N], count: 0, odd: None };
     for word in words(rest) {
-        let (value, text) = number(word).map_err(|fault| fault.0)?;
+        let number = number(word).map_err(|fault| fault.0)?;
         if row.count < N {
-            row.values[row.count] = value;
+            row.values[row.count] = number.value;
+        }
+        if number.is_odd {
+            row.odd = row.odd.or(Some(word));
         }
         row.count += 1;
-        // A comment follows the number at once.
-        if text.len() < word.len() {
+        if number.ends_line {
             break;
         }
     }

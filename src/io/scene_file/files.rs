@@ -12,17 +12,17 @@ use crate::io::findings::Finding;
 use crate::io::obj::load_with;
 use crate::io::progress::Progress;
 use crate::io::texture::Pictures;
-use crate::scene::{Crease, LoadOptions, Model, Scale, Texture, UpAxis, Winding};
+use crate::scene::{BumpMaps, Crease, LoadOptions, Model, Scale, Texture, UpAxis, Winding};
 
 /// The identity of a model in a scene file: its name or path, and how it is read. The crease angle
 /// comes last, so that files that differ only in it are neighbours.
-type ModelKey = (String, Option<(UpAxis, u64, Winding, u64)>);
+type ModelKey = (String, Option<(UpAxis, u64, Winding, BumpMaps, u64)>);
 
 fn key(model: &FileModel) -> ModelKey {
     match model {
         FileModel::Own(name) => (name.clone(), None),
-        FileModel::File { path, up, scale, winding, crease } => {
-            (path.clone(), Some((*up, scale.to_bits(), *winding, crease.to_bits())))
+        FileModel::File { path, up, scale, winding, crease, bumps } => {
+            (path.clone(), Some((*up, scale.to_bits(), *winding, *bumps, crease.to_bits())))
         }
     }
 }
@@ -118,8 +118,8 @@ impl<'a> Files<'a> {
     /// The same file, loaded with another crease angle: it is not read twice.
     fn with_other_crease(&self, model: &FileModel) -> Option<&Shared<Model>> {
         let (path, options) = key(model);
-        let (up, scale, winding, _) = options?;
-        let with = |crease| (path.clone(), Some((up, scale, winding, crease)));
+        let (up, scale, winding, bumps, _) = options?;
+        let with = |crease| (path.clone(), Some((up, scale, winding, bumps, crease)));
         let mut others = self.models.range(with(0)..=with(u64::MAX));
         others.next().map(|(_, loaded)| loaded)
     }
@@ -134,7 +134,7 @@ impl<'a> Files<'a> {
         match model {
             FileModel::Own(own) => crate::io::own_model(own)
                 .ok_or_else(|| fail(format!("there is no built-in model \"{own}\""))),
-            FileModel::File { path, up, scale, winding, crease } => {
+            FileModel::File { path, up, scale, winding, crease, bumps } => {
                 let scale = Scale::new(*scale)
                     .ok_or_else(|| fail(format!("the scale of {path} has to be above 0")))?;
                 let crease = Crease::new(*crease).ok_or_else(|| {
@@ -143,7 +143,8 @@ impl<'a> Files<'a> {
                 if let Some(other) = self.with_other_crease(model) {
                     return Ok(Shared::new(other.with_crease(crease)));
                 }
-                let options = LoadOptions { up: *up, scale, winding: *winding, crease };
+                let options =
+                    LoadOptions { up: *up, scale, winding: *winding, crease, bumps: *bumps };
                 let place = self.place(path);
                 let loaded = match examples::content(&place) {
                     Some(content) => examples::model(&place, content, &options, progress)?,

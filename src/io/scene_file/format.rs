@@ -13,7 +13,7 @@ use super::light::FileLight;
 use super::view::FileView;
 use crate::accuracy::Settings;
 use crate::scene::{
-    ItemId, Lens, MaterialChoice, Scene, Sides, Spin, Surface, UpAxis, Winding, Wrap,
+    BumpMaps, ItemId, Lens, MaterialChoice, Scene, Sides, Spin, Surface, UpAxis, Winding, Wrap,
 };
 
 /// The version that is written, and the latest that is read.
@@ -99,6 +99,8 @@ pub(super) enum FileModel {
         winding: Winding,
         #[serde(default = "crease")]
         crease: f64,
+        #[serde(default, skip_serializing_if = "are_usual")]
+        bumps: BumpMaps,
     },
 }
 
@@ -203,6 +205,10 @@ fn background() -> [u8; 3] {
 
 fn silver() -> MaterialChoice {
     MaterialChoice::Preset(crate::scene::PresetId::SILVER)
+}
+
+fn are_usual(bumps: &BumpMaps) -> bool {
+    *bumps == BumpMaps::default()
 }
 
 fn cam() -> FileModel {

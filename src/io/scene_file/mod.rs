@@ -25,6 +25,7 @@ use super::findings::{Finding, Findings, joined};
 use super::progress::Progress;
 use super::read::{MOST_WORDS, read, utf_8};
 use super::replace::{SaveError, Worth, replace};
+use super::sources::Sources;
 use super::window_state::WindowState;
 use crate::accuracy::Settings;
 use crate::scene::{Scene, View};
@@ -108,6 +109,7 @@ pub fn save_with_window(
     window: &WindowState,
 ) -> Result<(), SaveError> {
     let text = text_with_window(path, scene, view, settings, window)?;
+    Sources::of(scene).spare(path)?;
     replace(path, text.as_bytes(), Worth::Work)
 }
 

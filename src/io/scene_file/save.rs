@@ -54,9 +54,10 @@ fn file_model(model: &Model, folder: &Path) -> Result<FileModel, String> {
             Err(format!("the model \"{name}\" is in no file"))
         };
     };
-    let LoadOptions { up, scale, winding, crease } = *options;
+    let LoadOptions { up, scale, winding, crease, bumps } = *options;
     let path = file_path(source, folder)?;
-    Ok(FileModel::File { path, up, scale: scale.get(), winding, crease: crease.get() })
+    let (scale, crease) = (scale.get(), crease.get());
+    Ok(FileModel::File { path, up, scale, winding, crease, bumps })
 }
 
 fn file_path(path: &Path, folder: &Path) -> Result<String, String> {

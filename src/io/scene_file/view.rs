@@ -40,6 +40,8 @@ pub(super) struct FileView {
     pub(super) wide_lines: bool,
     pub(super) marks: bool,
     pub(super) coarse_while_moving: bool,
+    #[serde(skip_serializing_if = "is_zero")]
+    pub(super) exposure: f64,
     pub(super) time: f64,
     pub(super) panels: Panels,
 }
@@ -77,6 +79,7 @@ impl FileView {
             normal_length,
             wide_lines,
             marks,
+            exposure,
             time,
         } = view;
         let WindowState { coarse_while_moving, panels } = window;
@@ -106,6 +109,7 @@ impl FileView {
             wide_lines: *wide_lines,
             marks: *marks,
             coarse_while_moving: *coarse_while_moving,
+            exposure: *exposure,
             time: *time,
             panels: panels.clone(),
         }
@@ -128,6 +132,10 @@ impl Default for FileView {
         }
     }
 }
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
+}
+
 /// The view of a scene.
 ///
 /// # Errors
@@ -138,7 +146,7 @@ pub(super) fn read_view(
     findings: &mut Findings,
 ) -> Result<View, String> {
     let Steps { translation, rotation, scaling, .. } = file.steps;
-    finite("the view", &[translation, rotation, scaling, file.time])?;
+    finite("the view", &[translation, rotation, scaling, file.exposure, file.time])?;
     if translation <= 0.0 || rotation <= 0.0 || scaling <= 1.0 {
         return Err("the steps of the view have to be above 0, and of scaling above 1".to_owned());
     }
@@ -189,6 +197,7 @@ pub(super) fn read_view(
         normal_length: file.normal_length,
         wide_lines: file.wide_lines,
         marks: file.marks,
+        exposure: file.exposure.clamp(-View::MOST_EXPOSURE, View::MOST_EXPOSURE),
         time: file.time,
     })
 }

@@ -136,6 +136,7 @@ fn model(triangles: &[Flat], side: usize, first: usize) -> Shared<Model> {
     Shared::new(Model {
         name: "triangles".to_owned(),
         source: None,
+        companions: Vec::new(),
         options: LoadOptions::default(),
         mesh: Mesh::new(source).expect("numbers of pictures are finite"),
         materials: Vec::new(),

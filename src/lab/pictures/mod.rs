@@ -191,6 +191,7 @@ fn wall() -> Shared<Model> {
     Shared::new(Model {
         name: "wall".to_owned(),
         source: None,
+        companions: Vec::new(),
         options: LoadOptions::default(),
         mesh: Mesh::new(source).expect("these numbers are finite"),
         materials: Vec::new(),

@@ -51,6 +51,7 @@ impl Maker {
         Shared::new(Model {
             name: name.to_owned(),
             source: None,
+            companions: Vec::new(),
             options: LoadOptions::default(),
             mesh: Mesh::new(self.source).expect("the coordinates are finite"),
             materials: Vec::new(),

@@ -127,6 +127,8 @@ impl FramePlan {
                 }
             }),
             Effect::Bumps => plan.for_each_shaded(|shaded| shaded.extras.bump = None),
+            // A factor of the lights costs nothing.
+            Effect::Exposure => return None,
             Effect::LinearLight => plan.variants = plan.variants.in_stored_values(),
             Effect::BackFaces => plan.draws.iter_mut().for_each(|draw| draw.back = Back::Culled),
             Effect::Edges => plan.draws.iter_mut().for_each(|draw| draw.lines.edges = false),

@@ -61,6 +61,7 @@ pub(super) fn diamond() -> &'static Shared<Model> {
         Shared::new(Model {
             name: "diamond".to_owned(),
             source: None,
+            companions: Vec::new(),
             options: LoadOptions::default(),
             mesh: mesh.expect("a square is a mesh"),
             materials: Vec::new(),

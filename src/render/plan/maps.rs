@@ -40,9 +40,14 @@ pub(super) fn holds_same_alpha(texture: Option<&Shared<Texture>>, map: &Shared<T
 }
 
 /// The light of the surface's own, if it shines.
-pub(super) fn emission(rules: Rules, ground: &Ground<'_>, look: &PartLook<'_>) -> Option<Glow> {
+pub(super) fn emission(
+    rules: Rules,
+    ground: &Ground<'_>,
+    look: &PartLook<'_>,
+    factor: f64,
+) -> Option<Glow> {
     let number = |k: f64| if k.is_nan() { 0.0 } else { k.clamp(0.0, LARGEST) };
-    let color = look.material.emission.map(number);
+    let color = look.material.emission.map(|k| number(k * factor));
     if rules.emission(color).is_some() {
         return None;
     }

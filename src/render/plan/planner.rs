@@ -11,7 +11,7 @@ use super::helpers;
 use super::observer::ObserverSpace;
 use super::planning::{Planner, Planning};
 use super::rules::Thing;
-use super::turning::turning_of;
+use super::turning::{shows_fronts_only, turning_of};
 use super::uses::{self, EffectState, EffectUse};
 use crate::accuracy::{LightAt, NormalMatrix, VertexArithmetic};
 use crate::base::{Shared, color::Color, math};
@@ -98,7 +98,7 @@ impl Planner<'_> {
             },
             polygons,
             lines: self.lines(&object.model, object.edge_color),
-            ..self.draw(item, &object.model, object.world_from_object(self.shot.view.time))
+            ..self.draw(item, &object.model, object.world_from_mesh(self.shot.view.time))
         };
         self.add(into, object, draw);
     }
@@ -162,13 +162,21 @@ impl Planner<'_> {
             // What is behind its front shows through it.
             (draw.back, draw.culls_opaque) = (Back::Lit, true);
         }
+        let moves = into.plan.variants.has_geometry_variant();
+        if draw.back == Back::Lit
+            && !draw.culls_opaque
+            && !moves
+            && shows_fronts_only(&draw, self.shot.view.projection)
+        {
+            draw.back = Back::Culled;
+        }
         let thing = Thing { observer: &self.observer, draw: &draw, bounds };
         let rules = into.plan.rules;
         let reason = if mesh.polygon_count() == 0 {
             Some("it has no faces")
         } else if !math::has_full_rank(DMat3::from_mat4(draw.view_from_object)) {
             Some("its placement is flat: it has no inside and no outside")
-        } else if into.plan.variants.has_geometry_variant() {
+        } else if moves {
             // A variant may move it on the screen.
             None
         } else {

@@ -52,7 +52,7 @@ impl Planner<'_> {
     }
 
     fn caster(&self, id: ObjectId, object: &Object) -> Option<Caster> {
-        let world_from_object = object.world_from_object(self.shot.view.time);
+        let world_from_object = object.world_from_mesh(self.shot.view.time);
         let mesh = &object.model.mesh;
         let is_flat = !math::has_full_rank(DMat3::from_mat4(world_from_object));
         if is_flat || mesh.polygon_count() == 0 {

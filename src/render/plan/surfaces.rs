@@ -124,7 +124,8 @@ impl Planner<'_> {
         if ground.object.surface == Surface::Texture {
             return shaded;
         }
-        shaded.extras.emission = emission(into.plan.rules, ground, look);
+        shaded.extras.emission =
+            emission(into.plan.rules, ground, look, self.shot.view.light_factor());
         if look.unlit {
             return shaded;
         }
@@ -174,7 +175,9 @@ impl Planner<'_> {
         };
         // The curve of sRGB is steepest at black: it multiplies differences by 12.92.
         let steepest = if into.plan.variants.are_linear() { 12.92 } else { 1.0 };
-        let deeper = |floor: f64| (floor - libm::log2(strongest * arriving * steepest)).max(LOWEST);
+        let exposed = self.shot.view.light_factor().max(1.0);
+        let times = strongest * arriving * steepest * exposed;
+        let deeper = |floor: f64| (floor - libm::log2(times)).max(LOWEST);
         if self.shot.settings.arithmetic == Arithmetic::F64 {
             return deeper(-24.0);
         }

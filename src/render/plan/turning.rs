@@ -10,7 +10,7 @@ use crate::render::frame::draw::{Back, Draw};
 use crate::render::lights::turning::Turning;
 use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::render::screen::coverage::doubled_area;
-use crate::scene::{Normals, dvec3};
+use crate::scene::{Normals, Projection, dvec3};
 
 /// The most triangles or normals of a mesh that is examined.
 const FEW: usize = 64;
@@ -34,6 +34,38 @@ pub(super) fn turning_of(draw: &Draw, light_at: LightAt) -> Option<Turning> {
         return None;
     }
     placed.into_iter().map(math::unit).collect::<Option<_>>().map(Turning)
+}
+
+/// Whether the observer is in front of all polygons of a small mesh, which are flat.
+///
+/// A polygon of many corners is cut into slivers. Snapped to the grid of the screen, some of them
+/// turn over, and where both sides are lit they would show the light of the back. If no back can be
+/// seen, they are culled.
+pub(super) fn shows_fronts_only(draw: &Draw, projection: Projection) -> bool {
+    let mesh = &draw.model.mesh;
+    let count = u32::try_from(mesh.polygon_count()).unwrap_or(u32::MAX);
+    let is_few = (1..=FEW).contains(&mesh.polygon_count());
+    is_few && (0..count).all(|polygon| shows_front(draw, polygon, projection))
+}
+
+fn shows_front(draw: &Draw, polygon: u32, projection: Projection) -> bool {
+    let mesh = &draw.model.mesh;
+    let normal = dvec3(mesh.polygon_normals()[polygon as usize]);
+    let middle = mesh.polygon_centre(polygon);
+    let offsets = mesh.corners_of(polygon).map(|corner| mesh.corner_position(corner) - middle);
+    let (mut size, mut height) = (0.0_f64, 0.0_f64);
+    for offset in offsets {
+        size = size.max(offset.length_squared());
+        height = height.max(offset.dot(normal).abs());
+    }
+    let is_flat = height <= 1e-6 * size.sqrt();
+    let normal = draw.view_from_normal * normal;
+    let to_observer = match projection {
+        Projection::Perspective => -draw.view_from_object.transform_point3(middle),
+        Projection::Orthographic => DVec3::Z,
+    };
+    // Farther in front than a polygon that is not quite flat can reach.
+    is_flat && normal.dot(to_observer) > 1e-4 * normal.length() * to_observer.length()
 }
 
 /// Whether all triangles of a small mesh are culled as back faces, with corners snapped as in the

@@ -35,6 +35,8 @@ pub enum Effect {
     Bumps,
     /// Light in linear sRGB.
     LinearLight,
+    /// Light that is made brighter or darker as a whole.
+    Exposure,
     /// Back faces.
     BackFaces,
     /// The edges of polygons.
@@ -65,6 +67,7 @@ impl Effect {
             Self::Maps => "Maps of Ka, Ks, Ns",
             Self::Bumps => "Bumps",
             Self::LinearLight => "Linear light",
+            Self::Exposure => "Exposure",
             Self::BackFaces => "Back faces",
             Self::Edges => "Edges",
             Self::FaceNormals => "Face normals",

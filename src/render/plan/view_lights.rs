@@ -22,6 +22,7 @@ pub(super) fn view_lights(
 ) -> Vec<Shining> {
     let mut shining = Vec::new();
     let linear = into.plan.variants.are_linear();
+    let factor = exposure(into, view);
     // The oldest first, as with objects, so that the order of the list does not change the last bit
     // of a sum.
     let mut lights: Vec<_> = scene.lights.iter().collect();
@@ -52,8 +53,8 @@ pub(super) fn view_lights(
         into.plan.lights.push(ViewLight {
             color: match (shines, linear) {
                 (false, _) => [0.0; 3],
-                (true, false) => light.color.factors(),
-                (true, true) => light.color.factors().map(color::linear),
+                (true, false) => light.color.factors().map(|x| x * factor),
+                (true, true) => light.color.factors().map(|x| color::linear(x) * factor),
             },
             position: position.to_array(),
             direction: turned.unwrap_or(DVec3::NEG_Z).to_array(),
@@ -70,6 +71,22 @@ pub(super) fn view_lights(
         });
     }
     shining
+}
+
+/// The factor of all light, with its row in the explanation.
+fn exposure(into: &mut Planning, view: &View) -> f64 {
+    let factor = view.light_factor();
+    into.notes.add(|| EffectUse {
+        effect: Effect::Exposure,
+        name: Effect::Exposure.label().to_owned(),
+        on: None,
+        state: match view.exposure {
+            0.0 => EffectState::exact("it is 0"),
+            _ => EffectState::On(format!("all light times {factor:.3}").into()),
+        },
+        pixels: None,
+    });
+    factor
 }
 
 /// The end of the rays of shadows, if the light casts any.

@@ -8,9 +8,9 @@ use rayon::prelude::*;
 use crate::base::Shared;
 use crate::scene::mesh::cache::{Found, FoundOfShape};
 use crate::scene::mesh::points::{Computed, points_and_corners};
-use crate::scene::mesh::{Shape, index, mean};
+use crate::scene::mesh::{Shape, index, mean, used};
 use crate::scene::{
-    Bounds, CornerLists, Crease, Mesh, MeshError, MeshSource, NONE, Smoothing, SourceCorner, dvec3,
+    Bounds, CornerLists, Crease, Mesh, MeshError, MeshSource, NONE, Smoothing, SourceCorner,
 };
 
 impl Mesh {
@@ -44,13 +44,19 @@ impl Mesh {
         check(&source, &corners)?;
         let starts = running_sum(&source.arities);
         let triangles_only = corners.positions.len() == 3 * source.arities.len();
-        let positions = || source.positions.iter().copied().map(dvec3);
-        // Two sums whose order has to be kept run beside everything that is not summed.
-        let ((computed, corner_points), (bounds, mean)) = rayon::join(
+        // Two sums that depend on their order are computed while other threads do the rest.
+        let ((computed, corner_points), (unused, bounds, mean)) = rayon::join(
             || points_and_corners(&source, &corners, &starts),
-            || (Bounds::of(positions()), mean(positions())),
+            || {
+                let unused = unused(source.positions.len(), &corners.positions);
+                let positions = || used(&source.positions, &unused);
+                let (bounds, mean) = (Bounds::of(positions()), mean(positions()));
+                (unused, bounds, mean)
+            },
         );
         let shape = Shape {
+            offset: source.offset,
+            unused,
             bounds,
             mean,
             without_area: computed.without_area,
@@ -103,6 +109,15 @@ impl Mesh {
     }
 }
 
+/// The vertices that no corner names, ascending.
+fn unused(vertices: usize, corners: &[u32]) -> Vec<u32> {
+    let mut is_used = vec![false; vertices];
+    for vertex in corners {
+        is_used[*vertex as usize] = true;
+    }
+    (0..).zip(is_used).filter(|(_, is_used)| !is_used).map(|(vertex, _)| vertex).collect()
+}
+
 /// The beginnings of consecutive lists with these lengths, and the end of the last one.
 fn running_sum(counts: &[u32]) -> Vec<u32> {
     let mut sums = Vec::with_capacity(counts.len() + 1);
@@ -138,7 +153,7 @@ fn check(source: &MeshSource, corners: &CornerLists) -> Result<(), MeshError> {
     const PART: usize = 4096;
     let all =
         |numbers: &[f32]| numbers.par_chunks(PART).all(|part| part.iter().all(|x| x.is_finite()));
-    finite("positions", all(source.positions.as_flattened()))?;
+    finite("positions", source.offset.is_finite() && all(source.positions.as_flattened()))?;
     finite("colours", all(source.colors.as_flattened()))?;
     finite("normals", all(source.normals.as_flattened()))?;
     finite("places on the texture", all(source.uvs.as_flattened()))?;

@@ -29,7 +29,7 @@ pub(crate) fn is_closed(outlines: &Outlines<'_>) -> bool {
 }
 
 /// The sum of the hashes of a polygon's sides.
-fn boundary(vertices: &[u32], keys: &[u64]) -> u64 {
+pub(super) fn boundary(vertices: &[u32], keys: &[u64]) -> u64 {
     let Some(mut from) = vertices.last().map(|last| keys[*last as usize]) else { return 0 };
     let mut sum = 0_u64;
     for vertex in vertices {
@@ -46,7 +46,7 @@ fn boundary(vertices: &[u32], keys: &[u64]) -> u64 {
 }
 
 /// A hash of a position, the same for 0 and -0.
-fn key([x, y, z]: [f32; 3]) -> u64 {
+pub(super) fn key([x, y, z]: [f32; 3]) -> u64 {
     let bits = |x: f32| u64::from((x + 0.0).to_bits());
     mixed(mixed(bits(x) << 32 | bits(y)) ^ bits(z))
 }

@@ -10,6 +10,7 @@
 //! The fields are private and the constructor checks them, so no index is ever out of range.
 
 mod around;
+mod bodies;
 mod build;
 pub(super) mod cache;
 mod closed;
@@ -19,13 +20,17 @@ pub(super) mod edge_order;
 pub(super) mod edges;
 mod fans;
 mod normals;
+mod offset;
 pub(super) mod outlines;
 mod points;
 pub(super) mod ray_tree;
 mod splits;
 mod tangents;
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
+
+pub use bodies::ClosedBodies;
+pub use offset::split_positions;
 
 use super::{Bounds, Smoothing};
 use crate::base::Shared;
@@ -38,7 +43,9 @@ pub const NONE: u32 = u32::MAX;
 /// The source of a mesh. Indices count from 0.
 #[derive(Clone, Debug, Default)]
 pub struct MeshSource {
-    /// The positions of vertices, in object space; all finite.
+    /// The place in object space that positions are relative to; finite.
+    pub offset: DVec3,
+    /// The positions of vertices, relative to the offset; all finite.
     pub positions: Vec<[f32; 3]>,
     /// Red, green and blue of each vertex, 0 to 1; empty if the file has none.
     pub colors: Vec<[f32; 3]>,
@@ -122,6 +129,7 @@ pub struct Mesh {
 
 /// The part of a mesh that does not depend on computed normals.
 pub(super) struct Shape {
+    pub(super) offset: DVec3,
     pub(super) positions: Vec<[f32; 3]>,
     pub(super) colors: Vec<[f32; 3]>,
     pub(super) uvs: Vec<[f32; 2]>,
@@ -132,6 +140,8 @@ pub(super) struct Shape {
     pub(super) starts: Vec<u32>,
     pub(super) polygon_parts: Vec<u32>,
     pub(super) without_area: Vec<u32>,
+    /// The vertices that no face uses, ascending.
+    pub(super) unused: Vec<u32>,
     pub(super) parts: Vec<Part>,
     pub(super) bounds: Option<Bounds>,
     pub(super) mean: DVec3,
@@ -140,7 +150,8 @@ pub(super) struct Shape {
 
 impl PartialEq for Shape {
     fn eq(&self, other: &Self) -> bool {
-        self.positions == other.positions
+        self.offset == other.offset
+            && self.positions == other.positions
             && self.colors == other.colors
             && self.uvs == other.uvs
             && self.corners == other.corners
@@ -193,10 +204,35 @@ impl PartialEq for Mesh {
 }
 
 impl Mesh {
-    /// The positions of the vertices, in object space.
+    /// The place in object space that positions, bounds and mean are relative to. It is 0 unless the
+    /// model is far from its origin.
+    #[must_use]
+    pub fn offset(&self) -> DVec3 {
+        self.shape.offset
+    }
+
+    /// The transformation from the mesh's own space, that of its positions, to object space.
+    #[must_use]
+    pub fn object_from_mesh(&self) -> DMat4 {
+        DMat4::from_translation(self.shape.offset)
+    }
+
+    /// The positions of all vertices, relative to [`Self::offset`].
     #[must_use]
     pub fn positions(&self) -> &[[f32; 3]] {
         &self.shape.positions
+    }
+
+    /// The positions of the vertices that a face uses, relative to [`Self::offset`]; all positions
+    /// if there is no face.
+    pub fn used_positions(&self) -> impl Iterator<Item = DVec3> {
+        used(&self.shape.positions, &self.shape.unused)
+    }
+
+    /// The vertices that no face uses, ascending.
+    #[must_use]
+    pub fn unused_vertices(&self) -> &[u32] {
+        &self.shape.unused
     }
 
     /// Red, green and blue of each vertex; empty if the file has no colours.
@@ -236,6 +272,13 @@ impl Mesh {
     pub fn corners_of(&self, polygon: u32) -> std::ops::Range<usize> {
         self.shape.starts[polygon as usize] as usize
             ..self.shape.starts[polygon as usize + 1] as usize
+    }
+
+    /// Whether a corner of a polygon has texture coordinates.
+    #[must_use]
+    pub fn has_uvs(&self, polygon: u32) -> bool {
+        let uvs = self.shape.corner_uvs.get(self.corners_of(polygon));
+        uvs.is_some_and(|uvs| uvs.iter().any(|uv| *uv != NONE))
     }
 
     /// The part that each polygon belongs to.
@@ -289,17 +332,30 @@ impl Mesh {
         &self.smoothing
     }
 
-    /// The extent of the vertices; `None` if there are none.
+    /// The extent of [`Self::used_positions`]; `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         self.shape.bounds
     }
 
-    /// The mean of the vertices, which orbiting cameras look at.
+    /// The mean of [`Self::used_positions`], which orbiting cameras look at.
     #[must_use]
     pub fn mean(&self) -> DVec3 {
         self.shape.mean
     }
+}
+
+/// Positions without the unused ones, unless all are unused; `unused` is ascending.
+fn used<'a>(positions: &'a [[f32; 3]], unused: &'a [u32]) -> impl Iterator<Item = DVec3> {
+    let mut unused = if unused.len() == positions.len() { &[] } else { unused };
+    let is_used = move |(vertex, _): &(u32, &[f32; 3])| match unused {
+        [first, rest @ ..] if first == vertex => {
+            unused = rest;
+            false
+        }
+        _ => true,
+    };
+    (0..).zip(positions).filter(is_used).map(|(_, p)| dvec3(*p))
 }
 
 /// The normal of a polygon, as long as twice its area.

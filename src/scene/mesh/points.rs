@@ -141,6 +141,11 @@ impl CornerPoints {
         if self.filed.is_empty() { self.smooth(vertices, corner) } else { self.filed[corner] }
     }
 
+    /// The point of a corner with the file's normal, if its polygon has normals of the file.
+    pub(crate) fn of_file(&self, corner: usize) -> Option<u32> {
+        self.filed.get(corner).copied().filter(|point| *point >= self.first_filed)
+    }
+
     /// Whether the points of all corners with computed normals are numbered as the vertices.
     pub(crate) const fn are_vertices(&self) -> bool {
         self.smooth.is_empty()

@@ -69,9 +69,10 @@ pub(super) fn materials() -> Vec<FileMaterial> {
         scale: [1.0; 2],
     });
     let fading = SurfaceMaps::from([(MapKind::Opacity, SurfaceMap { texture, gain: 1.0 })]);
+    // Under the five lights of the first scene it is a medium grey.
     let material = Material {
-        ambient: [0.5; 3],
-        diffuse: [0.5; 3],
+        ambient: [0.1; 3],
+        diffuse: [0.25; 3],
         specular: [0.0; 3],
         exponent: 1.0,
         emission: [0.0; 3],

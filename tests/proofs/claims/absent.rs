@@ -128,6 +128,7 @@ fn with_unused_material(model: &Shared<Model>, rng: &mut Rng) -> Shared<Model> {
     Shared::new(Model {
         name: model.name.clone(),
         source: None,
+        companions: Vec::new(),
         options: model.options,
         mesh: Mesh::new(source).expect("it was a mesh before"),
         materials,

@@ -189,6 +189,7 @@ impl Hostile {
         Some(Shared::new(Model {
             name: "hostile".to_owned(),
             source: None,
+            companions: Vec::new(),
             options: LoadOptions::default(),
             mesh,
             materials: Vec::new(),

@@ -44,6 +44,7 @@ fn mesh_of(triangles: &[[Point; 3]]) -> Shared<Model> {
     Shared::new(Model {
         name: "mesh".to_owned(),
         source: None,
+        companions: Vec::new(),
         options: LoadOptions::default(),
         mesh,
         materials: Vec::new(),

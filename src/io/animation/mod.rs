@@ -1,24 +1,27 @@
 //! Saves pictures that follow each other: as a GIF, as an animated PNG, or as numbered files.
 //!
-//! A GIF has 256 colours a picture, chosen for each, and times in hundredths of a second; an
-//! animated PNG has every colour. Both are written whole when they are finished, so that what is
+//! A GIF has 256 colours a picture and times in hundredths of a second; an animated PNG has every
+//! colour. Both are written whole when they are finished, so that what is
 //! cancelled leaves nothing behind.
+
+mod gif;
+mod palette;
 
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use image::codecs::gif::{GifEncoder, Repeat};
-use image::{Delay, Frame, RgbaImage};
-
+use self::gif::GifWriter;
 use super::error::reason;
 use super::picture::{check_picture_target, save_picture};
 use super::replace::{SaveError, Worth, check_target, replace};
+use super::sources::Sources;
 use crate::base::image::{Picture, Size};
 
-/// How carefully the colours of a GIF are chosen: 1 is the best, 30 the quickest.
-const GIF_SPEED: i32 = 10;
+/// The shortest time of a picture of a GIF, in hundredths of a second: browsers show a picture of
+/// one hundredth for ten.
+const LEAST_GIF_TIME: u32 = 2;
 
 /// The form of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +75,16 @@ impl Animation {
         };
         (end(i + 1) - end(i)).max(1)
     }
+
+    /// The time of picture `i` of a GIF in hundredths of a second.
+    fn gif_time(&self, i: u32) -> u32 {
+        self.time(i, 100.0).max(LEAST_GIF_TIME)
+    }
+
+    /// The seconds that a GIF of it takes.
+    fn gif_seconds(&self) -> f64 {
+        f64::from((0..self.frames).map(|i| self.gif_time(i)).sum::<u32>()) / 100.0
+    }
 }
 
 /// Bytes that an encoder writes and that are read when it is done.
@@ -96,7 +109,7 @@ impl Write for Bytes {
 }
 
 enum Encoder {
-    Gif(Box<GifEncoder<Bytes>>),
+    Gif(GifWriter),
     Apng(Box<png::Writer<Bytes>>),
     Frames,
 }
@@ -108,6 +121,7 @@ pub struct AnimationWriter {
     encoder: Encoder,
     bytes: Bytes,
     written: u32,
+    notes: Vec<String>,
 }
 
 impl std::fmt::Debug for AnimationWriter {
@@ -117,11 +131,13 @@ impl std::fmt::Debug for AnimationWriter {
 }
 
 impl AnimationWriter {
-    /// Checks, before anything is drawn, whether an animation could be saved at `path`.
+    /// Checks, before anything is drawn, whether an animation could be saved at `path` without
+    /// replacing one of `sources`.
     ///
     /// # Errors
     /// If it could not.
-    pub fn check(path: &Path) -> Result<(), SaveError> {
+    pub fn check(path: &Path, sources: &Sources) -> Result<(), SaveError> {
+        sources.spare(path)?;
         let fail = |reason: &str| SaveError::new(path, reason);
         match AnimationFormat::of(path).map_err(|reason| fail(&reason))? {
             AnimationFormat::Gif if path.exists() && !is_gif(path) => {
@@ -143,16 +159,13 @@ impl AnimationWriter {
     ///
     /// # Errors
     /// If it could not be saved there.
-    pub fn begin(path: &Path, animation: Animation) -> Result<Self, SaveError> {
-        Self::check(path)?;
+    pub fn begin(path: &Path, animation: Animation, sources: &Sources) -> Result<Self, SaveError> {
+        Self::check(path, sources)?;
         let fail = |reason: String| SaveError::new(path, reason);
         let bytes = Bytes::default();
         let encoder = match AnimationFormat::of(path).map_err(fail)? {
             AnimationFormat::Gif => {
-                let mut encoder = GifEncoder::new_with_speed(bytes.clone(), GIF_SPEED);
-                let repeated = encoder.set_repeat(Repeat::Infinite);
-                repeated.map_err(|error| fail(error.to_string()))?;
-                Encoder::Gif(Box::new(encoder))
+                Encoder::Gif(GifWriter::new(animation.size, animation.transparent))
             }
             AnimationFormat::Apng => {
                 let writer = apng(bytes.clone(), &animation);
@@ -160,10 +173,22 @@ impl AnimationWriter {
             }
             AnimationFormat::Frames => {
                 fs::create_dir_all(path).map_err(|error| fail(reason(&error)))?;
+                for i in 0..animation.frames {
+                    let frame = frame(path, &animation, i);
+                    sources.spare(&frame)?;
+                    check_picture_target(&frame)?;
+                }
                 Encoder::Frames
             }
         };
-        Ok(Self { path: path.to_owned(), animation, encoder, bytes, written: 0 })
+        let notes = notes(path, &animation, &encoder);
+        Ok(Self { path: path.to_owned(), animation, encoder, bytes, written: 0, notes })
+    }
+
+    /// How the file will differ from the wishes of the user, a sentence each.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// Adds a picture.
@@ -176,15 +201,7 @@ impl AnimationWriter {
         let (animation, path) = (self.animation, &self.path);
         let fail = |reason: String| SaveError::new(path, reason);
         match &mut self.encoder {
-            Encoder::Gif(encoder) => {
-                let [width, height] = sides(animation.size);
-                let pixels = picture.pixels().as_flattened().to_vec();
-                let image = RgbaImage::from_raw(width, height, pixels);
-                let image = image.ok_or_else(|| fail("a picture has another size".to_owned()))?;
-                let delay = Delay::from_numer_denom_ms(animation.time(i, 100.0) * 10, 1);
-                let frame = Frame::from_parts(image, 0, 0, delay);
-                encoder.encode_frame(frame).map_err(|error| fail(error.to_string()))
-            }
+            Encoder::Gif(writer) => writer.push(picture).map_err(|error| fail(error.to_string())),
             Encoder::Apng(writer) => {
                 let time = u16::try_from(animation.time(i, 1000.0)).unwrap_or(u16::MAX);
                 let timed = match animation.frames {
@@ -200,12 +217,7 @@ impl AnimationWriter {
                 let written = timed.and_then(|()| writer.write_image_data(&bytes));
                 written.map_err(|error| fail(error.to_string()))
             }
-            Encoder::Frames => {
-                let digits = animation.frames.to_string().len().max(3);
-                let file = path.join(format!("frame-{:0digits$}.png", i + 1));
-                check_picture_target(&file)?;
-                save_picture(&file, picture)
-            }
+            Encoder::Frames => save_picture(&frame(path, &animation, i), picture),
         }
     }
 
@@ -214,18 +226,75 @@ impl AnimationWriter {
     /// # Errors
     /// If it cannot be written; an existing file stays as it was.
     pub fn finish(self) -> Result<(), SaveError> {
-        let Self { path, encoder, bytes, .. } = self;
-        match encoder {
-            // The end of the file is written when the encoder is gone.
-            Encoder::Gif(encoder) => drop(encoder),
+        let Self { path, encoder, bytes, animation, .. } = self;
+        let fail = |error: &dyn std::fmt::Display| SaveError::new(&path, error.to_string());
+        let content = match encoder {
+            Encoder::Gif(writer) => {
+                let delay = |number: usize| {
+                    let number = u32::try_from(number).unwrap_or(u32::MAX);
+                    u16::try_from(animation.gif_time(number)).unwrap_or(u16::MAX)
+                };
+                writer.finish(delay).map_err(|error| fail(&error))?
+            }
             Encoder::Apng(writer) => {
-                let finished = writer.finish();
-                finished.map_err(|error| SaveError::new(&path, error.to_string()))?;
+                writer.finish().map_err(|error| fail(&error))?;
+                bytes.take()
             }
             Encoder::Frames => return Ok(()),
-        }
-        replace(&path, &bytes.take(), Worth::Product)
+        };
+        replace(&path, &content, Worth::Product)
     }
+}
+
+fn notes(path: &Path, animation: &Animation, encoder: &Encoder) -> Vec<String> {
+    match encoder {
+        Encoder::Gif(_) => {
+            let seconds = animation.gif_seconds();
+            // Each time is rounded to a hundredth, and so is their sum.
+            let is_longer = seconds > animation.seconds + 0.01;
+            let note = format!(
+                "a GIF shows at most 50 pictures a second: {} pictures take {seconds} seconds; \
+                 choose fewer pictures, or an animated PNG",
+                animation.frames
+            );
+            is_longer.then_some(note).into_iter().collect()
+        }
+        Encoder::Apng(_) => Vec::new(),
+        Encoder::Frames => stale(path, animation).into_iter().collect(),
+    }
+}
+
+/// A note about pictures in the folder that this animation does not replace.
+fn stale(folder: &Path, animation: &Animation) -> Option<String> {
+    let is_stale = |name: &String| {
+        frame_number(name).is_some_and(|number| {
+            let is_own = (1..=animation.frames).contains(&number)
+                && frame(folder, animation, number - 1).ends_with(name);
+            !is_own
+        })
+    };
+    let names = fs::read_dir(folder).ok()?.flatten();
+    let names = names.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut stale: Vec<String> = names.filter(is_stale).collect();
+    stale.sort();
+    let (first, last) = (stale.first()?, stale.last()?);
+    let folder = folder.display();
+    Some(match stale.len() {
+        1 => format!("{folder} has a picture of an earlier run, too: {first}"),
+        count => format!("{folder} has {count} pictures of an earlier run, too: {first} to {last}"),
+    })
+}
+
+/// The number in the name of a picture of a folder; `None` for other names.
+fn frame_number(name: &str) -> Option<u32> {
+    let digits = name.strip_prefix("frame-")?.strip_suffix(".png")?;
+    digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())?
+}
+
+/// The file of picture `i` in a folder.
+fn frame(folder: &Path, animation: &Animation, i: u32) -> PathBuf {
+    let digits = animation.frames.to_string().len().max(3);
+    folder.join(format!("frame-{:0digits$}.png", i + 1))
 }
 
 fn apng(to: Bytes, animation: &Animation) -> Result<png::Writer<Bytes>, png::EncodingError> {
@@ -255,7 +324,7 @@ fn is_gif(path: &Path) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use image::AnimationDecoder;
+    use image::{AnimationDecoder, Frame};
 
     use super::*;
 
@@ -266,7 +335,8 @@ mod tests {
     }
 
     fn written(path: &Path, frames: u32) {
-        let mut writer = AnimationWriter::begin(path, animation(frames)).unwrap();
+        let mut writer =
+            AnimationWriter::begin(path, animation(frames), &Sources::default()).unwrap();
         for i in 0..frames {
             let gray = u8::try_from(i * 80).unwrap();
             writer.push(&Picture::filled(SIZE, [gray, 0, 255 - gray, 255])).unwrap();
@@ -301,6 +371,39 @@ mod tests {
     }
 
     #[test]
+    fn a_still_part_of_a_gif_does_not_flicker() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.gif");
+        let size = Size::new(64, 64);
+        let animation = Animation { size, frames: 4, seconds: 1.0, transparent: false };
+        let mut writer = AnimationWriter::begin(&path, animation, &Sources::default()).unwrap();
+        // The upper half is a still gradient; the lower one changes its colours.
+        let pixel = |frame: usize, i: usize| {
+            let byte = |x: usize| u8::try_from(x % 256).unwrap();
+            let (x, y) = (i % 64, i / 64);
+            match y < 32 {
+                true => [byte(4 * x), byte(8 * y), byte(4 * x + 8 * y), 255],
+                false => [byte(60 * frame), byte(4 * x), byte(x * y), 255],
+            }
+        };
+        for frame in 0..4 {
+            let pixels = (0..64 * 64).map(|i| pixel(frame, i)).collect();
+            writer.push(&Picture::from_pixels(size, pixels).unwrap()).unwrap();
+        }
+        writer.finish().unwrap();
+        let file = std::io::BufReader::new(fs::File::open(&path).unwrap());
+        let frames = image::codecs::gif::GifDecoder::new(file).unwrap().into_frames();
+        let frames: Vec<Frame> = frames.collect_frames().unwrap();
+        let upper = |frame: &Frame| frame.buffer().as_raw()[..64 * 32 * 4].to_vec();
+        assert!(frames.iter().all(|frame| upper(frame) == upper(&frames[0])));
+        // The mean of the gradient is kept.
+        let mean =
+            |bytes: &[u8]| bytes.iter().map(|x| f64::from(*x)).sum::<f64>() / bytes.len() as f64;
+        let right: Vec<u8> = (0..64 * 32).flat_map(|i| pixel(0, i)).collect();
+        assert!((mean(&upper(&frames[0])) - mean(&right)).abs() < 2.0);
+    }
+
+    #[test]
     fn numbered_pictures_stand_in_a_folder() {
         let folder = tempfile::tempdir().unwrap();
         let frames = folder.path().join("turn");
@@ -310,14 +413,15 @@ mod tests {
         assert_eq!(names[2].file_name(), "frame-003.png");
         assert_eq!(names.len(), 3);
         fs::write(frames.join("frame-001.png"), "a poem").unwrap();
-        let mut again = AnimationWriter::begin(&frames, animation(3)).unwrap();
-        assert!(again.push(&Picture::filled(SIZE, [0; 4])).is_err(), "what is no picture stays");
+        let again = AnimationWriter::begin(&frames, animation(3), &Sources::default());
+        assert!(again.is_err(), "a file that is not a picture stays");
     }
 
     #[test]
     fn other_names_and_other_files_are_refused() {
         let folder = tempfile::tempdir().unwrap();
-        let check = |name: &str| AnimationWriter::check(&folder.path().join(name));
+        let check =
+            |name: &str| AnimationWriter::check(&folder.path().join(name), &Sources::default());
         fs::write(folder.path().join("poem.gif"), "Roses").unwrap();
         fs::write(folder.path().join("poem"), "Roses").unwrap();
         assert!(check("a.gif").is_ok() && check("a.png").is_ok() && check("a").is_ok());

@@ -1,0 +1,26 @@
+//! Fits the exposure to the picture.
+
+use super::App;
+use crate::accuracy::Shot;
+use crate::base::image::Size;
+use crate::render::fitted_exposure;
+use crate::scene::View;
+
+/// The longer side of the picture that the exposure is fitted to: a share of the brightest pixels
+/// needs no more.
+const SIDE: usize = 160;
+
+impl App {
+    /// Brings the brightest surfaces just below white.
+    pub(crate) fn fit_exposure(&mut self) {
+        let Some(Size { width, height }) = self.viewport.size() else { return };
+        let longest = width.max(height).max(1);
+        let side = |side: usize| (side * SIDE / longest).max(1);
+        let state = &self.state;
+        let size = Size::new(side(width), side(height));
+        let exposure =
+            fitted_exposure(&Shot::new(&state.scene, &state.view, &state.settings, size));
+        self.state.tell(Some(format!("Exposure {exposure} stops")));
+        self.show_view(View { exposure, ..self.state.view.clone() });
+    }
+}

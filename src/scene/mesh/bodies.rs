@@ -1,0 +1,223 @@
+//! Finds closed bodies that are inside out, and normals of a file that point against their faces.
+//!
+//! A body is a set of polygons that are connected by vertices. It is closed if the sum of its
+//! boundary's hashes is 0 ([`closed`](super::closed)). By the divergence theorem the sum over its
+//! triangles
+//!
+//! ```text
+//!   V = sum  a . (b x c) / 6
+//! ```
+//!
+//! is its volume, and negative if its polygons run clockwise seen from outside.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::closed::{boundary, key};
+use super::dvec3;
+use crate::scene::{Bounds, Mesh};
+
+/// A body whose volume is smaller than this part of its area times its length is a sheet.
+const SHEET: f64 = 1e-5;
+
+/// The closed bodies of a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ClosedBodies {
+    /// The number of closed bodies with a volume.
+    pub all: usize,
+    /// The number of those that are inside out. The inner surface of a hollow body is not.
+    pub inside_out: usize,
+}
+
+#[derive(Clone, Copy)]
+struct Body {
+    boundary: u64,
+    volume: f64,
+    area: f64,
+    bounds: Option<Bounds>,
+}
+
+impl Body {
+    const EMPTY: Self = Self { boundary: 0, volume: 0.0, area: 0.0, bounds: None };
+
+    fn is_inside(&self, other: &Self) -> bool {
+        let (Some(own), Some(outer)) = (self.bounds, other.bounds) else { return false };
+        own.min.cmpgt(outer.min).all() && own.max.cmplt(outer.max).all()
+    }
+
+    fn has_volume(&self) -> bool {
+        let length = self.bounds.map_or(0.0, |bounds| bounds.extent().length());
+        self.boundary == 0 && self.volume.abs() > SHEET * self.area * length
+    }
+}
+
+impl Mesh {
+    /// Counts the closed bodies, and those that are inside out.
+    #[must_use]
+    pub fn closed_bodies(&self) -> ClosedBodies {
+        let outlines = self.outlines();
+        let keys: Vec<u64> = self.shape.positions.par_iter().map(|place| key(*place)).collect();
+        let mut sets = Sets::new(keys.len());
+        let polygons = 0..self.polygon_count();
+        for polygon in polygons.clone() {
+            let vertices = outlines.vertices(polygon);
+            vertices.windows(2).for_each(|pair| sets.join(pair[0], pair[1]));
+        }
+        if self.is_closed() {
+            // A surface that a file splits at seams has several vertices at one position. Where some
+            // surface is open, such a body is not told from an open one.
+            let mut first = HashMap::with_capacity(keys.len());
+            for (vertex, key) in (0..).zip(&keys) {
+                let other = *first.entry(*key).or_insert(vertex);
+                sets.join(other, vertex);
+            }
+        }
+        let mut numbers = HashMap::new();
+        let mut bodies: Vec<Body> = Vec::new();
+        for polygon in polygons {
+            let vertices = outlines.vertices(polygon);
+            let number = *numbers.entry(sets.root(vertices[0])).or_insert(bodies.len());
+            if number == bodies.len() {
+                bodies.push(Body::EMPTY);
+            }
+            let body = &mut bodies[number];
+            body.boundary = body.boundary.wrapping_add(boundary(vertices, &keys));
+            body.add(outlines.of(polygon), self.shape.mean);
+        }
+        let solid: Vec<Body> = bodies.into_iter().filter(Body::has_volume).collect();
+        let is_cavity =
+            |body: &Body| solid.iter().any(|other| other.volume > 0.0 && body.is_inside(other));
+        let inside_out = solid.iter().filter(|body| body.volume < 0.0 && !is_cavity(body)).count();
+        ClosedBodies { all: solid.len(), inside_out }
+    }
+
+    /// The polygons whose normals in the file all point against the polygon's own normal, ascending.
+    #[must_use]
+    pub fn polygons_against_normals(&self) -> Vec<u32> {
+        if !self.has_file_normals() {
+            return Vec::new();
+        }
+        let normals = self.polygon_normals();
+        let is_against = |polygon: &u32| {
+            let own = dvec3(normals[*polygon as usize]);
+            self.corners_of(*polygon).all(|corner| {
+                let point = self.corners.of_file(corner).map(|point| self.points[point as usize]);
+                point.is_some_and(|point| dvec3(point.normal).dot(own) < -1e-6)
+            })
+        };
+        let count = u32::try_from(normals.len()).unwrap_or(u32::MAX);
+        let against: Vec<u32> = (0..count).into_par_iter().filter(is_against).collect();
+        let has_area = |polygon: &u32| self.without_area().binary_search(polygon).is_err();
+        against.into_iter().filter(has_area).collect()
+    }
+}
+
+impl Body {
+    fn add(&mut self, corners: impl Iterator<Item = DVec3> + Clone, about: DVec3) {
+        let Some(first) = corners.clone().next() else { return };
+        for (b, c) in corners.clone().skip(1).zip(corners.clone().skip(2)) {
+            self.volume += (first - about).dot((b - about).cross(c - about)) / 6.0;
+            self.area += (b - first).cross(c - first).length() / 2.0;
+        }
+        let own = Bounds::of(corners);
+        self.bounds = match (self.bounds, own) {
+            (Some(all), Some(own)) => Some(all.around(&own)),
+            (all, own) => all.or(own),
+        };
+    }
+}
+
+/// Disjoint sets of vertices. Tarjan, "Efficiency of a Good But Not Linear Set Union Algorithm",
+/// Journal of the ACM 1975.
+struct Sets {
+    parents: Vec<u32>,
+}
+
+impl Sets {
+    fn new(count: usize) -> Self {
+        Self { parents: (0..super::index(count)).collect() }
+    }
+
+    fn root(&mut self, mut vertex: u32) -> u32 {
+        loop {
+            let parent = self.parents[vertex as usize];
+            if parent == vertex {
+                return vertex;
+            }
+            // Halving keeps the paths short.
+            let next = self.parents[parent as usize];
+            self.parents[vertex as usize] = next;
+            vertex = next;
+        }
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parents[a.max(b) as usize] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::{Progress, parse};
+    use crate::scene::LoadOptions;
+
+    const CUBE: [[u32; 4]; 6] =
+        [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]];
+
+    /// A cube of this half-size about `x`, as the text of a file.
+    fn cube(x: f64, half: f64, outwards: bool, before: u32) -> String {
+        let mut text = String::new();
+        for i in 0..8 {
+            let [a, b, c] = [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { half } else { -half });
+            text += &format!("v {} {b} {c}\n", x + a);
+        }
+        for mut face in CUBE {
+            if !outwards {
+                face.reverse();
+            }
+            let [a, b, c, d] = face.map(|vertex| vertex + before);
+            text += &format!("f {a} {b} {c} {d}\n");
+        }
+        text
+    }
+
+    fn bodies(text: &str) -> [usize; 2] {
+        let options = LoadOptions::default();
+        let loaded = parse(text.as_bytes(), "a.obj", None, &options, &Progress::new()).unwrap();
+        let ClosedBodies { all, inside_out } = loaded.model.mesh.closed_bodies();
+        [all, inside_out]
+    }
+
+    #[test]
+    fn a_body_inside_out_is_told_from_a_cavity_and_from_an_open_surface() {
+        let two = |second: String| cube(0.0, 1.0, true, 0) + &second;
+        assert_eq!(bodies(&cube(0.0, 1.0, true, 0)), [1, 0]);
+        assert_eq!(bodies(&cube(5e5, 1.0, false, 0)), [1, 1], "far away");
+        assert_eq!(bodies(&two(cube(3.0, 1.0, false, 8))), [2, 1]);
+        assert_eq!(bodies(&two(cube(0.0, 0.5, false, 8))), [2, 0], "a cavity");
+        let open = cube(0.0, 1.0, false, 0);
+        let open = &open[..open.trim_end().rfind('\n').unwrap()];
+        assert_eq!(bodies(open), [0, 0]);
+        assert_eq!(bodies(&format!("{}f 1 2 3\n", cube(0.0, 1.0, false, 0))), [0, 0]);
+        let sheet = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nf 3 2 1\n";
+        assert_eq!(bodies(sheet), [0, 0]);
+    }
+
+    #[test]
+    fn a_body_whose_faces_share_no_vertices_is_a_body() {
+        let mut text = String::new();
+        for (i, face) in CUBE.iter().enumerate() {
+            for vertex in face.iter().rev() {
+                let [a, b, c] = [0, 1, 2].map(|axis| (vertex - 1) >> axis & 1);
+                text += &format!("v {a} {b} {c}\n");
+            }
+            let first = 4 * i + 1;
+            text += &format!("f {first} {} {} {}\n", first + 1, first + 2, first + 3);
+        }
+        assert_eq!(bodies(&text), [1, 1]);
+    }
+}

@@ -1,0 +1,80 @@
+//! Whatever a file asks for and does not get is among the findings.
+
+use super::*;
+
+#[test]
+fn bodies_inside_out_and_normals_against_the_winding_are_found() {
+    let turned: String = CUBE
+        .lines()
+        .map(|line| match line.strip_prefix("f ") {
+            Some(corners) => {
+                let corners: Vec<&str> = corners.split(' ').rev().collect();
+                format!("f {}\n", corners.join(" "))
+            }
+            None => format!("{line}\n"),
+        })
+        .collect();
+    let folder = Folder::with(&[
+        ("winding.obj", &turned),
+        ("plain.obj", CUBE),
+        ("normals.obj", &format!("{SQUARE}vn 0 0 -1\nf 1//1 2//1 3//1\n")),
+    ]);
+    let info = folder.info("winding.obj");
+    assert!(info.contains("inside out; --flip-winding"), "{info}");
+    assert!(!folder.ends(0, &["info", "--flip-winding", "winding.obj"]).contains("inside out"));
+    assert!(!folder.info("plain.obj").contains("inside out"));
+    let info = folder.info("normals.obj");
+    assert!(
+        info.contains("the normals of a face point against") && info.contains("--no-file-normals")
+    );
+}
+
+#[test]
+fn materials_and_pictures_that_nothing_uses_are_found() {
+    let mtl = "newmtl m\nKd 1 0 0\nmap_Kd t.png\n";
+    let without = SQUARE.replace("usemtl m\n", "");
+    let finding = |obj: &str, files: &[(&str, &str)]| {
+        let folder = Folder::with(&[&[("model.obj", obj)], files].concat());
+        folder.picture("t.png", 2, |_, _| [255; 4]);
+        folder.info("model.obj")
+    };
+    let info = finding(&without, &[("a.mtl", mtl)]);
+    assert!(info.contains("no face names a material"), "{info}");
+    let info = finding(SQUARE, &[("model.mtl", mtl)]);
+    assert!(info.contains("the one with the model's name is used"), "{info}");
+    assert!(!info.contains("silver"), "{info}");
+    let info = finding(&SQUARE.replace("mtllib a.mtl\n", ""), &[("model.mtl", mtl)]);
+    assert!(info.contains("names materials but no material file; \"model.mtl\" is used"), "{info}");
+    let info = finding(CUBE, &[("model.mtl", mtl)]);
+    assert!(info.contains("\"model.mtl\" is not used"), "{info}");
+    let folder = Folder::with(&[("t.obj", CUBE)]);
+    folder.picture("t.png", 2, |_, _| [255; 4]);
+    assert!(folder.info("t.obj").contains("the picture \"t.png\" is not used"));
+    assert!(finding(SQUARE, &[]).contains("the material file \"a.mtl\" was not found"));
+}
+
+#[test]
+fn textures_that_cannot_be_seen_are_found() {
+    let unmapped = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl m\nf 1 2 3\n";
+    let folder = Folder::with(&[
+        ("black.obj", SQUARE),
+        ("a.mtl", "newmtl m\nKd 0 0 0\nmap_Kd t.png\n"),
+        ("unmapped.obj", unmapped),
+    ]);
+    folder.picture("t.png", 2, |_, _| [255; 4]);
+    assert!(folder.info("black.obj").contains("Kd 0 makes its texture black"));
+    let info = folder.info("unmapped.obj");
+    assert!(info.contains("the texture t.png of material \"m\" is not shown"), "{info}");
+    let told = folder.ends(
+        0,
+        &["render", "unmapped.obj", "--texture", "t.png", "--size", "8", "--out", "p.png"],
+    );
+    assert!(told.contains("t.png is not shown on unmapped"), "{told}");
+}
+
+#[test]
+fn comments_with_colours_of_zbrush_are_found() {
+    let text = format!("#MRGB ffff0000ffff0000\n{CUBE}");
+    let folder = Folder::with(&[("a.obj", &text)]);
+    assert!(folder.info("a.obj").contains("vertex colours of ZBrush"));
+}
