@@ -20,6 +20,13 @@ impl<T> Shared<T> {
         Arc::ptr_eq(&a.0, &b.0)
     }
 
+    /// The address of the value: of two values that are kept, different ones have different
+    /// addresses.
+    #[must_use]
+    pub fn address(this: &Self) -> usize {
+        Arc::as_ptr(&this.0).addr()
+    }
+
     /// Whether both are the same value in memory, or neither is there.
     #[must_use]
     pub fn both_same(a: Option<&Self>, b: Option<&Self>) -> bool {

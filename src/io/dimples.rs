@@ -8,7 +8,7 @@ use crate::base::color::byte;
 use crate::base::image::{Picture, Size};
 use crate::scene::{
     FileMaterial, LoadOptions, MapKind, Material, Mesh, MeshSource, Model, Part, Smoothing,
-    SourceCorner, SurfaceMap, SurfaceMaps, Texture, Wrap,
+    SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
 };
 
 /// Its name in scene files.
@@ -111,6 +111,7 @@ pub(super) fn model() -> Shared<Model> {
             texture: None,
             maps: SurfaceMaps::from([(MapKind::Bump, SurfaceMap { texture, gain: GAIN })]),
             unlit: false,
+            undrawn: Undrawn::new(),
         }],
         edge_color: None,
     })

@@ -40,10 +40,12 @@ pub use mesh::edges::Edge;
 pub use mesh::outlines::CornerLists;
 pub use mesh::ray_tree::{RayTree, TREE_BLOCK, TreeBlock, TreeChild, TreeNode, TreeTriangle};
 pub use mesh::{
-    ClosedBodies, Corner, Mesh, MeshError, MeshSource, NONE, Part, Point, SourceCorner, Triangle,
-    dvec3, newell, split_positions,
+    ClosedBodies, Corner, Mesh, MeshError, MeshSource, NONE, Part, PartNames, Point, SourceCorner,
+    Triangle, dvec3, newell, split_positions,
 };
-pub use model::{BumpMaps, FileMaterial, LoadOptions, Model, Scale, UpAxis, Winding};
+pub use model::{
+    BumpMaps, FileMaterial, LoadOptions, Model, Scale, Undrawn, UpAxis, Winding,
+};
 pub use object::{Object, PartLook, Sides, Spin, Surface};
 pub use shapes::Shape;
 pub use smoothing::{Crease, Smoothing};

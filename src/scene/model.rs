@@ -1,5 +1,6 @@
 //! A model: the shape, materials and textures of a file, and how the file is read.
 
+use std::collections::BTreeMap;
 use std::ops::Neg;
 use std::path::PathBuf;
 
@@ -199,7 +200,12 @@ pub struct FileMaterial {
     pub maps: SurfaceMaps,
     /// Whether Kd alone is shown, whatever the light: `illum 0`.
     pub unlit: bool,
+    /// The numbers of statements that pictures do not show, as `Ni` and `Pr`, for exports.
+    pub undrawn: Undrawn,
 }
+
+/// The numbers of statements that pictures do not show, by keyword as it is usually spelled.
+pub type Undrawn = BTreeMap<&'static str, Vec<f64>>;
 
 #[cfg(test)]
 mod tests {

@@ -5,7 +5,10 @@ use std::collections::BTreeSet;
 use glam::{DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::{MapKind, MaterialChoice, Model, PresetId, SurfaceMap, SurfaceMaps, Texture, Tracked};
+use super::{
+    FileMaterial, MapKind, MaterialChoice, Model, PresetId, SurfaceMap, SurfaceMaps, Texture,
+    Tracked,
+};
 use crate::base::math::{self, Axis};
 use crate::base::{Shared, color::Color};
 
@@ -189,7 +192,12 @@ impl Object {
     #[must_use]
     pub fn part_look(&self, part: u32) -> PartLook<'_> {
         let named = self.model.mesh.parts().get(part as usize).and_then(|part| part.material);
-        let file = named.and_then(|material| self.model.materials.get(material as usize));
+        self.material_look(named.and_then(|material| self.model.materials.get(material as usize)))
+    }
+
+    /// The coefficients, opacity and texture of a part with this material of the model.
+    #[must_use]
+    pub fn material_look<'a>(&'a self, file: Option<&'a FileMaterial>) -> PartLook<'a> {
         let material = match &self.material {
             MaterialChoice::Preset(id) => id.get().material,
             MaterialChoice::Own(material) => *material,

@@ -24,7 +24,7 @@ pub struct Texture {
 }
 
 /// What a texture shows outside its borders.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Wrap {
     /// Its repetitions.
     #[default]

@@ -6,7 +6,7 @@ use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::scene::{
     FileMaterial, LoadOptions, MapKind, Material, MaterialChoice, Mesh, MeshSource, Model, NONE,
-    ObjectId, Part, SourceCorner, SurfaceMap, SurfaceMaps, Texture, Wrap,
+    ObjectId, Part, SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
 };
 
 use super::common::{at, ball, cube, draw, edit, square};
@@ -152,7 +152,15 @@ fn stencil() -> Shared<Model> {
         companions: Vec::new(),
         options: LoadOptions::default(),
         mesh: Mesh::new(source).expect("a good mesh"),
-        materials: vec![FileMaterial { name, material, opacity, texture, maps, unlit }],
+        materials: vec![FileMaterial {
+            name,
+            material,
+            opacity,
+            texture,
+            maps,
+            unlit,
+            undrawn: Undrawn::new(),
+        }],
         edge_color: None,
     })
 }

@@ -9,7 +9,7 @@ use marraztu::render::plan_frame;
 use marraztu::scene::{
     FileMaterial, Light, LightId, LightKind, LoadOptions, MapKind, Material, MaterialChoice, Mesh,
     MeshSource, Model, NONE, ObjectId, Part, Scene, SourceCorner, Surface, SurfaceMap, SurfaceMaps,
-    Texture, Tracked, View, Wrap,
+    Texture, Tracked, Undrawn, View, Wrap,
 };
 
 use super::common::{draw, edit, scene};
@@ -63,6 +63,7 @@ fn sheet(uvs: [[[f32; 2]; 4]; 2], maps: SurfaceMaps, material: Material) -> Shar
             texture: None,
             maps,
             unlit: false,
+            undrawn: Undrawn::new(),
         }],
         edge_color: None,
     })

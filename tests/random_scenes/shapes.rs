@@ -9,7 +9,7 @@ use marraztu::base::once::get_or_compute;
 use marraztu::base::rng::Rng;
 use marraztu::scene::{
     FileMaterial, LoadOptions, MapKind, Material, Mesh, MeshSource, Model, NONE, Part,
-    SourceCorner, SurfaceMap, SurfaceMaps, Texture, Wrap,
+    SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
 };
 
 /// Coefficients on both sides of what can be left out.
@@ -160,6 +160,7 @@ fn two_parts() -> Shared<Model> {
         texture: None,
         maps: SurfaceMaps::new(),
         unlit: false,
+        undrawn: Undrawn::new(),
     };
     model("two parts", source, vec![file("dull", dull, 1.0), file("shiny", shiny, 0.6)])
 }
@@ -224,6 +225,7 @@ pub(crate) fn mapped(rng: &mut Rng) -> Shared<Model> {
         texture: rng.percent(50).then(|| texture(rng)),
         maps: maps(rng),
         unlit: rng.percent(10),
+        undrawn: Undrawn::new(),
     };
     model("mapped", source, vec![file])
 }

@@ -42,7 +42,8 @@ impl Statements {
         }
         let unlit = self.illumination == Some(0.0);
         let material = Material { ambient, diffuse, specular, exponent, emission };
-        FileMaterial { name: self.name, material, opacity, texture, maps, unlit }
+        let (name, undrawn) = (self.name, self.undrawn);
+        FileMaterial { name, material, opacity, texture, maps, unlit, undrawn }
     }
 
     /// Light may be stronger than white, but not below 0.

@@ -25,7 +25,17 @@ use super::read::{MOST_WORDS, is_utf_16, read, utf_8};
 use super::texture::{Pictures, Read};
 use crate::base::Shared;
 use crate::base::image::Picture;
-use crate::scene::{BumpMaps, FileMaterial, MapKind, NONE, SurfaceMap, SurfaceMaps, Texture, Wrap};
+use crate::scene::{
+    BumpMaps, FileMaterial, MapKind, NONE, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
+};
+
+/// Statements with numbers that are not drawn: refraction, filters, sharpness, and physically based
+/// shading.
+const UNDRAWN: [&str; 11] =
+    ["Ni", "Tf", "Kt", "sharpness", "Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor"];
+
+/// The illumination models with reflections, refraction and shadows, which are drawn as model 2.
+const MODELS: std::ops::RangeInclusive<f64> = 3.0..=10.0;
 
 /// The most texels of all textures of a model: 2 GB.
 const MOST_TEXELS: usize = 1 << 29;
@@ -87,6 +97,7 @@ struct Statements {
     map: Option<(u32, Map)>,
     /// The other maps.
     maps: BTreeMap<MapKind, (u32, Map)>,
+    undrawn: Undrawn,
 }
 
 impl<'a> Library<'a> {
@@ -184,6 +195,8 @@ impl<'a> Library<'a> {
         {
             findings.add(FindingKind::MapUnused, "map_Ks", Some(line));
         }
+        statements.unpack();
+        statements.keep_one_relief();
         let mut read = |(line, map): &(u32, Map)| {
             for option in &map.ignored {
                 findings.add(FindingKind::MapOption, option, Some(*line));
@@ -330,7 +343,10 @@ impl Statements {
                 read = set(&mut self.opacity, statement::opacity(rest));
             }
             b"tr" => read = set(&mut self.transparency, statement::opacity(rest)),
-            b"illum" => read = set(&mut self.illumination, statement::exponent(rest)),
+            b"illum" => {
+                read = set(&mut self.illumination, statement::exponent(rest));
+                self.keep_model();
+            }
             b"ke" => read = set(&mut self.emission, statement::emission(rest)),
             b"bsdf" if words(rest).eq([b"pbr"]) => self.is_packed = true,
             b"map_kd" => {
@@ -348,13 +364,44 @@ impl Statements {
             _ if plain.starts_with(b"map_") => {
                 findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
             }
-            // Refraction, filters, sharpness, and physically based shading.
-            b"kt" | b"ni" | b"tf" | b"sharpness" | b"pr" | b"pm" | b"ps" | b"pc" | b"pcr"
-            | b"aniso" | b"anisor" => {}
+            _ if let Some(keyword) =
+                UNDRAWN.iter().find(|it| it.as_bytes().eq_ignore_ascii_case(keyword)) =>
+            {
+                // `Tf` may name a file of a spectrum, which is of no use elsewhere.
+                if let Some(numbers) = statement::numbers(rest) {
+                    self.undrawn.insert(*keyword, numbers);
+                }
+            }
             _ => findings.add(FindingKind::Unknown, &decode(keyword), Some(line.number)),
         }
         if !read {
             findings.add(FindingKind::MtlNumber, &decode(keyword), Some(line.number));
+        }
+    }
+
+    /// Takes roughness and metalness out of a packed Ks, as `Pr` and `Pm` would give them.
+    fn unpack(&mut self) {
+        if let Some([_, roughness, metalness]) = self.specular.filter(|_| self.is_packed) {
+            for (keyword, number) in [("Pr", roughness), ("Pm", metalness)] {
+                self.undrawn.entry(keyword).or_insert_with(|| vec![number.clamp(0.0, 1.0)]);
+            }
+        }
+    }
+
+    /// Removes the map of heights if it is the map of normals: some files, and exports of this
+    /// program, name it twice, for readers that know only one of the statements.
+    fn keep_one_relief(&mut self) {
+        let name = |kind| self.maps.get(&kind).map(|(_, map): &(u32, Map)| &map.name);
+        if name(MapKind::Bump).is_some() && name(MapKind::Bump) == name(MapKind::Normal) {
+            self.maps.remove(&MapKind::Bump);
+        }
+    }
+
+    /// Keeps the number of an illumination model that is drawn as another one.
+    fn keep_model(&mut self) {
+        self.undrawn.remove("illum");
+        if let Some(model) = self.illumination.filter(|model| MODELS.contains(model)) {
+            self.undrawn.insert("illum", vec![model]);
         }
     }
 }

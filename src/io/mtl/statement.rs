@@ -46,6 +46,12 @@ pub(super) fn single(word: &[u8]) -> Option<f64> {
     Some(number)
 }
 
+/// Up to three numbers; `None` if the first word is none.
+pub(super) fn numbers(rest: &[u8]) -> Option<Vec<f64>> {
+    let numbers: Vec<f64> = words(rest).take(3).map_while(single).collect();
+    (!numbers.is_empty()).then_some(numbers)
+}
+
 /// The name of `map_Kd name`.
 pub(super) fn texture(name: &str) -> Option<String> {
     material("map_Kd", name)?.diffuse_texture

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::chunks::{Chunks, Sizes};
 use super::faces::INHERITED;
 use super::lines::{Lines, unmarked};
-use super::parts::{PartNames, Parts};
+use super::parts::{NamedPart, Parts};
 use super::piece::{Counts, Piece, Stop};
 use super::rows::{NO_COLOR, Rows};
 use super::sound::{Before, SoundFaces, SoundPiece, Totals};
@@ -50,7 +50,7 @@ pub(super) struct Content {
     /// The first vertex that cannot be read, with the reason.
     pub(super) refused: Option<(u32, String)>,
     pub(super) faces: SoundFaces,
-    pub(super) parts: Vec<PartNames>,
+    pub(super) parts: Vec<NamedPart>,
     /// Whether any statement `s` says which faces are smooth.
     pub(super) has_smoothing: bool,
     /// What follows `mtllib`, with its lines.

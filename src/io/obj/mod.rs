@@ -34,7 +34,7 @@ use rayon::prelude::*;
 pub(in crate::io) use self::join::{BYTES_ABOVE, MOST_BYTES};
 
 use self::join::Content;
-use self::parts::PartNames;
+use self::parts::NamedPart;
 use self::sound::FaceRuns;
 use super::error::{LoadError, short_name, shown};
 use super::findings::{Finding, FindingKind, Findings, joined};
@@ -317,12 +317,13 @@ fn own_library(
 }
 
 /// The parts, by the names of their groups, objects or materials.
-fn named_parts(names: &[PartNames], library: &Library<'_>, findings: &mut Findings) -> Vec<Part> {
-    let part = |(i, names): (usize, &PartNames)| {
+fn named_parts(parts: &[NamedPart], library: &Library<'_>, findings: &mut Findings) -> Vec<Part> {
+    let named = |(i, part): (usize, &NamedPart)| {
+        let names = &part.names;
         let material = names.material.as_deref().and_then(|name| {
             let place = library.place(name);
             if place.is_none() && !name.is_empty() {
-                findings.add(FindingKind::MaterialUnknown, name, Some(names.line));
+                findings.add(FindingKind::MaterialUnknown, name, Some(part.line));
             }
             place
         });
@@ -331,7 +332,7 @@ fn named_parts(names: &[PartNames], library: &Library<'_>, findings: &mut Findin
         let name = name.cloned().unwrap_or_else(|| format!("part {}", i + 1));
         Part { name, material }
     };
-    names.iter().enumerate().map(part).collect()
+    parts.iter().enumerate().map(named).collect()
 }
 
 /// The lists of the mesh, turned and scaled as asked for; `None` if they are not finite.
@@ -342,6 +343,7 @@ fn source(
     options: &LoadOptions,
 ) -> Option<(MeshSource, CornerLists)> {
     let Content { mut positions, uvs, mut normals, colors, has_smoothing, .. } = content;
+    let part_names = content.parts.into_iter().map(|part| part.names).collect();
     if placement(options) != placement(&LoadOptions::default()) {
         place(&mut positions, &mut normals, options);
     }
@@ -375,6 +377,7 @@ fn source(
         arities,
         polygon_parts,
         parts,
+        part_names,
         smoothing,
     };
     finite.then_some((source, corners))

@@ -84,11 +84,11 @@ impl Piece {
             b"vn" => self.normal(rest, line.number),
             b"f" | b"fo" => self.face(rest, line.number)?,
             b"o" => self.parts.rename(|now| {
-                (now.object, now.group) = (Some(line.name()), None);
+                (now.names.object, now.names.group) = (Some(line.name()), None);
             }),
-            b"g" => self.parts.rename(|now| now.group = Some(line.name())),
+            b"g" => self.parts.rename(|now| now.names.group = Some(line.name())),
             b"usemtl" => self.parts.rename(|now| {
-                (now.material, now.line) = (Some(line.name()), line.number);
+                (now.names.material, now.line) = (Some(line.name()), line.number);
             }),
             b"mtllib" => self.libraries.push((line.number, line.name())),
             b"c" if self.edge_color(rest) => {}

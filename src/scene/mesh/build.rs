@@ -68,6 +68,7 @@ impl Mesh {
             starts,
             polygon_parts: source.polygon_parts,
             parts: source.parts,
+            part_names: source.part_names,
             found: FoundOfShape::default(),
         };
         Ok(Self {

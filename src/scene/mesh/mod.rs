@@ -61,6 +61,8 @@ pub struct MeshSource {
     pub polygon_parts: Vec<u32>,
     /// The parts; at least one if there is a polygon.
     pub parts: Vec<Part>,
+    /// What the file calls each part; empty if the mesh is not from a file.
+    pub part_names: Vec<PartNames>,
     /// Which polygons share computed normals.
     pub smoothing: Smoothing,
 }
@@ -83,6 +85,18 @@ pub struct Part {
     pub name: String,
     /// Its material, as an index into the model's list; `None` if the file names none that exists.
     pub material: Option<u32>,
+}
+
+/// What a file calls a part, statement by statement; each name is `None` before the first statement
+/// of its kind. Exports keep them apart, while the outline shows [`Part::name`].
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct PartNames {
+    /// The last `o`.
+    pub object: Option<String>,
+    /// The last `g` since then.
+    pub group: Option<String>,
+    /// The last `usemtl`, whether the material exists or not.
+    pub material: Option<String>,
 }
 
 /// A corner of a polygon.
@@ -143,6 +157,7 @@ pub(super) struct Shape {
     /// The vertices that no face uses, ascending.
     pub(super) unused: Vec<u32>,
     pub(super) parts: Vec<Part>,
+    pub(super) part_names: Vec<PartNames>,
     pub(super) bounds: Option<Bounds>,
     pub(super) mean: DVec3,
     pub(super) found: FoundOfShape,
@@ -159,6 +174,7 @@ impl PartialEq for Shape {
             && self.starts == other.starts
             && self.polygon_parts == other.polygon_parts
             && self.parts == other.parts
+            && self.part_names == other.part_names
     }
 }
 
@@ -312,6 +328,13 @@ impl Mesh {
     #[must_use]
     pub fn parts(&self) -> &[Part] {
         &self.shape.parts
+    }
+
+    /// What the file calls a part; nothing if the mesh is not from a file.
+    #[must_use]
+    pub fn part_names(&self, part: u32) -> &PartNames {
+        const NAMELESS: &PartNames = &PartNames { object: None, group: None, material: None };
+        self.shape.part_names.get(part as usize).unwrap_or(NAMELESS)
     }
 
     /// Whether any polygon has normals of the file.

@@ -18,7 +18,9 @@ use super::solids::{AROUND, Builder, turn};
 use crate::base::Shared;
 use crate::base::color::byte;
 use crate::base::image::{Picture, Size};
-use crate::scene::{FileMaterial, MapKind, Material, Part, SurfaceMap, SurfaceMaps, Texture, Wrap};
+use crate::scene::{
+    FileMaterial, MapKind, Material, Part, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
+};
 
 /// The texels of a row of the map.
 const SIDE: usize = 256;
@@ -84,6 +86,7 @@ pub(super) fn materials() -> Vec<FileMaterial> {
         texture: None,
         maps,
         unlit: false,
+        undrawn: Undrawn::new(),
     };
     vec![named("ground", SurfaceMaps::new()), named("rim", fading)]
 }

@@ -6,7 +6,7 @@ use marraztu::base::rng::Rng;
 use marraztu::render::Renderer;
 use marraztu::scene::{
     Command, Corner, FileMaterial, Item, Light, LightId, LightKind, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Part, SourceCorner, SpotOwner, Tracked,
+    MeshSource, Model, NONE, Object, ObjectId, Part, SourceCorner, SpotOwner, Tracked, Undrawn,
 };
 
 use super::plan::{SCENES, same, seeds};
@@ -106,7 +106,15 @@ fn with_unused_material(model: &Shared<Model>, rng: &mut Rng) -> Shared<Model> {
     let material = shapes::material(rng);
     let texture = Some(shapes::texture(rng));
     let (name, maps) = ("unused".to_owned(), shapes::maps(rng));
-    let unused = FileMaterial { name, material, opacity: 0.7, texture, maps, unlit: false };
+    let unused = FileMaterial {
+        name,
+        material,
+        opacity: 0.7,
+        texture,
+        maps,
+        unlit: false,
+        undrawn: Undrawn::new(),
+    };
     materials.insert(at, unused);
     let moved = |material: u32| if material as usize >= at { material + 1 } else { material };
     let part = |part: &Part| Part { name: part.name.clone(), material: part.material.map(moved) };
@@ -124,6 +132,7 @@ fn with_unused_material(model: &Shared<Model>, rng: &mut Rng) -> Shared<Model> {
         polygon_parts: mesh.polygon_parts().to_vec(),
         parts: mesh.parts().iter().map(part).collect(),
         smoothing: mesh.smoothing().clone(),
+        ..MeshSource::default()
     };
     Shared::new(Model {
         name: model.name.clone(),
