@@ -1,8 +1,8 @@
 //! The buffer of a glTF file, the numbers that point into it, and how numbers are written.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 use gltf_json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf_json::buffer::{Target, View};
 use gltf_json::validation::{Checked, USize64};
@@ -93,7 +93,7 @@ fn accessor(view: Index<View>, count: usize, component: ComponentType, kind: Typ
 /// The vertices of a mesh as glTF has them: each with all of its attributes.
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
-    numbers: BTreeMap<(u32, u32), u32>,
+    numbers: HashMap<(u32, u32), u32>,
     /// The point and the texture coordinates of each.
     pub(super) all: Vec<(u32, u32)>,
 }
@@ -114,7 +114,17 @@ pub(super) fn columns(world: &DMat4) -> [f32; 16] {
     world.to_cols_array().map(single)
 }
 
+/// Whether all numbers of a placement are finite as single ones.
+pub(super) fn is_single(world: &DMat4) -> bool {
+    world.to_cols_array().into_iter().all(|x| x.abs() <= f64::from(f32::MAX))
+}
+
+/// A number of glTF, which is single and finite: infinite ones become the largest.
 #[expect(clippy::cast_possible_truncation, reason = "numbers of glTF are single")]
 pub(super) const fn single(x: f64) -> f32 {
-    x as f32
+    if x.is_nan() { 0.0 } else { (x as f32).clamp(f32::MIN, f32::MAX) }
+}
+
+pub(super) fn single3(at: DVec3) -> [f32; 3] {
+    at.to_array().map(single)
 }

@@ -18,19 +18,24 @@ impl Writer<'_> {
     pub(super) fn camera(&mut self, camera: &Camera) {
         let lens = &camera.lens;
         let is_perspective = self.view.projection == Projection::Perspective;
+        // Planes that are one as single numbers are invalid; a picture in perspective needs no far
+        // one.
+        let near = single(lens.near).max(f32::MIN_POSITIVE);
         let perspective = gltf_json::camera::Perspective {
             aspect_ratio: None,
-            yfov: single(2.0 * lens.half_angle.to_radians()),
-            zfar: Some(single(lens.far)),
-            znear: single(lens.near),
+            yfov: single(2.0 * lens.half_angle.to_radians()).max(f32::MIN_POSITIVE),
+            zfar: Some(single(lens.far)).filter(|far| *far > near),
+            znear: near,
             extensions: None,
             extras: Default::default(),
         };
+        let half_size = single(lens.half_size).max(f32::MIN_POSITIVE);
+        let parallel_near = single(lens.parallel_near.max(0.0)).min(f32::MAX.next_down());
         let orthographic = gltf_json::camera::Orthographic {
-            xmag: single(lens.half_size),
-            ymag: single(lens.half_size),
-            zfar: single(lens.parallel_far),
-            znear: single(lens.parallel_near.max(0.0)),
+            xmag: half_size,
+            ymag: half_size,
+            zfar: single(lens.parallel_far).max(parallel_near.next_up()),
+            znear: parallel_near,
             extensions: None,
             extras: Default::default(),
         };
@@ -46,8 +51,8 @@ impl Writer<'_> {
             extras: Default::default(),
         });
         let matrix = Some(columns(&camera.pose.now().world_from_camera()));
-        let name = Some(camera.name.clone());
-        self.node(Node { camera: Some(index), matrix, name, ..Node::default() });
+        let named = self.named(&camera.name);
+        self.node(Node { camera: Some(index), matrix, ..named });
     }
 
     pub(super) fn lights(&mut self) {
@@ -71,8 +76,9 @@ impl Writer<'_> {
         for (i, (light, world)) in (0..).zip(all) {
             let of_node = punctual::KhrLightsPunctual { light: Index::new(i) };
             let extensions = extensions::scene::Node { khr_lights_punctual: Some(of_node) };
-            let (name, matrix) = (light.name.clone(), Some(columns(&world)));
-            self.node(Node { extensions: Some(extensions), name, matrix, ..Node::default() });
+            let named = self.named(light.name.as_deref().unwrap_or_default());
+            let matrix = Some(columns(&world));
+            self.node(Node { extensions: Some(extensions), matrix, ..named });
             lights.push(light);
         }
         let of_root = extensions::root::KhrLightsPunctual { lights };
@@ -114,6 +120,9 @@ impl Writer<'_> {
         let spot = (kind == punctual::Type::Spot).then(|| {
             let half_aperture = (HALF_APERTURE.get)(&light.kind).unwrap_or(HALF_APERTURE.largest);
             let outer_cone_angle = single(half_aperture.to_radians());
+            // The angle is above 0 and at most pi/2, which the nearest single number exceeds.
+            let widest = std::f32::consts::FRAC_PI_2.next_down();
+            let outer_cone_angle = outer_cone_angle.clamp(f32::MIN_POSITIVE, widest);
             punctual::Spot { inner_cone_angle: 0.0, outer_cone_angle }
         });
         let intensity = match kind {
@@ -150,6 +159,6 @@ impl Writer<'_> {
         let centres = objects.map(|(_, object)| object.centre(self.view.time));
         let (sum, count) = centres.fold((DVec3::ZERO, 0.0), |(sum, n), p| (sum + p, n + 1.0));
         let d = if count > 0.0 { at.distance(sum / count).max(1.0) } else { 1.0 };
-        single(d * d / (fades.constant + fades.linear * d + fades.quadratic * d * d))
+        single(d * d / (fades.constant + fades.linear * d + fades.quadratic * d * d)).max(0.0)
     }
 }

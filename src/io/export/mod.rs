@@ -7,8 +7,11 @@ mod companion;
 mod gltf;
 mod gltf_buffer;
 mod gltf_lights;
+mod gltf_mesh;
 mod gltf_surface;
+mod gltf_texture;
 mod look;
+mod names;
 mod obj;
 
 use std::path::{Path, PathBuf};

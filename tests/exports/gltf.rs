@@ -1,0 +1,211 @@
+//! What an exported glTF file says: colours, opacity, textures and names.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::{grey, image, json as read, put, put_picture, runs};
+
+const SQUARE: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n\
+                      vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+
+/// A square with a material of these statements, as glTF.
+fn exported(folder: &Path, statements: &str) -> Value {
+    let text = format!("{SQUARE}usemtl m\nf 1/1 2/2 3/3 4/4\n");
+    put(folder, &[("a.obj", &text), ("a.mtl", &format!("newmtl m\n{statements}\n"))]);
+    runs(folder, &["export", "a.obj", "--out", "b.gltf"]);
+    read(&folder.join("b.gltf"))
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+#[track_caller]
+fn near(value: &Value, expected: &[f64]) {
+    let found = numbers(value);
+    assert_eq!(found.len(), expected.len());
+    let is_near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-6;
+    assert!(found.iter().zip(expected).all(is_near), "{found:?} instead of {expected:?}");
+}
+
+#[test]
+fn the_colour_of_a_textured_material_is_its_factor() {
+    let folder = tempfile::tempdir().unwrap();
+    put_picture(folder.path(), "t.png", 4, |x, y| [u8::from(x < y) * 200, 9, 9, 255]);
+    let gltf = exported(folder.path(), "Kd .5 .25 1\nKs 0 0 0\nmap_Kd t.png");
+    let material = &gltf["materials"][0];
+    assert_eq!(material["name"], "m");
+    let surface = &material["pbrMetallicRoughness"];
+    // ((s + 0.055) / 1.055)^2.4 of a half and a quarter.
+    near(&surface["baseColorFactor"], &[0.214_041_14, 0.050_876_09, 1.0, 1.0]);
+    assert_eq!(surface["baseColorTexture"]["index"], 0);
+    assert!(material.get("alphaMode").is_none_or(|mode| mode == "OPAQUE"));
+    assert_eq!(gltf["images"][0]["name"], "t");
+}
+
+#[test]
+fn opacity_between_all_and_nothing_blends_and_holes_are_masked() {
+    let folder = tempfile::tempdir().unwrap();
+    let soft = |x: usize, _| [255, 0, 0, u8::try_from(x * 80).unwrap()];
+    put_picture(folder.path(), "soft.png", 4, soft);
+    let hard = |x: usize, _| [255, 0, 0, if x < 2 { 0 } else { 255 }];
+    put_picture(folder.path(), "hard.png", 4, hard);
+    let white = |x: usize, _| if x < 2 { [0, 0, 0, 255] } else { [255; 4] };
+    put_picture(folder.path(), "white.png", 4, white);
+    put_picture(folder.path(), "grey.png", 4, |_, _| grey(100));
+    let rows = [
+        ("map_Kd soft.png", json!("BLEND"), Value::Null),
+        ("map_Kd hard.png", json!("MASK"), json!(0.5)),
+        ("map_Kd hard.png\nd .5", json!("BLEND"), Value::Null),
+        ("d .5", json!("BLEND"), Value::Null),
+        ("map_d white.png", json!("MASK"), json!(0.5)),
+        ("map_Kd grey.png\nmap_d white.png", json!("MASK"), json!(0.5)),
+        ("map_d grey.png", json!("BLEND"), Value::Null),
+        ("map_d soft.png", json!("BLEND"), Value::Null),
+        ("map_Kd soft.png\nmap_d soft.png", json!("BLEND"), Value::Null),
+    ];
+    for (statements, mode, cutoff) in rows {
+        let gltf = exported(folder.path(), &format!("Kd 1 1 1\nKs 0 0 0\n{statements}"));
+        let material = &gltf["materials"][0];
+        assert_eq!(material["alphaMode"], mode, "{statements}");
+        assert_eq!(material["alphaCutoff"], cutoff, "{statements}");
+        let texture = &material["pbrMetallicRoughness"]["baseColorTexture"];
+        assert_eq!(texture.is_null(), !statements.contains("map"), "{statements}");
+    }
+}
+
+#[test]
+fn a_map_of_opacity_is_in_the_alpha_of_the_texture() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("b.gltf");
+    let color =
+        |x: usize, y: usize| [u8::try_from(x * 50).unwrap(), u8::try_from(y).unwrap(), 7, 255];
+    put_picture(folder.path(), "color.png", 4, color);
+    let map = |x: usize, y: usize| grey(u8::try_from(x * 60 + y).unwrap());
+    put_picture(folder.path(), "map.png", 4, map);
+    put_picture(folder.path(), "large.png", 8, |x, y| map(x / 2, y / 2));
+
+    // Of the same size, each texel keeps its colour and gets the brightness of the map.
+    let gltf = exported(folder.path(), "Kd 1 1 1\nKs 0 0 0\nmap_Kd color.png\nmap_d map.png");
+    let merged = image(&path, &gltf, 0);
+    for (i, pixel) in merged.pixels().iter().enumerate() {
+        let (x, y) = (i % 4, i / 4);
+        let ([r, g, b, _], [alpha, ..]) = (color(x, y), map(x, y));
+        assert_eq!(*pixel, [r, g, b, alpha]);
+    }
+    // Without a texture it is white.
+    let gltf = exported(folder.path(), "Kd 1 1 1\nKs 0 0 0\nmap_d map.png");
+    let merged = image(&path, &gltf, 0);
+    assert_eq!(merged.pixel(2, 3), [255, 255, 255, 123]);
+    // The larger size is kept: in the middle of four equal texels nothing is mixed.
+    let gltf = exported(folder.path(), "Kd 1 1 1\nKs 0 0 0\nmap_Kd map.png\nmap_d large.png");
+    let merged = image(&path, &gltf, 0);
+    assert_eq!(merged.size(), marraztu::base::image::Size::new(8, 8));
+    assert_eq!(merged.pixel(4, 2)[3], map(2, 1)[0]);
+    // Laid out otherwise: a map at twice the scale repeats twice.
+    let gltf =
+        exported(folder.path(), "Kd 1 1 1\nKs 0 0 0\nmap_Kd large.png\nmap_d -s 2 2 1 map.png");
+    let merged = image(&path, &gltf, 0);
+    for x in 0..4 {
+        assert_eq!(merged.pixel(x, 5)[3], map(x, 1)[0]);
+        assert_eq!(merged.pixel(x + 4, 1)[3], map(x, 1)[0]);
+    }
+}
+
+#[test]
+fn a_texture_without_texture_coordinates_is_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    put_picture(folder.path(), "t.png", 2, |_, _| [1, 2, 3, 100]);
+    let mtl = "newmtl m\nKd .5 .25 1\nKs 0 0 0\nmap_Kd t.png\nmap_d t.png\nnorm t.png\n";
+    let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl m\nf 1 2 3\n";
+    put(folder.path(), &[("a.obj", obj), ("a.mtl", mtl)]);
+    runs(folder.path(), &["export", "a.obj", "--out", "b.gltf"]);
+    let gltf = read(&folder.path().join("b.gltf"));
+    let material = &gltf["materials"][0];
+    assert!(material["normalTexture"].is_null() && gltf["textures"].is_null());
+    let surface = &material["pbrMetallicRoughness"];
+    assert!(surface["baseColorTexture"].is_null());
+    near(&surface["baseColorFactor"], &[0.214_041_14, 0.050_876_09, 1.0, 1.0]);
+}
+
+#[test]
+fn maps_that_are_laid_out_differently_have_texture_coordinates_each() {
+    let folder = tempfile::tempdir().unwrap();
+    put_picture(folder.path(), "t.png", 2, |_, _| [128, 128, 255, 255]);
+    let statements = "Kd 1 1 1\nKs 0 0 0\nmap_Kd t.png\nmap_Ke -s 2 2 1 t.png\nnorm t.png";
+    let gltf = exported(folder.path(), statements);
+    let material = &gltf["materials"][0];
+    let set = |info: &Value| info["texCoord"].as_u64().unwrap_or(0);
+    assert_eq!(set(&material["pbrMetallicRoughness"]["baseColorTexture"]), 0);
+    assert_eq!(set(&material["emissiveTexture"]), 1);
+    assert_eq!(set(&material["normalTexture"]), 0);
+    let attributes = &gltf["meshes"][0]["primitives"][0]["attributes"];
+    assert!(attributes["TEXCOORD_1"].is_u64() && attributes["TEXCOORD_2"].is_null());
+    assert_eq!(gltf["textures"].as_array().unwrap().len(), 1, "one picture is one texture");
+}
+
+#[test]
+fn roughness_and_metalness_of_the_file_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let gltf = exported(folder.path(), "Kd 1 1 1\nKs 0 0 0\nNs 90\nPr .25\nPm .75\nKe 2 0 .5");
+    let material = &gltf["materials"][0];
+    let surface = &material["pbrMetallicRoughness"];
+    assert_eq!(
+        (&surface["roughnessFactor"], &surface["metallicFactor"]),
+        (&json!(0.25), &json!(0.75))
+    );
+    let strength = material["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"]
+        .as_f64()
+        .unwrap();
+    assert!((strength - 4.953_837).abs() < 1e-5, "2 as linear light: {strength}");
+    near(&material["emissiveFactor"], &[1.0, 0.0, 0.214_041_14 / strength]);
+}
+
+/// The tree of nodes with meshes, as names.
+fn tree(gltf: &Value, node: &Value) -> Value {
+    let node = &gltf["nodes"][usize::try_from(node.as_u64().unwrap()).unwrap()];
+    let children = node["children"].as_array().cloned().unwrap_or_default();
+    let below: Vec<Value> = children.iter().map(|child| tree(gltf, child)).collect();
+    json!([node["name"], node["mesh"].is_u64(), below])
+}
+
+fn trees(folder: &Path, obj: &str) -> Vec<Value> {
+    put(folder, &[("a.obj", obj)]);
+    runs(folder, &["export", "a.obj", "--out", "b.gltf"]);
+    let gltf = read(&folder.join("b.gltf"));
+    let nodes = gltf["scenes"][0]["nodes"].as_array().unwrap();
+    let of_objects = nodes.iter().filter(|node| {
+        let node = &gltf["nodes"][usize::try_from(node.as_u64().unwrap()).unwrap()];
+        node["camera"].is_null() && node["extensions"].is_null()
+    });
+    of_objects.map(|node| tree(&gltf, node)).collect()
+}
+
+#[test]
+fn each_object_and_group_of_a_file_is_a_node() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = [
+        ("f 1 2 3\n", json!(["a", true, []])),
+        ("o Body\nf 1 2 3\n", json!(["Body", true, []])),
+        ("o Body\ng Body\nf 1 2 3\n", json!(["Body", true, []])),
+        ("g door\nf 1 2 3\n", json!(["door", true, []])),
+        ("o Body\ng door\nf 1 2 3\n", json!(["Body", false, [["door", true, []]]])),
+        (
+            "g door\nf 1 2 3\ng roof\nf 1 3 4\ng door\nf 2 3 4\n",
+            json!(["a", false, [["door", true, []], ["roof", true, []]]]),
+        ),
+        (
+            "o Body\nf 1 2 3\ng door\nf 1 3 4\no Wheels\ng door\nf 2 3 4\n",
+            json!([
+                "a",
+                false,
+                [["Body", true, [["door", true, []]]], ["Wheels", false, [["door.001", true, []]]],]
+            ]),
+        ),
+    ];
+    for (faces, expected) in rows {
+        let found = trees(folder.path(), &format!("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n{faces}"));
+        assert_eq!(found, [expected], "{faces}");
+    }
+}

@@ -1,0 +1,66 @@
+//! Exports as other programs read them.
+//!
+//! Catches: glTF that Khronos' validator refuses, names and numbers that get lost, colours and
+//! opacity that other programs show differently.
+
+#![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
+
+mod again;
+mod gltf;
+mod validator;
+
+use std::path::Path;
+use std::process::{Command as Process, Output};
+
+use marraztu::base::image::{Picture, Size};
+use marraztu::io;
+use serde_json::Value;
+
+/// Runs the program in a folder.
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    let program = env!("CARGO_BIN_EXE_marraztu");
+    Process::new(program).current_dir(folder).args(arguments).output().unwrap()
+}
+
+/// Runs the program in a folder, and gives what it says.
+#[track_caller]
+fn runs(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{arguments:?}\n{text}");
+    text
+}
+
+/// Writes text files into a folder.
+fn put(folder: &Path, files: &[(&str, &str)]) {
+    for (name, text) in files {
+        std::fs::write(folder.join(name), text).unwrap();
+    }
+}
+
+/// Writes a picture of `side` texels each way.
+fn put_picture(folder: &Path, name: &str, side: usize, texel: impl Fn(usize, usize) -> [u8; 4]) {
+    let pixels = (0..side * side).map(|i| texel(i % side, i / side)).collect();
+    let picture = Picture::from_pixels(Size::new(side, side), pixels).unwrap();
+    io::save_picture(&folder.join(name), &picture).unwrap();
+}
+
+const fn grey(value: u8) -> [u8; 4] {
+    [value, value, value, 255]
+}
+
+/// The JSON of a .gltf file.
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+/// The bytes of the buffer view of an image of a .gltf file.
+fn image(path: &Path, json: &Value, image: usize) -> Picture {
+    let number = |value: &Value| usize::try_from(value.as_u64().unwrap()).unwrap();
+    let view = &json["bufferViews"][number(&json["images"][image]["bufferView"])];
+    let (start, length) = (number(&view["byteOffset"]), number(&view["byteLength"]));
+    let buffer = std::fs::read(path.with_extension("bin")).unwrap();
+    let file = path.with_extension("image.png");
+    std::fs::write(&file, &buffer[start..start + length]).unwrap();
+    io::load_picture(&file).unwrap()
+}
