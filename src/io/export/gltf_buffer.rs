@@ -54,7 +54,11 @@ impl Buffer {
             }),
             Limits::LeftOut => [None, None],
         };
-        let kind = if N == 2 { Type::Vec2 } else { Type::Vec3 };
+        let kind = match N {
+            2 => Type::Vec2,
+            3 => Type::Vec3,
+            _ => Type::Vec4,
+        };
         root.push(Accessor { min, max, ..accessor(view, all.len(), ComponentType::F32, kind) })
     }
 
@@ -90,21 +94,31 @@ fn accessor(view: Index<View>, count: usize, component: ComponentType, kind: Typ
     }
 }
 
-/// The vertices of a mesh as glTF has them: each with all of its attributes.
+/// A vertex of glTF, which has all attributes of a corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Vertex {
+    /// The point, with the position and the normal.
+    pub(super) point: u32,
+    /// The texture coordinates, or [`crate::scene::NONE`].
+    pub(super) uv: u32,
+    /// The bits of the tangent, all 0 if none is needed.
+    pub(super) tangent: [u32; 4],
+}
+
+/// The vertices of a primitive, each once.
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
-    numbers: HashMap<(u32, u32), u32>,
-    /// The point and the texture coordinates of each.
-    pub(super) all: Vec<(u32, u32)>,
+    numbers: HashMap<Vertex, u32>,
+    pub(super) all: Vec<Vertex>,
 }
 
 impl Vertices {
-    /// The number of the vertex with this point and these texture coordinates.
-    pub(super) fn number(&mut self, point: u32, uv: u32) -> u32 {
+    /// The number of a vertex.
+    pub(super) fn number(&mut self, vertex: Vertex) -> u32 {
         let next = u32::try_from(self.all.len()).unwrap_or(u32::MAX);
-        let number = *self.numbers.entry((point, uv)).or_insert(next);
+        let number = *self.numbers.entry(vertex).or_insert(next);
         if number == next {
-            self.all.push((point, uv));
+            self.all.push(vertex);
         }
         number
     }

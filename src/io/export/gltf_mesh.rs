@@ -12,12 +12,12 @@ use gltf_json::scene::{Node, UnitQuaternion};
 use gltf_json::validation::Checked;
 
 use super::gltf::Writer;
-use super::gltf_buffer::{Limits, Vertices, columns, is_single, single, single3};
+use super::gltf_buffer::{Limits, Vertex, Vertices, columns, is_single, single, single3};
 use super::gltf_surface::linear;
 use super::gltf_texture::{Layout, layouts};
 use super::look::{has_colors, polygons};
 use crate::base::math;
-use crate::scene::{Mesh, NONE, Object, dvec3};
+use crate::scene::{MapKind, Mesh, NONE, NormalSource, Object, dvec3};
 
 /// The largest scale of a placement that is written as a matrix: its entries are then exact to 1e-6.
 const LARGEST_IN_MATRIX: f64 = 10.0;
@@ -157,18 +157,25 @@ impl Writer<'_> {
     ) -> Option<Primitive> {
         let mesh = &object.model.mesh;
         let is_mirrored = DMat3::from_mat4(*baked).determinant() < 0.0;
+        let is_bumpy = self.looks.all[look].map(MapKind::Normal).is_some();
+        let source = if object.file_normals { NormalSource::File } else { NormalSource::Computed };
+        // Readers differ in the tangents that they would compute for a map of normals.
+        let tangents = is_bumpy.then(|| mesh.tangents(source));
         let mut vertices = Vertices::default();
         let mut indices = Vec::new();
-        for triangle in polygons.iter().flat_map(|it| &mesh.triangles()[mesh.triangles_of(*it)]) {
-            let mut corners = triangle.corners.map(|i| {
-                let corner = mesh.corners()[i as usize];
-                let point = if object.file_normals { corner.filed } else { corner.smooth };
-                vertices.number(point, corner.uv)
+        for triangle in polygons.iter().flat_map(|polygon| mesh.triangles_of(*polygon)) {
+            let mut corners = std::array::from_fn(|i| {
+                let corner = mesh.corners()[mesh.triangles()[triangle].corners[i] as usize];
+                vertices.number(Vertex {
+                    point: if object.file_normals { corner.filed } else { corner.smooth },
+                    uv: corner.uv,
+                    tangent: tangents.map_or([0; 4], |all| all[triangle][i].map(f32::to_bits)),
+                })
             });
             if is_mirrored {
                 corners.reverse();
             }
-            indices.extend(corners);
+            indices.extend::<[u32; 3]>(corners);
         }
         if indices.is_empty() {
             return None;
@@ -177,20 +184,27 @@ impl Writer<'_> {
         let (root, buffer) = (&mut self.root, &mut self.buffer);
         let mut attributes = BTreeMap::new();
         let mut put = |semantic, accessor| attributes.insert(Checked::Valid(semantic), accessor);
-        let points = || vertices.all.iter().map(|(point, _)| mesh.points()[*point as usize]);
+        let points = || vertices.all.iter().map(|it| mesh.points()[it.point as usize]);
         let positions: Vec<_> = points().map(|point| placed(baked, mesh, point.position)).collect();
         put(Semantic::Positions, buffer.floats(root, &positions, Limits::Told));
         let normals: Vec<_> = points().map(|point| turned(baked, point.normal)).collect();
         put(Semantic::Normals, buffer.floats(root, &normals, Limits::LeftOut));
-        let uv = |uv: u32| mesh.uvs().get(uv as usize).copied().unwrap_or_default();
+        if is_bumpy {
+            let tangent = |(vertex, normal): (&Vertex, &[f32; 3])| {
+                tangent(baked, vertex.tangent.map(f32::from_bits), *normal)
+            };
+            let tangents: Vec<_> = vertices.all.iter().zip(&normals).map(tangent).collect();
+            put(Semantic::Tangents, buffer.floats(root, &tangents, Limits::LeftOut));
+        }
+        let uv = |it: &Vertex| mesh.uvs().get(it.uv as usize).copied().unwrap_or_default();
         for (i, layout) in (0..).zip(&layouts) {
-            let uvs: Vec<_> = vertices.all.iter().map(|(_, it)| layout.laid(uv(*it))).collect();
+            let uvs: Vec<_> = vertices.all.iter().map(|it| layout.laid(uv(it))).collect();
             put(Semantic::TexCoords(i), buffer.floats(root, &uvs, Limits::LeftOut));
         }
         // Texture coordinates that nothing uses here may be of use elsewhere.
-        if layouts.is_empty() && vertices.all.iter().any(|(_, uv)| *uv != NONE) {
+        if layouts.is_empty() && vertices.all.iter().any(|it| it.uv != NONE) {
             let plain = Layout::default();
-            let uvs: Vec<_> = vertices.all.iter().map(|(_, it)| plain.laid(uv(*it))).collect();
+            let uvs: Vec<_> = vertices.all.iter().map(|it| plain.laid(uv(it))).collect();
             put(Semantic::TexCoords(0), buffer.floats(root, &uvs, Limits::LeftOut));
         }
         if has_colors(object) {
@@ -228,6 +242,16 @@ fn turned(baked: &DMat4, normal: [f32; 3]) -> [f32; 3] {
     }
     let placed = math::normal_matrix(DMat3::from_mat4(*baked)) * own;
     single3(math::unit(placed).or_else(|| math::unit(own)).unwrap_or(DVec3::Y))
+}
+
+/// A tangent in the space of the node, of length 1, with the sign of the bitangent; any one across
+/// the normal if texture coordinates give none.
+fn tangent(baked: &DMat4, [x, y, z, sign]: [f32; 4], normal: [f32; 3]) -> [f32; 4] {
+    let turn = DMat3::from_mat4(*baked);
+    let placed = math::unit(turn * dvec3([x, y, z]));
+    let [x, y, z] = single3(placed.unwrap_or_else(|| dvec3(normal).any_orthonormal_vector()));
+    let sign = if sign < 0.0 { -1.0 } else { 1.0 };
+    [x, y, z, if turn.determinant() < 0.0 { -sign } else { sign }]
 }
 
 /// A node with a placement: a matrix, or its factors if it enlarges, since a matrix of large single

@@ -8,6 +8,7 @@ mod map;
 mod mend;
 mod normal_map;
 mod statement;
+mod undrawn;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -28,14 +29,6 @@ use crate::base::image::Picture;
 use crate::scene::{
     BumpMaps, FileMaterial, MapKind, NONE, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
 };
-
-/// Statements with numbers that are not drawn: refraction, filters, sharpness, and physically based
-/// shading.
-const UNDRAWN: [&str; 11] =
-    ["Ni", "Tf", "Kt", "sharpness", "Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor"];
-
-/// The illumination models with reflections, refraction and shadows, which are drawn as model 2.
-const MODELS: std::ops::RangeInclusive<f64> = 3.0..=10.0;
 
 /// The most texels of all textures of a model: 2 GB.
 const MOST_TEXELS: usize = 1 << 29;
@@ -364,27 +357,11 @@ impl Statements {
             _ if plain.starts_with(b"map_") => {
                 findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
             }
-            _ if let Some(keyword) =
-                UNDRAWN.iter().find(|it| it.as_bytes().eq_ignore_ascii_case(keyword)) =>
-            {
-                // `Tf` may name a file of a spectrum, which is of no use elsewhere.
-                if let Some(numbers) = statement::numbers(rest) {
-                    self.undrawn.insert(*keyword, numbers);
-                }
-            }
+            _ if self.keep_undrawn(keyword, rest) => {}
             _ => findings.add(FindingKind::Unknown, &decode(keyword), Some(line.number)),
         }
         if !read {
             findings.add(FindingKind::MtlNumber, &decode(keyword), Some(line.number));
-        }
-    }
-
-    /// Takes roughness and metalness out of a packed Ks, as `Pr` and `Pm` would give them.
-    fn unpack(&mut self) {
-        if let Some([_, roughness, metalness]) = self.specular.filter(|_| self.is_packed) {
-            for (keyword, number) in [("Pr", roughness), ("Pm", metalness)] {
-                self.undrawn.entry(keyword).or_insert_with(|| vec![number.clamp(0.0, 1.0)]);
-            }
         }
     }
 
@@ -394,14 +371,6 @@ impl Statements {
         let name = |kind| self.maps.get(&kind).map(|(_, map): &(u32, Map)| &map.name);
         if name(MapKind::Bump).is_some() && name(MapKind::Bump) == name(MapKind::Normal) {
             self.maps.remove(&MapKind::Bump);
-        }
-    }
-
-    /// Keeps the number of an illumination model that is drawn as another one.
-    fn keep_model(&mut self) {
-        self.undrawn.remove("illum");
-        if let Some(model) = self.illumination.filter(|model| MODELS.contains(model)) {
-            self.undrawn.insert("illum", vec![model]);
         }
     }
 }
