@@ -7,7 +7,7 @@ use marraztu::accuracy::{Settings, Shot};
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::edit::items;
-use marraztu::io::{self, Loaded, Progress};
+use marraztu::io::{self, Loaded, Progress, Sources};
 use marraztu::render::{Renderer, plan_frame};
 use marraztu::scene::{
     FileMaterial, LoadOptions, MaterialChoice, Model, Object, PartNames, PresetId,
@@ -158,7 +158,7 @@ fn presets_are_called_by_their_names_and_objects_as_the_user_calls_them() {
         marraztu::scene::Command::Replace(item).apply(&mut scene).unwrap();
     }
     let path = folder.path().join("first.obj");
-    io::export(&path, &scene, &view).unwrap();
+    io::export(&path, &scene, &view, &Sources::default()).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     let named = |statement: &str| -> Vec<String> {
         text.lines().filter_map(|line| line.strip_prefix(statement)).map(str::to_owned).collect()

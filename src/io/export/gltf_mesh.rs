@@ -41,7 +41,7 @@ struct Sorted<'a> {
 
 impl Writer<'_> {
     pub(super) fn object(&mut self, object: &Object) {
-        let world = object.world_from_object(self.view.time);
+        let world = object.world_from_mesh(self.view.time);
         // A matrix of glTF has to be a product of moving, turning and scaling: others go into the
         // positions.
         let baked = if is_product(&world) { DMat4::IDENTITY } else { world };

@@ -11,14 +11,17 @@ mod mtl;
 
 use std::fmt::Write;
 
-use glam::{DMat3, DMat4};
+use glam::{DMat3, DMat4, DVec3};
 
 use self::called::Names;
 use super::look::{Detail, Looks, has_colors, polygons};
 use super::names::companion;
 use super::{Content, SIGNATURE};
 use crate::base::math::{normal_matrix, unit};
-use crate::scene::{Corner, Mesh, NONE, Object, Scene, View, dvec3};
+use crate::scene::{Corner, NONE, Object, Scene, View, dvec3};
+
+/// An object that is farther from the origin than this many times its size is far.
+const FAR: f64 = 256.0;
 
 /// An OBJ file that is being written.
 struct Writer {
@@ -64,8 +67,7 @@ pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content,
 impl Writer {
     fn object(&mut self, object: &Object, time: f64) {
         let mesh = &object.model.mesh;
-        let world = object.world_from_object(time);
-        let turn = DMat3::from_mat4(world);
+        let turn = DMat3::from_mat4(object.world_from_object(time));
         self.names.begin(object);
         self.looks.add_file(object);
         self.names.object_without_faces(object, &mut self.text);
@@ -78,7 +80,7 @@ impl Writer {
         let positions = Numbers::of(mesh.positions().len(), all, corners().map(|it| it.position));
         let uvs = Numbers::of(mesh.uvs().len(), all, corners().map(|it| it.uv));
         let normals = Numbers::of(mesh.points().len(), false, corners().map(|it| point(&it)));
-        self.vertices(object, &world, &positions);
+        self.vertices(object, time, &positions);
         for uv in &uvs.used {
             let [u, v] = mesh.uvs()[*uv as usize];
             let _ = writeln!(self.text, "vt {u} {v}");
@@ -116,14 +118,17 @@ impl Writer {
     }
 
     /// Writes positions, with their colours if these are shown.
-    fn vertices(&mut self, object: &Object, world: &DMat4, positions: &Numbers) {
+    fn vertices(&mut self, object: &Object, time: f64, positions: &Numbers) {
         let mesh = &object.model.mesh;
         let colors = if has_colors(object) { mesh.colors() } else { &[] };
+        let world_from_mesh = object.world_from_mesh(time);
+        let is_far = is_far(object, time);
         for position in &positions.used {
-            let [x, y, z] = placed(world, mesh, *position);
+            let place = mesh.positions()[*position as usize];
+            place_to(&mut self.text, &world_from_mesh, place, is_far);
             let _ = match colors.get(*position as usize) {
-                Some([r, g, b]) => writeln!(self.text, "v {x} {y} {z} {r} {g} {b}"),
-                None => writeln!(self.text, "v {x} {y} {z}"),
+                Some([r, g, b]) => writeln!(self.text, " {r} {g} {b}"),
+                None => writeln!(self.text),
             };
         }
     }
@@ -160,13 +165,26 @@ impl Numbers {
     }
 }
 
-/// A position in the world; unchanged, bit for bit, if the object is not moved.
-fn placed(world: &DMat4, mesh: &Mesh, position: u32) -> [f32; 3] {
-    let position = mesh.positions()[position as usize];
-    if *world == DMat4::IDENTITY {
-        return position;
-    }
-    world.transform_point3(dvec3(position)).as_vec3().to_array()
+/// Whether an object is so far from the origin that its positions need more digits than single
+/// numbers have.
+fn is_far(object: &Object, time: f64) -> bool {
+    let sphere = object.bounding_sphere(time);
+    object.model.mesh.offset() != DVec3::ZERO
+        || sphere.is_some_and(|(centre, radius)| centre.length() > FAR * radius)
+}
+
+/// Writes a position in the world; unchanged, bit for bit, if the object is not moved.
+fn place_to(text: &mut String, world_from_mesh: &DMat4, position: [f32; 3], is_far: bool) {
+    let place = world_from_mesh.transform_point3(dvec3(position));
+    let _ = if *world_from_mesh == DMat4::IDENTITY {
+        let [x, y, z] = position;
+        write!(text, "v {x} {y} {z}")
+    } else if is_far {
+        write!(text, "v {} {} {}", place.x, place.y, place.z)
+    } else {
+        let [x, y, z] = place.as_vec3().to_array();
+        write!(text, "v {x} {y} {z}")
+    };
 }
 
 /// A normal in the world, of length 1.
