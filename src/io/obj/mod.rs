@@ -152,7 +152,7 @@ fn model(
 ) -> Result<Loaded, LoadError> {
     let parts = named_parts(&content.parts, &library, &mut findings);
     let used = parts.iter().filter_map(|part| part.material).collect();
-    if library.count() > 0 && content.parts.iter().all(|part| part.material.is_none()) {
+    if library.count() > 0 && content.parts.iter().all(|part| part.names.material.is_none()) {
         findings.note_count(FindingKind::MaterialsUnused, library.count());
     }
     let companions = library.files();
@@ -305,7 +305,7 @@ fn own_library(
         }
         return;
     };
-    let names_materials = content.parts.iter().any(|part| part.material.is_some());
+    let names_materials = content.parts.iter().any(|part| part.names.material.is_some());
     if missing.is_empty() && !names_materials {
         return findings.add(FindingKind::MtlUnnamed, &short_name(&mtl), None);
     }
