@@ -48,7 +48,8 @@ fn folder() -> TempDir {
 /// The picture that `render` draws with these arguments and a small size.
 #[track_caller]
 fn drawn(folder: &Path, arguments: &[&str], input: &[u8]) -> Picture {
-    let all = [&["render", "--out", "drawn.png", "--size", "96x64"], arguments].concat();
+    let all = [&["render", "--out", "drawn.png", "--size", "96x64", "--samples", "1"], arguments]
+        .concat();
     ends_with(0, folder, &all, input);
     io::load_picture(&folder.join("drawn.png")).unwrap()
 }
@@ -117,8 +118,12 @@ fn a_model_or_a_scene_comes_from_standard_input_and_the_picture_goes_to_standard
     let text = std::fs::read(&path).unwrap();
     assert!(drawn(folder.path(), &["-"], &text) == drawn(folder.path(), &["s.marraztu"], b""));
 
-    let (out, err) =
-        ends_with(0, folder.path(), &["render", "-", "-o-", "--size", "96x64"], SQUARE.as_bytes());
+    let (out, err) = ends_with(
+        0,
+        folder.path(),
+        &["render", "-", "-o-", "--size", "96x64", "--samples", "1"],
+        SQUARE.as_bytes(),
+    );
     assert_eq!(err, "");
     std::fs::write(folder.path().join("out.png"), out).unwrap();
     assert!(io::load_picture(&folder.path().join("out.png")).unwrap() == model);
@@ -163,7 +168,7 @@ fn a_picture_has_the_format_that_its_name_asks_for() {
     for (name, signature) in
         [("a.jpg", &b"\xFF\xD8\xFF"[..]), ("a.webp", b"RIFF"), ("a.ppm", b"P6")]
     {
-        let all = ["render", "square.obj", "--size", "96x64", "--out", name];
+        let all = ["render", "square.obj", "--size", "96x64", "--samples", "1", "--out", name];
         ends_with(0, folder.path(), &all, b"");
         let path = folder.path().join(name);
         assert!(std::fs::read(&path).unwrap().starts_with(signature), "{name}");

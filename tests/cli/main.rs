@@ -51,6 +51,9 @@ fn folder() -> TempDir {
 #[track_caller]
 fn drawn(folder: &Path, arguments: &[&str]) -> Picture {
     let mut all = vec!["render", "--out", "drawn.png", "--size", "160x120"];
+    if !arguments.contains(&"--samples") {
+        all.extend(["--samples", "1"]);
+    }
     all.extend(arguments);
     let (out, _) = ends_with(0, folder, &all);
     assert_eq!(out, "");
@@ -113,12 +116,16 @@ fn the_first_scene_is_drawn_as_the_renderer_draws_it_in_both_formats() {
     let expected = first_scene(&Settings::default(), Size::new(160, 120));
     assert!(drawn(folder.path(), &[]) == expected);
 
-    ends_with(0, folder.path(), &["render", "--out", "a.ppm", "--size", "160x120"]);
+    ends_with(
+        0,
+        folder.path(),
+        &["render", "--out", "a.ppm", "--size", "160x120", "--samples", "1"],
+    );
     let ppm = std::fs::read(folder.path().join("a.ppm")).unwrap();
     let pixels = expected.pixels().iter().flat_map(|[r, g, b, _]| [*r, *g, *b]);
     assert!(ppm == b"P6\n160 120\n255\n".iter().copied().chain(pixels).collect::<Vec<u8>>());
 
-    ends_with(0, folder.path(), &["render", "-o", "b.png"]);
+    ends_with(0, folder.path(), &["render", "-o", "b.png", "--samples", "1"]);
     let size = io::load_picture(&folder.path().join("b.png")).unwrap().size();
     assert_eq!(size, Size::new(800, 800));
 }

@@ -65,7 +65,8 @@ fn both_sides_of_an_open_surface_are_drawn_and_the_front_of_a_closed_one() {
 
 /// The notes of `render` on standard error.
 fn notes(folder: &Path, arguments: &[&str]) -> String {
-    let all = [&["render", "--out", "x.png", "--size", "160x120"], arguments].concat();
+    let all =
+        [&["render", "--out", "x.png", "--size", "160x120", "--samples", "1"], arguments].concat();
     ends_with(0, folder, &all).1
 }
 

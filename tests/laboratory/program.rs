@@ -98,7 +98,7 @@ fn a_pixel_is_explained_and_one_outside_is_refused() {
 fn a_preset_is_drawn_as_its_points_and_gives_way_to_single_axes() {
     let folder = tempfile::tempdir().unwrap();
     let drawn = |arguments: &[&str]| {
-        let fixed = ["render", "--size", "64x64", "--out", "p.png"];
+        let fixed = ["render", "--size", "64x64", "--samples", "1", "--out", "p.png"];
         lab(0, folder.path(), &[&fixed[..], arguments].concat());
         io::load_picture(&folder.path().join("p.png")).unwrap()
     };
