@@ -105,6 +105,10 @@ pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
     let Lab { files, reading, surfaces, seeing, accuracy, size, .. } = arguments;
     let stage = staged(files, reading, surfaces, seeing, accuracy)?;
     let settings = stage.settings;
+    if let Some(folder) = &arguments.out {
+        let sources = stage.sources(files);
+        RESULTS.iter().try_for_each(|name| sources.spare(&folder.join(name)))?;
+    }
     let mut studio = Studio::new(stage.shot(size.unwrap_or(Size::new(800, 800))));
     if let Some(Pixel(at)) = arguments.pixel {
         return explain_pixel(&mut studio, &settings, at);
@@ -236,6 +240,21 @@ fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// The files that a measurement writes.
+const RESULTS: [&str; 11] = [
+    "table.txt",
+    "table.csv",
+    "report.json",
+    "plots-light.svg",
+    "plots-light.png",
+    "plots-dark.svg",
+    "plots-dark.png",
+    "exact.png",
+    "error-x1.png",
+    "error-x16.png",
+    "error-x256.png",
+];
+
 /// Writes tables, plots and pictures into the folder.
 fn save(
     folder: &Path,
@@ -243,21 +262,28 @@ fn save(
     studio: &mut Studio,
     settings: &Settings,
 ) -> Result<(), Failure> {
-    let write = |name: &str, text: String| write(folder, name, text);
+    let write = |name: &str, text: String| {
+        debug_assert!(RESULTS.contains(&name));
+        write(folder, name, text)
+    };
+    let place = |name: &str| {
+        debug_assert!(RESULTS.contains(&name));
+        folder.join(name)
+    };
     write("table.txt", report::text(report))?;
     write("table.csv", report::csv(report))?;
     write("report.json", report.json())?;
     for (look, word) in [(Look::Light, "light"), (Look::Dark, "dark")] {
         write(&format!("plots-{word}.svg"), report::svg(report, look)?)?;
-        io::save_picture(&folder.join(format!("plots-{word}.png")), &report::png(report, look)?)?;
+        io::save_picture(&place(&format!("plots-{word}.png")), &report::png(report, look)?)?;
     }
     studio.draw(&settings.reference());
     let exact = studio.picture().clone();
-    io::save_picture(&folder.join("exact.png"), &exact)?;
+    io::save_picture(&place("exact.png"), &exact)?;
     studio.draw(settings);
     for factor in [1, 16, 256] {
         let error = amplified(studio.picture(), &exact, factor);
-        io::save_picture(&folder.join(format!("error-x{factor}.png")), &error)?;
+        io::save_picture(&place(&format!("error-x{factor}.png")), &error)?;
     }
     Ok(())
 }

@@ -228,16 +228,16 @@ fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
     if !content.faces.runs.is_empty() {
         return Ok(());
     }
+    if let (true, Some((line, reason))) = (content.positions.is_empty(), &content.refused) {
+        let reason = format!("{reason}; none of the vertices can be used");
+        return Err(LoadError::line(file, *line, reason));
+    }
     if let Some((line, reason)) = &content.faces.refused {
         let reason = format!("{reason}; none of its faces can be used");
         return Err(LoadError::line(file, *line, reason));
     }
     if !content.positions.is_empty() {
         return Ok(());
-    }
-    if let Some((line, reason)) = &content.refused {
-        let reason = format!("{reason}; none of the vertices can be used");
-        return Err(LoadError::line(file, *line, reason));
     }
     Err(LoadError::file(
         file,
