@@ -29,7 +29,7 @@ kinds! {
     VertexNotFinite:
         "a vertex is infinite or NaN and is skipped",
         "# vertices are infinite or NaN and are skipped";
-    /// A vertex whose numbers cannot be read.
+    /// A vertex with unreadable numbers.
     VertexUnreadable:
         "a vertex cannot be read (@) and is skipped",
         "# vertices cannot be read (the first: @) and are skipped";

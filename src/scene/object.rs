@@ -156,7 +156,7 @@ impl Object {
         self.world_from_object(time) * self.model.mesh.object_from_mesh()
     }
 
-    /// The positions of its vertices, placed; without those that no face uses.
+    /// The positions of the vertices that a face uses, placed.
     pub fn placed_vertices(&self, time: f64) -> impl Iterator<Item = DVec3> {
         let world_from_mesh = self.world_from_mesh(time);
         self.model.mesh.used_positions().map(move |p| world_from_mesh.transform_point3(p))

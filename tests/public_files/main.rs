@@ -52,7 +52,7 @@ impl Folder {
         std::fs::read(self.at(name)).unwrap()
     }
 
-    /// Writes a picture of this size, whose texels are computed from their column and row.
+    /// Writes a square picture; a texel is computed from its column and row.
     fn picture(&self, name: &str, side: usize, texel: impl Fn(usize, usize) -> [u8; 4]) {
         let texels = (0..side * side).map(|i| texel(i % side, i / side)).collect();
         let picture = Picture::from_pixels(Size::new(side, side), texels).unwrap();

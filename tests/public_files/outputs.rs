@@ -1,4 +1,4 @@
-//! What is written: nothing that was read is replaced, and formats are what they promise.
+//! Written files: nothing that was read is replaced, and formats keep their promises.
 
 use std::fs;
 

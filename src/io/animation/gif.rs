@@ -23,7 +23,7 @@ const MOST_COLORS: usize = 256;
 /// Pixels that cover less than this are transparent.
 const LEAST_ALPHA: u8 = 128;
 
-/// A GIF whose pictures are not complete yet.
+/// A GIF that receives its pictures.
 #[derive(Debug)]
 pub(super) struct GifWriter {
     size: Size,

@@ -148,8 +148,8 @@ fn threshold(x: usize, y: usize) -> u8 {
     })
 }
 
-/// The two colours whose mixture comes nearest to a colour. Colours that are far apart make a coarse
-/// pattern, so a mixture of near ones is preferred.
+/// The best mixture of two colours for a colour. Colours that are far apart make a coarse pattern, so
+/// similar ones are preferred.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 64")]
 fn mix(palette: &[[u8; 3]], color: [u8; 3]) -> Mix {
     const COARSENESS: f32 = 0.06;

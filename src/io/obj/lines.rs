@@ -18,11 +18,11 @@ pub(in crate::io) struct Line<'a> {
     text: Cow<'a, [u8]>,
     /// The same, joined by nothing, if it differs: names go on without a blank.
     joined: Option<Vec<u8>>,
-    /// What is odd about its form.
+    /// An oddity of its form.
     pub(in crate::io) oddity: Option<Oddity>,
 }
 
-/// What is odd about the form of a line.
+/// An oddity of a line's form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::io) enum Oddity {
     /// It ends in a backslash, but the next line is a statement.

@@ -248,7 +248,7 @@ fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
     ))
 }
 
-/// Reads the MTL files that are found in `folder`. Returns those that are missing, with their lines.
+/// Reads the MTL files in `folder`. Returns the missing ones, with their lines.
 fn read_libraries(
     library: &mut Library<'_>,
     content: &Content,
@@ -411,7 +411,7 @@ fn note_crossings(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
     }
 }
 
-/// Notes bodies that are inside out, and faces whose normals point against them.
+/// Notes bodies that are inside out, and faces with normals on their wrong side.
 fn note_orientation(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
     let ClosedBodies { all, inside_out } = mesh.closed_bodies();
     let kind = match inside_out == all {
@@ -425,7 +425,7 @@ fn note_orientation(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
     }
 }
 
-/// Notes materials with textures whose faces have no texture coordinates.
+/// Notes textures on faces without texture coordinates.
 fn note_unmapped(mesh: &Mesh, materials: &[FileMaterial], findings: &mut Findings) {
     let texture = |part: &Part| -> Option<(&FileMaterial, &Texture)> {
         let material = materials.get(part.material? as usize)?;

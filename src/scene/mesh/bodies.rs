@@ -19,7 +19,7 @@ use super::closed::{boundary, key};
 use super::dvec3;
 use crate::scene::{Bounds, Mesh};
 
-/// A body whose volume is smaller than this part of its area times its length is a sheet.
+/// A body with less volume than this part of its area times its length is a sheet.
 const SHEET: f64 = 1e-5;
 
 /// The closed bodies of a mesh.
@@ -27,7 +27,7 @@ const SHEET: f64 = 1e-5;
 pub struct ClosedBodies {
     /// The number of closed bodies with a volume.
     pub all: usize,
-    /// The number of those that are inside out. The inner surface of a hollow body is not.
+    /// The number of bodies that are inside out. The inner surface of a hollow body is not.
     pub inside_out: usize,
 }
 
@@ -54,7 +54,7 @@ impl Body {
 }
 
 impl Mesh {
-    /// Counts the closed bodies, and those that are inside out.
+    /// Counts the closed bodies, and the bodies that are inside out.
     #[must_use]
     pub fn closed_bodies(&self) -> ClosedBodies {
         let outlines = self.outlines();
@@ -93,7 +93,7 @@ impl Mesh {
         ClosedBodies { all: solid.len(), inside_out }
     }
 
-    /// The polygons whose normals in the file all point against the polygon's own normal, ascending.
+    /// The polygons with all of their normals in the file on the wrong side, ascending.
     #[must_use]
     pub fn polygons_against_normals(&self) -> Vec<u32> {
         if !self.has_file_normals() {
