@@ -347,6 +347,10 @@ impl FindingKind {
                 | Self::FaceRange
                 | Self::FaceUnreadable
                 | Self::NoFaces
+                | Self::InsideOut
+                | Self::NormalsAgainst
+                | Self::MaterialsUnused
+                | Self::DiffuseBlack
                 | Self::MtlMissing
                 | Self::MtlUnreadable
                 | Self::Transparent
