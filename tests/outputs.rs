@@ -218,7 +218,8 @@ fn an_exported_gltf_is_sound_and_has_every_position_bit_for_bit() {
         assert_eq!(json["asset"]["version"], "2.0");
         assert_eq!(whole(&json["buffers"][0]["byteLength"]), buffer.len());
         let objects: Vec<&Object> = scene.objects.iter().map(|(_, object)| object).collect();
-        let nodes = json["nodes"].as_array().unwrap();
+        let roots = json["scenes"][0]["nodes"].as_array().unwrap();
+        let nodes: Vec<&Value> = roots.iter().map(|root| &json["nodes"][whole(root)]).collect();
         assert_eq!(nodes.len(), objects.len() + 1 + 3, "objects, a camera, sun, bulb and a spot");
         assert_eq!(json["cameras"].as_array().unwrap().len(), 1);
         let lights = &json["extensions"]["KHR_lights_punctual"]["lights"];
@@ -226,14 +227,26 @@ fn an_exported_gltf_is_sound_and_has_every_position_bit_for_bit() {
             lights.as_array().unwrap().iter().map(|it| it["type"].as_str().unwrap()).collect();
         assert_eq!(kinds, ["directional", "point", "spot"]);
         assert_eq!(json["extensionsUsed"], serde_json::json!(["KHR_lights_punctual"]));
-        for (node, object) in nodes.iter().zip(objects) {
+        for (node, object) in nodes.into_iter().zip(objects) {
             assert_eq!(node["name"], object.name.as_str());
             holds_object(&json, &buffer, node, object);
         }
     }
 }
 
-/// The mesh of a node has the positions and the triangles of an object, and is sound.
+/// The primitives of a node and of those below it, which are not moved.
+fn primitives<'a>(json: &'a Value, node: &'a Value) -> Vec<&'a Value> {
+    let own = node.get("mesh").map(|mesh| &json["meshes"][whole(mesh)]["primitives"]);
+    let children = node["children"].as_array().into_iter().flatten();
+    let below = children.flat_map(|child| {
+        let child = &json["nodes"][whole(child)];
+        assert!(child["matrix"].is_null());
+        primitives(json, child)
+    });
+    own.into_iter().flat_map(|own| own.as_array().unwrap()).chain(below).collect()
+}
+
+/// The meshes of a node have the positions and the triangles of an object, and is sound.
 fn holds_object(json: &Value, buffer: &[u8], node: &Value, object: &Object) {
     let mesh = &object.model.mesh;
     let placement = object.placement.now().to_cols_array();
@@ -242,7 +255,7 @@ fn holds_object(json: &Value, buffer: &[u8], node: &Value, object: &Object) {
     }
     let mut found = std::collections::BTreeSet::new();
     let mut triangles = 0;
-    for primitive in json["meshes"][whole(&node["mesh"])]["primitives"].as_array().unwrap() {
+    for primitive in primitives(json, node) {
         assert!(whole(&primitive["material"]) < json["materials"].as_array().unwrap().len());
         let attributes = &primitive["attributes"];
         let positions = numbers(json, buffer, &attributes["POSITION"]);

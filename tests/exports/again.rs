@@ -6,7 +6,7 @@ use std::path::Path;
 use marraztu::accuracy::{Settings, Shot};
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
-use marraztu::edit::items;
+use marraztu::edit::{framing, items};
 use marraztu::io::{self, Loaded, Progress, Sources};
 use marraztu::render::{Renderer, plan_frame};
 use marraztu::scene::{
@@ -31,8 +31,7 @@ fn picture(model: Model) -> Picture {
     }
     let object = Object::new(Shared::new(model), MaterialChoice::File);
     items::insert_object(&scene, object).apply(&mut scene).unwrap();
-    let objects = scene.objects.ids().collect();
-    let view = marraztu::edit::framing::frame(&scene, &view, &objects).unwrap_or(view);
+    framing::all(&scene, &view).unwrap().apply(&mut scene).unwrap();
     let shot = Shot::new(&scene, &view, &Settings::default(), Size::new(96, 96));
     Renderer::default().render(&plan_frame(&shot)).clone()
 }
@@ -46,6 +45,10 @@ fn called(model: &Model) -> Vec<&PartNames> {
 #[track_caller]
 fn comes_back(folder: &Path, obj: &str, mtl: &str) {
     put(folder, &[("a.obj", obj), ("a.mtl", mtl)]);
+    // What an earlier row left is not replaced.
+    for left in ["b.obj", "b.mtl", "b-texture-1.png", "b-texture-2.png"] {
+        let _absent = std::fs::remove_file(folder.join(left));
+    }
     runs(folder, &["export", "a.obj", "--out", "b.obj"]);
     let text = std::fs::read_to_string(folder.join("b.obj")).unwrap();
     let [a, b] = ["a.obj", "b.obj"].map(|name| load(folder, name).model);
@@ -117,13 +120,13 @@ fn numbers_and_maps_of_materials_come_back() {
     }
     // Programs that do not know `norm` read `map_Bump`.
     put(folder.path(), &[("a.mtl", "newmtl m\nKd 1 1 1\nnorm n.png\n")]);
-    runs(folder.path(), &["export", "a.obj", "--out", "b.obj"]);
-    let mtl = std::fs::read_to_string(folder.path().join("b.mtl")).unwrap();
+    runs(folder.path(), &["export", "a.obj", "--out", "c.obj"]);
+    let mtl = std::fs::read_to_string(folder.path().join("c.mtl")).unwrap();
     let of = |statement: &str| {
         let line = mtl.lines().find(|line| line.starts_with(statement));
         line.and_then(|line| line.split(' ').next_back()).map(str::to_owned)
     };
-    assert_eq!(of("norm "), Some("b-texture-1.png".to_owned()), "{mtl}");
+    assert_eq!(of("norm "), Some("c-texture-1.png".to_owned()), "{mtl}");
     assert_eq!(of("norm "), of("map_Bump "), "{mtl}");
 }
 
@@ -151,7 +154,7 @@ fn presets_are_called_by_their_names_and_objects_as_the_user_calls_them() {
     let (mut scene, view) = io::default_scene();
     let gold = MaterialChoice::Preset(PresetId::named("gold").unwrap());
     let ids: Vec<_> = scene.objects.ids().collect();
-    for (id, name) in ids.iter().zip(["one # two", "three\nfour", "same", "same"]) {
+    for (id, name) in ids.iter().zip(["one # two\nthree", "same", "same"]) {
         let mut object = scene.objects.get(*id).unwrap().clone();
         (object.name, object.material) = (name.to_owned(), gold.clone());
         let item = marraztu::scene::Item::Object(*id, Box::new(object));
@@ -163,6 +166,6 @@ fn presets_are_called_by_their_names_and_objects_as_the_user_calls_them() {
     let named = |statement: &str| -> Vec<String> {
         text.lines().filter_map(|line| line.strip_prefix(statement)).map(str::to_owned).collect()
     };
-    assert_eq!(named("o "), ["one _ two", "three four", "same", "same.001"]);
+    assert_eq!(named("o "), ["one _ two three", "same", "same.001"]);
     assert_eq!(named("usemtl "), ["gold"]);
 }
