@@ -1,7 +1,7 @@
 //! The objects of a scene as nodes and meshes of glTF.
 //!
-//! An object is a node with its placement. If its file has several objects or groups, each is a node
-//! below it; levels that would hold one node of the same name are left out.
+//! An object is a node with its placement. If its file has several objects or groups, each is a
+//! node below it; levels that would hold one node of the same name are left out.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -19,7 +19,8 @@ use super::look::{has_colors, polygons};
 use crate::base::math;
 use crate::scene::{MapKind, Mesh, NONE, NormalSource, Object, dvec3};
 
-/// The largest scale of a placement that is written as a matrix: its entries are then exact to 1e-6.
+/// The largest scale of a placement that is written as a matrix: its entries are then exact to
+/// 1e-6.
 const LARGEST_IN_MATRIX: f64 = 10.0;
 
 /// A name from the file; `None` if it gives none.

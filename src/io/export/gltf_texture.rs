@@ -1,7 +1,7 @@
 //! The textures of glTF, and how they are laid over a surface.
 //!
-//! glTF has the opacity of a surface in the alpha of its texture, so a map of opacity is merged into
-//! the texture. Offset and scale go into the texture coordinates, and maps that are laid out
+//! glTF has the opacity of a surface in the alpha of its texture, so a map of opacity is merged
+//! into the texture. Offset and scale go into the texture coordinates, and maps that are laid out
 //! differently get several sets of them: more readers know sets than the extension for transforms.
 
 use std::collections::HashMap;

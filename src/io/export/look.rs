@@ -1,7 +1,7 @@
 //! The materials of an export: how the parts of objects look, each look once.
 //!
-//! A look is found by a key of its name and numbers and of the addresses of its pictures, in constant
-//! time: scenes have up to a hundred thousand materials.
+//! A look is found by a key of its name and numbers and of the addresses of its pictures, in
+//! constant time: scenes have up to a hundred thousand materials.
 
 use std::collections::{BTreeSet, HashMap};
 

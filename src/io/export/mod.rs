@@ -79,9 +79,9 @@ pub fn check_export_target(path: &Path) -> Result<(), SaveError> {
 /// (materials, textures, the buffer of .gltf) are written next to it, under names that begin alike.
 ///
 /// # Errors
-/// If a file cannot be written, is one of `sources`, or has the name of a companion file but was not
-/// written by an earlier export. Everything is checked before the first file is written, and the
-/// main one is written last.
+/// If a file cannot be written, is one of `sources`, or has the name of a companion file but was
+/// not written by an earlier export. Everything is checked before the first file is written, and
+/// the main one is written last.
 pub fn export(
     path: &Path,
     scene: &Scene,

@@ -30,8 +30,8 @@ impl Names {
     }
 }
 
-/// A name as a statement of OBJ or MTL can hold it. Readers take a `#` between blanks for a comment,
-/// and a `\` at the end for a line that goes on; names from files have neither.
+/// A name as a statement of OBJ or MTL can hold it. Readers take a `#` between blanks for a
+/// comment, and a `\` at the end for a line that goes on; names from files have neither.
 pub(super) fn on_one_line(name: &str) -> String {
     let name: Vec<char> = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let is_blank =

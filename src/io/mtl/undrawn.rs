@@ -1,4 +1,5 @@
-//! Keeps the numbers of a material that pictures do not show, for exports: other programs show them.
+//! Keeps the numbers of a material that pictures do not show, for exports: other programs show
+//! them.
 
 use super::{Statements, statement};
 
