@@ -7,7 +7,6 @@ use std::path::Path;
 
 use egui::Key;
 use egui::accesskit::Role;
-use egui_kittest::kittest::NodeT as _;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Lower, Named};
 

@@ -25,6 +25,7 @@ impl Editor {
         self.wait_until(|editor| {
             editor.state().notices.len() + editor.state().past_notices.len() > count
         });
+        self.settle();
     }
 
     fn up(&self) -> UpAxis {
@@ -108,6 +109,7 @@ fn why_outside_the_view_offers_to_frame() {
     }
     editor.perform(Action::WhyUnseen);
     editor.wait_until(|editor| !editor.state().notices.is_empty());
+    editor.settle();
     click(&mut editor, Role::Button, "Frame");
     assert!(editor.state().notices.is_empty());
 }

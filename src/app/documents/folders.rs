@@ -36,8 +36,9 @@ impl Folders {
     /// Where a dialog begins.
     pub(crate) fn start(&self, kind: Kind) -> PathBuf {
         let chosen = self.chosen.get(&kind);
-        let home = self.home.as_ref().filter(|_| kind != Kind::Opened);
-        let start = match (chosen, home) {
+        let start = match (chosen, &self.home) {
+            // What is opened next may have nothing to do with the scene.
+            (Some((_, folder)), _) if kind == Kind::Opened => Some(folder),
             (Some((of, folder)), Some(home)) if of.as_ref() == Some(home) => Some(folder),
             (_, Some(home)) => Some(home),
             (Some((_, folder)), None) => Some(folder),

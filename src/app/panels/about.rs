@@ -1,14 +1,14 @@
 //! About: version, commit, instructions in use, and the licences of the program and of the packages
 //! that it is built from. `tools/licences.py` makes the list of packages.
 
-use egui::{RichText, ScrollArea, Ui, Window, vec2};
+use egui::{Rect, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, Window, vec2};
 use fearless_simd::Level;
 
 use crate::app::actions::{Action, Request};
 use crate::app::panels::Panel;
 use crate::app::state::State;
 use crate::app::theme;
-use crate::app::widgets::controls::heading;
+use crate::app::widgets::controls::{heading, put_text, text};
 use crate::lab::instructions;
 
 /// A package a line: its name, its version and its licence.
@@ -38,7 +38,7 @@ fn facts() -> [String; 3] {
     [
         format!("Version: {}", env!("CARGO_PKG_VERSION")),
         format!("Commit: {}", option_env!("MARRAZTU_COMMIT").unwrap_or("not recorded")),
-        format!("Instructions: {}", instructions::name_of(Level::new())),
+        format!("Instructions: {}", instructions::name_of(Level::new()).to_uppercase()),
     ]
 }
 
@@ -64,18 +64,19 @@ fn contents(ui: &mut Ui) {
     let list = ScrollArea::vertical().auto_shrink(false).content_margin(theme::SCROLL_MARGIN);
     list.show_rows(ui, row, count, |ui, range| {
         for package in &packages[range] {
-            let mut parts = package.splitn(3, ' ');
-            let mut part = || parts.next().unwrap_or_default();
-            let name = format!("{} {}", part(), part());
-            let licence = part();
-            ui.horizontal(|ui| {
-                ui.set_height(row);
-                let width = ui.available_width();
-                let label = |text| egui::Label::new(text).truncate().halign(egui::Align::Min);
-                ui.add_sized(vec2(width * 0.45, row), label(RichText::new(name)));
-                let licence = label(RichText::new(licence).weak());
-                ui.add_sized(vec2(ui.available_width(), row), licence);
-            });
+            let (line, response) =
+                ui.allocate_exact_size(vec2(ui.available_width(), row), Sense::hover());
+            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, *package));
+            let name = package.match_indices(' ').nth(1).map_or(package.len(), |(at, _)| at);
+            let (name, licence) = package.split_at(name);
+            let licence_at = line.with_min_x(line.left() + 0.45 * line.width());
+            let name_at = line.with_max_x(licence_at.left() - theme::GAP);
+            let visuals = ui.visuals();
+            let fitted = |words: &str, at: Rect| text(ui, words, TextStyle::Body, at.width());
+            put_text(ui, name_at, fitted(name, name_at), visuals.text_color());
+            let galley = fitted(licence.trim(), licence_at);
+            put_text(ui, licence_at, galley, visuals.weak_text_color());
+            response.on_hover_text(*package);
         }
     });
 }

@@ -101,7 +101,7 @@ macro_rules! each_panel {
                 "inspector details material attributes";
             View view_switches "view" [Dock::Beside(Side::Switches)] true []
                 "View switches" "Shows or hides the switches of the view."
-                "options display accuracy";
+                "display accuracy";
             Statistics statistics "statistics" [Dock::Floating] false []
                 "Statistics" "Shows or hides how much is drawn and how long it takes."
                 "fps frames speed performance triangles count";

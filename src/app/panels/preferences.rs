@@ -41,7 +41,7 @@ const ROWS: &[Row] = &[
         hint: "Whether the window is light or dark.",
         ui: |ui, it, _| {
             let all = [("System", Theme::System), ("Light", Theme::Light), ("Dark", Theme::Dark)];
-            choose(ui, "Theme", &all, &mut it.theme);
+            choose(ui, ("Theme", "Light, dark, or as the system is"), &all, &mut it.theme);
         },
         copy: |from, to| to.theme = from.theme,
     },
@@ -123,8 +123,11 @@ const ROWS: &[Row] = &[
         label: "Up axis of models",
         hint: "Which axis points up in a model that does not say so itself.",
         ui: |ui, it, _| {
-            let all = UpAxis::ALL.map(|up| (up.word(), up));
-            choose(ui, "Up axis", &all, &mut it.up);
+            let words = UpAxis::ALL.map(|up| up.word().to_uppercase());
+            let named = UpAxis::ALL.into_iter().zip(&words);
+            let all: Vec<(&str, UpAxis)> = named.map(|(up, word)| (word.as_str(), up)).collect();
+            let hint = "The axis of the file that points up";
+            choose(ui, ("Up axis", hint), &all, &mut it.up);
         },
         copy: |from, to| to.up = from.up,
     },
@@ -178,7 +181,8 @@ const ROWS: &[Row] = &[
             let named = Samples::ALL.into_iter().zip(&counts);
             let all: Vec<(&str, Samples)> =
                 named.map(|(samples, count)| (count.as_str(), samples)).collect();
-            choose(ui, "Samples when refined", &all, &mut it.refined);
+            let hint = "More samples smooth edges, and take longer";
+            choose(ui, ("Samples when refined", hint), &all, &mut it.refined);
         },
         copy: |from, to| to.refined = from.refined,
     },
@@ -197,9 +201,14 @@ fn switch(ui: &mut Ui, label: &str, on: &mut bool) {
     *on ^= Switch::new(label, *on).ui(ui).clicked();
 }
 
-fn choose<T: Copy + PartialEq>(ui: &mut Ui, of: &str, all: &[(&str, T)], now: &mut T) {
+fn choose<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    (of, hint): (&str, &str),
+    all: &[(&str, T)],
+    now: &mut T,
+) {
     let choices: Vec<Choice<'_>> =
-        all.iter().map(|(label, it)| Choice::new(of, label, it == now, of)).collect();
+        all.iter().map(|(label, it)| Choice::new(of, label, it == now, hint)).collect();
     if let Some(clicked) = controls::choices(ui, &choices) {
         *now = all[clicked].1;
     }

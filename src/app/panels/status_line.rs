@@ -33,6 +33,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if !state.past_notices.is_empty() {
                 past_ui(ui, state, requests);
+                ui.add_space(theme::GAP);
             }
             if let Some(title) = state.asking {
                 let text = format!("the dialog \"{title}\" is open");
