@@ -189,7 +189,7 @@ impl State {
             || self.several.of(&self.scene, &self.view).any(|other| other == id)
     }
 
-    /// Whether there are so many items that the outline has a field that filters them.
+    /// Whether there are enough items for the outline to have a field that filters them.
     #[must_use]
     pub fn has_filter(&self) -> bool {
         let Scene { objects, cameras, lights, .. } = &self.scene;
