@@ -8,8 +8,8 @@ use super::arrange::world_box;
 use super::items::{insert_objects, put_camera, put_light};
 use super::{Refusal, items, selection, several};
 use crate::scene::{
-    AnchorMut, Bounds, Camera, CameraId, CameraMode, Command, ItemId, Light, LightId, Object,
-    ObjectId, Pose, Scene, SpotOwner, Tracked, View,
+    AnchorMut, Camera, CameraId, CameraMode, Command, ItemId, Light, LightId, Object, ObjectId,
+    Pose, Scene, SpotOwner, Tracked, View,
 };
 
 /// The most places that are tried for copies.
@@ -155,8 +155,8 @@ fn width(scene: &Scene, view: &View, objects: &[&Object]) -> DVec3 {
         DVec3::Z * right.z.signum()
     };
     let boxes = objects.iter().filter_map(|object| world_box(object, view.time));
-    let joined = |a: Bounds, b: Bounds| Bounds { min: a.min.min(b.min), max: a.max.max(b.max) };
-    let width = boxes.reduce(joined).map_or(DVec3::ZERO, |bounds| bounds.max - bounds.min);
+    let joined = boxes.reduce(|all, other| all.around(&other));
+    let width = joined.map_or(DVec3::ZERO, |bounds| bounds.extent());
     let by = axis * width.dot(axis.abs());
     if by.is_finite() { by } else { DVec3::ZERO }
 }
