@@ -73,7 +73,7 @@ fn window(preferences: Option<&Preferences>) -> ViewportBuilder {
     ViewportBuilder::default()
         .with_title("Marraztu")
         .with_app_id("marraztu")
-        .with_inner_size(size.unwrap_or([1280.0, 800.0]))
+        .with_inner_size(size.unwrap_or(Preferences::WINDOW))
         .with_maximized(preferences.is_some_and(|preferences| preferences.maximized))
         .with_min_inner_size([640.0, 400.0])
         .with_drag_and_drop(true)

@@ -1,7 +1,7 @@
 //! The arguments that commands share, and their help.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
@@ -11,7 +11,7 @@ use super::talk::Talk;
 use super::values::{color, is_standard, size, threads};
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
-use marraztu::io::{self, PICTURE_FORMATS, PictureFormat};
+use marraztu::io::{self, Input, PICTURE_FORMATS, PictureFormat};
 use marraztu::scene::{
     BumpMaps, Crease, LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Sides,
     Surface, UpAxis, View, Winding,
@@ -77,7 +77,8 @@ pub(crate) struct PictureArguments {
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Reading models")]
 pub(crate) struct Reading {
-    /// The axis of the file that points up: x, y*, z, -x, -y, -z. The model is turned, not mirrored
+    /// The axis of the file that points up: x, y*, z, -x, -y, -z; by default the one that comments
+    /// at the top of the file state. The model is turned, not mirrored
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
     #[arg(hide_possible_values = true, value_parser = choice(&UP_AXES))]
     up: Option<UpAxis>,
@@ -247,10 +248,15 @@ pub(crate) enum ShadowSlots {
 pub(crate) struct Slots(pub(crate) BTreeSet<u32>);
 
 impl Reading {
-    /// The options of the reader.
-    pub(crate) fn options(&self) -> LoadOptions {
+    /// The options of the reader for a file, or for standard input.
+    pub(crate) fn options(&self, file: &Path, input: Option<&Input>) -> LoadOptions {
+        let stated = || match input {
+            Some(input) => input.stated_up(),
+            None => io::stated_up(file),
+        };
+        let up = self.up.or_else(|| stated().map(|stated| stated.up));
         LoadOptions {
-            up: self.up.unwrap_or_default(),
+            up: up.unwrap_or_default(),
             scale: self.scale.unwrap_or_default(),
             winding: if self.flip_winding { Winding::Turned } else { Winding::Kept },
             crease: self.crease.unwrap_or_default(),

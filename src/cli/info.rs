@@ -5,9 +5,9 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use marraztu::io::{Input, Progress, describe, shape};
-use marraztu::scene::{LoadOptions, Observer, Projection, Scene, View};
+use marraztu::scene::{Observer, Projection, Scene, View};
 
-use super::arguments::Info;
+use super::arguments::{Info, Reading};
 use super::failure::Failure;
 use super::say;
 use super::stage::{Stage, input, is_scene, load};
@@ -15,11 +15,10 @@ use super::values::is_standard;
 
 /// Describes each file; the others are described even if one cannot be read.
 pub(crate) fn info(arguments: &Info) -> Result<(), Failure> {
-    let options = arguments.reading.options();
     let input = input(&arguments.files)?;
     let mut failed = false;
     for (i, file) in arguments.files.iter().enumerate() {
-        let described = match description(file, input.as_ref(), &options) {
+        let described = match description(file, input.as_ref(), &arguments.reading) {
             Ok(described) => described,
             Err(failure) => {
                 say("error", &failure);
@@ -37,16 +36,13 @@ pub(crate) fn info(arguments: &Info) -> Result<(), Failure> {
     if failed { Err(Failure::Told) } else { Ok(()) }
 }
 
-fn description(
-    file: &Path,
-    input: Option<&Input>,
-    options: &LoadOptions,
-) -> Result<String, Failure> {
+fn description(file: &Path, input: Option<&Input>, reading: &Reading) -> Result<String, Failure> {
     let input = input.filter(|_| is_standard(file));
     if !input.map_or_else(|| is_scene(file), Input::is_scene) {
+        let options = reading.options(file, input);
         let loaded = match input {
-            Some(input) => input.model(options, &Progress::new())?,
-            None => load(file, options)?,
+            Some(input) => input.model(&options, &Progress::new())?,
+            None => load(file, &options)?,
         };
         return Ok(describe(&loaded));
     }

@@ -63,7 +63,7 @@ impl Stage {
             Some(scene) => Self::of_scene(scene, input.as_ref())?,
             None => Self::first(models.is_empty()),
         };
-        stage.add(&models, input.as_ref(), &reading.options())?;
+        stage.add(&models, input.as_ref(), reading)?;
         stage.findings = io::joined(stage.findings);
         Ok(stage)
     }
@@ -105,7 +105,7 @@ impl Stage {
         &mut self,
         files: &[&PathBuf],
         input: Option<&Input>,
-        options: &LoadOptions,
+        reading: &Reading,
     ) -> Result<(), Failure> {
         let [first, ..] = files else { return Ok(()) };
         let progress = Progress::new();
@@ -127,7 +127,7 @@ impl Stage {
             });
         }
         let mut models: Vec<Shared<Model>> = Vec::with_capacity(once.len());
-        for loaded in load_all(&once, input, options, &progress) {
+        for loaded in load_all(&once, input, reading, &progress) {
             let Loaded { model, findings } = loaded?;
             self.findings.extend(findings);
             models.push(Shared::new(model));
@@ -170,15 +170,17 @@ pub(crate) fn input(files: &[PathBuf]) -> Result<Option<Input>, Failure> {
 fn load_all(
     files: &[&PathBuf],
     input: Option<&Input>,
-    options: &LoadOptions,
+    reading: &Reading,
     progress: &Progress,
 ) -> Vec<Result<Loaded, LoadError>> {
     let done = AtomicUsize::new(0);
     let load = |file: &&PathBuf| {
         let own = if files.len() == 1 { progress.clone() } else { Progress::new() };
-        let loaded = match input.filter(|_| is_standard(file)) {
-            Some(input) => input.model(options, &own),
-            None => io::load(file, options, &own),
+        let input = input.filter(|_| is_standard(file));
+        let options = reading.options(file, input);
+        let loaded = match input {
+            Some(input) => input.model(&options, &own),
+            None => io::load(file, &options, &own),
         };
         progress.reached(done.fetch_add(1, Ordering::Relaxed) + 1, files.len())?;
         loaded

@@ -2,9 +2,14 @@
 //!
 //! One undo undoes one step. A step holds the commands that lead away from the current position:
 //! steps before it lead back, steps after it lead forward.
+//!
+//! Looking around is not a step. Instead, steps that do not move the camera take its new pose, and
+//! undoing them does not move the view.
 
 use super::Gesture;
-use crate::scene::{Command, CommandError, Scene};
+use crate::scene::{
+    Camera, CameraId, CameraMode, Command, CommandError, Item, ItemId, Lens, Pose, Scene, Tracked,
+};
 
 #[derive(Debug)]
 struct Step {
@@ -22,6 +27,8 @@ pub struct History {
     position: usize,
     /// The gesture of the last step, while it may continue.
     open: Gesture,
+    /// The gesture that moves the view, and how the cameras looked before it.
+    looking: (Gesture, Vec<(CameraId, Looking)>),
     /// The position at which the scene was saved; `None` if no step leads there any more.
     saved: Option<usize>,
 }
@@ -36,7 +43,8 @@ impl History {
     /// A history without steps, of a scene that counts as saved.
     #[must_use]
     pub const fn new() -> Self {
-        Self { steps: Vec::new(), position: 0, open: Gesture::Whole, saved: Some(0) }
+        let looking = (Gesture::Whole, Vec::new());
+        Self { steps: Vec::new(), position: 0, open: Gesture::Whole, looking, saved: Some(0) }
     }
 
     /// Applies a command, and records under `label` how to undo it; of a gesture, the last label
@@ -74,6 +82,51 @@ impl History {
         Ok(())
     }
 
+    /// Moves the view: applies a command that gives cameras other poses and lenses. It is no step;
+    /// any other command is one, under the label "Move the view".
+    ///
+    /// # Errors
+    /// If the command does not fit the scene; then neither scene nor history changes.
+    pub fn navigate(
+        &mut self,
+        scene: &mut Scene,
+        command: Command,
+        gesture: Gesture,
+    ) -> Result<(), CommandError> {
+        let mut ids = Vec::new();
+        if !cameras_of(&command, &mut ids) {
+            return self.perform(scene, command, gesture, "Move the view");
+        }
+        let looking = |scene: &Scene| -> Vec<(CameraId, Looking)> {
+            let now = |id: &CameraId| Some((*id, Looking::of(scene.cameras.get(*id)?)));
+            ids.iter().filter_map(now).collect()
+        };
+        let before = looking(scene);
+        command.apply(scene)?;
+        for ((id, before), (_, after)) in before.iter().zip(looking(scene)) {
+            self.follow(*id, before.clone(), &after);
+        }
+        if gesture == Gesture::Whole || gesture != self.looking.0 {
+            self.looking = (gesture, before);
+        }
+        Ok(())
+    }
+
+    /// Lets the steps on both sides keep how a camera looks now.
+    fn follow(&mut self, id: CameraId, before: Looking, after: &Looking) {
+        let (done, undone) = self.steps.split_at_mut(self.position);
+        let sides =
+            [&mut done.iter_mut().rev() as &mut dyn Iterator<Item = _>, &mut undone.iter_mut()];
+        for steps in sides {
+            let mut follower =
+                Follower { id, pose: Some(before.pose.clone()), lens: Some(before.lens) };
+            // From the nearest on: the last command of a step is applied first.
+            for command in steps.flat_map(|step: &mut Step| step.commands.iter_mut().rev()) {
+                follower.pass(command, after);
+            }
+        }
+    }
+
     /// Undoes the last step. Returns its label; `None` if there was no step.
     pub fn undo(&mut self, scene: &mut Scene) -> Option<String> {
         let last = self.position.checked_sub(1)?;
@@ -92,7 +145,24 @@ impl History {
     /// Cancels the current gesture, without a step to redo. Returns whether there was anything to
     /// undo.
     pub fn abandon(&mut self, scene: &mut Scene, gesture: Gesture) -> bool {
-        if gesture == Gesture::Whole || gesture != self.open || self.undo(scene).is_none() {
+        if gesture == Gesture::Whole {
+            return false;
+        }
+        if gesture == self.looking.0 {
+            let (_, before) = std::mem::replace(&mut self.looking, (Gesture::Whole, Vec::new()));
+            for (id, before) in before {
+                let Some(camera) = scene.cameras.get(id) else { continue };
+                let camera = Box::new(before.given_to(camera));
+                // A pose that was there fits.
+                let _ = self.navigate(
+                    scene,
+                    Command::Replace(Item::Camera(id, camera)),
+                    Gesture::Whole,
+                );
+            }
+            return true;
+        }
+        if gesture != self.open || self.undo(scene).is_none() {
             return false;
         }
         self.steps.truncate(self.position);
@@ -156,5 +226,100 @@ impl History {
                 None
             }
         }
+    }
+}
+
+/// How a camera looks at the scene.
+#[derive(Clone, Debug)]
+struct Looking {
+    pose: Tracked<Pose>,
+    lens: Lens,
+}
+
+impl Looking {
+    fn of(camera: &Camera) -> Self {
+        Self { pose: camera.pose.clone(), lens: camera.lens }
+    }
+
+    fn given_to(self, camera: &Camera) -> Camera {
+        Camera { pose: self.pose, lens: self.lens, ..camera.clone() }
+    }
+}
+
+/// Goes from step to step with a camera that has moved.
+struct Follower {
+    id: CameraId,
+    /// The pose to replace; `None` beyond a step that changes it.
+    pose: Option<Tracked<Pose>>,
+    lens: Option<Lens>,
+}
+
+impl Follower {
+    /// Gives the camera its new view in a command that only keeps the old one.
+    fn pass(&mut self, command: &mut Command, after: &Looking) {
+        match command {
+            Command::Replace(Item::Camera(id, camera)) if *id == self.id => {
+                self.pose =
+                    self.pose.take().and_then(|old| followed(&old, &mut camera.pose, after));
+                self.lens = self.lens.filter(|old| *old == camera.lens);
+                if self.lens.is_some() {
+                    camera.lens = after.lens;
+                }
+            }
+            // There is no such camera beyond.
+            Command::Insert { item: Item::Camera(id, _), .. }
+            | Command::Remove(ItemId::Camera(id))
+                if *id == self.id =>
+            {
+                (self.pose, self.lens) = (None, None);
+            }
+            Command::Batch(commands) => commands.iter_mut().for_each(|it| self.pass(it, after)),
+            Command::Insert { .. }
+            | Command::Remove(_)
+            | Command::Replace(_)
+            | Command::Reorder { .. }
+            | Command::Lock { .. }
+            | Command::Background(_)
+            | Command::NextId(_) => {}
+        }
+    }
+}
+
+/// Sets a stored pose to the new one if its step did not move the camera. A step that only aimed
+/// it, since the object that it looks at has moved, did not: whoever undoes it aims it again.
+/// Returns the pose to replace farther on.
+fn followed(
+    old: &Tracked<Pose>,
+    stored: &mut Tracked<Pose>,
+    after: &Looking,
+) -> Option<Tracked<Pose>> {
+    let mode = stored.now().mode;
+    let is_aimed = mode != CameraMode::Fly
+        && mode == old.now().mode
+        && stored.now().eye == old.now().eye
+        && stored.shares_stack_with(old);
+    if !is_aimed && stored != old {
+        return None;
+    }
+    Some(std::mem::replace(stored, after.pose.clone()))
+}
+
+/// Collects the cameras that a command replaces. Says whether it does nothing else.
+fn cameras_of(command: &Command, ids: &mut Vec<CameraId>) -> bool {
+    match command {
+        Command::Replace(Item::Camera(id, _)) => {
+            if !ids.contains(id) {
+                ids.push(*id);
+            }
+            true
+        }
+        Command::Batch(commands) => commands.iter().all(|command| cameras_of(command, ids)),
+        Command::Replace(_)
+        | Command::Insert { .. }
+        | Command::Remove(_)
+        | Command::Reorder { .. }
+        | Command::Lock { .. }
+        | Command::Background(_)
+        | Command::NextId(_) => false,
     }
 }

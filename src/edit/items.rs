@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 use super::names::Names;
 use super::{Refusal, set_transform};
@@ -61,15 +61,16 @@ pub fn insert_light(scene: &Scene, kind: LightKind) -> Result<Command, Refusal> 
     put_light(scene, Light::new(&light_name(&kind), 0, kind))
 }
 
-/// Adds a copy of an item, without its stack of transformations.
+/// Adds a copy of an item, without its stack of transformations. Moves copies of objects by `by`.
 ///
 /// # Errors
 /// If the item is gone.
-pub fn duplicate(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
+pub fn duplicate(scene: &Scene, id: ItemId, by: DVec3) -> Result<Command, Refusal> {
     match id {
         ItemId::Object(id) => {
             let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
-            object.placement = Tracked::new(*object.placement.now());
+            let placement = DMat4::from_translation(by) * *object.placement.now();
+            object.placement = Tracked::new(placement);
             Ok(insert_object(scene, object))
         }
         ItemId::Camera(id) => {
@@ -334,14 +335,16 @@ pub(super) fn try_change_light(
     Ok(Command::Replace(Item::Light(id, Box::new(light))))
 }
 
-fn put_camera(scene: &Scene, mut camera: Camera) -> Command {
+/// Adds a camera at the end of the list.
+pub(super) fn put_camera(scene: &Scene, mut camera: Camera) -> Command {
     let mut names: Names<'_> = scene.cameras.iter().map(|(_, other)| &*other.name).collect();
     camera.name = names.take(&camera.name);
     let id = CameraId(scene.next_id);
     inserted(scene, scene.cameras.len(), Item::Camera(id, Box::new(camera)))
 }
 
-fn put_light(scene: &Scene, mut light: Light) -> Result<Command, Refusal> {
+/// Adds a light at the end of the list, in the lowest free slot.
+pub(super) fn put_light(scene: &Scene, mut light: Light) -> Result<Command, Refusal> {
     if let Some(owner) = light.kind.owner() {
         check_owner(scene, owner)?;
     }

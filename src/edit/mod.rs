@@ -6,6 +6,7 @@
 
 pub mod aiming;
 pub mod arrange;
+pub mod copies;
 pub mod framing;
 mod gesture;
 pub mod gizmo;

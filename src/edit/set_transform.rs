@@ -120,6 +120,23 @@ pub(super) fn pose_and_lens(
 /// up, the little that it is aside would turn the picture by any angle.
 const STEEP: f64 = 0.1;
 
+/// Aims the selected camera at the object that it orbits in analysis, after undo or redo has moved
+/// the object alone. `None` if it is aimed already, or locked.
+#[must_use]
+pub fn aimed_again(scene: &Scene, view: &View) -> Option<Command> {
+    let centre = analysis_centre(scene, view)?;
+    let camera = scene.selected_camera(view);
+    let pose = camera.pose.now();
+    let axes = math::look_at(pose.eye, centre, pose.axes.y_axis, pose.axes);
+    let is_aimed = axes.z_axis.abs_diff_eq(pose.axes.z_axis, 1e-9);
+    if is_aimed || scene.locked.contains(&ItemId::Camera(view.camera)) {
+        return None;
+    }
+    let mut camera = camera.clone();
+    camera.pose = camera.pose.replaced(Pose { axes, ..*pose });
+    Some(Command::Replace(Item::Camera(view.camera, Box::new(camera))))
+}
+
 /// The upright pose in analysis that looks at the centre of the selected object.
 pub(super) fn aimed(pose: &Pose, target: ObjectId, centre: DVec3) -> Pose {
     let steep = math::unit(pose.eye - centre)

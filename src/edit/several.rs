@@ -312,12 +312,19 @@ fn owner_alike(before: &SpotOwner, after: &SpotOwner, own: &mut SpotOwner) {
     }
 }
 
-/// The items of the subject's list; where all of them are selected already, of all lists.
+/// The items of the subject's list that are `listed`; if all of them are selected already, those of
+/// all lists.
 #[must_use]
-pub fn all(scene: &Scene, view: &View, others: &[ItemId]) -> Vec<ItemId> {
-    let objects = || scene.objects.ids().map(ItemId::Object);
-    let cameras = || scene.cameras.ids().map(ItemId::Camera);
-    let lights = || scene.lights.ids().map(ItemId::Light);
+pub fn all(
+    scene: &Scene,
+    view: &View,
+    others: &[ItemId],
+    listed: impl Fn(ItemId) -> bool,
+) -> Vec<ItemId> {
+    let listed = |id: &ItemId| listed(*id);
+    let objects = || scene.objects.ids().map(ItemId::Object).filter(listed);
+    let cameras = || scene.cameras.ids().map(ItemId::Camera).filter(listed);
+    let lights = || scene.lights.ids().map(ItemId::Light).filter(listed);
     let own: Vec<ItemId> = match view.subject {
         Subject::Object => objects().collect(),
         Subject::Camera => cameras().collect(),

@@ -9,8 +9,8 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
-pub use super::set_transform::transformation_of;
 use super::set_transform::{self, LightPlace};
+pub use super::set_transform::{aimed_again, transformation_of};
 use super::{GesturePhase, Refusal, steps};
 use crate::base::math::{self, Axis};
 use crate::scene::{

@@ -9,6 +9,7 @@ use super::obj::{Loaded, MOST_BYTES, parse};
 use super::packed::{MAGIC, Unpacked};
 use super::progress::Progress;
 use super::scene_file::{Opened, SceneFileError, open_text};
+use super::up_axis::{StatedUp, stated_in};
 use crate::scene::LoadOptions;
 
 /// The name of the input in messages and in the outline.
@@ -55,6 +56,12 @@ impl Input {
         let text = self.bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&self.bytes);
         let text = text.trim_ascii_start();
         SCENE.iter().any(|begin| text.starts_with(begin))
+    }
+
+    /// The axis that the comments at its top state to point up.
+    #[must_use]
+    pub fn stated_up(&self) -> Option<StatedUp> {
+        stated_in(&self.bytes)
     }
 
     /// The model, if it is one.

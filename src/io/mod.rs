@@ -26,6 +26,7 @@ mod replace;
 mod scene_file;
 mod sources;
 mod texture;
+mod up_axis;
 mod window_state;
 
 pub use animation::{Animation, AnimationFormat, AnimationWriter};
@@ -48,10 +49,12 @@ pub use progress::{Cancelled, Progress};
 pub use read::check_file;
 pub use replace::SaveError;
 pub use scene_file::{
-    Opened, SCENE_ENDING, SceneFileError, open, open_with, save, save_with_window, to_text,
+    Fragment, Known, Opened, SCENE_ENDING, SceneFileError, items_of_text, items_to_text,
+    material_to_text, open, open_with, save, save_with_window, to_text,
 };
 pub use sources::Sources;
 pub use texture::{
     load_picture, load_texture, load_texture_with, texture_endings, texture_formats,
 };
+pub use up_axis::{StatedUp, stated_up};
 pub use window_state::{Panels, WindowState};

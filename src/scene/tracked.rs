@@ -28,6 +28,16 @@ impl<T> Tracked<T> {
         self.earlier().count()
     }
 
+    /// Whether both have the same earlier values, and one comes from the other without a push.
+    #[must_use]
+    pub fn shares_stack_with(&self, other: &Self) -> bool {
+        match (&self.before, &other.before) {
+            (None, None) => true,
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (Some(_), None) | (None, Some(_)) => false,
+        }
+    }
+
     /// The earlier values, the latest first.
     pub fn earlier(&self) -> impl Iterator<Item = &T> {
         std::iter::successors(self.before.as_deref(), |placed| placed.before.as_deref())

@@ -34,6 +34,21 @@ fn models_without_a_scene_are_seen_whole_and_in_the_middle() {
 }
 
 #[test]
+fn an_up_axis_that_the_file_states_is_used_unless_another_is_given() {
+    let folder = folder();
+    let square = "v 0 0 0\nv 2 0 0\nv 2 0 1\nv 0 0 1\nf 1 2 3 4\n";
+    std::fs::write(folder.path().join("plain.obj"), square).unwrap();
+    std::fs::write(folder.path().join("stated.obj"), format!("# Z-up\n{square}")).unwrap();
+    let turned = drawn(folder.path(), &["plain.obj", "--up", "z"]);
+    assert!(drawn(folder.path(), &["stated.obj"]) == turned);
+    let plain = drawn(folder.path(), &["plain.obj"]);
+    assert!(plain != turned);
+    assert!(drawn(folder.path(), &["stated.obj", "--up", "y"]) == plain);
+    let (said, _) = ends_with(0, folder.path(), &["info", "stated.obj"]);
+    assert!(said.contains("Z is up"), "{said}");
+}
+
+#[test]
 fn models_without_a_scene_are_seen_from_the_right_and_above() {
     let folder = folder();
     let picture = drawn(folder.path(), &["square.obj"]);

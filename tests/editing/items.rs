@@ -119,10 +119,10 @@ fn a_copy_has_the_place_and_not_the_past() {
     let mut desk = desk(Subject::Object);
     desk.press(Axis::X, Sign::Positive);
     let placement = desk.placement();
-    desk.perform(items::duplicate(&desk.scene, ItemId::Object(ObjectId(3))));
+    desk.perform(items::duplicate(&desk.scene, ItemId::Object(ObjectId(3)), DVec3::ZERO));
     assert_eq!((desk.placement(), desk.object().placement.depth()), (placement, 0));
     assert_eq!(names(&desk)[0], "object 4", "the first number that is free");
-    desk.perform(items::duplicate(&desk.scene, ItemId::Light(LightId(6))));
+    desk.perform(items::duplicate(&desk.scene, ItemId::Light(LightId(6)), DVec3::ZERO));
     let light = desk.scene.lights.get(desk.view.light.unwrap()).unwrap();
     assert_eq!((light.slot, &*light.name), (5, "bulb 2"));
 }

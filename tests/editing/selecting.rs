@@ -97,7 +97,8 @@ fn after_a_removal_the_next_is_selected_else_the_one_before() {
 #[test]
 fn items_that_undo_restores_are_selected_and_items_that_it_removes_are_not() {
     let mut desk = desk(Subject::Object);
-    let back = desk.perform(items::duplicate(&desk.scene, ItemId::Object(ObjectId(2))));
+    let back =
+        desk.perform(items::duplicate(&desk.scene, ItemId::Object(ObjectId(2)), glam::DVec3::ZERO));
     assert_eq!(desk.view.object, Some(ObjectId(9)), "the new one is selected");
     desk.perform(Ok(back));
     assert_eq!(desk.view.object, Some(ObjectId(3)));

@@ -150,7 +150,7 @@ fn moving_the_object_aims_the_camera_in_analysis_again_and_pushes_nothing_on_it(
 fn a_camera_that_was_left_in_analysis_at_another_object_is_in_fly() {
     let mut desk = Desk::new(Subject::Camera, Transformation::Translation);
     desk.analyse();
-    let camera = items::duplicate(&desk.scene, ItemId::Camera(desk.view.camera));
+    let camera = items::duplicate(&desk.scene, ItemId::Camera(desk.view.camera), DVec3::ZERO);
     desk.perform(camera);
     assert_eq!(desk.mode(), CameraMode::Analysis { target: ObjectId(3) }, "a copy is a copy");
     desk.choose(selection::select(&desk.scene, &desk.view, ItemId::Object(ObjectId(2))));

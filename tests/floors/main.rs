@@ -107,6 +107,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "gizmo",
             "selection",
             "several",
+            "copies",
             "presenting",
             "history",
         ],

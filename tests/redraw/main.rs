@@ -231,7 +231,7 @@ impl Desk {
             0..5 => self.step(rng),
             5 => {
                 let few = self.scene.objects.len() + self.scene.cameras.len() < 8;
-                items::duplicate(&self.scene, item)
+                items::duplicate(&self.scene, item, DVec3::ZERO)
                     .and_then(|command| if few { Ok(command) } else { Err(Refusal::TooLarge) })
             }
             6 if self.scene.objects.len() > 2 => items::remove(&self.scene, item),

@@ -272,8 +272,6 @@ fn undo_and_redo_walk_through_everything_that_changes_the_scene() {
         Action::Duplicate,
         Action::Delete,
         Action::ToggleVisible,
-        Action::FrameAll,
-        Action::LookTop,
     ];
     for action in actions {
         editor.perform(action);

@@ -4,10 +4,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
 
+mod clipboard;
 mod dialogs;
 mod editor;
 mod examples;
 mod first_models;
+mod folders;
 mod gizmo;
 mod greeting;
 mod helpers;
@@ -17,11 +19,14 @@ mod keys_and_clicks;
 mod laboratory;
 mod layout;
 mod locking;
+mod looking;
 mod mouse;
+mod notices;
 mod outputs;
 mod palette;
 mod panels;
 mod plan;
+mod preferences;
 mod properties;
 mod refining;
 mod regions;

@@ -482,7 +482,7 @@ fn a_crease_angle_makes_edges_sharp_or_smooth_in_one_step() {
     assert!(editor.scene() == before);
 
     // A copy shares the model again once it has the same angle.
-    let copy = items::duplicate(&editor.scene(), ItemId::Object(id)).unwrap();
+    let copy = items::duplicate(&editor.scene(), ItemId::Object(id), DVec3::ZERO).unwrap();
     editor.ask(Request::Change {
         command: copy,
         gesture: Gesture::Whole,

@@ -19,6 +19,8 @@ pub(crate) enum Intent {
     Change(Command),
     /// A change of the scene whose new item becomes the subject.
     Add(Command, Subject),
+    /// A movement of the view.
+    Navigate(Command),
     /// A change of the view.
     View(Box<View>),
     /// Another selection.
@@ -69,12 +71,27 @@ pub(crate) enum Intent {
     TypeAmount,
     /// These are selected beside the selected item.
     Others(Others),
+    /// Something with the clipboard.
+    Clipboard(ClipboardIntent),
     /// The next click into the picture explains a pixel.
     Explain,
     /// The next click into the picture aims the selected light.
     AimByClick,
     /// The keyboard goes to the panels, or back to the viewport.
     ChangeKeyboardOwner(Way),
+}
+
+/// What an action does with the clipboard.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum ClipboardIntent {
+    /// The selected items are copied.
+    Copy,
+    /// The same, and this command deletes them.
+    Cut(Command),
+    /// What is on the clipboard is added to the scene.
+    Paste,
+    /// The material of an object is copied.
+    CopyMaterial(ObjectId),
 }
 
 /// What an action does with files, most of it by asking for one.

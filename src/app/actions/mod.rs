@@ -13,7 +13,7 @@ mod table;
 
 pub use crate::app::chord::Chord;
 pub use info::{ActionInfo, Group};
-pub(crate) use intent::{FileIntent, Intent};
+pub(crate) use intent::{ClipboardIntent, FileIntent, Intent};
 pub use mouse::MouseInfo;
 pub use request::{Also, KeyRequest, LabRequest, Request};
 pub(crate) use request::{change, change_view};

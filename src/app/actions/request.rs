@@ -12,11 +12,12 @@ use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, State};
 use crate::edit::several::Others;
 use crate::edit::{Gesture, Refusal};
+use crate::io::Preferences;
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::{Measure, Region};
 use crate::lab::report::Budgets;
 use crate::lab::suite::SuiteDetail;
-use crate::scene::{Command, ItemId, ObjectId, View};
+use crate::scene::{Command, ItemId, ObjectId, UpAxis, View};
 
 /// A request to the app.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +32,13 @@ pub enum Request {
         gesture: Gesture,
         /// As the history calls it: "Move teapot".
         label: String,
+    },
+    /// A movement of the view: it is no step of the history.
+    Navigate {
+        /// The change of the camera.
+        command: Command,
+        /// What it is part of.
+        gesture: Gesture,
     },
     /// A change of the view that selects nothing else.
     View(Box<View>),
@@ -54,6 +62,8 @@ pub enum Request {
     AimAt(DVec3),
     /// Selects a polygon of the selected object while polygons are shown one at a time.
     SelectPolygon(u32),
+    /// The outline lists only items with this in their names.
+    Filter(String),
     /// Goes to the point in the history after this number of steps.
     GoTo(usize),
     /// Asks for a name of this item.
@@ -77,6 +87,12 @@ pub enum Request {
     CancelMaking(usize),
     /// Puts away the notice that stands at this place.
     PutAway(usize),
+    /// Moves the notice at this place to the status line.
+    Settle(usize),
+    /// Forgets the notices of the status line.
+    ClearNotices,
+    /// Reads the model of an object again, with this axis of its file pointing up.
+    TurnUp(ObjectId, UpAxis),
     /// Shows the unsaved work that is offered at this place.
     Recover(usize),
     /// Removes the unsaved work that is offered at this place.
@@ -89,6 +105,8 @@ pub enum Request {
     Keys(KeyRequest),
     /// The strip of the first minute is put away.
     EndGreeting,
+    /// Other preferences.
+    Preferences(Box<Preferences>),
     /// Says in the status line why a request was refused.
     Refuse(String),
 }

@@ -6,7 +6,7 @@
 
 use egui::ThemePreference;
 
-use super::intent::{FileIntent, Intent};
+use super::intent::{ClipboardIntent, FileIntent, Intent};
 use super::table::Action;
 use crate::accuracy::{LeaveOut, Settings};
 use crate::app::panels::Panel;
@@ -19,8 +19,8 @@ use crate::edit::lights::{APERTURE_STEP, Channel};
 use crate::edit::several::{self, Others};
 use crate::edit::transform::Sign;
 use crate::edit::{
-    GesturePhase, Refusal, aiming, arrange, framing, gizmo, items, lights, selection, shapes,
-    transform,
+    GesturePhase, Refusal, aiming, arrange, copies, framing, gizmo, items, lights, selection,
+    shapes, transform,
 };
 use crate::io::Helpers;
 use crate::scene::{
@@ -46,7 +46,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
     let step = |axis, sign| each(&|scene, view| transform::step(scene, view, axis, sign, phase));
     let color = |channel, by| each(&|scene, view| lights::step_color(scene, view, channel, by));
     let aperture = |by| each(&|scene, view| lights::step_aperture(scene, view, by));
-    let look_from = |side| framing::side(scene, view, side).map(Intent::Change);
+    let look_from = |side| framing::side(scene, view, side).map(Intent::Navigate);
     let file = |intent| Ok(Intent::File(intent));
     match action {
         Action::New => file(FileIntent::New),
@@ -80,16 +80,14 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::Rename => selected(state).map(Intent::Rename),
         Action::Duplicate => {
             let subject = selection::subject_of(selected(state)?);
-            let copy = |scene: &Scene, view: &View| {
-                items::duplicate(scene, selection::selected(view).ok_or(Refusal::Gone)?)
-            };
-            several::each(scene, view, &others, copy).map(|command| Intent::Add(command, subject))
+            copies::duplicate(scene, view, &others).map(|command| Intent::Add(command, subject))
         }
-        Action::Delete => {
-            selected(state)?;
-            each(&|scene, view| {
-                items::remove(scene, selection::selected(view).ok_or(Refusal::Gone)?)
-            })
+        Action::Delete => delete(state, &others).map(Intent::Change),
+        Action::Cut => delete(state, &others).map(|it| clipboard(ClipboardIntent::Cut(it))),
+        Action::Copy => selected(state).map(|_| clipboard(ClipboardIntent::Copy)),
+        Action::Paste => Ok(clipboard(ClipboardIntent::Paste)),
+        Action::CopyMaterial => {
+            object(state).map(|id| clipboard(ClipboardIntent::CopyMaterial(id)))
         }
         Action::ChooseTexture => object(state).map(Intent::ChooseTexture),
         Action::Split => items::split(scene, object(state)?).map(Intent::Change),
@@ -103,7 +101,8 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         }
         Action::SelectAll => {
             let first = selected(state)?;
-            Ok(Intent::Others(Others::new(first, several::all(scene, view, &others))))
+            let all = several::all(scene, view, &others, |item| state.is_listed(item));
+            Ok(Intent::Others(Others::new(first, all)))
         }
         Action::SelectNone if others.is_empty() => Err(Refusal::OneSelected),
         Action::SelectNone => Ok(Intent::Others(Others::default())),
@@ -211,9 +210,9 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
                 0 | 1 => framing::selection(scene, view),
                 _ => framing::objects(scene, view, &objects),
             };
-            framed.map(Intent::Change)
+            framed.map(Intent::Navigate)
         }
-        Action::FrameAll => framing::all(scene, view).map(Intent::Change),
+        Action::FrameAll => framing::all(scene, view).map(Intent::Navigate),
         Action::LookFront => look_from(LookSide::Front),
         Action::LookRight => look_from(LookSide::Right),
         Action::LookTop => look_from(LookSide::Top),
@@ -271,6 +270,18 @@ fn zoom(state: &State, by: f32) -> Resolved {
         return Err(Refusal::LargestOrSmallest);
     }
     Ok(Intent::Zoom(to))
+}
+
+const fn clipboard(intent: ClipboardIntent) -> Intent {
+    Intent::Clipboard(intent)
+}
+
+/// Deletes the selected items.
+fn delete(state: &State, others: &[ItemId]) -> Result<Command, Refusal> {
+    selected(state)?;
+    several::each(&state.scene, &state.view, others, |scene, view| {
+        items::remove(scene, selection::selected(view).ok_or(Refusal::Gone)?)
+    })
 }
 
 fn selected(state: &State) -> Result<ItemId, Refusal> {

@@ -106,6 +106,7 @@ impl Action {
             Self::ReloadModels | Self::RecoverWork | Self::FitExposure => return None,
             Self::ExportScene | Self::NewAncestor | Self::ToPanelsBack => return None,
             Self::Quit | Self::Undo | Self::Redo | Self::TakeBack | Self::Rename => return None,
+            Self::Cut | Self::Copy | Self::Paste | Self::CopyMaterial => return None,
             Self::Duplicate | Self::Delete | Self::Split | Self::AddCamera | Self::AddSun => {
                 return None;
             }

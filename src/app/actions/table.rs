@@ -74,8 +74,21 @@ actions! {
         "Rename" "Renames the selected item."
         "name title label"
         => Around("Rename", "");
+    Cut Edit ONCE [Command(Key::X)]
+        "Cut" "Copies the selected items as text, and deletes them."
+        "clipboard take move"
+        => Around("Cut", "");
+    Copy Edit ONCE [Command(Key::C)]
+        "Copy" "Copies the selected items as text, for this window, another one or an editor."
+        "clipboard text";
+    Paste Edit ONCE [Command(Key::V)]
+        "Paste" "Adds the items of the clipboard, or gives its material to the selected objects."
+        "clipboard insert text";
+    CopyMaterial Edit ONCE []
+        "Copy material" "Copies the material of the selected object; Paste gives it to others."
+        "clipboard surface look shader";
     Duplicate Edit ONCE [Command(Key::D)]
-        "Duplicate" "Adds a copy of the selected item and selects it."
+        "Duplicate" "Adds a copy next to the selected item and selects it."
         "copy clone paste"
         => Around("Duplicate", "");
     Delete Edit ONCE [Named(Key::Delete)]

@@ -1,13 +1,19 @@
 //! A simple file browser for systems without a file dialog.
 //!
-//! A path can be typed or pasted as a whole; the list below follows it.
+//! A path can be typed or pasted as a whole; the list below follows it. The arrow keys go from the
+//! field into the list: the keyboard alone is enough.
+
+mod list;
 
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{Key, Ui};
+use egui::{Key, Modifiers, Ui, vec2};
 
-use crate::app::widgets::controls::heading;
+use crate::app::theme;
+use crate::app::widgets::controls::{Switch, heading};
+pub(crate) use list::Look;
 
 /// Whether the file is opened or saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,8 +29,14 @@ pub(crate) struct Browser {
     mode: Mode,
     /// Endings without the dot, the first being the one that a name without any gets.
     endings: Vec<&'static str>,
+    /// Folders that are one click away, with their names.
+    places: Vec<(String, PathBuf)>,
+    /// How the list is shown.
+    pub(crate) look: Look,
     /// What stands in the path field.
     path: String,
+    /// The part of a name that was typed, if the list is limited to it.
+    part: Option<String>,
     folder: PathBuf,
     entries: Vec<Entry>,
     /// Why the folder cannot be listed, or the file not be chosen.
@@ -32,10 +44,12 @@ pub(crate) struct Browser {
     shown_once: bool,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Entry {
     name: String,
     is_folder: bool,
+    bytes: u64,
+    modified: Option<SystemTime>,
 }
 
 /// The result of the browser.
@@ -58,7 +72,10 @@ impl Browser {
             title,
             mode,
             endings,
+            places: Vec::new(),
+            look: Look::default(),
             path: String::new(),
+            part: None,
             folder: PathBuf::new(),
             entries: Vec::new(),
             fault: None,
@@ -69,12 +86,22 @@ impl Browser {
         browser
     }
 
+    /// The browser with these places, and a list that looks like this.
+    pub(crate) fn with(mut self, places: Vec<(String, PathBuf)>, look: Look) -> Self {
+        (self.places, self.look) = (places, look);
+        self.look.sort(&mut self.entries);
+        self
+    }
+
     /// Shows the dialog. Returns how it ended, once it has.
     pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<Choice> {
-        ui.set_width(ui.available_width().clamp(240.0, 520.0));
+        ui.set_width(ui.available_width().clamp(240.0, 640.0));
         heading(ui, self.title);
         let label = ui.label("Path");
+        let id = ui.scope_id().with("path");
+        let moved = self.arrows(ui, id);
         let output = egui::TextEdit::singleline(&mut self.path)
+            .id(id)
             .desired_width(f32::INFINITY)
             .align(egui::Align2::LEFT_CENTER)
             .show(ui);
@@ -87,22 +114,28 @@ impl Browser {
             self.shown_once = true;
         }
         let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        if field.changed() {
+        if field.changed() && !moved {
             self.follow();
         }
         let mut choice = if entered { self.take() } else { None };
-        if entered && choice.is_none() {
+        if moved || (entered && choice.is_none()) {
             // It goes on being typed into, behind what stands there now.
             self.type_on(ui, field.id);
         }
-        if let (None, Some(clicked)) = (&choice, self.list_ui(ui)) {
+        ui.add_space(theme::GAP);
+        let mut clicked = None;
+        ui.horizontal_top(|ui| {
+            clicked = self.places_ui(ui);
+            ui.vertical(|ui| clicked = clicked.take().or_else(|| self.list_ui(ui, moved)));
+        });
+        if let (None, Some(clicked)) = (&choice, clicked) {
             choice = self.click(&clicked);
             self.type_on(ui, field.id);
         }
         if let Some(fault) = &self.fault {
             ui.colored_label(ui.visuals().error_fg_color, fault);
         }
-        ui.add_space(4.0);
+        ui.add_space(theme::GAP);
         ui.horizontal(|ui| {
             if ui.button(self.verb()).clicked() {
                 choice = choice.take().or_else(|| self.take());
@@ -110,8 +143,77 @@ impl Browser {
             if ui.button("Cancel").clicked() {
                 choice = Some(Choice::Cancelled);
             }
+            ui.add_space(theme::GAP);
+            ui.allocate_ui(vec2(120.0, theme::ROW), |ui| {
+                let hidden = Switch::new("Hidden files", self.look.hidden).ui(ui);
+                let hint = "Lists files with a dot at the beginning of their names, too";
+                self.look.hidden ^= hidden.on_hover_text(hint).clicked();
+            });
         });
         choice
+    }
+
+    /// The folders that are one click away. Gives the one that was clicked.
+    fn places_ui(&self, ui: &mut Ui) -> Option<PathBuf> {
+        const WIDTH: f32 = 120.0;
+        if self.places.is_empty() || ui.available_width() < 4.0 * WIDTH {
+            return None;
+        }
+        let mut clicked = None;
+        ui.vertical(|ui| {
+            ui.set_width(WIDTH);
+            ui.spacing_mut().item_spacing.y = 0.0;
+            for (name, folder) in &self.places {
+                let here = *folder == self.folder;
+                let button = egui::Button::selectable(here, (name.as_str(), egui::Atom::grow()));
+                let response = ui.add_sized(vec2(WIDTH, theme::ROW), button.truncate());
+                if response.on_hover_text(folder.display().to_string()).clicked() {
+                    clicked = Some(folder.clone());
+                }
+            }
+        });
+        clicked
+    }
+
+    /// Moves through the list with the arrow keys, and puts the entry into the field. The keys are
+    /// taken before the field sees them, which would move its cursor. Returns whether one was
+    /// pressed.
+    fn arrows(&mut self, ui: &Ui, field: egui::Id) -> bool {
+        if !ui.memory(|memory| memory.has_focus(field)) {
+            return false;
+        }
+        let (down, up) = ui.input_mut(|input| {
+            let mut count = |key| input.count_and_consume_key(Modifiers::NONE, key);
+            (count(Key::ArrowDown), count(Key::ArrowUp))
+        });
+        if down + up == 0 {
+            return false;
+        }
+        let rows: Vec<PathBuf> = self.rows().into_iter().map(|(path, _)| path).collect();
+        let typed = self.typed();
+        let last = rows.len().saturating_sub(1);
+        let to = match rows.iter().position(|row| *row == typed) {
+            Some(at) => (at + down).saturating_sub(up).min(last),
+            // The folder above is reached from the first entry.
+            None if self.folder.parent().is_some() => down.min(last),
+            None => 0,
+        };
+        if let Some(row) = rows.get(to) {
+            self.path = row.display().to_string();
+        }
+        true
+    }
+
+    /// The lines of the list, with their paths: the folder above, which is no entry, and the
+    /// entries that fit.
+    fn rows(&self) -> Vec<(PathBuf, Option<&Entry>)> {
+        let above = self.folder.parent().map(|above| (above.to_owned(), None));
+        let entry = |entry| (self.place(entry), Some(entry));
+        above.into_iter().chain(self.fitting().map(entry)).collect()
+    }
+
+    fn place(&self, entry: &Entry) -> PathBuf {
+        self.folder.join(&entry.name)
     }
 
     /// What typing replaces at first: the proposed name without its ending. Without a name, it goes
@@ -139,60 +241,59 @@ impl Browser {
         ui.memory_mut(|memory| memory.request_focus(field));
     }
 
-    /// Lists what fits the typed name; gives the path that was clicked.
-    fn list_ui(&self, ui: &mut Ui) -> Option<PathBuf> {
-        let mut clicked = None;
-        let list = egui::ScrollArea::vertical().max_height(260.0).auto_shrink([false, true]);
-        list.show(ui, |ui| {
-            if self.folder.parent().is_some() && ui.selectable_label(false, "..").clicked() {
-                clicked = self.folder.parent().map(Path::to_owned);
-            }
-            for entry in self.fitting() {
-                let path = self.folder.join(&entry.name);
-                let chosen = self.typed() == path;
-                let text = match entry.is_folder {
-                    true => format!("{}/", entry.name),
-                    false => entry.name.clone(),
-                };
-                if ui.selectable_label(chosen, text).clicked() {
-                    clicked = Some(path);
-                }
-            }
-        });
-        clicked
-    }
-
     /// Takes a click on a path of the list: a folder is entered, a file is chosen, and a second
     /// click on it takes it.
     fn click(&mut self, clicked: &Path) -> Option<Choice> {
         let again = self.typed() == clicked;
         if clicked.is_dir() {
-            self.enter(clicked);
-            self.path = shown_folder(&self.folder);
+            self.go(clicked);
             return None;
         }
         self.path = clicked.display().to_string();
         again.then(|| self.take()).flatten()
     }
 
-    /// The entries that the typed name is a part of; all if it names a folder or one of them.
+    /// Goes to a folder. The name to save under stays.
+    fn go(&mut self, folder: &Path) {
+        let typed = self.typed();
+        let name = typed.file_name().filter(|_| self.mode == Mode::Save && !typed.is_dir());
+        let name = name.map(std::ffi::OsStr::to_owned);
+        self.enter(folder);
+        self.path = match name {
+            Some(name) => self.folder.join(name).display().to_string(),
+            None => shown_folder(&self.folder),
+        };
+    }
+
+    /// The listed entries: names that contain the typed part. Hidden entries are listed on request,
+    /// or if a dot is typed.
     fn fitting(&self) -> impl Iterator<Item = &Entry> {
         let typed = self.typed();
-        let name = match self.path.trim().ends_with(['/', std::path::MAIN_SEPARATOR]) {
-            true => None,
-            false => typed.file_name().map(|name| name.to_string_lossy().to_lowercase()),
-        };
-        let is_whole =
-            typed.is_dir() || self.entries.iter().any(|it| self.folder.join(&it.name) == typed);
-        let part = name.filter(|_| self.mode == Mode::Open && !is_whole);
+        let name = typed.file_name().map(|name| name.to_string_lossy().into_owned());
+        let dot = !typed.is_dir() && name.is_some_and(|name| name.starts_with('.'));
+        let hidden =
+            self.look.hidden || dot || self.part.as_ref().is_some_and(|it| it.starts_with('.'));
         self.entries.iter().filter(move |entry| {
+            if entry.name.starts_with('.') && !hidden {
+                return false;
+            }
             // Without its ending, which all have.
             let stem = Path::new(&entry.name).file_stem().map(|stem| stem.to_string_lossy());
-            part.as_ref().is_none_or(|part| match stem {
+            self.part.as_ref().is_none_or(|part| match stem {
                 Some(stem) if !part.contains('.') => stem.to_lowercase().contains(part),
                 _ => entry.name.to_lowercase().contains(part),
             })
         })
+    }
+
+    /// The part of a name that is typed; none if it names a folder or an entry.
+    fn typed_part(&self) -> Option<String> {
+        let typed = self.typed();
+        let ends = self.path.trim().ends_with(['/', std::path::MAIN_SEPARATOR]);
+        let is_whole =
+            ends || typed.is_dir() || self.entries.iter().any(|entry| self.place(entry) == typed);
+        let name = typed.file_name().map(|name| name.to_string_lossy().to_lowercase());
+        name.filter(|_| self.mode == Mode::Open && !is_whole)
     }
 
     /// The path that is typed. One that begins anew behind the folder, with a slash or the sign of
@@ -230,8 +331,7 @@ impl Browser {
     fn take(&mut self) -> Option<Choice> {
         let typed = self.typed();
         if typed.is_dir() {
-            self.enter(&typed);
-            self.path = shown_folder(&self.folder);
+            self.go(&typed);
             return None;
         }
         let path = self.named();
@@ -257,25 +357,29 @@ impl Browser {
         if let Some(folder) = folder.filter(|folder| folder.is_dir() && *folder != self.folder) {
             self.enter(&folder);
         }
+        self.part = self.typed_part();
         self.fault = None;
     }
 
     fn enter(&mut self, folder: &Path) {
         self.folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
         self.entries.clear();
-        self.fault = None;
+        (self.part, self.fault) = (None, None);
         match std::fs::read_dir(&self.folder) {
             Ok(entries) => {
-                self.entries = entries
-                    .flatten()
-                    .map(|entry| Entry {
+                let entries = entries.flatten().map(|entry| {
+                    // What a link leads to.
+                    let data = std::fs::metadata(entry.path()).ok();
+                    Entry {
                         name: entry.file_name().to_string_lossy().into_owned(),
-                        is_folder: entry.path().is_dir(),
-                    })
-                    .filter(|entry| !entry.name.starts_with('.'))
-                    .filter(|entry| entry.is_folder || self.fits(&entry.name))
-                    .collect();
-                self.entries.sort_by_key(|entry| (!entry.is_folder, entry.name.to_lowercase()));
+                        is_folder: data.as_ref().is_some_and(std::fs::Metadata::is_dir),
+                        bytes: data.as_ref().map_or(0, std::fs::Metadata::len),
+                        modified: data.and_then(|data| data.modified().ok()),
+                    }
+                });
+                self.entries =
+                    entries.filter(|entry| entry.is_folder || self.fits(&entry.name)).collect();
+                self.look.sort(&mut self.entries);
             }
             Err(error) => self.fault = Some(format!("This folder cannot be listed: {error}.")),
         }
@@ -367,5 +471,30 @@ mod tests {
         let mut browser = Browser::new("", Mode::Open, vec!["obj"], folder.path(), "none.obj");
         assert_eq!(browser.take(), None);
         assert!(browser.fault.is_some());
+    }
+
+    #[test]
+    fn hidden_entries_are_listed_on_request_and_when_a_dot_is_typed() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.obj", ".b.obj"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        let mut browser = Browser::new("", Mode::Open, vec!["obj"], folder.path(), "");
+        let whole = browser.path.clone();
+        assert_eq!(browser.fitting().count(), 1);
+        browser.look.hidden = true;
+        assert_eq!(browser.fitting().count(), 2);
+        browser.look.hidden = false;
+        browser.path = format!("{whole}.");
+        browser.follow();
+        assert_eq!(browser.fitting().map(|it| it.name.as_str()).collect::<Vec<_>>(), [".b.obj"]);
+    }
+
+    #[test]
+    fn another_folder_keeps_the_name_to_save_under() {
+        let [here, there] = [(), ()].map(|()| tempfile::tempdir().unwrap());
+        let mut browser = Browser::new("", Mode::Save, vec!["png"], here.path(), "view.png");
+        assert_eq!(browser.click(there.path()), None);
+        assert_eq!(browser.take(), Some(Choice::File(there.path().join("view.png"))));
     }
 }

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use egui::{Context, Id, Modal, Ui};
 
-use super::browser::{Browser, Choice, Mode};
+use super::browser::{Browser, Choice, Look, Mode};
+use super::folders::{Folders, Kind};
 use super::material_dialog::{self, MaterialChoices, MaterialDialog};
 use super::picture_dialog::{self, PictureChoices, PictureDialog};
 use crate::app::shell::Parent;
@@ -84,8 +85,10 @@ pub(crate) enum Answer {
 pub(crate) struct Dialogs {
     /// Whether to use the system's file dialogs.
     pub(crate) native: bool,
-    /// The folder of the last file.
-    folder: PathBuf,
+    /// Where files are looked for and saved.
+    pub(crate) folders: Folders,
+    /// How lists of files are shown.
+    look: Look,
     system: Option<SystemDialog>,
     /// A dialog of the system's that is to be opened.
     waiting: Option<(Wanted, String)>,
@@ -148,8 +151,16 @@ impl Dialogs {
 
     /// Asks for the options of a picture or a turntable.
     pub(crate) fn ask_picture(&mut self, choices: PictureChoices) {
-        let dialog = PictureDialog::new(choices, self.folder());
+        let dialog = PictureDialog::new(choices, self.folders.start(Kind::Saved));
         self.open.push(Dialog::Picture(Box::new(dialog)));
+    }
+
+    /// The file of the model whose material is being chosen.
+    pub(crate) fn model_file(&self) -> Option<&Path> {
+        self.open.iter().rev().find_map(|dialog| match dialog {
+            Dialog::Material(material) => material.loaded.as_ref().map(|(path, _)| path.as_path()),
+            _ => None,
+        })
     }
 
     /// Sets the texture of the model whose material is being chosen.
@@ -202,7 +213,7 @@ impl Dialogs {
         let mut dialog = rfd::FileDialog::new()
             .set_title(title)
             .add_filter(endings.join(", "), &endings)
-            .set_directory(self.folder())
+            .set_directory(self.folders.start(wanted.kind()))
             .set_parent(parent);
         if !name.is_empty() {
             dialog = dialog.set_file_name(&name);
@@ -248,12 +259,18 @@ impl Dialogs {
         Some(match (end, dialog) {
             (End::Answer(answer), _) => {
                 if let Answer::Picture(_, Some(path)) = &answer {
-                    self.remember_folder_of(path);
+                    self.folders.remember(Kind::Saved, path);
                 }
                 answer
             }
-            (End::File(path), Dialog::Browser(wanted, _)) => self.chosen(wanted, vec![path]),
-            (End::Cancelled, Dialog::Browser(wanted, _)) => Answer::NoFile(wanted),
+            (End::File(path), Dialog::Browser(wanted, browser)) => {
+                self.look = browser.look;
+                self.chosen(wanted, vec![path])
+            }
+            (End::Cancelled, Dialog::Browser(wanted, browser)) => {
+                self.look = browser.look;
+                Answer::NoFile(wanted)
+            }
             (End::Material(choices), Dialog::Material(dialog)) => Answer::Material(dialog, choices),
             (End::Cancelled | End::File(_) | End::Material(_) | End::Asked, _) => return None,
         })
@@ -280,33 +297,34 @@ impl Dialogs {
 
     fn chosen(&mut self, wanted: Wanted, paths: Vec<PathBuf>) -> Answer {
         if let Some(path) = paths.first() {
-            self.remember_folder_of(path);
+            self.folders.remember(wanted.kind(), path);
         }
         Answer::Files(wanted, paths)
     }
 
-    fn remember_folder_of(&mut self, path: &Path) {
-        if let Some(folder) = path.parent() {
-            folder.clone_into(&mut self.folder);
-        }
-    }
-
     fn browse(&mut self, wanted: Wanted, name: &str) {
         let (title, mode, endings) = wanted.description();
-        let browser = Browser::new(title, mode, endings, &self.folder(), name);
+        let start = self.folders.start(wanted.kind());
+        let browser = Browser::new(title, mode, endings, &start, name);
+        let browser = browser.with(self.folders.places(), self.look);
         self.open.push(Dialog::Browser(wanted, Box::new(browser)));
-    }
-
-    fn folder(&self) -> PathBuf {
-        if self.folder.as_os_str().is_empty() {
-            std::env::current_dir().unwrap_or_else(|_| PathBuf::from("/"))
-        } else {
-            self.folder.clone()
-        }
     }
 }
 
 impl Wanted {
+    /// What the folder is remembered for.
+    pub(crate) const fn kind(&self) -> Kind {
+        match self {
+            Self::Model | Self::Dropped | Self::Scene | Self::Missing(_) => Kind::Opened,
+            Self::Texture(_) | Self::TextureOfModel => Kind::Texture,
+            Self::SceneTo(_)
+            | Self::PictureTo
+            | Self::PictureWithOptionsTo
+            | Self::TurntableTo
+            | Self::ExportTo => Kind::Saved,
+        }
+    }
+
     fn description(&self) -> (&'static str, Mode, Vec<&'static str>) {
         let models = || vec!["obj", "gz"];
         let scenes = || vec!["marraztu"];

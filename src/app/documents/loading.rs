@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::app::tasks::Task;
 use crate::base::Shared;
-use crate::io::{self, Finding, LoadError, Loaded, Opened, SCENE_ENDING, SceneFileError};
+use crate::io::{self, Finding, Fragment, LoadError, Loaded, Opened, SCENE_ENDING, SceneFileError};
 use crate::scene::{LoadOptions, MaterialChoice, Model, Object, ObjectId, Texture};
 
 /// A file that is being read.
@@ -39,6 +39,10 @@ pub(crate) enum Fetched {
     Texture(ObjectId, Result<(Shared<Texture>, Vec<Finding>), LoadError>),
     /// A scene.
     Scene(Box<Opening>),
+    /// Items from the clipboard.
+    Pasted(Result<Box<Fragment>, SceneFileError>),
+    /// The model of an object with another axis of its file pointing up.
+    Turned(ObjectId, Result<Loaded, LoadError>),
     /// Models that were read again.
     Again(Vec<Reread>),
     /// Models that are shown together and alone.
@@ -58,7 +62,8 @@ pub(crate) enum Arrival {
 #[derive(Debug)]
 pub(crate) struct Arrived {
     pub(crate) object: Object,
-    pub(crate) found: String,
+    /// What a notice says of it.
+    pub(crate) said: String,
     pub(crate) findings: Vec<String>,
 }
 

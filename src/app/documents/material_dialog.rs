@@ -207,20 +207,27 @@ pub(crate) fn own_or_silver(loaded: &Loaded) -> MaterialChoice {
     }
 }
 
-/// "6,320 faces, 3,644 vertices; 2 findings"; of a single finding, and of the first by which
-/// something is lost, its file and what it says.
+/// "6,320 faces, 3,644 vertices"; if something is lost, the first loss with its file, and the
+/// number of further findings.
 pub(crate) fn summary(loaded: &Loaded) -> String {
     let mesh = &loaded.model.mesh;
     let faces = mesh.polygon_count();
     let counts = format!("{} faces, {} vertices", grouped(faces), grouped(mesh.positions().len()));
-    match loaded.findings.as_slice() {
-        [] => counts,
-        [one] => format!("{counts}; {}", short(one)),
-        all => match (all.iter().find(|it| it.kind.is_loss()), all.len() - 1) {
-            (Some(lost), 1) => format!("{counts}; {}; 1 more finding", short(lost)),
-            (Some(lost), more) => format!("{counts}; {}; {more} more findings", short(lost)),
-            (None, _) => format!("{counts}; {} findings", all.len()),
-        },
+    let more = loaded.findings.len().saturating_sub(1);
+    match (loaded.findings.iter().find(|it| it.kind.is_loss()), more) {
+        (None, _) => counts,
+        (Some(lost), 0) => format!("{counts}; {}", short(lost)),
+        (Some(lost), 1) => format!("{counts}; {}; 1 more finding", short(lost)),
+        (Some(lost), more) => format!("{counts}; {}; {more} more findings", short(lost)),
+    }
+}
+
+/// The text of a notice about a model that was read: "Opened ...", or its first loss.
+pub(crate) fn opened(loaded: &Loaded) -> String {
+    let (name, summary) = (&loaded.model.name, summary(loaded));
+    match loaded.findings.iter().any(|finding| finding.kind.is_loss()) {
+        true => format!("{name}: {summary}"),
+        false => format!("Opened {name}: {summary}"),
     }
 }
 
@@ -232,7 +239,7 @@ pub(crate) fn details(findings: &[Finding]) -> Vec<String> {
 }
 
 /// A finding with the name of its file, without folders.
-fn short(finding: &Finding) -> String {
+pub(crate) fn short(finding: &Finding) -> String {
     format!("{}: {}", file_name(Path::new(&finding.file)), finding.text)
 }
 

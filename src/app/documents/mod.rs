@@ -2,6 +2,7 @@
 
 pub(crate) mod browser;
 pub(crate) mod dialogs;
+pub(crate) mod folders;
 pub(crate) mod loading;
 pub(crate) mod material_dialog;
 pub(crate) mod picture_dialog;

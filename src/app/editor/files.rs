@@ -8,12 +8,13 @@ use std::path::PathBuf;
 use egui::Context;
 
 use super::App;
+use super::turning::usual_up;
 use super::unseen::out_of_sight;
 use crate::accuracy::{AccuracyPreset, Settings, Shot};
 use crate::app::documents::dialogs::{After, Answer, Wanted};
 use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wish, is_scene};
 use crate::app::documents::material_dialog::{
-    MaterialChoices, MaterialDialog, details, own_or_silver, summary,
+    MaterialChoices, MaterialDialog, details, opened, own_or_silver, summary,
 };
 use crate::app::drawing::images;
 use crate::app::state::{Notice, Offer, Reduction, State};
@@ -25,7 +26,7 @@ use crate::edit::{Gesture, items};
 use crate::io::{self, Finding, LoadError, Loaded};
 use crate::render::Renderer;
 use crate::render::plan_frame;
-use crate::scene::{MaterialChoice, Object, ObjectId, Subject, Texture};
+use crate::scene::{LoadOptions, MaterialChoice, Object, ObjectId, Subject, Texture};
 
 /// The maximum number of files read at the same time.
 const MOST_LOADING: usize = 8;
@@ -106,6 +107,9 @@ impl App {
 
     fn take_material(&mut self, ctx: &Context, dialog: MaterialDialog, choices: MaterialChoices) {
         let MaterialChoices { material, options, texture } = choices;
+        if dialog.loaded.as_ref().is_some_and(|(_, loaded)| loaded.model.options.up != options.up) {
+            self.state.up = options.up;
+        }
         let Some((path, loaded)) = dialog.loaded else {
             let model = io::cam_model();
             let command = items::insert_camera(&self.state.scene, model, material);
@@ -126,8 +130,13 @@ impl App {
     pub(crate) fn load_model(&mut self, ctx: &Context, path: PathBuf, wish: Wish) {
         let label = format!("Loading {}", file_name(&path));
         let asks = wish.material.is_none();
+        // Whoever has chosen a material has chosen the axis, too.
+        let chosen = !asks && !wish.keeps_saved;
+        let usual = self.state.up;
         self.begin_loading(ctx, label, asks, move |progress| {
-            let result = io::load(&path, &wish.options, progress).and_then(|mut loaded| {
+            let (up, _) = usual_up(&path, usual);
+            let options = if chosen { wish.options } else { LoadOptions { up, ..wish.options } };
+            let result = io::load(&path, &options, progress).and_then(|mut loaded| {
                 let mut load = |path| io::load_texture_with(path, &mut loaded.findings);
                 let texture = wish.texture.as_deref().map(&mut load).transpose()?;
                 Ok((loaded, texture))
@@ -230,6 +239,8 @@ impl App {
                     Err(refusal) => self.refuse(refusal.to_string()),
                 }
             }
+            Fetched::Pasted(result) => self.take_pasted(result),
+            Fetched::Turned(id, result) => self.take_turned(id, result),
             Fetched::Again(all) => self.take_again(all),
             Fetched::Scene(opening) => self.take_scene(ctx, *opening),
             Fetched::Alone(read, arrival) => self.take_alone(ctx, read, arrival),
@@ -248,8 +259,8 @@ impl App {
     /// Says that a model was loaded; if there are findings, a notice says the rest.
     pub(crate) fn tell_loaded(&mut self, name: &str, found: &str, findings: &[String]) {
         self.state.tell(Some(match findings {
-            [] => format!("Loaded {name}: {found}"),
-            _ => format!("Loaded {name}"),
+            [] => format!("Opened {name}: {found}"),
+            _ => format!("Opened {name}"),
         }));
     }
 
@@ -261,7 +272,7 @@ impl App {
         material: MaterialChoice,
         texture: Option<Shared<Texture>>,
     ) {
-        let found = summary(&loaded);
+        let (found, said) = (summary(&loaded), opened(&loaded));
         if let Some(path) = loaded.model.source.clone() {
             self.note_recent(&path);
         }
@@ -278,8 +289,7 @@ impl App {
         self.tell_loaded(&name, &found, &details);
         // Two notices, since framing the object dismisses only one of them.
         if !details.is_empty() {
-            let text = format!("{name}: {found}");
-            self.state.notices.push(Notice { text, details, offer: None });
+            self.state.notices.push(Notice { text: said, details, offer: None });
         }
         if unseen {
             let text = format!("{name} is out of view or too small to see");
@@ -372,7 +382,7 @@ impl App {
     /// As [`Self::replace`]; gives what was there.
     pub(crate) fn swap(&mut self, state: State) -> State {
         let State { panels, theme, drawing, layout, overlays, greeting, .. } = self.state;
-        let State { gizmo, helpers, watches, zoom, narrow, .. } = self.state;
+        let State { gizmo, helpers, watches, up, zoom, narrow, .. } = self.state;
         let statistics = self.state.statistics.clone();
         let recent = std::mem::take(&mut self.state.recent);
         let recoverable = std::mem::take(&mut self.state.recoverable);
@@ -387,6 +397,7 @@ impl App {
             gizmo,
             helpers,
             watches,
+            up,
             zoom,
             narrow,
             greeting,

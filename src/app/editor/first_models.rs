@@ -10,14 +10,15 @@ use std::path::{Path, PathBuf};
 use egui::Context;
 
 use super::App;
+use super::turning::usual_up;
 use crate::app::documents::loading::{Arrival, Arrived, Fetched, Wish, is_scene};
-use crate::app::documents::material_dialog::{details, own_or_silver, summary};
-use crate::app::state::{Notice, State};
+use crate::app::documents::material_dialog::{details, opened, own_or_silver};
+use crate::app::state::{Notice, Offer, State};
 use crate::app::widgets::text::file_name;
 use crate::base::Shared;
 use crate::edit::{Gesture, Refusal, items, presenting};
 use crate::io::{self, LoadError, Loaded, Progress};
-use crate::scene::{LoadOptions, MaterialChoice, Object, Steps};
+use crate::scene::{LoadOptions, MaterialChoice, Object, Scene, Steps, UpAxis};
 
 impl App {
     /// Loads the files of the command line: models alone, or put into the scene among them. They do
@@ -62,9 +63,12 @@ impl App {
     /// Whether this is the first scene, or none at all, and nothing was ever done to it.
     pub(crate) fn is_untouched(&self) -> bool {
         let State { scene, history, path, .. } = &self.state;
+        let first = io::default_scene().0;
+        // The user may have looked around.
+        let looked = Scene { cameras: first.cameras.clone(), ..scene.clone() };
         path.is_none()
             && history.steps().len() == 0
-            && (scene.objects.is_empty() || *scene == io::default_scene().0)
+            && (scene.objects.is_empty() || looked == first)
     }
 
     /// Reads these models together, to show them together.
@@ -73,8 +77,9 @@ impl App {
             [one] => format!("Loading {}", file_name(one)),
             more => format!("Loading {} models", more.len()),
         };
+        let usual = self.state.up;
         self.begin_loading(ctx, label, false, move |progress| {
-            Fetched::Alone(read_all(&paths, progress), arrival)
+            Fetched::Alone(read_all(&paths, usual, progress), arrival)
         });
     }
 
@@ -111,14 +116,16 @@ impl App {
         if let Err(refusal) = shown {
             return self.refuse(refusal.to_string());
         }
-        for Arrived { object, found, findings } in arrived {
+        // A notice for each of many models would hide them.
+        let only = if arrived.len() == 1 { self.state.scene.objects.ids().next() } else { None };
+        for Arrived { object, said, findings } in arrived {
             if let Some(path) = &object.model.source {
                 self.note_recent(path);
             }
-            self.tell_loaded(&object.name, &found, &findings);
-            if !findings.is_empty() {
-                let text = format!("{}: {found}", object.name);
-                self.state.notices.push(Notice { text, details: findings, offer: None });
+            self.state.tell(Some(format!("Opened {}", object.name)));
+            if only.is_some() || !findings.is_empty() {
+                let offer = only.filter(|_| object.model.source.is_some()).map(Offer::Up);
+                self.state.notices.push(Notice { text: said, details: findings, offer });
             }
         }
         let ids = self.state.scene.objects.ids().collect();
@@ -168,7 +175,11 @@ impl App {
 }
 
 /// Reads models with their own materials; a file that is named twice is read once.
-fn read_all(paths: &[PathBuf], progress: &Progress) -> Vec<Result<Arrived, LoadError>> {
+fn read_all(
+    paths: &[PathBuf],
+    usual: UpAxis,
+    progress: &Progress,
+) -> Vec<Result<Arrived, LoadError>> {
     let mut known: BTreeMap<PathBuf, Object> = BTreeMap::new();
     let count = paths.len().max(1);
     let mut read = |(i, path): (usize, &PathBuf)| {
@@ -176,25 +187,28 @@ fn read_all(paths: &[PathBuf], progress: &Progress) -> Vec<Result<Arrived, LoadE
         if let Some(object) = known.get(&place) {
             return Ok(Arrived {
                 object: object.clone(),
-                found: "read before".to_owned(),
+                said: format!("Opened {} once more", object.name),
                 findings: Vec::new(),
             });
         }
         let part = progress.part(share(i, count), share(i + 1, count));
-        let arrived = arrived(path, &part)?;
+        let arrived = arrived(path, usual, &part)?;
         known.insert(place, arrived.object.clone());
         Ok(arrived)
     };
     paths.iter().enumerate().map(&mut read).collect()
 }
 
-fn arrived(path: &Path, progress: &Progress) -> Result<Arrived, LoadError> {
-    let loaded = io::load(path, &LoadOptions::default(), progress)?;
-    let found = summary(&loaded);
+fn arrived(path: &Path, usual: UpAxis, progress: &Progress) -> Result<Arrived, LoadError> {
+    let (up, why) = usual_up(path, usual);
+    let options = LoadOptions { up, ..LoadOptions::default() };
+    let loaded = io::load(path, &options, progress)?;
+    let said = opened(&loaded);
+    let said = why.map_or_else(|| said.clone(), |why| format!("{said}. {why}"));
     let material = own_or_silver(&loaded);
     let Loaded { model, findings } = loaded;
     let object = Object::new(Shared::new(model), material);
-    Ok(Arrived { object, found, findings: details(&findings) })
+    Ok(Arrived { object, said, findings: details(&findings) })
 }
 
 #[expect(clippy::cast_precision_loss, reason = "the number of files on a command line")]

@@ -5,20 +5,17 @@
 //! notice that blocks nothing.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use egui::{Context, ThemePreference};
+use egui::Context;
 
 use super::App;
 use crate::app::documents::loading::{Fetched, Opening};
-use crate::app::input::keyboard::Keyboard;
-use crate::app::input::keymap::Keymap;
-use crate::app::panels::{OpenPanels, Panel};
-use crate::app::state::layout::Layout;
-use crate::app::state::{DrawingChoices, Notice, State};
+use crate::app::panels::preferences;
+use crate::app::state::{Notice, State};
 use crate::app::widgets::text::file_name;
-use crate::io::{self, Abandoned, Journal, OwnFolders, Preferences, Theme, Unsaved};
+use crate::io::{self, Abandoned, Journal, OwnFolders, Preferences, Unsaved};
 use crate::scene::Scene;
 
 /// The seconds without a change after which preferences are written.
@@ -35,6 +32,8 @@ pub(crate) struct Keeping {
     offered: Vec<Abandoned>,
     /// As they were written last.
     preferences: Preferences,
+    /// The recent files that it has read or written: a file with them adds none of them again.
+    known: Vec<PathBuf>,
     /// The preferences now, and since when they differ.
     changed: Option<(Preferences, f64)>,
 }
@@ -49,25 +48,7 @@ impl App {
         preferences: Preferences,
         said: Option<String>,
     ) {
-        let theme = match preferences.theme {
-            Theme::System => ThemePreference::System,
-            Theme::Light => ThemePreference::Light,
-            Theme::Dark => ThemePreference::Dark,
-        };
-        ctx.set_theme(theme);
-        ctx.set_zoom_factor(preferences.scale);
-        self.state.theme = theme;
-        self.state.panels = OpenPanels::of_kept(&preferences.panels);
-        self.state.overlays = preferences.overlays;
-        self.state.helpers = preferences.helpers;
-        self.state.watches = preferences.watches;
-        self.state.layout = Layout::of_shares(&preferences.shares);
-        let (keymap, changed_keys) = Keymap::of_names(&preferences.keys);
-        Keyboard::set_keymap(ctx, keymap);
-        self.state.gizmo = preferences.gizmo;
-        let Preferences { refines, refined, budget_ms, .. } = preferences;
-        self.state.drawing = DrawingChoices { refines, refined, budget_ms };
-        self.state.recent.clone_from(&preferences.recent);
+        let changed_keys = self.use_preferences(ctx, &preferences);
         self.state.notices.extend(said.map(notice));
         if !changed_keys.is_empty() {
             let text = "Some of the keys that you have chosen are not as they were.".to_owned();
@@ -85,7 +66,9 @@ impl App {
             }
         };
         let (kept, changed) = (None, None);
-        self.keeping = Some(Keeping { folders, journal, kept, offered, preferences, changed });
+        let known = preferences.recent.clone();
+        self.keeping =
+            Some(Keeping { folders, journal, kept, offered, preferences, known, changed });
     }
 
     /// Hands what has changed to the journal, and writes preferences once they have settled.
@@ -111,7 +94,7 @@ impl App {
             }
         }
         let Some(keeping) = &mut self.keeping else { return };
-        let now = preferences_now(ctx, &self.state, &keeping.preferences);
+        let now = preferences::now(ctx, &self.state, keeping.preferences.window);
         let time = ctx.input(|input| input.time);
         if now == keeping.preferences {
             keeping.changed = None;
@@ -140,7 +123,7 @@ impl App {
             keeping.preferences = changed;
         }
         // If that fails, the window that could say so is gone.
-        let _ = keeping.preferences.save(&keeping.folders);
+        let _ = keeping.preferences.save(&keeping.folders, &keeping.known);
         if (self.leaving || self.is_all_saved())
             && let Some(journal) = keeping.journal
         {
@@ -228,11 +211,13 @@ impl App {
 
 impl Keeping {
     /// Writes the preferences without letting the window wait.
-    fn write_preferences(&self) {
+    fn write_preferences(&mut self) {
         let (preferences, folders) = (self.preferences.clone(), self.folders.clone());
+        let known = self.known.clone();
+        self.known.extend_from_slice(&preferences.recent);
         let write = move || {
             // They are written again when the program is left.
-            let _ = preferences.save(&folders);
+            let _ = preferences.save(&folders, &known);
         };
         // Without a thread, too, they are written then.
         let _ = std::thread::Builder::new().name("preferences".to_owned()).spawn(write);
@@ -243,40 +228,6 @@ const NOT_KEPT: &str = "Unsaved changes could not be kept for recovery: ";
 
 fn notice(text: String) -> Notice {
     Notice { text, details: Vec::new(), offer: None }
-}
-
-/// What is to be remembered now. What the window does not say stays as it was.
-fn preferences_now(ctx: &Context, state: &State, before: &Preferences) -> Preferences {
-    let scale = ctx.zoom_factor();
-    let (rect, maximized, minimized) = ctx.input(|input| {
-        let viewport = input.viewport();
-        (viewport.inner_rect, viewport.maximized, viewport.minimized)
-    });
-    let maximized = maximized.unwrap_or(false);
-    let size = rect.map(|rect| (rect.size() * scale).round());
-    let size = size.filter(|_| !maximized && minimized != Some(true));
-    let whole = |size: egui::Vec2| [size.x, size.y];
-    Preferences {
-        theme: match state.theme {
-            ThemePreference::System => Theme::System,
-            ThemePreference::Light => Theme::Light,
-            ThemePreference::Dark => Theme::Dark,
-        },
-        panels: state.panels.with(Panel::CheatSheet, false).kept(),
-        gizmo: state.gizmo,
-        scale,
-        window: size.map(whole).or(before.window),
-        maximized,
-        shares: state.layout.shares(),
-        overlays: state.overlays,
-        helpers: state.helpers,
-        watches: state.watches,
-        keys: Keyboard::keymap(ctx).names(),
-        refines: state.drawing.refines,
-        refined: state.drawing.refined,
-        budget_ms: state.drawing.budget_ms,
-        recent: state.recent.clone(),
-    }
 }
 
 /// "harbour.marraztu", or "a new scene".
@@ -300,8 +251,6 @@ fn described(work: &Abandoned, now: SystemTime) -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::path::PathBuf;
-
     use super::*;
 
     #[test]

@@ -49,13 +49,6 @@ struct Screenshot {
 }
 
 impl App {
-    /// Asks for the options of a picture or a turntable.
-    pub(crate) fn ask_picture(&mut self, purpose: Purpose) {
-        let Some(size) = self.viewport.size() else { return };
-        let samples = self.state.refined_to().unwrap_or(self.state.settings.samples);
-        self.dialogs.ask_picture(PictureChoices::new(purpose, size, samples));
-    }
-
     /// Draws the picture as the still window shows it.
     pub(crate) fn draw_as_shown(&mut self, ctx: &Context, path: PathBuf) {
         let Some(size) = self.viewport.size() else { return };

@@ -1,8 +1,9 @@
 //! The editor: shows everything, and answers all requests at the end of the frame.
 //!
-//! [`App::perform`] alone turns an action into a command or another view, and [`App::change`] alone
-//! writes the scene.
+//! [`App::perform`] alone turns an action into a command or another view; [`App::change`] and
+//! [`App::navigate`] alone write the scene.
 
+mod clipboard;
 mod comparing;
 mod explaining;
 mod exposing;
@@ -12,10 +13,12 @@ mod keeping;
 mod laboratory;
 mod making;
 mod measuring;
+mod preferences;
 mod reloading;
 mod requests;
 mod scenes;
 mod selecting;
+mod turning;
 mod unseen;
 
 use std::collections::VecDeque;
@@ -190,7 +193,9 @@ impl App {
         if let Some(text) = fonts::take_missing(&ctx) {
             self.state.notices.push(Notice { text, details: Vec::new(), offer: None });
         }
-        if Keyboard::take_held_escape(&ctx) {
+        if Keyboard::take_held_escape(&ctx)
+            && !Panel::MOMENTARY.into_iter().any(|panel| self.closes(panel))
+        {
             self.state.tell(Some("Esc once more leaves the program".to_owned()));
         }
         for press in pressed {

@@ -1,7 +1,9 @@
 //! Answers the requests of keys, panels, menus and the viewport.
 //!
-//! [`App::perform`] alone turns an action into a command or another view, and [`App::change`] alone
-//! writes the scene.
+//! [`App::perform`] alone turns an action into a command or another view; [`App::change`] and
+//! [`App::navigate`] alone write the scene.
+
+use std::path::{Path, PathBuf};
 
 use egui::{Context, Key};
 use glam::DVec3;
@@ -10,19 +12,20 @@ use super::App;
 use crate::app::actions::{Action, Chord, FileIntent, Intent, KeyRequest, Request, resolve};
 use crate::app::documents::dialogs::{After, Wanted};
 use crate::app::documents::material_dialog::MaterialDialog;
-use crate::app::documents::picture_dialog::Purpose;
+use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
 use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::input::keymap::Keymap;
 use crate::app::panels::Panel;
 use crate::app::state::{Message, Offer, State, Tone};
 use crate::edit::selection::{self, Selection};
 use crate::edit::several::Others;
-use crate::edit::{Gesture, GesturePhase, aiming, items, lights};
-use crate::scene::{Command, ItemId, Subject, View};
+use crate::edit::{Gesture, GesturePhase, aiming, items, lights, transform};
+use crate::io::is_example;
+use crate::scene::{Command, ItemId, Scene, Subject, View};
 
 impl App {
     /// Closes a panel; says whether it was open.
-    fn closes(&mut self, panel: Panel) -> bool {
+    pub(super) fn closes(&mut self, panel: Panel) -> bool {
         let panels = self.state.panels;
         self.state.panels = panels.with(panel, false);
         panels.has(panel)
@@ -38,7 +41,7 @@ impl App {
             if std::mem::take(&mut self.state.aiming)
                 || std::mem::take(&mut self.state.explaining)
                 || std::mem::take(&mut self.state.lab.picking)
-                || self.closes(Panel::CheatSheet)
+                || Panel::MOMENTARY.into_iter().any(|panel| self.closes(panel))
                 || self.state.renaming.take().is_some()
             {
                 return;
@@ -64,6 +67,7 @@ impl App {
         match request {
             Request::Do(action) => self.perform(ctx, action, Gesture::Whole),
             Request::Change { command, gesture, label } => self.change(command, gesture, &label),
+            Request::Navigate { command, gesture } => self.navigate(command, gesture),
             Request::View(view) => self.show_view(*view),
             Request::Settings(settings) => state.settings = settings,
             Request::Drawing(choices) => state.drawing = choices,
@@ -86,6 +90,7 @@ impl App {
                     Err(refusal) => self.refuse(refusal.to_string()),
                 }
             }
+            Request::Filter(filter) => state.filter = filter,
             Request::GoTo(position) => {
                 self.walk(|state| state.history.go_to(&mut state.scene, position));
             }
@@ -110,6 +115,15 @@ impl App {
                     state.notices.remove(at);
                 }
             }
+            Request::Settle(at) => {
+                if at < state.notices.len() {
+                    let notice = state.notices.remove(at);
+                    state.past_notices.retain(|other| *other != notice);
+                    state.past_notices.push(notice);
+                }
+            }
+            Request::ClearNotices => state.past_notices.clear(),
+            Request::TurnUp(id, up) => self.turn_up(ctx, id, up),
             Request::CancelLoading(at) => {
                 if let Some(loading) = self.loading.get(at) {
                     loading.task.progress.cancel();
@@ -125,6 +139,7 @@ impl App {
             Request::Layout(layout) => state.layout = layout,
             Request::Keys(request) => answer_keys(ctx, request),
             Request::EndGreeting => state.greeting = false,
+            Request::Preferences(preferences) => self.take_preferences(ctx, &preferences),
             Request::Refuse(why) => self.refuse(why),
         }
     }
@@ -145,6 +160,7 @@ impl App {
             Err(refusal) => self.refuse(refusal.to_string()),
             Ok(Intent::Change(command)) => self.change(command, gesture, &label),
             Ok(Intent::Add(command, subject)) => self.add_all(command, subject, &label),
+            Ok(Intent::Navigate(command)) => self.navigate(command, gesture),
             Ok(Intent::View(view)) => self.show_view(*view),
             Ok(Intent::Select(selection)) => self.select(*selection, gesture),
             Ok(Intent::Settings(settings)) => self.state.settings = settings,
@@ -168,6 +184,7 @@ impl App {
                 state.tell(label.map(|label| format!("Redone: {label}")));
             }),
             Ok(Intent::File(intent)) => self.file(ctx, intent),
+            Ok(Intent::Clipboard(intent)) => self.clipboard(ctx, intent, &label),
             Ok(Intent::AskCamera) => self.dialogs.ask_material(MaterialDialog::of_camera()),
             Ok(Intent::Measure) => self.measure(ctx),
             Ok(Intent::ChooseTexture(id)) => self.ask_file(ctx, Wanted::Texture(id), ""),
@@ -235,9 +252,40 @@ impl App {
     /// Asks for a file, unless the system's dialog is asking for one already: it may be lost behind
     /// the window.
     pub(crate) fn ask_file(&mut self, ctx: &Context, wanted: Wanted, name: &str) {
+        self.note_folders(&wanted);
         if let Err(open) = self.dialogs.ask_file(ctx, wanted, name) {
             self.refuse(format!("the dialog \"{open}\" is open already: answer it first"));
         }
+    }
+
+    /// Tells dialogs the folder of the scene or the model that the question is about, and those of
+    /// recent files.
+    fn note_folders(&mut self, wanted: &Wanted) {
+        let own = match wanted {
+            Wanted::TextureOfModel => self.dialogs.model_file().map(Path::to_owned),
+            Wanted::Texture(id) => {
+                let object = self.state.scene.objects.get(*id);
+                object.and_then(|object| object.model.source.clone())
+            }
+            _ => None,
+        };
+        let folder = |path: &PathBuf| {
+            let path = std::path::absolute(path).ok()?;
+            path.parent().map(Path::to_owned)
+        };
+        let is_own = |path: &PathBuf| !is_example(path);
+        let recent = self.state.recent.iter().filter_map(folder).collect();
+        let folders = &mut self.dialogs.folders;
+        folders.home = own.filter(is_own).as_ref().and_then(folder).or_else(|| self.state.folder());
+        folders.recent = recent;
+    }
+
+    /// Asks for the options of a picture or a turntable.
+    fn ask_picture(&mut self, purpose: Purpose) {
+        let Some(size) = self.viewport.size() else { return };
+        let samples = self.state.refined_to().unwrap_or(self.state.settings.samples);
+        self.note_folders(&Wanted::PictureWithOptionsTo);
+        self.dialogs.ask_picture(PictureChoices::new(purpose, size, samples));
     }
 
     fn end_rename(&mut self, name: Option<String>) {
@@ -261,7 +309,7 @@ impl App {
 
     pub(crate) fn select(&mut self, selection: Selection, gesture: Gesture) {
         if let Some(command) = selection.command {
-            self.change(command, gesture, "Aim the camera");
+            self.navigate(command, gesture);
         }
         self.show_view(selection.view);
     }
@@ -287,6 +335,19 @@ impl App {
         }
     }
 
+    /// Moves the view, which is no step of the history.
+    pub(crate) fn navigate(&mut self, command: Command, gesture: Gesture) {
+        let state = &mut self.state;
+        let repeats = state.next_repeat(gesture);
+        match state.history.navigate(&mut state.scene, command, gesture) {
+            Ok(()) => {
+                (state.gesture, state.repeats) = (gesture, repeats);
+                state.message = None;
+            }
+            Err(error) => self.refuse(error.to_string()),
+        }
+    }
+
     /// Moves through the history.
     fn walk(&mut self, steps: impl FnOnce(&mut State)) {
         let before = self.state.scene.clone();
@@ -294,7 +355,22 @@ impl App {
         steps(&mut self.state);
         self.follow_steps();
         self.state.gesture = Gesture::Whole;
-        selection::follow(&before, &self.state.scene, &mut self.state.view);
+        let State { scene, view, history, .. } = &mut self.state;
+        selection::follow(&before, scene, view);
+        // The user has looked around since the object that the camera orbits was moved.
+        let pose = |scene: &Scene| scene.selected_camera(view).pose.clone();
+        let placement = |scene: &Scene| {
+            let object = view.object.and_then(|id| scene.objects.get(id));
+            object.map(|object| object.placement.clone())
+        };
+        if before.cameras.get(view.camera).is_some()
+            && pose(&before) == pose(scene)
+            && placement(&before) != placement(scene)
+            && let Some(command) = transform::aimed_again(scene, view)
+        {
+            // A camera that is there can be aimed.
+            let _ = history.navigate(scene, command, Gesture::Whole);
+        }
     }
 
     /// Shows in the status line why a request was refused.

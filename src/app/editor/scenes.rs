@@ -11,6 +11,7 @@ use egui::Context;
 use super::App;
 use crate::app::documents::dialogs::{After, Wanted};
 use crate::app::documents::loading::{Fetched, Opening, Waiting, is_scene};
+use crate::app::documents::material_dialog::{details, short};
 use crate::app::state::{Notice, State};
 use crate::app::widgets::text::file_name;
 use crate::edit::selection;
@@ -126,8 +127,12 @@ impl App {
         selection::settle(&state.scene, &mut state.view);
         state.tell(Some(format!("Opened {}", file_name(path))));
         if !findings.is_empty() {
-            let text = format!("{}: {} findings", file_name(path), findings.len());
-            let details = findings.iter().map(ToString::to_string).collect();
+            let name = file_name(path);
+            let text = match findings.iter().find(|finding| finding.kind.is_loss()) {
+                Some(lost) => format!("{name}: {}", short(lost)),
+                None => format!("Opened {name}"),
+            };
+            let details = details(&findings);
             state.notices.push(Notice { text, details, offer: None });
         }
         // An example is saved under a name of its own.

@@ -93,7 +93,10 @@ fn notice(state: &State, id: ObjectId, why: &Unseen) -> Option<Notice> {
         Unseen::TurnedAway { .. } => Some(Offer::TwoSides(id)),
         Unseen::Covered { .. } | Unseen::BetweenPixels => Some(Offer::Frame(id)),
         Unseen::Transparent => Some(Offer::Opaque(id)),
-        Unseen::LeftOut(_) | Unseen::Unexamined => None,
+        // The plan leaves out surfaces that lie outside the view.
+        Unseen::LeftOut(_) | Unseen::Unexamined => {
+            (object.model.mesh.polygon_count() > 0).then_some(Offer::Frame(id))
+        }
     };
     let turned_away = matches!(why, Unseen::TurnedAway { .. });
     let (text, offer) = if !turned_away && out_of_sight(state, object, SIZE) {
@@ -133,6 +136,15 @@ mod tests {
     use super::*;
     use crate::io;
     use glam::{DMat4, DVec3};
+
+    #[test]
+    fn an_object_that_the_plan_leaves_out_can_be_framed() {
+        let (scene, view) = io::default_scene();
+        let id = scene.objects.ids().next().unwrap();
+        let state = State::new(scene, view);
+        let notice = notice(&state, id, &Unseen::LeftOut("outside the view".into())).unwrap();
+        assert_eq!(notice.offer, Some(Offer::Frame(id)));
+    }
 
     #[test]
     fn what_is_behind_beside_or_tiny_is_out_of_sight() {

@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use egui::{Context, Event, Id, Key, Modifiers, RawInput};
+use egui::{Context, Event, Id, Key, Modifiers, RawInput, ViewportCommand};
 
 use super::keymap::{Keymap, chord_of};
 use crate::app::actions::{Action, Chord, Group};
@@ -47,6 +47,10 @@ pub(crate) struct Keyboard {
     /// Whether an Esc was held back since this was last asked.
     held_escape: bool,
     keymap: Arc<Keymap>,
+    /// The text that was pasted.
+    pasted: Option<String>,
+    /// Whether the window was asked for the text of the clipboard.
+    asks_paste: bool,
     /// The action that the next key is chosen for, and that key.
     choosing: Option<(Action, Option<Chord>)>,
 }
@@ -94,6 +98,17 @@ impl Keyboard {
     /// What was pressed since it was last asked, in order.
     pub(crate) fn take(ctx: &Context) -> Vec<Press> {
         std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().waiting)
+    }
+
+    /// The text that was pasted since this was last asked.
+    pub(crate) fn take_pasted(ctx: &Context) -> Option<String> {
+        ctx.plugin_or_default::<Self>().lock().pasted.take()
+    }
+
+    /// Asks the window for the text of the clipboard; it is pasted when it comes.
+    pub(crate) fn ask_paste(ctx: &Context) {
+        ctx.plugin_or_default::<Self>().lock().asks_paste = true;
+        ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
     }
 
     /// Whether an Esc was held back: it came after one that closed a menu or left a panel. Whoever
@@ -161,6 +176,24 @@ impl Keyboard {
         own && owner == Owner::Viewport
     }
 
+    /// Takes the events that the window system sends in place of Ctrl+X, Ctrl+C and Ctrl+V.
+    fn clipboard(&mut self, owner: Owner, event: &Event) {
+        let Some(key) = clipboard_key(event) else { return };
+        if let Event::Paste(text) = event {
+            let acts = matches!(owner, Owner::Viewport | Owner::Panel);
+            self.pasted = Some(text.clone()).filter(|_| acts);
+            if std::mem::take(&mut self.asks_paste) && acts {
+                // It answers the action, whatever key that is on.
+                let (action, chord) = (Action::Paste, Chord::Command(key));
+                self.waiting.push(Press { action, chord, gesture: Gesture::Whole });
+                return;
+            }
+        }
+        // The release of the key comes as usual.
+        let repeats = !self.down.insert(key);
+        self.key(owner, key, Modifiers::COMMAND, repeats);
+    }
+
     /// Asks for the action whose chord fits, if it may act.
     fn ask(&mut self, owner: Owner, fits: impl Fn(&Chord) -> bool) {
         let keymap = Arc::clone(&self.keymap);
@@ -186,6 +219,16 @@ impl Keyboard {
             false => Gesture::Whole,
         };
         self.waiting.push(Press { action, chord, gesture });
+    }
+}
+
+/// The key of a clipboard event.
+const fn clipboard_key(event: &Event) -> Option<Key> {
+    match event {
+        Event::Cut => Some(Key::X),
+        Event::Copy => Some(Key::C),
+        Event::Paste(_) => Some(Key::V),
+        _ => None,
     }
 }
 
@@ -219,7 +262,7 @@ impl egui::Plugin for Keyboard {
         if let Some((_, chosen @ None)) = &mut self.choosing {
             let pressed = input.events.iter().find_map(|event| match event {
                 Event::Key { key, pressed: true, modifiers, .. } => Some((*key, *modifiers)),
-                _ => None,
+                event => clipboard_key(event).map(|key| (key, Modifiers::COMMAND)),
             });
             match pressed {
                 Some((Key::Escape, _)) => self.choosing = None,
@@ -228,7 +271,7 @@ impl egui::Plugin for Keyboard {
             }
             // What is chosen presses nothing and types nothing.
             let is_key = |event: &Event| matches!(event, Event::Key { .. } | Event::Text(_));
-            input.events.retain(|event| !is_key(event));
+            input.events.retain(|event| !is_key(event) && clipboard_key(event).is_none());
         }
         input.events.retain(|event| match event {
             Event::Key { key, physical_key, pressed: true, modifiers, repeat } => {
@@ -245,6 +288,10 @@ impl egui::Plugin for Keyboard {
                 } else if !self.alt {
                     self.ask(owner, |chord| matches!(chord, Chord::Text(sign) if sign == text));
                 }
+                true
+            }
+            Event::Cut | Event::Copy | Event::Paste(_) => {
+                self.clipboard(owner, event);
                 true
             }
             Event::ModifiersChanged(modifiers) => {

@@ -21,16 +21,25 @@ use crate::io::EXAMPLES;
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];
 
 /// Those that stand under Help.
-const HELP: [Action; 3] = [Action::Palette, Action::Panel(Panel::CheatSheet), Action::ToPanels];
+const HELP: [Action; 4] = [
+    Action::Palette,
+    Action::Panel(Panel::CheatSheet),
+    Action::ToPanels,
+    Action::Panel(Panel::About),
+];
+
+/// The one under Edit.
+const PREFERENCES: [Action; 1] = [Action::Panel(Panel::Preferences)];
 
 /// Actions that begin another part of a menu: a line stands before them.
-const PARTS: [Action; 22] = [
+const PARTS: [Action; 23] = [
     Action::Load,
     Action::Save,
     Action::SavePicture,
     Action::ExportScene,
     Action::Quit,
     Action::Rename,
+    Action::Cut,
     Action::SelectAll,
     Action::ToggleVisible,
     Action::SubjectCamera,
@@ -80,6 +89,8 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             });
             submenu(ui, "Select", |ui| group_ui(ui, state, requests, Group::Select));
             submenu(ui, "Transform", |ui| group_ui(ui, state, requests, Group::Transform));
+            ui.separator();
+            items(ui, state, requests, PREFERENCES);
         });
         menu(ui, "Add", |ui| group_ui(ui, state, requests, Group::Add));
         menu(ui, "View", |ui| {
@@ -99,7 +110,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             submenu(ui, "Lights on and off", |ui| items(ui, state, requests, slots));
         });
         menu(ui, "Window", |ui| {
-            let elsewhere = [&THEMES[..], &HELP, &SIZES].concat();
+            let elsewhere = [&THEMES[..], &HELP, &PREFERENCES, &SIZES].concat();
             let own = Group::Window.actions().filter(|action| !elsewhere.contains(action));
             items(ui, state, requests, own);
             ui.separator();

@@ -4,6 +4,7 @@
 //! is plain data and stands below the panels themselves, so that the table of actions can read it.
 //! Panels read the state and return requests; they change nothing.
 
+mod about;
 pub(crate) mod arrange;
 mod cheat_sheet;
 mod greeting;
@@ -15,6 +16,7 @@ mod outline;
 mod palette;
 pub(crate) mod pixel;
 mod plan;
+pub(crate) mod preferences;
 mod properties;
 mod splitters;
 mod statistics;
@@ -25,7 +27,7 @@ mod view_switches;
 use egui::Key;
 
 use crate::app::chord::Chord;
-use crate::app::chord::Chord::{Either, Named, Text};
+use crate::app::chord::Chord::{Command, Either, Named, Text};
 use crate::io;
 
 /// Where a panel stands.
@@ -96,10 +98,10 @@ macro_rules! each_panel {
                 "tree hierarchy list scene layers";
             Properties properties "properties" [Dock::Beside(Side::Properties)] true []
                 "Properties" "Shows or hides the properties of the selected item."
-                "inspector settings details material attributes";
+                "inspector details material attributes";
             View view_switches "view" [Dock::Beside(Side::Switches)] true []
                 "View switches" "Shows or hides the switches of the view."
-                "options settings display accuracy";
+                "display accuracy";
             Statistics statistics "statistics" [Dock::Floating] false []
                 "Statistics" "Shows or hides how much is drawn and how long it takes."
                 "fps frames speed performance triangles count";
@@ -113,6 +115,12 @@ macro_rules! each_panel {
                 "Laboratory"
                 "Shows or hides the laboratory, which measures what accuracy costs in time."
                 "accuracy benchmark error compare experiment";
+            Preferences preferences "preferences" [Dock::Floating] false [Command(Key::Comma)]
+                "Preferences" "Shows or hides everything that the program remembers, with resets."
+                "settings options configuration defaults reset remembered theme recent";
+            About about "about" [Dock::Floating] false []
+                "About" "Shows or hides version, commit, instructions in use, and licences."
+                "version licence license copyright credits commit build info packages";
         }
     };
 }
@@ -154,6 +162,11 @@ macro_rules! table {
 
 each_panel!(table);
 
+impl Panel {
+    /// The panels that Esc closes, and that neither files nor preferences keep open.
+    pub const MOMENTARY: [Self; 3] = [Self::CheatSheet, Self::Preferences, Self::About];
+}
+
 /// Which panels are open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OpenPanels([bool; Panel::ALL.len()]);
@@ -187,6 +200,13 @@ impl OpenPanels {
     #[must_use]
     pub const fn toggled(self, panel: Panel) -> Self {
         self.with(panel, !self.has(panel))
+    }
+
+    /// These panels without the ones that are open only for a moment.
+    #[must_use]
+    pub const fn lasting(self) -> Self {
+        let [a, b, c] = Panel::MOMENTARY;
+        self.with(a, false).with(b, false).with(c, false)
     }
 
     /// As files keep them.

@@ -1,4 +1,7 @@
-//! Notices over the picture: files being loaded, and findings about them.
+//! Notices over the picture: files being loaded, and findings about them. Those that need no answer
+//! go to the status line after some seconds.
+
+use std::time::Duration;
 
 use egui::{Align2, Area, Context, Frame, Id, Order, Rect, Ui, vec2};
 
@@ -7,8 +10,13 @@ use crate::app::documents::loading::Loading;
 use crate::app::input::buttons::first_key;
 use crate::app::state::{Notice, Offer, State};
 use crate::app::tasks::Task;
+use crate::app::theme;
 use crate::app::widgets::regions;
 use crate::edit::Gesture;
+use crate::scene::{ObjectId, UpAxis};
+
+/// The seconds for which a notice that needs no answer is shown.
+const SHOWN: f64 = 8.0;
 
 /// Shows them at the top of the picture; their requests are added to `requests`.
 pub(crate) fn show<T>(
@@ -73,7 +81,7 @@ fn task_ui<T>(ui: &mut Ui, task: &Task<T>, cancel: Request, requests: &mut Vec<R
         }
     });
     // The bar has to move although nothing else does.
-    ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+    ui.ctx().request_repaint_after(Duration::from_millis(50));
 }
 
 /// Unsaved work that a program has left behind.
@@ -94,21 +102,82 @@ fn recoverable_ui(ui: &mut Ui, at: usize, work: &str, requests: &mut Vec<Request
 
 fn notice_ui(ui: &mut Ui, at: usize, notice: &Notice, state: &State, requests: &mut Vec<Request>) {
     ui.label(&notice.text);
-    ui.horizontal(|ui| {
-        if let Some(offer) = notice.offer
-            && ui.button(offer.label()).clicked()
-        {
-            requests.push(match offer.command(&state.scene, &state.view) {
-                Ok((command, label)) => Request::Change { command, gesture: Gesture::Whole, label },
-                Err(refusal) => Request::Refuse(refusal.to_string()),
-            });
-            requests.push(Request::PutAway(at));
+    let buttons = ui.horizontal(|ui| {
+        let mut focused = false;
+        let mut button = |ui: &mut Ui, label: &str| {
+            let button = ui.button(label);
+            focused |= button.has_focus();
+            button.clicked()
+        };
+        match notice.offer {
+            Some(Offer::Up(id)) => up_axis_ui(ui, state, id, requests),
+            Some(offer) => {
+                if button(ui, offer.label()) {
+                    requests.extend(accepted(offer, state));
+                    requests.push(Request::PutAway(at));
+                }
+            }
+            None => {}
         }
-        if !notice.details.is_empty() && ui.button("Details").clicked() {
+        if !notice.details.is_empty() && button(ui, "Details") {
             requests.push(Request::Details(at));
         }
-        if ui.button("Dismiss").clicked() {
+        if button(ui, "Dismiss") {
             requests.push(Request::PutAway(at));
         }
+        focused
     });
+    if !notice.needs_answer() {
+        settle(ui, at, buttons.inner, requests);
+    }
+}
+
+/// The request that accepts an offer.
+fn accepted(offer: Offer, state: &State) -> Option<Request> {
+    let gesture = Gesture::Whole;
+    match offer.command(&state.scene, &state.view) {
+        Ok(None) => None,
+        Ok(Some((command, _))) if matches!(offer, Offer::Frame(_)) => {
+            Some(Request::Navigate { command, gesture })
+        }
+        Ok(Some((command, label))) => Some(Request::Change { command, gesture, label }),
+        Err(refusal) => Some(Request::Refuse(refusal.to_string())),
+    }
+}
+
+/// Sends a notice to the status line once it has been there for some seconds. It stays while the
+/// pointer is over it or it has the keyboard.
+fn settle(ui: &Ui, at: usize, focused: bool, requests: &mut Vec<Request>) {
+    let id = ui.scope_id().with("since");
+    let (now, pointer) = ui.input(|input| (input.time, input.pointer.hover_pos()));
+    let pass = ui.ctx().cumulative_pass_nr();
+    let place = ui.min_rect().expand(f32::from(theme::MARGIN));
+    let held = focused || pointer.is_some_and(|at| place.contains(at));
+    let since = ui.data_mut(|data| {
+        let (since, last): (f64, u64) = data.get_temp(id).unwrap_or((now, pass));
+        // An equal notice that was there before is another one.
+        let since = if held || last + 2 < pass { now } else { since };
+        data.insert_temp(id, (since, pass));
+        since
+    });
+    let rest = SHOWN - (now - since);
+    // One a frame: places change with each.
+    let moves = |request: &Request| matches!(request, Request::Settle(_) | Request::PutAway(_));
+    if rest <= 0.0 && !requests.iter().any(moves) {
+        requests.push(Request::Settle(at));
+    } else if !held {
+        ui.ctx().request_repaint_after(Duration::from_secs_f64(rest));
+    }
+}
+
+/// The switch of an opened model between the axes of its file that usually point up.
+fn up_axis_ui(ui: &mut Ui, state: &State, id: ObjectId, requests: &mut Vec<Request>) {
+    let Some(object) = state.scene.objects.get(id) else { return };
+    let now = object.model.options.up;
+    for up in [UpAxis::Y, UpAxis::Z] {
+        let label = format!("{} up", up.word().to_uppercase());
+        if ui.selectable_label(now == up, label).clicked() && now != up {
+            requests.push(Request::TurnUp(id, up));
+        }
+    }
 }

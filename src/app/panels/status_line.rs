@@ -4,7 +4,10 @@
 //! If there is no room for all parts, the least important ones in the middle are left out; no part
 //! is cut off. What the mouse does has the room that is left.
 
-use egui::{Align, Layout, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
+use egui::{
+    Align, Layout, Popup, PopupCloseBehavior, RichText, Role, ScrollArea, Sense, TextStyle, Ui,
+    WidgetInfo, vec2,
+};
 
 use crate::app::actions::Request;
 use crate::app::state::{Message, Reduction, State, Tone};
@@ -24,10 +27,14 @@ const BETWEEN: &str = "  |  ";
 const LONGEST_NAME: usize = 28;
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if !state.past_notices.is_empty() {
+                past_ui(ui, state, requests);
+                ui.add_space(theme::GAP);
+            }
             if let Some(title) = state.asking {
                 let text = format!("the dialog \"{title}\" is open");
                 let message = Message { text, tone: Tone::Done };
@@ -41,6 +48,45 @@ pub(crate) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Request>) {
         });
     });
 }
+
+/// A button that lists the notices that have left the picture, with their details.
+fn past_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let name = match state.past_notices.len() {
+        1 => "1 notice".to_owned(),
+        count => format!("{count} notices"),
+    };
+    let color = ui.visuals().weak_text_color();
+    let galley = controls::text(ui, &name, TextStyle::Body, f32::INFINITY);
+    let size = vec2(galley.size().x + theme::ROW, theme::ROW);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    Icon::Info.paint(ui.painter(), rect.with_max_x(rect.left() + 16.0), 12.0, color);
+    controls::put_text(ui, rect.with_min_x(rect.left() + 20.0), galley, color);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    controls::focus_ring(ui, rect, &response);
+    let popup = Popup::menu(&response).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    popup.show(|ui| {
+        ui.set_width(LIST.x);
+        ScrollArea::vertical().max_height(LIST.y).show(ui, |ui| {
+            ui.set_width(LIST.x);
+            for notice in state.past_notices.iter().rev() {
+                ui.label(&notice.text);
+                for line in &notice.details {
+                    ui.weak(line);
+                }
+                ui.add_space(theme::GAP);
+            }
+        });
+        if ui.button("Clear").on_hover_text("Forgets these notices").clicked() {
+            requests.push(Request::ClearNotices);
+            ui.close();
+        }
+    });
+    let last = state.past_notices.last().map_or("", |notice| &notice.text);
+    response.on_hover_text(last);
+}
+
+/// The largest size of the list of notices.
+const LIST: egui::Vec2 = vec2(420.0, 300.0);
 
 fn width(ui: &Ui, text: &str) -> f32 {
     controls::text(ui, RichText::new(text), TextStyle::Body, f32::INFINITY).size().x

@@ -16,12 +16,15 @@ pub use crate::app::drawing::reduction::{Reduction, Shrink};
 use crate::app::panels::OpenPanels;
 use crate::edit::several::Others;
 use crate::edit::{Gesture, GesturePhase, History, selection};
-use crate::io::{Helpers, Sources, WindowState};
-use crate::scene::{ItemId, Light, LightId, Scene, View};
+use crate::io::{Helpers, Sources, WindowState, is_example};
+use crate::scene::{ItemId, Light, LightId, Object, Scene, UpAxis, View};
 use laboratory::Laboratory;
 pub use last_picture::{ExplainedPixel, Measured, Plan, Statistics};
 use layout::Layout;
 pub use notices::{Message, Notice, Offer, Tone};
+
+/// The number of items from which on the outline has a field that filters them.
+const MANY: usize = 12;
 
 /// The scene being edited, and everything shown about it.
 #[derive(Debug)]
@@ -40,8 +43,10 @@ pub struct State {
     pub path: Option<PathBuf>,
     /// The last message, for the status line.
     pub message: Option<Message>,
-    /// Notices that stay until the user dismisses them.
+    /// Notices over the picture: until the user dismisses them, or for some seconds.
     pub notices: Vec<Notice>,
+    /// Notices that have gone to the status line, the latest last.
+    pub past_notices: Vec<Notice>,
     /// Statistics of the last picture.
     pub statistics: Statistics,
     /// The effects of the last picture, while the plan is shown.
@@ -63,6 +68,10 @@ pub struct State {
     pub helpers: Helpers,
     /// Whether models are read again when their files change.
     pub watches: bool,
+    /// The axis that points up in models whose files do not state one.
+    pub up: UpAxis,
+    /// The part of a name by which the outline filters items.
+    pub filter: String,
     /// The lights that were on before one was left alone.
     pub lit_before: BTreeSet<LightId>,
     /// The items that are selected beside the one that the keys act on.
@@ -129,6 +138,7 @@ impl State {
             path: None,
             message: None,
             notices: Vec::new(),
+            past_notices: Vec::new(),
             statistics: Statistics::default(),
             plan: Plan::default(),
             panels: OpenPanels::DEFAULT,
@@ -139,6 +149,8 @@ impl State {
             gizmo: true,
             helpers: Helpers::default(),
             watches: false,
+            up: UpAxis::default(),
+            filter: String::new(),
             lit_before: BTreeSet::new(),
             several: Others::default(),
             aiming: false,
@@ -175,6 +187,23 @@ impl State {
     pub fn is_selected(&self, id: ItemId) -> bool {
         self.selected() == Some(id)
             || self.several.of(&self.scene, &self.view).any(|other| other == id)
+    }
+
+    /// Whether there are enough items for the outline to have a field that filters them.
+    #[must_use]
+    pub fn has_filter(&self) -> bool {
+        let Scene { objects, cameras, lights, .. } = &self.scene;
+        objects.len() + cameras.len() + lights.len() >= MANY
+    }
+
+    /// Whether the outline lists an item.
+    #[must_use]
+    pub fn is_listed(&self, id: ItemId) -> bool {
+        let filter = self.filter.to_lowercase();
+        !self.has_filter()
+            || filter.is_empty()
+            || self.renaming == Some(id)
+            || self.name(id).is_some_and(|name| name.to_lowercase().contains(&filter))
     }
 
     /// What commands act on, in words: the name of the selected item, or how many there are.
@@ -239,6 +268,16 @@ impl State {
         model.filter(|_| objects.next().is_none())
     }
 
+    /// The folder of the scene, or of its selected model, or of the first model that has one.
+    pub(crate) fn folder(&self) -> Option<PathBuf> {
+        let source = |object: &Object| object.model.source.clone().filter(|path| !is_example(path));
+        let selected = self.view.object.and_then(|id| self.scene.objects.get(id)).and_then(source);
+        let first = || self.scene.objects.iter().find_map(|(_, object)| source(object));
+        let file = self.path.clone().or(selected).or_else(first)?;
+        let file = std::path::absolute(&file).unwrap_or(file);
+        file.parent().map(Path::to_owned)
+    }
+
     /// A name without ending for a file of the scene: that of its scene file, or of its only model.
     pub(crate) fn proposed_name(&self) -> String {
         let stem = self.path.as_deref().or(self.only_model()).and_then(Path::file_stem);
@@ -258,7 +297,10 @@ impl State {
     /// What a scene file keeps of the window.
     #[must_use]
     pub fn window(&self) -> WindowState {
-        WindowState { coarse_while_moving: self.coarse_while_moving, panels: self.panels.kept() }
+        WindowState {
+            coarse_while_moving: self.coarse_while_moving,
+            panels: self.panels.lasting().kept(),
+        }
     }
 
     /// Takes what a scene file has kept of the window.

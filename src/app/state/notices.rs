@@ -21,7 +21,7 @@ pub enum Tone {
     Refused,
 }
 
-/// A notice that stays until the user dismisses it.
+/// A notice over the picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
     /// One line.
@@ -30,6 +30,17 @@ pub struct Notice {
     pub details: Vec<String>,
     /// An offer shown with it as a button.
     pub offer: Option<Offer>,
+}
+
+impl Notice {
+    /// Whether it waits for an answer. Any other notice goes to the status line after some seconds.
+    #[must_use]
+    pub const fn needs_answer(&self) -> bool {
+        match self.offer {
+            Some(Offer::Frame(_) | Offer::TwoSides(_) | Offer::Show(_) | Offer::Opaque(_)) => true,
+            Some(Offer::Up(_)) | None => false,
+        }
+    }
 }
 
 /// An action that a notice offers.
@@ -43,6 +54,8 @@ pub enum Offer {
     Show(ObjectId),
     /// To make an object opaque.
     Opaque(ObjectId),
+    /// To choose which axis of its file points up in an object.
+    Up(ObjectId),
 }
 
 impl Offer {
@@ -54,24 +67,31 @@ impl Offer {
             Self::TwoSides(_) => "Draw both sides",
             Self::Show(_) => "Show",
             Self::Opaque(_) => "Make opaque",
+            Self::Up(_) => "Up axis",
         }
     }
 
     /// The object that it is about.
     #[must_use]
     pub const fn object(self) -> ObjectId {
-        let (Self::Frame(id) | Self::TwoSides(id) | Self::Show(id) | Self::Opaque(id)) = self;
-        id
+        match self {
+            Self::Frame(id)
+            | Self::TwoSides(id)
+            | Self::Show(id)
+            | Self::Opaque(id)
+            | Self::Up(id) => id,
+        }
     }
 
-    /// The change of the scene, and its label in the history.
+    /// The change of the scene, and its label in the history; `None` if the model has to be read
+    /// again first.
     ///
     /// # Errors
     /// If the object is gone, or the observer is an object.
-    pub fn command(self, scene: &Scene, view: &View) -> Result<(Command, String), Refusal> {
+    pub fn command(self, scene: &Scene, view: &View) -> Result<Option<(Command, String)>, Refusal> {
         let id = self.object();
         let name = &scene.objects.get(id).ok_or(Refusal::Gone)?.name;
-        Ok(match self {
+        Ok(Some(match self {
             Self::Frame(_) => (framing::objects(scene, view, &[id])?, format!("Frame {name}")),
             Self::TwoSides(_) => {
                 let two = |object: &mut Object| object.sides = Sides::Two;
@@ -84,7 +104,8 @@ impl Offer {
             Self::Opaque(_) => {
                 (items::change_object(scene, id, make_opaque)?, format!("Make {name} opaque"))
             }
-        })
+            Self::Up(_) => return Ok(None),
+        }))
     }
 }
 

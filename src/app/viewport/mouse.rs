@@ -252,7 +252,7 @@ impl Mouse {
         if by != Vec2::ZERO {
             let pixels = by * ui.ctx().pixels_per_point();
             let command = moving(drag, state, pixels, size);
-            requests.push(changing(command, drag.gesture, "Move the view"));
+            requests.push(navigating(command, drag.gesture));
         }
         if drag.motion == Motion::Fly {
             self.fly(ui, drag, state, requests);
@@ -317,7 +317,7 @@ impl Mouse {
             way.clamp_length_max(1.0) * distance,
             state.phase(drag.gesture),
         );
-        requests.push(changing(command, drag.gesture, "Fly"));
+        requests.push(navigating(command, drag.gesture));
         ui.ctx().request_repaint();
     }
 
@@ -346,7 +346,7 @@ impl Mouse {
         };
         let phase = state.phase(gesture);
         let command = navigation::zoom(&state.scene, &state.view, notches, pointer, size, phase);
-        requests.push(changing(command, gesture, "Zoom"));
+        requests.push(navigating(command, gesture));
     }
 
     fn gesture(&mut self, source: &str) -> Gesture {
@@ -379,9 +379,10 @@ fn moving(drag: Drag, state: &State, pixels: Vec2, size: Size) -> Result<Command
     }
 }
 
-fn changing(command: Result<Command, Refusal>, gesture: Gesture, label: &str) -> Request {
+/// The request for a movement of the view.
+fn navigating(command: Result<Command, Refusal>, gesture: Gesture) -> Request {
     match command {
-        Ok(command) => Request::Change { command, gesture, label: label.to_owned() },
+        Ok(command) => Request::Navigate { command, gesture },
         Err(refusal) => Request::Refuse(refusal.to_string()),
     }
 }

@@ -54,6 +54,8 @@ pub(crate) enum Icon {
     Tick,
     /// A refusal or an error.
     Warning,
+    /// A notice.
+    Info,
     /// The outline.
     List,
     /// The switches of the view.
@@ -110,6 +112,7 @@ impl Icon {
             Self::Right => icons::ICON_KEYBOARD_ARROW_RIGHT,
             Self::Tick => icons::ICON_CHECK,
             Self::Warning => icons::ICON_WARNING,
+            Self::Info => icons::ICON_INFO,
             Self::List => icons::ICON_LIST,
             Self::Switches => icons::ICON_TOGGLE_ON,
             Self::Properties => icons::ICON_TUNE,

@@ -15,6 +15,7 @@ use crate::accuracy::Samples;
 use crate::io::error::reason;
 use crate::io::replace::{Worth, replace};
 use crate::io::window_state::Panels;
+use crate::scene::UpAxis;
 
 /// The most recent files that are remembered.
 pub const MOST_RECENT: usize = 10;
@@ -44,6 +45,8 @@ pub struct Preferences {
     pub helpers: Helpers,
     /// Whether models are read again when their files change.
     pub watches: bool,
+    /// The axis that points up in models whose files do not state one.
+    pub up: UpAxis,
     /// Keys that the user has chosen: those of each action, by its name.
     pub keys: BTreeMap<String, Vec<String>>,
     /// Whether the window refines its picture while nothing happens.
@@ -93,6 +96,7 @@ impl Default for Preferences {
             overlays: true,
             helpers: Helpers::default(),
             watches: false,
+            up: UpAxis::default(),
             keys: BTreeMap::new(),
             refines: true,
             refined: Samples::Sixteen,
@@ -103,6 +107,9 @@ impl Default for Preferences {
 }
 
 impl Preferences {
+    /// The size of the window at the first start, in points.
+    pub const WINDOW: [f32; 2] = [1280.0, 800.0];
+
     /// What was remembered; and a sentence if the file was not understood and has been set aside.
     #[must_use]
     pub fn load(folders: &OwnFolders) -> (Self, Option<String>) {
@@ -130,11 +137,12 @@ impl Preferences {
         }
     }
 
-    /// Writes them in one step. Recent files that another program has added meanwhile stay.
+    /// Writes them in one step. Recent files that another program has added meanwhile stay: the
+    /// ones that are in the file, but not `known` to this program.
     ///
     /// # Errors
     /// The reason, if they cannot be written.
-    pub fn save(&self, folders: &OwnFolders) -> Result<(), String> {
+    pub fn save(&self, folders: &OwnFolders, known: &[PathBuf]) -> Result<(), String> {
         made(&folders.config)?;
         let path = file(folders);
         let lock = Lock::take(&folders.config.join("lock")).map_err(|error| reason(&error))?;
@@ -142,7 +150,7 @@ impl Preferences {
         let others = others.and_then(|text| ron::from_str::<Self>(&text).ok());
         let mut merged = self.clone();
         for other in others.into_iter().flat_map(|other| other.recent) {
-            if !merged.recent.contains(&other) {
+            if !merged.recent.contains(&other) && !known.contains(&other) {
                 merged.recent.push(other);
             }
         }
@@ -203,7 +211,7 @@ mod tests {
         first.note_recent(Path::new("/a.obj"));
         first.note_recent(Path::new("/b.obj"));
         first.note_recent(Path::new("/a.obj"));
-        first.save(&folders).unwrap();
+        first.save(&folders, &[]).unwrap();
         assert_eq!(first.recent, [PathBuf::from("/a.obj"), PathBuf::from("/b.obj")]);
         assert_eq!(Preferences::load(&folders), (first, None));
         for broken in [&b"(scale: "[..], b"\xff\xfe", b"(scale: 1.0) more"] {
@@ -230,9 +238,13 @@ mod tests {
         for name in ["/a.obj", "/b.obj"] {
             let mut own = Preferences::default();
             own.note_recent(Path::new(name));
-            own.save(&folders).unwrap();
+            own.save(&folders, &[]).unwrap();
         }
         let both = [PathBuf::from("/b.obj"), PathBuf::from("/a.obj")];
         assert_eq!(Preferences::load(&folders).0.recent, both);
+        // A program that has forgotten its files forgets only its own.
+        let known = [PathBuf::from("/a.obj")];
+        Preferences::default().save(&folders, &known).unwrap();
+        assert_eq!(Preferences::load(&folders).0.recent, both[..1]);
     }
 }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::format::{FileModel, FileScene, FileTexture};
+use super::save::{file_model, file_texture};
 use super::{SceneFileError, open, paths};
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
@@ -12,7 +13,7 @@ use crate::io::findings::Finding;
 use crate::io::obj::load_with;
 use crate::io::progress::Progress;
 use crate::io::texture::Pictures;
-use crate::scene::{BumpMaps, Crease, LoadOptions, Model, Scale, Texture, UpAxis, Winding};
+use crate::scene::{BumpMaps, Crease, LoadOptions, Model, Scale, Scene, Texture, UpAxis, Winding};
 
 /// The identity of a model in a scene file: its name or path, and how it is read. The crease angle
 /// comes last, so that files that differ only in it are neighbours.
@@ -23,6 +24,26 @@ fn key(model: &FileModel) -> ModelKey {
         FileModel::Own(name) => (name.clone(), None),
         FileModel::File { path, up, scale, winding, crease, bumps } => {
             (path.clone(), Some((*up, scale.to_bits(), *winding, *bumps, crease.to_bits())))
+        }
+    }
+}
+
+/// The models and textures of a scene, which need not be read again.
+#[derive(Debug, Default)]
+pub struct Known {
+    models: Vec<Shared<Model>>,
+    textures: Vec<Shared<Texture>>,
+}
+
+impl Known {
+    /// Those of this scene.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let objects = || scene.objects.iter().map(|(_, object)| object);
+        let cameras = scene.cameras.iter().map(|(_, camera)| camera.model.clone());
+        Self {
+            models: objects().map(|object| object.model.clone()).chain(cameras).collect(),
+            textures: objects().filter_map(|object| object.texture.clone()).collect(),
         }
     }
 }
@@ -45,6 +66,22 @@ impl<'a> Files<'a> {
         Self { folder, relocated, models, textures, pictures, findings: Vec::new() }
     }
 
+    /// Takes models and textures that need not be read. A file name that is not text is skipped: no
+    /// scene file can contain it.
+    pub(super) fn know(&mut self, known: &Known) {
+        let nowhere = Path::new("");
+        for model in &known.models {
+            if let Ok(named) = file_model(model, nowhere) {
+                self.models.insert(key(&named), model.clone());
+            }
+        }
+        for texture in &known.textures {
+            if let Ok(named) = file_texture(texture, nowhere) {
+                self.textures.insert(named.path, texture.clone());
+            }
+        }
+    }
+
     /// The path of a file that the scene file names.
     fn place(&self, path: &str) -> PathBuf {
         if examples::is_example(Path::new(path)) {
@@ -63,12 +100,15 @@ impl<'a> Files<'a> {
         let of_objects = file.objects.iter().map(|object| &object.model);
         let all = of_objects.chain(file.cameras.iter().map(|camera| &camera.model));
         let mut keys = BTreeSet::new();
-        let models: Vec<&FileModel> = all.filter(|model| keys.insert(key(model))).collect();
+        let is_new = |model: &&FileModel| !self.models.contains_key(&key(model));
+        let models: Vec<&FileModel> =
+            all.filter(is_new).filter(|model| keys.insert(key(model))).collect();
         let textures: BTreeSet<&str> = file
             .objects
             .iter()
             .filter_map(|object| object.texture.as_ref())
             .map(|texture| texture.path.as_str())
+            .filter(|path| !self.textures.contains_key(*path))
             .collect();
         self.refuse_missing(&models, &textures, name)?;
         for (i, model) in models.iter().enumerate() {

@@ -211,7 +211,7 @@ fn are_usual(bumps: &BumpMaps) -> bool {
     *bumps == BumpMaps::default()
 }
 
-fn cam() -> FileModel {
+pub(super) fn cam() -> FileModel {
     FileModel::Own("cam".to_owned())
 }
 
@@ -224,10 +224,10 @@ fn axes() -> [[f64; 3]; 3] {
 }
 
 /// A field that may be missing, written without `Some`.
-mod written_bare {
+pub(super) mod written_bare {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    pub(super) fn serialize<T: Serialize, S: Serializer>(
+    pub(in super::super) fn serialize<T: Serialize, S: Serializer>(
         value: &Option<T>,
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
@@ -237,7 +237,7 @@ mod written_bare {
         }
     }
 
-    pub(super) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+    pub(in super::super) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Option<T>, D::Error> {
         T::deserialize(deserializer).map(Some)

@@ -7,6 +7,7 @@
 mod fields;
 mod files;
 mod format;
+mod fragment;
 mod light;
 mod open;
 mod paths;
@@ -16,6 +17,9 @@ mod words;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+
+pub use self::files::Known;
+pub use self::fragment::{Fragment, items_of_text, items_to_text, material_to_text};
 
 use self::files::{Files, StandIns};
 use self::format::{FileScene, Head, VERSION};

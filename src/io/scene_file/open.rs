@@ -125,7 +125,11 @@ fn note_missing_owners(scene: &Scene, findings: &mut Findings) {
     }
 }
 
-fn read_material(material: &MaterialChoice) -> Result<MaterialChoice, String> {
+/// Checks a material.
+///
+/// # Errors
+/// The reason, if a number of it is not valid.
+pub(super) fn read_material(material: &MaterialChoice) -> Result<MaterialChoice, String> {
     if let MaterialChoice::Own(own) = material {
         let colors = [own.ambient, own.diffuse, own.specular].concat();
         finite("its material", &colors)?;

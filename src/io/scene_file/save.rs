@@ -45,7 +45,7 @@ pub(super) fn file_scene(
     })
 }
 
-fn file_model(model: &Model, folder: &Path) -> Result<FileModel, String> {
+pub(super) fn file_model(model: &Model, folder: &Path) -> Result<FileModel, String> {
     let Model { name, source, options, .. } = model;
     let Some(source) = source else {
         return if crate::io::own_model(name).is_some() {
@@ -69,7 +69,7 @@ fn file_path(path: &Path, folder: &Path) -> Result<String, String> {
         .ok_or_else(|| format!("the name {} cannot be written as text", path.display()))
 }
 
-fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, String> {
+pub(super) fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, String> {
     let Object {
         name,
         visible,
@@ -107,14 +107,14 @@ fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, St
     })
 }
 
-fn file_texture(texture: &Texture, folder: &Path) -> Result<FileTexture, String> {
+pub(super) fn file_texture(texture: &Texture, folder: &Path) -> Result<FileTexture, String> {
     let Texture { source, picture: _, wrap, offset, scale } = texture;
     let own = source.to_str().filter(|path| own_texture(path).is_some());
     let path = own.map_or_else(|| file_path(source, folder), |own| Ok(own.to_owned()))?;
     Ok(FileTexture { path, wrap: *wrap, offset: *offset, scale: *scale })
 }
 
-fn file_camera(id: u32, camera: &Camera, folder: &Path) -> Result<FileCamera, String> {
+pub(super) fn file_camera(id: u32, camera: &Camera, folder: &Path) -> Result<FileCamera, String> {
     let Camera { name, visible, model, material, pose, lens } = camera;
     let Pose { eye, axes, mode } = *pose.now();
     Ok(FileCamera {

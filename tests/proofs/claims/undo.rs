@@ -165,7 +165,7 @@ fn anything(scene: &Scene, view: &mut View, rng: &mut Rng) -> Result<Command, Re
         0..6 => placing(scene, view, rng, stroke),
         6 => transform::toggle_analysis(scene, view),
         7 => looking(scene, view, rng, stroke),
-        8 => items::duplicate(scene, item).and_then(|command| few(scene, command)),
+        8 => items::duplicate(scene, item, DVec3::ZERO).and_then(|command| few(scene, command)),
         9 => items::remove(scene, item),
         10 => items::toggle_shown(scene, item),
         11 => items::reorder(scene, item, rng.index(5)),

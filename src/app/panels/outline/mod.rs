@@ -52,8 +52,8 @@ fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
     let id = Id::unique("unfolded objects");
     let mut unfolded: BTreeSet<ObjectId> = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-    let query = filter_ui(ui, state);
-    let lines = lines(state, &unfolded, &query);
+    filter_ui(ui, state, requests);
+    let lines = lines(state, &unfolded);
     ui.spacing_mut().item_spacing.y = 0.0;
     let area = ScrollArea::vertical().auto_shrink(false).content_margin(theme::SCROLL_MARGIN);
     area.show_viewport(ui, |ui, seen| {
@@ -92,17 +92,12 @@ impl Line {
 }
 
 /// The lines, from the top.
-fn lines(state: &State, unfolded: &BTreeSet<ObjectId>, query: &str) -> Vec<Line> {
+fn lines(state: &State, unfolded: &BTreeSet<ObjectId>) -> Vec<Line> {
     let scene = &state.scene;
-    let query = query.to_lowercase();
-    let fits = |item: ItemId| {
-        query.is_empty()
-            || state.renaming == Some(item)
-            || state.name(item).is_some_and(|name| name.to_lowercase().contains(&query))
-    };
-    let fitting = |line: &Line| line.item().is_none_or(fits);
+    let fitting = |line: &Line| line.item().is_none_or(|item| state.is_listed(item));
     let mut lines = vec![Line::Header(Subject::Object)];
-    for (id, object) in scene.objects.iter().filter(|(id, _)| fits(ItemId::Object(*id))) {
+    for (id, object) in scene.objects.iter().filter(|(id, _)| state.is_listed(ItemId::Object(*id)))
+    {
         lines.push(Line::Item(ItemId::Object(id)));
         if unfolded.contains(&id) {
             let parts = object.model.mesh.parts().len();
@@ -118,26 +113,21 @@ fn lines(state: &State, unfolded: &BTreeSet<ObjectId>, query: &str) -> Vec<Line>
     lines
 }
 
-/// The number of items from which on there is a field that filters them.
-const MANY: usize = 12;
-
-/// A field for a part of a name. Gives what stands in it; nothing while there are few items.
-fn filter_ui(ui: &mut Ui, state: &State) -> String {
-    let scene = &state.scene;
-    if scene.objects.len() + scene.cameras.len() + scene.lights.len() < MANY {
-        return String::new();
+/// A field for a part of a name, if there are many items.
+fn filter_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    if !state.has_filter() {
+        return;
     }
-    let id = Id::unique("filter of the outline");
-    let mut query: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let mut query = state.filter.clone();
     let width = ui.available_width() - f32::from(theme::MARGIN);
     let field = egui::TextEdit::singleline(&mut query)
         .hint_text("Filter by name")
         .align(egui::Align2::LEFT_CENTER);
     let response = ui.add_sized(vec2(width, theme::ROW), field);
-    response.accessible_name("Filter by name");
+    if response.accessible_name("Filter by name").changed() {
+        requests.push(Request::Filter(query));
+    }
     ui.add_space(2.0);
-    ui.data_mut(|data| data.insert_temp(id, query.clone()));
-    query
 }
 
 /// Brings the selected item into sight once, when it becomes the selected one.

@@ -13,7 +13,8 @@ use crate::app::widgets::text::grouped;
 use crate::base::Shared;
 use crate::base::math::{self, Axis};
 use crate::edit::{Gesture, arrange, items, motion, placement, transform};
-use crate::scene::{Frame, Model, Object, ObjectId, Sides, Spin};
+use crate::io::is_example;
+use crate::scene::{Frame, Model, Object, ObjectId, Sides, Spin, UpAxis};
 
 const LETTERS: [&str; 3] = ["X", "Y", "Z"];
 
@@ -76,6 +77,30 @@ fn placement_ui(
     if let Some(size) = size(ui, id, object) {
         let [x, y, z] = size.to_array().map(short);
         fact(ui, "Size", &format!("{x} x {y} x {z}"));
+    }
+    up_axis_ui(ui, requests, id, object);
+}
+
+/// Which axis of the model's file points up; nothing for the program's own models.
+fn up_axis_ui(ui: &mut Ui, requests: &mut Vec<Request>, id: ObjectId, object: &Object) {
+    let is_own = object.model.source.as_deref().is_none_or(is_example);
+    if is_own {
+        return;
+    }
+    let now = object.model.options.up;
+    let mut axes = vec![UpAxis::Y, UpAxis::Z];
+    if !axes.contains(&now) {
+        axes.push(now);
+    }
+    let labels: Vec<String> = axes.iter().map(|up| up.word().to_uppercase()).collect();
+    let hint = "The axis of the file that points up: the model is read again and turned";
+    let all: Vec<Choice<'_>> = labels
+        .iter()
+        .zip(&axes)
+        .map(|(label, up)| Choice::new("Up axis", label, *up == now, hint))
+        .collect();
+    if let Some(clicked) = row(ui, "Up axis", |ui| choices(ui, &all)) {
+        requests.push(Request::TurnUp(id, axes[clicked]));
     }
 }
 

@@ -1,0 +1,31 @@
+//! Tells the program which commit it is built from, if git knows.
+//!
+//! The script runs again only if the sources change, which compiles the program anyway. A commit by
+//! itself causes no build; sources that differ from it are marked as changed.
+
+#![expect(clippy::print_stdout, reason = "Cargo reads what a build script prints")]
+
+use std::path::Path;
+use std::process::Command;
+
+fn main() {
+    let sources = ["src", "build.rs", "Cargo.toml", "Cargo.lock"];
+    for source in sources {
+        println!("cargo:rerun-if-changed={source}");
+    }
+    // A copy of the sources within another repository is not of that repository's commit.
+    if !Path::new(".git").exists() {
+        return;
+    }
+    let Some(commit) = git(&["rev-parse", "--short", "HEAD"]) else { return };
+    let changed = git(&[&["status", "--porcelain", "--"], &sources[..]].concat());
+    let mark = if changed.is_some_and(|list| !list.is_empty()) { ", with changes" } else { "" };
+    println!("cargo:rustc-env=MARRAZTU_COMMIT={commit}{mark}");
+}
+
+/// The output of a git command; `None` without git or if it fails.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| text.trim().to_owned())
+}

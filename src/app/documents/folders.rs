@@ -1,0 +1,100 @@
+//! Where file dialogs begin.
+//!
+//! Textures are looked for in the folder of their model, and files are saved in the folder of the
+//! scene or its model. If the user chooses another folder, the next dialog of that kind begins
+//! there, until the scene or the model changes.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// The most recent folders that are offered.
+const MOST: usize = 6;
+
+/// What a folder is remembered for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Kind {
+    /// Models and scenes to open.
+    Opened,
+    /// Textures.
+    Texture,
+    /// Scenes, pictures and exports to save.
+    Saved,
+}
+
+/// The folders of files.
+#[derive(Debug, Default)]
+pub(crate) struct Folders {
+    /// The folder of the scene or the model that the next dialog is about, if it has one.
+    pub(crate) home: Option<PathBuf>,
+    /// The folders of recent files, the latest first.
+    pub(crate) recent: Vec<PathBuf>,
+    /// The folder chosen last for each kind, and the home that it was chosen for.
+    chosen: BTreeMap<Kind, (Option<PathBuf>, PathBuf)>,
+}
+
+impl Folders {
+    /// Where a dialog begins.
+    pub(crate) fn start(&self, kind: Kind) -> PathBuf {
+        let chosen = self.chosen.get(&kind);
+        let start = match (chosen, &self.home) {
+            // What is opened next may have nothing to do with the scene.
+            (Some((_, folder)), _) if kind == Kind::Opened => Some(folder),
+            (Some((of, folder)), Some(home)) if of.as_ref() == Some(home) => Some(folder),
+            (_, Some(home)) => Some(home),
+            (Some((_, folder)), None) => Some(folder),
+            (None, None) => None,
+        };
+        start.cloned().or_else(|| std::env::current_dir().ok()).unwrap_or_else(|| "/".into())
+    }
+
+    /// Notes that a file was chosen.
+    pub(crate) fn remember(&mut self, kind: Kind, file: &Path) {
+        if let Some(folder) = file.parent() {
+            self.chosen.insert(kind, (self.home.clone(), folder.to_owned()));
+        }
+    }
+
+    /// The folders that are one click away in a dialog, with their names: the user's own, the one
+    /// of the scene or its model, and recent ones.
+    pub(crate) fn places(&self) -> Vec<(String, PathBuf)> {
+        let user = std::env::home_dir().map(|folder| ("Home".to_owned(), folder));
+        let mut places: Vec<(String, PathBuf)> = user.into_iter().collect();
+        let chosen = self.chosen.values().map(|(_, folder)| folder);
+        for folder in self.home.iter().chain(chosen).chain(&self.recent) {
+            if places.len() > MOST {
+                break;
+            }
+            if places.iter().all(|(_, other)| other != folder) {
+                let name = folder.file_name().map(|name| name.to_string_lossy().into_owned());
+                places.push((name.unwrap_or_else(|| folder.display().to_string()), folder.clone()));
+            }
+        }
+        places
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_saved_goes_beside_the_scene_wherever_textures_come_from() {
+        let path = Path::new;
+        let mut folders = Folders { home: Some("/scenes".into()), ..Folders::default() };
+        folders.remember(Kind::Texture, path("/textures/wood.png"));
+        assert_eq!(folders.start(Kind::Saved), path("/scenes"));
+        assert_eq!(folders.start(Kind::Texture), path("/textures"), "for the same model");
+        folders.remember(Kind::Saved, path("/pictures/a.png"));
+        assert_eq!(folders.start(Kind::Saved), path("/pictures"), "as was chosen for this scene");
+        folders.home = Some("/others".into());
+        assert_eq!(folders.start(Kind::Saved), path("/others"), "another scene");
+        assert_eq!(folders.start(Kind::Texture), path("/others"), "another model");
+        folders.home = None;
+        assert_eq!(folders.start(Kind::Saved), path("/pictures"));
+        folders.remember(Kind::Opened, path("/models/a.obj"));
+        assert_eq!(folders.start(Kind::Opened), path("/models"));
+        folders.recent = vec!["/models".into(), "/scenes".into()];
+        let places: Vec<_> = folders.places().into_iter().map(|(name, _)| name).collect();
+        assert_eq!(places[places.len() - 4..], ["models", "textures", "pictures", "scenes"]);
+    }
+}

@@ -1,0 +1,82 @@
+//! About: version, commit, instructions in use, and the licences of the program and of the packages
+//! that it is built from. `tools/licences.py` makes the list of packages.
+
+use egui::{Rect, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, Window, vec2};
+use fearless_simd::Level;
+
+use crate::app::actions::{Action, Request};
+use crate::app::panels::Panel;
+use crate::app::state::State;
+use crate::app::theme;
+use crate::app::widgets::controls::{heading, put_text, text};
+use crate::lab::instructions;
+
+/// A package a line: its name, its version and its licence.
+const PACKAGES: &str = include_str!("../../../assets/licences.txt");
+
+const SIZE: egui::Vec2 = vec2(460.0, 460.0);
+
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, _state: &State, requests: &mut Vec<Request>) {
+    let mut open = true;
+    let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
+    let size = SIZE.min(room);
+    Window::new(Panel::About.info().label)
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .default_pos(ui.ctx().content_rect().center() - size / 2.0)
+        .fixed_size(size)
+        .show(ui.ctx(), contents);
+    if !open {
+        requests.push(Action::Panel(Panel::About).into());
+    }
+}
+
+/// Facts that identify the program in a fault report.
+fn facts() -> [String; 3] {
+    [
+        format!("Version: {}", env!("CARGO_PKG_VERSION")),
+        format!("Commit: {}", option_env!("MARRAZTU_COMMIT").unwrap_or("not recorded")),
+        format!("Instructions: {}", instructions::name_of(Level::new()).to_uppercase()),
+    ]
+}
+
+fn contents(ui: &mut Ui) {
+    heading(ui, "Marraztu");
+    ui.label(concat!(env!("CARGO_PKG_DESCRIPTION"), "."));
+    ui.add_space(theme::GAP);
+    for line in facts() {
+        ui.label(line);
+    }
+    ui.label("Licence: MIT or Apache 2.0, at your choice");
+    ui.add_space(theme::GAP);
+    if ui.button("Copy").on_hover_text("Copies version, commit and instructions").clicked() {
+        ui.ctx().copy_text(format!("Marraztu\n{}\n", facts().join("\n")));
+    }
+    ui.add_space(2.0 * theme::GAP);
+    let packages: Vec<&str> = PACKAGES.lines().collect();
+    let count = packages.len();
+    ui.label(
+        RichText::new(format!("Built from {count} packages, not all on every system")).strong(),
+    );
+    let row = ui.spacing().interact_size.y.max(theme::ROW);
+    let list = ScrollArea::vertical().auto_shrink(false).content_margin(theme::SCROLL_MARGIN);
+    list.show_rows(ui, row, count, |ui, range| {
+        for package in &packages[range] {
+            let (line, response) =
+                ui.allocate_exact_size(vec2(ui.available_width(), row), Sense::hover());
+            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, *package));
+            let name = package.match_indices(' ').nth(1).map_or(package.len(), |(at, _)| at);
+            let (name, licence) = package.split_at(name);
+            let licence_at = line.with_min_x(line.left() + 0.45 * line.width());
+            let name_at = line.with_max_x(licence_at.left() - theme::GAP);
+            let visuals = ui.visuals();
+            let fitted = |words: &str, at: Rect| text(ui, words, TextStyle::Body, at.width());
+            put_text(ui, name_at, fitted(name, name_at), visuals.text_color());
+            let galley = fitted(licence.trim(), licence_at);
+            put_text(ui, licence_at, galley, visuals.weak_text_color());
+            response.on_hover_text(*package);
+        }
+    });
+}

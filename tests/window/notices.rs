@@ -1,0 +1,170 @@
+//! Notices, and the up axis that those of opened models offer.
+//!
+//! Catches: notices that stay over the picture, that vanish under the pointer, or that are lost;
+//! harmless findings that sound like faults; models that lie on their side.
+
+use std::path::Path;
+
+use egui::Key;
+use egui::accesskit::Role;
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::Command;
+use marraztu::app::actions::Request;
+use marraztu::app::state::Notice;
+use marraztu::scene::{ItemId, UpAxis};
+
+use crate::dialogs::{CUBE, folder_with};
+use crate::editor::Editor;
+use crate::panels::{click, control};
+
+impl Editor {
+    /// Opens a model in place of the first scene.
+    fn open_alone(&mut self, path: &Path) {
+        let count = self.state().notices.len() + self.state().past_notices.len();
+        self.drop_files(&[path]);
+        self.wait_until(|editor| {
+            editor.state().notices.len() + editor.state().past_notices.len() > count
+        });
+        self.settle();
+    }
+
+    fn up(&self) -> UpAxis {
+        let scene = self.scene();
+        let (_, object) = scene.objects.iter().next().unwrap();
+        object.model.options.up
+    }
+
+    /// The height of the first object.
+    fn top(&self) -> f64 {
+        let scene = self.scene();
+        let (_, object) = scene.objects.iter().next().unwrap();
+        marraztu::edit::arrange::world_box(object, 0.0).unwrap().max.y
+    }
+}
+
+/// A tower of height 5 along Z.
+const TOWER: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n\
+    v 0 0 5\nv 1 0 5\nv 1 1 5\nv 0 1 5\n\
+    f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+#[test]
+fn a_notice_that_needs_no_answer_goes_to_the_status_line_and_is_listed_there() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.open_alone(&path);
+    assert!(editor.shows("Opened cube: 6 faces, 8 vertices"), "it is no list of findings");
+    editor.harness.run_steps(400);
+    assert!(!editor.state().notices.is_empty(), "6.7 seconds");
+    editor.harness.run_steps(120);
+    assert!(editor.state().notices.is_empty(), "8.7 seconds");
+    click(&mut editor, Role::Button, "1 notice");
+    assert!(editor.shows("Opened cube"), "the list is one click away");
+    editor.click_label("Clear");
+    assert!(editor.state().past_notices.is_empty() && !editor.shows("1 notice"));
+}
+
+#[test]
+fn a_notice_stays_while_the_pointer_is_over_it_and_one_that_asks_stays() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.open_alone(&path);
+    let at = control(&editor, Role::Button, "Dismiss").rect().center();
+    editor.hover(at);
+    editor.harness.run_steps(700);
+    assert_eq!(editor.state().notices.len(), 1);
+    let away = editor.at(0.5, 0.9);
+    editor.hover(away);
+    editor.harness.run_steps(520);
+    assert!(editor.state().notices.is_empty());
+    // An object far away: its notice offers to frame it.
+    editor.perform_all(&[Action::SubjectObject, Action::ToggleVisible, Action::WhyUnseen]);
+    editor.harness.run_steps(700);
+    assert_eq!(editor.state().notices.len(), 1, "it offers to show it");
+}
+
+#[test]
+fn a_file_without_losses_is_said_to_be_opened_and_one_with_losses_what_it_lacks() {
+    let text = format!("{CUBE}f 1 2\n");
+    let (folder, path) = folder_with("odd.obj", &text);
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.open_alone(&path);
+    let Notice { text, details, .. } = editor.state().notices[0].clone();
+    assert!(!details.is_empty(), "there is something to list");
+    assert!(text.starts_with("Opened odd: ") && !text.contains("finding"), "{text}");
+    let lossy = folder.path().join("lossy.obj");
+    std::fs::write(&lossy, format!("mtllib none.mtl\n{CUBE}")).unwrap();
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.open_alone(&lossy);
+    let text = &editor.state().notices[0].text;
+    assert!(text.starts_with("lossy: ") && text.contains("none.mtl"), "{text}");
+}
+
+#[test]
+fn why_outside_the_view_offers_to_frame() {
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.perform_all(&[Action::SubjectObject, Action::LookTop, Action::SubjectCamera]);
+    // The camera looks the other way.
+    for _ in 0..18 {
+        editor.perform(Action::StepXUp);
+    }
+    editor.perform(Action::WhyUnseen);
+    editor.wait_until(|editor| !editor.state().notices.is_empty());
+    editor.settle();
+    click(&mut editor, Role::Button, "Frame");
+    assert!(editor.state().notices.is_empty());
+}
+
+#[test]
+fn the_up_axis_is_switched_in_the_notice_as_one_step_and_remembered() {
+    let (folder, path) = folder_with("tower.obj", TOWER);
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.open_alone(&path);
+    assert_eq!((editor.up(), editor.top()), (UpAxis::Y, 1.0));
+    let steps = editor.steps();
+    click(&mut editor, Role::Button, "Z up");
+    editor.wait_until(|editor| editor.up() == UpAxis::Z);
+    assert_eq!((editor.steps(), editor.top()), (steps + 1, 5.0));
+    assert!(editor.shows("Dismiss"), "the notice stays for another thought");
+    editor.press(Command(Key::Z));
+    assert_eq!((editor.up(), editor.top()), (UpAxis::Y, 1.0));
+    editor.press(Command(Key::Y));
+    assert_eq!(editor.top(), 5.0);
+    // The next model is opened in the same way, and says so.
+    let next = folder.path().join("next.obj");
+    std::fs::write(&next, TOWER).unwrap();
+    editor.perform(Action::New);
+    editor.click_label("Discard");
+    editor.open_alone(&next);
+    assert_eq!(editor.up(), UpAxis::Z);
+    assert!(editor.shows("Z is up, as you chose last."));
+}
+
+#[test]
+fn an_axis_that_the_file_states_is_used_and_said() {
+    let (folder, path) = folder_with("tower.obj", &format!("# up axis: Z\n{TOWER}"));
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.open_alone(&path);
+    assert_eq!((editor.up(), editor.top()), (UpAxis::Z, 5.0));
+    assert!(editor.shows("Z is up: its file says \"up axis: Z\"."));
+    // A statement of the file counts more than the choice for another one.
+    let y = folder.path().join("y.obj");
+    std::fs::write(&y, format!("# Y-up\n{TOWER}")).unwrap();
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    let mut preferences = marraztu::io::Preferences::default();
+    preferences.up = UpAxis::Z;
+    editor.ask(Request::Preferences(Box::new(preferences)));
+    editor.open_alone(&y);
+    assert_eq!(editor.up(), UpAxis::Y);
+}
+
+#[test]
+fn the_properties_switch_the_up_axis_too() {
+    let (_folder, path) = folder_with("tower.obj", TOWER);
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.open_alone(&path);
+    let id = editor.view().object.unwrap();
+    editor.ask(Request::Select(ItemId::Object(id)));
+    click(&mut editor, Role::RadioButton, "Up axis: Z");
+    editor.wait_until(|editor| editor.up() == UpAxis::Z);
+    assert_eq!(editor.top(), 5.0);
+}
