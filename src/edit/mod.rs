@@ -5,6 +5,7 @@
 //! [`History`] writes a scene.
 
 pub mod aiming;
+pub mod angles;
 pub mod arrange;
 pub mod framing;
 mod gesture;
@@ -19,6 +20,7 @@ pub mod navigation;
 pub mod placement;
 pub mod presenting;
 mod refusal;
+mod selected;
 pub mod selection;
 mod set_transform;
 pub mod several;
@@ -30,3 +32,4 @@ pub mod turntable;
 pub use gesture::{Gesture, GesturePhase};
 pub use history::History;
 pub use refusal::Refusal;
+pub use selected::Selected;
