@@ -12,6 +12,7 @@ mod examples;
 mod export;
 mod finding_kinds;
 mod findings;
+mod fingerprint;
 mod input;
 mod keeping;
 mod lessons;
@@ -35,9 +36,10 @@ pub use error::LoadError;
 pub use examples::{EXAMPLES, Example, is_example};
 pub use export::{EXPORT_ENDINGS, Exported, check_export_target, export};
 pub use findings::{Finding, FindingKind, joined};
+pub use fingerprint::Fingerprint;
 pub use input::Input;
 pub use keeping::{
-    Abandoned, Helpers, Journal, MOST_RECENT, OwnFolders, Preferences, Theme, Unsaved,
+    Abandoned, Discarded, Helpers, Journal, MOST_RECENT, OwnFolders, Preferences, Theme, Unsaved,
 };
 pub use lessons::lesson_scene;
 pub use obj::{Loaded, load, parse};
@@ -47,9 +49,7 @@ pub use picture::{
 pub use progress::{Cancelled, Progress};
 pub use read::check_file;
 pub use replace::SaveError;
-pub use scene_file::{
-    Opened, SCENE_ENDING, SceneFileError, open, open_with, save, save_with_window, to_text,
-};
+pub use scene_file::{Opened, SCENE_ENDING, SceneFileError, open, save, save_with_window, to_text};
 pub use sources::Sources;
 pub use texture::{
     load_picture, load_texture, load_texture_with, texture_endings, texture_formats,
