@@ -93,5 +93,7 @@ pub(crate) enum FileIntent {
     NewAncestor,
     Reload,
     Recover,
+    RecoverDiscarded,
+    FindMissing,
     Quit,
 }

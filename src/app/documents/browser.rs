@@ -25,6 +25,8 @@ pub(crate) struct Browser {
     endings: Vec<&'static str>,
     /// What stands in the path field.
     path: String,
+    /// What stood there at first: it does not filter the list.
+    proposal: String,
     folder: PathBuf,
     entries: Vec<Entry>,
     /// Why the folder cannot be listed, or the file not be chosen.
@@ -59,6 +61,7 @@ impl Browser {
             mode,
             endings,
             path: String::new(),
+            proposal: String::new(),
             folder: PathBuf::new(),
             entries: Vec::new(),
             fault: None,
@@ -66,6 +69,7 @@ impl Browser {
         };
         browser.enter(folder);
         browser.path = browser.folder.join(name).display().to_string();
+        browser.proposal.clone_from(&browser.path);
         browser
     }
 
@@ -112,6 +116,11 @@ impl Browser {
             }
         });
         choice
+    }
+
+    /// Gives the keyboard to the path field when it is shown next, as at first.
+    pub(crate) const fn ask_again(&mut self) {
+        self.shown_once = false;
     }
 
     /// What typing replaces at first: the proposed name without its ending. Without a name, it goes
@@ -175,7 +184,8 @@ impl Browser {
         again.then(|| self.take()).flatten()
     }
 
-    /// The entries that the typed name is a part of; all if it names a folder or one of them.
+    /// The entries that the typed name is a part of; all if it names a folder or one of them, and
+    /// while nothing was typed.
     fn fitting(&self) -> impl Iterator<Item = &Entry> {
         let typed = self.typed();
         let name = match self.path.trim().ends_with(['/', std::path::MAIN_SEPARATOR]) {
@@ -184,7 +194,8 @@ impl Browser {
         };
         let is_whole =
             typed.is_dir() || self.entries.iter().any(|it| self.folder.join(&it.name) == typed);
-        let part = name.filter(|_| self.mode == Mode::Open && !is_whole);
+        let is_typed = self.path != self.proposal;
+        let part = name.filter(|_| self.mode == Mode::Open && !is_whole && is_typed);
         self.entries.iter().filter(move |entry| {
             // Without its ending, which all have.
             let stem = Path::new(&entry.name).file_stem().map(|stem| stem.to_string_lossy());
@@ -211,7 +222,7 @@ impl Browser {
     fn verb(&self) -> &'static str {
         match self.mode {
             Mode::Open => "Open",
-            Mode::Save if self.named().is_file() => "Replace the file",
+            Mode::Save if self.named().is_file() => "Replace...",
             Mode::Save => "Save",
         }
     }
@@ -237,7 +248,7 @@ impl Browser {
         let path = self.named();
         if path.file_name().is_none() || (self.mode == Mode::Open && !path.exists()) {
             // The only entry that fits is meant.
-            let is_here = typed.parent() == Some(&self.folder);
+            let is_here = typed.parent() == Some(&self.folder) && self.path != self.proposal;
             let fitting: Vec<PathBuf> =
                 self.fitting().take(2).map(|entry| self.folder.join(&entry.name)).collect();
             if let ([only], true) = (&fitting[..], is_here) {

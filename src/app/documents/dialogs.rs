@@ -8,76 +8,19 @@ use std::time::{Duration, Instant};
 
 use egui::{Context, Id, Modal, Ui};
 
+use super::answer::{Answer, End};
 use super::browser::{Browser, Choice, Mode};
-use super::material_dialog::{self, MaterialChoices, MaterialDialog};
+use super::material_dialog::{self, MaterialDialog};
 use super::picture_dialog::{self, PictureChoices, PictureDialog};
+use super::questions;
+use super::wanted::{After, Wanted};
+use crate::app::input::keyboard::Keyboard;
 use crate::app::shell::Parent;
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::controls::{heading, take_focus};
-use crate::io;
-use crate::scene::ObjectId;
 
 /// A system's dialog that is gone within this time was never there.
 const AT_ONCE: Duration = Duration::from_millis(400);
-
-/// The purpose of a file dialog.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Wanted {
-    /// Models to be loaded.
-    Model,
-    /// Models to be opened as if they were dropped.
-    Dropped,
-    /// A scene in place of this one.
-    Scene,
-    /// Where to save the scene, and what to do then.
-    SceneTo(Option<After>),
-    /// Where to save the picture.
-    PictureTo,
-    /// Where to save the picture with options.
-    PictureWithOptionsTo,
-    /// Where to save the turntable.
-    TurntableTo,
-    /// Where to export the scene.
-    ExportTo,
-    /// A texture for this object.
-    Texture(ObjectId),
-    /// A texture for the model whose material is being chosen.
-    TextureOfModel,
-    /// The new location of a missing model of a scene.
-    Missing(PathBuf),
-}
-
-/// What to do once the scene is saved or discarded.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum After {
-    Quit,
-    New,
-    /// The first scene, drawn as ancestor A drew it.
-    NewAncestor,
-    Open(Option<PathBuf>),
-    /// Recover the unsaved work that is offered at this place.
-    Recover(usize),
-}
-
-/// What the user has answered.
-#[derive(Debug)]
-pub(crate) enum Answer {
-    /// These files, for this.
-    Files(Wanted, Vec<PathBuf>),
-    /// No file.
-    NoFile(Wanted),
-    /// Save first.
-    Save(After),
-    /// Do it without saving.
-    Discard(After),
-    /// This material.
-    Material(Box<MaterialDialog>, MaterialChoices),
-    /// A picture or a turntable with these options, into this file; it is asked for if there is
-    /// none.
-    Picture(PictureChoices, Option<PathBuf>),
-    /// A texture is wanted for the model whose material is being chosen.
-    ChooseTexture,
-}
 
 /// All dialogs that are open.
 #[derive(Debug, Default)]
@@ -111,6 +54,12 @@ enum Dialog {
     Picture(Box<PictureDialog>),
     Fault(&'static str, String),
     Details(String, Vec<String>),
+    Missing(Vec<PathBuf>),
+    Discarded(Vec<String>),
+    /// The file of the scene was changed by another program.
+    Changed(PathBuf, Option<After>),
+    /// Whether to replace a file, and the answer of the dialog below if so.
+    Replace(PathBuf, Option<Box<Answer>>),
 }
 
 impl Dialogs {
@@ -134,6 +83,26 @@ impl Dialogs {
         if !self.open.iter().any(|dialog| matches!(dialog, Dialog::Unsaved(_))) {
             self.open.push(Dialog::Unsaved(after));
         }
+    }
+
+    /// Lists the missing files of the scene.
+    pub(crate) fn list_missing(&mut self, files: Vec<PathBuf>) {
+        self.open.push(Dialog::Missing(files));
+    }
+
+    /// Lists the work that was discarded.
+    pub(crate) fn list_discarded(&mut self, all: Vec<String>) {
+        self.open.push(Dialog::Discarded(all));
+    }
+
+    /// Asks what to do with the scene, whose file was changed by another program.
+    pub(crate) fn ask_changed(&mut self, path: PathBuf, after: Option<After>) {
+        self.open.push(Dialog::Changed(path, after));
+    }
+
+    /// The next file is asked for in this folder.
+    pub(crate) fn begin_in(&mut self, folder: Option<PathBuf>) {
+        self.folder = folder.unwrap_or_else(|| self.folder());
     }
 
     /// Asks for a material.
@@ -223,6 +192,10 @@ impl Dialogs {
     /// Shows the open dialogs. Returns the answer, if any.
     pub(crate) fn ui(&mut self, ctx: &Context) -> Option<Answer> {
         if let Some(answer) = self.hear_system() {
+            if matches!(answer, Answer::NoFile) {
+                // It may have been closed by Esc.
+                Keyboard::note_escape(ctx);
+            }
             return Some(answer);
         }
         let number = self.open.len();
@@ -244,16 +217,51 @@ impl Dialogs {
         self.close(dialog, ended)
     }
 
+    /// The answer of a dialog, unless it would replace a file: that is asked about first.
+    fn unless_replaced(
+        &mut self,
+        mut dialog: Dialog,
+        answer: Answer,
+        path: &Path,
+    ) -> Option<Answer> {
+        if !path.is_file() {
+            return Some(answer);
+        }
+        // If the file is not to be replaced, the dialog asks for another one.
+        if let Dialog::Browser(_, browser) = &mut dialog {
+            browser.ask_again();
+        }
+        self.open.push(dialog);
+        self.open.push(Dialog::Replace(path.to_owned(), Some(Box::new(answer))));
+        None
+    }
+
     fn close(&mut self, dialog: Dialog, end: End) -> Option<Answer> {
         Some(match (end, dialog) {
-            (End::Answer(answer), _) => {
-                if let Answer::Picture(_, Some(path)) = &answer {
-                    self.remember_folder_of(path);
+            (End::Answer(answer), Dialog::Replace(..)) => {
+                // The dialog below has its answer, too.
+                if matches!(self.open.last(), Some(Dialog::Browser(..) | Dialog::Picture(_))) {
+                    self.open.pop();
                 }
                 answer
             }
-            (End::File(path), Dialog::Browser(wanted, _)) => self.chosen(wanted, vec![path]),
-            (End::Cancelled, Dialog::Browser(wanted, _)) => Answer::NoFile(wanted),
+            (End::Answer(Answer::Picture(choices, Some(path))), dialog) => {
+                self.remember_folder_of(&path);
+                let answer = Answer::Picture(choices, Some(path.clone()));
+                return self.unless_replaced(dialog, answer, &path);
+            }
+            (End::Answer(answer), _) => answer,
+            (End::File(path), Dialog::Browser(wanted, browser)) => {
+                let path = wanted.named(path);
+                let answer = self.chosen(wanted.clone(), vec![path.clone()]);
+                return match wanted.description().1 {
+                    Mode::Open => Some(answer),
+                    Mode::Save => {
+                        self.unless_replaced(Dialog::Browser(wanted, browser), answer, &path)
+                    }
+                };
+            }
+            (End::Cancelled, Dialog::Browser(..)) => Answer::NoFile,
             (End::Material(choices), Dialog::Material(dialog)) => Answer::Material(dialog, choices),
             (End::Cancelled | End::File(_) | End::Material(_) | End::Asked, _) => return None,
         })
@@ -267,8 +275,8 @@ impl Dialogs {
         };
         let SystemDialog { wanted, name, begun, .. } = self.system.take()?;
         match outcome {
-            Some(Some(paths)) if !paths.is_empty() => Some(self.chosen(wanted, paths)),
-            Some(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile(wanted)),
+            Some(Some(paths)) if !paths.is_empty() => self.chosen_by_system(wanted, paths),
+            Some(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile),
             Some(_) | None => {
                 // The system has no file dialog: do not try again.
                 self.native = false;
@@ -276,6 +284,21 @@ impl Dialogs {
                 None
             }
         }
+    }
+
+    /// The system has asked already whether to replace a file, unless the ending of its name was
+    /// missing.
+    fn chosen_by_system(&mut self, wanted: Wanted, mut paths: Vec<PathBuf>) -> Option<Answer> {
+        let Some(path) = paths.first_mut() else { return Some(Answer::NoFile) };
+        let named = wanted.named(path.clone());
+        let is_new = named == *path || !named.is_file();
+        path.clone_from(&named);
+        let answer = self.chosen(wanted, paths);
+        if is_new {
+            return Some(answer);
+        }
+        self.open.push(Dialog::Replace(named, Some(Box::new(answer))));
+        None
     }
 
     fn chosen(&mut self, wanted: Wanted, paths: Vec<PathBuf>) -> Answer {
@@ -306,43 +329,6 @@ impl Dialogs {
     }
 }
 
-impl Wanted {
-    fn description(&self) -> (&'static str, Mode, Vec<&'static str>) {
-        let models = || vec!["obj", "gz"];
-        let scenes = || vec!["marraztu"];
-        let pictures = || io::PICTURE_FORMATS.iter().map(|format| format.endings[0]).collect();
-        match self {
-            Self::Model => ("Load a model", Mode::Open, models()),
-            Self::Dropped => ("Open a model", Mode::Open, models()),
-            Self::Scene => ("Open a scene", Mode::Open, scenes()),
-            Self::SceneTo(_) => ("Save the scene", Mode::Save, scenes()),
-            Self::PictureTo | Self::PictureWithOptionsTo => {
-                ("Save the picture", Mode::Save, pictures())
-            }
-            Self::TurntableTo => ("Save the turntable", Mode::Save, vec!["gif", "png"]),
-            Self::ExportTo => {
-                let endings = io::EXPORT_ENDINGS;
-                ("Export the scene", Mode::Save, vec![endings[2], endings[1], endings[0]])
-            }
-            Self::Texture(_) | Self::TextureOfModel => {
-                ("Choose a texture", Mode::Open, io::texture_endings())
-            }
-            Self::Missing(_) => ("Where is the missing model?", Mode::Open, models()),
-        }
-    }
-}
-
-/// How a dialog ends.
-enum End {
-    Cancelled,
-    File(PathBuf),
-    Material(MaterialChoices),
-    /// With this answer.
-    Answer(Answer),
-    /// It stays open, and a texture is chosen.
-    Asked,
-}
-
 impl Dialog {
     fn ui(&mut self, ui: &mut Ui) -> Option<End> {
         match self {
@@ -350,7 +336,11 @@ impl Dialog {
                 Choice::File(path) => End::File(path),
                 Choice::Cancelled => End::Cancelled,
             }),
-            Self::Unsaved(after) => unsaved_ui(ui, after),
+            Self::Unsaved(after) => questions::unsaved_ui(ui, after),
+            Self::Missing(files) => questions::missing_ui(ui, files),
+            Self::Discarded(all) => questions::discarded_ui(ui, all),
+            Self::Changed(path, after) => questions::changed_ui(ui, path, after.as_ref()),
+            Self::Replace(path, answer) => questions::replace_ui(ui, path, answer),
             Self::Material(dialog) => dialog.ui(ui).map(|end| match end {
                 material_dialog::End::Taken(choices) => End::Material(choices),
                 material_dialog::End::Texture => End::Asked,
@@ -391,31 +381,4 @@ fn close_ui(ui: &mut Ui) -> Option<End> {
     let button = ui.button("Close");
     take_focus(ui, &button);
     button.clicked().then_some(End::Cancelled)
-}
-
-fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
-    ui.set_max_width(420.0);
-    heading(ui, "Save the scene?");
-    ui.label(match after {
-        After::Quit => "It has unsaved changes, which are lost unless you save them.",
-        After::New | After::NewAncestor => {
-            "A new scene will replace this one, which has unsaved changes."
-        }
-        After::Recover(_) => "Recovered work will replace this scene, which has unsaved changes.",
-        After::Open(_) => "Another scene will replace this one, which has unsaved changes.",
-    });
-    ui.add_space(4.0);
-    let buttons = ui.horizontal(|ui| {
-        let save = ui.button("Save");
-        take_focus(ui, &save);
-        let discard = ui.button("Discard").clicked();
-        let cancel = ui.button("Cancel").clicked();
-        match (save.clicked(), discard, cancel) {
-            (true, ..) => Some(End::Answer(Answer::Save(after.clone()))),
-            (_, true, _) => Some(End::Answer(Answer::Discard(after.clone()))),
-            (.., true) => Some(End::Cancelled),
-            _ => None,
-        }
-    });
-    buttons.inner
 }
