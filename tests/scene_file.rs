@@ -529,7 +529,7 @@ fn opened_text(folder: &Path, text: &str) -> marraztu::io::Opened {
 }
 
 #[test]
-fn the_box_of_a_missing_model_is_as_large_as_the_other_objects() {
+fn the_box_of_a_missing_model_is_sized_by_the_other_objects() {
     let folder = folder();
     let extent = |text: &str| {
         let scene = opened_text(folder.path(), text).scene;
@@ -543,7 +543,7 @@ fn the_box_of_a_missing_model_is_as_large_as_the_other_objects() {
             (id: 2, name: "cube", model: File(path: "models/cube.obj")),
             (id: 4, name: "ground", model: Own("ground"))])"#
     );
-    assert!((extent(&others) - 1.0).abs() < 1e-6, "as the cube, whatever its own scale");
+    assert!((extent(&others) - 0.6).abs() < 1e-6, "by the cube, whatever its own scale");
     let alone = r#"(version: 1, cameras: [(id: 3, name: "c", eye: (0.0, 0.0, 100.0))],
         objects: [(id: 1, name: "gone", model: File(path: "gone.obj"))])"#;
     let size = extent(alone);

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use egui::Key;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Named};
-use marraztu::app::actions::Request;
+use marraztu::app::actions::{MissingRequest, Request};
 use marraztu::scene::ObjectId;
 
 use crate::dialogs::CUBE;
@@ -124,7 +124,7 @@ fn cancelling_and_a_bad_file_leave_the_box() {
         assert!(editor.scene() == before);
     }
     editor.press(Named(Key::Enter));
-    editor.click_label("Dismiss");
+    editor.ask(Request::Missing(MissingRequest::Dismiss));
     assert!(!editor.shows("files of the scene are missing"));
     assert!(Action::FindMissing.availability(editor.state()).is_ok(), "File brings it back");
 }

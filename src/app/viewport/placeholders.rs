@@ -1,6 +1,6 @@
 //! The names of missing files at the boxes that take their place.
 
-use egui::Ui;
+use egui::{Ui, vec2};
 
 use super::helpers::label_ui;
 use super::marks::Projection;
@@ -23,7 +23,8 @@ pub(super) fn show(ui: &Ui, state: &State, onto: &Projection) {
             && onto.rect().contains(at)
         {
             let text = format!("{} is missing", file_name(file));
-            label_ui(ui, &painter, at, text, theme::warning_on_dark());
+            // Below the middle, where the gizmo of the selection is.
+            label_ui(ui, &painter, at + vec2(0.0, 28.0), text, theme::warning_on_dark());
         }
     }
 }

@@ -1,12 +1,16 @@
 //! The sizes of the boxes in the place of missing models.
 //!
-//! A box is as large in the world as the other objects usually are: the median of their extents. If
-//! no other object is there, it fills a part of what the camera sees at its distance.
+//! A box is a part of the median of the other objects' largest extents in the world: a cube as wide
+//! as they are would look larger than them. If there is no other object, it fills a part of what the
+//! camera sees at its distance.
 
 use glam::{DMat4, DVec3};
 
 use super::format::{FileModel, FileObject, FileScene};
 use crate::scene::{Model, Shape};
+
+/// The side of a box as a part of the usual extent.
+const PART_OF_USUAL: f64 = 0.6;
 
 /// The side of a box as a part of half the height that the camera sees, if there is no other
 /// object.
@@ -15,7 +19,7 @@ const PART_SEEN: f64 = 0.5;
 /// What the sizes of boxes go by.
 pub(super) struct BoxSizes<'a> {
     file: &'a FileScene,
-    /// The median extent of the objects that are there.
+    /// The side that the other objects suggest.
     usual: Option<f64>,
 }
 
@@ -33,7 +37,8 @@ impl<'a> BoxSizes<'a> {
         let objects = file.objects.iter().filter(|object| !is_ground(&object.model));
         let mut extents: Vec<f64> = objects.filter_map(extent).collect();
         extents.sort_by(f64::total_cmp);
-        Self { file, usual: extents.get(extents.len() / 2).copied() }
+        let usual = extents.get(extents.len() / 2);
+        Self { file, usual: usual.map(|extent| extent * PART_OF_USUAL) }
     }
 
     /// The side of the box for a missing model, in its own space. If several objects have it, the
