@@ -155,6 +155,10 @@ impl PictureSource for Studio {
     }
 
     fn primitives(&mut self) -> Vec<u32> {
+        if self.progress.is_cancelled() {
+            // The picture may be half drawn: its pixels show nothing that is known.
+            return vec![0; self.picture().pixels().len()];
+        }
         self.renderer.primitives()
     }
 }

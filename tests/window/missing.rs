@@ -91,6 +91,7 @@ fn a_found_model_takes_the_place_of_its_boxes_in_one_step_and_offers_others_in_i
     let scale = |id| editor.scene().objects.get(ObjectId(id)).unwrap().model.options.scale.get();
     assert_eq!([1, 2].map(scale), [1.0, 2.0], "each is read as its object says");
     assert_eq!(editor.steps(), 1);
+    editor.settle();
     assert!(editor.shows("sail.obj was found there, too"));
     editor.click_label("Use all");
     editor.wait_until(|editor| !is_box(editor, 3));
