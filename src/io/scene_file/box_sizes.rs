@@ -1,8 +1,8 @@
 //! The sizes of the boxes in the place of missing models.
 //!
 //! A box is a part of the median of the other objects' largest extents in the world: a cube as wide
-//! as they are would look larger than them. If there is no other object, it fills a part of what the
-//! camera sees at its distance.
+//! as they are would look larger than them. If there is no other object, it fills a part of the
+//! height that the camera sees at its distance.
 
 use glam::{DMat4, DVec3};
 
