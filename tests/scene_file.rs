@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3};
@@ -18,7 +18,7 @@ use marraztu::base::math;
 use marraztu::edit::items::set_crease;
 use marraztu::io::{
     FindingKind, Panels, Progress, SceneFileError, WindowState, default_scene, load, load_texture,
-    open, open_with, save, save_picture, save_with_window, to_text,
+    open, save, save_picture, save_with_window, to_text,
 };
 use marraztu::scene::{
     Aim, Attenuation, Camera, CameraId, CameraMode, Command, Crease, Fill, Frame, Item, Lens,
@@ -434,20 +434,22 @@ fn a_file_that_is_not_a_scene_file_is_refused() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_scene_that_is_a_pipe_or_names_one_is_refused_at_once() {
+fn a_scene_that_is_a_pipe_is_refused_at_once_and_one_that_names_it_opens_without_it() {
     let folder = folder();
     let make_pipe = |path: &Path| {
         assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
     };
     let [scene, model] = ["a.marraztu", "a.obj"].map(|name| folder.path().join(name));
     make_pipe(&scene);
-    let refusal = |path: &Path| open(path, &Progress::new()).unwrap_err().to_string();
-    assert_eq!(refusal(&scene), format!("{}: this is a pipe, not a file", scene.display()));
+    let refusal = |path: &Path| format!("{}: this is a pipe, not a file", path.display());
+    let error = open(&scene, &Progress::new()).unwrap_err().to_string();
+    assert_eq!(error, refusal(&scene));
     make_pipe(&model);
     let named = folder.path().join("b.marraztu");
     let text = "(version: 1, cameras: [(id: 1, name: \"a\", model: File(path: \"a.obj\"))])";
     std::fs::write(&named, text).unwrap();
-    assert_eq!(refusal(&named), format!("{}: this is a pipe, not a file", model.display()));
+    let opened = open(&named, &Progress::new()).unwrap();
+    assert!(opened.findings[0].text.ends_with(&refusal(&model)), "{:?}", opened.findings);
 }
 
 #[test]
@@ -482,28 +484,87 @@ fn a_picture_of_two_models_and_an_object_is_read_once() {
 }
 
 #[test]
-fn missing_models_are_all_named_and_can_be_found_elsewhere() {
+fn a_scene_opens_without_its_files_and_is_saved_as_it_was() {
     let folder = folder();
     let (scene, view, settings) = rich(folder.path(), [1.0, 2.0, 3.0, 4.0]);
+    let view = View { polygons: None, ..view };
     let path = folder.path().join("a.marraztu");
     save(&path, &scene, &view, &settings).unwrap();
-    let other = folder.path().join("other");
-    std::fs::create_dir(&other).unwrap();
-    let moves = [("models/cube.obj", "cube.obj"), ("chess.png", "chess.png")];
-    let moves = moves.map(|(from, to)| (folder.path().join(from), other.join(to)));
-    for (from, to) in &moves {
-        std::fs::rename(from, to).unwrap();
-    }
-    let error = open(&path, &Progress::new()).unwrap_err();
-    let SceneFileError::Missing { missing, .. } = &error else { panic!("{error}") };
-    let gone: BTreeSet<&PathBuf> = moves.iter().map(|(from, _)| from).collect();
-    assert_eq!(missing.iter().collect::<BTreeSet<_>>(), gone);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let files = ["models/cube.obj", "chess.png"].map(|name| folder.path().join(name));
+    files.iter().for_each(|file| std::fs::remove_file(file).unwrap());
 
-    let relocated = BTreeMap::from(moves);
-    let opened = open_with(&path, &relocated, &Progress::new()).unwrap();
+    let opened = open(&path, &Progress::new()).unwrap();
+    let missing: BTreeSet<&Path> = files.iter().map(PathBuf::as_path).collect();
+    assert_eq!(opened.scene.missing_files(), missing);
+    let found: Vec<(FindingKind, &str)> =
+        opened.findings.iter().map(|finding| (finding.kind, finding.text.as_str())).collect();
+    let model = "the model \"models/cube.obj\" was not found: a box takes its place";
+    let texture = "the texture \"chess.png\" was not found";
+    assert!(found.contains(&(FindingKind::ModelMissing, model)), "{found:?}");
+    assert!(found.contains(&(FindingKind::TextureMissing, texture)), "{found:?}");
+    let object = opened.scene.objects.get(ObjectId(20)).unwrap();
+    assert!(object.model.is_placeholder() && object.texture.as_ref().unwrap().is_placeholder());
+    assert_eq!(object.hidden_parts, BTreeSet::from([1]), "parts of the missing model");
+
+    let again = to_text(&path, &opened.scene, &opened.view, &opened.settings).unwrap();
+    assert_eq!(again, text, "nothing of the scene is lost");
+    // From another folder, the path leads to the same file.
+    let elsewhere = tempfile::tempdir().unwrap();
+    let moved = elsewhere.path().join("b.marraztu");
+    save(&moved, &opened.scene, &opened.view, &opened.settings).unwrap();
+    std::fs::write(&files[0], CUBE).unwrap();
+    let opened = open(&moved, &Progress::new()).unwrap();
+    assert_eq!(opened.scene.missing_files(), [&*files[1]].into());
     let mesh =
         |scene: &Scene| scene.objects.get(ObjectId(20)).unwrap().model.mesh.positions().to_vec();
     assert_eq!(mesh(&opened.scene), mesh(&scene));
+}
+
+/// The scene of a text beside the folder's files.
+fn opened_text(folder: &Path, text: &str) -> marraztu::io::Opened {
+    let path = folder.join("a.marraztu");
+    std::fs::write(&path, text).unwrap();
+    open(&path, &Progress::new()).unwrap()
+}
+
+#[test]
+fn the_box_of_a_missing_model_is_sized_by_the_other_objects() {
+    let folder = folder();
+    let extent = |text: &str| {
+        let scene = opened_text(folder.path(), text).scene;
+        scene.objects.get(ObjectId(1)).unwrap().largest_extent()
+    };
+    let place = "placement: ((0.01, 0.0, 0.0, 0.0), (0.0, 0.01, 0.0, 0.0), (0.0, 0.0, 0.01, 0.0), \
+                 (0.0, 0.0, 0.0, 1.0))";
+    let others = format!(
+        r#"(version: 1, cameras: [(id: 3, name: "c")], objects: [
+            (id: 1, name: "gone", model: File(path: "gone.obj"), {place}),
+            (id: 2, name: "cube", model: File(path: "models/cube.obj")),
+            (id: 4, name: "ground", model: Own("ground"))])"#
+    );
+    assert!((extent(&others) - 0.6).abs() < 1e-6, "by the cube, whatever its own scale");
+    let alone = r#"(version: 1, cameras: [(id: 3, name: "c", eye: (0.0, 0.0, 100.0))],
+        objects: [(id: 1, name: "gone", model: File(path: "gone.obj"))])"#;
+    let size = extent(alone);
+    assert!((10.0..40.0).contains(&size), "well seen from 100 units away: {size}");
+}
+
+#[test]
+fn a_model_and_a_texture_that_cannot_be_read_are_placeholders_too() {
+    let folder = folder();
+    std::fs::write(folder.path().join("bad.obj"), "v 0 zero 0\n").unwrap();
+    std::fs::write(folder.path().join("bad.png"), "no picture").unwrap();
+    let text = r#"(version: 1, cameras: [(id: 3, name: "c", model: File(path: "gone.obj"))],
+        objects: [(id: 1, name: "bad", model: File(path: "bad.obj"),
+            texture: Some((path: "bad.png")), hidden_parts: "0-4294967295")])"#;
+    let opened = opened_text(folder.path(), text);
+    let kinds: BTreeSet<FindingKind> = opened.findings.iter().map(|finding| finding.kind).collect();
+    let wanted =
+        [FindingKind::ModelMissing, FindingKind::ModelUnreadable, FindingKind::TextureUnreadable];
+    assert_eq!(kinds, wanted.into());
+    assert!(opened.findings.iter().any(|finding| finding.text.contains("bad.obj:1:")));
+    assert_eq!(opened.scene.missing_files().len(), 3);
 }
 
 #[test]

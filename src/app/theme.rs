@@ -109,6 +109,11 @@ pub(crate) const fn accent_on_dark() -> Color32 {
     DARK.accent
 }
 
+/// What says that something is wrong, over the picture.
+pub(crate) const fn warning_on_dark() -> Color32 {
+    DARK.error
+}
+
 /// What says that something was not done.
 pub(crate) fn error(visuals: &Visuals) -> Color32 {
     palette(visuals).error

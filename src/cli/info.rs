@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use marraztu::io::{Input, Progress, describe, shape};
-use marraztu::scene::{Observer, Projection, Scene, View};
+use marraztu::scene::{Model, Observer, Projection, Scene, View};
 
 use super::arguments::{Info, Reading};
 use super::failure::Failure;
@@ -55,6 +55,16 @@ fn description(file: &Path, input: Option<&Input>, reading: &Reading) -> Result<
     Ok(text)
 }
 
+/// What an object shows: "a cube, 8 vertices, 6 faces".
+fn model_text(model: &Model) -> String {
+    if let (true, Some(file)) = (model.is_placeholder(), &model.source) {
+        return format!("a box in the place of {}, which is missing", file.display());
+    }
+    let kind = shape(model).map_or_else(String::new, |shape| format!("a {}, ", shape.name()));
+    let (vertices, faces) = (model.mesh.positions().len(), model.mesh.polygon_count());
+    format!("{kind}{vertices} vertices, {faces} faces")
+}
+
 /// The objects, cameras and lights of a scene, one in each line; an asterisk marks the selection.
 fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
     let mut lines = vec![format!("{:16}{}", "scene", file.display())];
@@ -62,13 +72,10 @@ fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
     let mark = |selected| if selected { '*' } else { ' ' };
     lines.push(head("objects", scene.objects.len()));
     for (id, object) in scene.objects.iter() {
-        let mesh = &object.model.mesh;
-        let counts = format!("{} vertices, {} faces", mesh.positions().len(), mesh.polygon_count());
-        let kind = shape(&object.model);
-        let kind = kind.map_or_else(String::new, |shape| format!("a {}, ", shape.name()));
+        let counts = model_text(&object.model);
         let hidden = if object.visible { "" } else { ", not shown" };
         let mark = mark(view.object == Some(id));
-        lines.push(format!("{mark} {}: {kind}{counts}{hidden}", object.name));
+        lines.push(format!("{mark} {}: {counts}{hidden}", object.name));
     }
     lines.push(head("cameras", scene.cameras.len()));
     for (id, camera) in scene.cameras.iter() {

@@ -6,7 +6,7 @@
 //! Looking around is not a step. Instead, steps that do not move the camera take its new pose, and
 //! undoing them does not move the view.
 
-use super::Gesture;
+use super::{Gesture, Selected};
 use crate::scene::{
     Camera, CameraId, CameraMode, Command, CommandError, Item, ItemId, Lens, Pose, Scene, Tracked,
 };
@@ -16,6 +16,8 @@ struct Step {
     label: String,
     /// Applied from last to first.
     commands: Vec<Command>,
+    /// What was selected before and after it, if that was noted.
+    selected: Option<[Selected; 2]>,
 }
 
 /// The steps done and undone. It is the only writer of the scene: any other change would invalidate
@@ -74,7 +76,8 @@ impl History {
             }
             _ => {
                 self.saved = self.saved.filter(|saved| *saved <= self.position);
-                self.steps.push(Step { label: label.to_owned(), commands: vec![back] });
+                let label = label.to_owned();
+                self.steps.push(Step { label, commands: vec![back], selected: None });
                 self.position += 1;
             }
         }
@@ -125,6 +128,28 @@ impl History {
                 follower.pass(command, after);
             }
         }
+    }
+
+    /// Notes what was selected before the last step, unless it is part of a gesture that began
+    /// before, and what is selected after it.
+    pub fn note_selected(&mut self, before: Selected, after: Selected) {
+        if let Some(step) = self.position.checked_sub(1).and_then(|last| self.steps.get_mut(last)) {
+            let before = step.selected.take().map_or(before, |[before, _]| before);
+            step.selected = Some([before, after]);
+        }
+    }
+
+    /// What was selected before the step that undo would undo.
+    #[must_use]
+    pub fn selected_before(&self) -> Option<&Selected> {
+        let last = self.steps.get(self.position.checked_sub(1)?)?;
+        last.selected.as_ref().map(|[before, _]| before)
+    }
+
+    /// What was selected after the step that redo would redo.
+    #[must_use]
+    pub fn selected_after(&self) -> Option<&Selected> {
+        self.steps.get(self.position)?.selected.as_ref().map(|[_, after]| after)
     }
 
     /// Undoes the last step. Returns its label; `None` if there was no step.

@@ -5,6 +5,7 @@
 //! [`History`] writes a scene.
 
 pub mod aiming;
+pub mod angles;
 pub mod arrange;
 pub mod copies;
 pub mod framing;
@@ -20,6 +21,7 @@ pub mod navigation;
 pub mod placement;
 pub mod presenting;
 mod refusal;
+mod selected;
 pub mod selection;
 mod set_transform;
 pub mod several;
@@ -31,3 +33,4 @@ pub mod turntable;
 pub use gesture::{Gesture, GesturePhase};
 pub use history::History;
 pub use refusal::Refusal;
+pub use selected::Selected;

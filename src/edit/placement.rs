@@ -9,6 +9,7 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
+use super::angles;
 use super::set_transform::{self, LightPlace};
 use super::transform::effective_pose;
 use super::{GesturePhase, Refusal};
@@ -21,7 +22,8 @@ pub fn translation(placement: &DMat4) -> DVec3 {
     placement.w_axis.truncate()
 }
 
-/// An object's turn as degrees about X, Y and Z, `R = Rx Ry Rz`.
+/// An object's turn as degrees about X, Y and Z, `R = Rx Ry Rz`: of the angles that say the same,
+/// those with the smallest X and Z.
 #[must_use]
 pub fn turn_degrees(placement: &DMat4) -> DVec3 {
     let turn = turn(placement);
@@ -36,7 +38,7 @@ pub fn turn_degrees(placement: &DMat4) -> DVec3 {
         // X and Z turn about the same axis: all of it is given to X.
         (libm::atan2(y.z, y.y), 0.0)
     };
-    DVec3::new(about_x, about_y, about_z).map(f64::to_degrees)
+    angles::plainest(DVec3::new(about_x, about_y, about_z).map(f64::to_degrees))
 }
 
 /// The scale of an object along its axes; X is negative if it is mirrored.

@@ -1,14 +1,17 @@
 //! Shows models that come without a scene: alone, framed and lit, before a neutral background.
 //!
 //! The window with files on the command line, a model dropped on the untouched first scene, and
-//! `render` show the same.
+//! `render` show the same. In the window the model is selected, and the camera orbits it.
 
 use super::items::insert_objects;
 use super::{Refusal, framing, lighting, selection};
-use crate::scene::{Command, ItemId, Object, Observer, Scene, Subject, View};
+use crate::scene::{
+    CameraMode, Command, Item, ItemId, Object, ObjectId, Observer, Pose, Scene, Subject, View,
+};
 
 /// Replaces all objects by these, frames them and lights them, before a neutral background. Returns
-/// the change, and the view of the changed scene, whose steps go by its size.
+/// the change, and the view of the changed scene, whose steps go by its size. The first object is
+/// selected, and the camera is in analysis of it without being turned.
 ///
 /// # Errors
 /// If the scene cannot be changed that way.
@@ -20,7 +23,7 @@ pub fn alone(scene: &Scene, view: &View, objects: Vec<Object>) -> Result<(Comman
     scratch.change(insert_objects(&scratch.scene, objects))?;
     scratch.change(Command::Background(Scene::NEUTRAL))?;
     scratch.view.observer = Observer::Camera;
-    scratch.view.subject = Subject::Camera;
+    scratch.view.subject = Subject::Object;
     scratch.view.steps.by_size = true;
     match framing::models(&scratch.scene, &scratch.view, framing::MODELS_FROM) {
         Ok(framed) => scratch.change(framed)?,
@@ -33,7 +36,19 @@ pub fn alone(scene: &Scene, view: &View, objects: Vec<Object>) -> Result<(Comman
         Err(Refusal::NothingToFrame) => {}
         Err(refusal) => return Err(refusal),
     }
+    if let Some(id) = scratch.view.object {
+        scratch.change(analysis(&scratch.scene, &scratch.view, id)?)?;
+    }
     Ok((Command::Batch(scratch.commands), scratch.view))
+}
+
+/// Lets the camera orbit an object from where it is. Aiming it would move the object out of the
+/// middle of the picture, since the mean of its vertices is not the middle of its sphere.
+fn analysis(scene: &Scene, view: &View, id: ObjectId) -> Result<Command, Refusal> {
+    let mut camera = scene.cameras.get(view.camera).ok_or(Refusal::Gone)?.clone();
+    let mode = CameraMode::Analysis { target: id };
+    camera.pose = camera.pose.replaced(Pose { mode, ..*camera.pose.now() });
+    Ok(Command::Replace(Item::Camera(view.camera, Box::new(camera))))
 }
 
 /// A copy of the scene, and what has been done to it.

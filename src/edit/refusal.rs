@@ -53,6 +53,12 @@ pub enum Refusal {
     /// No program has left unsaved work behind.
     #[error("there is no unsaved work to recover")]
     NothingToRecover,
+    /// No work was discarded.
+    #[error("no work was discarded in the last 30 days")]
+    NothingDiscarded,
+    /// All files of the scene are there.
+    #[error("no file of the scene is missing")]
+    NothingMissing,
     /// The history is at its beginning.
     #[error("there is nothing to undo")]
     NothingDone,

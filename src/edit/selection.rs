@@ -224,17 +224,31 @@ pub fn go_to_polygon(scene: &Scene, view: &mut View, polygon: u32) -> Result<(),
 /// Adapts the view to a scene that has changed from `before`: new items are selected, and if the
 /// selected item is gone, the next in its list is, or else the one before.
 ///
-/// After every command, undo and redo.
+/// After every command.
 pub fn follow(before: &Scene, scene: &Scene, view: &mut View) {
-    let object = followed(&before.objects, &scene.objects, view.object);
+    view.light = scene.lights.first_since(&before.lights).or(view.light);
+    view.camera = scene.cameras.first_since(&before.cameras).unwrap_or(view.camera);
+    let object = scene.objects.first_since(&before.objects).or(view.object);
+    select_object(view, object);
+    remain(before, scene, view);
+}
+
+/// Adapts the view to a scene that has changed from `before`: what is selected stays so, and if it
+/// is gone, the next in its list is selected, or else the one before.
+pub(super) fn remain(before: &Scene, scene: &Scene, view: &mut View) {
+    select_object(view, remaining(&before.objects, &scene.objects, view.object));
+    view.light = remaining(&before.lights, &scene.lights, view.light);
+    let camera = remaining(&before.cameras, &scene.cameras, Some(view.camera));
+    view.camera = camera.unwrap_or(view.camera);
+    settle(scene, view);
+}
+
+/// Selects an object, or none; polygon mode begins anew for another one.
+pub(super) fn select_object(view: &mut View, object: Option<ObjectId>) {
     if object != view.object {
         view.object = object;
         view.polygons = view.polygons.as_ref().map(|_| PolygonMode::begin());
     }
-    view.light = followed(&before.lights, &scene.lights, view.light);
-    let camera = followed(&before.cameras, &scene.cameras, Some(view.camera));
-    view.camera = camera.unwrap_or(view.camera);
-    settle(scene, view);
 }
 
 /// Adapts the view to the scene: selected items and polygons exist.
@@ -257,15 +271,12 @@ pub fn settle(scene: &Scene, view: &mut View) {
     keep_polygons(scene, view);
 }
 
-/// The selected item of a list after a change.
-fn followed<K: Copy + Ord, T, D>(
+/// The selected item of a list after a change: the same, or one near to it.
+fn remaining<K: Copy + Ord, T, D>(
     before: &List<K, T, D>,
     after: &List<K, T, D>,
     selected: Option<K>,
 ) -> Option<K> {
-    if let Some(new) = after.first_since(before) {
-        return Some(new);
-    }
     let is_there = |id: &K| after.contains(*id);
     if let Some(kept) = selected.filter(is_there) {
         return Some(kept);
@@ -312,6 +323,9 @@ mod tests {
         };
         let before = list(&mut (0..10_000));
         let selected = Some(Counted(9_999));
+        let followed = |before: &List<Counted, u32>, after: &List<Counted, u32>, selected| {
+            after.first_since(before).or_else(|| remaining(before, after, selected))
+        };
         let same = || assert!(followed(&before, &before.clone(), selected) == selected);
         assert!(comparisons(same) < 200);
         // Lists that share nothing are walked through once.

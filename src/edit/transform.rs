@@ -300,11 +300,21 @@ pub(super) fn moved(pose: &Pose, delta: DVec3) -> Pose {
     Pose { eye: pose.eye + pose.axes * delta, ..*pose }
 }
 
-/// A pose turned about a centre, and aimed at it again, which keeps rounding errors from adding up.
+/// A pose turned about a centre, and aimed as before, which keeps rounding errors from adding up.
 pub(super) fn orbited(pose: &Pose, turn: DMat3, centre: DVec3) -> Pose {
     let eye = centre + turn * (pose.eye - centre);
-    let axes = turn * pose.axes;
-    Pose { eye, axes: math::look_at(eye, centre, axes.y_axis, axes), mode: pose.mode }
+    let axes = aimed_as(pose, eye, turn * pose.axes, centre);
+    Pose { eye, axes, mode: pose.mode }
+}
+
+/// The axes of a camera that has moved from `before` to `eye` and looks as far past the centre as
+/// it did before: not at all, unless it was framed before it began to orbit.
+fn aimed_as(before: &Pose, eye: DVec3, axes: DMat3, centre: DVec3) -> DMat3 {
+    let aimed = |eye: DVec3, axes: DMat3| math::look_at(eye, centre, axes.y_axis, axes);
+    let aside = aimed(before.eye, before.axes).transpose() * before.axes;
+    let difference = (aside - DMat3::IDENTITY).to_cols_array();
+    let is_aimed = difference.iter().all(|x| x.abs() < 1e-9);
+    if is_aimed { aimed(eye, axes) } else { aimed(eye, axes) * aside }
 }
 
 /// The selected camera in analysis moved in its own frame: aimed again, and never past the centre.
@@ -326,6 +336,6 @@ pub(super) fn moved_about(
     let z = math::unit(from_centre).unwrap_or(pose.axes.z_axis);
     let sideways = pose.axes * DVec3::new(delta.x, delta.y, 0.0);
     let eye = centre + z * (distance + delta.z).max(nearest) + sideways;
-    let axes = math::look_at(eye, centre, pose.axes.y_axis, pose.axes);
+    let axes = aimed_as(&pose, eye, pose.axes, centre);
     Ok(Pose { eye, axes, mode: pose.mode })
 }

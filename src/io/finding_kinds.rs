@@ -297,6 +297,14 @@ kinds! {
     TextureCutOff:
         "the texture is cut off: @ ends early, and the rest of the picture is grey",
         "the texture is cut off: @ ends early, and the rest of the picture is grey";
+    /// A model of a scene that is not there.
+    ModelMissing:
+        "the model \"@\" was not found: a box takes its place",
+        "the model \"@\" was not found: a box takes its place";
+    /// A model of a scene that cannot be read.
+    ModelUnreadable:
+        "a model cannot be read, and a box takes its place: @",
+        "a model cannot be read, and a box takes its place: @";
     /// A selection of something that the scene does not have.
     SelectionMissing:
         "the view selects @, which is not in the scene: the first one is selected",
@@ -358,6 +366,8 @@ impl FindingKind {
                 | Self::TextureUnreadable
                 | Self::TextureCutOff
                 | Self::TextureUnmapped
+                | Self::ModelMissing
+                | Self::ModelUnreadable
         )
     }
 

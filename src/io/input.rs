@@ -1,6 +1,5 @@
 //! Reads a model or a scene from standard input, or from another input without a name.
 
-use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -82,7 +81,7 @@ impl Input {
             reason: "this is not a scene file".to_owned(),
         })?;
         let here = std::env::current_dir().unwrap_or_else(|_gone| PathBuf::new());
-        open_text(text, NAME, here, &BTreeMap::new(), progress)
+        open_text(text, NAME, here, progress)
     }
 }
 

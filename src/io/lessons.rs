@@ -2,7 +2,6 @@
 //!
 //! They are ordinary scene files that are part of the program, as are their models.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use super::progress::Progress;
@@ -39,7 +38,7 @@ pub fn lesson_scene(name: &str) -> Result<Opened, SceneFileError> {
         let reason = "the program has no lesson of this name".to_owned();
         return Err(SceneFileError::File { file: name.to_owned(), reason });
     };
-    open_text(text, name, PathBuf::new(), &BTreeMap::new(), &Progress::new())
+    open_text(text, name, PathBuf::new(), &Progress::new())
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ mod examples;
 mod export;
 mod finding_kinds;
 mod findings;
+mod fingerprint;
 mod input;
 mod keeping;
 mod lessons;
@@ -36,9 +37,10 @@ pub use error::LoadError;
 pub use examples::{EXAMPLES, Example, is_example};
 pub use export::{EXPORT_ENDINGS, Exported, check_export_target, export};
 pub use findings::{Finding, FindingKind, joined};
+pub use fingerprint::Fingerprint;
 pub use input::Input;
 pub use keeping::{
-    Abandoned, Helpers, Journal, MOST_RECENT, OwnFolders, Preferences, Theme, Unsaved,
+    Abandoned, Discarded, Helpers, Journal, MOST_RECENT, OwnFolders, Preferences, Theme, Unsaved,
 };
 pub use lessons::lesson_scene;
 pub use obj::{Loaded, load, parse};
@@ -50,7 +52,7 @@ pub use read::check_file;
 pub use replace::SaveError;
 pub use scene_file::{
     Fragment, Known, Opened, SCENE_ENDING, SceneFileError, items_of_text, items_to_text,
-    material_to_text, open, open_with, save, save_with_window, to_text,
+    material_to_text, open, save, save_with_window, to_text,
 };
 pub use sources::Sources;
 pub use texture::{

@@ -7,6 +7,7 @@ use super::hash::fnv1a;
 use crate::accuracy::Shot;
 use crate::accuracy::{Axis, AxisKind, Samples, Settings};
 use crate::base::image::Picture;
+use crate::io::Progress;
 use crate::render::Renderer;
 use crate::render::plan_frame;
 
@@ -85,13 +86,21 @@ fn sample_shifts() -> impl Iterator<Item = [i32; 2]> {
 pub struct Studio {
     shot: Shot,
     renderer: Renderer,
+    /// Whether its pictures are still wanted; if not, drawing ends between two tiles.
+    progress: Progress,
 }
 
 impl Studio {
     /// Draws this shot, with any settings.
     #[must_use]
     pub fn new(shot: Shot) -> Self {
-        Self { shot, renderer: Renderer::default() }
+        Self::watched(shot, Progress::new())
+    }
+
+    /// As [`Self::new`]. Once `progress` is cancelled, pictures are undefined, and soon there.
+    #[must_use]
+    pub fn watched(shot: Shot, progress: Progress) -> Self {
+        Self { shot, renderer: Renderer::default(), progress }
     }
 
     /// The scene.
@@ -117,15 +126,19 @@ impl Studio {
 impl PictureSource for Studio {
     fn draw(&mut self, settings: &Settings) {
         let plan = plan_frame(&self.shot.with(*settings));
-        self.renderer.render(&plan);
+        // If it is cancelled, the picture is not used.
+        let _ = self.renderer.render_while(&plan, &|| !self.progress.is_cancelled());
     }
 
     fn draw_sampled(&mut self, settings: &Settings) -> Picture {
         let plan = plan_frame(&self.shot.with(Settings { samples: Samples::One, ..*settings }));
         let mut sums = vec![[0_u16; 4]; self.shot.size.area()];
         for shift in sample_shifts() {
-            let picture = self.renderer.render(&plan.seen_from(shift));
-            sums.par_iter_mut().zip(picture.pixels()).for_each(|(sum, pixel)| {
+            let wanted = || !self.progress.is_cancelled();
+            if self.renderer.render_while(&plan.seen_from(shift), &wanted).is_err() {
+                break;
+            }
+            sums.par_iter_mut().zip(self.renderer.picture().pixels()).for_each(|(sum, pixel)| {
                 for (sum, byte) in sum.iter_mut().zip(pixel) {
                     *sum += u16::from(*byte);
                 }
@@ -142,6 +155,10 @@ impl PictureSource for Studio {
     }
 
     fn primitives(&mut self) -> Vec<u32> {
+        if self.progress.is_cancelled() {
+            // The picture may be half drawn: its pixels show nothing that is known.
+            return vec![0; self.picture().pixels().len()];
+        }
         self.renderer.primitives()
     }
 }

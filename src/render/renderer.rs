@@ -101,12 +101,31 @@ impl Renderer {
         plan: &FramePlan,
         tell: &(dyn Fn(usize, usize) + Sync),
     ) -> &Picture {
-        self.finished = false;
-        self.frame.forget();
-        self.shadows.forget();
+        self.forget();
         self.redraw_by(plan, &Cancellation::new(&|| true).telling(tell))
             .expect("it is always wanted");
         &self.picture
+    }
+
+    /// Draws a plan from scratch, as [`Self::render`] does.
+    ///
+    /// # Errors
+    /// As [`Self::redraw`].
+    pub fn render_while(
+        &mut self,
+        plan: &FramePlan,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Result<&Picture, Cancelled> {
+        self.forget();
+        self.redraw_by(plan, &Cancellation::new(wanted))?;
+        Ok(&self.picture)
+    }
+
+    /// Reuses nothing of the last picture for the next one.
+    fn forget(&mut self) {
+        self.finished = false;
+        self.frame.forget();
+        self.shadows.forget();
     }
 
     /// Draws again what another plan changes of the last picture, and returns the damage. The

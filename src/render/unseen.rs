@@ -110,7 +110,7 @@ fn is_wanted(view: &View, id: ObjectId, object: &Object) -> bool {
     object.visible
         && view.polygons.is_none()
         && (!view.only_selected || view.object == Some(id))
-        && (parts == 0 || object.hidden_parts.len() < parts)
+        && (parts == 0 || object.model.is_placeholder() || object.hidden_parts.len() < parts)
 }
 
 /// Draws one object of a scene at a time.

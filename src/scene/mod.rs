@@ -11,6 +11,7 @@ mod light_kind;
 mod list;
 mod material;
 mod mesh;
+mod missing;
 mod model;
 mod object;
 mod shapes;

@@ -29,6 +29,28 @@ pub struct Model {
 }
 
 impl Model {
+    /// A box of this side in the place of a model whose file is missing or cannot be read. It keeps
+    /// the file's path and options, so that saving the scene loses neither.
+    #[must_use]
+    pub fn placeholder(source: PathBuf, options: LoadOptions, side: f64) -> Self {
+        let stem = source.file_stem().unwrap_or(source.as_os_str());
+        Self {
+            name: stem.to_string_lossy().into_owned(),
+            source: Some(source),
+            options,
+            companions: Vec::new(),
+            mesh: Mesh::placeholder(side),
+            materials: Vec::new(),
+            edge_color: None,
+        }
+    }
+
+    /// Whether it is a box in the place of a model whose file is missing.
+    #[must_use]
+    pub const fn is_placeholder(&self) -> bool {
+        self.mesh.is_placeholder()
+    }
+
     /// The model with another crease angle; the file is not read again.
     #[must_use]
     pub fn with_crease(&self, crease: Crease) -> Self {

@@ -188,6 +188,13 @@ impl Object {
         sides.into_iter().fold(0.0, f64::max)
     }
 
+    /// Whether one of the model's parts is drawn. A placeholder is drawn as a whole: the hidden
+    /// parts are those of the missing file.
+    #[must_use]
+    pub fn shows_part(&self, part: u32) -> bool {
+        self.model.is_placeholder() || !self.hidden_parts.contains(&part)
+    }
+
     /// The coefficients, opacity and texture of one of the model's parts.
     #[must_use]
     pub fn part_look(&self, part: u32) -> PartLook<'_> {

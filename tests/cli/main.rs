@@ -331,3 +331,35 @@ fn without_a_display_the_editor_says_so_and_what_to_do_instead() {
         assert!(err.lines().count() <= 2, "{err}");
     }
 }
+
+#[test]
+fn a_scene_without_its_files_is_drawn_described_and_exported_with_a_finding() {
+    let folder = folder();
+    let scene = r#"(version: 1, cameras: [(id: 3, name: "c", eye: (0.0, 0.0, 4.0))], objects: [
+        (id: 1, name: "ship", model: File(path: "models/ship.obj")),
+        (id: 2, name: "square", model: File(path: "square.obj"),
+            texture: Some((path: "t.png")))])"#;
+    std::fs::write(folder.path().join("a.marraztu"), scene).unwrap();
+    let size = ["--size", "40x30"];
+    let missing = "the model \"models/ship.obj\" was not found: a box takes its place";
+    let (_, err) = ends_with(
+        0,
+        folder.path(),
+        &[&["render", "a.marraztu", "--out", "a.png"], &size[..]].concat(),
+    );
+    assert!(err.contains(missing) && err.contains("the texture \"t.png\" was not found"), "{err}");
+    let picture = io::load_picture(&folder.path().join("a.png")).unwrap();
+    assert_ne!(picture.pixel(20, 15), picture.pixel(0, 0), "the box is seen");
+    let (out, _) = ends_with(0, folder.path(), &["info", "a.marraztu"]);
+    assert!(out.contains("ship: a box in the place of ") && out.contains(missing), "{out}");
+    let (out, err) = ends_with(0, folder.path(), &[&["plan", "a.marraztu"], &size[..]].concat());
+    assert!(out.contains("ship") && err.contains(missing), "{out}{err}");
+    for name in ["a.glb", "a.obj"] {
+        let (_, err) = ends_with(0, folder.path(), &["export", "a.marraztu", "--out", name]);
+        assert!(err.contains("ship is left out: its model"), "{err}");
+        assert!(err.contains("square is exported without its texture"), "{err}");
+        assert!(!err.contains("hidden objects"), "{err}");
+    }
+    let obj = std::fs::read_to_string(folder.path().join("a.obj")).unwrap();
+    assert!(obj.contains("square") && !obj.contains("ship"), "{obj}");
+}

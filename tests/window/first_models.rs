@@ -17,7 +17,8 @@ use marraztu::edit::{presenting, steps};
 use marraztu::io::{self, Progress};
 use marraztu::render::{Renderer, plan_frame};
 use marraztu::scene::{
-    HALF_APERTURE, LoadOptions, Material, MaterialChoice, Object, Scene, Sides, Steps, View,
+    CameraMode, HALF_APERTURE, LoadOptions, Material, MaterialChoice, Object, Pose, Scene, Sides,
+    Steps, Subject, View,
 };
 
 use crate::dialogs::{CUBE, folder_with};
@@ -98,10 +99,58 @@ fn a_model_of_the_command_line_opens_alone_framed_and_with_steps_that_fit() {
     assert!(editor.state().history.is_saved());
     assert_eq!(editor.state().file_name(), "cube.obj", "as the title says");
     assert_eq!(editor.steps(), 0);
-    let before = pose(&scene, &view).eye;
+    let place = |editor: &Editor| {
+        let (scene, view) = (editor.scene(), editor.view());
+        scene.objects.get(view.object.unwrap()).unwrap().placement.now().w_axis.truncate()
+    };
     editor.press(Lower(Key::Z));
-    let moved = (pose(&editor.scene(), &editor.view()).eye - before).length();
-    assert!((moved - 0.01).abs() < 1e-12, "{moved}");
+    let moved = place(&editor).length();
+    assert!((moved - 0.01).abs() < 1e-12, "the model is selected: {moved}");
+}
+
+/// A cube with many vertices at one corner: their mean is far from the middle of its box.
+fn lopsided() -> String {
+    let more = (0..40).map(|i| format!("v 1 1 {}\n", 0.9 + f64::from(i) / 400.0));
+    let faces = (9..47).map(|i| format!("f {i} {} {}\n", i + 1, i + 2));
+    format!("{}{}{}", CUBE, more.collect::<String>(), faces.collect::<String>())
+}
+
+#[test]
+fn the_first_drag_orbits_a_model_that_opened_alone_and_does_not_jump() {
+    for arrival in ["start", "drop"] {
+        let (_folder, path) = folder_with("cube.obj", &lopsided());
+        let mut editor = Editor::new();
+        match arrival {
+            "start" => editor.open_at_start(&[&path]),
+            _ => editor.drop_files(&[&path]),
+        }
+        editor.wait_until(|editor| editor.names() == ["cube"]);
+        editor.settle();
+        let view = editor.view();
+        assert_eq!(view.subject, Subject::Object);
+        let pose = |editor: &Editor| *editor.scene().selected_camera(&editor.view()).pose.now();
+        let target = view.object.unwrap();
+        let before = pose(&editor);
+        assert_eq!(before.mode, CameraMode::Analysis { target });
+        let centre = editor.scene().objects.get(target).unwrap().centre(0.0);
+        let aside = |pose: &Pose| (centre - pose.eye).normalize().dot(-pose.axes.z_axis).acos();
+        assert!(aside(&before) > 0.02, "it is framed by its box: {}", aside(&before));
+        let [from, to] = [editor.at(0.5, 0.9), editor.at(0.52, 0.9)];
+        editor.drag(egui::PointerButton::Primary, &[from, to]);
+        let after = pose(&editor);
+        let distance = |pose: &Pose| pose.eye.distance(centre);
+        assert!((distance(&after) - distance(&before)).abs() < 1e-9, "it orbits");
+        assert!(after.eye.distance(before.eye) > 1e-3);
+        assert!((aside(&after) - aside(&before)).abs() < 1e-6, "{arrival}: it is not aimed anew");
+    }
+}
+
+#[test]
+fn the_first_scene_flies() {
+    let editor = Editor::new();
+    let scene = editor.scene();
+    assert_eq!(scene.selected_camera(&editor.view()).pose.now().mode, CameraMode::Fly);
+    assert_eq!(editor.view().subject, Subject::Camera);
 }
 
 #[test]
@@ -231,7 +280,7 @@ fn only_highlights_reach_white_from_wherever_models_are_seen() {
 fn steps_by_size_stay_while_a_lone_object_is_moved_and_turned() {
     let (mut scene, mut view) = alone(vec![model_of("x_wing")]);
     let before = steps::length(&scene, &view);
-    view.subject = marraztu::scene::Subject::Object;
+    view.subject = Subject::Object;
     for axis in marraztu::base::math::Axis::ALL {
         for kind in [
             marraztu::scene::Transformation::Translation,

@@ -54,7 +54,7 @@ fn the_grid_lies_behind_everything_and_in_no_file() {
     assert_eq!(editor.steps(), 0, "helpers and views are no steps");
 }
 
-fn texts(editor: &Editor) -> Vec<String> {
+pub(crate) fn texts(editor: &Editor) -> Vec<String> {
     fn collect(shape: &Shape, texts: &mut Vec<String>) {
         match shape {
             Shape::Vec(all) => all.iter().for_each(|shape| collect(shape, texts)),

@@ -101,7 +101,38 @@ fn work_of_a_program_that_ended_is_offered_and_recovered_as_unsaved() {
     assert_eq!(editor.is_offered(), 1);
     editor.click_label("Discard");
     drop(editor);
-    assert_eq!(Editor::keeping(folder.path()).is_offered(), 0);
+    let mut editor = Editor::keeping(folder.path());
+    assert_eq!(editor.is_offered(), 0);
+    // It was moved aside, and comes back.
+    editor.perform(Action::RecoverDiscarded);
+    editor.wait_until(|editor| !editor.state().history.is_saved());
+    assert_eq!(camera(&editor.scene()), camera(&scene));
+    editor.harness.state().wait_for_journal();
+}
+
+#[test]
+fn all_discarded_work_is_listed_and_without_any_the_entry_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut first = Editor::keeping(folder.path());
+    assert!(Action::RecoverDiscarded.availability(first.state()).is_err());
+    first.press(Lower(Key::Z));
+    first.harness.state().wait_for_journal();
+    let mut second = Editor::keeping(folder.path());
+    second.hold(Lower(Key::Z), 4);
+    second.harness.state().wait_for_journal();
+    drop((first, second));
+    let mut editor = Editor::keeping(folder.path());
+    for _ in 0..2 {
+        editor.click_label("Discard");
+    }
+    assert_eq!((editor.is_offered(), editor.state().discarded.len()), (0, 2));
+    editor.perform(Action::RecoverDiscarded);
+    assert!(editor.shows("Discarded work"));
+    let first = editor.state().discarded[0].clone();
+    editor.click_label(&first);
+    editor.wait_until(|editor| !editor.state().history.is_saved());
+    assert!([1, 5].contains(&editor.steps_of_camera()));
+    assert_eq!(editor.state().discarded.len(), 2, "it is kept until its time is over");
 }
 
 #[test]

@@ -23,6 +23,7 @@ use marraztu::render::Renderer;
 use marraztu::render::plan_frame;
 
 use crate::editor::Editor;
+use crate::helpers::texts;
 use crate::panels::{click, control};
 
 fn editor() -> Editor {
@@ -203,6 +204,25 @@ fn every_lesson_is_read_and_shown_in_a_scene_in_which_it_can_be_seen() {
     }
 }
 
+#[test]
+fn a_half_that_is_not_of_this_moment_says_so_and_one_of_another_scene_is_not_shown() {
+    let mut editor = editor();
+    let says = |editor: &Editor, text: &str| texts(editor).iter().any(|it| it == text);
+    editor.ask(Request::Lab(LabRequest::Compare(Compare::Split(0.5))));
+    until(&mut editor, "the comparison", |editor| says(editor, "exact"));
+    editor.perform(Action::StepXUp);
+    assert!(says(&editor, "exact: drawing") && !says(&editor, "exact"));
+    until(&mut editor, "the comparison after a step", |editor| says(editor, "exact"));
+    editor.ask(Request::Lab(LabRequest::ShowLesson("depth")));
+    assert!(says(&editor, "exact: drawing"));
+    editor.ask(Request::Lab(LabRequest::Back));
+    // The view waits for the user's own comparison.
+    assert!(says(&editor, "exact: drawing"));
+    until(&mut editor, "the comparison of the own scene", |editor| says(editor, "exact"));
+    let judged = lab(&editor).judged.unwrap();
+    assert!(judged.error.coverage < 20, "{judged:?}");
+}
+
 /// A few axes from one lesson to the next, and back.
 #[test]
 fn the_way_back_from_a_lesson_restores_scene_view_settings_selection_and_history() {
@@ -236,6 +256,7 @@ fn esc_leads_back_from_a_lesson_and_only_then_out_of_the_program() {
     assert!(editor.scene() != scene);
     assert!(!editor.leaves_by(Named(Key::Escape)));
     assert!(editor.scene() == scene && !lab(&editor).away);
+    assert!(!editor.leaves_by(Named(Key::Escape)), "it warns first");
     assert!(editor.leaves_by(Named(Key::Escape)));
 }
 

@@ -547,3 +547,36 @@ fn a_large_mesh_gets_its_crease_angle_when_the_drag_ends() {
     editor.press(Command(Key::Z));
     assert!(Shared::same(&object(&editor).model, &before));
 }
+
+#[test]
+fn rotations_go_on_over_a_quarter_turn_and_open_with_the_plainest_angles() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("turned.marraztu");
+    let mut editor = with_object();
+    let angles = |editor: &Editor| {
+        ["X", "Y", "Z"].map(|axis| {
+            let field = format!("Rotation {axis}");
+            control(editor, Role::SpinButton, &field).value().unwrap_or_default()
+        })
+    };
+    editor.perform(Action::Rotate);
+    for step in 1..=20 {
+        editor.perform(Action::StepYUp);
+        let degrees = 10 * step;
+        assert_eq!(angles(&editor), ["X 0".to_owned(), format!("Y {degrees}"), "Z 0".to_owned()]);
+    }
+    for _ in 0..8 {
+        editor.perform(Action::Undo);
+    }
+    assert_eq!(angles(&editor), ["X 0", "Y 120", "Z 0"]);
+    for _ in 0..10 {
+        editor.perform(Action::StepYUp);
+    }
+    editor.press(Command(Key::S));
+    editor.type_path(&file);
+    editor.wait_until(|_| file.is_file());
+    editor.ask(Request::LoadFiles(vec![file]));
+    editor.wait_until(|editor| editor.steps() == 0);
+    editor.settle();
+    assert_eq!(angles(&editor), ["X 0", "Y -140", "Z 0"]);
+}

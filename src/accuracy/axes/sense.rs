@@ -24,7 +24,7 @@ pub(super) fn if_any(
 ) -> Result<(), &'static str> {
     let mut parts = shown(scene, view).flat_map(|object| {
         let count = u32::try_from(object.model.mesh.parts().len()).unwrap_or(u32::MAX);
-        (0..count).filter(|part| !object.hidden_parts.contains(part)).map(move |i| (object, i))
+        (0..count).filter(|part| object.shows_part(*part)).map(move |i| (object, i))
     });
     if parts.any(|(object, part)| has(object, part)) { Ok(()) } else { Err(reason) }
 }

@@ -110,5 +110,7 @@ pub(crate) enum FileIntent {
     NewAncestor,
     Reload,
     Recover,
+    RecoverDiscarded,
+    FindMissing,
     Quit,
 }

@@ -15,7 +15,7 @@ pub use crate::app::chord::Chord;
 pub use info::{ActionInfo, Group};
 pub(crate) use intent::{ClipboardIntent, FileIntent, Intent};
 pub use mouse::MouseInfo;
-pub use request::{Also, KeyRequest, LabRequest, Request};
+pub use request::{Also, KeyRequest, LabRequest, MissingRequest, Request};
 pub(crate) use request::{change, change_view};
 pub(crate) use resolve::{ADD_LIGHTS, resolve};
 pub use table::Action;

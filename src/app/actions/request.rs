@@ -95,12 +95,14 @@ pub enum Request {
     TurnUp(ObjectId, UpAxis),
     /// Shows the unsaved work that is offered at this place.
     Recover(usize),
-    /// Removes the unsaved work that is offered at this place.
+    /// Moves the unsaved work that is offered at this place aside.
     DiscardWork(usize),
     /// Takes a gesture back while it lasts, as if it had never begun.
     Abandon(Gesture),
     /// Divides the window differently among its panels.
     Layout(Layout),
+    /// Something about missing files.
+    Missing(MissingRequest),
     /// Something about the keys of actions.
     Keys(KeyRequest),
     /// The strip of the first minute is put away.
@@ -126,6 +128,19 @@ impl From<Action> for Request {
     fn from(action: Action) -> Self {
         Self::Do(action)
     }
+}
+
+/// A request about missing files of the scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum MissingRequest {
+    /// Asks where this file is, or which of the missing files to find.
+    Find(Option<PathBuf>),
+    /// Puts the notice about them away.
+    Dismiss,
+    /// Uses the missing files in the folder of a found one.
+    UseNearby,
+    /// Does not use them.
+    DismissNearby,
 }
 
 /// A request about the keys of actions.

@@ -35,6 +35,12 @@ actions! {
     RecoverWork File ONCE [CommandShift(Key::R)]
         "Recover unsaved work" "Shows the work that a program that ended suddenly has left behind."
         "crash restore lost backup journal autosave";
+    RecoverDiscarded File ONCE []
+        "Recover discarded work..." "Brings back work that was discarded in the last 30 days."
+        "crash restore lost backup journal trash undelete";
+    FindMissing File ONCE []
+        "Find missing files..." "Asks where the missing models and textures of the scene are."
+        "locate relink lost path broken placeholder box texture model";
     Save File ONCE [Command(Key::S)]
         "Save scene" "Saves the scene to its file."
         "write store keep";

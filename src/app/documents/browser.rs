@@ -37,6 +37,8 @@ pub(crate) struct Browser {
     path: String,
     /// The part of a name that was typed, if the list is limited to it.
     part: Option<String>,
+    /// The text in the path field at first: it does not filter the list.
+    proposal: String,
     folder: PathBuf,
     entries: Vec<Entry>,
     /// Why the folder cannot be listed, or the file not be chosen.
@@ -76,6 +78,7 @@ impl Browser {
             look: Look::default(),
             path: String::new(),
             part: None,
+            proposal: String::new(),
             folder: PathBuf::new(),
             entries: Vec::new(),
             fault: None,
@@ -83,6 +86,7 @@ impl Browser {
         };
         browser.enter(folder);
         browser.path = browser.folder.join(name).display().to_string();
+        browser.proposal.clone_from(&browser.path);
         browser
     }
 
@@ -216,6 +220,11 @@ impl Browser {
         self.folder.join(&entry.name)
     }
 
+    /// Gives the keyboard to the path field when it is shown next, as at first.
+    pub(crate) const fn ask_again(&mut self) {
+        self.shown_once = false;
+    }
+
     /// What typing replaces at first: the proposed name without its ending. Without a name, it goes
     /// on behind the folder.
     fn proposed(&self) -> CCursorRange {
@@ -312,7 +321,7 @@ impl Browser {
     fn verb(&self) -> &'static str {
         match self.mode {
             Mode::Open => "Open",
-            Mode::Save if self.named().is_file() => "Replace the file",
+            Mode::Save if self.named().is_file() => "Replace...",
             Mode::Save => "Save",
         }
     }
@@ -337,7 +346,7 @@ impl Browser {
         let path = self.named();
         if path.file_name().is_none() || (self.mode == Mode::Open && !path.exists()) {
             // The only entry that fits is meant.
-            let is_here = typed.parent() == Some(&self.folder);
+            let is_here = typed.parent() == Some(&self.folder) && self.path != self.proposal;
             let fitting: Vec<PathBuf> =
                 self.fitting().take(2).map(|entry| self.folder.join(&entry.name)).collect();
             if let ([only], true) = (&fitting[..], is_here) {

@@ -8,77 +8,20 @@ use std::time::{Duration, Instant};
 
 use egui::{Context, Id, Modal, Ui};
 
+use super::answer::{Answer, End};
 use super::browser::{Browser, Choice, Look, Mode};
 use super::folders::{Folders, Kind};
-use super::material_dialog::{self, MaterialChoices, MaterialDialog};
+use super::material_dialog::{self, MaterialDialog};
 use super::picture_dialog::{self, PictureChoices, PictureDialog};
+use super::questions;
+use super::wanted::{After, Wanted};
+use crate::app::input::keyboard::Keyboard;
 use crate::app::shell::Parent;
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::controls::{heading, take_focus};
-use crate::io;
-use crate::scene::ObjectId;
 
 /// A system's dialog that is gone within this time was never there.
 const AT_ONCE: Duration = Duration::from_millis(400);
-
-/// The purpose of a file dialog.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Wanted {
-    /// Models to be loaded.
-    Model,
-    /// Models to be opened as if they were dropped.
-    Dropped,
-    /// A scene in place of this one.
-    Scene,
-    /// Where to save the scene, and what to do then.
-    SceneTo(Option<After>),
-    /// Where to save the picture.
-    PictureTo,
-    /// Where to save the picture with options.
-    PictureWithOptionsTo,
-    /// Where to save the turntable.
-    TurntableTo,
-    /// Where to export the scene.
-    ExportTo,
-    /// A texture for this object.
-    Texture(ObjectId),
-    /// A texture for the model whose material is being chosen.
-    TextureOfModel,
-    /// The new location of a missing model of a scene.
-    Missing(PathBuf),
-}
-
-/// What to do once the scene is saved or discarded.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum After {
-    Quit,
-    New,
-    /// The first scene, drawn as ancestor A drew it.
-    NewAncestor,
-    Open(Option<PathBuf>),
-    /// Recover the unsaved work that is offered at this place.
-    Recover(usize),
-}
-
-/// What the user has answered.
-#[derive(Debug)]
-pub(crate) enum Answer {
-    /// These files, for this.
-    Files(Wanted, Vec<PathBuf>),
-    /// No file.
-    NoFile(Wanted),
-    /// Save first.
-    Save(After),
-    /// Do it without saving.
-    Discard(After),
-    /// This material.
-    Material(Box<MaterialDialog>, MaterialChoices),
-    /// A picture or a turntable with these options, into this file; it is asked for if there is
-    /// none.
-    Picture(PictureChoices, Option<PathBuf>),
-    /// A texture is wanted for the model whose material is being chosen.
-    ChooseTexture,
-}
 
 /// All dialogs that are open.
 #[derive(Debug, Default)]
@@ -114,6 +57,12 @@ enum Dialog {
     Picture(Box<PictureDialog>),
     Fault(&'static str, String),
     Details(String, Vec<String>),
+    Missing(Vec<PathBuf>),
+    Discarded(Vec<String>),
+    /// The file of the scene was changed by another program.
+    Changed(PathBuf, Option<After>),
+    /// Whether to replace a file, and the answer of the dialog below if so.
+    Replace(PathBuf, Option<Box<Answer>>),
 }
 
 impl Dialogs {
@@ -137,6 +86,26 @@ impl Dialogs {
         if !self.open.iter().any(|dialog| matches!(dialog, Dialog::Unsaved(_))) {
             self.open.push(Dialog::Unsaved(after));
         }
+    }
+
+    /// Lists the missing files of the scene.
+    pub(crate) fn list_missing(&mut self, files: Vec<PathBuf>) {
+        self.open.push(Dialog::Missing(files));
+    }
+
+    /// Lists the work that was discarded.
+    pub(crate) fn list_discarded(&mut self, all: Vec<String>) {
+        self.open.push(Dialog::Discarded(all));
+    }
+
+    /// Asks what to do with the scene, whose file was changed by another program.
+    pub(crate) fn ask_changed(&mut self, path: PathBuf, after: Option<After>) {
+        self.open.push(Dialog::Changed(path, after));
+    }
+
+    /// The next file to open is asked for in this folder.
+    pub(crate) fn begin_in(&mut self, folder: Option<PathBuf>) {
+        self.folders.open_in(folder);
     }
 
     /// Asks for a material.
@@ -234,6 +203,10 @@ impl Dialogs {
     /// Shows the open dialogs. Returns the answer, if any.
     pub(crate) fn ui(&mut self, ctx: &Context) -> Option<Answer> {
         if let Some(answer) = self.hear_system() {
+            if matches!(answer, Answer::NoFile) {
+                // It may have been closed by Esc.
+                Keyboard::note_escape(ctx);
+            }
             return Some(answer);
         }
         let number = self.open.len();
@@ -255,21 +228,54 @@ impl Dialogs {
         self.close(dialog, ended)
     }
 
+    /// The answer of a dialog, unless it would replace a file: that is asked about first.
+    fn unless_replaced(
+        &mut self,
+        mut dialog: Dialog,
+        answer: Answer,
+        path: &Path,
+    ) -> Option<Answer> {
+        if !path.is_file() {
+            return Some(answer);
+        }
+        // If the file is not to be replaced, the dialog asks for another one.
+        if let Dialog::Browser(_, browser) = &mut dialog {
+            browser.ask_again();
+        }
+        self.open.push(dialog);
+        self.open.push(Dialog::Replace(path.to_owned(), Some(Box::new(answer))));
+        None
+    }
+
     fn close(&mut self, dialog: Dialog, end: End) -> Option<Answer> {
         Some(match (end, dialog) {
-            (End::Answer(answer), _) => {
-                if let Answer::Picture(_, Some(path)) = &answer {
-                    self.folders.remember(Kind::Saved, path);
+            (End::Answer(answer), Dialog::Replace(..)) => {
+                // The dialog below has its answer, too.
+                if matches!(self.open.last(), Some(Dialog::Browser(..) | Dialog::Picture(_))) {
+                    self.open.pop();
                 }
                 answer
             }
+            (End::Answer(Answer::Picture(choices, Some(path))), dialog) => {
+                self.folders.remember(Kind::Saved, &path);
+                let answer = Answer::Picture(choices, Some(path.clone()));
+                return self.unless_replaced(dialog, answer, &path);
+            }
+            (End::Answer(answer), _) => answer,
             (End::File(path), Dialog::Browser(wanted, browser)) => {
                 self.look = browser.look;
-                self.chosen(wanted, vec![path])
+                let path = wanted.named(path);
+                let answer = self.chosen(wanted.clone(), vec![path.clone()]);
+                return match wanted.description().1 {
+                    Mode::Open => Some(answer),
+                    Mode::Save => {
+                        self.unless_replaced(Dialog::Browser(wanted, browser), answer, &path)
+                    }
+                };
             }
-            (End::Cancelled, Dialog::Browser(wanted, browser)) => {
+            (End::Cancelled, Dialog::Browser(_, browser)) => {
                 self.look = browser.look;
-                Answer::NoFile(wanted)
+                Answer::NoFile
             }
             (End::Material(choices), Dialog::Material(dialog)) => Answer::Material(dialog, choices),
             (End::Cancelled | End::File(_) | End::Material(_) | End::Asked, _) => return None,
@@ -284,8 +290,8 @@ impl Dialogs {
         };
         let SystemDialog { wanted, name, begun, .. } = self.system.take()?;
         match outcome {
-            Some(Some(paths)) if !paths.is_empty() => Some(self.chosen(wanted, paths)),
-            Some(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile(wanted)),
+            Some(Some(paths)) if !paths.is_empty() => self.chosen_by_system(wanted, paths),
+            Some(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile),
             Some(_) | None => {
                 // The system has no file dialog: do not try again.
                 self.native = false;
@@ -293,6 +299,21 @@ impl Dialogs {
                 None
             }
         }
+    }
+
+    /// The system has asked already whether to replace a file, unless the ending of its name was
+    /// missing.
+    fn chosen_by_system(&mut self, wanted: Wanted, mut paths: Vec<PathBuf>) -> Option<Answer> {
+        let Some(path) = paths.first_mut() else { return Some(Answer::NoFile) };
+        let named = wanted.named(path.clone());
+        let is_new = named == *path || !named.is_file();
+        path.clone_from(&named);
+        let answer = self.chosen(wanted, paths);
+        if is_new {
+            return Some(answer);
+        }
+        self.open.push(Dialog::Replace(named, Some(Box::new(answer))));
+        None
     }
 
     fn chosen(&mut self, wanted: Wanted, paths: Vec<PathBuf>) -> Answer {
@@ -311,56 +332,6 @@ impl Dialogs {
     }
 }
 
-impl Wanted {
-    /// What the folder is remembered for.
-    pub(crate) const fn kind(&self) -> Kind {
-        match self {
-            Self::Model | Self::Dropped | Self::Scene | Self::Missing(_) => Kind::Opened,
-            Self::Texture(_) | Self::TextureOfModel => Kind::Texture,
-            Self::SceneTo(_)
-            | Self::PictureTo
-            | Self::PictureWithOptionsTo
-            | Self::TurntableTo
-            | Self::ExportTo => Kind::Saved,
-        }
-    }
-
-    fn description(&self) -> (&'static str, Mode, Vec<&'static str>) {
-        let models = || vec!["obj", "gz"];
-        let scenes = || vec!["marraztu"];
-        let pictures = || io::PICTURE_FORMATS.iter().map(|format| format.endings[0]).collect();
-        match self {
-            Self::Model => ("Load a model", Mode::Open, models()),
-            Self::Dropped => ("Open a model", Mode::Open, models()),
-            Self::Scene => ("Open a scene", Mode::Open, scenes()),
-            Self::SceneTo(_) => ("Save the scene", Mode::Save, scenes()),
-            Self::PictureTo | Self::PictureWithOptionsTo => {
-                ("Save the picture", Mode::Save, pictures())
-            }
-            Self::TurntableTo => ("Save the turntable", Mode::Save, vec!["gif", "png"]),
-            Self::ExportTo => {
-                let endings = io::EXPORT_ENDINGS;
-                ("Export the scene", Mode::Save, vec![endings[2], endings[1], endings[0]])
-            }
-            Self::Texture(_) | Self::TextureOfModel => {
-                ("Choose a texture", Mode::Open, io::texture_endings())
-            }
-            Self::Missing(_) => ("Where is the missing model?", Mode::Open, models()),
-        }
-    }
-}
-
-/// How a dialog ends.
-enum End {
-    Cancelled,
-    File(PathBuf),
-    Material(MaterialChoices),
-    /// With this answer.
-    Answer(Answer),
-    /// It stays open, and a texture is chosen.
-    Asked,
-}
-
 impl Dialog {
     fn ui(&mut self, ui: &mut Ui) -> Option<End> {
         match self {
@@ -368,7 +339,11 @@ impl Dialog {
                 Choice::File(path) => End::File(path),
                 Choice::Cancelled => End::Cancelled,
             }),
-            Self::Unsaved(after) => unsaved_ui(ui, after),
+            Self::Unsaved(after) => questions::unsaved_ui(ui, after),
+            Self::Missing(files) => questions::missing_ui(ui, files),
+            Self::Discarded(all) => questions::discarded_ui(ui, all),
+            Self::Changed(path, after) => questions::changed_ui(ui, path, after.as_ref()),
+            Self::Replace(path, answer) => questions::replace_ui(ui, path, answer),
             Self::Material(dialog) => dialog.ui(ui).map(|end| match end {
                 material_dialog::End::Taken(choices) => End::Material(choices),
                 material_dialog::End::Texture => End::Asked,
@@ -409,31 +384,4 @@ fn close_ui(ui: &mut Ui) -> Option<End> {
     let button = ui.button("Close");
     take_focus(ui, &button);
     button.clicked().then_some(End::Cancelled)
-}
-
-fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
-    ui.set_max_width(420.0);
-    heading(ui, "Save the scene?");
-    ui.label(match after {
-        After::Quit => "It has unsaved changes, which are lost unless you save them.",
-        After::New | After::NewAncestor => {
-            "A new scene will replace this one, which has unsaved changes."
-        }
-        After::Recover(_) => "Recovered work will replace this scene, which has unsaved changes.",
-        After::Open(_) => "Another scene will replace this one, which has unsaved changes.",
-    });
-    ui.add_space(4.0);
-    let buttons = ui.horizontal(|ui| {
-        let save = ui.button("Save");
-        take_focus(ui, &save);
-        let discard = ui.button("Discard").clicked();
-        let cancel = ui.button("Cancel").clicked();
-        match (save.clicked(), discard, cancel) {
-            (true, ..) => Some(End::Answer(Answer::Save(after.clone()))),
-            (_, true, _) => Some(End::Answer(Answer::Discard(after.clone()))),
-            (.., true) => Some(End::Cancelled),
-            _ => None,
-        }
-    });
-    buttons.inner
 }

@@ -47,6 +47,13 @@ impl Folders {
         start.cloned().or_else(|| std::env::current_dir().ok()).unwrap_or_else(|| "/".into())
     }
 
+    /// The next dialog that opens a file begins in this folder.
+    pub(crate) fn open_in(&mut self, folder: Option<PathBuf>) {
+        if let Some(folder) = folder {
+            self.chosen.insert(Kind::Opened, (self.home.clone(), folder));
+        }
+    }
+
     /// Notes that a file was chosen.
     pub(crate) fn remember(&mut self, kind: Kind, file: &Path) {
         if let Some(folder) = file.parent() {

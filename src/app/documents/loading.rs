@@ -1,6 +1,5 @@
 //! Files that are being read, and what was read.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::app::tasks::Task;
@@ -45,6 +44,8 @@ pub(crate) enum Fetched {
     Turned(ObjectId, Result<Loaded, LoadError>),
     /// Models that were read again.
     Again(Vec<Reread>),
+    /// Missing files that were found.
+    Found(Vec<Found>),
     /// Models that are shown together and alone.
     Alone(Vec<Result<Arrived, LoadError>>, Arrival),
 }
@@ -74,6 +75,17 @@ pub(crate) struct Reread {
     pub(crate) result: Result<Loaded, LoadError>,
 }
 
+/// A missing file that was found, and what was read from it.
+#[derive(Debug)]
+pub(crate) struct Found {
+    pub(crate) old: PathBuf,
+    pub(crate) new: PathBuf,
+    /// Each placeholder, and the model that takes its place.
+    pub(crate) models: Vec<(Shared<Model>, Result<Loaded, LoadError>)>,
+    pub(crate) texture: Option<Result<Shared<Texture>, LoadError>>,
+    pub(crate) findings: Vec<Finding>,
+}
+
 /// A model that was read, or could not be.
 #[derive(Debug)]
 pub(crate) struct FetchedModel {
@@ -97,18 +109,10 @@ pub(crate) struct Wish {
 #[derive(Debug)]
 pub(crate) struct Opening {
     pub(crate) path: PathBuf,
-    pub(crate) relocated: BTreeMap<PathBuf, PathBuf>,
     pub(crate) result: Result<Opened, SceneFileError>,
 }
 
 /// Whether a path names a scene.
 pub(crate) fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(SCENE_ENDING))
-}
-
-/// A scene that waits for the user to locate its missing models.
-#[derive(Debug)]
-pub(crate) struct Waiting {
-    pub(crate) path: PathBuf,
-    pub(crate) relocated: BTreeMap<PathBuf, PathBuf>,
 }

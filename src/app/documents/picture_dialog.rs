@@ -157,7 +157,7 @@ impl PictureDialog {
         ui.horizontal(|ui| {
             let path = self.path();
             let replaces = path.is_file();
-            let save = ui.button(if replaces { "Replace the file" } else { "Save" });
+            let save = ui.button(if replaces { "Replace..." } else { "Save" });
             take_focus(ui, &save);
             if save.clicked() || entered {
                 end = Some(End::Into(self.choices, path));

@@ -1,4 +1,7 @@
 //! Draws the picture and the exact one for comparison, on a thread of its own.
+//!
+//! What no longer shows the scene is dropped at once: its drawing ends between two tiles, and only
+//! then the next one begins.
 
 use egui::Context;
 
@@ -6,45 +9,84 @@ use super::App;
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Judged};
 use crate::app::tasks::{Outcome, Task};
-use crate::app::viewport::comparison::{Compared, Pair, draw};
+use crate::app::viewport::comparison::{Compared, Drawing, draw};
 use crate::io;
+use crate::scene::View;
 
 impl App {
     /// Takes finished pictures, and starts to draw new ones if the comparison is out of date.
     pub(crate) fn compare(&mut self, ctx: &Context) {
+        let wanted = self.compared_now();
+        let animated = self.state.is_animated();
+        self.hear_comparison(ctx, wanted.as_ref());
         let comparison = &mut self.comparison;
-        if let Some(task) = &comparison.task {
-            match task.outcome() {
-                Outcome::Running => return,
-                Outcome::Done(drawn) => {
-                    let settings = drawn.of.settings;
-                    let judged = Judged { error: drawn.error, settings };
-                    let is_now = drawn.of.scene == self.state.scene;
-                    self.state.lab.judged = is_now.then_some(judged);
-                    comparison.take(ctx, drawn);
-                }
-                Outcome::Lost => self.state.lab.compare = Compare::Off,
+        if let Some(drawing) = &comparison.drawing {
+            // An animated scene is compared as it was a moment ago, or it never would be.
+            let is_wanted = wanted.as_ref().is_some_and(|wanted| match animated {
+                true => at_one_time(wanted, &drawing.of),
+                false => *wanted == drawing.of,
+            });
+            if !is_wanted {
+                drawing.task.progress.cancel();
             }
-            comparison.task = None;
+        }
+        let is_drawn = wanted.as_ref() == comparison.drawn.as_deref().map(|pair| &pair.of);
+        if comparison.current != is_drawn {
+            comparison.current = is_drawn;
             ctx.request_repaint();
         }
-        let (Some(size), true) = (self.viewport.size(), self.state.lab.compare != Compare::Off)
-        else {
-            return;
-        };
-        let State { scene, view, settings, .. } = &self.state;
-        let against = self.state.lab.against(settings);
-        let same = |pair: &Pair| {
-            let Compared { scene: s, view: v, settings: t, size: z, against: a } = &pair.of;
-            s == scene && v == view && t == settings && *z == size && *a == against
-        };
-        if self.comparison.drawn.as_deref().is_some_and(same) {
-            return;
+        // While the view moves, nothing is begun that the next frame would drop.
+        let rests = animated || comparison.wanted == wanted;
+        comparison.wanted.clone_from(&wanted);
+        if !rests {
+            return ctx.request_repaint();
         }
-        let (scene, view) = (scene.clone(), view.clone());
-        let of = Compared { scene, view, settings: *settings, size, against };
-        let work = move |_: &io::Progress| Box::new(draw(of));
+        let Some(of) = wanted.filter(|_| !is_drawn && comparison.drawing.is_none()) else { return };
+        let theirs = of.clone();
+        let work = move |progress: &io::Progress| draw(theirs, progress).map(Box::new);
         // Without a thread there is no comparison.
-        self.comparison.task = Task::start(ctx, "Comparing".to_owned(), work).ok();
+        let task = Task::start(ctx, "Comparing".to_owned(), work).ok();
+        comparison.drawing = task.map(|task| Drawing { of, task });
     }
+
+    /// What the comparison should show; `None` if nothing is compared.
+    fn compared_now(&self) -> Option<Compared> {
+        let State { scene, view, settings, lab, .. } = &self.state;
+        let size = self.viewport.size().filter(|_| lab.compare != Compare::Off)?;
+        let against = lab.against(settings);
+        let (scene, view) = (scene.clone(), view.clone());
+        Some(Compared { scene, view, settings: *settings, size, against })
+    }
+
+    /// Takes a pair that is finished, unless it is of another scene.
+    fn hear_comparison(&mut self, ctx: &Context, wanted: Option<&Compared>) {
+        let Some(drawing) = &self.comparison.drawing else { return };
+        match drawing.task.outcome() {
+            Outcome::Running => return,
+            Outcome::Done(Some(drawn)) => {
+                let settings = drawn.of.settings;
+                let judged = Judged { error: drawn.error, settings };
+                let is_now = wanted.is_some_and(|wanted| at_one_time(wanted, &drawn.of));
+                self.state.lab.judged = is_now.then_some(judged);
+                if is_now {
+                    self.comparison.take(ctx, drawn);
+                }
+            }
+            Outcome::Done(None) => {}
+            Outcome::Lost => self.state.lab.compare = Compare::Off,
+        }
+        self.comparison.drawing = None;
+        ctx.request_repaint();
+    }
+}
+
+/// Whether both show the same, apart from the time.
+fn at_one_time(a: &Compared, b: &Compared) -> bool {
+    let view = View { time: a.view.time, ..b.view.clone() };
+    let Compared { scene, view: _, settings, size, against } = b;
+    a.scene == *scene
+        && a.view == view
+        && a.settings == *settings
+        && a.size == *size
+        && a.against == *against
 }

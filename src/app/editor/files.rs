@@ -11,11 +11,12 @@ use super::App;
 use super::turning::usual_up;
 use super::unseen::out_of_sight;
 use crate::accuracy::{AccuracyPreset, Settings, Shot};
-use crate::app::documents::dialogs::{After, Answer, Wanted};
+use crate::app::documents::answer::Answer;
 use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wish, is_scene};
 use crate::app::documents::material_dialog::{
     MaterialChoices, MaterialDialog, details, opened, own_or_silver, summary,
 };
+use crate::app::documents::wanted::{After, Wanted};
 use crate::app::drawing::images;
 use crate::app::state::{Notice, Offer, Reduction, State};
 use crate::app::tasks::{Outcome, Task};
@@ -47,8 +48,12 @@ impl App {
     pub(crate) fn take_answer(&mut self, ctx: &Context, answer: Answer) {
         match answer {
             Answer::Files(wanted, paths) => self.take_files(ctx, wanted, paths),
-            Answer::NoFile(Wanted::Missing(old)) => self.give_up_missing(&old),
-            Answer::NoFile(_) => {}
+            Answer::NoFile => {}
+            Answer::Find(file) => self.find_missing(ctx, Some(file)),
+            Answer::Changed(choice, path, after) => self.take_changed(ctx, choice, path, after),
+            Answer::RecoverDiscarded(at) => {
+                self.unless_unsaved(ctx, After::RecoverDiscarded(at));
+            }
             Answer::Save(after) => self.save(ctx, Some(after)),
             Answer::Discard(after) => self.after(ctx, after),
             Answer::Material(dialog, choices) => self.take_material(ctx, *dialog, choices),
@@ -242,6 +247,7 @@ impl App {
             Fetched::Pasted(result) => self.take_pasted(result),
             Fetched::Turned(id, result) => self.take_turned(id, result),
             Fetched::Again(all) => self.take_again(all),
+            Fetched::Found(all) => self.take_found(all),
             Fetched::Scene(opening) => self.take_scene(ctx, *opening),
             Fetched::Alone(read, arrival) => self.take_alone(ctx, read, arrival),
         }
@@ -369,6 +375,7 @@ impl App {
                 self.replace(State { settings, ..State::new(scene, view) });
             }
             After::Recover(at) => self.recover(ctx, at),
+            After::RecoverDiscarded(at) => self.recover_discarded(ctx, at),
             After::Open(Some(path)) => self.open_scene(ctx, path),
             After::Open(None) => self.ask_file(ctx, Wanted::Scene, ""),
         }
@@ -386,7 +393,10 @@ impl App {
         let statistics = self.state.statistics.clone();
         let recent = std::mem::take(&mut self.state.recent);
         let recoverable = std::mem::take(&mut self.state.recoverable);
+        let discarded = std::mem::take(&mut self.state.discarded);
+        let generation = self.state.generation + 1;
         self.end_measuring();
+        self.comparison.forget();
         self.first_steps = None;
         let new = State {
             panels,
@@ -404,6 +414,8 @@ impl App {
             statistics,
             recent,
             recoverable,
+            discarded,
+            generation,
             ..state
         };
         std::mem::replace(&mut self.state, new)

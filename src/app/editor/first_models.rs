@@ -156,8 +156,7 @@ impl App {
             }
             Arrival::Dropped => {
                 self.first_steps = Some(self.state.view.steps);
-                self.change(command, Gesture::Whole, label);
-                self.state.view = view;
+                self.change_then(command, Gesture::Whole, label, |state| state.view = view);
             }
         }
         Ok(())

@@ -4,7 +4,6 @@
 //! disk; the window never waits for that. Work that another program has left behind is offered in a
 //! notice that blocks nothing.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
@@ -15,7 +14,9 @@ use crate::app::documents::loading::{Fetched, Opening};
 use crate::app::panels::preferences;
 use crate::app::state::{Notice, State};
 use crate::app::widgets::text::file_name;
-use crate::io::{self, Abandoned, Journal, OwnFolders, Preferences, Unsaved};
+use crate::io::{
+    self, Abandoned, Discarded, Fingerprint, Journal, OwnFolders, Preferences, Unsaved,
+};
 use crate::scene::Scene;
 
 /// The seconds without a change after which preferences are written.
@@ -30,6 +31,8 @@ pub(crate) struct Keeping {
     kept: Option<Scene>,
     /// Work that other programs have left behind, in the order of [`State::recoverable`].
     offered: Vec<Abandoned>,
+    /// Work that was discarded, in the order of [`State::discarded`].
+    discarded: Vec<Discarded>,
     /// As they were written last.
     preferences: Preferences,
     /// The recent files that it has read or written: a file with them adds none of them again.
@@ -65,10 +68,20 @@ impl App {
                 None
             }
         };
+        let discarded = Vec::new();
         let (kept, changed) = (None, None);
         let known = preferences.recent.clone();
-        self.keeping =
-            Some(Keeping { folders, journal, kept, offered, preferences, known, changed });
+        self.keeping = Some(Keeping {
+            folders,
+            journal,
+            kept,
+            offered,
+            discarded,
+            preferences,
+            known,
+            changed,
+        });
+        self.list_discarded();
     }
 
     /// Hands what has changed to the journal, and writes preferences once they have settled.
@@ -76,7 +89,7 @@ impl App {
         let Self { keeping: Some(keeping), waiting_scene, state, .. } = self else { return };
         // During a lesson it is the user's own scene that must not be lost.
         let own = waiting_scene.as_deref().unwrap_or(state);
-        let State { scene, view, settings, history, path, .. } = own;
+        let State { scene, view, settings, history, path, content, .. } = own;
         if let Some(journal) = &keeping.journal {
             if history.is_saved() {
                 if keeping.kept.take().is_some() {
@@ -85,8 +98,8 @@ impl App {
             } else if keeping.kept.as_ref() != Some(scene) {
                 keeping.kept = Some(scene.clone());
                 let (scene, view, file) = (scene.clone(), view.clone(), path.clone());
-                let window = own.window();
-                journal.keep(Unsaved { scene, view, settings: *settings, window, file });
+                let (window, settings, content) = (own.window(), *settings, *content);
+                journal.keep(Unsaved { scene, view, settings, window, file, content });
             }
             if let Some(fault) = journal.fault() {
                 state.notices.retain(|notice| !notice.text.starts_with(NOT_KEPT));
@@ -144,19 +157,47 @@ impl App {
             return;
         };
         let path = work.path().to_owned();
-        let relocated = BTreeMap::new();
+        self.read_work(ctx, path);
+    }
+
+    /// Reads discarded work, to show it instead of the scene.
+    pub(crate) fn recover_discarded(&mut self, ctx: &Context, at: usize) {
+        let work = self.keeping.as_ref().and_then(|keeping| keeping.discarded.get(at));
+        if let Some(path) = work.map(|work| work.path().to_owned()) {
+            self.read_work(ctx, path);
+        }
+    }
+
+    fn read_work(&mut self, ctx: &Context, path: PathBuf) {
         self.begin_loading(ctx, "Recovering unsaved work".to_owned(), false, move |progress| {
-            let result = io::open_with(&path, &relocated, progress);
-            Fetched::Scene(Box::new(Opening { path, relocated, result }))
+            let result = io::open(&path, progress);
+            Fetched::Scene(Box::new(Opening { path, result }))
         });
     }
 
-    /// Removes the work that is offered at this place.
+    /// Moves the work that is offered at this place aside.
     pub(crate) fn discard_work(&mut self, at: usize) {
-        if let Some(work) = self.take_offered(at) {
-            work.discard();
-            self.state.tell(Some("Discarded the unsaved work".to_owned()));
+        let work = self.keeping.as_ref().and_then(|keeping| keeping.offered.get(at));
+        let Some(work) = work else { return };
+        if let Err(why) = work.set_aside() {
+            return self.refuse(format!("the unsaved work cannot be moved aside: {why}"));
         }
+        self.take_offered(at).into_iter().for_each(Abandoned::remove);
+        self.list_discarded();
+        let text = "Discarded: \"Recover discarded work\" brings it back for 30 days";
+        self.state.tell(Some(text.to_owned()));
+    }
+
+    /// Lists the work that was discarded and can be brought back.
+    fn list_discarded(&mut self) {
+        let Some(keeping) = &mut self.keeping else { return };
+        keeping.discarded = Discarded::all(&keeping.folders);
+        let now = SystemTime::now();
+        let described = |work: &Discarded| {
+            let name = scene_name(work.scene_file.as_deref());
+            format!("{name}, from {}", age(work.written, now))
+        };
+        self.state.discarded = keeping.discarded.iter().map(described).collect();
     }
 
     fn take_offered(&mut self, at: usize) -> Option<Abandoned> {
@@ -168,17 +209,40 @@ impl App {
         Some(keeping.offered.remove(at))
     }
 
-    /// If the scene that was opened is offered work: it counts as unsaved, and as a scene of the
-    /// file that it once was saved to. Returns whether it is.
+    /// If the scene that was opened is offered or discarded work: it counts as unsaved, and as a
+    /// scene of the file that it once was saved to. Returns whether it is.
     pub(crate) fn settle_recovered(&mut self, opened: &Path) -> bool {
-        let at = self
-            .keeping
-            .as_ref()
-            .and_then(|keeping| keeping.offered.iter().position(|work| work.path() == opened));
-        let Some(work) = at.and_then(|at| self.take_offered(at)) else { return false };
-        self.state.path.clone_from(&work.scene_file);
+        let Some(keeping) = &self.keeping else { return false };
+        let offered = keeping.offered.iter().position(|work| work.path() == opened);
+        // What was discarded stays where it is until its time is over.
+        let discarded = keeping.discarded.iter().find(|work| work.path() == opened).cloned();
+        if let Some(work) = offered.and_then(|at| self.take_offered(at)) {
+            self.name_recovered(opened, work.scene_file.clone(), work.content);
+            if let Some(keeping) = &mut self.keeping {
+                match &keeping.journal {
+                    Some(journal) => journal.replace(work),
+                    // Without a journal it is offered again by the next program.
+                    None => drop(work),
+                }
+            }
+            return true;
+        }
+        let Some(work) = discarded else { return false };
+        self.name_recovered(opened, work.scene_file, work.content);
+        true
+    }
+
+    /// The scene that was opened is the unsaved one of this file, which had this content.
+    fn name_recovered(
+        &mut self,
+        opened: &Path,
+        file: Option<PathBuf>,
+        content: Option<Fingerprint>,
+    ) {
+        let name = scene_name(file.as_deref());
+        (self.state.path, self.state.content) = (file, content);
         self.state.history.mark_unsaved();
-        self.state.tell(Some(format!("Recovered {}", name_of(&work))));
+        self.state.tell(Some(format!("Recovered unsaved changes of {name}")));
         // The user does not know the file that the work was kept in.
         let own_name = file_name(opened);
         for notice in &mut self.state.notices {
@@ -188,13 +252,7 @@ impl App {
         }
         if let Some(keeping) = &mut self.keeping {
             keeping.kept = None;
-            match &keeping.journal {
-                Some(journal) => journal.replace(work),
-                // Without a journal it is offered again by the next program.
-                None => drop(work),
-            }
         }
-        true
     }
 
     /// Remembers a file among the recent ones.
@@ -231,22 +289,26 @@ fn notice(text: String) -> Notice {
 }
 
 /// "harbour.marraztu", or "a new scene".
-fn name_of(work: &Abandoned) -> String {
-    let file = work.scene_file.as_deref().map(file_name);
-    format!("unsaved changes of {}", file.unwrap_or_else(|| "a new scene".to_owned()))
+fn scene_name(file: Option<&Path>) -> String {
+    file.map_or_else(|| "a new scene".to_owned(), file_name)
 }
 
-/// "Unsaved changes of harbour.marraztu from 3 minutes ago".
+/// "The program ended with unsaved changes of harbour.marraztu, from 3 minutes ago."
 fn described(work: &Abandoned, now: SystemTime) -> String {
-    let minutes = now.duration_since(work.written).unwrap_or_default().as_secs() / 60;
-    let ago = match minutes {
+    let (name, age) = (scene_name(work.scene_file.as_deref()), age(work.written, now));
+    format!("The program ended with unsaved changes of {name}, from {age}.")
+}
+
+/// "3 minutes ago".
+fn age(written: SystemTime, now: SystemTime) -> String {
+    let minutes = now.duration_since(written).unwrap_or_default().as_secs() / 60;
+    match minutes {
         0 => "less than a minute ago".to_owned(),
         1 => "a minute ago".to_owned(),
         2..120 => format!("{minutes} minutes ago"),
         120..2880 => format!("{} hours ago", minutes / 60),
         _ => format!("{} days ago", minutes / 1440),
-    };
-    format!("The program ended with {}, from {ago}.", name_of(work))
+    }
 }
 
 #[cfg(test)]
@@ -262,7 +324,7 @@ mod tests {
         let journal = Journal::begin(&folders).unwrap();
         let settings = crate::accuracy::Settings::default();
         let window = io::WindowState::DEFAULT;
-        journal.keep(Unsaved { scene, view, settings, window, file });
+        journal.keep(Unsaved { scene, view, settings, window, file, content: None });
         journal.wait();
         drop(journal);
         let all = Abandoned::all(&folders);

@@ -8,8 +8,8 @@ use egui::{ColorImage, Context, Rect};
 
 use super::App;
 use crate::accuracy::{Settings, Shot};
-use crate::app::documents::dialogs::Wanted;
 use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
+use crate::app::documents::wanted::Wanted;
 use crate::app::drawing::images;
 use crate::app::state::{Notice, State};
 use crate::app::tasks::{Outcome, Task};

@@ -13,6 +13,7 @@ mod keeping;
 mod laboratory;
 mod making;
 mod measuring;
+mod missing;
 mod preferences;
 mod reloading;
 mod requests;
@@ -20,6 +21,7 @@ mod scenes;
 mod selecting;
 mod turning;
 mod unseen;
+mod walking;
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -30,8 +32,9 @@ use egui::{Context, UiBuilder, ViewportCommand};
 
 use crate::accuracy::AccuracyPreset;
 use crate::app::actions::{Action, Request};
-use crate::app::documents::dialogs::{After, Dialogs};
-use crate::app::documents::loading::{Loading, Queued, Waiting};
+use crate::app::documents::dialogs::Dialogs;
+use crate::app::documents::loading::{Loading, Queued};
+use crate::app::documents::wanted::After;
 use crate::app::drawing::motion::{Happening, Motion};
 use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::worker::Worker;
@@ -65,8 +68,6 @@ pub struct App {
     pub(crate) making: Making,
     /// Files that wait to be read.
     pub(crate) queued: VecDeque<Queued>,
-    /// A scene that waits for the user to locate its missing models.
-    pub(crate) waiting: Option<Waiting>,
     pub(crate) viewport: Viewport,
     /// The user's scene, while that of a lesson is shown.
     pub(crate) waiting_scene: Option<Box<State>>,
@@ -107,7 +108,6 @@ impl App {
             searches: Vec::new(),
             making: Making::default(),
             queued: VecDeque::new(),
-            waiting: None,
             viewport: Viewport::default(),
             waiting_scene: None,
             lab: Work::default(),

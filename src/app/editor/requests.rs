@@ -10,18 +10,18 @@ use glam::DVec3;
 
 use super::App;
 use crate::app::actions::{Action, Chord, FileIntent, Intent, KeyRequest, Request, resolve};
-use crate::app::documents::dialogs::{After, Wanted};
 use crate::app::documents::material_dialog::MaterialDialog;
 use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
+use crate::app::documents::wanted::{After, Wanted};
 use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::input::keymap::Keymap;
 use crate::app::panels::Panel;
 use crate::app::state::{Message, Offer, State, Tone};
 use crate::edit::selection::{self, Selection};
 use crate::edit::several::Others;
-use crate::edit::{Gesture, GesturePhase, aiming, items, lights, transform};
+use crate::edit::{Gesture, GesturePhase, Selected, aiming, items, lights};
 use crate::io::is_example;
-use crate::scene::{Command, ItemId, Scene, Subject, View};
+use crate::scene::{Command, ItemId, Subject, View};
 
 impl App {
     /// Closes a panel; says whether it was open.
@@ -33,32 +33,41 @@ impl App {
 
     /// Performs the action of a key. Esc first closes whatever is open.
     pub(crate) fn press(&mut self, ctx: &Context, press: Press) {
-        if press.chord == Chord::Named(Key::Escape) {
-            let mut requests = Vec::new();
-            if self.viewport.cancel_drag(&mut requests) {
-                return requests.into_iter().for_each(|request| self.answer(ctx, request));
-            }
-            if std::mem::take(&mut self.state.aiming)
-                || std::mem::take(&mut self.state.explaining)
-                || std::mem::take(&mut self.state.lab.picking)
-                || Panel::MOMENTARY.into_iter().any(|panel| self.closes(panel))
-                || self.state.renaming.take().is_some()
-            {
-                return;
-            }
-            if self.state.explained.take().is_some() {
-                self.explaining = None;
-                return;
-            }
-            if !self.state.others().is_empty() {
-                self.state.several = Others::default();
-                return;
-            }
-            if self.state.lab.away {
-                return self.back_to_scene();
-            }
+        if press.chord == Chord::Named(Key::Escape) && self.ends_something(ctx) {
+            // The next Esc does not leave the program at once.
+            return Keyboard::note_escape(ctx);
         }
         self.perform(ctx, press.action, press.gesture);
+    }
+
+    /// Ends what Esc ends before it leaves the program. Says whether there was anything.
+    fn ends_something(&mut self, ctx: &Context) -> bool {
+        let mut requests = Vec::new();
+        if self.viewport.cancel_drag(&mut requests) {
+            requests.into_iter().for_each(|request| self.answer(ctx, request));
+            return true;
+        }
+        if std::mem::take(&mut self.state.aiming)
+            || std::mem::take(&mut self.state.explaining)
+            || std::mem::take(&mut self.state.lab.picking)
+            || Panel::MOMENTARY.into_iter().any(|panel| self.closes(panel))
+            || self.state.renaming.take().is_some()
+        {
+            return true;
+        }
+        if self.state.explained.take().is_some() {
+            self.explaining = None;
+            return true;
+        }
+        if !self.state.others().is_empty() {
+            self.state.several = Others::default();
+            return true;
+        }
+        if self.state.lab.away {
+            self.back_to_scene();
+            return true;
+        }
+        false
     }
 
     /// Answers a request.
@@ -91,14 +100,8 @@ impl App {
                 }
             }
             Request::Filter(filter) => state.filter = filter,
-            Request::GoTo(position) => {
-                self.walk(|state| state.history.go_to(&mut state.scene, position));
-            }
-            Request::Abandon(gesture) => {
-                self.walk(|state| {
-                    state.history.abandon(&mut state.scene, gesture);
-                });
-            }
+            Request::GoTo(position) => self.go_to(position),
+            Request::Abandon(gesture) => self.abandon(gesture),
             Request::BeginRename(id) => state.renaming = Some(id),
             Request::EndRename(name) => self.end_rename(name),
             Request::ChooseTexture(id) => self.ask_file(ctx, Wanted::Texture(id), ""),
@@ -137,6 +140,7 @@ impl App {
             Request::Recover(at) => self.unless_unsaved(ctx, After::Recover(at)),
             Request::DiscardWork(at) => self.discard_work(at),
             Request::Layout(layout) => state.layout = layout,
+            Request::Missing(request) => self.answer_missing(ctx, request),
             Request::Keys(request) => answer_keys(ctx, request),
             Request::EndGreeting => state.greeting = false,
             Request::Preferences(preferences) => self.take_preferences(ctx, &preferences),
@@ -175,14 +179,14 @@ impl App {
                 self.state.panels = self.state.panels.with(Panel::Outline, true);
                 self.state.renaming = Some(id);
             }
-            Ok(Intent::Undo) => self.walk(|state| {
-                let label = state.history.undo(&mut state.scene);
-                state.tell(label.map(|label| format!("Undone: {label}")));
-            }),
-            Ok(Intent::Redo) => self.walk(|state| {
-                let label = state.history.redo(&mut state.scene);
-                state.tell(label.map(|label| format!("Redone: {label}")));
-            }),
+            Ok(Intent::Undo) => {
+                let label = self.undo();
+                self.state.tell(label.map(|label| format!("Undone: {label}")));
+            }
+            Ok(Intent::Redo) => {
+                let label = self.redo();
+                self.state.tell(label.map(|label| format!("Redone: {label}")));
+            }
             Ok(Intent::File(intent)) => self.file(ctx, intent),
             Ok(Intent::Clipboard(intent)) => self.clipboard(ctx, intent, &label),
             Ok(Intent::AskCamera) => self.dialogs.ask_material(MaterialDialog::of_camera()),
@@ -244,6 +248,11 @@ impl App {
                 self.ask_file(ctx, Wanted::ExportTo, &name);
             }
             FileIntent::Recover => self.unless_unsaved(ctx, After::Recover(0)),
+            FileIntent::RecoverDiscarded => match &self.state.discarded[..] {
+                [_] => self.unless_unsaved(ctx, After::RecoverDiscarded(0)),
+                all => self.dialogs.list_discarded(all.to_vec()),
+            },
+            FileIntent::FindMissing => self.find_missing(ctx, None),
             FileIntent::Reload => self.reload_models(ctx, None),
             FileIntent::NewAncestor => self.unless_unsaved(ctx, After::NewAncestor),
         }
@@ -316,20 +325,36 @@ impl App {
 
     /// Adds an item, which becomes the subject.
     pub(crate) fn add(&mut self, command: Command, subject: Subject, label: &str) {
-        self.change(command, Gesture::Whole, label);
-        selection::set_subject(&mut self.state.view, subject);
+        self.change_then(command, Gesture::Whole, label, |state| {
+            selection::set_subject(&mut state.view, subject);
+        });
     }
 
     /// Changes the scene. Every change except undo and redo ends here.
     pub(crate) fn change(&mut self, command: Command, gesture: Gesture, label: &str) {
+        self.change_then(command, gesture, label, |_| {});
+    }
+
+    /// As [`Self::change`]; then selects something, which redo selects again.
+    pub(crate) fn change_then(
+        &mut self,
+        command: Command,
+        gesture: Gesture,
+        label: &str,
+        select: impl FnOnce(&mut State),
+    ) {
         let state = &mut self.state;
         let before = state.scene.clone();
+        let selected = Selected::of(&state.view, &state.several);
         let repeats = state.next_repeat(gesture);
         match state.history.perform(&mut state.scene, command, gesture, label) {
             Ok(()) => {
                 (state.gesture, state.repeats) = (gesture, repeats);
                 state.message = None;
                 selection::follow(&before, &state.scene, &mut state.view);
+                select(state);
+                let after = Selected::of(&state.view, &state.several);
+                state.history.note_selected(selected, after);
             }
             Err(error) => self.refuse(error.to_string()),
         }
@@ -345,31 +370,6 @@ impl App {
                 state.message = None;
             }
             Err(error) => self.refuse(error.to_string()),
-        }
-    }
-
-    /// Moves through the history.
-    fn walk(&mut self, steps: impl FnOnce(&mut State)) {
-        let before = self.state.scene.clone();
-        self.state.message = None;
-        steps(&mut self.state);
-        self.follow_steps();
-        self.state.gesture = Gesture::Whole;
-        let State { scene, view, history, .. } = &mut self.state;
-        selection::follow(&before, scene, view);
-        // The user has looked around since the object that the camera orbits was moved.
-        let pose = |scene: &Scene| scene.selected_camera(view).pose.clone();
-        let placement = |scene: &Scene| {
-            let object = view.object.and_then(|id| scene.objects.get(id));
-            object.map(|object| object.placement.clone())
-        };
-        if before.cameras.get(view.camera).is_some()
-            && pose(&before) == pose(scene)
-            && placement(&before) != placement(scene)
-            && let Some(command) = transform::aimed_again(scene, view)
-        {
-            // A camera that is there can be aimed.
-            let _ = history.navigate(scene, command, Gesture::Whole);
         }
     }
 

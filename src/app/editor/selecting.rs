@@ -57,11 +57,13 @@ impl App {
             objects.chain(cameras).chain(scene.lights.ids().map(ItemId::Light)).collect()
         };
         let before = ids(&self.state.scene);
-        self.add(command, subject, label);
-        let added: Vec<ItemId> = ids(&self.state.scene).difference(&before).copied().collect();
-        if let (Some(first), true) = (self.state.selected(), added.len() > 1) {
-            self.state.several = Others::new(first, added);
-        }
+        self.change_then(command, Gesture::Whole, label, |state| {
+            selection::set_subject(&mut state.view, subject);
+            let added: Vec<ItemId> = ids(&state.scene).difference(&before).copied().collect();
+            if let (Some(first), true) = (state.selected(), added.len() > 1) {
+                state.several = Others::new(first, added);
+            }
+        });
     }
 
     /// Takes an axis and a number from the keyboard, for the selected items.

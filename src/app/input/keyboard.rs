@@ -42,7 +42,7 @@ pub(crate) struct Keyboard {
     last_was_repeat: bool,
     presses: u64,
     waiting: Vec<Press>,
-    /// Whether the last thing that was pressed was Esc, to leave a menu, a panel or a dialog.
+    /// Whether the last thing that was pressed was Esc, and closed or left something.
     left_by_escape: bool,
     /// Whether an Esc was held back since this was last asked.
     held_escape: bool,
@@ -111,13 +111,13 @@ impl Keyboard {
         ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
     }
 
-    /// Whether an Esc was held back: it came after one that closed a menu or left a panel. Whoever
+    /// Whether an Esc was held back: it came after one that closed or left something. Whoever
     /// presses it twice there does not mean to leave the program.
     pub(crate) fn take_held_escape(ctx: &Context) -> bool {
         std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().held_escape)
     }
 
-    /// Notes that an Esc closed something that is no question.
+    /// Notes that an Esc closed something.
     pub(crate) fn note_escape(ctx: &Context) {
         ctx.plugin_or_default::<Self>().lock().left_by_escape = true;
     }
@@ -150,8 +150,7 @@ impl Keyboard {
         self.last_was_repeat = repeat;
         let left_by_escape = std::mem::take(&mut self.left_by_escape);
         if key == Key::Escape {
-            // A dialog that Esc closes may be the question whether to leave: Esc asks it again.
-            self.left_by_escape = matches!(owner, Owner::Panel | Owner::Text);
+            self.left_by_escape = owner != Owner::Viewport;
             if left_by_escape && owner == Owner::Viewport {
                 self.held_escape = true;
                 return true;

@@ -3,15 +3,19 @@
 
 use std::time::Duration;
 
+use std::collections::BTreeSet;
+use std::path::Path;
+
 use egui::{Align2, Area, Context, Frame, Id, Order, Rect, Ui, vec2};
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, MissingRequest, Request};
 use crate::app::documents::loading::Loading;
 use crate::app::input::buttons::first_key;
 use crate::app::state::{Notice, Offer, State};
 use crate::app::tasks::Task;
 use crate::app::theme;
 use crate::app::widgets::regions;
+use crate::app::widgets::text::file_name;
 use crate::edit::Gesture;
 use crate::scene::{ObjectId, UpAxis};
 
@@ -26,10 +30,16 @@ pub(crate) fn show<T>(
     making: &[Task<T>],
     requests: &mut Vec<Request>,
 ) {
+    let missing = match state.missing.dismissed {
+        true => BTreeSet::new(),
+        false => state.scene.missing_files(),
+    };
     if loading.is_empty()
         && making.is_empty()
         && state.notices.is_empty()
         && state.recoverable.is_empty()
+        && state.missing.nearby.is_empty()
+        && missing.is_empty()
     {
         return;
     }
@@ -53,6 +63,12 @@ pub(crate) fn show<T>(
         }
         for (at, work) in state.recoverable.iter().enumerate() {
             Frame::popup(ui.style()).show(ui, |ui| recoverable_ui(ui, at, work, requests));
+        }
+        if !state.missing.nearby.is_empty() {
+            Frame::popup(ui.style()).show(ui, |ui| nearby_ui(ui, state, requests));
+        }
+        if !missing.is_empty() {
+            Frame::popup(ui.style()).show(ui, |ui| missing_ui(ui, &missing, requests));
         }
         for (at, notice) in state.notices.iter().enumerate() {
             // Ids go with the notice, so that a press on one is never a click on another that has
@@ -94,8 +110,52 @@ fn recoverable_ui(ui: &mut Ui, at: usize, work: &str, requests: &mut Vec<Request
         if ui.button("Recover").on_hover_text(hint).clicked() {
             requests.push(Request::Recover(at));
         }
-        if ui.button("Discard").on_hover_text("Removes it for good").clicked() {
+        if ui
+            .button("Discard")
+            .on_hover_text("Moves it aside; File brings it back for 30 days")
+            .clicked()
+        {
             requests.push(Request::DiscardWork(at));
+        }
+    });
+}
+
+/// The missing files of the scene.
+fn missing_ui(ui: &mut Ui, missing: &BTreeSet<&Path>, requests: &mut Vec<Request>) {
+    let names: Vec<String> = missing.iter().map(|path| file_name(path)).collect();
+    let text = match &names[..] {
+        [only] => format!("{only} is missing: a placeholder takes its place"),
+        all => {
+            format!("{} files of the scene are missing: placeholders take their place", all.len())
+        }
+    };
+    ui.label(text).on_hover_text(names.join("\n"));
+    ui.horizontal(|ui| {
+        if ui.button("Find...").on_hover_text("Asks where it is").clicked() {
+            requests.push(Request::Missing(MissingRequest::Find(None)));
+        }
+        let hint = "File, Find missing files brings it back";
+        if ui.button("Dismiss").on_hover_text(hint).clicked() {
+            requests.push(Request::Missing(MissingRequest::Dismiss));
+        }
+    });
+}
+
+/// Missing files in the folder of a found one.
+fn nearby_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let found: Vec<String> =
+        state.missing.nearby.iter().map(|[_, new]| new.display().to_string()).collect();
+    let text = match &state.missing.nearby[..] {
+        [[_, new]] => format!("{} was found there, too", file_name(new)),
+        all => format!("{} more missing files were found there", all.len()),
+    };
+    ui.label(text).on_hover_text(found.join("\n"));
+    ui.horizontal(|ui| {
+        if ui.button("Use all").on_hover_text(found.join("\n")).clicked() {
+            requests.push(Request::Missing(MissingRequest::UseNearby));
+        }
+        if ui.button("Dismiss").clicked() {
+            requests.push(Request::Missing(MissingRequest::DismissNearby));
         }
     });
 }

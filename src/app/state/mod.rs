@@ -16,12 +16,12 @@ pub use crate::app::drawing::reduction::{Reduction, Shrink};
 use crate::app::panels::OpenPanels;
 use crate::edit::several::Others;
 use crate::edit::{Gesture, GesturePhase, History, selection};
-use crate::io::{Helpers, Sources, WindowState, is_example};
+use crate::io::{Fingerprint, Helpers, Sources, WindowState, is_example};
 use crate::scene::{ItemId, Light, LightId, Object, Scene, UpAxis, View};
 use laboratory::Laboratory;
 pub use last_picture::{ExplainedPixel, Measured, Plan, Statistics};
 use layout::Layout;
-pub use notices::{Message, Notice, Offer, Tone};
+pub use notices::{Message, MissingFiles, Notice, Offer, Tone};
 
 /// The number of items from which on the outline has a field that filters them.
 const MANY: usize = 12;
@@ -100,6 +100,14 @@ pub struct State {
     pub recoverable: Vec<String>,
     /// The item that is being renamed.
     pub renaming: Option<ItemId>,
+    /// What is said about missing files.
+    pub missing: MissingFiles,
+    /// What is said about each work that was discarded and can be brought back.
+    pub discarded: Vec<String>,
+    /// The content of the scene's file as this program read or wrote it last.
+    pub(crate) content: Option<Fingerprint>,
+    /// The number of scenes that were shown before this one.
+    pub(crate) generation: u32,
     /// The gesture of the last change.
     pub(crate) gesture: Gesture,
     /// How many changes it has had.
@@ -165,6 +173,10 @@ impl State {
             recent: Vec::new(),
             recoverable: Vec::new(),
             renaming: None,
+            missing: MissingFiles::default(),
+            discarded: Vec::new(),
+            content: None,
+            generation: 0,
             gesture: Gesture::Whole,
             repeats: 0,
         }

@@ -1,5 +1,7 @@
 //! What the window says: messages in the status line, notices, and what they offer.
 
+use std::path::PathBuf;
+
 use crate::edit::{Refusal, framing, items};
 use crate::scene::{Command, MaterialChoice, Object, ObjectId, Scene, Sides, Surface, View};
 
@@ -41,6 +43,15 @@ impl Notice {
             Some(Offer::Up(_)) | None => false,
         }
     }
+}
+
+/// What is said about files that the scene names and that are missing.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct MissingFiles {
+    /// Whether the notice that counts them was dismissed.
+    pub dismissed: bool,
+    /// The old and the new path of those in the folder of a file that the user has found.
+    pub nearby: Vec<[PathBuf; 2]>,
 }
 
 /// An action that a notice offers.

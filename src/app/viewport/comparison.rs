@@ -1,7 +1,7 @@
 //! Compares the picture with the exact one: a split viewport, or the amplified error.
 //!
 //! Both pictures are drawn on one background thread whenever the scene has changed, so that they
-//! always show the same moment.
+//! always show the same moment. Until they are there, the exact half is dimmed and says so.
 
 use std::sync::Arc;
 
@@ -17,6 +17,7 @@ use crate::app::tasks::Task;
 use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
 use crate::base::image::{Picture, Size};
+use crate::io::Progress;
 use crate::lab::error::{Error, amplified};
 use crate::lab::picture_source::{PictureSource as _, Reference, Studio};
 use crate::scene::{Scene, View};
@@ -39,20 +40,38 @@ pub(crate) struct Pair {
     pub(crate) error: Error,
 }
 
-/// Draws both.
-pub(crate) fn draw(of: Compared) -> Pair {
-    let mut studio = Studio::new(Shot::new(&of.scene, &of.view, &of.settings, of.size));
+/// A pair that is being drawn.
+pub(crate) struct Drawing {
+    pub(crate) of: Compared,
+    pub(crate) task: Task<Option<Box<Pair>>>,
+}
+
+/// Draws both; `None` if `progress` is cancelled.
+pub(crate) fn draw(of: Compared, progress: &Progress) -> Option<Pair> {
+    let shot = Shot::new(&of.scene, &of.view, &of.settings, of.size);
+    let mut studio = Studio::watched(shot, progress.clone());
     let exact = studio.reference(&of.settings, of.against);
+    if progress.is_cancelled() {
+        return None;
+    }
     let ours = studio.rendering(&of.settings);
+    if progress.is_cancelled() {
+        return None;
+    }
     let error = ours.error(&exact);
-    Pair { of, exact: exact.picture().clone(), ours: ours.picture().clone(), error }
+    Some(Pair { of, exact: exact.picture().clone(), ours: ours.picture().clone(), error })
 }
 
 /// The pictures, and the thread that draws them.
 #[derive(Default)]
 pub(crate) struct Comparison {
-    pub(crate) task: Option<Task<Box<Pair>>>,
+    /// The pair that is being drawn, if one is.
+    pub(crate) drawing: Option<Drawing>,
     pub(crate) drawn: Option<Box<Pair>>,
+    /// What was wanted in the last frame.
+    pub(crate) wanted: Option<Compared>,
+    /// Whether what was drawn is what the window shows now.
+    pub(crate) current: bool,
     exact: Option<TextureHandle>,
     /// The amplified error, with its factor.
     error: Option<(u16, TextureHandle)>,
@@ -60,11 +79,21 @@ pub(crate) struct Comparison {
 
 impl std::fmt::Debug for Comparison {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Comparison").field("drawing", &self.task.is_some()).finish_non_exhaustive()
+        f.debug_struct("Comparison")
+            .field("drawing", &self.drawing.is_some())
+            .finish_non_exhaustive()
     }
 }
 
 impl Comparison {
+    /// Forgets the pictures of a scene that is no longer shown.
+    pub(crate) fn forget(&mut self) {
+        if let Some(drawing) = &self.drawing {
+            drawing.task.progress.cancel();
+        }
+        (self.drawn, self.exact, self.error, self.current) = (None, None, None, false);
+    }
+
     /// Shows a pair from now on.
     pub(crate) fn take(&mut self, ctx: &Context, drawn: Box<Pair>) {
         load(ctx, &mut self.exact, "exact", &drawn.exact);
@@ -82,11 +111,16 @@ impl Comparison {
     }
 
     fn split_ui(&self, ui: &Ui, rect: Rect, part: f32, requests: &mut Vec<Request>) {
-        let Some(exact) = &self.exact else { return };
         let scale = ui.ctx().pixels_per_point();
         let x = ((rect.left() + part * rect.width()) * scale).round() / scale;
         let left = rect.with_max_x(x);
-        ui.painter().with_clip_rect(left).image(exact.id(), rect, whole(), egui::Color32::WHITE);
+        if let Some(exact) = &self.exact {
+            let painter = ui.painter().with_clip_rect(left);
+            painter.image(exact.id(), rect, whole(), egui::Color32::WHITE);
+        }
+        if !self.current {
+            dim(ui, left);
+        }
         let (dark, light) = (egui::Color32::from_black_alpha(160), egui::Color32::WHITE);
         ui.painter().vline(x, rect.y_range(), Stroke::new(3.0, dark));
         ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, light));
@@ -103,12 +137,16 @@ impl Comparison {
             let part = ((at.x - rect.left()) / rect.width()).clamp(0.02, 0.98);
             requests.push(Request::Lab(LabRequest::Compare(Compare::Split(part))));
         }
-        plate_ui(ui, left.with_max_x(x - 4.0), Align2::RIGHT_TOP, "exact".to_owned());
+        let exact = if self.current { "exact" } else { "exact: drawing" };
+        plate_ui(ui, left.with_max_x(x - 4.0), Align2::RIGHT_TOP, exact.to_owned());
         plate_ui(ui, rect.with_min_x(x + 4.0), Align2::LEFT_TOP, "drawn".to_owned());
     }
 
     fn error_ui(&mut self, ui: &Ui, rect: Rect, factor: u16) {
-        let Some(drawn) = &self.drawn else { return };
+        let Some(drawn) = &self.drawn else {
+            dim(ui, rect);
+            return plate_ui(ui, rect, Align2::LEFT_TOP, format!("Error x {factor}: drawing"));
+        };
         if self.error.as_ref().is_none_or(|(last, _)| *last != factor) {
             let mut texture = self.error.take().map(|(_, texture)| texture);
             let picture = amplified(&drawn.ours, &drawn.exact, factor);
@@ -117,9 +155,17 @@ impl Comparison {
         }
         let Some((_, texture)) = &self.error else { return };
         ui.painter().image(texture.id(), rect, whole(), egui::Color32::WHITE);
-        let text = format!("Error x {factor}: {}", in_words(&drawn.error));
-        plate_ui(ui, rect, Align2::LEFT_TOP, text);
+        let said = if self.current { in_words(&drawn.error) } else { "drawing".to_owned() };
+        if !self.current {
+            dim(ui, rect);
+        }
+        plate_ui(ui, rect, Align2::LEFT_TOP, format!("Error x {factor}: {said}"));
     }
+}
+
+/// Dims what does not show the scene as it is now.
+fn dim(ui: &Ui, rect: Rect) {
+    ui.painter().rect_filled(rect, 0.0, egui::Color32::from_black_alpha(120));
 }
 
 /// The size of the handle of the slider.
@@ -150,5 +196,24 @@ fn load(ctx: &Context, texture: &mut Option<TextureHandle>, name: &str, picture:
     match texture {
         Some(texture) => texture.set(image, TextureOptions::NEAREST),
         None => *texture = Some(ctx.load_texture(name, image, TextureOptions::NEAREST)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_comparison_that_is_cancelled_gives_no_pictures() {
+        let (scene, view) = crate::io::default_scene();
+        let (settings, size) = (Settings::default(), Size::new(64, 48));
+        for against in [Reference::Exact, Reference::Sampled] {
+            let (scene, view) = (scene.clone(), view.clone());
+            let of = Compared { scene, view, settings, size, against };
+            let progress = Progress::new();
+            assert!(draw(of.clone(), &progress).is_some());
+            progress.cancel();
+            assert!(draw(of, &progress).is_none());
+        }
     }
 }

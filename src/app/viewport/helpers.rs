@@ -169,7 +169,7 @@ fn box_ui(ui: &Ui, painter: &Painter, onto: &Projection, bounds: &Bounds, stroke
 const LETTERS: [&str; 3] = ["x", "y", "z"];
 
 /// A text on a dark plate, its middle at `at`.
-fn label_ui(ui: &Ui, painter: &Painter, at: Pos2, text: String, color: Color32) {
+pub(super) fn label_ui(ui: &Ui, painter: &Painter, at: Pos2, text: String, color: Color32) {
     let font = TextStyle::Small.resolve(ui.style());
     let galley = painter.layout_no_wrap(text, font, color);
     let size = galley.size() + vec2(8.0, 4.0);

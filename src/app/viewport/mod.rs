@@ -14,6 +14,7 @@ mod mouse;
 mod over;
 mod overlay;
 mod picking;
+mod placeholders;
 
 use std::sync::Arc;
 

@@ -4,7 +4,7 @@ use egui::{Pos2, Rect, Response, Ui};
 
 use super::gizmo::{Gizmo, Grab};
 use super::marks::Projection;
-use super::{Purpose, Viewport, axes, helpers, marks, overlay, picking};
+use super::{Purpose, Viewport, axes, helpers, marks, overlay, picking, placeholders};
 use crate::app::actions::{Also, Request};
 use crate::app::state::State;
 use crate::app::theme;
@@ -156,6 +156,7 @@ impl Viewport {
         let Some((rect, _)) = self.place else { return };
         helpers::grid_ui(ui, state, projection, self.image.as_deref());
         helpers::dimensions_ui(ui, state, projection);
+        placeholders::show(ui, state, projection);
         let first = state.outlined().first().copied();
         let [own, others] = &self.outline;
         let accent = theme::accent_on_dark();

@@ -79,7 +79,7 @@ fn nearest_depth(onto: &Onto, object: &Object, at: DVec2) -> Option<f64> {
         .collect();
     let triangles = mesh.triangles().iter().filter(|triangle| {
         let part = mesh.polygon_parts()[triangle.polygon as usize];
-        !object.hidden_parts.contains(&part)
+        object.shows_part(part)
     });
     let depths = triangles.filter_map(|triangle| {
         let [a, b, c] = triangle

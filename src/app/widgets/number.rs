@@ -8,13 +8,14 @@ use std::ops::RangeInclusive;
 
 use egui::text::CCursorRange;
 use egui::{Context, DragValue, Id, RichText, TextEdit, TextStyle, Ui, vec2};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::expression;
 use super::gestures;
 use crate::app::theme;
 use crate::base::math::Axis;
 use crate::edit::Gesture;
+use crate::edit::angles::{nearest, same_turn};
 
 /// As many characters as a number at rest has at most.
 const ROOM: usize = 8;
@@ -235,20 +236,27 @@ fn trimmed(text: &str) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// Angles as the user gave them, for as long as they still say how the thing stands: otherwise 95
-/// degrees about Y would turn into 180, 85 and 180 while they are dragged.
-pub(crate) fn kept_angles(
+/// The angles of a turn that are nearest to those shown last, which stay if they say the same:
+/// otherwise 95 degrees about Y would jump to 180, 85 and 180 while they are dragged. `canonical`
+/// is shown first; `turn` gives the turn of angles.
+pub(crate) fn shown_angles(
     ui: &Ui,
     name: &'static str,
     canonical: DVec3,
-    same: impl Fn(DVec3) -> bool,
+    turn: impl Fn(DVec3) -> DMat3,
 ) -> DVec3 {
     let id = ui.scope_id().with(name);
-    let given = ui.data(|data| data.get_temp::<[f64; 3]>(id)).map(DVec3::from_array);
-    given.filter(|given| same(*given)).unwrap_or(canonical)
+    let last = ui.data(|data| data.get_temp::<[f64; 3]>(id)).map(DVec3::from_array);
+    let shown = match last {
+        Some(last) if same_turn(turn(last), turn(canonical)) => return last,
+        Some(last) => nearest(canonical, last, turn),
+        None => canonical,
+    };
+    keep_angles(ui, name, shown);
+    shown
 }
 
-/// Keeps angles that the user gave, for [`kept_angles`].
+/// Keeps angles that the user gave, for [`shown_angles`].
 pub(crate) fn keep_angles(ui: &Ui, name: &'static str, given: DVec3) {
     ui.data_mut(|data| data.insert_temp(ui.scope_id().with(name), given.to_array()));
 }

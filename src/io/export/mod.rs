@@ -13,6 +13,7 @@ mod gltf_texture;
 mod look;
 mod names;
 mod obj;
+mod placeholders;
 
 use std::path::{Path, PathBuf};
 
@@ -92,12 +93,16 @@ pub fn export(
     check_target(path)?;
     sources.spare(path)?;
     let stem = path.file_stem().map(|it| it.to_string_lossy().into_owned()).unwrap_or_default();
+    let (scene, left_out) =
+        placeholders::without(scene).map_err(|reason| SaveError::new(path, reason))?;
+    let scene = &scene;
     let content = match format {
         Format::Obj => obj::written(&stem, scene, view),
         Format::Gltf => gltf::written(&stem, scene, view, gltf::Form::Separate),
         Format::Glb => gltf::written(&stem, scene, view, gltf::Form::Binary),
     };
     let Content { files, notes } = content.map_err(|reason| SaveError::new(path, reason))?;
+    let notes = left_out.into_iter().chain(notes).collect();
     let last = files.len().saturating_sub(1);
     let named = |(i, (name, bytes)): (usize, (String, Vec<u8>))| {
         (if i == last { path.to_owned() } else { path.with_file_name(name) }, bytes)

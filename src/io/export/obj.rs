@@ -37,7 +37,9 @@ struct Writer {
 /// The files.
 pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content, String> {
     let objects = scene.objects.iter().map(|(_, object)| object);
-    let (visible, hidden): (Vec<&Object>, Vec<&Object>) = objects.partition(|it| it.visible);
+    let (visible, mut hidden): (Vec<&Object>, Vec<&Object>) = objects.partition(|it| it.visible);
+    // A placeholder is noted with its file.
+    hidden.retain(|it| !it.model.is_placeholder());
     let mut writer = Writer {
         text: String::new(),
         looks: Looks::new(Detail::Mtl),

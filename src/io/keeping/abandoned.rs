@@ -4,7 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use super::{Lock, OwnFolders, Slot, list_lock};
+use super::origin::origin;
+use super::{Lock, OwnFolders, Slot, discarded, list_lock};
+use crate::io::error::reason;
+use crate::io::fingerprint::Fingerprint;
 
 /// Unsaved work of a program that has ended. While this value lives, no other program takes it.
 #[derive(Debug)]
@@ -15,6 +18,8 @@ pub struct Abandoned {
     pub written: SystemTime,
     /// The file in which the scene was saved before, if it was.
     pub scene_file: Option<PathBuf>,
+    /// The content of that file on which the work is based, if it is known.
+    pub content: Option<Fingerprint>,
 }
 
 impl Abandoned {
@@ -45,8 +50,8 @@ impl Abandoned {
             return None;
         };
         let written = metadata.modified().unwrap_or(SystemTime::UNIX_EPOCH);
-        let scene_file = scene_file(&slot.work);
-        Some(Self { slot, lock, written, scene_file })
+        let (scene_file, content) = origin(&slot.work);
+        Some(Self { slot, lock, written, scene_file, content })
     }
 
     /// The scene file with the work.
@@ -55,8 +60,16 @@ impl Abandoned {
         &self.slot.work
     }
 
+    /// Moves the work aside, where [`Discarded::all`](super::Discarded::all) finds it for 30 days.
+    ///
+    /// # Errors
+    /// The reason, if it cannot be moved; then it stays as it was.
+    pub fn set_aside(&self) -> Result<(), String> {
+        discarded::set_aside(&self.slot.work).map_err(|error| reason(&error))
+    }
+
     /// Removes the work for good.
-    pub fn discard(self) {
+    pub fn remove(self) {
         let Self { slot, lock, .. } = self;
         slot.remove();
         drop(lock);
@@ -65,21 +78,3 @@ impl Abandoned {
 
 /// How the names of work begin.
 pub(super) const PREFIX: &str = "work-";
-
-/// The first line of a file of work: a comment of a scene file, with the path in quotes.
-const HEAD: &str = "// unsaved changes of ";
-
-/// The first line of work on the scene in `file`.
-pub(super) fn head(file: Option<&Path>) -> String {
-    match file.and_then(Path::to_str).map(ron::to_string) {
-        Some(Ok(quoted)) => format!("{HEAD}{quoted}\n"),
-        _ => String::new(),
-    }
-}
-
-/// The file that the first line names.
-fn scene_file(work: &Path) -> Option<PathBuf> {
-    let text = fs::read_to_string(work).ok()?;
-    let quoted = text.lines().next()?.strip_prefix(HEAD)?;
-    ron::from_str::<PathBuf>(quoted).ok()
-}

@@ -10,10 +10,12 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::abandoned::{Abandoned, PREFIX, head};
+use super::abandoned::{Abandoned, PREFIX};
+use super::origin::head;
 use super::{Lock, OwnFolders, Slot, list_lock, made};
 use crate::accuracy::Settings;
 use crate::io::error::reason;
+use crate::io::fingerprint::Fingerprint;
 use crate::io::replace::{Worth, replace};
 use crate::io::scene_file::text_with_window;
 use crate::io::window_state::WindowState;
@@ -35,6 +37,8 @@ pub struct Unsaved {
     pub window: WindowState,
     /// The file in which it was saved before, if it was.
     pub file: Option<PathBuf>,
+    /// The content of that file as it was read or written last.
+    pub content: Option<Fingerprint>,
 }
 
 /// What the thread is to write next.
@@ -147,7 +151,7 @@ impl Journal {
     pub fn end(mut self) {
         self.stop();
         for taken_over in std::mem::take(&mut self.shared.desk().replaced) {
-            taken_over.discard();
+            taken_over.remove();
         }
         self.shared.slot.remove();
     }
@@ -208,7 +212,7 @@ fn keep(shared: &Shared) {
         desk.busy = false;
         drop(desk);
         shared.changed.notify_all();
-        replaced.into_iter().for_each(Abandoned::discard);
+        replaced.into_iter().for_each(Abandoned::remove);
         if ended {
             return;
         }
@@ -216,9 +220,9 @@ fn keep(shared: &Shared) {
 }
 
 fn write(path: &Path, state: &Unsaved) -> Result<(), String> {
-    let Unsaved { scene, view, settings, window, file } = state;
+    let Unsaved { scene, view, settings, window, file, content } = state;
     let text = text_with_window(path, scene, view, settings, window);
     let text = text.map_err(|error| error.to_string())?;
-    let text = head(file.as_deref()) + &text;
+    let text = head(file.as_deref(), *content) + &text;
     replace(path, text.as_bytes(), Worth::Journal).map_err(|error| error.to_string())
 }

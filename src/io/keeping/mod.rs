@@ -3,6 +3,7 @@
 //! ```text
 //! state folder    work-<process>-<number>.marraztu   the unsaved scene of a running program
 //!                 work-<process>-<number>.lock       locked while that program runs
+//!                 discarded-<time>-....marraztu      work that was discarded, for 30 days
 //!                 lock                               locked while a program looks for others
 //! config folder   preferences.ron                    theme, panels, scale, window, recent files
 //! ```
@@ -11,10 +12,13 @@
 //! taken was left by a program that crashed or was killed.
 
 mod abandoned;
+mod discarded;
 mod journal;
+mod origin;
 mod preferences;
 
 pub use abandoned::Abandoned;
+pub use discarded::Discarded;
 pub use journal::{Journal, Unsaved};
 pub use preferences::{Helpers, MOST_RECENT, Preferences, Theme};
 

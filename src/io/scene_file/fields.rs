@@ -51,17 +51,25 @@ impl Numbers {
 
     /// Those of the numbers that are below `count`.
     pub(super) fn below(&self, count: usize) -> BTreeSet<u32> {
+        let end = u32::try_from(count).unwrap_or(u32::MAX);
+        self.ascending().take_while(|number| *number < end).collect()
+    }
+
+    /// The smallest numbers, at most `most` of them.
+    pub(super) fn smallest(&self, most: usize) -> BTreeSet<u32> {
+        self.ascending().take(most).collect()
+    }
+
+    /// The numbers in order. A number that is named repeatedly counts once.
+    fn ascending(&self) -> impl Iterator<Item = u32> {
         let mut runs = self.0.clone();
         runs.sort_unstable();
-        let end = u32::try_from(count).unwrap_or(u32::MAX);
-        let mut numbers = BTreeSet::new();
         let mut next = 0;
-        for (first, last) in runs {
-            // A number that is named repeatedly counts once.
-            numbers.extend(next.max(first)..end.min(last.saturating_add(1)));
-            next = next.max(last.saturating_add(1));
-        }
-        numbers
+        runs.into_iter().flat_map(move |(first, last)| {
+            let run = next.max(first)..last.saturating_add(1);
+            next = next.max(run.end);
+            run
+        })
     }
 }
 
@@ -102,6 +110,7 @@ mod tests {
         assert_eq!(Numbers::try_from(text), Ok(numbers.clone()));
         assert_eq!(numbers.below(4001), all);
         assert_eq!(numbers.below(8), [0, 1, 2, 5, 7].into());
+        assert_eq!(numbers.smallest(4), [0, 1, 2, 5].into());
         assert!(Numbers::try_from("three".to_owned()).is_err());
     }
 
@@ -111,5 +120,6 @@ mod tests {
         let numbers = Numbers::try_from(text).unwrap();
         assert_eq!(numbers.below(3), [0, 1, 2].into());
         assert_eq!(numbers.below(0), BTreeSet::new());
+        assert_eq!(numbers.smallest(3), [0, 1, 2].into());
     }
 }

@@ -3,13 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use super::box_sizes::BoxSizes;
 use super::format::{FileModel, FileScene, FileTexture};
 use super::save::{file_model, file_texture};
 use super::{SceneFileError, open, paths};
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
+use crate::io::error::LoadError;
 use crate::io::examples;
-use crate::io::findings::Finding;
+use crate::io::findings::{Finding, FindingKind, Findings};
 use crate::io::obj::load_with;
 use crate::io::progress::Progress;
 use crate::io::texture::Pictures;
@@ -48,22 +50,26 @@ impl Known {
     }
 }
 
-/// The models and textures that a scene file names, loaded.
-pub(super) struct Files<'a> {
+/// The models and textures that a scene file names, loaded. A placeholder takes the place of each
+/// that is missing or cannot be read.
+pub(super) struct Files {
     folder: PathBuf,
-    relocated: &'a BTreeMap<PathBuf, PathBuf>,
     models: BTreeMap<ModelKey, Shared<Model>>,
     textures: BTreeMap<String, Shared<Texture>>,
     /// Those of models and of textures: one file may be both.
     pictures: Pictures,
+    /// What was found in the files.
     pub(super) findings: Vec<Finding>,
+    /// The files that are missing or cannot be read.
+    pub(super) lost: Findings,
 }
 
-impl<'a> Files<'a> {
-    pub(super) fn new(folder: PathBuf, relocated: &'a BTreeMap<PathBuf, PathBuf>) -> Self {
+impl Files {
+    /// The files of the scene file `name` in `folder`.
+    pub(super) fn new(folder: PathBuf, name: &str) -> Self {
         let (models, textures) = (BTreeMap::new(), BTreeMap::new());
-        let pictures = Pictures::default();
-        Self { folder, relocated, models, textures, pictures, findings: Vec::new() }
+        let (pictures, lost) = (Pictures::default(), Findings::new(name));
+        Self { folder, models, textures, pictures, findings: Vec::new(), lost }
     }
 
     /// Takes models and textures that need not be read. A file name that is not text is skipped: no
@@ -87,8 +93,7 @@ impl<'a> Files<'a> {
         if examples::is_example(Path::new(path)) {
             return PathBuf::from(path);
         }
-        let place = paths::plain(&self.folder.join(path));
-        self.relocated.get(&place).cloned().unwrap_or(place)
+        paths::plain(&self.folder.join(path))
     }
 
     pub(super) fn load(
@@ -103,56 +108,61 @@ impl<'a> Files<'a> {
         let is_new = |model: &&FileModel| !self.models.contains_key(&key(model));
         let models: Vec<&FileModel> =
             all.filter(is_new).filter(|model| keys.insert(key(model))).collect();
-        let textures: BTreeSet<&str> = file
-            .objects
-            .iter()
-            .filter_map(|object| object.texture.as_ref())
+        let mut lost = Vec::new();
+        for (i, model) in models.iter().enumerate() {
+            let (from, to) = (share(i, models.len()), share(i + 1, models.len()));
+            match self.load_model(model, name, &progress.part(from, to))? {
+                Some(loaded) => drop(self.models.insert(key(model), loaded)),
+                None => lost.push(*model),
+            }
+        }
+        // Last, since their size goes by that of the others.
+        let sizes = BoxSizes::new(file, |model| self.models.get(&key(model)).map(|model| &**model));
+        for model in lost {
+            if let FileModel::File { path, .. } = model {
+                let (_, options) = read_options(model, name)?;
+                let placeholder =
+                    Model::placeholder(complete(&self.place(path)), options, sizes.side(model));
+                self.models.insert(key(model), Shared::new(placeholder));
+            }
+        }
+        self.load_textures(file)
+    }
+
+    fn load_textures(&mut self, file: &FileScene) -> Result<(), SceneFileError> {
+        let chosen = file.objects.iter().filter_map(|object| object.texture.as_ref());
+        let paths: BTreeSet<&str> = chosen
             .map(|texture| texture.path.as_str())
             .filter(|path| !self.textures.contains_key(*path))
             .collect();
-        self.refuse_missing(&models, &textures, name)?;
-        for (i, model) in models.iter().enumerate() {
-            let (from, to) = (share(i, models.len()), share(i + 1, models.len()));
-            let loaded = self.load_model(model, name, &progress.part(from, to))?;
-            self.models.insert(key(model), loaded);
-        }
-        for path in textures {
+        for path in paths {
             let texture = match crate::io::own_texture(path) {
                 Some(own) => own,
-                None => {
-                    let place = self.place(path);
-                    match examples::content(&place) {
-                        Some(content) => examples::texture(&place, content)?,
-                        None => self.pictures.texture(&place, &mut self.findings)?,
-                    }
-                }
+                None => self.load_texture(path)?,
             };
             self.textures.insert(path.to_owned(), texture);
         }
         Ok(())
     }
 
-    fn refuse_missing(
-        &self,
-        models: &[&FileModel],
-        textures: &BTreeSet<&str>,
-        name: &str,
-    ) -> Result<(), SceneFileError> {
-        let of_models = models.iter().filter_map(|model| match model {
-            FileModel::File { path, .. } => Some(path.as_str()),
-            FileModel::Own(_) => None,
-        });
-        let mut missing: Vec<PathBuf> = of_models
-            .chain(textures.iter().copied().filter(|path| crate::io::own_texture(path).is_none()))
-            .map(|path| self.place(path))
-            .filter(|place| examples::content(place).is_none() && !place.exists())
-            .collect();
-        missing.sort();
-        missing.dedup();
-        if missing.is_empty() {
-            return Ok(());
+    fn load_texture(&mut self, path: &str) -> Result<Shared<Texture>, SceneFileError> {
+        let place = self.place(path);
+        let loaded = match examples::content(&place) {
+            Some(content) => examples::texture(&place, content),
+            None => self.pictures.texture(&place, &mut self.findings),
+        };
+        match loaded {
+            Ok(texture) => Ok(texture),
+            Err(LoadError::Cancelled) => Err(LoadError::Cancelled.into()),
+            Err(error) => {
+                if place.exists() {
+                    self.lost.add(FindingKind::TextureUnreadable, &error.to_string(), None);
+                } else {
+                    self.lost.add(FindingKind::TextureMissing, path, None);
+                }
+                Ok(Shared::new(Texture::placeholder(complete(&place))))
+            }
         }
-        Err(SceneFileError::Missing { file: name.to_owned(), missing })
     }
 
     /// The same file, loaded with another crease angle: it is not read twice.
@@ -164,37 +174,75 @@ impl<'a> Files<'a> {
         others.next().map(|(_, loaded)| loaded)
     }
 
+    /// A model of the scene; `None` if its file is missing or cannot be read.
     fn load_model(
         &mut self,
         model: &FileModel,
         name: &str,
         progress: &Progress,
-    ) -> Result<Shared<Model>, SceneFileError> {
-        let fail = |reason: String| SceneFileError::File { file: name.to_owned(), reason };
-        match model {
-            FileModel::Own(own) => crate::io::own_model(own)
-                .ok_or_else(|| fail(format!("there is no built-in model \"{own}\""))),
-            FileModel::File { path, up, scale, winding, crease, bumps } => {
-                let scale = Scale::new(*scale)
-                    .ok_or_else(|| fail(format!("the scale of {path} has to be above 0")))?;
-                let crease = Crease::new(*crease).ok_or_else(|| {
-                    fail(format!("the crease angle of {path} has to be from 0 to 180 degrees"))
-                })?;
-                if let Some(other) = self.with_other_crease(model) {
-                    return Ok(Shared::new(other.with_crease(crease)));
-                }
-                let options =
-                    LoadOptions { up: *up, scale, winding: *winding, crease, bumps: *bumps };
-                let place = self.place(path);
-                let loaded = match examples::content(&place) {
-                    Some(content) => examples::model(&place, content, &options, progress)?,
-                    None => load_with(&place, &options, &mut self.pictures, progress)?,
-                };
+    ) -> Result<Option<Shared<Model>>, SceneFileError> {
+        let (path, options) = match model {
+            FileModel::Own(own) => {
+                let own_model = crate::io::own_model(own);
+                return own_model.map(Some).ok_or_else(|| SceneFileError::File {
+                    file: name.to_owned(),
+                    reason: format!("there is no built-in model \"{own}\""),
+                });
+            }
+            FileModel::File { .. } => read_options(model, name)?,
+        };
+        if let Some(other) = self.with_other_crease(model) {
+            return Ok(Some(Shared::new(other.with_crease(options.crease))));
+        }
+        let place = self.place(path);
+        let loaded = match examples::content(&place) {
+            Some(content) => examples::model(&place, content, &options, progress),
+            None => load_with(&place, &options, &mut self.pictures, progress),
+        };
+        match loaded {
+            Ok(loaded) => {
                 self.findings.extend(loaded.findings);
-                Ok(Shared::new(loaded.model))
+                Ok(Some(Shared::new(loaded.model)))
+            }
+            Err(LoadError::Cancelled) => Err(LoadError::Cancelled.into()),
+            Err(error) => {
+                if place.exists() {
+                    self.lost.add(FindingKind::ModelUnreadable, &error.to_string(), None);
+                } else {
+                    self.lost.add(FindingKind::ModelMissing, path, None);
+                }
+                Ok(None)
             }
         }
     }
+}
+
+/// The path of a model and how it is read.
+///
+/// # Errors
+/// If a number of them is not valid.
+fn read_options<'a>(
+    model: &'a FileModel,
+    name: &str,
+) -> Result<(&'a str, LoadOptions), SceneFileError> {
+    let fail = |reason: String| SceneFileError::File { file: name.to_owned(), reason };
+    let FileModel::File { path, up, scale, winding, crease, bumps } = model else {
+        return Ok(("", LoadOptions::default()));
+    };
+    let scale =
+        Scale::new(*scale).ok_or_else(|| fail(format!("the scale of {path} has to be above 0")))?;
+    let crease = Crease::new(*crease).ok_or_else(|| {
+        fail(format!("the crease angle of {path} has to be from 0 to 180 degrees"))
+    })?;
+    Ok((path, LoadOptions { up: *up, scale, winding: *winding, crease, bumps: *bumps }))
+}
+
+/// A path from the root on, which stays valid if the current folder changes.
+fn complete(path: &Path) -> PathBuf {
+    if examples::is_example(path) {
+        return path.to_owned();
+    }
+    std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned())
 }
 
 #[expect(clippy::cast_precision_loss, reason = "for the eye")]
@@ -202,7 +250,7 @@ fn share(i: usize, of: usize) -> f64 {
     i as f64 / of.max(1) as f64
 }
 
-impl open::Needs for Files<'_> {
+impl open::Needs for Files {
     fn model(&self, model: &FileModel) -> Shared<Model> {
         self.models.get(&key(model)).expect("every model of the file was loaded").clone()
     }

@@ -3,7 +3,6 @@
 //! They have the form that they have in scene files, with absolute paths, since the text can be
 //! pasted into any scene.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -140,8 +139,7 @@ pub fn items_of_text(
         settings: Settings::default(),
     };
     open::check_counts(&file).map_err(fail)?;
-    let relocated = BTreeMap::new();
-    let mut files = Files::new(PathBuf::new(), &relocated);
+    let mut files = Files::new(PathBuf::new(), NAME);
     files.know(&known);
     files.load(&file, NAME, progress)?;
     let (scene, _) = open::scene(&file, &files, &mut Findings::new(NAME)).map_err(fail)?;

@@ -4,6 +4,7 @@
 //! Models are not in it but named, by their path relative to the file's folder, so that a folder
 //! with both can be moved. The view and the settings are saved with the scene; the history is not.
 
+mod box_sizes;
 mod fields;
 mod files;
 mod format;
@@ -15,7 +16,6 @@ mod save;
 mod view;
 mod words;
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 pub use self::files::Known;
@@ -26,6 +26,7 @@ use self::format::{FileScene, Head, VERSION};
 use super::error::{LoadError, shown};
 use super::examples;
 use super::findings::{Finding, Findings, joined};
+use super::fingerprint::Fingerprint;
 use super::progress::Progress;
 use super::read::{MOST_WORDS, read, utf_8};
 use super::replace::{SaveError, Worth, replace};
@@ -50,6 +51,8 @@ pub struct Opened {
     pub settings: Settings,
     /// The findings in its models.
     pub findings: Vec<Finding>,
+    /// The content of the file.
+    pub content: Fingerprint,
 }
 
 /// Why a scene file cannot be opened. Nothing has changed then.
@@ -75,22 +78,9 @@ pub enum SceneFileError {
         /// What is wrong.
         reason: String,
     },
-    /// Models or textures that it names are missing.
-    #[error("{file} names files that are not there: {}", listed(missing))]
-    Missing {
-        /// The scene file's path, as the user gave it.
-        file: String,
-        /// The paths that the files should have; [`open_with`] takes the real ones.
-        missing: Vec<PathBuf>,
-    },
-    /// A model or a texture cannot be loaded.
+    /// The scene file cannot be read, or opening was cancelled.
     #[error(transparent)]
     Model(#[from] LoadError),
-}
-
-fn listed(paths: &[PathBuf]) -> String {
-    let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
-    names.join(", ")
 }
 
 /// Saves a scene; the file that was there is kept, with `~` after its name.
@@ -98,10 +88,10 @@ fn listed(paths: &[PathBuf]) -> String {
 /// # Errors
 /// If the file, or something in the scene, cannot be written. An existing file stays as it was.
 pub fn save(path: &Path, scene: &Scene, view: &View, settings: &Settings) -> Result<(), SaveError> {
-    save_with_window(path, scene, view, settings, &WindowState::DEFAULT)
+    save_with_window(path, scene, view, settings, &WindowState::DEFAULT).map(|_content| ())
 }
 
-/// Saves a scene as [`save()`] does, with the state of the window.
+/// Saves a scene as [`save()`] does, with the state of the window. Returns the content of the file.
 ///
 /// # Errors
 /// As [`save()`].
@@ -111,10 +101,11 @@ pub fn save_with_window(
     view: &View,
     settings: &Settings,
     window: &WindowState,
-) -> Result<(), SaveError> {
+) -> Result<Fingerprint, SaveError> {
     let text = text_with_window(path, scene, view, settings, window)?;
     Sources::of(scene).spare(path)?;
-    replace(path, text.as_bytes(), Worth::Work)
+    replace(path, text.as_bytes(), Worth::Work)?;
+    Ok(Fingerprint::of(text.as_bytes()))
 }
 
 /// The text that [`save()`] would write to `path`.
@@ -149,37 +140,25 @@ pub(in crate::io) fn text_with_window(
     Ok(text + "\n")
 }
 
-/// Opens a scene file.
+/// Opens a scene file. Models and textures that are missing or cannot be read become placeholders,
+/// see [`Model::is_placeholder`](crate::scene::Model::is_placeholder), with a finding each.
 ///
 /// # Errors
-/// If the file cannot be read or understood, or a model that it names cannot be loaded; and if
-/// `progress` is cancelled.
+/// If the file cannot be read or understood, and if `progress` is cancelled.
 pub fn open(path: &Path, progress: &Progress) -> Result<Opened, SceneFileError> {
-    open_with(path, &BTreeMap::new(), progress)
-}
-
-/// Opens a scene file whose models or textures are partly elsewhere: `relocated` maps the paths of
-/// [`SceneFileError::Missing`] to the real ones.
-///
-/// # Errors
-/// As [`open()`].
-pub fn open_with(
-    path: &Path,
-    relocated: &BTreeMap<PathBuf, PathBuf>,
-    progress: &Progress,
-) -> Result<Opened, SceneFileError> {
     let name = shown(path);
     if let Some(text) = examples::scene_text(path) {
         let folder = path.parent().unwrap_or(path).to_owned();
-        return open_text(text, &name, folder, relocated, progress);
+        return open_text(text, &name, folder, progress);
     }
-    let bytes = utf_8(read(path, MOST_WORDS, &Progress::new())?);
-    let text = String::from_utf8(bytes).map_err(|_bytes| SceneFileError::File {
+    let bytes = read(path, MOST_WORDS, &Progress::new())?;
+    let content = Fingerprint::of(&bytes);
+    let text = String::from_utf8(utf_8(bytes)).map_err(|_bytes| SceneFileError::File {
         file: name.clone(),
         reason: "this is not a scene file: it is not text".to_owned(),
     })?;
     let folder = path.parent().map_or_else(PathBuf::new, paths::plain);
-    open_text(&text, &name, folder, relocated, progress)
+    Ok(Opened { content, ..open_text(&text, &name, folder, progress)? })
 }
 
 /// Opens the text of a scene file called `name`, with paths relative to `folder`.
@@ -187,18 +166,19 @@ pub(in crate::io) fn open_text(
     text: &str,
     name: &str,
     folder: PathBuf,
-    relocated: &BTreeMap<PathBuf, PathBuf>,
     progress: &Progress,
 ) -> Result<Opened, SceneFileError> {
     let fail = |reason: String| SceneFileError::File { file: name.to_owned(), reason };
     let file = file_scene(text, name)?;
     open::check_counts(&file).map_err(fail)?;
-    let mut files = Files::new(folder, relocated);
+    let mut files = Files::new(folder, name);
     files.load(&file, name, progress)?;
-    let mut own = Findings::new(name);
+    let mut own = std::mem::take(&mut files.lost);
     let (scene, view) = open::scene(&file, &files, &mut own).map_err(fail)?;
     let findings = joined(own.into_list().into_iter().chain(files.findings).collect());
-    Ok(Opened { scene, view, window: file.view.window(), settings: file.settings, findings })
+    let (window, settings) = (file.view.window(), file.settings);
+    let content = Fingerprint::of(text.as_bytes());
+    Ok(Opened { scene, view, window, settings, findings, content })
 }
 
 /// The folder of a file, from the root on.

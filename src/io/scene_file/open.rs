@@ -21,6 +21,10 @@ use crate::scene::{
 /// The most items of a kind in a scene: each is looked up among all others.
 const MOST_ITEMS: usize = 10_000;
 
+/// The most hidden parts of missing models that are kept, so that a damaged file costs little
+/// memory.
+const MOST_HIDDEN: usize = 1_000_000;
+
 /// Checks that there are few enough items for a scene.
 ///
 /// # Errors
@@ -73,9 +77,11 @@ pub(super) fn scene(
             error => format!("{what}: {error}"),
         })
     };
+    let mut room = MOST_HIDDEN;
     for (at, object) in file.objects.iter().enumerate() {
         let what = format!("object {} \"{}\"", object.id, object.name);
-        let item = read_object(object, needs).map_err(|reason| format!("{what}: {reason}"))?;
+        let item =
+            read_object(object, needs, &mut room).map_err(|reason| format!("{what}: {reason}"))?;
         insert(at, Item::Object(ObjectId(object.id), Box::new(item)), object.id, what)?;
     }
     for (at, camera) in file.cameras.iter().enumerate() {
@@ -142,7 +148,8 @@ pub(super) fn read_material(material: &MaterialChoice) -> Result<MaterialChoice,
     Ok(material.clone())
 }
 
-fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String> {
+/// An object of the file. `room` is left for the hidden parts of missing models.
+fn read_object(object: &FileObject, needs: &dyn Needs, room: &mut usize) -> Result<Object, String> {
     finite("its placement", object.placement.as_flattened())?;
     finite("its spin", &[object.spin.speed, object.spin.since])?;
     finite("its opacity", &[object.opacity])?;
@@ -150,8 +157,14 @@ fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String>
         finite("its texture", &[texture.offset, texture.scale].concat())?;
     }
     let model = needs.model(&object.model);
-    // The model may have changed since, and have fewer parts now.
-    let hidden_parts = object.hidden_parts.below(model.mesh.parts().len());
+    let hidden_parts = if model.is_placeholder() {
+        let kept = object.hidden_parts.smallest(*room);
+        *room -= kept.len();
+        kept
+    } else {
+        // The model may have changed since, and have fewer parts now.
+        object.hidden_parts.below(model.mesh.parts().len())
+    };
     Ok(Object {
         name: object.name.clone(),
         visible: object.visible,

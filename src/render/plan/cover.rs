@@ -49,7 +49,7 @@ impl Cover {
         let mesh = &object.model.mesh;
         let parts = u32::try_from(mesh.parts().len()).unwrap_or(u32::MAX);
         let textured = !mesh.uvs().is_empty();
-        (0..parts).filter(|part| !object.hidden_parts.contains(part)).any(|part| {
+        (0..parts).filter(|part| object.shows_part(*part)).any(|part| {
             let cover = Self::of(&object.part_look(part), textured, transparency);
             matches!(cover, Self::Transparent(_))
         })

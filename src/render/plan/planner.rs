@@ -201,7 +201,7 @@ impl Planner<'_> {
 
     /// The pipeline of each part; `None` for parts that are hidden or not opaque enough.
     fn part_pipelines(&self, into: &mut Planning, ground: &Ground<'_>) -> Vec<Option<u32>> {
-        let shown = |part: &u32| !ground.object.hidden_parts.contains(part);
+        let shown = |part: &u32| ground.object.shows_part(*part);
         (0..ground.object.model.mesh.parts().len())
             .map(|part| u32::try_from(part).expect("parts are numbered by 32 bits"))
             .map(|part| Some(part).filter(shown))

@@ -110,7 +110,7 @@ fn name(shining: &Shining) -> String {
 /// How a part of an object casts shadows; `None` if it is not drawn.
 fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
     let look = object.part_look(part);
-    if object.hidden_parts.contains(&part) || look.opacity < 0.5 {
+    if !object.shows_part(part) || look.opacity < 0.5 {
         return None;
     }
     let mapped = !object.model.mesh.uvs().is_empty();

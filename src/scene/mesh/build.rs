@@ -77,6 +77,7 @@ impl Mesh {
             points: computed.points,
             corners: corner_points,
             triangles_only,
+            is_placeholder: false,
             found: Found::default(),
         })
     }
@@ -99,6 +100,7 @@ impl Mesh {
             points,
             corners,
             triangles_only: self.triangles_only,
+            is_placeholder: self.is_placeholder,
             found: Found::default(),
         }
     }

@@ -22,6 +22,7 @@ mod fans;
 mod normals;
 mod offset;
 pub(super) mod outlines;
+mod placeholder;
 mod points;
 pub(super) mod ray_tree;
 mod splits;
@@ -138,6 +139,8 @@ pub struct Mesh {
     pub(super) corners: CornerPoints,
     /// Whether each polygon is one triangle.
     pub(super) triangles_only: bool,
+    /// Whether it is a box in the place of a missing shape.
+    pub(super) is_placeholder: bool,
     pub(super) found: Found,
 }
 
@@ -216,6 +219,7 @@ impl PartialEq for Mesh {
             && self.smoothing == other.smoothing
             && self.points == other.points
             && self.corners == other.corners
+            && self.is_placeholder == other.is_placeholder
     }
 }
 

@@ -68,12 +68,28 @@ pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, r
     if state.renaming == Some(item) {
         rename_ui(ui, requests, text, name);
     } else {
-        let galley = controls::text(ui, name, TextStyle::Body, text.width());
+        let missing = is_missing(&state.scene, item);
+        let color = if missing { ui.visuals().warn_fg_color } else { color };
+        let name = if missing { format!("{name} (missing)") } else { name.to_owned() };
+        let galley = controls::text(ui, &name, TextStyle::Body, text.width());
         controls::put_text(ui, text, galley, color);
     }
     controls::focus_ring(ui, rect, &response);
     clicks(state, requests, item, &response);
     fold_ui(ui, state, row, unfolded, color)
+}
+
+/// Whether a file of an item is missing.
+fn is_missing(scene: &Scene, item: ItemId) -> bool {
+    match item {
+        ItemId::Object(id) => {
+            scene.objects.get(id).is_some_and(|object| object.missing_files().next().is_some())
+        }
+        ItemId::Camera(id) => {
+            scene.cameras.get(id).is_some_and(|camera| camera.missing_file().is_some())
+        }
+        ItemId::Light(_) => false,
+    }
 }
 
 /// The line's ground: filled for the item that the keys act on, marked at the left for the selected
@@ -298,6 +314,9 @@ fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &R
                 Action::Split,
                 Action::ChooseTexture,
             ]);
+        }
+        if is_missing(&state.scene, item) {
+            actions.insert(0, Action::FindMissing);
         }
         for action in actions {
             requests.extend(action.menu_item(ui, state).map(Request::from));

@@ -3,19 +3,19 @@
 use egui::Ui;
 use glam::{DMat3, DVec3};
 
-use super::object::same_turn;
-use super::{material, number_row, steps_ui};
+use super::{material, missing, number_row, steps_ui};
 use crate::app::actions::{Request, change};
 use crate::app::panels::view_switches::frame_ui;
 use crate::app::state::State;
 use crate::app::widgets::controls::{Switch, row, section};
-use crate::app::widgets::number::{Number, keep_angles, kept_angles, vector};
+use crate::app::widgets::number::{Number, keep_angles, shown_angles, vector};
 use crate::base::math::{self, Axis};
 use crate::edit::{Gesture, items, placement};
 use crate::scene::{Camera, CameraId, Lens};
 
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId) {
     let Some(camera) = state.scene.cameras.get(id) else { return };
+    missing::show(ui, requests, camera.missing_file().into_iter());
     section(ui, "Transform", true, |ui| {
         pose_ui(ui, state, requests, id, camera);
         row(ui, "Moves", |ui| frame_ui(ui, state, requests));
@@ -35,8 +35,7 @@ fn pose_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId
         change(requests, format!("Move {}", camera.name), gesture, command);
     }
     let canonical = placement::camera_degrees(pose);
-    let same = |given| same_turn(camera_turn(given), camera_turn(canonical));
-    let given = kept_angles(ui, "angles", canonical, same);
+    let given = shown_angles(ui, "angles", canonical, camera_turn);
     let rows = [
         ("Yaw", "Degrees about the world's Y: to the left"),
         ("Pitch", "Degrees about the camera's X: up"),

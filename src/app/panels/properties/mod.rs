@@ -4,6 +4,7 @@ mod camera;
 mod crease;
 mod light;
 mod material;
+mod missing;
 mod object;
 mod several;
 mod surface;
@@ -29,10 +30,11 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     title(ui, state, item);
     let others = several::note_ui(ui, state, item);
     let asked = requests.len();
-    // Ids of fields go with the item, so that a number typed for one never lands in another.
+    // Ids of fields go with the item and its scene, so that a number typed for one never lands in
+    // another.
     let area = ScrollArea::vertical().id_salt("properties").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
-        ui.push_id(item, |ui| match item {
+        ui.push_id((state.generation, item), |ui| match item {
             ItemId::Object(id) => object::show(ui, state, requests, id),
             ItemId::Camera(id) => camera::show(ui, state, requests, id),
             ItemId::Light(id) => light::show(ui, state, requests, id),

@@ -3,12 +3,12 @@
 use egui::{Button, Id, Ui};
 use glam::{DMat3, DMat4, DVec3};
 
-use super::{crease, material, number_row, steps_ui, surface};
+use super::{crease, material, missing, number_row, steps_ui, surface};
 use crate::app::actions::{Request, change};
 use crate::app::state::State;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Choice, Switch, choices, fact, row, section};
-use crate::app::widgets::number::{Number, keep_angles, kept_angles, short, vector};
+use crate::app::widgets::number::{Number, keep_angles, short, shown_angles, vector};
 use crate::app::widgets::text::grouped;
 use crate::base::Shared;
 use crate::base::math::{self, Axis};
@@ -20,6 +20,7 @@ const LETTERS: [&str; 3] = ["X", "Y", "Z"];
 
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: ObjectId) {
     let Some(object) = state.scene.objects.get(id) else { return };
+    missing::show(ui, requests, object.missing_files());
     section(ui, "Transform", true, |ui| placement_ui(ui, state, requests, id, object));
     section(ui, "Material", true, |ui| {
         let label = format!("Material of {}", object.name);
@@ -56,9 +57,7 @@ fn placement_ui(
     }
     let hint = "Degrees about X, then Y, then Z of the object";
     let canonical = placement::turn_degrees(placement);
-    let given = kept_angles(ui, "rotation", canonical, |given| {
-        same_turn(object_turn(given), object_turn(canonical))
-    });
+    let given = shown_angles(ui, "rotation", canonical, object_turn);
     let field = Number::new("Rotation", hint).speed(0.5);
     let turn = row(ui, "Rotation", |ui| vector(ui, &field, given));
     if let Some((to, gesture)) = turn {
@@ -159,13 +158,6 @@ fn object_turn(degrees: DVec3) -> DMat3 {
     })
 }
 
-/// Whether two turns are the same but for rounding.
-pub(crate) fn same_turn(a: DMat3, b: DMat3) -> bool {
-    let difference = a - b;
-    let columns = [difference.x_axis, difference.y_axis, difference.z_axis];
-    columns.iter().all(|column| column.abs().max_element() < 1e-9)
-}
-
 fn spin_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: ObjectId, object: &Object) {
     let (scene, time) = (&state.scene, state.view.time);
     let spin = object.spin;
@@ -258,20 +250,5 @@ fn model_ui(ui: &mut Ui, object: &Object) {
     if let Some(bounds) = mesh.bounds() {
         let [x, y, z] = bounds.extent().to_array().map(short);
         fact(ui, "Extent", &format!("{x} x {y} x {z}"));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn angles_that_a_user_gave_say_the_same_as_those_that_are_computed() {
-        let given = DVec3::new(10.0, 95.0, -20.0);
-        let placement = DMat4::from_mat3(object_turn(given));
-        let canonical = placement::turn_degrees(&placement);
-        assert!(canonical.y < 90.0, "{canonical}");
-        assert!(same_turn(object_turn(given), object_turn(canonical)));
-        assert!(!same_turn(object_turn(given), object_turn(given + DVec3::X * 1e-3)));
     }
 }

@@ -1,0 +1,143 @@
+//! Questions: unsaved changes, files that would be replaced, missing files, discarded work.
+//!
+//! Each gives its answer once it is answered; `Some(End::Cancelled)` is Cancel.
+
+use std::path::{Path, PathBuf};
+
+use egui::{ScrollArea, Ui};
+
+use super::answer::{Answer, End};
+use super::wanted::{After, ChangedFile};
+use crate::app::widgets::controls::{heading, take_focus};
+use crate::app::widgets::text::file_name;
+
+/// The width of a question.
+const WIDTH: f32 = 440.0;
+
+pub(super) fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
+    ui.set_max_width(WIDTH);
+    heading(ui, "Save the scene?");
+    ui.label(match after {
+        After::Quit => "It has unsaved changes, which are lost unless you save them.",
+        After::New | After::NewAncestor => {
+            "A new scene will replace this one, which has unsaved changes."
+        }
+        After::Recover(_) | After::RecoverDiscarded(_) => {
+            "Recovered work will replace this scene, which has unsaved changes."
+        }
+        After::Open(_) => "Another scene will replace this one, which has unsaved changes.",
+    });
+    ui.add_space(4.0);
+    let buttons = ui.horizontal(|ui| {
+        let save = ui.button("Save");
+        take_focus(ui, &save);
+        let discard = ui.button("Discard").clicked();
+        let cancel = ui.button("Cancel").clicked();
+        match (save.clicked(), discard, cancel) {
+            (true, ..) => Some(End::Answer(Answer::Save(after.clone()))),
+            (_, true, _) => Some(End::Answer(Answer::Discard(after.clone()))),
+            (.., true) => Some(End::Cancelled),
+            _ => None,
+        }
+    });
+    buttons.inner
+}
+
+/// Asks what to do with the scene, whose file was changed by another program.
+pub(super) fn changed_ui(ui: &mut Ui, path: &Path, after: Option<&After>) -> Option<End> {
+    ui.set_max_width(WIDTH);
+    heading(ui, format!("{} has changed", file_name(path)));
+    ui.label(
+        "Another program or window has saved this file since it was read here. Saving replaces \
+         what it has written.",
+    );
+    ui.add_space(4.0);
+    let answer =
+        |choice| Some(End::Answer(Answer::Changed(choice, path.to_owned(), after.cloned())));
+    let buttons = ui.horizontal_wrapped(|ui| {
+        let elsewhere = ui.button("Save as...").on_hover_text("Saves under another name");
+        take_focus(ui, &elsewhere);
+        let hint = "Opens the changed file; the changes made here since it was read are lost";
+        let reload = ui.button("Reload the file").on_hover_text(hint).clicked();
+        let overwrite = ui.button("Overwrite").on_hover_text("Replaces the changed file").clicked();
+        let cancel = ui.button("Cancel").clicked();
+        match (elsewhere.clicked(), reload, overwrite, cancel) {
+            (true, ..) => answer(ChangedFile::SaveElsewhere),
+            (_, true, ..) => answer(ChangedFile::Reload),
+            (_, _, true, _) => answer(ChangedFile::Overwrite),
+            (.., true) => Some(End::Cancelled),
+            _ => None,
+        }
+    });
+    buttons.inner
+}
+
+/// Asks whether to replace a file; then the answer is the one that was given for it.
+pub(super) fn replace_ui(
+    ui: &mut Ui,
+    path: &Path,
+    answer: &mut Option<Box<Answer>>,
+) -> Option<End> {
+    ui.set_max_width(WIDTH);
+    heading(ui, format!("Replace {}?", file_name(path)));
+    let folder = path.parent().unwrap_or(path).display();
+    ui.label(format!("There is a file of this name already in {folder}."));
+    ui.add_space(4.0);
+    let buttons = ui.horizontal(|ui| {
+        // It has the focus, so that Enter twice replaces nothing.
+        let cancel = ui.button("Keep it");
+        take_focus(ui, &cancel);
+        let replace = ui.button("Replace").clicked();
+        match (replace, cancel.clicked()) {
+            (true, _) => Some(answer.take().map_or(End::Cancelled, |answer| End::Answer(*answer))),
+            (_, true) => Some(End::Cancelled),
+            _ => None,
+        }
+    });
+    buttons.inner
+}
+
+/// Lists the missing files of the scene.
+pub(super) fn missing_ui(ui: &mut Ui, files: &[PathBuf]) -> Option<End> {
+    ui.set_max_width(560.0);
+    heading(ui, "Missing files");
+    ui.label("Once one is found, others in its folder are offered.");
+    ui.add_space(4.0);
+    let mut answer = None;
+    ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
+        for file in files {
+            ui.horizontal(|ui| {
+                let label = format!("Find {}...", file_name(file));
+                if ui.button(label).clicked() {
+                    answer = Some(End::Answer(Answer::Find(file.clone())));
+                }
+                let folder = file.parent().unwrap_or(file).display().to_string();
+                ui.add(egui::Label::new(egui::RichText::new(folder).weak()).truncate());
+            });
+        }
+    });
+    ui.add_space(4.0);
+    let close = ui.button("Close");
+    take_focus(ui, &close);
+    if close.clicked() { Some(End::Cancelled) } else { answer }
+}
+
+/// Lists the work that was discarded.
+pub(super) fn discarded_ui(ui: &mut Ui, all: &[String]) -> Option<End> {
+    ui.set_max_width(WIDTH);
+    heading(ui, "Discarded work");
+    ui.label("It is kept for 30 days. A click shows it in place of this scene.");
+    ui.add_space(4.0);
+    let mut answer = None;
+    ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
+        for (at, text) in all.iter().enumerate() {
+            if ui.button(text).clicked() {
+                answer = Some(End::Answer(Answer::RecoverDiscarded(at)));
+            }
+        }
+    });
+    ui.add_space(4.0);
+    let close = ui.button("Close");
+    take_focus(ui, &close);
+    if close.clicked() { Some(End::Cancelled) } else { answer }
+}

@@ -1,0 +1,244 @@
+//! Finds the missing files of a scene.
+//!
+//! The scene is open already, with a placeholder for each. Once the user has found one, it takes
+//! the place of its placeholder in one step, and others that are found in the same folder are
+//! offered.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use egui::Context;
+
+use super::App;
+use crate::app::actions::MissingRequest;
+use crate::app::documents::loading::{Fetched, Found};
+use crate::app::documents::wanted::Wanted;
+use crate::app::state::{MissingFiles, Notice};
+use crate::app::widgets::text::file_name;
+use crate::base::Shared;
+use crate::edit::Gesture;
+use crate::io::{self, LoadError};
+use crate::scene::{Camera, Command, Item, Model, Object, Scene, Texture};
+
+impl App {
+    /// Answers a request about missing files.
+    pub(crate) fn answer_missing(&mut self, ctx: &Context, request: MissingRequest) {
+        match request {
+            MissingRequest::Find(file) => self.find_missing(ctx, file),
+            MissingRequest::Dismiss => self.state.missing.dismissed = true,
+            MissingRequest::UseNearby => {
+                let pairs = std::mem::take(&mut self.state.missing.nearby);
+                self.read_found(ctx, pairs);
+            }
+            MissingRequest::DismissNearby => self.state.missing.nearby.clear(),
+        }
+    }
+
+    /// Asks where a missing file is. If none is named and several are missing, lists them first.
+    pub(crate) fn find_missing(&mut self, ctx: &Context, file: Option<PathBuf>) {
+        let missing = self.state.scene.missing_files();
+        let only = missing.first().filter(|_| missing.len() == 1);
+        match file.or_else(|| only.map(|only| only.to_path_buf())) {
+            Some(file) => {
+                let near = self.state.path.as_deref().and_then(Path::parent);
+                let folder = [file.parent(), near].into_iter().flatten().find(|it| it.is_dir());
+                self.dialogs.begin_in(folder.map(Path::to_owned));
+                let name = file_name(&file);
+                self.ask_file(ctx, Wanted::Missing(file), &name);
+            }
+            None => {
+                let all = missing.into_iter().map(Path::to_owned).collect();
+                self.dialogs.list_missing(all);
+            }
+        }
+    }
+
+    /// Reads a missing file that the user has found at `new`.
+    pub(crate) fn found_missing(&mut self, ctx: &Context, old: PathBuf, new: PathBuf) {
+        self.read_found(ctx, vec![[old, new]]);
+    }
+
+    fn read_found(&mut self, ctx: &Context, pairs: Vec<[PathBuf; 2]>) {
+        let label = match &pairs[..] {
+            [] => return,
+            [[_, new]] => format!("Loading {}", file_name(new)),
+            all => format!("Loading {} files", all.len()),
+        };
+        let work: Vec<_> = pairs
+            .into_iter()
+            .map(|[old, new]| {
+                let models = models_of(&self.state.scene, &old);
+                let is_texture = textures_of(&self.state.scene, &old);
+                (old, new, models, is_texture)
+            })
+            .collect();
+        self.begin_loading(ctx, label, false, move |progress| {
+            let read = |(old, new, models, is_texture): (PathBuf, PathBuf, Vec<_>, bool)| {
+                let load = |before: Shared<Model>| {
+                    let loaded = io::load(&new, &before.options, progress);
+                    (before, loaded)
+                };
+                let models = models.into_iter().map(load).collect();
+                let mut findings = Vec::new();
+                let texture = is_texture.then(|| io::load_texture_with(&new, &mut findings));
+                Found { old, new, models, texture, findings }
+            };
+            Fetched::Found(work.into_iter().map(read).collect())
+        });
+    }
+
+    /// Puts files that were found into the place of their placeholders, in one step.
+    pub(crate) fn take_found(&mut self, all: Vec<Found>) {
+        let mut content = Content::default();
+        let (mut pairs, mut details) = (Vec::new(), Vec::new());
+        for Found { old, new, models, texture, findings } in all {
+            details.extend(findings.iter().map(ToString::to_string));
+            let mut add = |result: Result<(), LoadError>| match result {
+                Ok(()) => true,
+                Err(error) => {
+                    self.tell_load_error(&error);
+                    false
+                }
+            };
+            let mut read = true;
+            for (before, loaded) in models {
+                read &= add(loaded.map(|loaded| {
+                    details.extend(loaded.findings.iter().map(ToString::to_string));
+                    content.models.push((before, Shared::new(loaded.model)));
+                }));
+            }
+            if let Some(texture) = texture {
+                read &= add(texture.map(|it| content.textures.push((old.clone(), it))));
+            }
+            if read {
+                pairs.push([old, new]);
+            }
+        }
+        let commands = content.commands(&self.state.scene);
+        let label = match &pairs[..] {
+            [[_, new]] => format!("Find {}", file_name(new)),
+            all => format!("Find {} files", all.len()),
+        };
+        if commands.is_empty() {
+            return;
+        }
+        self.change(Command::Batch(commands), Gesture::Whole, &label);
+        if !details.is_empty() {
+            let text = format!("{label}: {} findings", details.len());
+            self.state.notices.push(Notice { text, details, offer: None });
+        }
+        let nearby = nearby(&self.state.scene.missing_files(), &pairs);
+        self.state.missing = MissingFiles { dismissed: false, nearby };
+    }
+}
+
+/// What takes the place of placeholders.
+#[derive(Default)]
+struct Content {
+    /// The models before and after.
+    models: Vec<(Shared<Model>, Shared<Model>)>,
+    /// The paths that the textures had, and the textures.
+    textures: Vec<(PathBuf, Shared<Texture>)>,
+}
+
+impl Content {
+    /// The commands that replace the placeholders of a scene.
+    fn commands(&self, scene: &Scene) -> Vec<Command> {
+        let objects = scene.objects.iter().filter_map(|(id, object)| {
+            let object = self.object(object)?;
+            Some(Command::Replace(Item::Object(id, Box::new(object))))
+        });
+        let cameras = scene.cameras.iter().filter_map(|(id, camera)| {
+            let model = self.model(&camera.model)?;
+            let camera = Camera { model, ..camera.clone() };
+            Some(Command::Replace(Item::Camera(id, Box::new(camera))))
+        });
+        objects.chain(cameras).collect()
+    }
+
+    /// An object with what was found; `None` if nothing of it was.
+    fn object(&self, object: &Object) -> Option<Object> {
+        let model = self.model(&object.model);
+        let texture = object.texture.as_ref().and_then(|texture| self.texture(texture));
+        if model.is_none() && texture.is_none() {
+            return None;
+        }
+        let mut object = object.clone();
+        if let Some(model) = model {
+            let parts = u32::try_from(model.mesh.parts().len()).unwrap_or(u32::MAX);
+            object.hidden_parts.retain(|part| *part < parts);
+            object.model = model;
+        }
+        object.texture = texture.or(object.texture);
+        Some(object)
+    }
+
+    fn model(&self, before: &Shared<Model>) -> Option<Shared<Model>> {
+        let found = self.models.iter().find(|(old, _)| Shared::same(old, before));
+        found.map(|(_, model)| model.clone())
+    }
+
+    /// The texture in the place of a placeholder, laid over the surface as that was.
+    fn texture(&self, before: &Texture) -> Option<Shared<Texture>> {
+        let is_it = |(old, _): &&(PathBuf, _)| before.is_placeholder() && before.source == *old;
+        let (_, found) = self.textures.iter().find(is_it)?;
+        let Texture { wrap, offset, scale, .. } = *before;
+        Some(Shared::new(Texture { wrap, offset, scale, ..Texture::clone(found) }))
+    }
+}
+
+/// The placeholders of a model's file, each once.
+fn models_of(scene: &Scene, file: &Path) -> Vec<Shared<Model>> {
+    let of_objects = scene.objects.iter().map(|(_, object)| &object.model);
+    let of_cameras = scene.cameras.iter().map(|(_, camera)| &camera.model);
+    let mut models: Vec<Shared<Model>> = Vec::new();
+    for model in of_objects.chain(of_cameras) {
+        let is_it = model.is_placeholder() && model.source.as_deref() == Some(file);
+        if is_it && !models.iter().any(|known| Shared::same(known, model)) {
+            models.push(model.clone());
+        }
+    }
+    models
+}
+
+/// Whether an object has a placeholder of this texture.
+fn textures_of(scene: &Scene, file: &Path) -> bool {
+    let mut textures = scene.objects.iter().filter_map(|(_, object)| object.texture.as_ref());
+    textures.any(|texture| texture.is_placeholder() && texture.source == file)
+}
+
+/// The old and the new paths of missing files that are in the folder of a found one, or at the same
+/// place in a folder that was moved as a whole.
+fn nearby(missing: &BTreeSet<&Path>, found: &[[PathBuf; 2]]) -> Vec<[PathBuf; 2]> {
+    let place = |file: &Path| {
+        found.iter().find_map(|[old, new]| {
+            let near = new.parent()?.join(file.file_name()?);
+            [Some(near), moved(file, old, new)].into_iter().flatten().find(|path| path.is_file())
+        })
+    };
+    missing.iter().filter_map(|file| Some([file.to_path_buf(), place(file)?])).collect()
+}
+
+/// The new path of a file if the folder that holds it and `old` was moved, so that `old` is `new`
+/// now.
+fn moved(file: &Path, old: &Path, new: &Path) -> Option<PathBuf> {
+    let (mut from, mut to) = (old, new);
+    while from.file_name().is_some() && from.file_name() == to.file_name() {
+        (from, to) = (from.parent()?, to.parent()?);
+    }
+    file.strip_prefix(from).ok().map(|rest| to.join(rest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_of_a_folder_that_was_moved_is_looked_for_at_the_same_place() {
+        let [file, old, new] = ["/a/b/tex/t.png", "/a/b/models/x.obj", "/c/d/models/x.obj"];
+        let to = moved(Path::new(file), Path::new(old), Path::new(new));
+        assert_eq!(to.as_deref(), Some(Path::new("/c/d/tex/t.png")));
+        let to = moved(Path::new("/z/t.png"), Path::new(old), Path::new(new));
+        assert_eq!(to, None);
+    }
+}

@@ -1,0 +1,36 @@
+//! The files that a scene names and that are missing.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use super::{Camera, Model, Object, Scene};
+
+impl Object {
+    /// The files of its model and its texture that are missing.
+    pub fn missing_files(&self) -> impl Iterator<Item = &Path> {
+        let texture = self.texture.as_deref().filter(|texture| texture.is_placeholder());
+        missing(&self.model).into_iter().chain(texture.map(|texture| &*texture.source))
+    }
+}
+
+impl Camera {
+    /// The file of its model, if it is missing.
+    #[must_use]
+    pub fn missing_file(&self) -> Option<&Path> {
+        missing(&self.model)
+    }
+}
+
+impl Scene {
+    /// The files of models and textures that are missing.
+    #[must_use]
+    pub fn missing_files(&self) -> BTreeSet<&Path> {
+        let of_objects = self.objects.iter().flat_map(|(_, object)| object.missing_files());
+        let of_cameras = self.cameras.iter().filter_map(|(_, camera)| camera.missing_file());
+        of_objects.chain(of_cameras).collect()
+    }
+}
+
+fn missing(model: &Model) -> Option<&Path> {
+    model.source.as_deref().filter(|_| model.is_placeholder())
+}
