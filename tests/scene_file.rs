@@ -21,8 +21,8 @@ use marraztu::io::{
     open, save, save_picture, save_with_window, to_text,
 };
 use marraztu::scene::{
-    Aim, Attenuation, Camera, CameraId, CameraMode, Command, Crease, Fill, Frame, Item, Lens,
-    Light, LightId, LightKind, LoadOptions, Material, MaterialChoice, NormalLength, Normals,
+    Aim, Attenuation, BumpMaps, Camera, CameraId, CameraMode, Command, Crease, Fill, Frame, Item,
+    Lens, Light, LightId, LightKind, LoadOptions, Material, MaterialChoice, NormalLength, Normals,
     Object, ObjectId, Observer, Orbit, PolygonMode, Pose, PresetId, Projection, Scale, Scene,
     Sides, Spin, SpotOwner, Steps, Subject, Surface, Texture, Tracked, Transformation, UpAxis,
     View, Winding, Wrap,
@@ -55,6 +55,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         scale: Scale::new(2.5).unwrap(),
         winding: Winding::Turned,
         crease: Crease::new(12.5).unwrap(),
+        bumps: BumpMaps::Normals,
     };
     let cube = load(&folder.join("models/cube.obj"), &options, &Progress::new()).unwrap().model;
     let plain = load_texture(&folder.join("chess.png")).unwrap();
@@ -131,6 +132,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     scene.next_id = 99;
 
     let view = View {
+        exposure: 0.75,
         subject: Subject::Light,
         object: Some(ObjectId(20)),
         camera: CameraId(22),
