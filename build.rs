@@ -1,14 +1,17 @@
 //! Tells the program which commit it is built from, if git knows.
 //!
-//! The script runs again only if the sources change, which compiles the program anyway. A commit by
-//! itself causes no build; sources that differ from it are marked as changed.
-
-#![expect(clippy::print_stdout, reason = "Cargo reads what a build script prints")]
+//! The script runs again only if the sources change. A commit by itself causes no build; sources that
+//! differ from it are marked as changed. Development builds name no commit: a script that runs again
+//! compiles the whole library, even if only the command line was edited.
 
 use std::path::Path;
 use std::process::Command;
 
 fn main() {
+    if std::env::var_os("PROFILE").is_none_or(|profile| profile != "release") {
+        println!("cargo:rerun-if-changed=build.rs");
+        return;
+    }
     let sources = ["src", "build.rs", "Cargo.toml", "Cargo.lock"];
     for source in sources {
         println!("cargo:rerun-if-changed={source}");

@@ -107,7 +107,7 @@ impl History {
         let before = looking(scene);
         command.apply(scene)?;
         for ((id, before), (_, after)) in before.iter().zip(looking(scene)) {
-            self.follow(*id, before.clone(), &after);
+            self.follow(*id, before, &after);
         }
         if gesture == Gesture::Whole || gesture != self.looking.0 {
             self.looking = (gesture, before);
@@ -116,7 +116,7 @@ impl History {
     }
 
     /// Lets the steps on both sides keep how a camera looks now.
-    fn follow(&mut self, id: CameraId, before: Looking, after: &Looking) {
+    fn follow(&mut self, id: CameraId, before: &Looking, after: &Looking) {
         let (done, undone) = self.steps.split_at_mut(self.position);
         let sides =
             [&mut done.iter_mut().rev() as &mut dyn Iterator<Item = _>, &mut undone.iter_mut()];

@@ -63,6 +63,10 @@ impl std::fmt::Display for Finding {
     }
 }
 
+/// Colours of a file with a larger number than this, all of them whole, count from 0 to 255. Others
+/// above 1 are too bright, as from baked light.
+pub(super) const BYTES_ABOVE: f64 = 16.0;
+
 /// How many names of a kind are distinguished.
 const MOST_NAMES: usize = 100;
 

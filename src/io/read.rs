@@ -133,6 +133,15 @@ pub(super) fn in_utf_8<R: Read + Send>(
     Ok(Cursor::new(utf_8(head)).chain(text))
 }
 
+/// Whether bytes are not text. Some programs fill the end of a text with NUL, and a control
+/// character here and there is only a blank.
+pub(super) fn is_binary(bytes: &[u8]) -> bool {
+    let end = bytes.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
+    let is_control = |byte: &&u8| **byte < b' ' && !byte.is_ascii_whitespace();
+    let controls = bytes[..end].iter().filter(is_control).count();
+    controls * 16 > end
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -59,6 +59,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "renderer",
             "unseen",
             "without_ground",
+            "exposure",
         ],
     ),
     (

@@ -150,8 +150,7 @@ fn an_axis_that_the_file_states_is_used_and_said() {
     let y = folder.path().join("y.obj");
     std::fs::write(&y, format!("# Y-up\n{TOWER}")).unwrap();
     let mut editor = Editor::of_size(1280.0, 800.0);
-    let mut preferences = marraztu::io::Preferences::default();
-    preferences.up = UpAxis::Z;
+    let preferences = marraztu::io::Preferences { up: UpAxis::Z, ..Default::default() };
     editor.ask(Request::Preferences(Box::new(preferences)));
     editor.open_alone(&y);
     assert_eq!(editor.up(), UpAxis::Y);

@@ -41,7 +41,7 @@ pub(crate) enum Fetched {
     /// Items from the clipboard.
     Pasted(Result<Box<Fragment>, SceneFileError>),
     /// The model of an object with another axis of its file pointing up.
-    Turned(ObjectId, Result<Loaded, LoadError>),
+    Turned(ObjectId, Result<Box<Loaded>, LoadError>),
     /// Models that were read again.
     Again(Vec<Reread>),
     /// Missing files that were found.

@@ -72,7 +72,7 @@ impl App {
     fn paste(&mut self, ctx: &Context, text: String) {
         let known = Known::of(&self.state.scene);
         self.begin_loading(ctx, "Pasting".to_owned(), false, move |progress| {
-            Fetched::Pasted(io::items_of_text(&text, known, progress).map(Box::new))
+            Fetched::Pasted(io::items_of_text(&text, &known, progress).map(Box::new))
         });
     }
 

@@ -42,16 +42,16 @@ impl App {
         let options = LoadOptions { up, ..object.model.options };
         let label = format!("Turning {}", file_name(&path));
         self.begin_loading(ctx, label, false, move |progress| {
-            Fetched::Turned(id, io::load(&path, &options, progress))
+            Fetched::Turned(id, io::load(&path, &options, progress).map(Box::new))
         });
     }
 
     /// Takes a turned model, in one step. If it is alone, the camera frames it again.
-    pub(crate) fn take_turned(&mut self, id: ObjectId, read: Result<Loaded, LoadError>) {
+    pub(crate) fn take_turned(&mut self, id: ObjectId, read: Result<Box<Loaded>, LoadError>) {
         match read {
             Ok(loaded) => {
                 let up = loaded.model.options.up.word().to_uppercase();
-                match self.turned(id, loaded) {
+                match self.turned(id, *loaded) {
                     Ok((command, name)) => {
                         let label = format!("Turn {name} {up} up");
                         self.change(command, Gesture::Whole, &label);

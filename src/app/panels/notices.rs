@@ -171,13 +171,11 @@ fn notice_ui(ui: &mut Ui, at: usize, notice: &Notice, state: &State, requests: &
         };
         match notice.offer {
             Some(Offer::Up(id)) => up_axis_ui(ui, state, id, requests),
-            Some(offer) => {
-                if button(ui, offer.label()) {
-                    requests.extend(accepted(offer, state));
-                    requests.push(Request::PutAway(at));
-                }
+            Some(offer) if button(ui, offer.label()) => {
+                requests.extend(accepted(offer, state));
+                requests.push(Request::PutAway(at));
             }
-            None => {}
+            Some(_) | None => {}
         }
         if !notice.details.is_empty() && button(ui, "Details") {
             requests.push(Request::Details(at));

@@ -269,7 +269,8 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let mut now = now(ui.ctx(), state, None);
     // A window of the first start is no choice.
-    now.window = now.window.filter(|size| *size != Preferences::WINDOW);
+    now.window =
+        now.window.filter(|size| size.map(f32::to_bits) != Preferences::WINDOW.map(f32::to_bits));
     let before = now.clone();
     let panels = OpenPanels::DEFAULT.kept();
     let first = Preferences { panels, ..Preferences::default() };

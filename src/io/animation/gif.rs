@@ -94,7 +94,7 @@ impl GifWriter {
                 ..Frame::default()
             })?;
         }
-        encoder.into_inner().map_err(EncodingError::from)
+        encoder.into_inner()
     }
 
     /// A palette as the file has it, with the transparent colour first.

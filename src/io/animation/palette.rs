@@ -213,7 +213,7 @@ mod tests {
     fn flat_colours_are_in_the_palette_and_the_others_are_near() {
         let gradient = |i: u32| {
             let [x, y] = [i % 256, i / 256].map(|x| u8::try_from(x).unwrap());
-            if i % 3 == 0 { [0, 0, 179] } else { [x, y, 128] }
+            if i.is_multiple_of(3) { [0, 0, 179] } else { [x, y, 128] }
         };
         let mut colors = Colors::default();
         assert!(colors.add((0..1 << 16).map(gradient)) > 256);

@@ -81,7 +81,7 @@ impl Writer {
             |corner: &Corner| if object.file_normals { corner.filed } else { corner.smooth };
         let positions = Numbers::of(mesh.positions().len(), all, corners().map(|it| it.position));
         let uvs = Numbers::of(mesh.uvs().len(), all, corners().map(|it| it.uv));
-        let normals = Numbers::of(mesh.points().len(), false, corners().map(|it| point(&it)));
+        let normals = Numbers::of(mesh.points().len(), false, corners().map(point));
         self.vertices(object, time, &positions);
         for uv in &uvs.used {
             let [u, v] = mesh.uvs()[*uv as usize];

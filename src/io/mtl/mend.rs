@@ -5,8 +5,7 @@
 
 use super::Statements;
 use crate::base::Shared;
-use crate::io::findings::{FindingKind, Findings};
-use crate::io::obj::BYTES_ABOVE;
+use crate::io::findings::{BYTES_ABOVE, FindingKind, Findings};
 use crate::scene::{FileMaterial, MapKind, Material, SurfaceMaps, Texture};
 
 /// The largest exponent of a highlight that roughness gives, as files have it at most.

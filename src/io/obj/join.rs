@@ -22,7 +22,7 @@ use super::{EMPTY, no_obj};
 use crate::base::color::Color;
 use crate::base::lists::concatenated;
 use crate::io::error::LoadError;
-use crate::io::findings::{FindingKind, Findings};
+use crate::io::findings::{BYTES_ABOVE, FindingKind, Findings};
 use crate::io::progress::{Cancelled, Progress};
 
 /// The most bytes of a text.
@@ -291,10 +291,6 @@ fn all_rows<const N: usize, T: Copy + Send + Sync>(
     }
     (concatenated(kept), totals)
 }
-
-/// Colours with a larger number than this, all of them whole, count from 0 to 255. Others above 1
-/// are too bright, as from baked light.
-pub(in crate::io) const BYTES_ABOVE: f64 = 16.0;
 
 /// The colours of all vertices, from 0 to 1: white if a vertex has none.
 fn complete_colors(pieces: &mut [Piece], findings: &mut Findings) -> Vec<[f32; 3]> {

@@ -31,7 +31,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-pub(in crate::io) use self::join::{BYTES_ABOVE, MOST_BYTES};
+pub(in crate::io) use self::join::MOST_BYTES;
 
 use self::join::Content;
 use self::parts::NamedPart;
@@ -210,17 +210,8 @@ fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
             return Some(format!("this is not an OBJ file but {what}"));
         }
     }
-    is_binary(&bytes[..bytes.len().min(4096)])
+    read::is_binary(&bytes[..bytes.len().min(4096)])
         .then(|| "this is not an OBJ file: it is not text".into())
-}
-
-/// Whether bytes are not text. Some programs fill the end of a text with NUL, and a control
-/// character here and there is only a blank.
-pub(in crate::io) fn is_binary(bytes: &[u8]) -> bool {
-    let end = bytes.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
-    let is_control = |byte: &&u8| **byte < b' ' && !byte.is_ascii_whitespace();
-    let controls = bytes[..end].iter().filter(is_control).count();
-    controls * 16 > end
 }
 
 /// Refuses a file if nothing of it would be left.

@@ -95,7 +95,7 @@ fn text(fragment: &FileFragment) -> Result<String, String> {
 /// cannot be loaded; and if `progress` is cancelled.
 pub fn items_of_text(
     text: &str,
-    known: Known,
+    known: &Known,
     progress: &Progress,
 ) -> Result<Fragment, SceneFileError> {
     let fail = |reason: String| SceneFileError::File { file: NAME.to_owned(), reason };
@@ -140,7 +140,7 @@ pub fn items_of_text(
     };
     open::check_counts(&file).map_err(fail)?;
     let mut files = Files::new(PathBuf::new(), NAME);
-    files.know(&known);
+    files.know(known);
     files.load(&file, NAME, progress)?;
     let (scene, _) = open::scene(&file, &files, &mut Findings::new(NAME)).map_err(fail)?;
     let cameras = scene.cameras.iter().filter(|_| has_cameras);
@@ -178,7 +178,7 @@ mod tests {
     }
 
     fn read(text: &str) -> Result<Fragment, SceneFileError> {
-        items_of_text(text, Known::default(), &Progress::new())
+        items_of_text(text, &Known::default(), &Progress::new())
     }
 
     #[test]

@@ -162,62 +162,77 @@ impl Sets {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::{Progress, parse};
-    use crate::scene::LoadOptions;
+    use crate::scene::{MeshSource, NONE, Part, SourceCorner};
 
     const CUBE: [[u32; 4]; 6] =
-        [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]];
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
-    /// A cube of this half-size about `x`, as the text of a file.
-    fn cube(x: f64, half: f64, outwards: bool, before: u32) -> String {
-        let mut text = String::new();
-        for i in 0..8 {
-            let [a, b, c] = [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { half } else { -half });
-            text += &format!("v {} {b} {c}\n", x + a);
-        }
-        for mut face in CUBE {
-            if !outwards {
-                face.reverse();
+    /// Quads under construction.
+    #[derive(Default)]
+    struct Quads(MeshSource);
+
+    impl Quads {
+        /// Adds a cube of this half-size about `x`.
+        fn with_cube(mut self, x: f32, half: f32, outwards: bool) -> Self {
+            let before = super::super::index(self.0.positions.len());
+            for i in 0..8 {
+                let [a, b, c] = [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { half } else { -half });
+                self.0.positions.push([x + a, b, c]);
             }
-            let [a, b, c, d] = face.map(|vertex| vertex + before);
-            text += &format!("f {a} {b} {c} {d}\n");
+            for mut face in CUBE {
+                if !outwards {
+                    face.reverse();
+                }
+                self.add_face(face.map(|vertex| vertex + before));
+            }
+            self
         }
-        text
-    }
 
-    fn bodies(text: &str) -> [usize; 2] {
-        let options = LoadOptions::default();
-        let loaded = parse(text.as_bytes(), "a.obj", None, &options, &Progress::new()).unwrap();
-        let ClosedBodies { all, inside_out } = loaded.model.mesh.closed_bodies();
-        [all, inside_out]
+        fn add_face(&mut self, face: [u32; 4]) {
+            let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
+            self.0.corners.extend(face.map(corner));
+            self.0.arities.push(4);
+            self.0.polygon_parts.push(0);
+        }
+
+        /// The numbers of bodies, and of bodies inside out.
+        fn bodies(mut self) -> [usize; 2] {
+            self.0.parts = vec![Part { name: "it".to_owned(), material: None }];
+            let ClosedBodies { all, inside_out } = Mesh::new(self.0).unwrap().closed_bodies();
+            [all, inside_out]
+        }
     }
 
     #[test]
     fn a_body_inside_out_is_told_from_a_cavity_and_from_an_open_surface() {
-        let two = |second: String| cube(0.0, 1.0, true, 0) + &second;
-        assert_eq!(bodies(&cube(0.0, 1.0, true, 0)), [1, 0]);
-        assert_eq!(bodies(&cube(5e5, 1.0, false, 0)), [1, 1], "far away");
-        assert_eq!(bodies(&two(cube(3.0, 1.0, false, 8))), [2, 1]);
-        assert_eq!(bodies(&two(cube(0.0, 0.5, false, 8))), [2, 0], "a cavity");
-        let open = cube(0.0, 1.0, false, 0);
-        let open = &open[..open.trim_end().rfind('\n').unwrap()];
-        assert_eq!(bodies(open), [0, 0]);
-        assert_eq!(bodies(&format!("{}f 1 2 3\n", cube(0.0, 1.0, false, 0))), [0, 0]);
-        let sheet = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nf 3 2 1\n";
-        assert_eq!(bodies(sheet), [0, 0]);
+        let cube = |outwards| Quads::default().with_cube(0.0, 1.0, outwards);
+        assert_eq!(cube(true).bodies(), [1, 0]);
+        assert_eq!(cube(false).bodies(), [1, 1]);
+        assert_eq!(Quads::default().with_cube(4096.0, 1.0, false).bodies(), [1, 1], "far away");
+        assert_eq!(cube(true).with_cube(3.0, 1.0, false).bodies(), [2, 1]);
+        assert_eq!(cube(true).with_cube(0.0, 0.5, false).bodies(), [2, 0], "a cavity");
+        let mut open = cube(false);
+        open.0.corners.truncate(20);
+        open.0.arities.pop();
+        open.0.polygon_parts.pop();
+        assert_eq!(open.bodies(), [0, 0]);
+        let mut sheet = Quads::default();
+        sheet.0.positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        sheet.add_face([0, 1, 2, 3]);
+        sheet.add_face([3, 2, 1, 0]);
+        assert_eq!(sheet.bodies(), [0, 0]);
     }
 
     #[test]
     fn a_body_whose_faces_share_no_vertices_is_a_body() {
-        let mut text = String::new();
-        for (i, face) in CUBE.iter().enumerate() {
-            for vertex in face.iter().rev() {
-                let [a, b, c] = [0, 1, 2].map(|axis| (vertex - 1) >> axis & 1);
-                text += &format!("v {a} {b} {c}\n");
+        let mut split = Quads::default();
+        for (first, face) in (0..).step_by(4).zip(CUBE) {
+            for vertex in face.into_iter().rev() {
+                let place = [0, 1, 2].map(|axis| if vertex >> axis & 1 == 1 { 1.0 } else { 0.0 });
+                split.0.positions.push(place);
             }
-            let first = 4 * i + 1;
-            text += &format!("f {first} {} {} {}\n", first + 1, first + 2, first + 3);
+            split.add_face([first, first + 1, first + 2, first + 3]);
         }
-        assert_eq!(bodies(&text), [1, 1]);
+        assert_eq!(split.bodies(), [1, 1]);
     }
 }
