@@ -1,8 +1,8 @@
 //! Tells the program which commit it is built from, if git knows.
 //!
-//! The script runs again only if the sources change. A commit by itself causes no build; sources that
-//! differ from it are marked as changed. Development builds name no commit: a script that runs again
-//! compiles the whole library, even if only the command line was edited.
+//! The script runs again only if the sources change. A commit by itself causes no build; sources
+//! that differ from it are marked as changed. Development builds name no commit: a script that runs
+//! again compiles the whole library, even if only the command line was edited.
 
 use std::path::Path;
 use std::process::Command;

@@ -152,8 +152,8 @@ impl Settings {
         }
     }
 
-    /// The settings of a picture that is kept: with at least [`Self::REFINED`] samples per pixel, as
-    /// the window shows it once nothing moves.
+    /// The settings of a picture that is kept: with at least [`Self::REFINED`] samples per pixel,
+    /// as the window shows it once nothing moves.
     #[must_use]
     pub const fn refined(self) -> Self {
         let more = Self::REFINED.count() > self.samples.count();

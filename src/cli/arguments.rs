@@ -92,7 +92,8 @@ pub(crate) struct Reading {
     /// smoothing groups: 60*, 0 for flat faces, 180 to smooth all
     #[arg(long, value_name = "DEGREES", value_parser = crease)]
     crease: Option<Crease>,
-    /// What the pictures of `bump` statements hold: heights, normals, auto* (decided by the picture)
+    /// What the pictures of `bump` statements hold: heights, normals, auto* (decided by the
+    /// picture)
     #[arg(long, value_name = "WHAT", hide_possible_values = true, value_parser = choice(&[
         ("auto", BumpMaps::Auto),
         ("heights", BumpMaps::Heights),

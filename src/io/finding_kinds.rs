@@ -40,8 +40,8 @@ kinds! {
     /// A number in the spelling of another language.
     NumberOdd:
         "the number \"@\" is written in an unusual way and is read nevertheless",
-        "# statements have numbers that are written in an unusual way (the first: \"@\") and are read \
-         nevertheless";
+        "# statements have numbers that are written in an unusual way (the first: \"@\") and are \
+         read nevertheless";
     /// A line that ends in a backslash before a statement.
     NotContinued:
         "a statement \"@\" ends in a backslash, but the next line is a statement of its own",
@@ -241,10 +241,10 @@ kinds! {
         "# materials: Kd 0 makes their textures black";
     /// A bump map with a picture of normals.
     BumpIsNormals:
-        "the bump map \"@\" shows normals and is read as a normal map; --bump-maps heights reads it \
-         as heights",
-        "the bump map \"@\" shows normals and is read as a normal map; --bump-maps heights reads it \
-         as heights";
+        "the bump map \"@\" shows normals and is read as a normal map; --bump-maps heights reads \
+         it as heights",
+        "the bump map \"@\" shows normals and is read as a normal map; --bump-maps heights reads \
+         it as heights";
     /// Ke := 1 with a map.
     MendedEmission:
         "material \"@\": Ke is missing beside map_Ke, and is taken as 1",

@@ -1,9 +1,9 @@
 //! Finds the file that another file names.
 //!
 //! Names come from other machines: with backslashes, with folders that exist only there, in another
-//! case, with accents as characters of their own (macOS), with escaped blanks (`my\ wood.png`) or as
-//! a URL (`my%20wood.png`). A name is therefore first taken as it is, then by its last part in the
-//! folder of the file that names it, then without regard to case and accents, then in its other
+//! case, with accents as characters of their own (macOS), with escaped blanks (`my\ wood.png`) or
+//! as a URL (`my%20wood.png`). A name is therefore first taken as it is, then by its last part in
+//! the folder of the file that names it, then without regard to case and accents, then in its other
 //! spellings.
 
 use std::collections::BTreeMap;

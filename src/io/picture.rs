@@ -1,7 +1,7 @@
 //! Saves pictures.
 //!
-//! A PNG or PPM is written in bands of rows, directly into the file: a picture of a gigabyte is never
-//! copied.
+//! A PNG or PPM is written in bands of rows, directly into the file: a picture of a gigabyte is
+//! never copied.
 
 use std::fs::File;
 use std::io::{Read, Write};

@@ -52,8 +52,8 @@ pub struct View {
     pub wide_lines: bool,
     /// Whether the markers of cameras and bulbs are drawn.
     pub marks: bool,
-    /// How much brighter the lit surfaces are drawn, in stops: each doubles the light. 0 leaves it as
-    /// it is.
+    /// How much brighter the lit surfaces are drawn, in stops: each doubles the light. 0 leaves it
+    /// as it is.
     pub exposure: f64,
     /// Seconds of the scene's clock.
     pub time: f64,

@@ -1,8 +1,8 @@
 //! Files as people and programs write them, after public reports of bugs: nothing is lost, and
 //! nothing wrong is shown.
 //!
-//! Catches: an input that is replaced by an output, a whole file that is refused for one odd word, a
-//! fault of a file that shows on the picture but not among the findings, a picture of another
+//! Catches: an input that is replaced by an output, a whole file that is refused for one odd word,
+//! a fault of a file that shows on the picture but not among the findings, a picture of another
 //! format than its name promises.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]

@@ -2,8 +2,8 @@
 //!
 //! The palette is that of NeuQuant (Dekker, "Kohonen Neural Networks for Optimal Colour
 //! Quantization", Network 1994), except for colours of large flat regions, which are kept. A colour
-//! that is missing is mixed of the two that come nearest to it, in a pattern of 8 x 8 pixels (Bayer,
-//! "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC 1973).
+//! that is missing is mixed of the two that come nearest to it, in a pattern of 8 x 8 pixels
+//! (Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC 1973).
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -148,8 +148,8 @@ fn threshold(x: usize, y: usize) -> u8 {
     })
 }
 
-/// The best mixture of two colours for a colour. Colours that are far apart make a coarse pattern, so
-/// similar ones are preferred.
+/// The best mixture of two colours for a colour. Colours that are far apart make a coarse pattern,
+/// so similar ones are preferred.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 64")]
 fn mix(palette: &[[u8; 3]], color: [u8; 3]) -> Mix {
     const COARSENESS: f32 = 0.06;

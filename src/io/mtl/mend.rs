@@ -171,8 +171,8 @@ fn clamped(color: [f64; 3], note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
     within
 }
 
-/// Divides the colours of all materials by 255 if they count from 0 to 255: if all are whole numbers
-/// and one is above 16.
+/// Divides the colours of all materials by 255 if they count from 0 to 255: if all are whole
+/// numbers and one is above 16.
 pub(super) fn scale_bytes(materials: &mut [Statements], findings: &mut Findings) {
     let (mut whole, mut largest) = (true, 0.0_f64);
     for x in materials.iter_mut().flat_map(Statements::numbers_of_colors) {

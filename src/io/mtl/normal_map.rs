@@ -1,8 +1,8 @@
 //! Tells pictures of normals from pictures of heights.
 //!
 //! A picture of tangent-space normals n stores (n + 1) / 2. All n have length 1 and point away from
-//! the surface, so the picture is bluish: its mean is near (128, 128, 255). Heights are grey, and the
-//! two greys of length 1 are far from that mean.
+//! the surface, so the picture is bluish: its mean is near (128, 128, 255). Heights are grey, and
+//! the two greys of length 1 are far from that mean.
 
 use crate::base::image::Picture;
 

@@ -1,9 +1,10 @@
 //! The lines of an OBJ or MTL file, whichever program wrote it.
 //!
-//! A line ends with LF, CR LF or CR, and goes on with the next if its last character is a backslash.
-//! A comment does not go on, and neither does a line before one that begins with a keyword: paths
-//! such as `C:\out\` end in a backslash, too. Vertical tabs, form feeds and NUL are blanks. Bytes that
-//! are not UTF-8 are taken as Latin-1; a byte-order mark at the beginning is skipped.
+//! A line ends with LF, CR LF or CR, and goes on with the next if its last character is a
+//! backslash. A comment does not go on, and neither does a line before one that begins with a
+//! keyword: paths such as `C:\out\` end in a backslash, too. Vertical tabs, form feeds and NUL are
+//! blanks. Bytes that are not UTF-8 are taken as Latin-1; a byte-order mark at the beginning is
+//! skipped.
 
 use std::borrow::Cow;
 

@@ -7,8 +7,8 @@
 //! read in order ([`join`]), the faces that can be used are picked ([`sound`]), and a [`Mesh`] is
 //! made of them. A vertex of the mesh is a `v` of the file, used or not.
 //!
-//! Faults that can be left out or mended without guessing are, and each such case is a [`Finding`]: a
-//! vertex that cannot be read loses its faces, not the file.
+//! Faults that can be left out or mended without guessing are, and each such case is a [`Finding`]:
+//! a vertex that cannot be read loses its faces, not the file.
 //!
 //! The format is that of Wavefront's "Advanced Visualizer", Appendix B1, with the colours of
 //! vertices that MeshLab and others write.

@@ -66,8 +66,8 @@ impl Mesh {
             vertices.windows(2).for_each(|pair| sets.join(pair[0], pair[1]));
         }
         if self.is_closed() {
-            // A surface that a file splits at seams has several vertices at one position. Where some
-            // surface is open, such a body is not told from an open one.
+            // A surface that a file splits at seams has several vertices at one position. Where
+            // some surface is open, such a body is not told from an open one.
             let mut first = HashMap::with_capacity(keys.len());
             for (vertex, key) in (0..).zip(&keys) {
                 let other = *first.entry(*key).or_insert(vertex);

@@ -224,8 +224,8 @@ impl PartialEq for Mesh {
 }
 
 impl Mesh {
-    /// The place in object space that positions, bounds and mean are relative to. It is 0 unless the
-    /// model is far from its origin.
+    /// The place in object space that positions, bounds and mean are relative to. It is 0 unless
+    /// the model is far from its origin.
     #[must_use]
     pub fn offset(&self) -> DVec3 {
         self.shape.offset

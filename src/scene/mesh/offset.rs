@@ -13,7 +13,8 @@ use crate::scene::Bounds;
 /// 24 bits, so at least 20 bits of the size are kept without one.
 const FAR: f64 = 16.0;
 
-/// The offset of positions, and the positions relative to it; `corners` names the vertices that faces use.
+/// The offset of positions, and the positions relative to it; `corners` names the vertices that
+/// faces use.
 ///
 /// The offset is a multiple of a power of ten, so that the differences of numbers with few decimals
 /// have few decimals, too.
