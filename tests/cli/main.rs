@@ -288,7 +288,7 @@ fn invalid_arguments_end_with_2_and_draw_nothing() {
 #[test]
 fn a_failure_ends_with_1_and_says_why_in_one_sentence() {
     let folder = folder();
-    std::fs::write(folder.path().join("bad.obj"), "v 1 2 3\nv 1 two 3\n").unwrap();
+    std::fs::write(folder.path().join("bad.obj"), "# nothing\nv 1 two 3\n").unwrap();
     std::fs::write(folder.path().join("bad.marraztu"), "what is this").unwrap();
     let wrong: &[(&[&str], &str)] = &[
         (&["absent.obj"], "absent.obj: there is no such file"),
@@ -361,5 +361,5 @@ fn a_scene_without_its_files_is_drawn_described_and_exported_with_a_finding() {
         assert!(!err.contains("hidden objects"), "{err}");
     }
     let obj = std::fs::read_to_string(folder.path().join("a.obj")).unwrap();
-    assert!(obj.contains("square") && !obj.contains("ship"), "{obj}");
+    assert!(obj.contains("v 5 5 5") && !obj.contains("ship"), "{obj}");
 }

@@ -289,6 +289,7 @@ impl Browser {
             // Without its ending, which all have.
             let stem = Path::new(&entry.name).file_stem().map(|stem| stem.to_string_lossy());
             self.part.as_ref().is_none_or(|part| match stem {
+                _ if part.starts_with('.') => entry.name.to_lowercase().starts_with(part),
                 Some(stem) if !part.contains('.') => stem.to_lowercase().contains(part),
                 _ => entry.name.to_lowercase().contains(part),
             })
@@ -297,6 +298,11 @@ impl Browser {
 
     /// The part of a name that is typed; none if it names a folder or an entry.
     fn typed_part(&self) -> Option<String> {
+        let last = self.path.rsplit(['/', std::path::MAIN_SEPARATOR]).next();
+        if self.mode == Mode::Open && last == Some(".") {
+            // A path to the folder itself, but it begins the name of a hidden entry.
+            return last.map(str::to_owned);
+        }
         let typed = self.typed();
         let ends = self.path.trim().ends_with(['/', std::path::MAIN_SEPARATOR]);
         let is_whole =

@@ -535,7 +535,7 @@ mod tests {
     #[test]
     fn numbers_that_cannot_be_read_and_stray_statements_are_listed() {
         let (_, findings) =
-            read("Kd 1 1 1\nnewmtl m\nKa 0 0 0\nKd 1 1 1\nKs 0,5 0 0\nKs 0 0 0\nbsdf new\n");
+            read("Kd 1 1 1\nnewmtl m\nKa 0 0 0\nKd 1 1 1\nKs 0..5 0 0\nKs 0 0 0\nbsdf new\n");
         assert_eq!(findings, [FindingKind::Unknown, FindingKind::MtlStray, FindingKind::MtlNumber]);
     }
 }

@@ -201,7 +201,9 @@ impl Files {
         };
         match loaded {
             Ok(loaded) => {
-                self.findings.extend(loaded.findings);
+                // A scene says itself which pictures its objects show.
+                let counts = |finding: &Finding| finding.kind != FindingKind::PictureUnnamed;
+                self.findings.extend(loaded.findings.into_iter().filter(counts));
                 Ok(Some(Shared::new(loaded.model)))
             }
             Err(LoadError::Cancelled) => Err(LoadError::Cancelled.into()),
