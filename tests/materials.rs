@@ -77,7 +77,8 @@ fn a_material_and_its_use_may_both_have_no_name() {
 fn a_texture_is_found_by_back_slashes_by_its_last_name_and_in_another_case() {
     for name in ["Maps\\wood 1.png", ".\\\\maps\\\\WOOD 1.PNG", "maps/wood 1.png"] {
         let mtl = format!("{RED}map_Kd -clamp on -o 0.5 -s 2 3 {name}\n");
-        let loaded = with_files("mtllib m.mtl\nusemtl red\nf 1 2 3\n", ("m.mtl", &mtl));
+        let loaded =
+            with_files("mtllib m.mtl\nusemtl red\nvt 0 0\nf 1/1 2/1 3/1\n", ("m.mtl", &mtl));
         assert_eq!(loaded.findings, [], "{name}");
         let texture = loaded.model.materials[0].texture.clone().unwrap();
         assert_eq!(texture.picture.size(), Size::new(1, 2));
@@ -234,7 +235,7 @@ fn maps_are_read_with_their_options_and_one_picture_is_held_once() {
                 map_Ke -o 0.5 Maps/wood 1.png\nmap_Bump Maps/wood 1.png -bm 0.25\n\
                 norm Maps/wood 1.png\nmap_Kd Maps/wood 1.png\ndisp Maps/wood 1.png\n";
     let red = format!("{RED}Ke 0.5 2 0\nillum 0\n{maps}");
-    let loaded = with_files("mtllib a.mtl\nusemtl red\nf 1 2 3\n", ("a.mtl", &red));
+    let loaded = with_files("mtllib a.mtl\nusemtl red\nvt 0 0\nf 1/1 2/1 3/1\n", ("a.mtl", &red));
     let expected = [FindingKind::MapUnused, FindingKind::MapOption];
     assert_eq!(kinds(&loaded.findings), expected, "{:?}", loaded.findings);
     let material = &loaded.model.materials[0];
@@ -256,7 +257,8 @@ fn maps_are_read_with_their_options_and_one_picture_is_held_once() {
 fn a_light_or_a_highlight_that_is_only_mapped_is_taken_as_white() {
     let read = |statements: &str| {
         let text = format!("newmtl red\nKa 0.1 0 0\nKd 0.5 0 0\nNs 9\n{statements}");
-        let loaded = with_files("mtllib a.mtl\nusemtl red\nf 1 2 3\n", ("a.mtl", &text));
+        let loaded =
+            with_files("mtllib a.mtl\nusemtl red\nvt 0 0\nf 1/1 2/1 3/1\n", ("a.mtl", &text));
         let mut kinds = kinds(&loaded.findings);
         kinds.sort_unstable();
         (loaded.model.materials[0].material, kinds)

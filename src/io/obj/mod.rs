@@ -219,8 +219,12 @@ fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
     if !content.faces.runs.is_empty() {
         return Ok(());
     }
-    if let (true, Some((line, reason))) = (content.positions.is_empty(), &content.refused) {
-        let reason = format!("{reason}; none of the vertices can be used");
+    // A vertex that cannot be read comes before the faces that refer to it.
+    if let Some((line, reason)) = &content.refused
+        && (content.positions.is_empty() || content.faces.refused.is_some())
+    {
+        let what = if content.positions.is_empty() { "the vertices" } else { "its faces" };
+        let reason = format!("{reason}; none of {what} can be used");
         return Err(LoadError::line(file, *line, reason));
     }
     if let Some((line, reason)) = &content.faces.refused {
