@@ -26,7 +26,7 @@ fn control_characters_are_blanks() {
     let folder =
         Folder::with(&[("end.obj", &format!("{CUBE}\0\0\0")), ("nul.obj", &format!("{CUBE}\0"))]);
     for name in ["end.obj", "nul.obj"] {
-        assert!(folder.info(name).contains("8"), "{name}");
+        assert!(folder.info(name).contains("control characters"), "{name}");
     }
     let binary: String = (0_u8..128).map(char::from).cycle().take(4096).collect();
     let folder = Folder::with(&[("binary.obj", &binary)]);

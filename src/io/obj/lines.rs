@@ -28,8 +28,6 @@ pub(in crate::io) struct Line<'a> {
 pub(in crate::io) enum Oddity {
     /// It ends in a backslash, but the next line is a statement.
     NotContinued,
-    /// It has control characters, which are taken as blanks.
-    Control,
 }
 
 /// Goes through the lines of a file; empty ones are passed over.
@@ -38,6 +36,8 @@ pub(in crate::io) struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
     number: u32,
+    /// The number of lines with control characters, and the first of them.
+    control: (usize, u32),
 }
 
 impl<'a> Lines<'a> {
@@ -48,7 +48,7 @@ impl<'a> Lines<'a> {
 
     /// The lines of a part of a file.
     pub(super) const fn within(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0, number: 0 }
+        Self { bytes, at: 0, number: 0, control: (0, 0) }
     }
 
     /// How many bytes are behind.
@@ -59,6 +59,11 @@ impl<'a> Lines<'a> {
     /// How many lines are behind.
     pub(super) const fn number(&self) -> u32 {
         self.number
+    }
+
+    /// The number of lines so far with control characters, and the first of them.
+    pub(super) const fn control(&self) -> (usize, u32) {
+        self.control
     }
 
     /// The bytes that are not behind yet.
@@ -86,7 +91,13 @@ impl<'a> Lines<'a> {
             _ => 1,
         };
         self.at += length + ending;
-        Some(trimmed(&rest[..length]))
+        let line = &rest[..length];
+        if line.iter().copied().any(is_odd_blank) {
+            let (count, first) = &mut self.control;
+            *first = if *count == 0 { self.number } else { *first };
+            *count += 1;
+        }
+        Some(trimmed(line))
     }
 
     /// Whether the next line of the file begins with a keyword.
@@ -175,9 +186,7 @@ impl<'a> Iterator for Lines<'a> {
             }
             let number = self.number;
             let whole = |first: &'a [u8], oddity: Option<Oddity>| {
-                let text = cleaned(first);
-                let control = matches!(text, Cow::Owned(_)).then_some(Oddity::Control);
-                Some(Line { number, text, joined: None, oddity: oddity.or(control) })
+                Some(Line { number, text: cleaned(first), joined: None, oddity })
             };
             let Some(begin) = first.strip_suffix(b"\\") else { return whole(first, None) };
             if first.starts_with(b"#") {

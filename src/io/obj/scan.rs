@@ -59,6 +59,8 @@ impl Piece {
             }
         }
         self.lines = lines.number();
+        let (count, first) = lines.control();
+        self.findings.note_all(FindingKind::ControlCharacter, count, first);
         Ok(())
     }
 
@@ -71,12 +73,8 @@ impl Piece {
 
     fn statement(&mut self, line: &Line<'_>) -> Result<(), Stop> {
         let (keyword, rest) = line.statement();
-        if let Some(oddity) = line.oddity {
-            let (kind, name) = match oddity {
-                Oddity::NotContinued => (FindingKind::NotContinued, excerpt(keyword)),
-                Oddity::Control => (FindingKind::ControlCharacter, String::new()),
-            };
-            self.findings.add(kind, &name, Some(line.number));
+        if line.oddity == Some(Oddity::NotContinued) {
+            self.findings.add(FindingKind::NotContinued, &excerpt(keyword), Some(line.number));
         }
         match keyword {
             b"v" => self.vertex(rest, line.number),
