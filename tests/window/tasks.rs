@@ -295,7 +295,7 @@ fn an_object_gets_a_colour_of_ones_own() {
 fn a_turntable_is_saved() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("turn.gif");
-    let small = || Hand::at(Editor::of_size(700.0, 480.0));
+    let small = || Hand::at(Editor::of_size(700.0, 600.0));
     let mut keys = small();
     keys.press(Command(Key::F12));
     keys.named(&path);
