@@ -16,11 +16,14 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::closed::{boundary, key};
-use super::dvec3;
-use crate::scene::{Bounds, Mesh};
+use super::{dvec3, index};
+use crate::scene::{Bounds, Mesh, NONE};
 
 /// A body with less volume than this part of its area times its length is a sheet.
 const SHEET: f64 = 1e-5;
+
+/// The most bodies that are looked into for cavities: a file may have a hundred thousand.
+const MOST_OUTER: usize = 64;
 
 /// The closed bodies of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,40 +60,52 @@ impl Mesh {
     /// Counts the closed bodies, and the bodies that are inside out.
     #[must_use]
     pub fn closed_bodies(&self) -> ClosedBodies {
-        let outlines = self.outlines();
         let keys: Vec<u64> = self.shape.positions.par_iter().map(|place| key(*place)).collect();
+        let outlines = self.outlines();
         let mut sets = Sets::new(keys.len());
-        let polygons = 0..self.polygon_count();
-        for polygon in polygons.clone() {
+        for polygon in 0..self.polygon_count() {
             let vertices = outlines.vertices(polygon);
             vertices.windows(2).for_each(|pair| sets.join(pair[0], pair[1]));
         }
-        if self.is_closed() {
-            // A surface that a file splits at seams has several vertices at one position. Where
-            // some surface is open, such a body is not told from an open one.
+        let mut bodies = self.bodies(&mut sets, &keys);
+        let boundary = bodies.iter().fold(0, |sum: u64, body| sum.wrapping_add(body.boundary));
+        if boundary == 0 && bodies.iter().any(|body| body.boundary != 0) {
+            // All surfaces are closed, but a file that splits them at seams has several vertices at
+            // one position. Where some surface is open, such a body is not told from an open one.
             let mut first = HashMap::with_capacity(keys.len());
             for (vertex, key) in (0..).zip(&keys) {
                 let other = *first.entry(*key).or_insert(vertex);
                 sets.join(other, vertex);
             }
-        }
-        let mut numbers = HashMap::new();
-        let mut bodies: Vec<Body> = Vec::new();
-        for polygon in polygons {
-            let vertices = outlines.vertices(polygon);
-            let number = *numbers.entry(sets.root(vertices[0])).or_insert(bodies.len());
-            if number == bodies.len() {
-                bodies.push(Body::EMPTY);
-            }
-            let body = &mut bodies[number];
-            body.boundary = body.boundary.wrapping_add(boundary(vertices, &keys));
-            body.add(outlines.of(polygon), self.shape.mean);
+            bodies = self.bodies(&mut sets, &keys);
         }
         let solid: Vec<Body> = bodies.into_iter().filter(Body::has_volume).collect();
-        let is_cavity =
-            |body: &Body| solid.iter().any(|other| other.volume > 0.0 && body.is_inside(other));
+        // The largest bodies, one of which may be hollow.
+        let mut outer: Vec<&Body> = solid.iter().filter(|body| body.volume > 0.0).collect();
+        outer.sort_unstable_by(|a, b| b.volume.total_cmp(&a.volume));
+        outer.truncate(MOST_OUTER);
+        let is_cavity = |body: &Body| outer.iter().any(|other| body.is_inside(other));
         let inside_out = solid.iter().filter(|body| body.volume < 0.0 && !is_cavity(body)).count();
         ClosedBodies { all: solid.len(), inside_out }
+    }
+
+    /// The bodies whose vertices are these sets.
+    fn bodies(&self, sets: &mut Sets, keys: &[u64]) -> Vec<Body> {
+        let outlines = self.outlines();
+        let mut numbers = vec![NONE; keys.len()];
+        let mut bodies: Vec<Body> = Vec::new();
+        for polygon in 0..self.polygon_count() {
+            let vertices = outlines.vertices(polygon);
+            let number = &mut numbers[sets.root(vertices[0]) as usize];
+            if *number == NONE {
+                *number = index(bodies.len());
+                bodies.push(Body::EMPTY);
+            }
+            let body = &mut bodies[*number as usize];
+            body.boundary = body.boundary.wrapping_add(boundary(vertices, keys));
+            body.add(outlines.of(polygon), self.shape.mean);
+        }
+        bodies
     }
 
     /// The polygons with all of their normals in the file on the wrong side, ascending.
@@ -137,7 +152,7 @@ struct Sets {
 
 impl Sets {
     fn new(count: usize) -> Self {
-        Self { parents: (0..super::index(count)).collect() }
+        Self { parents: (0..index(count)).collect() }
     }
 
     fn root(&mut self, mut vertex: u32) -> u32 {
@@ -174,7 +189,7 @@ mod tests {
     impl Quads {
         /// Adds a cube of this half-size about `x`.
         fn with_cube(mut self, x: f32, half: f32, outwards: bool) -> Self {
-            let before = super::super::index(self.0.positions.len());
+            let before = index(self.0.positions.len());
             for i in 0..8 {
                 let [a, b, c] = [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { half } else { -half });
                 self.0.positions.push([x + a, b, c]);
