@@ -80,7 +80,7 @@ impl Mesh {
             bodies = self.bodies(&mut sets, &keys);
         }
         let solid: Vec<Body> = bodies.into_iter().filter(Body::has_volume).collect();
-        // The largest bodies, one of which may be hollow.
+        // A cavity is in one of the largest bodies.
         let mut outer: Vec<&Body> = solid.iter().filter(|body| body.volume > 0.0).collect();
         outer.sort_unstable_by(|a, b| b.volume.total_cmp(&a.volume));
         outer.truncate(MOST_OUTER);
