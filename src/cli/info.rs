@@ -55,7 +55,7 @@ fn description(file: &Path, input: Option<&Input>, reading: &Reading) -> Result<
     Ok(text)
 }
 
-/// What an object shows: "a cube, 8 vertices, 6 faces".
+/// The shape of an object: "a cube, 8 vertices, 6 faces".
 fn model_text(model: &Model) -> String {
     if let (true, Some(file)) = (model.is_placeholder(), &model.source) {
         return format!("a box in the place of {}, which is missing", file.display());

@@ -27,7 +27,7 @@ pub struct Copies {
 }
 
 impl Copies {
-    /// Whether there are none.
+    /// Whether it is empty.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.objects.is_empty() && self.cameras.is_empty() && self.lights.is_empty()

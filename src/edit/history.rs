@@ -16,7 +16,7 @@ struct Step {
     label: String,
     /// Applied from last to first.
     commands: Vec<Command>,
-    /// What was selected before and after it, if that was noted.
+    /// The selection before and after it, if that was noted.
     selected: Option<[Selected; 2]>,
 }
 
@@ -139,14 +139,14 @@ impl History {
         }
     }
 
-    /// What was selected before the step that undo would undo.
+    /// The selection before the step that undo would undo.
     #[must_use]
     pub fn selected_before(&self) -> Option<&Selected> {
         let last = self.steps.get(self.position.checked_sub(1)?)?;
         last.selected.as_ref().map(|[before, _]| before)
     }
 
-    /// What was selected after the step that redo would redo.
+    /// The selection after the step that redo would redo.
     #[must_use]
     pub fn selected_after(&self) -> Option<&Selected> {
         self.steps.get(self.position)?.selected.as_ref().map(|[_, after]| after)

@@ -7,7 +7,7 @@ use super::selection::{self, remain, select_object, set_subject};
 use super::several::Others;
 use crate::scene::{CameraId, ItemId, LightId, ObjectId, Scene, Subject, View};
 
-/// What was selected before or after a step.
+/// The selection before or after a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Selected {
     subject: Subject,

@@ -21,7 +21,7 @@ const WRITE_Z_UP: [&str; 4] =
 /// The most letters of a comment that are quoted.
 const LONGEST: usize = 60;
 
-/// What a file states about its up axis.
+/// The statement of a file about its up axis.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatedUp {
     /// The axis.

@@ -45,7 +45,7 @@ impl Model {
         }
     }
 
-    /// Whether it is a box in the place of a model whose file is missing.
+    /// Whether it is a box in the place of a missing file.
     #[must_use]
     pub const fn is_placeholder(&self) -> bool {
         self.mesh.is_placeholder()

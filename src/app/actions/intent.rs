@@ -81,14 +81,14 @@ pub(crate) enum Intent {
     ChangeKeyboardOwner(Way),
 }
 
-/// What an action does with the clipboard.
+/// The use of the clipboard by an action.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ClipboardIntent {
     /// The selected items are copied.
     Copy,
     /// The same, and this command deletes them.
     Cut(Command),
-    /// What is on the clipboard is added to the scene.
+    /// Adds the content of the clipboard to the scene.
     Paste,
     /// The material of an object is copied.
     CopyMaterial(ObjectId),

@@ -22,7 +22,7 @@ pub(crate) enum Answer {
     /// A picture or a turntable with these options, into this file; it is asked for if there is
     /// none.
     Picture(PictureChoices, Option<PathBuf>),
-    /// A texture is wanted for the model whose material is being chosen.
+    /// A texture is wanted for the model in the material dialog.
     ChooseTexture,
     /// This missing file is to be found.
     Find(PathBuf),

@@ -383,7 +383,7 @@ impl Browser {
         match std::fs::read_dir(&self.folder) {
             Ok(entries) => {
                 let entries = entries.flatten().map(|entry| {
-                    // What a link leads to.
+                    // The target of a link.
                     let data = std::fs::metadata(entry.path()).ok();
                     Entry {
                         name: entry.file_name().to_string_lossy().into_owned(),

@@ -98,7 +98,7 @@ impl Dialogs {
         self.open.push(Dialog::Discarded(all));
     }
 
-    /// Asks what to do with the scene, whose file was changed by another program.
+    /// Asks what to do with a scene after another program has changed its file.
     pub(crate) fn ask_changed(&mut self, path: PathBuf, after: Option<After>) {
         self.open.push(Dialog::Changed(path, after));
     }
@@ -124,7 +124,7 @@ impl Dialogs {
         self.open.push(Dialog::Picture(Box::new(dialog)));
     }
 
-    /// The file of the model whose material is being chosen.
+    /// The file of the model in the material dialog.
     pub(crate) fn model_file(&self) -> Option<&Path> {
         self.open.iter().rev().find_map(|dialog| match dialog {
             Dialog::Material(material) => material.loaded.as_ref().map(|(path, _)| path.as_path()),

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// The most recent folders that are offered.
 const MOST: usize = 6;
 
-/// What a folder is remembered for.
+/// The purpose of a remembered folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Kind {
     /// Models and scenes to open.
@@ -37,7 +37,7 @@ impl Folders {
     pub(crate) fn start(&self, kind: Kind) -> PathBuf {
         let chosen = self.chosen.get(&kind);
         let start = match (chosen, &self.home) {
-            // What is opened next may have nothing to do with the scene.
+            // The next file to open may have nothing to do with the scene.
             (Some((_, folder)), _) if kind == Kind::Opened => Some(folder),
             (Some((of, folder)), Some(home)) if of.as_ref() == Some(home) => Some(folder),
             (_, Some(home)) => Some(home),

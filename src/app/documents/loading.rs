@@ -63,7 +63,7 @@ pub(crate) enum Arrival {
 #[derive(Debug)]
 pub(crate) struct Arrived {
     pub(crate) object: Object,
-    /// What a notice says of it.
+    /// The text of its notice.
     pub(crate) said: String,
     pub(crate) findings: Vec<String>,
 }
@@ -75,7 +75,7 @@ pub(crate) struct Reread {
     pub(crate) result: Result<Loaded, LoadError>,
 }
 
-/// A missing file that was found, and what was read from it.
+/// A missing file that was found, with its content.
 #[derive(Debug)]
 pub(crate) struct Found {
     pub(crate) old: PathBuf,

@@ -43,7 +43,7 @@ pub(super) fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
     buttons.inner
 }
 
-/// Asks what to do with the scene, whose file was changed by another program.
+/// Asks what to do with a scene after another program has changed its file.
 pub(super) fn changed_ui(ui: &mut Ui, path: &Path, after: Option<&After>) -> Option<End> {
     ui.set_max_width(WIDTH);
     heading(ui, format!("{} has changed", file_name(path)));

@@ -1,4 +1,4 @@
-//! What a file is asked for, and what is done once the scene is saved.
+//! The purposes of file dialogs, and the work that follows once the scene is saved.
 
 use std::path::{Path, PathBuf};
 
@@ -29,7 +29,7 @@ pub(crate) enum Wanted {
     ExportTo,
     /// A texture for this object.
     Texture(ObjectId),
-    /// A texture for the model whose material is being chosen.
+    /// A texture for the model in the material dialog.
     TextureOfModel,
     /// The new location of a missing model of a scene.
     Missing(PathBuf),
@@ -49,7 +49,7 @@ pub(crate) enum After {
     RecoverDiscarded(usize),
 }
 
-/// What to do with a scene whose file was changed by another program.
+/// What to do with a scene after another program has changed its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ChangedFile {
     /// Save it under another name.

@@ -214,7 +214,7 @@ impl App {
     pub(crate) fn settle_recovered(&mut self, opened: &Path) -> bool {
         let Some(keeping) = &self.keeping else { return false };
         let offered = keeping.offered.iter().position(|work| work.path() == opened);
-        // What was discarded stays where it is until its time is over.
+        // Discarded work stays where it is until its time is over.
         let discarded = keeping.discarded.iter().find(|work| work.path() == opened).cloned();
         if let Some(work) = offered.and_then(|at| self.take_offered(at)) {
             self.name_recovered(opened, work.scene_file.clone(), work.content);

@@ -68,7 +68,7 @@ pub struct State {
     pub helpers: Helpers,
     /// Whether models are read again when their files change.
     pub watches: bool,
-    /// The axis that points up in models whose files do not state one.
+    /// The up axis of models if their files do not state one.
     pub up: UpAxis,
     /// The part of a name by which the outline filters items.
     pub filter: String,
@@ -100,9 +100,9 @@ pub struct State {
     pub recoverable: Vec<String>,
     /// The item that is being renamed.
     pub renaming: Option<ItemId>,
-    /// What is said about missing files.
+    /// The notices about missing files.
     pub missing: MissingFiles,
-    /// What is said about each work that was discarded and can be brought back.
+    /// A line for each discarded work that can be brought back.
     pub discarded: Vec<String>,
     /// The content of the scene's file as this program read or wrote it last.
     pub(crate) content: Option<Fingerprint>,

@@ -45,7 +45,7 @@ impl Notice {
     }
 }
 
-/// What is said about files that the scene names and that are missing.
+/// The notices about missing files of the scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MissingFiles {
     /// Whether the notice that counts them was dismissed.

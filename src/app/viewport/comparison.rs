@@ -68,9 +68,9 @@ pub(crate) struct Comparison {
     /// The pair that is being drawn, if one is.
     pub(crate) drawing: Option<Drawing>,
     pub(crate) drawn: Option<Box<Pair>>,
-    /// What was wanted in the last frame.
+    /// The request of the last frame.
     pub(crate) wanted: Option<Compared>,
-    /// Whether what was drawn is what the window shows now.
+    /// Whether the drawn half belongs to the picture in the window.
     pub(crate) current: bool,
     exact: Option<TextureHandle>,
     /// The amplified error, with its factor.

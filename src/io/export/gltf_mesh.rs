@@ -81,7 +81,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The node of an object of a file, with those of its groups below it.
+    /// The node of an object of a file, with the nodes of its groups below it.
     fn file_object(&mut self, name: &str, groups: &[(Name<'_>, Index<gltf_json::Mesh>)]) -> Node {
         let mut node = self.named(name);
         let mut children = Vec::new();

@@ -49,7 +49,7 @@ impl Look {
     }
 }
 
-/// What a format tells apart.
+/// The materials that a format distinguishes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Detail {
     /// MTL knows nothing of the sides of faces.

@@ -144,7 +144,7 @@ struct Numbers {
 }
 
 impl Numbers {
-    /// All rows of a list of `count`, or the used ones; [`NONE`] is none.
+    /// All rows of a list of `count`, or the used ones; [`NONE`] is skipped.
     fn of(count: usize, all: bool, used: impl Iterator<Item = u32>) -> Self {
         let mut numbers = vec![usize::from(all); count];
         if !all {

@@ -2,7 +2,7 @@
 
 use crate::scene::{Command, Item, Object, ObjectId, Scene};
 
-/// The scene without its placeholders, and what was left out, a sentence each.
+/// The scene without its placeholders, with a note about each.
 ///
 /// # Errors
 /// The reason, if the scene is not valid.

@@ -31,7 +31,7 @@ pub struct Discarded {
 }
 
 impl Discarded {
-    /// All there is, the latest first. What was discarded more than 30 days ago is removed.
+    /// All there is, the latest first. Work older than 30 days is removed.
     #[must_use]
     pub fn all(folders: &OwnFolders) -> Vec<Self> {
         Self::all_at(folders, SystemTime::now())

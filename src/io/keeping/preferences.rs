@@ -45,7 +45,7 @@ pub struct Preferences {
     pub helpers: Helpers,
     /// Whether models are read again when their files change.
     pub watches: bool,
-    /// The axis that points up in models whose files do not state one.
+    /// The up axis of models if their files do not state one.
     pub up: UpAxis,
     /// Keys that the user has chosen: those of each action, by its name.
     pub keys: BTreeMap<String, Vec<String>>,

@@ -46,7 +46,7 @@ pub(super) fn single(word: &[u8]) -> Option<f64> {
     Some(number)
 }
 
-/// Up to three numbers; `None` if the first word is none.
+/// Up to three numbers; `None` if the first word is not a number.
 pub(super) fn numbers(rest: &[u8]) -> Option<Vec<f64>> {
     let numbers: Vec<f64> = words(rest).take(3).map_while(single).collect();
     (!numbers.is_empty()).then_some(numbers)

@@ -292,7 +292,7 @@ fn all_rows<const N: usize, T: Copy + Send + Sync>(
     (concatenated(kept), totals)
 }
 
-/// The colours of all vertices, from 0 to 1: white if a vertex has none.
+/// The colours of all vertices, from 0 to 1; a vertex without a colour is white.
 fn complete_colors(pieces: &mut [Piece], findings: &mut Findings) -> Vec<[f32; 3]> {
     if pieces.iter().all(|piece| piece.vertices.colors.is_empty()) {
         return Vec::new();

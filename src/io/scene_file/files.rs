@@ -38,7 +38,7 @@ pub struct Known {
 }
 
 impl Known {
-    /// Those of this scene.
+    /// The models and textures of this scene.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let objects = || scene.objects.iter().map(|(_, object)| object);
@@ -58,7 +58,7 @@ pub(super) struct Files {
     textures: BTreeMap<String, Shared<Texture>>,
     /// Those of models and of textures: one file may be both.
     pictures: Pictures,
-    /// What was found in the files.
+    /// The findings in the files.
     pub(super) findings: Vec<Finding>,
     /// The files that are missing or cannot be read.
     pub(super) lost: Findings,

@@ -89,7 +89,7 @@ impl Mesh {
         ClosedBodies { all: solid.len(), inside_out }
     }
 
-    /// The bodies whose vertices are these sets.
+    /// The bodies of these sets of vertices.
     fn bodies(&self, sets: &mut Sets, keys: &[u64]) -> Vec<Body> {
         let outlines = self.outlines();
         let mut numbers = vec![NONE; keys.len()];

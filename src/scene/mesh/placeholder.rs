@@ -1,4 +1,4 @@
-//! A box in the place of a shape whose file is missing.
+//! A box in the place of a shape with a missing file.
 //!
 //! It has neither texture coordinates nor normals of a file, so the object's material shows.
 
@@ -13,7 +13,7 @@ const FACES: [[u32; 4]; 6] =
     [[4, 5, 7, 6], [1, 0, 2, 3], [5, 1, 3, 7], [0, 4, 6, 2], [6, 7, 3, 2], [0, 1, 5, 4]];
 
 impl Mesh {
-    /// A cube of this side around the origin, in the place of a shape whose file is missing.
+    /// A cube of this side around the origin, in the place of a missing file.
     #[must_use]
     pub fn placeholder(side: f64) -> Self {
         let half = side.clamp(*SIDES.start(), *SIDES.end()) / 2.0;
@@ -36,7 +36,7 @@ impl Mesh {
         Self { is_placeholder: true, ..mesh }
     }
 
-    /// Whether it is a box in the place of a shape whose file is missing.
+    /// Whether it is a box in the place of a missing file.
     #[must_use]
     pub const fn is_placeholder(&self) -> bool {
         self.is_placeholder

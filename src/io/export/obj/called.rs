@@ -11,7 +11,7 @@ use crate::io::export::look::{Looks, file_material, tint};
 use crate::io::export::names::{self, on_one_line};
 use crate::scene::{MaterialChoice, Object, Surface};
 
-/// The names that are given, and those that the next face would have.
+/// The names given so far, and the names of the next face.
 #[derive(Debug)]
 pub(super) struct Names {
     /// Whether the file has one object of the scene, which needs no name of its own.
@@ -66,7 +66,7 @@ impl Names {
         self.of_object = OfObject { keeps, ..OfObject::default() };
     }
 
-    /// Names an object of the scene that no face will name, since it has none.
+    /// Names an object of the scene without faces.
     pub(super) fn object_without_faces(&mut self, object: &Object, text: &mut String) {
         if object.model.mesh.polygon_count() == 0 && !self.alone {
             let name = self.objects.take(&on_one_line(&object.name));

@@ -1,4 +1,4 @@
-//! The materials of an exported OBJ file: MTL, with the textures beside it.
+//! The materials of an exported OBJ file: MTL and textures.
 
 use std::fmt::Write;
 
