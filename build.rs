@@ -12,7 +12,7 @@ fn main() {
         println!("cargo:rerun-if-changed=build.rs");
         return;
     }
-    let sources = ["src", "build.rs", "Cargo.toml", "Cargo.lock"];
+    let sources = ["src", "crates", "build.rs", "Cargo.toml", "Cargo.lock"];
     for source in sources {
         println!("cargo:rerun-if-changed={source}");
     }

@@ -17,21 +17,21 @@ use clap::Parser;
 use cpu_time::ProcessTime;
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{Axis, Choice, Filter, LightAt, Samples, Settings};
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::{Shared, color::Color, math};
-use marraztu::io::{self, LoadError, Progress, SaveError};
-use marraztu::lab::instructions;
-use marraztu::lab::statistics::median;
-use marraztu::lab::timing::time;
-use marraztu::render::{RayCount, Renderer, Timings, plan_frame};
-use marraztu::scene::{
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{Axis, Choice, Filter, LightAt, Samples, Settings};
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::{Shared, color::Color, math};
+use marraztu_core::scene::{
     Aim, Attenuation, Camera, CameraId, Command, CommandError, Crease, Fill, Item, Lens, Light,
     LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource, Model, NONE,
     Normals, Object, ObjectId, Orbit, Part, Pose, Scene, Sides, SourceCorner, SpotOwner, Surface,
     Texture, Tracked, View, Wrap, dvec3,
 };
+use marraztu_io::{self as io, LoadError, Progress, SaveError};
+use marraztu_lab::instructions;
+use marraztu_lab::statistics::median;
+use marraztu_lab::timing::time;
+use marraztu_render::{RayCount, Renderer, Timings, plan_frame};
 
 /// Measures one drawing job, in a form that other renderers share.
 #[derive(Debug, Parser)]

@@ -3,13 +3,13 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 #![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small numbers")]
 
-use marraztu::accuracy::{Arithmetic, LightAt, Samples, Settings, Shot, SpecularForm};
-use marraztu::base::image::Size;
-use marraztu::base::rng::Rng;
-use marraztu::io::{self, Progress};
-use marraztu::lab::pixel;
-use marraztu::render::{Part, Renderer, plan_frame};
-use marraztu::scene::{Fill, Projection, Scene, View};
+use marraztu_core::accuracy::{Arithmetic, LightAt, Samples, Settings, Shot, SpecularForm};
+use marraztu_core::base::image::Size;
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{Fill, Projection, Scene, View};
+use marraztu_io::{self as io, Progress};
+use marraztu_lab::pixel;
+use marraztu_render::{Part, Renderer, plan_frame};
 
 const SIZE: Size = Size::new(320, 240);
 

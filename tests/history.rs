@@ -6,9 +6,9 @@
 mod common;
 
 use glam::DVec3;
-use marraztu::base::color::Color;
-use marraztu::edit::{Gesture, GesturePhase, History, transform};
-use marraztu::scene::{Command, ItemId, ObjectId, Scene, Subject};
+use marraztu_core::base::color::Color;
+use marraztu_core::edit::{Gesture, GesturePhase, History, transform};
+use marraztu_core::scene::{Command, ItemId, ObjectId, Scene, Subject};
 use proptest::prelude::*;
 
 #[derive(Clone, Debug)]
@@ -24,8 +24,8 @@ enum Step {
 fn command() -> impl Strategy<Value = Command> {
     let item = |id: u32| common::three_objects().0.objects.get(ObjectId(id)).unwrap().clone();
     let shown = move |id: u32, visible: bool| {
-        let object = marraztu::scene::Object { visible, ..item(id) };
-        marraztu::scene::Item::Object(ObjectId(id), Box::new(object))
+        let object = marraztu_core::scene::Object { visible, ..item(id) };
+        marraztu_core::scene::Item::Object(ObjectId(id), Box::new(object))
     };
     let id = || 1_u32..4;
     prop_oneof![

@@ -9,14 +9,14 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use glam::DMat4;
-use marraztu::accuracy::Settings;
-use marraztu::accuracy::Shot;
-use marraztu::base::Shared;
-use marraztu::base::image::Size;
-use marraztu::io::{Loaded, Progress, describe, load, load_picture, open, to_text};
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::scene::LoadOptions;
+use marraztu_core::accuracy::Settings;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::LoadOptions;
+use marraztu_io::{Loaded, Progress, describe, load, load_picture, open, to_text};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
 
 /// The files of a kind, each with its content.
 fn files(kind: &str) -> Vec<PathBuf> {

@@ -8,9 +8,9 @@ use std::process::{Command, Output, Stdio};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use marraztu::accuracy::Settings;
-use marraztu::base::image::{Picture, Size};
-use marraztu::io;
+use marraztu_core::accuracy::Settings;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_io as io;
 use tempfile::TempDir;
 
 /// A square of one unit on a side, its corners counter-clockwise seen from +Z, far from the origin.

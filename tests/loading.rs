@@ -8,11 +8,11 @@
 
 use std::path::Path;
 
-use marraztu::base::color::Color;
-use marraztu::io::{
+use marraztu_core::base::color::Color;
+use marraztu_core::scene::{LoadOptions, Mesh, NONE, Scale, UpAxis, Winding};
+use marraztu_io::{
     Finding, FindingKind, LoadError, Loaded, Progress, describe, load, load_texture, parse,
 };
-use marraztu::scene::{LoadOptions, Mesh, NONE, Scale, UpAxis, Winding};
 use proptest::prelude::*;
 
 fn read_bytes(bytes: &[u8]) -> Result<Loaded, LoadError> {
@@ -661,7 +661,8 @@ fn a_vertex_with_a_hundred_thousand_normals_keeps_them_all() {
         text += &format!("vn {i} 1 0\nf 1//{i} 2//{i} 3//{i}\n");
     }
     let (mesh, _) = described(&text);
-    let normal = |corner: &marraztu::scene::Corner| mesh.points()[corner.filed as usize].normal;
+    let normal =
+        |corner: &marraztu_core::scene::Corner| mesh.points()[corner.filed as usize].normal;
     assert_eq!(mesh.points().len(), 300_003);
     let [x, y, _] = normal(&mesh.polygon(49_999)[0]);
     assert!((x / y - 50_000.0).abs() < 1.0, "{x} / {y}");

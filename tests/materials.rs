@@ -3,10 +3,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::io::{Finding, FindingKind, Loaded, Progress, load, save_picture};
-use marraztu::scene::{LoadOptions, MapKind, Wrap};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{LoadOptions, MapKind, Wrap};
+use marraztu_io::{Finding, FindingKind, Loaded, Progress, load, save_picture};
 
 /// The only finding of a file, as text, with its kind.
 fn only(loaded: &Loaded) -> (FindingKind, &str) {

@@ -12,14 +12,14 @@ use std::fmt::Write as _;
 
 use dhat::{HeapStats, Profiler};
 use glam::DMat4;
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{LightAt, Samples, Settings};
-use marraztu::base::Shared;
-use marraztu::base::image::Size;
-use marraztu::io::{self, Progress};
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::scene::LoadOptions;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{LightAt, Samples, Settings};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::LoadOptions;
+use marraztu_io::{self as io, Progress};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
 
 #[global_allocator]
 static COUNTING: dhat::Alloc = dhat::Alloc;

@@ -9,19 +9,19 @@
 use std::path::{Path, PathBuf};
 
 use glam::{DMat3, DVec3};
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{Arithmetic, LightAt, Samples, Settings};
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::math;
-use marraztu::edit::{framing, items, selection};
-use marraztu::io::{Finding, FindingKind, LoadError, Progress, default_scene, load};
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::scene::{
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{Arithmetic, LightAt, Samples, Settings};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::math;
+use marraztu_core::edit::{framing, items, selection};
+use marraztu_core::scene::{
     Bounds, Camera, Command, Corner, ItemId, LoadOptions, MaterialChoice, Mesh, Model, Object,
     Pose, Scene, Tracked, View, dvec3, newell,
 };
+use marraztu_io::{Finding, FindingKind, LoadError, Progress, default_scene, load};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
 
 /// The folder of the models, if it exists.
 #[expect(clippy::print_stderr, reason = "who runs the tests has to see what is left out")]
@@ -74,7 +74,7 @@ fn table(models: &Path) -> Vec<Row> {
 }
 
 /// Every file of the table with what became of it.
-fn sweep() -> Option<Vec<(Row, Result<marraztu::io::Loaded, LoadError>)>> {
+fn sweep() -> Option<Vec<(Row, Result<marraztu_io::Loaded, LoadError>)>> {
     let models = models()?;
     let load = |row: Row| {
         let loaded = load(&models.join(&row.file), &LoadOptions::default(), &Progress::new());

@@ -8,14 +8,16 @@
 use std::path::Path;
 use std::process::{Command as Process, Output};
 
-use marraztu::accuracy::{Samples, Settings, Shot};
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::edit::items;
-use marraztu::edit::turntable::{Turn, turned};
-use marraztu::io::{self, Progress, Sources};
-use marraztu::render::{Renderer, plan_frame, without_ground};
-use marraztu::scene::{Command, LoadOptions, MaterialChoice, Mesh, Object, Scene, Sides, View};
+use marraztu_core::accuracy::{Samples, Settings, Shot};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::edit::items;
+use marraztu_core::edit::turntable::{Turn, turned};
+use marraztu_core::scene::{
+    Command, LoadOptions, MaterialChoice, Mesh, Object, Scene, Sides, View,
+};
+use marraztu_io::{self as io, Progress, Sources};
+use marraztu_render::{Renderer, plan_frame, without_ground};
 use serde_json::Value;
 
 const SIZE: Size = Size::new(160, 120);
@@ -104,7 +106,7 @@ fn laid_over_its_own_ground_a_picture_without_is_the_one_with() {
 fn scene() -> (Scene, View) {
     let (mut scene, view) = io::default_scene();
     let spot = scene.lights.iter().find(|(_, light)| light.slot == 3).map(|(id, _)| id).unwrap();
-    let id = marraztu::scene::ItemId::Light(spot);
+    let id = marraztu_core::scene::ItemId::Light(spot);
     items::toggle_shown(&scene, id).unwrap().apply(&mut scene).unwrap();
     (scene, view)
 }
@@ -130,7 +132,7 @@ fn an_exported_obj_is_read_back_as_the_same_picture() {
     let mut after = before.clone();
     let ids: Vec<_> = after.objects.ids().collect();
     for id in ids {
-        Command::Remove(marraztu::scene::ItemId::Object(id)).apply(&mut after).unwrap();
+        Command::Remove(marraztu_core::scene::ItemId::Object(id)).apply(&mut after).unwrap();
     }
     let object = Object::new(Shared::new(loaded.model), MaterialChoice::File);
     let object = Object { sides: Sides::One, ..object };
@@ -280,7 +282,7 @@ fn holds_object(json: &Value, buffer: &[u8], node: &Value, object: &Object) {
     }
     assert_eq!(triangles, mesh.triangle_count());
     let used = (0..).take(mesh.polygon_count()).flat_map(|polygon| mesh.polygon(polygon));
-    let bits = |corner: &marraztu::scene::Corner| {
+    let bits = |corner: &marraztu_core::scene::Corner| {
         mesh.positions()[corner.position as usize].map(f32::to_bits).to_vec()
     };
     assert_eq!(found, used.map(bits).collect());

@@ -9,9 +9,9 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use marraztu::accuracy::AXES;
-use marraztu::io;
-use marraztu::lab::suite::SUITE;
+use marraztu_core::accuracy::AXES;
+use marraztu_io as io;
+use marraztu_lab::suite::SUITE;
 use tempfile::TempDir;
 
 /// Pages for people who use the program or work on it.
@@ -247,7 +247,12 @@ fn every_mistake_of_the_mutation_tests_can_be_made_in_the_sources_as_they_are() 
 #[test]
 fn every_path_that_a_page_names_is_there() {
     let is_part = |letter: char| letter.is_alphanumeric() || "/._-".contains(letter);
-    let roots = ["", "src/", "src/render/"];
+    // Pages leave out `crates/`, the `src` of a crate, and the crates that most paths are in.
+    let roots = ["", "src/", "crates/", "crates/core/src/", "crates/render/src/"];
+    let in_crate = |path: &str| {
+        let (name, rest) = path.split_once('/').unwrap_or((path, ""));
+        format!("crates/{name}/src/{rest}")
+    };
     let mut found = 0;
     for name in PAGES {
         let text = page(name);
@@ -259,11 +264,13 @@ fn every_path_that_a_page_names_is_there() {
             if !is_path || is_made || quoted.contains("..") || quoted.contains("TARGET") {
                 continue;
             }
-            let there = |root: &&str| {
-                let path = self::root().join(root).join(quoted);
+            let is_there = |path: &String| {
+                let path = root().join(path);
                 path.exists() || path.with_extension("rs").exists()
             };
-            assert!(roots.iter().any(there), "{name} names {quoted}");
+            let mut paths = roots.map(|root| format!("{root}{quoted}")).to_vec();
+            paths.push(in_crate(quoted));
+            assert!(paths.iter().any(is_there), "{name} names {quoted}");
             found += 1;
         }
     }

@@ -8,20 +8,20 @@ mod common;
 use common::{at, ball, covered, cube, draw, edit, model, scene, square};
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{Arithmetic, LightAt, Settings, SpecularForm};
-use marraztu::base::Shared;
-use marraztu::base::color::Color;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::rng::Rng;
-use marraztu::lab::instructions::levels;
-use marraztu::render::explain_frame;
-use marraztu::render::plan_frame;
-use marraztu::render::{EffectUse, Renderer};
-use marraztu::scene::{
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{Arithmetic, LightAt, Settings, SpecularForm};
+use marraztu_core::base::Shared;
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{
     Command, Fill, ItemId, MaterialChoice, Model, Normals, ObjectId, PolygonMode, PresetId,
     Projection, Scene, Sides, View,
 };
+use marraztu_lab::instructions::levels;
+use marraztu_render::explain_frame;
+use marraztu_render::plan_frame;
+use marraztu_render::{EffectUse, Renderer};
 
 const FIRST: ObjectId = ObjectId(10);
 const SECOND: ObjectId = ObjectId(11);
@@ -85,7 +85,7 @@ fn a_stray_corner_takes_no_light_from_the_rest_in_either_arithmetic() {
 
 #[test]
 fn the_first_scene_is_the_same_to_a_step_in_both_arithmetics_and_everywhere_at_its_borders() {
-    let (scene, view) = marraztu::io::default_scene();
+    let (scene, view) = marraztu_io::default_scene();
     let exact = Settings { arithmetic: Arithmetic::F64, ..Settings::default() };
     let fast = draw(&scene, &view, &Settings::default(), 800);
     let exact = draw(&scene, &view, &exact, 800);
@@ -97,7 +97,7 @@ fn the_first_scene_is_the_same_to_a_step_in_both_arithmetics_and_everywhere_at_i
 
 #[test]
 fn threads_and_instructions_do_not_show() {
-    let (scene, view) = marraztu::io::default_scene();
+    let (scene, view) = marraztu_io::default_scene();
     let view = View { edges_over_fill: true, ..view };
     let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(333, 257)));
     let picture = |level: Level, threads: usize| {
@@ -151,7 +151,7 @@ fn switch(scene: &mut Scene, slot: u32, on: bool) {
     let (id, light) = scene.lights.iter().find(|(_, light)| light.slot == slot).unwrap();
     let mut light = light.clone();
     light.on = on;
-    let item = marraztu::scene::Item::Light(id, Box::new(light));
+    let item = marraztu_core::scene::Item::Light(id, Box::new(light));
     Command::Replace(item).apply(scene).unwrap();
 }
 

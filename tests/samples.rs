@@ -8,22 +8,22 @@ mod common;
 
 use common::{at, ball, draw, edit, model_of, scene, square};
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{Arithmetic, Axis, LightAt, Samples, Settings};
-use marraztu::base::Shared;
-use marraztu::base::color::Color;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::rng::Rng;
-use marraztu::lab::picture_source::{PictureSource as _, Studio};
-use marraztu::lab::pictures::flat::{self, Flat};
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::render::screen::coverage::Snapped;
-use marraztu::scene::{
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{Arithmetic, Axis, LightAt, Samples, Settings};
+use marraztu_core::base::Shared;
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{
     Aim, ItemId, Light, LightId, LightKind, Material, MaterialChoice, MeshSource, NONE,
     NormalLength, ObjectId, Part, Projection, Scene, Sides, SourceCorner, SpotOwner, Surface,
     Texture, Tracked, View, Wrap,
 };
+use marraztu_lab::picture_source::{PictureSource as _, Studio};
+use marraztu_lab::pictures::flat::{self, Flat};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
+use marraztu_render::screen::coverage::Snapped;
 
 const SIDE: usize = 128;
 
@@ -381,7 +381,7 @@ fn lit_samples_see_the_primitives_that_others_see() {
 
 #[test]
 fn the_only_sample_of_a_pixel_is_its_middle() {
-    let (scene, view) = marraztu::io::default_scene();
+    let (scene, view) = marraztu_io::default_scene();
     let plan = |light| {
         let settings = Settings { light, ..Settings::default() };
         plan_frame(&Shot::new(&scene, &view, &settings, Size::new(50, 50)))
@@ -410,7 +410,7 @@ fn lit_samples_are_drawn_again_given_up_and_picked_as_others_are() {
     assert_eq!(renderer.primitives(), other.primitives());
     // A look, drawn again in the tiles that it reaches.
     edit(&mut scene, ObjectId(10), |object| {
-        object.material = MaterialChoice::Preset(marraztu::scene::PresetId::EMERALD);
+        object.material = MaterialChoice::Preset(marraztu_core::scene::PresetId::EMERALD);
     });
     let wanted = Renderer::default().render(&planned(&scene, LightAt::Sample)).clone();
     let changes = renderer.redraw(&planned(&scene, LightAt::Sample), &|| true).unwrap();
@@ -442,7 +442,7 @@ fn lit_samples_are_the_same_on_all_instructions_and_by_any_number_of_threads() {
     for (scene, view) in [(scene, view), lit] {
         let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(SIDE, SIDE)));
         let mut wanted = None;
-        for level in marraztu::lab::instructions::levels() {
+        for level in marraztu_lab::instructions::levels() {
             for threads in [1, 3] {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 let picture = pool.install(|| Renderer::new(level).render(&plan).clone());
@@ -537,7 +537,7 @@ fn no_colour_leaves_the_range_of_its_corners() {
 
 #[test]
 fn the_more_samples_the_nearer_to_the_reference() {
-    let (scene, view) = marraztu::io::default_scene();
+    let (scene, view) = marraztu_io::default_scene();
     let drawn = |samples| {
         let settings = Settings { samples, ..Settings::default() };
         draw(&scene, &view, &settings, 300)

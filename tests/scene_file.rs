@@ -6,26 +6,26 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::{
+use marraztu_core::accuracy::{
     Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt,
     LightValues, NormalMatrix, Normalising, Rounding, Samples, Settings, ShadowMethod,
     SpecularForm, SpecularPower, Subpixels, Tangents, Terminator, Transparency, VertexArithmetic,
 };
-use marraztu::base::Shared;
-use marraztu::base::color::Color;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::math;
-use marraztu::edit::items::set_crease;
-use marraztu::io::{
-    FindingKind, Panels, Progress, SceneFileError, WindowState, default_scene, load, load_texture,
-    open, save, save_picture, save_with_window, to_text,
-};
-use marraztu::scene::{
+use marraztu_core::base::Shared;
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::math;
+use marraztu_core::edit::items::set_crease;
+use marraztu_core::scene::{
     Aim, Attenuation, BumpMaps, Camera, CameraId, CameraMode, Command, Crease, Fill, Frame, Item,
     Lens, Light, LightId, LightKind, LoadOptions, Material, MaterialChoice, NormalLength, Normals,
     Object, ObjectId, Observer, Orbit, PolygonMode, Pose, PresetId, Projection, Scale, Scene,
     Sides, Spin, SpotOwner, Steps, Subject, Surface, Texture, Tracked, Transformation, UpAxis,
     View, Winding, Wrap,
+};
+use marraztu_io::{
+    FindingKind, Panels, Progress, SceneFileError, WindowState, default_scene, load, load_texture,
+    open, save, save_picture, save_with_window, to_text,
 };
 use proptest::prelude::*;
 
@@ -228,7 +228,7 @@ proptest! {
 }
 
 /// The text of the first scene, with one thing in it changed, opened.
-fn changed(from: &str, to: &str) -> Result<marraztu::io::Opened, SceneFileError> {
+fn changed(from: &str, to: &str) -> Result<marraztu_io::Opened, SceneFileError> {
     let folder = folder();
     let (scene, view) = default_scene();
     let path = folder.path().join("a.marraztu");
@@ -524,7 +524,7 @@ fn a_scene_opens_without_its_files_and_is_saved_as_it_was() {
 }
 
 /// The scene of a text beside the folder's files.
-fn opened_text(folder: &Path, text: &str) -> marraztu::io::Opened {
+fn opened_text(folder: &Path, text: &str) -> marraztu_io::Opened {
     let path = folder.join("a.marraztu");
     std::fs::write(&path, text).unwrap();
     open(&path, &Progress::new()).unwrap()

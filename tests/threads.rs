@@ -16,12 +16,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use glam::DMat4;
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{Filter, LightAt, Samples, Settings};
-use marraztu::base::image::{Picture, Size};
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::scene::{Fill, Normals, ObjectId, Scene, Sides, View};
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{Filter, LightAt, Samples, Settings};
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{Fill, Normals, ObjectId, Scene, Sides, View};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
 
 use common::{ball, edit, scene};
 

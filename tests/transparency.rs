@@ -7,12 +7,12 @@ mod common;
 
 use common::{at, cube, draw, edit, scene, square};
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::{LightAt, Samples, Settings, Shot, Transparency};
-use marraztu::base::image::{Picture, Size};
-use marraztu::render::{Renderer, plan_frame};
-use marraztu::scene::{
+use marraztu_core::accuracy::{LightAt, Samples, Settings, Shot, Transparency};
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{
     ItemId, Light, LightId, LightKind, List, Material, MaterialChoice, ObjectId, Scene, View,
 };
+use marraztu_render::{Renderer, plan_frame};
 
 const SIDE: usize = 64;
 

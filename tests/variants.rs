@@ -6,20 +6,20 @@ mod common;
 
 use common::{at, ball, covered, draw, edit, model_of, scene, square};
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{
     ACCURACY_PRESETS, AXES, Arithmetic, Axis, Coverage, DepthFormat, Filter, Interpolation,
     NormalMatrix, Rounding, Settings, SpecularPower, Subpixels, VertexArithmetic,
 };
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::io::lesson_scene;
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::scene::{
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{
     Light, LightId, LightKind, Material, MaterialChoice, MeshSource, Model, NONE, Object, ObjectId,
     Part, Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
 };
+use marraztu_io::lesson_scene;
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
 
 const FIRST: ObjectId = ObjectId(10);
 const SECOND: ObjectId = ObjectId(11);
@@ -188,7 +188,7 @@ fn highlights_are_as_wrong_as_their_powers() {
 
 #[test]
 fn rsqrt_makes_highlights_grainy_and_a_newton_step_repairs_them() {
-    use marraztu::accuracy::Normalising;
+    use marraztu_core::accuracy::Normalising;
     let opened = lesson_scene("ball").unwrap();
     let picture = |normalising| {
         let settings = Settings { normalising, ..Settings::default() };
@@ -215,8 +215,8 @@ fn normals_transformed_by_the_objects_own_matrix_lean_by_79_degrees() {
     for id in lit {
         let mut light: Light = scene.lights.get(id).unwrap().clone();
         light.on = matches!(light.kind, LightKind::Sun { .. });
-        let item = marraztu::scene::Item::Light(id, Box::new(light));
-        marraztu::scene::Command::Replace(item).apply(&mut scene).unwrap();
+        let item = marraztu_core::scene::Item::Light(id, Box::new(light));
+        marraztu_core::scene::Command::Replace(item).apply(&mut scene).unwrap();
     }
     let angle = |stretched| {
         let settings = Settings { stretched, ..Settings::default() };
@@ -248,7 +248,7 @@ fn cut_off_colours_are_half_a_step_too_dark_and_a_pattern_keeps_the_mean() {
 
 #[test]
 fn rounding_is_the_same_wherever_light_is_evaluated_and_in_both_arithmetics() {
-    use marraztu::accuracy::LightAt;
+    use marraztu_core::accuracy::LightAt;
     let (scene, view) = scene(&[(ball(8), at(60.0, 0.0, 0.0, 0.0))]);
     for light in [LightAt::Face, LightAt::Vertex, LightAt::Pixel] {
         for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
@@ -345,7 +345,7 @@ fn rounded_rows_and_32_bit_edges_cover_every_covered_pixel_and_a_few_more() {
 
 #[test]
 fn if_surfaces_are_far_apart_every_depth_format_shows_the_same() {
-    let (scene, view) = marraztu::io::default_scene();
+    let (scene, view) = marraztu_io::default_scene();
     let seen = |depth| {
         let settings = Settings { depth, ..Settings::default() };
         primitives(&scene, &view, &settings, 400)

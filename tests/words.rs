@@ -49,17 +49,13 @@ const NAMES: &[&str] = &[
     "pace",
 ];
 
-/// The faults that a folder may still have. Each allowance has to be needed: a clean folder has
-/// none.
-const ALLOWED: &[(&str, &[&str])] = &[];
-
 /// How many columns a line of Rust may have.
 const COLUMNS: usize = 100;
 
-/// The name of an allowance for long lines.
+/// A line of more than [`COLUMNS`] columns.
 const LONG: &str = "a long line";
 
-/// The name of an allowance for files that rustfmt does not see.
+/// A file that no `mod` statement leads to.
 const UNSEEN: &str = "a file that rustfmt does not see";
 
 fn root() -> &'static Path {
@@ -87,7 +83,7 @@ fn files(folder: &str, endings: &[&str]) -> Vec<PathBuf> {
 /// Every source and page, by its path in the project.
 fn texts() -> Vec<(String, String)> {
     let mut paths = Vec::new();
-    for folder in ["src", "tests", "benches", "docs", "tools", "fuzz/fuzz_targets"] {
+    for folder in ["src", "crates", "tests", "benches", "docs", "tools", "fuzz/fuzz_targets"] {
         paths.extend(files(folder, &["rs", "md", "sh", "py"]));
     }
     for page in ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"] {
@@ -100,15 +96,6 @@ fn texts() -> Vec<(String, String)> {
     };
     // This file has to name what it forbids.
     paths.into_iter().map(text).filter(|(name, _)| name != "tests/words.rs").collect()
-}
-
-/// The folder of an allowance: `src/render` for a file anywhere in it, else the file's own.
-fn folder_of(name: &str) -> &str {
-    let parts: Vec<usize> = name.match_indices('/').map(|(at, _)| at).collect();
-    match (name.starts_with("src/"), parts.as_slice()) {
-        (true, [_, end, ..]) | (false, [end, ..]) => &name[..*end],
-        (_, rest) => rest.first().map_or(name, |end| &name[..*end]),
-    }
 }
 
 /// A text as it is read: without marks of comments and line ends, `_` as a blank.
@@ -213,26 +200,29 @@ fn all_faults() -> BTreeSet<(String, &'static str)> {
         all.extend(faults(name, text).into_iter().map(|fault| (name.clone(), fault)));
     }
     let mut seen = BTreeSet::new();
-    for crate_root in ["src/lib.rs", "src/main.rs"] {
-        seen_by_rustfmt(&root().join(crate_root), &mut seen);
+    let folders =
+        ["src", "crates/core/src", "crates/io/src", "crates/render/src", "crates/lab/src"];
+    for folder in folders {
+        for file in ["lib.rs", "main.rs"] {
+            let file = root().join(folder).join(file);
+            if file.is_file() {
+                seen_by_rustfmt(&file, &mut seen);
+            }
+        }
     }
-    for path in files("src", &["rs"]).into_iter().filter(|path| !seen.contains(path)) {
+    for path in
+        folders.iter().flat_map(|folder| files(folder, &["rs"])).filter(|path| !seen.contains(path))
+    {
         let name = path.strip_prefix(root()).expect("it is in the project");
         all.insert((name.display().to_string(), UNSEEN));
     }
     all
 }
 
-fn is_allowed(name: &str, fault: &str) -> bool {
-    let folder = folder_of(name);
-    ALLOWED.iter().any(|(allowed, faults)| *allowed == folder && faults.contains(&fault))
-}
-
 #[test]
 fn sources_and_pages_read_as_english_and_use_names_that_are_in_use() {
     let wrong: Vec<String> = all_faults()
         .iter()
-        .filter(|(name, fault)| !is_allowed(name, fault))
         .map(|(name, fault)| {
             let instead = PHRASES.iter().find(|(phrase, _)| phrase == fault);
             let instead =
@@ -241,18 +231,6 @@ fn sources_and_pages_read_as_english_and_use_names_that_are_in_use() {
         })
         .collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
-}
-
-#[test]
-fn every_allowance_is_still_needed() {
-    let found = all_faults();
-    for (folder, allowed) in ALLOWED {
-        for fault in *allowed {
-            let needed =
-                found.iter().any(|(name, other)| folder_of(name) == *folder && other == fault);
-            assert!(needed, "{folder} is free of \"{fault}\": take the allowance away");
-        }
-    }
 }
 
 #[test]
@@ -281,7 +259,4 @@ fn a_fault_is_seen_however_it_is_written() {
     for text in right {
         assert_eq!(faults("src/a.rs", &text), Vec::<&str>::new(), "{text}");
     }
-    assert_eq!(folder_of("src/render/plan/mod.rs"), "src/render");
-    assert_eq!(folder_of("src/lib.rs"), "src");
-    assert_eq!(folder_of("tests/window/main.rs"), "tests");
 }

@@ -2,12 +2,12 @@
 //! a scene that uses all of them.
 
 use criterion::Criterion;
-use marraztu::accuracy::Shot;
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::render::explain_frame;
-use marraztu::render::{Effect, Renderer};
-use marraztu::scene::{Command, Item, ObjectId, Scene, Texture, View, Wrap};
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{Command, Item, ObjectId, Scene, Texture, View, Wrap};
+use marraztu_render::explain_frame;
+use marraztu_render::{Effect, Renderer};
 
 use super::shapes;
 use super::stage::{FULL, Stage};
@@ -55,7 +55,7 @@ fn everything() -> Stage {
     let mut object = stage.scene.objects.get(id).expect("there is one").clone();
     object.texture = Some(Shared::new(holed()));
     let turn = glam::DMat4::from_rotation_y(0.6) * glam::DMat4::from_rotation_x(1.0);
-    object.placement = marraztu::scene::Tracked::new(*object.placement.now() * turn);
+    object.placement = marraztu_core::scene::Tracked::new(*object.placement.now() * turn);
     Command::Replace(Item::Object(id, Box::new(object))).apply(&mut stage.scene).expect("it fits");
     stage.view = View {
         marks: true,

@@ -1,9 +1,9 @@
 //! How the time of a picture grows: `triangles/N`, `pixels/WxH`, `lights/N`, `threads/N`.
 
 use criterion::{BenchmarkId, Criterion};
-use marraztu::base::color::Color;
-use marraztu::base::image::Size;
-use marraztu::scene::{Command, Item, Light, LightId};
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{Command, Item, Light, LightId};
 use rayon::ThreadPoolBuilder;
 
 use super::shapes;
@@ -45,7 +45,7 @@ fn lights(criterion: &mut Criterion) {
         let mut stage = Stage::new(&knot, FULL);
         let all: Vec<LightId> = stage.scene.lights.ids().collect();
         for id in all {
-            let gone = Command::Remove(marraztu::scene::ItemId::Light(id));
+            let gone = Command::Remove(marraztu_core::scene::ItemId::Light(id));
             gone.apply(&mut stage.scene).expect("it is there");
         }
         // Not the ambient one, which costs nothing a pixel.

@@ -5,12 +5,12 @@
 
 use criterion::{BenchmarkId, Criterion};
 use glam::{DMat4, DVec3};
-use marraztu::base::Shared;
-use marraztu::base::image::Size;
-use marraztu::base::math::Axis;
-use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{GesturePhase, items, selection};
-use marraztu::scene::{Command, ItemId, MaterialChoice, Model, Object, PresetId, Tracked};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::Size;
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::transform::{self, Sign};
+use marraztu_core::edit::{GesturePhase, items, selection};
+use marraztu_core::scene::{Command, ItemId, MaterialChoice, Model, Object, PresetId, Tracked};
 
 use super::shapes;
 use super::stage::{FULL, Stage};

@@ -7,15 +7,15 @@ use std::io::Write as _;
 
 use criterion::Criterion;
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::{Settings, Shot};
-use marraztu::base::color::Color;
-use marraztu::base::image::Size;
-use marraztu::lab::suite::SuiteScene;
-use marraztu::render::{Renderer, plan_frame};
-use marraztu::scene::{
+use marraztu_core::accuracy::{Settings, Shot};
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{
     Command, Item, Light, LightKind, MaterialChoice, Object, ObjectId, PresetId, Scene, SpotOwner,
     Tracked,
 };
+use marraztu_lab::suite::SuiteScene;
+use marraztu_render::{Renderer, plan_frame};
 
 /// A change of a scene.
 type Change = fn(&mut Scene);

@@ -6,10 +6,10 @@
 use std::io::Write as _;
 
 use criterion::{BenchmarkId, Criterion};
-use marraztu::accuracy::ShadowMethod;
-use marraztu::base::image::Size;
-use marraztu::render::{RayCount, Renderer};
-use marraztu::scene::{Command, Item, Light};
+use marraztu_core::accuracy::ShadowMethod;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{Command, Item, Light};
+use marraztu_render::{RayCount, Renderer};
 
 use super::shapes;
 use super::stage::Stage;

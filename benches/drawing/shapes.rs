@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use marraztu::base::{Shared, math};
-use marraztu::scene::{LoadOptions, Mesh, MeshSource, Model, NONE, Part, SourceCorner};
+use marraztu_core::base::{Shared, math};
+use marraztu_core::scene::{LoadOptions, Mesh, MeshSource, Model, NONE, Part, SourceCorner};
 
 /// A mesh with a name.
 pub(crate) struct Shape {

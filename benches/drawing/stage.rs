@@ -4,17 +4,17 @@ use std::time::Duration;
 
 use criterion::Bencher;
 use glam::DVec3;
-use marraztu::accuracy::Settings;
-use marraztu::accuracy::Shot;
-use marraztu::base::Shared;
-use marraztu::base::image::Size;
-use marraztu::io;
-use marraztu::render::plan_frame;
-use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{
+use marraztu_core::accuracy::Settings;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{
     CameraId, Command, Item, ItemId, MaterialChoice, Model, Object, ObjectId, Pose, PresetId,
     Scene, Tracked, View,
 };
+use marraztu_io as io;
+use marraztu_render::plan_frame;
+use marraztu_render::{FramePlan, Renderer};
 
 /// As wide and high as most windows.
 pub(crate) const FULL: Size = Size { width: 1920, height: 1080 };

@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use criterion::Criterion;
-use marraztu::accuracy::{LightAt, Settings};
-use marraztu::lab::timing::time;
-use marraztu::render::Timings;
+use marraztu_core::accuracy::{LightAt, Settings};
+use marraztu_lab::timing::time;
+use marraztu_render::Timings;
 
 use super::shapes;
 use super::stage::{FULL, Stage};
@@ -40,7 +40,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
                 bencher.iter_custom(|frames| stage.drawn(frames, |r| part(&r.timings())));
             });
         }
-        stage.view.fill = marraztu::scene::Fill::Edges;
+        stage.view.fill = marraztu_core::scene::Fill::Edges;
         group.bench_function("lines", |bencher| {
             bencher.iter_custom(|frames| stage.drawn(frames, |r| r.timings().lines));
         });

@@ -4,11 +4,11 @@
 
 use criterion::{BenchmarkId, Criterion};
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Filter;
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::rng::Rng;
-use marraztu::scene::{Command, Item, Object, ObjectId, Surface, Texture, Tracked, Wrap};
+use marraztu_core::accuracy::Filter;
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{Command, Item, Object, ObjectId, Surface, Texture, Tracked, Wrap};
 
 use super::shapes;
 use super::stage::{FULL, Stage};

@@ -2,8 +2,8 @@
 //! layer over the whole picture, with eight, and with a knot whose tube shows both its sides.
 
 use criterion::{BenchmarkId, Criterion};
-use marraztu::accuracy::Transparency;
-use marraztu::scene::{Command, Item, ObjectId, Sides};
+use marraztu_core::accuracy::Transparency;
+use marraztu_core::scene::{Command, Item, ObjectId, Sides};
 
 use super::shapes;
 use super::stage::{FULL, Stage};

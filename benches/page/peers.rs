@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use marraztu::lab::statistics::median;
+use marraztu_lab::statistics::median;
 
 use super::tables::{brief, head};
 

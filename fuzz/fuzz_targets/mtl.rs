@@ -7,8 +7,8 @@ use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use marraztu_fuzz::io::{Progress, describe, load};
-use marraztu_fuzz::scene::LoadOptions;
+use marraztu_io::{Progress, describe, load};
+use marraztu_core::scene::LoadOptions;
 
 /// A folder with a model and a texture, to which each run adds the materials.
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {

@@ -4,8 +4,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use marraztu_fuzz::io::{Progress, describe, parse};
-use marraztu_fuzz::scene::{Crease, LoadOptions, Scale, UpAxis, Winding};
+use marraztu_io::{Progress, describe, parse};
+use marraztu_core::scene::{Crease, LoadOptions, Scale, UpAxis, Winding};
 
 fuzz_target!(|data: &[u8]| {
     let Some((options, text)) = data.split_first() else { return };

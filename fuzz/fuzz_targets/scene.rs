@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use marraztu_fuzz::io::{Progress, open, to_text};
+use marraztu_io::{Progress, open, to_text};
 
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
     tempfile::tempdir().expect("there is a place for temporary files").keep()

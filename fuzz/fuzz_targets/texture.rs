@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use marraztu_fuzz::io::load_picture;
+use marraztu_io::load_picture;
 
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
     tempfile::tempdir().expect("there is a place for temporary files").keep()

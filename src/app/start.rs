@@ -5,12 +5,12 @@ use std::process::Command;
 
 use egui::ViewportBuilder;
 
-use crate::accuracy::AccuracyPreset;
 use crate::app::editor::App;
 use crate::app::fonts;
 use crate::app::shell::{self, Editor, Shell, StartError};
 use crate::app::theme;
-use crate::io::{self, OwnFolders, Preferences};
+use marraztu_core::accuracy::AccuracyPreset;
+use marraztu_io::{self as io, OwnFolders, Preferences};
 
 /// Opens the editor with these files, and comes back when it is left: models are shown
 /// alone, framed and lit; a scene is opened in place of the first one. A preset sets the accuracy

@@ -4,7 +4,7 @@ use std::sync::mpsc::{self, Receiver, TryRecvError};
 
 use egui::Context;
 
-use crate::io::Progress;
+use marraztu_io::Progress;
 
 /// Work that goes on while the window answers.
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use egui::style::{HandleShape, ScrollStyle, WidgetVisuals, Widgets};
 use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style};
 use egui::{TextStyle, Theme, Visuals, vec2};
 
-use crate::base::math::Axis;
+use marraztu_core::base::math::Axis;
 
 /// The height of a row, of a button, of a field, in points.
 pub const ROW: f32 = 22.0;

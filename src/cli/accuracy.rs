@@ -2,7 +2,7 @@
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use marraztu::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Choice, Settings};
+use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Choice, Settings};
 
 /// The choices that were made; other axes stay as they are.
 #[derive(Debug, Default)]

@@ -9,13 +9,13 @@ use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 use super::accuracy::Accuracy;
 use super::talk::Talk;
 use super::values::{color, is_standard, size, threads};
-use marraztu::base::color::Color;
-use marraztu::base::image::Size;
-use marraztu::io::{self, Input, PICTURE_FORMATS, PictureFormat};
-use marraztu::scene::{
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{
     BumpMaps, Crease, LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Sides,
     Surface, UpAxis, View, Winding,
 };
+use marraztu_io::{self as io, Input, PICTURE_FORMATS, PictureFormat};
 
 /// A picture, and the file that it goes to.
 #[derive(Debug, Args)]

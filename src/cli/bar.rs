@@ -8,7 +8,7 @@ use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use marraztu::io::Progress;
+use marraztu_io::Progress;
 
 use super::say;
 use super::talk;

@@ -12,8 +12,8 @@ use super::lab::Lab;
 use super::plan::Plan;
 use super::turntable::Turntable;
 use super::verify::Verify;
-use marraztu::accuracy::{ACCURACY_PRESETS, AccuracyPreset};
 use marraztu::app::Shell;
+use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset};
 
 /// Edits and draws 3D scenes of .obj models, on the CPU alone.
 ///

@@ -3,9 +3,9 @@
 use std::io::Write as _;
 
 use clap::Args;
-use marraztu::accuracy::{Samples, Settings};
-use marraztu::lab::pixel;
-use marraztu::render::{Renderer, plan_frame};
+use marraztu_core::accuracy::{Samples, Settings};
+use marraztu_lab::pixel;
+use marraztu_render::{Renderer, plan_frame};
 
 use super::arguments::PictureArguments;
 use super::failure::Failure;

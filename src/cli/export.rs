@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use marraztu::io;
+use marraztu_io as io;
 
 use super::accuracy::Accuracy;
 use super::arguments::{Reading, Seeing, Surfaces};

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use marraztu::app::StartError;
-use marraztu::edit::Refusal;
-use marraztu::io::{LoadError, SaveError, SceneFileError};
-use marraztu::lab::pairs::Unmeasured;
-use marraztu::lab::report::PlotError;
-use marraztu::scene::CommandError;
+use marraztu_core::edit::Refusal;
+use marraztu_core::scene::CommandError;
+use marraztu_io::{LoadError, SaveError, SceneFileError};
+use marraztu_lab::pairs::Unmeasured;
+use marraztu_lab::report::PlotError;
 
 /// Why a command fails, in one sentence.
 #[derive(Debug, thiserror::Error)]

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
-use marraztu::io::{Input, Progress, describe, shape};
-use marraztu::scene::{Model, Observer, Projection, Scene, View};
+use marraztu_core::scene::{Model, Observer, Projection, Scene, View};
+use marraztu_io::{Input, Progress, describe, shape};
 
 use super::arguments::{Info, Reading};
 use super::failure::Failure;

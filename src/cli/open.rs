@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use clap::CommandFactory;
 use clap::error::ErrorKind;
-use marraztu::accuracy::AccuracyPreset;
 use marraztu::app::Shell;
-use marraztu::io;
+use marraztu_core::accuracy::AccuracyPreset;
+use marraztu_io as io;
 
 use super::commands::Arguments;
 use super::failure::{Failure, usage};

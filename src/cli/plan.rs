@@ -5,8 +5,8 @@ use std::io::Write as _;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use marraztu::lab::cost::{self, Costs, Explained, Group};
-use marraztu::render::{Class, EffectState, EffectUse};
+use marraztu_lab::cost::{self, Costs, Explained, Group};
+use marraztu_render::{Class, EffectState, EffectUse};
 
 use super::arguments::PictureArguments;
 use super::bar::Bar;

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use marraztu::accuracy::Shot;
-use marraztu::base::image::{Picture, Size};
-use marraztu::edit::{framing, items, lighting};
-use marraztu::io::{self, Progress};
-use marraztu::render::{Renderer, Unseen, fitted_exposure, plan_frame, unseen, without_ground};
-use marraztu::scene::{CameraId, Command, Fill, ItemId, Object};
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::edit::{framing, items, lighting};
+use marraztu_core::scene::{CameraId, Command, Fill, ItemId, Object};
+use marraztu_io::{self as io, Progress};
+use marraztu_render::{Renderer, Unseen, fitted_exposure, plan_frame, unseen, without_ground};
 
 use super::accuracy::Accuracy;
 use super::arguments::{

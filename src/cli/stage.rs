@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use marraztu::accuracy::{Settings, Shot};
-use marraztu::base::Shared;
-use marraztu::base::image::Size;
-use marraztu::edit::{items, selection};
-use marraztu::io::{self, Finding, Input, LoadError, Loaded, Progress, Sources};
-use marraztu::scene::{Command, LoadOptions, MaterialChoice, Model, Object, Scene, Sides, View};
+use marraztu_core::accuracy::{Settings, Shot};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::Size;
+use marraztu_core::edit::{items, selection};
+use marraztu_core::scene::{
+    Command, LoadOptions, MaterialChoice, Model, Object, Scene, Sides, View,
+};
+use marraztu_io::{self as io, Finding, Input, LoadError, Loaded, Progress, Sources};
 use rayon::prelude::*;
 
 use super::arguments::Reading;

@@ -4,8 +4,8 @@
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-use marraztu::base::image::Picture;
-use marraztu::io::{self, PICTURE_FORMATS, Sources};
+use marraztu_core::base::image::Picture;
+use marraztu_io::{self as io, PICTURE_FORMATS, Sources};
 
 use super::arguments::Render;
 use super::failure::{Failure, usage};

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PathBufValueParser, TypedValueParser};
-use marraztu::edit::turntable::{Turn, turned};
-use marraztu::io::{Animation, AnimationFormat, AnimationWriter, Progress, Sources};
-use marraztu::render::{Renderer, plan_frame, without_ground};
-use marraztu::scene::View;
+use marraztu_core::edit::turntable::{Turn, turned};
+use marraztu_core::scene::View;
+use marraztu_io::{Animation, AnimationFormat, AnimationWriter, Progress, Sources};
+use marraztu_render::{Renderer, plan_frame, without_ground};
 
 use super::arguments::PictureArguments;
 use super::bar::Bar;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use marraztu::base::color::Color;
-use marraztu::base::image::Size;
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::Size;
 
 /// The longest side that a picture may have.
 const LONGEST_SIDE: usize = 16_384;

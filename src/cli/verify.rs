@@ -6,9 +6,9 @@ use std::io::Write as _;
 
 use clap::Args;
 use fearless_simd::Level;
-use marraztu::io::Progress;
-use marraztu::lab::instructions::{levels, name_of, named};
-use marraztu::lab::pictures::{self, TestPicture};
+use marraztu_io::Progress;
+use marraztu_lab::instructions::{levels, name_of, named};
+use marraztu_lab::pictures::{self, TestPicture};
 
 use super::bar::Bar;
 use super::failure::Failure;

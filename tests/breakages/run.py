@@ -42,7 +42,7 @@ def lower_floors(name, text):
     if name == "src/lib.rs":
         return text.replace("pub mod app;\n", "")
     if name == "Cargo.toml":
-        text = re.sub(rf"^({'|'.join(THEIR_CRATES)}) = .*\n", "", text, flags=re.MULTILINE)
+        text = re.sub(rf"^({'|'.join(THEIR_CRATES)})(?:\.workspace)? = .*\n", "", text, flags=re.MULTILINE)
         text = re.sub(r"\[\[(?:bench|example)\]\]\n(?:.+\n)+\n", "", text)
         text = text.replace('default-run = "marraztu"\n', "")
         return text.replace("[profile.dev]\nopt-level = 2", "[profile.dev]\nopt-level = 1")
@@ -159,7 +159,7 @@ def page():
             result = before.get((str(breakage["case"]), breakage["what"]), ["not tried", "", ""])
         missing += result[0] != "caught"
         untried += result[0] == "not tried"
-        file = breakage["file"].removeprefix("src/")
+        file = breakage["file"].removeprefix("crates/")
         rows.append(f"| {breakage['case']} | {breakage['what']} | `{file}` | {' | '.join(result)} |")
     text = f"""# Mutation tests
 

@@ -7,15 +7,15 @@ mod models;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use marraztu::accuracy::Settings;
-use marraztu::accuracy::Shot;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::math::Axis;
-use marraztu::edit::{lights, motion};
-use marraztu::io;
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::scene::{Projection, Scene};
+use marraztu_core::accuracy::Settings;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::{lights, motion};
+use marraztu_core::scene::{Projection, Scene};
+use marraztu_io as io;
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
 use tempfile::TempDir;
 
 /// A square of one unit on a side, its corners counter-clockwise seen from +Z, far from the origin.
@@ -155,7 +155,7 @@ fn every_option_of_the_view_changes_the_picture() {
         assert!(drawn(folder.path(), change) != plain, "{change:?} changes nothing");
     }
     let settings =
-        Settings { arithmetic: marraztu::accuracy::Arithmetic::F64, ..Settings::default() };
+        Settings { arithmetic: marraztu_core::accuracy::Arithmetic::F64, ..Settings::default() };
     let exact = drawn(folder.path(), &["--arithmetic", "f64"]);
     assert!(exact == first_scene(&settings, Size::new(160, 120)));
 }
@@ -180,7 +180,8 @@ fn a_scene_is_drawn_as_it_was_saved_and_models_go_into_it() {
     let folder = folder();
     let (scene, mut view) = io::default_scene();
     view.projection = Projection::Orthographic;
-    let settings = Settings { light: marraztu::accuracy::LightAt::Face, ..Settings::default() };
+    let settings =
+        Settings { light: marraztu_core::accuracy::LightAt::Face, ..Settings::default() };
     io::save(&folder.path().join("s.marraztu"), &scene, &view, &settings).unwrap();
     let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(160, 120)));
     let expected = Renderer::default().render(&plan).clone();

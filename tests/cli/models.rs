@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use marraztu::scene::Scene;
+use marraztu_core::scene::Scene;
 
 use super::{SQUARE, drawn, ends_with, folder};
 

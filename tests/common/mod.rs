@@ -4,17 +4,17 @@
 #![allow(clippy::cast_possible_truncation, reason = "small numbers")]
 
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Settings;
-use marraztu::accuracy::Shot;
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::scene::{
+use marraztu_core::accuracy::Settings;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{
     Camera, CameraId, Command, Item, Lens, Light, LightId, LoadOptions, MaterialChoice, Mesh,
     MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked,
     View,
 };
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
 
 /// A model of polygons that name vertices.
 pub(crate) fn model(name: &str, positions: &[[f32; 3]], polygons: &[&[u32]]) -> Shared<Model> {

@@ -1,8 +1,8 @@
 //! A scene like the first one, with shapes so simple that their numbers can be computed by hand.
 
 use glam::{DMat4, DVec3};
-use marraztu::base::Shared;
-use marraztu::scene::{
+use marraztu_core::base::Shared;
+use marraztu_core::scene::{
     Camera, Command, Item, ItemId, Lens, Light, LightId, LoadOptions, MaterialChoice, Mesh,
     MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked,
     View,

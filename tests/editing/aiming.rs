@@ -3,10 +3,10 @@
 //! Catches: a spot that jumps when it is aimed, a direction to another point, a direction of NaN.
 
 use glam::DVec3;
-use marraztu::base::math;
-use marraztu::edit::{GesturePhase, Refusal, aiming, items, lights};
-use marraztu::io;
-use marraztu::scene::{LightId, LightKind};
+use marraztu_core::base::math;
+use marraztu_core::edit::{GesturePhase, Refusal, aiming, items, lights};
+use marraztu_core::scene::{LightId, LightKind};
+use marraztu_io as io;
 
 #[test]
 fn a_spot_that_follows_its_owner_is_aimed_from_where_it_is_and_stays_there() {

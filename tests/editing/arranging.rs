@@ -4,11 +4,11 @@
 //! ground, an object that moves along another axis, too.
 
 use glam::{DMat4, DVec3};
-use marraztu::base::math::Axis;
-use marraztu::edit::arrange::{align, drop_to_ground, ground, reset, world_box};
-use marraztu::edit::{GesturePhase, Refusal, items, shapes, transform};
-use marraztu::io;
-use marraztu::scene::{ItemId, Object, ObjectId, Scene, Shape, Subject, View};
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::arrange::{align, drop_to_ground, ground, reset, world_box};
+use marraztu_core::edit::{GesturePhase, Refusal, items, shapes, transform};
+use marraztu_core::scene::{ItemId, Object, ObjectId, Scene, Shape, Subject, View};
+use marraztu_io as io;
 
 fn lowest(scene: &Scene, id: ObjectId) -> f64 {
     world_box(scene.objects.get(id).unwrap(), 0.0).unwrap().min.y

@@ -1,11 +1,11 @@
 //! A scene with its view, as the window holds them.
 
 use glam::{DMat3, DMat4, DVec3};
-use marraztu::base::math::Axis;
-use marraztu::edit::selection::{self, Selection};
-use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{GesturePhase, Refusal};
-use marraztu::scene::{
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::selection::{self, Selection};
+use marraztu_core::edit::transform::{self, Sign};
+use marraztu_core::edit::{GesturePhase, Refusal};
+use marraztu_core::scene::{
     CameraMode, Command, LightKind, Object, Pose, Scene, SpotOwner, Subject, Transformation, View,
 };
 

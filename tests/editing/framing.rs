@@ -1,10 +1,10 @@
 //! Framing: the camera moves so that objects are visible as a whole.
 
 use glam::DVec3;
-use marraztu::base::image::Size;
-use marraztu::edit::framing::{self, Side};
-use marraztu::edit::{GesturePhase, Refusal, items, placement};
-use marraztu::scene::{
+use marraztu_core::base::image::Size;
+use marraztu_core::edit::framing::{self, Side};
+use marraztu_core::edit::{GesturePhase, Refusal, items, placement};
+use marraztu_core::scene::{
     CameraMode, ItemId, ObjectId, Observer, Projection, Subject, Transformation, dvec3,
 };
 

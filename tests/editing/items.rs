@@ -1,11 +1,11 @@
 //! Inserting, removing and changing items of the scene.
 
 use glam::DVec3;
-use marraztu::base::math::Axis;
-use marraztu::edit::lights::{self, Channel};
-use marraztu::edit::transform::Sign;
-use marraztu::edit::{Refusal, items, motion};
-use marraztu::scene::{
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::lights::{self, Channel};
+use marraztu_core::edit::transform::Sign;
+use marraztu_core::edit::{Refusal, items, motion};
+use marraztu_core::scene::{
     CameraId, CommandError, ItemId, Lens, LightId, LightKind, MaterialChoice, Object, ObjectId,
     SpotOwner, Subject, Transformation,
 };

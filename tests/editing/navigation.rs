@@ -1,11 +1,11 @@
 //! Navigation: what the mouse does to the camera.
 
 use glam::{DVec2, DVec3};
-use marraztu::base::image::Size;
-use marraztu::base::math::Axis;
-use marraztu::edit::navigation::{self, Pointer};
-use marraztu::edit::{GesturePhase, Refusal};
-use marraztu::scene::{CameraMode, Observer, Projection, Subject, Transformation};
+use marraztu_core::base::image::Size;
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::navigation::{self, Pointer};
+use marraztu_core::edit::{GesturePhase, Refusal};
+use marraztu_core::scene::{CameraMode, Observer, Projection, Subject, Transformation};
 
 use super::desk::{Desk, close, turned};
 

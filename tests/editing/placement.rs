@@ -1,9 +1,9 @@
 //! Placements that are typed as numbers, and the numbers that are shown for them.
 
 use glam::{DMat3, DMat4, DVec3};
-use marraztu::base::math::Axis;
-use marraztu::edit::{GesturePhase, Refusal, placement};
-use marraztu::scene::{LightId, ObjectId, Pose, Subject, Transformation};
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::{GesturePhase, Refusal, placement};
+use marraztu_core::scene::{LightId, ObjectId, Pose, Subject, Transformation};
 use proptest::prelude::*;
 
 use super::desk::{Desk, close, close_matrix, turned};

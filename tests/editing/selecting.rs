@@ -1,8 +1,8 @@
 //! Which item is selected after each change.
 
-use marraztu::edit::selection::{self, cycle_subject};
-use marraztu::edit::{GesturePhase, Refusal, items};
-use marraztu::scene::{
+use marraztu_core::edit::selection::{self, cycle_subject};
+use marraztu_core::edit::{GesturePhase, Refusal, items};
+use marraztu_core::scene::{
     CameraId, Command, ItemId, LightId, ObjectId, Observer, PolygonMode, Subject, Transformation,
 };
 

@@ -1,10 +1,10 @@
 //! What x, y, z, g and u do to objects, cameras and lights.
 
 use glam::{DMat3, DMat4, DVec3};
-use marraztu::base::math::Axis;
-use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{GesturePhase, Refusal, items, lights, selection};
-use marraztu::scene::{
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::transform::{self, Sign};
+use marraztu_core::edit::{GesturePhase, Refusal, items, lights, selection};
+use marraztu_core::scene::{
     CameraMode, Frame, ItemId, LightId, LightKind, ObjectId, SpotOwner, Subject, Transformation,
 };
 

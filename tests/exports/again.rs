@@ -3,15 +3,15 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use marraztu::accuracy::{Settings, Shot};
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::edit::{framing, items};
-use marraztu::io::{self, Loaded, Progress, Sources};
-use marraztu::render::{Renderer, plan_frame};
-use marraztu::scene::{
+use marraztu_core::accuracy::{Settings, Shot};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::edit::{framing, items};
+use marraztu_core::scene::{
     FileMaterial, LoadOptions, MaterialChoice, Model, Object, PartNames, PresetId,
 };
+use marraztu_io::{self as io, Loaded, Progress, Sources};
+use marraztu_render::{Renderer, plan_frame};
 
 use super::{put, put_picture, runs};
 
@@ -26,7 +26,8 @@ fn picture(model: Model) -> Picture {
     let (mut scene, view) = io::default_scene();
     let ids: Vec<_> = scene.objects.ids().collect();
     for id in ids {
-        let remove = marraztu::scene::Command::Remove(marraztu::scene::ItemId::Object(id));
+        let remove =
+            marraztu_core::scene::Command::Remove(marraztu_core::scene::ItemId::Object(id));
         remove.apply(&mut scene).unwrap();
     }
     let object = Object::new(Shared::new(model), MaterialChoice::File);
@@ -157,8 +158,8 @@ fn presets_are_called_by_their_names_and_objects_as_the_user_calls_them() {
     for (id, name) in ids.iter().zip(["one # two\nthree", "same", "same"]) {
         let mut object = scene.objects.get(*id).unwrap().clone();
         (object.name, object.material) = (name.to_owned(), gold.clone());
-        let item = marraztu::scene::Item::Object(*id, Box::new(object));
-        marraztu::scene::Command::Replace(item).apply(&mut scene).unwrap();
+        let item = marraztu_core::scene::Item::Object(*id, Box::new(object));
+        marraztu_core::scene::Command::Replace(item).apply(&mut scene).unwrap();
     }
     let path = folder.path().join("first.obj");
     io::export(&path, &scene, &view, &Sources::default()).unwrap();

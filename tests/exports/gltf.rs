@@ -101,7 +101,7 @@ fn a_map_of_opacity_is_in_the_alpha_of_the_texture() {
     // The larger size is kept: in the middle of four equal texels nothing is mixed.
     let gltf = exported(folder.path(), "Kd 1 1 1\nKs 0 0 0\nmap_Kd map.png\nmap_d large.png");
     let merged = image(&path, &gltf, 0);
-    assert_eq!(merged.size(), marraztu::base::image::Size::new(8, 8));
+    assert_eq!(merged.size(), marraztu_core::base::image::Size::new(8, 8));
     assert_eq!(merged.pixel(4, 2)[3], map(2, 1)[0]);
     // Laid out otherwise: a map at twice the scale repeats twice.
     let gltf =

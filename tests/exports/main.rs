@@ -12,8 +12,8 @@ mod validator;
 use std::path::Path;
 use std::process::{Command as Process, Output};
 
-use marraztu::base::image::{Picture, Size};
-use marraztu::io;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_io as io;
 use serde_json::Value;
 
 /// Runs the program in a folder.

@@ -1,10 +1,10 @@
 //! Placements after a million steps, and cameras over the pole.
 
 use glam::{DMat3, DVec3, Mat3, Vec3};
-use marraztu::base::math::Axis;
-use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{GesturePhase, Refusal, navigation, placement};
-use marraztu::scene::{
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::transform::{self, Sign};
+use marraztu_core::edit::{GesturePhase, Refusal, navigation, placement};
+use marraztu_core::scene::{
     Command, Frame, Light, LightKind, Pose, Scene, Subject, Transformation, View,
 };
 

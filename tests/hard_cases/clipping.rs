@@ -2,19 +2,19 @@
 
 use crate::claims::exact::span;
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{Filter, Settings};
-use marraztu::base::color::Color;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::rng::Rng;
-use marraztu::lab::pictures::flat::{self, Flat};
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
-use marraztu::scene::{
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{Filter, Settings};
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{
     Fill, List, MeshSource, Object, ObjectId, Part, Pose, Sides, SourceCorner, Surface, Tracked,
     View,
 };
+use marraztu_lab::pictures::flat::{self, Flat};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
+use marraztu_render::screen::coverage::{SUBPIXELS, Snapped};
 
 use super::cases::quick_round;
 use super::common::{covered, draw, edit, model, model_of, scene};
@@ -25,7 +25,7 @@ const SIDE: usize = 128;
 
 /// A triangle of the world as the only thing to be seen, from both sides, by the eye at (0, 0,
 /// 400).
-fn alone(corners: [DVec3; 3]) -> (marraztu::scene::Scene, View) {
+fn alone(corners: [DVec3; 3]) -> (marraztu_core::scene::Scene, View) {
     let positions = corners.map(|corner| corner.as_vec3().to_array());
     let (mut scene, view) =
         scene(&[(model("triangle", &positions, &[&[0, 1, 2]]), DMat4::IDENTITY)]);
@@ -67,7 +67,9 @@ fn case_11_corners_in_the_observers_plane_harm_nothing() {
             object.placement = object.placement.replaced(front);
         });
         let placed = corners.map(|corner| front.transform_point3(DVec3::from_array(corner)));
-        for light in [marraztu::accuracy::LightAt::Pixel, marraztu::accuracy::LightAt::Vertex] {
+        for light in
+            [marraztu_core::accuracy::LightAt::Pixel, marraztu_core::accuracy::LightAt::Vertex]
+        {
             let settings = Settings { light, ..Settings::default() };
             let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(SIDE, SIDE)));
             let mut renderer = Renderer::default();
@@ -496,12 +498,12 @@ fn case_18_objects_behind_the_observer_are_invisible() {
 }
 
 /// A picture of 256 texels in a row, each with its place as its colour.
-pub(super) fn ruler(scale: f64) -> marraztu::base::Shared<marraztu::scene::Texture> {
+pub(super) fn ruler(scale: f64) -> marraztu_core::base::Shared<marraztu_core::scene::Texture> {
     let texels = (0..=255).map(|i| [i, i, i, 255]).collect();
-    marraztu::base::Shared::new(marraztu::scene::Texture {
+    marraztu_core::base::Shared::new(marraztu_core::scene::Texture {
         source: std::path::PathBuf::new(),
         picture: Picture::from_pixels(Size::new(256, 1), texels).unwrap().into(),
-        wrap: marraztu::scene::Wrap::Repeat,
+        wrap: marraztu_core::scene::Wrap::Repeat,
         offset: [0.0; 2],
         scale: [scale, 1.0],
     })
@@ -511,13 +513,13 @@ pub(super) fn ruler(scale: f64) -> marraztu::base::Shared<marraztu::scene::Textu
 pub(super) fn textured(
     corners: [DVec3; 3],
     u: [f32; 3],
-    texture: &marraztu::base::Shared<marraztu::scene::Texture>,
-) -> (marraztu::scene::Scene, View) {
+    texture: &marraztu_core::base::Shared<marraztu_core::scene::Texture>,
+) -> (marraztu_core::scene::Scene, View) {
     let source = MeshSource {
         positions: corners.map(|corner| corner.as_vec3().to_array()).to_vec(),
         uvs: u.map(|u| [u, 0.5]).to_vec(),
         corners: [0, 1, 2]
-            .map(|i| SourceCorner { position: i, uv: i, normal: marraztu::scene::NONE })
+            .map(|i| SourceCorner { position: i, uv: i, normal: marraztu_core::scene::NONE })
             .to_vec(),
         arities: vec![3],
         polygon_parts: vec![0],

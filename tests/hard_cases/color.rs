@@ -1,9 +1,11 @@
 //! Colours: from light to bytes.
 
-use marraztu::accuracy::{Arithmetic, Settings};
-use marraztu::base::color::{Color, byte};
-use marraztu::base::rng::Rng;
-use marraztu::scene::{Light, LightId, LightKind, Material, MaterialChoice, ObjectId, Scene, View};
+use marraztu_core::accuracy::{Arithmetic, Settings};
+use marraztu_core::base::color::{Color, byte};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{
+    Light, LightId, LightKind, Material, MaterialChoice, ObjectId, Scene, View,
+};
 
 use super::common::{at, draw, edit, scene, square};
 use super::figures::Figure;

@@ -2,17 +2,17 @@
 
 use crate::claims::exact::{span, wind};
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Settings;
-use marraztu::accuracy::Shot;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::rng::Rng;
-use marraztu::lab::instructions::levels;
-use marraztu::lab::pictures;
-use marraztu::lab::pictures::flat::{self, Flat};
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
-use marraztu::scene::{LoadOptions, MeshSource, Object, ObjectId, Projection, View, Winding};
+use marraztu_core::accuracy::Settings;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{LoadOptions, MeshSource, Object, ObjectId, Projection, View, Winding};
+use marraztu_lab::instructions::levels;
+use marraztu_lab::pictures;
+use marraztu_lab::pictures::flat::{self, Flat};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
+use marraztu_render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
 
 use super::cases::quick_round;
 use super::common::{at, ball, covered, draw, edit, model_of, scene};
@@ -272,9 +272,9 @@ fn case_23_the_fronts_of_a_closed_body_are_seen_where_its_backs_are() {
                 }
                 source.arities.push(corners.len() as u32);
                 source.polygon_parts.push(0);
-                let none = marraztu::scene::NONE;
+                let none = marraztu_core::scene::NONE;
                 source.corners.extend(corners.into_iter().map(|position| {
-                    marraztu::scene::SourceCorner { position, uv: none, normal: none }
+                    marraztu_core::scene::SourceCorner { position, uv: none, normal: none }
                 }));
             }
             let (scene, view) = scene(&[(model_of("body", source), placement)]);
@@ -294,19 +294,19 @@ fn case_24_an_edge_that_a_corner_of_another_face_splits_is_found_and_said() {
     let text = "v 0 0 0\nv 3 0 0\nv 3 2 0\nv 0 2 0\nv 5 0 0\nv 5 2 0\nv 3 0.7 0\nv 5 0.7 0\n\
                 f 1 2 3 4\nf 2 5 8 7\nf 7 8 6 3\n";
     let read = |text: &str| {
-        let progress = marraztu::io::Progress::new();
-        marraztu::io::parse(text.as_bytes(), "a.obj", None, &LoadOptions::default(), &progress)
+        let progress = marraztu_io::Progress::new();
+        marraztu_io::parse(text.as_bytes(), "a.obj", None, &LoadOptions::default(), &progress)
             .unwrap()
     };
     let split = read(text);
-    let said = marraztu::io::describe(&split);
+    let said = marraztu_io::describe(&split);
     assert_eq!(split.model.mesh.split_edges(), 1);
     assert!(said.contains("1 edge is split by corners of other faces: gaps may show"), "{said}");
     let whole = read(&text.replace("f 1 2 3 4", "f 1 2 7 3 4"));
     assert_eq!(whole.model.mesh.split_edges(), 0);
-    assert!(!marraztu::io::describe(&whole).contains("split"));
+    assert!(!marraztu_io::describe(&whole).contains("split"));
     // Seen by many eyes, the gap shows; without the split it never does.
-    let gaps = |loaded: &marraztu::io::Loaded| {
+    let gaps = |loaded: &marraztu_io::Loaded| {
         let mesh = &loaded.model.mesh;
         let mut source = MeshSource {
             positions: mesh.positions().to_vec(),
@@ -317,8 +317,8 @@ fn case_24_an_edge_that_a_corner_of_another_face_splits_is_found_and_said() {
             source.arities.push(mesh.polygon(polygon).len() as u32);
             source.polygon_parts.push(0);
             source.corners.extend(mesh.polygon(polygon).iter().map(|corner| {
-                let (position, none) = (corner.position, marraztu::scene::NONE);
-                marraztu::scene::SourceCorner { position, uv: none, normal: none }
+                let (position, none) = (corner.position, marraztu_core::scene::NONE);
+                marraztu_core::scene::SourceCorner { position, uv: none, normal: none }
             }));
         }
         let plate = model_of("plate", source);

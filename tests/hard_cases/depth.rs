@@ -2,17 +2,17 @@
 
 use crate::claims::double_double::Double;
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Settings;
-use marraztu::accuracy::Shot;
-use marraztu::base::image::Size;
-use marraztu::base::rng::Rng;
-use marraztu::lab::pictures::flat::{self, FAR, Flat};
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
-use marraztu::scene::{
+use marraztu_core::accuracy::Settings;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::Size;
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{
     Command, ItemId, MaterialChoice, ObjectId, PresetId, Projection, Scene, Sides, Surface, View,
 };
+use marraztu_lab::pictures::flat::{self, FAR, Flat};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
+use marraztu_render::screen::coverage::{SUBPIXELS, Snapped};
 
 use super::common::{at, draw, edit, model, scene, square};
 use super::figures::Figure;

@@ -1,16 +1,16 @@
 //! Odd numbers and faces in files, scenes of other scales, empty scenes and huge ones.
 
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{Arithmetic, Settings};
-use marraztu::base::image::{Picture, Size};
-use marraztu::io::{FindingKind, LoadError, Loaded, Progress, parse};
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::scene::{
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{Arithmetic, Settings};
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{
     Attenuation, Lens, Light, LightId, LightKind, List, LoadOptions, MeshSource, ObjectId, Orbit,
     Pose, Projection, Scene, Tracked, View, newell,
 };
+use marraztu_io::{FindingKind, LoadError, Loaded, Progress, parse};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
 
 use super::cases::quick_round;
 use super::common::{ball, covered, cube, draw, edit, model_of, scene};

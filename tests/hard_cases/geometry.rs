@@ -2,16 +2,16 @@
 
 use crate::claims::double_double::Double;
 use glam::{DMat3, DMat4, DVec3};
-use marraztu::accuracy::Settings;
-use marraztu::base::math;
-use marraztu::base::rng::Rng;
-use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{GesturePhase, Refusal, placement};
-use marraztu::render::screen::coverage::{Snapped, Triangle, doubled_area};
-use marraztu::scene::{
+use marraztu_core::accuracy::Settings;
+use marraztu_core::base::math;
+use marraztu_core::base::rng::Rng;
+use marraztu_core::edit::transform::{self, Sign};
+use marraztu_core::edit::{GesturePhase, Refusal, placement};
+use marraztu_core::scene::{
     Frame, Light, LightId, LightKind, List, ObjectId, Scene, Sides, Subject, Tracked,
     Transformation, View, newell,
 };
+use marraztu_render::screen::coverage::{Snapped, Triangle, doubled_area};
 
 use super::camera::{apply, desk, linear};
 use super::common::{at, ball, covered, cube, draw, edit, model, scene};
@@ -156,7 +156,8 @@ fn case_3_the_screen_stands_still_however_far_from_the_origin_the_scene_is() {
         let (mut scene, view) =
             scene(&[(strips.clone(), DMat4::from_translation(away + DVec3::Z * 300.0))]);
         let mut camera = scene.selected_camera(&view).clone();
-        camera.pose = Tracked::new(marraztu::scene::Pose::facing_minus_z(away + DVec3::Z * 400.0));
+        camera.pose =
+            Tracked::new(marraztu_core::scene::Pose::facing_minus_z(away + DVec3::Z * 400.0));
         scene.cameras = List::from_iter([(view.camera, camera)]);
         let view = View { marks: false, ..view };
         let picture = draw(&scene, &view, &Settings::default(), ROWS);
@@ -277,7 +278,7 @@ fn case_6_a_mirrored_scene_gives_the_mirrored_picture() {
             },
             LightKind::Bulb {
                 position: Tracked::new(DVec3::new(90.0 * sign, 60.0, 150.0)),
-                orbit: marraztu::scene::Orbit::default(),
+                orbit: marraztu_core::scene::Orbit::default(),
             },
         ];
         let lights = lights.into_iter().zip(1..);

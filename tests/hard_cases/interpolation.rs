@@ -1,17 +1,17 @@
 //! Interpolation: the values between corners.
 
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::{Arithmetic, Filter, LightAt, Settings};
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::rng::Rng;
-use marraztu::lab::pictures::flat::{self, Flat};
-use marraztu::render::Renderer;
-use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
-use marraztu::scene::{
+use marraztu_core::accuracy::{Arithmetic, Filter, LightAt, Settings};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{
     Material, MaterialChoice, MeshSource, NONE, ObjectId, Part, SourceCorner, Surface, Texture,
     View, Wrap,
 };
+use marraztu_lab::pictures::flat::{self, Flat};
+use marraztu_render::Renderer;
+use marraztu_render::screen::coverage::{SUBPIXELS, Snapped};
 
 use super::clipping::{ruler, textured};
 use super::common::{draw, edit, model, model_of, scene};
@@ -185,7 +185,10 @@ fn case_39_places_beyond_the_texture_are_brought_back_into_it() {
         .count();
     let mut source = MeshSource { uvs: vec![[f32::NAN, 0.0]], ..MeshSource::default() };
     source.positions = vec![[0.0; 3]];
-    assert!(marraztu::scene::Mesh::new(source).is_err(), "places that are no numbers are refused");
+    assert!(
+        marraztu_core::scene::Mesh::new(source).is_err(),
+        "places that are no numbers are refused"
+    );
     Figure {
         case: 39,
         what: "wrong texels at places of -1e4, 1, 1e4, 1e30 and the largest f32",

@@ -1,6 +1,6 @@
 //! Checks the oracles themselves on cases whose answers are known.
 
-use marraztu::render::screen::coverage::Snapped;
+use marraztu_render::screen::coverage::Snapped;
 
 use crate::claims::double_double::Double;
 use crate::claims::exact::{span, wind};

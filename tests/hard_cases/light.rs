@@ -1,19 +1,19 @@
 //! Light, compared with the equation of the oracle along rays.
 
 use glam::{DMat4, DQuat, DVec3};
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{Arithmetic, LightAt, Settings};
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::rng::Rng;
-use marraztu::edit::{GesturePhase, placement};
-use marraztu::lab::instructions::levels;
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::render::simd::{Power, Real as _};
-use marraztu::scene::{
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{Arithmetic, LightAt, Settings};
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::edit::{GesturePhase, placement};
+use marraztu_core::scene::{
     Aim, Command, ItemId, Light, LightId, LightKind, Material, MaterialChoice, MeshSource, NONE,
     ObjectId, Orbit, Part, Scene, SourceCorner, SpotOwner, Tracked, View,
 };
+use marraztu_lab::instructions::levels;
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
+use marraztu_render::simd::{Power, Real as _};
 
 use super::common::{at, ball, draw, edit, model_of, scene, square};
 use super::figures::Figure;
@@ -262,7 +262,7 @@ fn case_44_small_angles_are_shown_as_they_were_typed() {
     let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
     for exponent in 1..=9 {
         let degrees = 1.234_567_8 * 10.0_f64.powi(-exponent);
-        let (scene, view) = marraztu::io::default_scene();
+        let (scene, view) = marraztu_io::default_scene();
         let id = view.object.unwrap();
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             let mut scene = scene.clone();
@@ -609,7 +609,7 @@ fn case_51_light_is_held_to_full_once_and_after_the_texture() {
             let settings = Settings {
                 arithmetic,
                 light,
-                filter: marraztu::accuracy::Filter::Nearest,
+                filter: marraztu_core::accuracy::Filter::Nearest,
                 ..Settings::default()
             };
             let middle = draw(&scene, &view, &settings, 33).pixel(16, 18)[0];

@@ -1,10 +1,10 @@
 //! Shadow maps beside exact shadows, holes of maps of opacity, and the shadow terminator.
 
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::{AXES, Filter, Settings, ShadowMethod, Terminator};
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::scene::{
+use marraztu_core::accuracy::{AXES, Filter, Settings, ShadowMethod, Terminator};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{
     FileMaterial, LoadOptions, MapKind, Material, MaterialChoice, Mesh, MeshSource, Model, NONE,
     ObjectId, Part, SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
 };

@@ -1,10 +1,10 @@
 //! Shadows, compared with rays that are cast one by one in f64 against every triangle.
 
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::{Samples, Settings};
-use marraztu::base::Shared;
-use marraztu::base::image::Picture;
-use marraztu::scene::{
+use marraztu_core::accuracy::{Samples, Settings};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::Picture;
+use marraztu_core::scene::{
     Attenuation, CameraId, Light, LightId, LightKind, Material, MaterialChoice, Model, ObjectId,
     Orbit, Scene, Sides, Tracked, View,
 };

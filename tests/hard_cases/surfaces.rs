@@ -1,16 +1,16 @@
 //! Surfaces: bumps, light of their own, and light in linear values.
 
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::{Arithmetic, Filter, LightValues, Samples, Settings, Shot, Tangents};
-use marraztu::base::Shared;
-use marraztu::base::color::Color;
-use marraztu::base::image::{Picture, Size};
-use marraztu::render::plan_frame;
-use marraztu::scene::{
+use marraztu_core::accuracy::{Arithmetic, Filter, LightValues, Samples, Settings, Shot, Tangents};
+use marraztu_core::base::Shared;
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{
     FileMaterial, Light, LightId, LightKind, LoadOptions, MapKind, Material, MaterialChoice, Mesh,
     MeshSource, Model, NONE, ObjectId, Part, Scene, SourceCorner, Surface, SurfaceMap, SurfaceMaps,
     Texture, Tracked, Undrawn, View, Wrap,
 };
+use marraztu_render::plan_frame;
 
 use super::common::{draw, edit, scene};
 use super::figures::Figure;

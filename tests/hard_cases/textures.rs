@@ -2,11 +2,11 @@
 //! distances at which lanes of f32 could go wrong.
 
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::{Arithmetic, Filter, Settings, Transparency};
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::rng::Rng;
-use marraztu::scene::{
+use marraztu_core::accuracy::{Arithmetic, Filter, Settings, Transparency};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{
     MeshSource, NONE, ObjectId, Part, Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
 };
 

@@ -1,11 +1,11 @@
 //! Transparency: sheets of one colour each, against ray casting and blending in f64.
 
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Settings;
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::rng::Rng;
-use marraztu::scene::{
+use marraztu_core::accuracy::Settings;
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{
     Lens, Light, LightId, LightKind, List, Material, MaterialChoice, MeshSource, NONE, ObjectId,
     Part, Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
 };
@@ -170,8 +170,10 @@ fn case_81_sheets_that_cut_through_each_other_change_places_where_they_meet() {
     let picture = draw(&scene, &view, &Settings::default(), SIDE);
     let (ours, judged) = wrong(&picture, &sheets, &scene);
     assert!(judged > 3000, "{judged}");
-    let by_object =
-        Settings { transparency: marraztu::accuracy::Transparency::Objects, ..Settings::default() };
+    let by_object = Settings {
+        transparency: marraztu_core::accuracy::Transparency::Objects,
+        ..Settings::default()
+    };
     let (naive, _) = wrong(&draw(&scene, &view, &by_object, SIDE), &sheets, &scene);
     Figure {
         case: 81,

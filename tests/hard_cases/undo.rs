@@ -1,11 +1,11 @@
 //! Undo and saving: everything comes back as it was.
 
-use marraztu::accuracy::Settings;
-use marraztu::base::math::{self, Axis};
-use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Gesture, GesturePhase, History, items, selection};
-use marraztu::io::{self, Progress};
-use marraztu::scene::{ItemId, ObjectId, Scene, Subject, Transformation, View};
+use marraztu_core::accuracy::Settings;
+use marraztu_core::base::math::{self, Axis};
+use marraztu_core::edit::transform::{self, Sign};
+use marraztu_core::edit::{Gesture, GesturePhase, History, items, selection};
+use marraztu_core::scene::{ItemId, ObjectId, Scene, Subject, Transformation, View};
+use marraztu_io::{self as io, Progress};
 
 use glam::{DMat3, DVec3};
 

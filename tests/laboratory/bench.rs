@@ -2,14 +2,14 @@
 
 use std::time::Duration;
 
-use marraztu::accuracy::{AXES, Axis, Choice, Settings};
-use marraztu::base::image::{Picture, Size};
-use marraztu::io;
-use marraztu::lab::candidates::{LeftOut, Thoroughness, all_axes, candidates};
-use marraztu::lab::pairs::{Limits, Watch};
-use marraztu::lab::picture_source::PictureSource;
-use marraztu::lab::sweep::{Bench, Findings, Question};
-use marraztu::lab::timing::{Clock, Work};
+use marraztu_core::accuracy::{AXES, Axis, Choice, Settings};
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_io as io;
+use marraztu_lab::candidates::{LeftOut, Thoroughness, all_axes, candidates};
+use marraztu_lab::pairs::{Limits, Watch};
+use marraztu_lab::picture_source::PictureSource;
+use marraztu_lab::sweep::{Bench, Findings, Question};
+use marraztu_lab::timing::{Clock, Work};
 
 /// A choice in which something is planted.
 pub(crate) type Planted = Option<(&'static Axis, &'static Choice)>;
@@ -125,9 +125,9 @@ pub(crate) fn found(clock: &mut FakeClock, source: &mut FakeSource) -> Findings 
 
 /// The first scene with shadows, a ball that has bumps, and a stretched triangle that is
 /// transparent and has a texture and an exponent of 32.
-fn textured_scene() -> (marraztu::scene::Scene, marraztu::scene::View) {
-    use marraztu::base::Shared;
-    use marraztu::scene::*;
+fn textured_scene() -> (marraztu_core::scene::Scene, marraztu_core::scene::View) {
+    use marraztu_core::base::Shared;
+    use marraztu_core::scene::*;
     let (mut scene, view) = io::default_scene();
     let cast = |(id, light): (LightId, &Light)| {
         (id, Light { shadows: light.can_cast_shadows(), ..light.clone() })

@@ -4,10 +4,10 @@
 //! Catches: a scene in which the choice makes no difference, and a reference that has the same
 //! fault as the picture.
 
-use marraztu::accuracy::{AXES, Settings, Shot};
-use marraztu::base::image::Size;
-use marraztu::io;
-use marraztu::lab::picture_source::{PictureSource as _, Reference, Studio};
+use marraztu_core::accuracy::{AXES, Settings, Shot};
+use marraztu_core::base::image::Size;
+use marraztu_io as io;
+use marraztu_lab::picture_source::{PictureSource as _, Reference, Studio};
 
 #[test]
 fn every_lesson_opens_on_an_error_that_can_be_seen() {

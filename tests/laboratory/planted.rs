@@ -1,12 +1,12 @@
 //! Planted slowdowns and errors are attributed to the right choice, and to no other.
 
-use marraztu::accuracy::{Axis, AxisKind, Choice, LightAt, Settings};
-use marraztu::lab::attribution::attribute;
-use marraztu::lab::candidates::Group;
-use marraztu::lab::error::{Measure, Region};
-use marraztu::lab::report::{Budgets, Panels, Report};
-use marraztu::lab::statistics::Quartiles;
-use marraztu::lab::sweep::{Findings, Measured, Verdict};
+use marraztu_core::accuracy::{Axis, AxisKind, Choice, LightAt, Settings};
+use marraztu_lab::attribution::attribute;
+use marraztu_lab::candidates::Group;
+use marraztu_lab::error::{Measure, Region};
+use marraztu_lab::report::{Budgets, Panels, Report};
+use marraztu_lab::statistics::Quartiles;
+use marraztu_lab::sweep::{Findings, Measured, Verdict};
 
 use crate::bench::{FakeClock, FakeSource, Planted, found, plantable};
 

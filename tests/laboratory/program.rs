@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use marraztu::accuracy::AXES;
-use marraztu::io;
+use marraztu_core::accuracy::AXES;
+use marraztu_io as io;
 
 #[track_caller]
 fn lab(status: i32, folder: &Path, arguments: &[&str]) -> (String, String) {
@@ -65,7 +65,7 @@ fn a_sweep_prints_its_table_and_leaves_everything_in_its_folder() {
     let [exact, x1, x256] = ["exact", "error-x1", "error-x256"]
         .map(|name| io::load_picture(&found.join(format!("{name}.png"))).unwrap());
     assert_eq!((exact.size().width, exact.size().height), (48, 36));
-    let sum = |picture: &marraztu::base::image::Picture| -> u64 {
+    let sum = |picture: &marraztu_core::base::image::Picture| -> u64 {
         picture.pixels().iter().flat_map(|p| &p[..3]).map(|byte| u64::from(*byte)).sum()
     };
     assert!(0 < sum(&x1) && sum(&x1) < sum(&x256));

@@ -6,15 +6,15 @@
 //! Catches: a preset that names too coarse a choice; light in 32 bits that strays by more than is
 //! promised; a reference that is not where the presets lead.
 
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{AccuracyPreset, Filter, Settings};
-use marraztu::base::image::{Picture, Size};
-use marraztu::io;
-use marraztu::lab::error::Error;
-use marraztu::lab::picture_source::{PictureSource as _, Studio};
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::scene::{Command, Item, MaterialChoice, Scene, View};
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{AccuracyPreset, Filter, Settings};
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{Command, Item, MaterialChoice, Scene, View};
+use marraztu_io as io;
+use marraztu_lab::error::Error;
+use marraztu_lab::picture_source::{PictureSource as _, Studio};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
 
 use crate::random_scenes::random_scene;
 

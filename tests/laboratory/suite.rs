@@ -1,10 +1,10 @@
 //! The suite measures every axis, and its page has a section for each.
 
-use marraztu::accuracy::{AXES, Axis};
-use marraztu::lab::pairs::Watch;
-use marraztu::lab::report::{Look, page_html, page_markdown, png, sections};
-use marraztu::lab::suite::{SUITE, SuiteDetail, run};
-use marraztu::lab::timing::WallClock;
+use marraztu_core::accuracy::{AXES, Axis};
+use marraztu_lab::pairs::Watch;
+use marraztu_lab::report::{Look, page_html, page_markdown, png, sections};
+use marraztu_lab::suite::{SUITE, SuiteDetail, run};
+use marraztu_lab::timing::WallClock;
 
 #[test]
 fn every_axis_is_measured_on_a_scene_in_which_it_means_something() {

@@ -1,11 +1,11 @@
 //! Tables, data and plots hold every choice.
 
-use marraztu::accuracy::{AXES, Axis, Choice, Samples, Settings};
-use marraztu::lab::candidates::Group;
-use marraztu::lab::error::{Measure, Region};
-use marraztu::lab::report::{Budgets, Look, Panels, Report, csv, overview_names, png, svg};
-use marraztu::lab::report::{markdown, panel_svg, tabs, text};
-use marraztu::lab::sweep::{Against, Verdict};
+use marraztu_core::accuracy::{AXES, Axis, Choice, Samples, Settings};
+use marraztu_lab::candidates::Group;
+use marraztu_lab::error::{Measure, Region};
+use marraztu_lab::report::{Budgets, Look, Panels, Report, csv, overview_names, png, svg};
+use marraztu_lab::report::{markdown, panel_svg, tabs, text};
+use marraztu_lab::sweep::{Against, Verdict};
 
 use crate::bench::{FakeClock, FakeSource, found};
 

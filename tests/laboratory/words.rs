@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use marraztu::accuracy::{AXES, Settings};
-use marraztu::io;
+use marraztu_core::accuracy::{AXES, Settings};
+use marraztu_io as io;
 
 /// "half-vector" as a scene file writes it: `HalfVector`.
 fn camel(word: &str) -> String {
@@ -40,7 +40,7 @@ fn a_scene_file_of_the_time_when_shading_was_called_light_still_opens() {
     let text = io::to_text(&path, &scene, &view, &Settings::default()).unwrap();
     std::fs::write(&path, text.replace("shading: Pixel", "light: Face")).unwrap();
     let opened = io::open(&path, &io::Progress::new()).unwrap();
-    assert_eq!(opened.settings.light, marraztu::accuracy::LightAt::Face);
+    assert_eq!(opened.settings.light, marraztu_core::accuracy::LightAt::Face);
     std::fs::write(&path, text.replace("shading: Pixel", "shadnig: Face")).unwrap();
     assert!(io::open(&path, &io::Progress::new()).is_err());
 }

@@ -1,16 +1,16 @@
 //! The list of a frame's effects is what the frame does.
 
 use glam::{DMat4, DQuat, DVec3};
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{LeaveOut, Settings};
-use marraztu::base::image::Size;
-use marraztu::edit::items;
-use marraztu::io;
-use marraztu::lab::cost;
-use marraztu::render::explain_frame;
-use marraztu::render::plan_frame;
-use marraztu::render::{Class, Effect, EffectState, Renderer};
-use marraztu::scene::{Command, Fill, Item, ItemId, LightKind, Scene, Tracked, View};
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{LeaveOut, Settings};
+use marraztu_core::base::image::Size;
+use marraztu_core::edit::items;
+use marraztu_core::scene::{Command, Fill, Item, ItemId, LightKind, Scene, Tracked, View};
+use marraztu_io as io;
+use marraztu_lab::cost;
+use marraztu_render::explain_frame;
+use marraztu_render::plan_frame;
+use marraztu_render::{Class, Effect, EffectState, Renderer};
 
 use crate::random_scenes::random_scene;
 

@@ -17,7 +17,7 @@ use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
 use clap::Parser;
-use marraztu::lab::suite::SuiteScene;
+use marraztu_lab::suite::SuiteScene;
 
 use self::claims::choices;
 use self::claims::instructions::{self, Frame};

@@ -67,7 +67,7 @@ fn a_picture_of_normals_under_map_bump_is_a_normal_map() {
     folder.picture("n.png", 32, |x, y| {
         let [u, v] = [x, y].map(|i| ((i % 8) as f64 - 3.5) / 5.0);
         let z = (1.0 - u * u - v * v).max(0.0).sqrt();
-        let [r, g, b] = [u, -v, z].map(|n| marraztu::base::color::byte((n + 1.0) / 2.0));
+        let [r, g, b] = [u, -v, z].map(|n| marraztu_core::base::color::byte((n + 1.0) / 2.0));
         [r, g, b, 255]
     });
     let drawn = |statement: &str, arguments: &[&str]| {

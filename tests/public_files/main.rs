@@ -10,8 +10,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use marraztu::base::image::{Picture, Size};
-use marraztu::io;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_io as io;
 use tempfile::TempDir;
 
 mod appearance;

@@ -10,21 +10,21 @@ use std::collections::BTreeSet;
 
 use glam::{DMat3, DMat4, DVec3};
 
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{
     Arithmetic, BumpFilter, Filter, LeaveOut, LightAt, LightValues, Samples, Settings,
     ShadowMethod, SpecularForm, Tangents, Terminator,
 };
-use marraztu::base::image::Size;
-use marraztu::base::rng::Rng;
-use marraztu::base::{color::Color, math};
-use marraztu::render::FramePlan;
-use marraztu::render::plan_frame;
-use marraztu::scene::{
+use marraztu_core::base::image::Size;
+use marraztu_core::base::rng::Rng;
+use marraztu_core::base::{color::Color, math};
+use marraztu_core::scene::{
     Aim, Attenuation, Camera, CameraId, Fill, Lens, Light, LightId, LightKind, List,
     MaterialChoice, Normals, Object, ObjectId, Observer, Orbit, PolygonMode, Pose, PresetId,
     Projection, Scene, Sides, SpotOwner, Surface, Tracked, View,
 };
+use marraztu_render::FramePlan;
+use marraztu_render::plan_frame;
 
 use self::shapes::shapes;
 
@@ -221,7 +221,7 @@ fn lamp_place(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> DVec3 {
             let mesh = &object.model.mesh;
             let triangle = mesh.triangles()[rng.index(mesh.triangles().len())];
             let corners = triangle.corners.map(|c| mesh.corners()[c as usize].position as usize);
-            let [a, b, c] = corners.map(|at| marraztu::scene::dvec3(mesh.positions()[at]));
+            let [a, b, c] = corners.map(|at| marraztu_core::scene::dvec3(mesh.positions()[at]));
             let place = rng.one_of(&[a, (a + b) / 2.0, (a + b + c) / 3.0]);
             object.placement.now().transform_point3(place)
         }

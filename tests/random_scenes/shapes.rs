@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use marraztu::base::Shared;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::once::get_or_compute;
-use marraztu::base::rng::Rng;
-use marraztu::scene::{
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::once::get_or_compute;
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{
     FileMaterial, LoadOptions, MapKind, Material, Mesh, MeshSource, Model, NONE, Part,
     SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
 };

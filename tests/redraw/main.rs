@@ -17,27 +17,27 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use common::{at, ball, cube, edit, model_of, scene, square};
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{
     AXES, Arithmetic, Filter, LightAt, LightValues, Rounding, Samples, Settings, SpecularForm,
 };
-use marraztu::base::Shared;
-use marraztu::base::color::Color;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::math::Axis;
-use marraztu::base::rng::Rng;
-use marraztu::edit::lights::{self, Channel};
-use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{
+use marraztu_core::base::Shared;
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::math::Axis;
+use marraztu_core::base::rng::Rng;
+use marraztu_core::edit::lights::{self, Channel};
+use marraztu_core::edit::transform::{self, Sign};
+use marraztu_core::edit::{
     Gesture, GesturePhase, History, Refusal, items, motion, navigation, selection,
 };
-use marraztu::render::plan_frame;
-use marraztu::render::{Cancelled, Change, Damage, DamageCause, FramePlan, Hit, Renderer};
-use marraztu::scene::{
+use marraztu_core::scene::{
     Command, Fill, Frame, Item, ItemId, Light, LightKind, MaterialChoice, MeshSource, Model,
     Normals, Object, ObjectId, Observer, Part, PolygonMode, PresetId, Projection, Scene, Sides,
     SourceCorner, SpotOwner, Subject, Surface, Texture, Transformation, View, Wrap,
 };
+use marraztu_render::plan_frame;
+use marraztu_render::{Cancelled, Change, Damage, DamageCause, FramePlan, Hit, Renderer};
 
 fn random_color(rng: &mut Rng) -> Color {
     Color([0; 3].map(|_| rng.one_of(&[0, 1, 90, 255])))

@@ -12,8 +12,8 @@ use egui::{Event, Key, Modifiers, OutputCommand};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Named};
 use marraztu::app::actions::Request;
-use marraztu::edit::several::Others;
-use marraztu::scene::{ItemId, MaterialChoice, Object, Subject};
+use marraztu_core::edit::several::Others;
+use marraztu_core::scene::{ItemId, MaterialChoice, Object, Subject};
 
 use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;
@@ -104,7 +104,7 @@ fn a_cut_is_one_step_and_several_items_keep_their_owners() {
     assert_eq!(scene.objects.len(), before.objects.len());
     let (new, _) = scene.objects.iter().find(|(_, it)| it.name == "r_falke").unwrap();
     let owners = scene.lights.iter().filter_map(|(_, light)| light.kind.owner());
-    let owner = marraztu::scene::SpotOwner::Object(new);
+    let owner = marraztu_core::scene::SpotOwner::Object(new);
     assert!(owners.into_iter().any(|it| *it == owner), "the spot belongs to the new object");
     editor.press(Command(Key::Z));
     editor.press(Command(Key::Z));
@@ -121,7 +121,7 @@ fn a_material_is_pasted_to_the_selected_objects() {
     let own = editor.view().object.unwrap();
     editor.ask(Request::Select(ItemId::Object(emerald)));
     editor.perform(Action::CopyMaterial);
-    let text = marraztu::io::material_to_text(&wanted).unwrap();
+    let text = marraztu_io::material_to_text(&wanted).unwrap();
     editor.ask(Request::Select(ItemId::Object(own)));
     editor.paste(&text);
     assert_eq!(editor.scene().objects.get(own).unwrap().material, wanted);
@@ -166,7 +166,7 @@ fn a_duplicate_stands_beside_the_original_by_its_width() {
         editor.scene().objects.get(id).unwrap().clone()
     };
     let first = object(&editor);
-    let bounds = marraztu::edit::arrange::world_box(&first, 0.0).unwrap();
+    let bounds = marraztu_core::edit::arrange::world_box(&first, 0.0).unwrap();
     editor.press(Command(Key::D));
     assert_eq!(editor.steps(), 1);
     let way = (object(&editor).placement.now().w_axis - first.placement.now().w_axis).truncate();

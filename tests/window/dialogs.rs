@@ -13,7 +13,7 @@ use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Lower, Named, Upper};
 use marraztu::app::actions::Request;
 use marraztu::app::panels::Panel;
-use marraztu::scene::{MaterialChoice, ObjectId, PresetId, Sides};
+use marraztu_core::scene::{MaterialChoice, ObjectId, PresetId, Sides};
 
 use crate::editor::Editor;
 use crate::panels::{click, control, type_text};
@@ -294,7 +294,11 @@ fn the_picture_is_saved_as_it_is_shown() {
 fn the_picture_is_copied_as_it_is_shown() {
     let mut editor = Editor::new();
     let ctx = editor.harness.ctx.clone();
-    editor.harness.state_mut().perform(&ctx, Action::CopyPicture, marraztu::edit::Gesture::Whole);
+    editor.harness.state_mut().perform(
+        &ctx,
+        Action::CopyPicture,
+        marraztu_core::edit::Gesture::Whole,
+    );
     editor.harness.step();
     let commands = &editor.harness.output().platform_output.commands;
     let copied = commands.iter().find_map(|command| match command {

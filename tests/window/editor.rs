@@ -8,9 +8,9 @@ use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord;
 use marraztu::app::state::State;
 use marraztu::app::{App, actions::Request};
-use marraztu::edit::Gesture;
-use marraztu::io;
-use marraztu::scene::{Scene, View};
+use marraztu_core::edit::Gesture;
+use marraztu_core::scene::{Scene, View};
+use marraztu_io as io;
 
 /// An editor of the first scene.
 pub(crate) struct Editor {

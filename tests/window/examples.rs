@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use egui::accesskit::Role;
 use marraztu::app::actions::Action;
-use marraztu::io::{self, EXAMPLES, Progress};
+use marraztu_io::{self as io, EXAMPLES, Progress};
 
 use crate::editor::Editor;
 use crate::panels::click;

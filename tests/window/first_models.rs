@@ -8,18 +8,18 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::Key;
-use marraztu::accuracy::{Settings, Shot};
 use marraztu::app::actions::Chord::{Command, Lower, Named};
 use marraztu::app::actions::Request;
-use marraztu::base::Shared;
-use marraztu::base::image::Size;
-use marraztu::edit::{presenting, steps};
-use marraztu::io::{self, Progress};
-use marraztu::render::{Renderer, plan_frame};
-use marraztu::scene::{
+use marraztu_core::accuracy::{Settings, Shot};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::Size;
+use marraztu_core::edit::{presenting, steps};
+use marraztu_core::scene::{
     CameraMode, HALF_APERTURE, LoadOptions, Material, MaterialChoice, Object, Pose, Scene, Sides,
     Steps, Subject, View,
 };
+use marraztu_io::{self as io, Progress};
+use marraztu_render::{Renderer, plan_frame};
 
 use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;
@@ -63,7 +63,7 @@ fn model(path: &Path) -> Object {
     Object::new(Shared::new(loaded.model), MaterialChoice::File)
 }
 
-fn picture(scene: &Scene, view: &View, size: Size) -> marraztu::base::image::Picture {
+fn picture(scene: &Scene, view: &View, size: Size) -> marraztu_core::base::image::Picture {
     let shot = Shot::new(scene, view, &Settings::default(), size);
     Renderer::default().render(&plan_frame(&shot)).clone()
 }
@@ -259,7 +259,7 @@ fn only_highlights_reach_white_from_wherever_models_are_seen() {
             let mut object = Object::new(ball, MaterialChoice::Own(material));
             object.sides = Sides::Two;
             let scale = glam::DMat4::from_scale(glam::DVec3::splat(factor));
-            object.placement = marraztu::scene::Tracked::new(scale);
+            object.placement = marraztu_core::scene::Tracked::new(scale);
             let (scene, view) = alone(vec![object]);
             let picture = picture(&scene, &view, Size::new(160, 120));
             let background = scene.background.opaque();
@@ -284,18 +284,18 @@ fn steps_by_size_stay_while_a_lone_object_is_moved_and_turned() {
     let (mut scene, mut view) = alone(vec![model_of("x_wing")]);
     let before = steps::length(&scene, &view);
     view.subject = Subject::Object;
-    for axis in marraztu::base::math::Axis::ALL {
+    for axis in marraztu_core::base::math::Axis::ALL {
         for kind in [
-            marraztu::scene::Transformation::Translation,
-            marraztu::scene::Transformation::Rotation,
+            marraztu_core::scene::Transformation::Translation,
+            marraztu_core::scene::Transformation::Rotation,
         ] {
             view.transformation = kind;
-            let command = marraztu::edit::transform::step(
+            let command = marraztu_core::edit::transform::step(
                 &scene,
                 &view,
                 axis,
-                marraztu::edit::transform::Sign::Positive,
-                marraztu::edit::GesturePhase::First,
+                marraztu_core::edit::transform::Sign::Positive,
+                marraztu_core::edit::GesturePhase::First,
             );
             command.unwrap().apply(&mut scene).unwrap();
             assert_eq!(steps::length(&scene, &view), before);

@@ -9,7 +9,7 @@ use glam::{DMat4, DVec3};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Lower, Named};
 use marraztu::app::actions::Request;
-use marraztu::scene::{Frame, ItemId, LightKind, Subject};
+use marraztu_core::scene::{Frame, ItemId, LightKind, Subject};
 
 use crate::editor::Editor;
 

@@ -5,7 +5,7 @@
 use egui::Key;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::Lower;
-use marraztu::scene::Scene;
+use marraztu_core::scene::Scene;
 
 use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;

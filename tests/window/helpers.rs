@@ -7,10 +7,12 @@ use egui::Shape;
 use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
 use glam::DVec3;
 use marraztu::app::actions::{Action, Also, Request};
-use marraztu::base::Shared;
-use marraztu::edit::{Gesture, arrange, items};
-use marraztu::io;
-use marraztu::scene::{ItemId, LightKind, LoadOptions, MaterialChoice, Object, PresetId, Scene};
+use marraztu_core::base::Shared;
+use marraztu_core::edit::{Gesture, arrange, items};
+use marraztu_core::scene::{
+    ItemId, LightKind, LoadOptions, MaterialChoice, Object, PresetId, Scene,
+};
+use marraztu_io as io;
 
 use crate::editor::Editor;
 
@@ -101,7 +103,7 @@ fn objects_are_dropped_and_brought_in_line_in_one_step() {
     editor.perform(Action::SelectAll);
     let steps = editor.steps();
     editor.perform(Action::DropToGround);
-    let boxes = |editor: &Editor| -> Vec<marraztu::scene::Bounds> {
+    let boxes = |editor: &Editor| -> Vec<marraztu_core::scene::Bounds> {
         let scene = editor.scene();
         scene.objects.iter().map(|(_, it)| arrange::world_box(it, 0.0).unwrap()).collect()
     };
@@ -122,10 +124,10 @@ fn several_cameras_and_lights_show_mixed_numbers_and_are_set_together() {
         own.map(|(id, _)| id).collect()
     };
     let [first, second] = spots[spots.len() - 2..] else { panic!("{spots:?}") };
-    let narrow = marraztu::edit::lights::set_number(
+    let narrow = marraztu_core::edit::lights::set_number(
         &editor.scene(),
         second,
-        &marraztu::scene::HALF_APERTURE,
+        &marraztu_core::scene::HALF_APERTURE,
         10.0,
     )
     .unwrap();
@@ -135,8 +137,8 @@ fn several_cameras_and_lights_show_mixed_numbers_and_are_set_together() {
     let field = editor.harness.query_all(By::new().label("Half-aperture")).next().unwrap();
     assert_eq!(field.value().as_deref().map(|it| it.contains("mixed")), Some(true));
     // Shadows of one are the shadows of both.
-    let on = marraztu::edit::lights::toggle_shadows(&editor.scene(), second).unwrap();
-    let all = marraztu::edit::several::spread(&editor.scene(), on, &[ItemId::Light(first)]);
+    let on = marraztu_core::edit::lights::toggle_shadows(&editor.scene(), second).unwrap();
+    let all = marraztu_core::edit::several::spread(&editor.scene(), on, &[ItemId::Light(first)]);
     change(&mut editor, all);
     let scene = editor.scene();
     let casts = |id| scene.lights.get(id).unwrap().shadows;
@@ -145,13 +147,13 @@ fn several_cameras_and_lights_show_mixed_numbers_and_are_set_together() {
     // So is the opacity of objects.
     let ids: Vec<_> = scene.objects.ids().collect();
     let half = items::change_object(&scene, ids[0], |object| object.opacity = 0.5).unwrap();
-    let all = marraztu::edit::several::spread(&scene, half, &[ItemId::Object(ids[1])]);
+    let all = marraztu_core::edit::several::spread(&scene, half, &[ItemId::Object(ids[1])]);
     change(&mut editor, all);
     let scene = editor.scene();
     assert!(ids[..2].iter().all(|id| scene.objects.get(*id).unwrap().opacity == 0.5));
 }
 
-fn change(editor: &mut Editor, command: marraztu::scene::Command) {
+fn change(editor: &mut Editor, command: marraztu_core::scene::Command) {
     let (gesture, label) = (Gesture::Whole, "Change".to_owned());
     editor.ask(Request::Change { command, gesture, label });
 }

@@ -20,8 +20,8 @@ use marraztu::app::actions::Chord::{Command, Lower, Named};
 use marraztu::app::actions::Request;
 use marraztu::app::panels::Panel;
 use marraztu::app::state::layout::Layout;
-use marraztu::base::rng::Rng;
-use marraztu::io::{Abandoned, OwnFolders, Preferences};
+use marraztu_core::base::rng::Rng;
+use marraztu_io::{Abandoned, OwnFolders, Preferences};
 
 use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;
@@ -88,7 +88,7 @@ fn work_of_a_program_that_ended_is_offered_and_recovered_as_unsaved() {
     editor.press(Lower(Key::O));
     editor.click_label("Recover");
     editor.wait_until(|editor| editor.is_offered() == 0);
-    let camera = |scene: &marraztu::scene::Scene| {
+    let camera = |scene: &marraztu_core::scene::Scene| {
         scene.cameras.iter().map(|(_, camera)| *camera.pose.now()).collect::<Vec<_>>()
     };
     assert_eq!(camera(&editor.scene()), camera(&scene));

@@ -7,7 +7,7 @@ use egui::accesskit::Role;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Lower, Named};
 use marraztu::app::panels::Panel;
-use marraztu::io::{OwnFolders, Preferences};
+use marraztu_io::{OwnFolders, Preferences};
 
 use crate::editor::Editor;
 use crate::panels::{click, type_text};

@@ -12,9 +12,9 @@ use marraztu::app::actions::Chord::{
 use marraztu::app::actions::Request;
 use marraztu::app::panels::Panel;
 use marraztu::app::state::Tone;
-use marraztu::base::math::Axis;
-use marraztu::edit::{Gesture, items};
-use marraztu::scene::{Item, ItemId, LightKind, Subject};
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::{Gesture, items};
+use marraztu_core::scene::{Item, ItemId, LightKind, Subject};
 
 use crate::editor::Editor;
 
@@ -395,7 +395,7 @@ fn an_object_that_turns_by_itself_turns_with_the_clock_and_is_no_step() {
     let id = editor.view().object.unwrap();
     let mut object = editor.scene().objects.get(id).unwrap().clone();
     object.spin.axes[Axis::Y.index()] = true;
-    let command = marraztu::scene::Command::Replace(Item::Object(id, Box::new(object)));
+    let command = marraztu_core::scene::Command::Replace(Item::Object(id, Box::new(object)));
     let (gesture, label) = (Gesture::Whole, "Spin".to_owned());
     let begin = editor.view().time;
     editor.ask(Request::Change { command, gesture, label });

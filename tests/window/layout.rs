@@ -7,8 +7,8 @@ use egui::{Rect, Shape};
 use egui_kittest::kittest::Queryable as _;
 use marraztu::app::actions::{Action, Request};
 use marraztu::app::panels::Panel;
-use marraztu::edit::{Gesture, items};
-use marraztu::scene::ItemId;
+use marraztu_core::edit::{Gesture, items};
+use marraztu_core::scene::ItemId;
 
 use crate::editor::Editor;
 

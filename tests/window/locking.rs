@@ -9,8 +9,8 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use marraztu::app::actions::Chord::{Command, Lower, Named};
 use marraztu::app::actions::{Action, Also, Request};
 use marraztu::app::state::Tone;
-use marraztu::edit::items;
-use marraztu::scene::{ItemId, LightKind};
+use marraztu_core::edit::items;
+use marraztu_core::scene::{ItemId, LightKind};
 
 use crate::editor::Editor;
 use crate::panels::{click, middle};
@@ -78,7 +78,7 @@ fn a_click_passes_a_locked_object_and_says_so_if_nothing_is_behind() {
     let ship = rect.center() + vec2(0.6, 0.0) * half;
     let id = editor.scene().objects.iter().find(|(_, it)| it.name == "x_wing").unwrap().0;
     let command = items::toggle_locked(&editor.scene(), ItemId::Object(id)).unwrap();
-    let (gesture, label) = (marraztu::edit::Gesture::Whole, "Lock".to_owned());
+    let (gesture, label) = (marraztu_core::edit::Gesture::Whole, "Lock".to_owned());
     editor.ask(Request::Change { command, gesture, label });
     editor.click(ship, LEFT);
     assert_eq!(editor.state().selected_name(), "r_falke");
@@ -126,9 +126,9 @@ fn a_saved_scene_keeps_its_locks() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.marraztu");
     let (scene, view) = (editor.scene(), editor.view());
-    marraztu::io::save(&path, &scene, &view, &editor.state().settings).unwrap();
-    let progress = marraztu::io::Progress::new();
-    let opened = marraztu::io::open(&path, &progress).unwrap();
+    marraztu_io::save(&path, &scene, &view, &editor.state().settings).unwrap();
+    let progress = marraztu_io::Progress::new();
+    let opened = marraztu_io::open(&path, &progress).unwrap();
     assert_eq!(opened.scene.locked, scene.locked);
     assert_eq!(opened.scene.locked.len(), 2);
 }

@@ -6,7 +6,7 @@
 use egui::{Key, Modifiers, PointerButton, Vec2};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, CommandShift, Either, Lower, Named};
-use marraztu::scene::Pose;
+use marraztu_core::scene::Pose;
 
 use crate::editor::Editor;
 

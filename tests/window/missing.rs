@@ -9,7 +9,7 @@ use egui::Key;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Named};
 use marraztu::app::actions::{MissingRequest, Request};
-use marraztu::scene::ObjectId;
+use marraztu_core::scene::ObjectId;
 
 use crate::dialogs::CUBE;
 use crate::editor::Editor;

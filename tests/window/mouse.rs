@@ -7,7 +7,7 @@ use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Vec2, vec2};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Either, Lower, Named, Upper};
 use marraztu::app::actions::Request;
-use marraztu::scene::{CameraMode, ItemId, PolygonMode, Subject};
+use marraztu_core::scene::{CameraMode, ItemId, PolygonMode, Subject};
 
 use crate::editor::Editor;
 
@@ -20,7 +20,7 @@ fn name_of_selected(editor: &Editor) -> String {
     view.object.and_then(|id| editor.state().name(ItemId::Object(id))).unwrap_or("").to_owned()
 }
 
-fn pose(editor: &Editor) -> marraztu::scene::Pose {
+fn pose(editor: &Editor) -> marraztu_core::scene::Pose {
     *editor.scene().selected_camera(&editor.view()).pose.now()
 }
 

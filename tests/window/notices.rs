@@ -11,7 +11,7 @@ use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::Command;
 use marraztu::app::actions::Request;
 use marraztu::app::state::Notice;
-use marraztu::scene::{ItemId, UpAxis};
+use marraztu_core::scene::{ItemId, UpAxis};
 
 use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;
@@ -38,7 +38,7 @@ impl Editor {
     fn top(&self) -> f64 {
         let scene = self.scene();
         let (_, object) = scene.objects.iter().next().unwrap();
-        marraztu::edit::arrange::world_box(object, 0.0).unwrap().max.y
+        marraztu_core::edit::arrange::world_box(object, 0.0).unwrap().max.y
     }
 }
 
@@ -150,7 +150,7 @@ fn an_axis_that_the_file_states_is_used_and_said() {
     let y = folder.path().join("y.obj");
     std::fs::write(&y, format!("# Y-up\n{TOWER}")).unwrap();
     let mut editor = Editor::of_size(1280.0, 800.0);
-    let preferences = marraztu::io::Preferences { up: UpAxis::Z, ..Default::default() };
+    let preferences = marraztu_io::Preferences { up: UpAxis::Z, ..Default::default() };
     editor.ask(Request::Preferences(Box::new(preferences)));
     editor.open_alone(&y);
     assert_eq!(editor.up(), UpAxis::Y);

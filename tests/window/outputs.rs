@@ -8,12 +8,12 @@ use std::path::PathBuf;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::NodeT as _;
-use marraztu::accuracy::{Samples, Settings, Shot};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::Shifted;
-use marraztu::base::image::Size;
-use marraztu::io;
-use marraztu::render::{Renderer, plan_frame, without_ground};
+use marraztu_core::accuracy::{Samples, Settings, Shot};
+use marraztu_core::base::image::Size;
+use marraztu_io as io;
+use marraztu_render::{Renderer, plan_frame, without_ground};
 
 use crate::editor::Editor;
 use crate::panels::{click, control};

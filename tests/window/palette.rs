@@ -7,11 +7,11 @@
 use egui::accesskit::Role;
 use egui::{Key, PointerButton};
 use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
-use marraztu::accuracy::LightAt;
 use marraztu::app::actions::Chord::{Command, Either, Lower, Named};
 use marraztu::app::actions::{Action, Request};
-use marraztu::base::color::Color;
-use marraztu::scene::{ItemId, LightKind, MaterialChoice, SpotOwner, Subject};
+use marraztu_core::accuracy::LightAt;
+use marraztu_core::base::color::Color;
+use marraztu_core::scene::{ItemId, LightKind, MaterialChoice, SpotOwner, Subject};
 
 use crate::editor::Editor;
 use crate::panels::{click, control, type_text};
@@ -288,10 +288,10 @@ fn each_of_two_notices_frames_its_own_object() {
     let far = glam::DMat4::from_translation(glam::DVec3::X * 4000.0);
     for id in &ids[..2] {
         let mut object = editor.scene().objects.get(*id).unwrap().clone();
-        object.placement = marraztu::scene::Tracked::new(far * *object.placement.now());
-        let item = marraztu::scene::Item::Object(*id, Box::new(object));
-        let (gesture, label) = (marraztu::edit::Gesture::Whole, "Move".to_owned());
-        let command = marraztu::scene::Command::Replace(item);
+        object.placement = marraztu_core::scene::Tracked::new(far * *object.placement.now());
+        let item = marraztu_core::scene::Item::Object(*id, Box::new(object));
+        let (gesture, label) = (marraztu_core::edit::Gesture::Whole, "Move".to_owned());
+        let command = marraztu_core::scene::Command::Replace(item);
         editor.ask(Request::Change { command, gesture, label });
         let mut view = editor.view();
         view.object = Some(*id);
@@ -316,10 +316,11 @@ fn each_of_two_notices_frames_its_own_object() {
     top.unwrap().click();
     editor.settle();
     assert!(!editor.shows(&format!("{first} is out of view")), "its notice is answered");
-    let framed = marraztu::edit::framing::objects(&editor.scene(), &editor.view(), &[ids[0]]);
+    let framed = marraztu_core::edit::framing::objects(&editor.scene(), &editor.view(), &[ids[0]]);
     let mut scene = editor.scene();
     framed.unwrap().apply(&mut scene).unwrap();
-    let eye = |scene: &marraztu::scene::Scene| scene.selected_camera(&editor.view()).pose.now().eye;
+    let eye =
+        |scene: &marraztu_core::scene::Scene| scene.selected_camera(&editor.view()).pose.now().eye;
     assert!(eye(&scene).distance(eye(&editor.scene())) < 1e-6, "it is framed");
     assert_eq!(names(&editor).len(), 1, "the other notice stays");
 }

@@ -8,13 +8,13 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Node;
 use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
-use marraztu::accuracy::{Arithmetic, Filter, LightAt, Settings, SpecularForm};
 use marraztu::app::actions::Chord::{Command, Either, Named};
 use marraztu::app::actions::Request;
 use marraztu::app::actions::{Action, Group};
 use marraztu::app::panels::Panel;
-use marraztu::base::color::Color;
-use marraztu::scene::{ItemId, LightKind, Subject};
+use marraztu_core::accuracy::{Arithmetic, Filter, LightAt, Settings, SpecularForm};
+use marraztu_core::base::color::Color;
+use marraztu_core::scene::{ItemId, LightKind, Subject};
 
 use crate::editor::Editor;
 

@@ -4,12 +4,12 @@
 //! line, a window that repaints or draws by itself.
 
 use egui::accesskit::Role;
-use marraztu::accuracy::{LeaveOut, Settings};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::Lower;
 use marraztu::app::actions::Request;
 use marraztu::app::panels::Panel;
-use marraztu::render::Effect;
+use marraztu_core::accuracy::{LeaveOut, Settings};
+use marraztu_render::Effect;
 
 use crate::editor::Editor;
 use crate::panels::{click, control};

@@ -12,8 +12,8 @@ use egui_kittest::kittest::NodeT as _;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Named};
 use marraztu::app::panels::{OpenPanels, Panel};
-use marraztu::io::{Helpers, OwnFolders, Preferences};
-use marraztu::scene::UpAxis;
+use marraztu_core::scene::UpAxis;
+use marraztu_io::{Helpers, OwnFolders, Preferences};
 
 use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;

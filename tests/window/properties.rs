@@ -11,14 +11,14 @@ use glam::DVec3;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Either, Lower, Named, Upper};
 use marraztu::app::actions::Request;
-use marraztu::base::Shared;
-use marraztu::base::color::Color;
-use marraztu::edit::{Gesture, items, placement};
-use marraztu::io::{Progress, parse};
-use marraztu::scene::{
+use marraztu_core::base::Shared;
+use marraztu_core::base::color::Color;
+use marraztu_core::edit::{Gesture, items, placement};
+use marraztu_core::scene::{
     Camera, CameraMode, ItemId, Light, LightKind, LoadOptions, MaterialChoice, Model, Object,
     ObjectId, PresetId, Sides, SpotOwner, Surface, View,
 };
+use marraztu_io::{Progress, parse};
 
 use crate::editor::Editor;
 use crate::panels::{click, control, type_text};
@@ -244,7 +244,7 @@ fn walking_through_the_fields_changes_nothing() {
     let mut editor = with_object();
     let (scene, view, id) = (editor.scene(), editor.view(), editor.view().object.unwrap());
     let third = DVec3::new(1.0 / 3.0, 200.0 / 7.0, 1e-7);
-    let stroke = marraztu::edit::GesturePhase::First;
+    let stroke = marraztu_core::edit::GesturePhase::First;
     let command = placement::object_turn(&scene, &view, id, third * 3.1, stroke).unwrap();
     let label = String::new();
     editor.ask(Request::Change { command, gesture: Gesture::Whole, label: label.clone() });

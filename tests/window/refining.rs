@@ -4,12 +4,12 @@
 //! it, a window that goes on drawing when it is done, refining that does not give way.
 
 use egui::Key;
-use marraztu::accuracy::{Coverage, Samples, Settings, Shot};
 use marraztu::app::actions::Chord::Lower;
 use marraztu::app::actions::{Action, Request};
 use marraztu::app::state::DrawingChoices;
-use marraztu::base::image::Picture;
-use marraztu::render::{Renderer, plan_frame};
+use marraztu_core::accuracy::{Coverage, Samples, Settings, Shot};
+use marraztu_core::base::image::Picture;
+use marraztu_render::{Renderer, plan_frame};
 
 use crate::editor::Editor;
 

@@ -9,8 +9,8 @@ use glam::DVec3;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Lower, Named, Upper};
 use marraztu::app::actions::{Also, Request};
-use marraztu::edit::{items, several};
-use marraztu::scene::{ItemId, Sides};
+use marraztu_core::edit::{items, several};
+use marraztu_core::scene::{ItemId, Sides};
 
 use crate::editor::Editor;
 
@@ -177,15 +177,16 @@ fn a_change_in_the_properties_sets_all_to_the_same_value_and_keeps_what_it_does_
     several::spread(&scene, two, &others).apply(&mut after).unwrap();
     let sides: Vec<Sides> = after.objects.iter().map(|(_, object)| object.sides).collect();
     assert_eq!(sides.iter().filter(|sides| **sides == Sides::Two).count(), 2);
-    let materials = |scene: &marraztu::scene::Scene| -> Vec<marraztu::scene::MaterialChoice> {
-        scene.objects.iter().map(|(_, object)| object.material.clone()).collect()
-    };
+    let materials =
+        |scene: &marraztu_core::scene::Scene| -> Vec<marraztu_core::scene::MaterialChoice> {
+            scene.objects.iter().map(|(_, object)| object.material.clone()).collect()
+        };
     assert_eq!(materials(&after), materials(&scene), "the materials stay different");
     // Of a place, the number that was changed.
     let to = DVec3::new(-100.0, 33.0, 0.0);
-    let phase = marraztu::edit::GesturePhase::First;
-    let moved =
-        marraztu::edit::placement::object_translation(&scene, &view, first, to, phase).unwrap();
+    let phase = marraztu_core::edit::GesturePhase::First;
+    let moved = marraztu_core::edit::placement::object_translation(&scene, &view, first, to, phase)
+        .unwrap();
     let mut after = scene.clone();
     several::spread(&scene, moved, &others).apply(&mut after).unwrap();
     let found: Vec<DVec3> =

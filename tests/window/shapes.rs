@@ -3,10 +3,10 @@
 //! Catches: a plane that cuts through what stands on it, a shape that is saved as a file, one that
 //! is not the subject after it was added.
 
-use marraztu::accuracy::Settings;
 use marraztu::app::actions::Action;
-use marraztu::io::{self, Progress};
-use marraztu::scene::{Shape, Subject, dvec3};
+use marraztu_core::accuracy::Settings;
+use marraztu_core::scene::{Shape, Subject, dvec3};
+use marraztu_io::{self as io, Progress};
 
 use crate::editor::Editor;
 

@@ -11,8 +11,8 @@ use egui::{Key, PointerButton, Pos2};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{self, Command, CommandShift, Either, Lower, Named};
 use marraztu::app::panels::Panel;
-use marraztu::io;
-use marraztu::scene::{LightKind, MaterialChoice, Normals, Scene, SpotOwner};
+use marraztu_core::scene::{LightKind, MaterialChoice, Normals, Scene, SpotOwner};
+use marraztu_io as io;
 
 use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;

@@ -4,7 +4,7 @@
 //! comes back unselected, a step that takes what the user has selected since.
 
 use marraztu::app::actions::{Action, Also, Request};
-use marraztu::scene::{CameraId, ItemId, ObjectId, Subject};
+use marraztu_core::scene::{CameraId, ItemId, ObjectId, Subject};
 
 use crate::editor::Editor;
 

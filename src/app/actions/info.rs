@@ -2,8 +2,8 @@
 
 use crate::app::chord::Chord;
 use crate::app::panels::PanelInfo;
-use crate::base::math::Axis;
-use crate::edit::transform::Sign;
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::transform::Sign;
 
 /// How an action appears.
 #[derive(Clone, Copy, Debug)]

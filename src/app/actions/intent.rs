@@ -2,15 +2,15 @@
 
 use egui::ThemePreference;
 
-use crate::accuracy::Settings;
 use crate::app::panels::OpenPanels;
 use crate::app::state::DrawingChoices;
 use crate::app::state::layout::Layout;
 use crate::app::widgets::regions::Way;
-use crate::edit::selection::Selection;
-use crate::edit::several::Others;
-use crate::io::Helpers;
-use crate::scene::{Command, ItemId, ObjectId, Subject, View};
+use marraztu_core::accuracy::Settings;
+use marraztu_core::edit::selection::Selection;
+use marraztu_core::edit::several::Others;
+use marraztu_core::scene::{Command, ItemId, ObjectId, Subject, View};
+use marraztu_io::Helpers;
 
 /// What an action means.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,9 +4,9 @@ use super::info::{Group, StepName};
 use super::table::Action;
 use crate::app::state::State;
 use crate::app::widgets::number::short;
-use crate::base::math::Axis;
-use crate::edit::transform::{self, distance};
-use crate::scene::{CameraMode, Subject, Transformation};
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::transform::{self, distance};
+use marraztu_core::scene::{CameraMode, Subject, Transformation};
 
 /// What a step of x, y or z does to the selected item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn the_history_says_how_far_and_along_what() {
-        let (scene, view) = crate::io::default_scene();
+        let (scene, view) = marraztu_io::default_scene();
         let mut state = State::new(scene, view);
         let label = |state: &State, action: Action, times| action.step_label(state, times);
         assert_eq!(label(&state, Action::StepXUp, 1), "Rotate camera 1 10 deg about x");

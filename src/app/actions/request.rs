@@ -5,19 +5,19 @@ use std::path::PathBuf;
 use glam::DVec3;
 
 use super::table::Action;
-use crate::accuracy::Settings;
 use crate::app::chord::Chord;
 use crate::app::state::laboratory::{Compare, Side};
 use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, State};
-use crate::edit::several::Others;
-use crate::edit::{Gesture, Refusal};
-use crate::io::Preferences;
-use crate::lab::candidates::Thoroughness;
-use crate::lab::error::{Measure, Region};
-use crate::lab::report::Budgets;
-use crate::lab::suite::SuiteDetail;
-use crate::scene::{Command, ItemId, ObjectId, UpAxis, View};
+use marraztu_core::accuracy::Settings;
+use marraztu_core::edit::several::Others;
+use marraztu_core::edit::{Gesture, Refusal};
+use marraztu_core::scene::{Command, ItemId, ObjectId, UpAxis, View};
+use marraztu_io::Preferences;
+use marraztu_lab::candidates::Thoroughness;
+use marraztu_lab::error::{Measure, Region};
+use marraztu_lab::report::Budgets;
+use marraztu_lab::suite::SuiteDetail;
 
 /// A request to the app.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,25 +8,25 @@ use egui::ThemePreference;
 
 use super::intent::{ClipboardIntent, FileIntent, Intent};
 use super::table::Action;
-use crate::accuracy::{LeaveOut, Settings};
 use crate::app::panels::Panel;
 use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, State};
 use crate::app::widgets::regions::Way;
-use crate::base::math::Axis;
-use crate::edit::framing::Side as LookSide;
-use crate::edit::lights::{APERTURE_STEP, Channel};
-use crate::edit::several::{self, Others};
-use crate::edit::transform::Sign;
-use crate::edit::{
+use marraztu_core::accuracy::{LeaveOut, Settings};
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::framing::Side as LookSide;
+use marraztu_core::edit::lights::{APERTURE_STEP, Channel};
+use marraztu_core::edit::several::{self, Others};
+use marraztu_core::edit::transform::Sign;
+use marraztu_core::edit::{
     GesturePhase, Refusal, aiming, arrange, copies, framing, gizmo, items, lights, selection,
     shapes, transform,
 };
-use crate::io::Helpers;
-use crate::scene::{
+use marraztu_core::scene::{
     Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Projection, Scene,
     Shape, SpotOwner, Subject, Transformation, View,
 };
+use marraztu_io::Helpers;
 
 type Resolved = Result<Intent, Refusal>;
 

@@ -3,10 +3,10 @@
 use egui::ThemePreference;
 
 use super::table::Action;
-use crate::accuracy::LeaveOut;
 use crate::app::state::State;
-use crate::edit::lights;
-use crate::scene::{
+use marraztu_core::accuracy::LeaveOut;
+use marraztu_core::edit::lights;
+use marraztu_core::scene::{
     CameraMode, Fill, Frame, ItemId, NormalLength, Normals, Observer, Projection, Subject,
     Transformation,
 };

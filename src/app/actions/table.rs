@@ -10,8 +10,8 @@ use super::info::StepName::{self, Amount, Around, Switched};
 use super::info::{ActionInfo, Group, ONCE, REPEATS, actions};
 use crate::app::chord::Chord::{Command, CommandShift, Either, Lower, Named, Shifted, Text, Upper};
 use crate::app::panels::Panel;
-use crate::base::math::Axis;
-use crate::edit::transform::Sign;
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::transform::Sign;
 
 actions! {
     New File ONCE [Command(Key::N)]

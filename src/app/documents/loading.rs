@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use crate::app::tasks::Task;
-use crate::base::Shared;
-use crate::io::{self, Finding, Fragment, LoadError, Loaded, Opened, SCENE_ENDING, SceneFileError};
-use crate::scene::{LoadOptions, MaterialChoice, Model, Object, ObjectId, Texture};
+use marraztu_core::base::Shared;
+use marraztu_core::scene::{LoadOptions, MaterialChoice, Model, Object, ObjectId, Texture};
+use marraztu_io::{
+    self as io, Finding, Fragment, LoadError, Loaded, Opened, SCENE_ENDING, SceneFileError,
+};
 
 /// A file that is being read.
 #[derive(Debug)]

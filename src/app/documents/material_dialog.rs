@@ -8,12 +8,12 @@ use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Switch, heading, take_focus};
 use crate::app::widgets::spheres::{self, Sphere};
 use crate::app::widgets::text::{file_name, grouped};
-use crate::base::color::Color;
-use crate::edit::items;
-use crate::io::{Finding, Loaded};
-use crate::scene::{
+use marraztu_core::base::color::Color;
+use marraztu_core::edit::items;
+use marraztu_core::scene::{
     BumpMaps, Crease, LoadOptions, Material, MaterialChoice, PresetId, Scale, UpAxis, Winding,
 };
+use marraztu_io::{Finding, Loaded};
 
 /// The choice of a material.
 #[derive(Debug)]

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use egui::{DragValue, Key, Ui};
 
-use crate::accuracy::Samples;
 use crate::app::widgets::controls::{Choice, Switch, choices as choices_ui, heading, take_focus};
-use crate::base::image::Size;
-use crate::edit::turntable::Turn;
+use marraztu_core::accuracy::Samples;
+use marraztu_core::base::image::Size;
+use marraztu_core::edit::turntable::Turn;
 
 /// The longest side that a picture may have.
 const LONGEST_SIDE: usize = 16_384;

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use super::browser::Mode;
 use super::folders::Kind;
 use super::loading::is_scene;
-use crate::io;
-use crate::scene::ObjectId;
+use marraztu_core::scene::ObjectId;
+use marraztu_io as io;
 
 /// The purpose of a file dialog.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -14,7 +14,7 @@
 use std::time::Duration;
 
 use super::reduction::{Applicable, COUNT, Reduction};
-use crate::lab::front::{Point, front, most_exact_within};
+use marraztu_lab::front::{Point, front, most_exact_within};
 
 /// A full frame that differs in time from the one before by this factor is of another scene.
 const ANOTHER_SCENE: f64 = 1.5;
@@ -201,7 +201,7 @@ impl Attempt {
 mod tests {
     use super::super::reduction::Shrink;
     use super::*;
-    use crate::accuracy::Settings;
+    use marraztu_core::accuracy::Settings;
 
     const BUDGET: Duration = Duration::from_millis(33);
 

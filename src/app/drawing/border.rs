@@ -1,7 +1,7 @@
 //! The border of the visible part of an item in a picture.
 
-use crate::base::image::Size;
-use crate::scene::ItemId;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::ItemId;
 
 /// The border of the visible part of an item in a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use egui::ColorImage;
 
-use crate::base::image::{Picture, Size};
+use marraztu_core::base::image::{Picture, Size};
 
 /// Copies a picture into a free image, and makes that the last one.
 pub(super) fn present(images: &mut [Arc<ColorImage>; 3], picture: &Picture) {

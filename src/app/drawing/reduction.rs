@@ -1,7 +1,7 @@
 //! What can be reduced in a picture so that it is drawn sooner.
 
-use crate::accuracy::{Filter, LightAt, Samples, Settings};
-use crate::base::image::Size;
+use marraztu_core::accuracy::{Filter, LightAt, Samples, Settings};
+use marraztu_core::base::image::Size;
 
 /// By how much the sides of a picture are divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

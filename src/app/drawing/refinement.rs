@@ -6,8 +6,8 @@
 
 use super::reduction::Shrink;
 use super::snapshot::Snapshot;
-use crate::accuracy::Samples;
-use crate::base::image::Picture;
+use marraztu_core::accuracy::Samples;
+use marraztu_core::base::image::Picture;
 
 /// The next number of samples per pixel, if the picture is refined to `refined`.
 pub(crate) fn next_samples(wanted: &Snapshot, refined: Option<Samples>) -> Option<Samples> {
@@ -40,7 +40,7 @@ pub(crate) fn difference(whole: &Picture, small: &Picture, shrink: Shrink) -> f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::image::Size;
+    use marraztu_core::base::image::Size;
 
     #[test]
     fn the_difference_of_a_small_picture_is_that_of_its_squares() {

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use crate::accuracy::{Samples, Settings};
-use crate::base::image::Size;
-use crate::scene::{ItemId, Scene, View};
+use marraztu_core::accuracy::{Samples, Settings};
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{ItemId, Scene, View};
 
 /// Everything that a picture depends on.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,12 +14,12 @@ use super::images::present;
 use super::reduction::{Applicable, Reduction};
 use super::refinement::{difference, next_samples};
 use super::snapshot::Snapshot;
-use crate::accuracy::{Samples, Shot};
-use crate::base::image::Size;
-use crate::lab::cost::{self, Explained};
-use crate::render::plan_frame;
-use crate::render::{Cancelled, Damage, FramePlan, Hit, Renderer};
-use crate::scene::{ItemId, Surface};
+use marraztu_core::accuracy::{Samples, Shot};
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{ItemId, Surface};
+use marraztu_lab::cost::{self, Explained};
+use marraztu_render::plan_frame;
+use marraztu_render::{Cancelled, Damage, FramePlan, Hit, Renderer};
 
 /// A drawn picture.
 #[derive(Clone, Debug)]
@@ -187,7 +187,7 @@ impl ViewportRenderer {
             return Finer::Measured;
         }
         let Some(samples) = next_samples(snapshot, self.refined) else { return Finer::Done };
-        let settings = crate::accuracy::Settings { samples, ..snapshot.settings };
+        let settings = marraztu_core::accuracy::Settings { samples, ..snapshot.settings };
         let shot = Shot::new(&snapshot.scene, &snapshot.view, &settings, snapshot.size);
         let Ok(changes) = self.finer.redraw(&plan_frame(&shot), wanted) else {
             return Finer::Disturbed;
@@ -271,12 +271,12 @@ mod tests {
 
     use super::super::reduction::Shrink;
     use super::*;
-    use crate::accuracy::Settings;
     use crate::app::drawing::border::Run;
     use crate::app::state::Statistics;
-    use crate::base::color::Color;
-    use crate::io;
-    use crate::scene::Command;
+    use marraztu_core::accuracy::Settings;
+    use marraztu_core::base::color::Color;
+    use marraztu_core::scene::Command;
+    use marraztu_io as io;
 
     fn snapshot(size: Size) -> Snapshot {
         let (scene, view) = io::default_scene();
@@ -302,7 +302,7 @@ mod tests {
         static BEGINNING: OnceLock<Instant> = OnceLock::new();
         let now = NOW.get() + Duration::from_millis(40);
         NOW.set(now);
-        *crate::base::once::get_or_compute(&BEGINNING, Instant::now) + now
+        *marraztu_core::base::once::get_or_compute(&BEGINNING, Instant::now) + now
     }
 
     fn this() -> Asked {
@@ -364,7 +364,7 @@ mod tests {
         let mut renderer = ViewportRenderer::new(Instant::now);
         let mut wanted = snapshot(Size::new(16, 12));
         assert!(renderer.draw(&wanted, &this).is_some());
-        wanted.view.subject = crate::scene::Subject::Light;
+        wanted.view.subject = marraztu_core::scene::Subject::Light;
         assert!(renderer.draw(&wanted, &this).is_none());
         wanted.moving = true;
         assert!(renderer.draw(&wanted, &this).is_none());
@@ -447,7 +447,8 @@ mod tests {
         let mut wanted = snapshot(Size::new(640, 480));
         renderer.draw(&wanted, &this).unwrap();
         let (id, _) = wanted.scene.objects.iter().next().unwrap();
-        let command = crate::edit::items::toggle_shown(&wanted.scene, ItemId::Object(id)).unwrap();
+        let command =
+            marraztu_core::edit::items::toggle_shown(&wanted.scene, ItemId::Object(id)).unwrap();
         command.apply(&mut wanted.scene).unwrap();
         let drawn = renderer.draw(&wanted, &this).unwrap();
         assert!((1..40).contains(&drawn.changes.tiles()), "{:?}", drawn.changes);

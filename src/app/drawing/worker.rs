@@ -17,9 +17,9 @@ use std::time::{Duration, Instant};
 use super::border::Border;
 use super::snapshot::Snapshot;
 use super::viewport_renderer::{Asked, Drawn, Finer, ViewportRenderer};
-use crate::lab::cost::Explained;
-use crate::render::Hit;
-use crate::scene::ItemId;
+use marraztu_core::scene::ItemId;
+use marraztu_lab::cost::Explained;
+use marraztu_render::Hit;
 
 /// The time without events after which the picture is refined.
 const QUIET: Duration = Duration::from_millis(120);

@@ -10,9 +10,9 @@ use crate::app::actions::ClipboardIntent;
 use crate::app::documents::loading::Fetched;
 use crate::app::input::keyboard::Keyboard;
 use crate::app::state::State;
-use crate::edit::{Gesture, Refusal, copies, items, several};
-use crate::io::{self, Fragment, Known, LoadError, SceneFileError};
-use crate::scene::{ItemId, MaterialChoice, ObjectId, Subject};
+use marraztu_core::edit::{Gesture, Refusal, copies, items, several};
+use marraztu_core::scene::{ItemId, MaterialChoice, ObjectId, Subject};
+use marraztu_io::{self as io, Fragment, Known, LoadError, SceneFileError};
 
 impl App {
     pub(crate) fn clipboard(&mut self, ctx: &Context, intent: ClipboardIntent, label: &str) {

@@ -10,8 +10,8 @@ use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Judged};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::viewport::comparison::{Compared, Drawing, draw};
-use crate::io;
-use crate::scene::View;
+use marraztu_core::scene::View;
+use marraztu_io as io;
 
 impl App {
     /// Takes finished pictures, and starts to draw new ones if the comparison is out of date.

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use egui::Context;
 
 use super::App;
-use crate::accuracy::{Samples, Settings, Shot};
 use crate::app::state::{ExplainedPixel, State};
 use crate::app::tasks::{Outcome, Task};
-use crate::base::image::Size;
-use crate::render::{PixelColor, Renderer, plan_frame};
+use marraztu_core::accuracy::{Samples, Settings, Shot};
+use marraztu_core::base::image::Size;
+use marraztu_render::{PixelColor, Renderer, plan_frame};
 
 /// A pixel that is being explained.
 #[derive(Debug)]

@@ -1,10 +1,10 @@
 //! Fits the exposure to the picture.
 
 use super::App;
-use crate::accuracy::Shot;
-use crate::base::image::Size;
-use crate::render::fitted_exposure;
-use crate::scene::View;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::View;
+use marraztu_render::fitted_exposure;
 
 /// The longer side of the picture that the exposure is fitted to: a share of the brightest pixels
 /// needs no more.

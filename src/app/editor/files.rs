@@ -10,7 +10,6 @@ use egui::Context;
 use super::App;
 use super::turning::usual_up;
 use super::unseen::out_of_sight;
-use crate::accuracy::{AccuracyPreset, Settings, Shot};
 use crate::app::documents::answer::Answer;
 use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wish, is_scene};
 use crate::app::documents::material_dialog::{
@@ -21,13 +20,14 @@ use crate::app::drawing::images;
 use crate::app::state::{Notice, Offer, Reduction, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
-use crate::base::Shared;
-use crate::base::image::{Picture, Size};
-use crate::edit::{Gesture, items};
-use crate::io::{self, Finding, LoadError, Loaded};
-use crate::render::Renderer;
-use crate::render::plan_frame;
-use crate::scene::{LoadOptions, MaterialChoice, Object, ObjectId, Subject, Texture};
+use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::edit::{Gesture, items};
+use marraztu_core::scene::{LoadOptions, MaterialChoice, Object, ObjectId, Subject, Texture};
+use marraztu_io::{self as io, Finding, LoadError, Loaded};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
 
 /// The maximum number of files read at the same time.
 const MOST_LOADING: usize = 8;

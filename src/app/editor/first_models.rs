@@ -15,10 +15,10 @@ use crate::app::documents::loading::{Arrival, Arrived, Fetched, Wish, is_scene};
 use crate::app::documents::material_dialog::{details, opened, own_or_silver};
 use crate::app::state::{Notice, Offer, State};
 use crate::app::widgets::text::file_name;
-use crate::base::Shared;
-use crate::edit::{Gesture, Refusal, items, presenting};
-use crate::io::{self, LoadError, Loaded, Progress};
-use crate::scene::{LoadOptions, MaterialChoice, Object, Scene, Steps, UpAxis};
+use marraztu_core::base::Shared;
+use marraztu_core::edit::{Gesture, Refusal, items, presenting};
+use marraztu_core::scene::{LoadOptions, MaterialChoice, Object, Scene, Steps, UpAxis};
+use marraztu_io::{self as io, LoadError, Loaded, Progress};
 
 impl App {
     /// Loads the files of the command line: models alone, or put into the scene among them. They do

@@ -14,10 +14,10 @@ use crate::app::documents::loading::{Fetched, Opening};
 use crate::app::panels::preferences;
 use crate::app::state::{Notice, State};
 use crate::app::widgets::text::file_name;
-use crate::io::{
-    self, Abandoned, Discarded, Fingerprint, Journal, OwnFolders, Preferences, Unsaved,
+use marraztu_core::scene::Scene;
+use marraztu_io::{
+    self as io, Abandoned, Discarded, Fingerprint, Journal, OwnFolders, Preferences, Unsaved,
 };
-use crate::scene::Scene;
 
 /// The seconds without a change after which preferences are written.
 const QUIET: f64 = 1.0;
@@ -322,7 +322,7 @@ mod tests {
         let (scene, view) = io::default_scene();
         let file = Some(PathBuf::from("/somewhere/harbour.marraztu"));
         let journal = Journal::begin(&folders).unwrap();
-        let settings = crate::accuracy::Settings::default();
+        let settings = marraztu_core::accuracy::Settings::default();
         let window = io::WindowState::DEFAULT;
         journal.keep(Unsaved { scene, view, settings, window, file, content: None });
         journal.wait();

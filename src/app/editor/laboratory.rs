@@ -9,24 +9,24 @@ use std::time::{Duration, Instant};
 use egui::Context;
 
 use super::App;
-use crate::accuracy::Shot;
-use crate::accuracy::{AXES, Axis, Settings};
 use crate::app::actions::LabRequest;
 use crate::app::panels::Panel;
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Side};
 use crate::app::tasks::{Outcome, Task};
-use crate::base::image::Size;
-use crate::edit::selection;
-use crate::io;
-use crate::lab::attribution::{Attribution, attribute};
-use crate::lab::candidates::{Thoroughness, all_axes};
-use crate::lab::pairs::{Touch, Unmeasured, Watch};
-use crate::lab::picture_source::{PictureSource as _, Reference, Studio};
-use crate::lab::report::Report;
-use crate::lab::suite::{self, SUITE, SuiteDetail, SuiteScene};
-use crate::lab::sweep::{Findings, Question, sweep};
-use crate::lab::timing::WallClock;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{AXES, Axis, Settings};
+use marraztu_core::base::image::Size;
+use marraztu_core::edit::selection;
+use marraztu_io as io;
+use marraztu_lab::attribution::{Attribution, attribute};
+use marraztu_lab::candidates::{Thoroughness, all_axes};
+use marraztu_lab::pairs::{Touch, Unmeasured, Watch};
+use marraztu_lab::picture_source::{PictureSource as _, Reference, Studio};
+use marraztu_lab::report::Report;
+use marraztu_lab::suite::{self, SUITE, SuiteDetail, SuiteScene};
+use marraztu_lab::sweep::{Findings, Question, sweep};
+use marraztu_lab::timing::WallClock;
 
 /// The background work of the laboratory.
 #[derive(Debug, Default)]

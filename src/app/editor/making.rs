@@ -7,17 +7,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 use egui::{ColorImage, Context, Rect};
 
 use super::App;
-use crate::accuracy::{Settings, Shot};
 use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
 use crate::app::documents::wanted::Wanted;
 use crate::app::drawing::images;
 use crate::app::state::{Notice, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
-use crate::edit::turntable::turned;
-use crate::io::{self, Animation, AnimationWriter, Progress, Sources};
-use crate::render::{Renderer, plan_frame, without_ground};
-use crate::scene::View;
+use marraztu_core::accuracy::{Settings, Shot};
+use marraztu_core::edit::turntable::turned;
+use marraztu_core::scene::View;
+use marraztu_io::{self as io, Animation, AnimationWriter, Progress, Sources};
+use marraztu_render::{Renderer, plan_frame, without_ground};
 
 /// What came of making a file.
 #[derive(Debug)]
@@ -213,7 +213,7 @@ fn picture(path: &Path, shot: &Shot, transparent: bool, progress: &Progress) -> 
         let drawn = renderer.redraw(&plan_frame(shot), &|| !progress.is_cancelled());
         match drawn {
             Ok(_) => Ok(renderer.picture().clone()),
-            Err(crate::render::Cancelled) => return Made::Cancelled,
+            Err(marraztu_render::Cancelled) => return Made::Cancelled,
         }
     };
     if progress.is_cancelled() {

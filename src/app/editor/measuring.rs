@@ -6,11 +6,11 @@ use std::time::Duration;
 use egui::Context;
 
 use super::App;
-use crate::accuracy::Shot;
 use crate::app::panels::Panel;
 use crate::app::state::Measured;
 use crate::app::tasks::{Outcome, Task};
-use crate::lab::cost::{self, Costs};
+use marraztu_core::accuracy::Shot;
+use marraztu_lab::cost::{self, Costs};
 
 /// The approximate time of a measurement.
 const BUDGET: Duration = Duration::from_secs(3);

@@ -15,10 +15,10 @@ use crate::app::documents::loading::{Fetched, Found};
 use crate::app::documents::wanted::Wanted;
 use crate::app::state::{MissingFiles, Notice};
 use crate::app::widgets::text::file_name;
-use crate::base::Shared;
-use crate::edit::Gesture;
-use crate::io::{self, LoadError};
-use crate::scene::{Camera, Command, Item, Model, Object, Scene, Texture};
+use marraztu_core::base::Shared;
+use marraztu_core::edit::Gesture;
+use marraztu_core::scene::{Camera, Command, Item, Model, Object, Scene, Texture};
+use marraztu_io::{self as io, LoadError};
 
 impl App {
     /// Answers a request about missing files.

@@ -30,7 +30,6 @@ use std::time::Duration;
 
 use egui::{Context, UiBuilder, ViewportCommand};
 
-use crate::accuracy::AccuracyPreset;
 use crate::app::actions::{Action, Request};
 use crate::app::documents::dialogs::Dialogs;
 use crate::app::documents::loading::{Loading, Queued};
@@ -48,11 +47,12 @@ use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
 use crate::app::widgets::number::take_bad_text;
 use crate::app::widgets::tooltips;
-use crate::scene::{Scene, Steps, View};
 use explaining::Explaining;
 use keeping::Keeping;
 use laboratory::Work;
 use making::Making;
+use marraztu_core::accuracy::AccuracyPreset;
+use marraztu_core::scene::{Scene, Steps, View};
 use measuring::Measuring;
 use reloading::Watch;
 use unseen::Search;

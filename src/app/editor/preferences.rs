@@ -9,7 +9,7 @@ use crate::app::panels::preferences::now;
 use crate::app::panels::{OpenPanels, Panel};
 use crate::app::state::DrawingChoices;
 use crate::app::state::layout::Layout;
-use crate::io::{Preferences, Theme};
+use marraztu_io::{Preferences, Theme};
 
 impl App {
     /// Takes preferences that the user has changed.

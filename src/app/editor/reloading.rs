@@ -15,10 +15,10 @@ use super::App;
 use crate::app::documents::loading::{Fetched, Reread};
 use crate::app::state::Notice;
 use crate::app::widgets::text::file_name;
-use crate::base::Shared;
-use crate::edit::Gesture;
-use crate::io::{self, LoadError, is_example};
-use crate::scene::{Command, Item, Model, Object, Scene};
+use marraztu_core::base::Shared;
+use marraztu_core::edit::Gesture;
+use marraztu_core::scene::{Command, Item, Model, Object, Scene};
+use marraztu_io::{self as io, LoadError, is_example};
 
 /// Between two looks at the files.
 const PAUSE: Duration = Duration::from_millis(500);

@@ -17,11 +17,11 @@ use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::input::keymap::Keymap;
 use crate::app::panels::Panel;
 use crate::app::state::{Message, Offer, State, Tone};
-use crate::edit::selection::{self, Selection};
-use crate::edit::several::Others;
-use crate::edit::{Gesture, GesturePhase, Selected, aiming, items, lights};
-use crate::io::is_example;
-use crate::scene::{Command, ItemId, Subject, View};
+use marraztu_core::edit::selection::{self, Selection};
+use marraztu_core::edit::several::Others;
+use marraztu_core::edit::{Gesture, GesturePhase, Selected, aiming, items, lights};
+use marraztu_core::scene::{Command, ItemId, Subject, View};
+use marraztu_io::is_example;
 
 impl App {
     /// Closes a panel; says whether it was open.

@@ -12,8 +12,10 @@ use crate::app::documents::material_dialog::{details, short};
 use crate::app::documents::wanted::{After, ChangedFile, Wanted};
 use crate::app::state::{Notice, State};
 use crate::app::widgets::text::file_name;
-use crate::edit::selection;
-use crate::io::{self, Finding, FindingKind, LoadError, Opened, SCENE_ENDING, SceneFileError};
+use marraztu_core::edit::selection;
+use marraztu_io::{
+    self as io, Finding, FindingKind, LoadError, Opened, SCENE_ENDING, SceneFileError,
+};
 
 impl App {
     /// Saves the scene to its file, or asks for a file; then does `after`.

@@ -6,10 +6,10 @@ use egui::Context;
 
 use super::App;
 use crate::app::actions::Also;
-use crate::edit::Gesture;
-use crate::edit::selection;
-use crate::edit::several::Others;
-use crate::scene::{Command, ItemId, Scene, Subject};
+use marraztu_core::edit::Gesture;
+use marraztu_core::edit::selection;
+use marraztu_core::edit::several::Others;
+use marraztu_core::scene::{Command, ItemId, Scene, Subject};
 
 impl App {
     /// Selects items beside those that are selected, instead of them, or no longer.

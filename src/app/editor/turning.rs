@@ -9,10 +9,10 @@ use super::App;
 use crate::app::documents::loading::Fetched;
 use crate::app::state::State;
 use crate::app::widgets::text::file_name;
-use crate::base::Shared;
-use crate::edit::{Gesture, Refusal, framing, items};
-use crate::io::{self, LoadError, Loaded, is_example};
-use crate::scene::{Command, LoadOptions, ObjectId, UpAxis};
+use marraztu_core::base::Shared;
+use marraztu_core::edit::{Gesture, Refusal, framing, items};
+use marraztu_core::scene::{Command, LoadOptions, ObjectId, UpAxis};
+use marraztu_io::{self as io, LoadError, Loaded, is_example};
 
 /// The axis with which a model is opened, and a sentence if that is not Y: the axis that the file
 /// states, else the one that was chosen last.

@@ -5,13 +5,13 @@
 use egui::Context;
 
 use super::App;
-use crate::accuracy::Shot;
 use crate::app::state::{Notice, Offer, State};
 use crate::app::tasks::{Outcome, Task};
-use crate::base::image::Size;
-use crate::render::plan_frame;
-use crate::render::{Renderer, Unseen, unseen};
-use crate::scene::{ItemId, Object, ObjectId, Projection};
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{ItemId, Object, ObjectId, Projection};
+use marraztu_render::plan_frame;
+use marraztu_render::{Renderer, Unseen, unseen};
 
 /// A search for objects that are not visible, with the reasons.
 #[derive(Debug)]
@@ -134,8 +134,8 @@ pub(crate) fn out_of_sight(state: &State, object: &Object, size: Size) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io;
     use glam::{DMat4, DVec3};
+    use marraztu_io as io;
 
     #[test]
     fn an_object_that_the_plan_leaves_out_can_be_framed() {
@@ -153,7 +153,7 @@ mod tests {
         let mut object = object.clone();
         let state = State::new(scene.clone(), view);
         let mut at = |m: DMat4| {
-            object.placement = crate::scene::Tracked::new(m);
+            object.placement = marraztu_core::scene::Tracked::new(m);
             out_of_sight(&state, &object, Size::new(800, 600))
         };
         assert!(!at(DMat4::IDENTITY));

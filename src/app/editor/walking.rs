@@ -2,8 +2,8 @@
 
 use super::App;
 use crate::app::state::State;
-use crate::edit::{Gesture, Selected, selection, transform};
-use crate::scene::Scene;
+use marraztu_core::edit::{Gesture, Selected, selection, transform};
+use marraztu_core::scene::Scene;
 
 impl App {
     /// Undoes the last step. Returns its label; `None` if there was no step.

@@ -14,7 +14,7 @@ use super::keymap::{Keymap, chord_of};
 use crate::app::actions::{Action, Chord, Group};
 use crate::app::widgets::gestures;
 use crate::app::widgets::regions::{self, Way};
-use crate::edit::Gesture;
+use marraztu_core::edit::Gesture;
 
 /// A press of a key that asks for something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

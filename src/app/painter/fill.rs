@@ -10,7 +10,7 @@ use egui::Color32;
 use super::blend::{all_opaque, is_opaque, lay, over, packed, product, tint};
 use super::items::{Corner, Item, Ramp, Shape};
 use super::textures::{Filter, Texture};
-use crate::render::screen::coverage::{PixelBox, Triangle};
+use marraztu_render::screen::coverage::{PixelBox, Triangle};
 
 /// Adjacent rows of pixels: blue in the lowest byte, green, red, nothing.
 #[derive(Debug)]

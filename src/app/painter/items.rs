@@ -12,7 +12,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use egui::epaint::{Mesh, Vertex};
 use egui::{Pos2, Rect};
 
-use crate::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle};
+use marraztu_render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle};
 
 /// A corner of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,9 +21,9 @@ use egui::epaint::{ClippedPrimitive, Mesh, Primitive};
 use egui::{Color32, Rect, TexturesDelta};
 use rayon::prelude::*;
 
-use crate::render::screen::coverage::PixelBox;
 use fill::Strip;
 use items::Item;
+use marraztu_render::screen::coverage::PixelBox;
 use textures::Textures;
 
 /// The rows of a band.

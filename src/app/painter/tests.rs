@@ -4,8 +4,8 @@ use egui::epaint::{ClippedPrimitive, ImageDelta, Mesh, Primitive, Vertex};
 use egui::{Color32, ColorImage, Pos2, Rect, TextureId, TextureOptions, TexturesDelta, pos2};
 
 use super::{Canvas, WindowFrame, WindowPainter};
-use crate::base::rng::Rng;
-use crate::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle};
+use marraztu_core::base::rng::Rng;
+use marraztu_render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle};
 
 const WIDTH: usize = 97;
 const HEIGHT: usize = 75;

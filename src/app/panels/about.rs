@@ -9,7 +9,7 @@ use crate::app::panels::Panel;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{heading, put_text, text};
-use crate::lab::instructions;
+use marraztu_lab::instructions;
 
 /// A package a line: its name, its version and its licence.
 const PACKAGES: &str = include_str!("../../../assets/licences.txt");

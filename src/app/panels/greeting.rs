@@ -4,13 +4,13 @@
 use egui::{Align2, Area, Frame, Id, Order, Rect, Ui, vec2};
 
 use super::status_line::middle_elided;
-use crate::accuracy::Axis;
 use crate::app::actions::{Action, LabRequest, Request};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::regions;
 use crate::app::widgets::text::file_name;
-use crate::io::EXAMPLES;
+use marraztu_core::accuracy::Axis;
+use marraztu_io::EXAMPLES;
 
 /// The lessons that are offered, by their axes, and what they are about.
 const LESSONS: [(&str, &str); 3] =

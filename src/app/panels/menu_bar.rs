@@ -6,7 +6,6 @@ use egui::{
 };
 
 use super::{history, undo_buttons};
-use crate::accuracy::AXES;
 use crate::app::actions::{Action, Group, LabRequest, Request};
 use crate::app::input::buttons::first_key;
 use crate::app::panels::Panel;
@@ -15,7 +14,8 @@ use crate::app::theme;
 use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::text::file_name;
-use crate::io::EXAMPLES;
+use marraztu_core::accuracy::AXES;
+use marraztu_io::EXAMPLES;
 
 /// The actions of [`Group::Window`] that have a menu of their own.
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];

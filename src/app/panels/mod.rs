@@ -28,7 +28,7 @@ use egui::Key;
 
 use crate::app::chord::Chord;
 use crate::app::chord::Chord::{Command, Either, Named, Text};
-use crate::io;
+use marraztu_io as io;
 
 /// Where a panel stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

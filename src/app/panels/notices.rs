@@ -16,8 +16,8 @@ use crate::app::tasks::Task;
 use crate::app::theme;
 use crate::app::widgets::regions;
 use crate::app::widgets::text::file_name;
-use crate::edit::Gesture;
-use crate::scene::{ObjectId, UpAxis};
+use marraztu_core::edit::Gesture;
+use marraztu_core::scene::{ObjectId, UpAxis};
 
 /// The seconds for which a notice that needs no answer is shown.
 const SHOWN: f64 = 8.0;

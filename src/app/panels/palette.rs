@@ -6,7 +6,6 @@ use egui::{
     Align2, Id, Key, Modal, RichText, ScrollArea, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, vec2,
 };
 
-use crate::accuracy::{ACCURACY_PRESETS, AXES};
 use crate::app::actions::search::{Search, Texts};
 use crate::app::actions::{Action, LabRequest, Request};
 use crate::app::input::keyboard::Keyboard;
@@ -15,10 +14,11 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::color_picker::hexadecimal;
 use crate::app::widgets::controls;
-use crate::base::color::Color;
-use crate::edit::{Gesture, items, several};
-use crate::io::EXAMPLES;
-use crate::scene::{Command, ItemId, Material, MaterialChoice, Object, ObjectId, PresetId};
+use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES};
+use marraztu_core::base::color::Color;
+use marraztu_core::edit::{Gesture, items, several};
+use marraztu_core::scene::{Command, ItemId, Material, MaterialChoice, Object, ObjectId, PresetId};
+use marraztu_io::EXAMPLES;
 
 const WIDTH: f32 = 560.0;
 

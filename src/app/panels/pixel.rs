@@ -11,9 +11,9 @@ use crate::app::state::{ExplainedPixel, State};
 use crate::app::theme;
 use crate::app::widgets::controls::{self, icon_button};
 use crate::app::widgets::icons::Icon;
-use crate::base::math;
-use crate::lab::pixel;
-use crate::render::{PixelColor, SurfacePoint, Term};
+use marraztu_core::base::math;
+use marraztu_lab::pixel;
+use marraztu_render::{PixelColor, SurfacePoint, Term};
 
 /// The height of the diagram.
 const DIAGRAM: f32 = 120.0;

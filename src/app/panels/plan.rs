@@ -17,8 +17,8 @@ use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::regions;
 use crate::app::widgets::text::grouped;
-use crate::lab::cost::{Explained, Group};
-use crate::render::{Effect, EffectUse};
+use marraztu_lab::cost::{Explained, Group};
+use marraztu_render::{Effect, EffectUse};
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {

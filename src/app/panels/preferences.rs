@@ -7,7 +7,6 @@ use egui::{
     Align, DragValue, Layout, ScrollArea, Sense, TextStyle, ThemePreference, Ui, Window, vec2,
 };
 
-use crate::accuracy::Samples;
 use crate::app::actions::{Action, Request};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::panels::{OpenPanels, Panel};
@@ -15,8 +14,9 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{self, Choice, Switch, icon_button};
 use crate::app::widgets::icons::Icon;
-use crate::io::{Preferences, Theme};
-use crate::scene::UpAxis;
+use marraztu_core::accuracy::Samples;
+use marraztu_core::scene::UpAxis;
+use marraztu_io::{Preferences, Theme};
 
 const SIZE: egui::Vec2 = vec2(480.0, 470.0);
 
@@ -322,7 +322,7 @@ mod tests {
     use std::path::PathBuf;
 
     use super::*;
-    use crate::io::Helpers;
+    use marraztu_io::Helpers;
 
     #[test]
     fn everything_that_is_remembered_has_a_row() {

@@ -6,14 +6,14 @@ use crate::app::actions::Request;
 use crate::app::state::{Shrink, State};
 use crate::app::widgets::plate::plate_ui;
 use crate::app::widgets::text::grouped;
-use crate::render::{Change, Damage, DamageCause};
-use crate::scene::ItemId;
+use marraztu_core::scene::ItemId;
+use marraztu_render::{Change, Damage, DamageCause};
 
 /// Shows the panel in a corner of the picture; it asks for nothing.
 pub(crate) fn show(ui: &mut Ui, state: &State, _: &mut Vec<Request>) {
     let statistics = &state.statistics;
     let shown = || state.scene.objects.iter().filter(|(_, object)| object.visible);
-    let sum = |count: fn(&crate::scene::Mesh) -> usize| {
+    let sum = |count: fn(&marraztu_core::scene::Mesh) -> usize| {
         grouped(shown().map(|(_, object)| count(&object.model.mesh)).sum())
     };
     let text = format!(
@@ -27,7 +27,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, _: &mut Vec<Request>) {
         statistics.changes.as_ref().map_or_else(String::new, |changes| redrawn(state, changes)),
         shown().count(),
         sum(|mesh| mesh.positions().len()),
-        sum(crate::scene::Mesh::polygon_count),
+        sum(marraztu_core::scene::Mesh::polygon_count),
         grouped(statistics.triangles),
         sum(|mesh| mesh.triangle_count()),
     );
@@ -87,7 +87,7 @@ fn reasons<'a>(items: &[(ItemId, Change)], name: impl Fn(ItemId) -> Option<&'a s
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::ObjectId;
+    use marraztu_core::scene::ObjectId;
 
     #[test]
     fn a_reason_names_two_at_most_and_puts_those_together_that_changed_alike() {

@@ -15,8 +15,8 @@ use crate::app::theme;
 use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::number::short;
-use crate::edit::{steps, transform};
-use crate::scene::{
+use marraztu_core::edit::{steps, transform};
+use marraztu_core::scene::{
     CameraMode, Fill, Frame, ItemId, Observer, Projection, Subject, Transformation,
 };
 
@@ -344,7 +344,7 @@ mod tests {
 
     #[test]
     fn what_a_picture_does_without_is_said_before_its_time() {
-        let (scene, view) = crate::io::default_scene();
+        let (scene, view) = marraztu_io::default_scene();
         let mut state = State::new(scene, view);
         state.statistics.pictures = 1;
         assert!(!parts(&state).join(BETWEEN).contains("moving"));
@@ -357,7 +357,7 @@ mod tests {
 
     #[test]
     fn while_a_picture_takes_long_no_figures_of_the_last_one_are_said() {
-        let (scene, view) = crate::io::default_scene();
+        let (scene, view) = marraztu_io::default_scene();
         let mut state = State::new(scene, view);
         state.statistics.pictures = 1;
         let said = |state: &State| parts(state).last().cloned().unwrap_or_default();
@@ -369,7 +369,7 @@ mod tests {
 
     #[test]
     fn what_a_drag_does_is_said_for_the_mode_of_the_camera() {
-        let (scene, view) = crate::io::default_scene();
+        let (scene, view) = marraztu_io::default_scene();
         let mut state = State::new(scene, view);
         assert_eq!(mouse_hints(&state)[0], "Drag: look around");
         let command = transform::toggle_analysis(&state.scene, &state.view);

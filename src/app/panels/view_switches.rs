@@ -2,7 +2,6 @@
 
 use egui::{Id, ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
-use crate::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Samples};
 use crate::app::actions::{Action, Group, Request, change, change_view};
 use crate::app::input::buttons::{action_choice, action_switch};
 use crate::app::state::{DrawingChoices, State};
@@ -11,7 +10,8 @@ use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{self, Choice, choices, choices_in_rows, row, section};
 use crate::app::widgets::number::Number;
 use crate::app::widgets::regions;
-use crate::scene::{
+use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Samples};
+use marraztu_core::scene::{
     CameraMode, Command, Frame, Normals, Observer, Projection, Subject, Transformation, View,
 };
 
@@ -317,8 +317,9 @@ fn is_of_light(axis: &Axis) -> bool {
 pub(crate) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, requests: &mut Vec<Request>) {
     let now = state.settings;
     let senseless = (axis.sense)(&state.scene, &state.view).err();
-    let own =
-        |choice: &crate::accuracy::Choice| choice.is_of_its_own(&state.scene, &state.view, &now);
+    let own = |choice: &marraztu_core::accuracy::Choice| {
+        choice.is_of_its_own(&state.scene, &state.view, &now)
+    };
     let hints: Vec<String> = axis
         .choices
         .iter()

@@ -9,7 +9,7 @@ use winit::window::Window;
 
 use super::StartError;
 use crate::app::painter::{Canvas, WindowFrame, WindowPainter};
-use crate::render::screen::coverage::PixelBox;
+use marraztu_render::screen::coverage::PixelBox;
 
 type Shared = Arc<Window>;
 

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::State;
-use crate::accuracy::{AXES, Axis, Samples, Settings};
-use crate::base::image::Size;
-use crate::lab::error::{Error, Measure, Region};
-use crate::lab::picture_source::Reference;
-use crate::lab::report::{Budgets, Report, brief};
-use crate::scene::{Scene, View};
+use marraztu_core::accuracy::{AXES, Axis, Samples, Settings};
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{Scene, View};
+use marraztu_lab::error::{Error, Measure, Region};
+use marraztu_lab::picture_source::Reference;
+use marraztu_lab::report::{Budgets, Report, brief};
 
 /// What the panel of the laboratory shows.
 #[derive(Debug)]

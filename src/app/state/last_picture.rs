@@ -4,13 +4,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::State;
-use crate::accuracy::{Samples, Settings};
 use crate::app::drawing::reduction::Reduction;
 use crate::app::drawing::viewport_renderer::Drawn;
-use crate::base::image::Size;
-use crate::lab::cost::{Costs, Explained};
-use crate::render::{Damage, PixelColor};
-use crate::scene::{Scene, View};
+use marraztu_core::accuracy::{Samples, Settings};
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{Scene, View};
+use marraztu_lab::cost::{Costs, Explained};
+use marraztu_render::{Damage, PixelColor};
 
 /// Statistics of the last picture.
 #[derive(Clone, Debug)]

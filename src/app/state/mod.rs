@@ -11,16 +11,16 @@ use std::sync::Arc;
 
 use egui::ThemePreference;
 
-use crate::accuracy::{Samples, Settings};
 pub use crate::app::drawing::reduction::{Reduction, Shrink};
 use crate::app::panels::OpenPanels;
-use crate::edit::several::Others;
-use crate::edit::{Gesture, GesturePhase, History, selection};
-use crate::io::{Fingerprint, Helpers, Sources, WindowState, is_example};
-use crate::scene::{ItemId, Light, LightId, Object, Scene, UpAxis, View};
 use laboratory::Laboratory;
 pub use last_picture::{ExplainedPixel, Measured, Plan, Statistics};
 use layout::Layout;
+use marraztu_core::accuracy::{Samples, Settings};
+use marraztu_core::edit::several::Others;
+use marraztu_core::edit::{Gesture, GesturePhase, History, selection};
+use marraztu_core::scene::{ItemId, Light, LightId, Object, Scene, UpAxis, View};
+use marraztu_io::{Fingerprint, Helpers, Sources, WindowState, is_example};
 pub use notices::{Message, MissingFiles, Notice, Offer, Tone};
 
 /// The number of items from which on the outline has a field that filters them.

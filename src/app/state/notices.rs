@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
-use crate::edit::{Refusal, framing, items};
-use crate::scene::{Command, MaterialChoice, Object, ObjectId, Scene, Sides, Surface, View};
+use marraztu_core::edit::{Refusal, framing, items};
+use marraztu_core::scene::{
+    Command, MaterialChoice, Object, ObjectId, Scene, Sides, Surface, View,
+};
 
 /// A message to the user.
 #[derive(Clone, Debug, PartialEq, Eq)]

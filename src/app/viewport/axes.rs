@@ -6,7 +6,7 @@ use glam::DMat3;
 use crate::app::actions::Action;
 use crate::app::state::State;
 use crate::app::theme;
-use crate::base::math::Axis;
+use marraztu_core::base::math::Axis;
 
 /// From the middle to an end, in points.
 const LENGTH: f32 = 30.0;
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn the_end_towards_the_observer_is_the_one_that_is_clicked() {
-        let (scene, view) = crate::io::default_scene();
+        let (scene, view) = marraztu_io::default_scene();
         let mut state = State::new(scene, view);
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(800.0, 600.0));
         let all = ends(&state, rect);

@@ -8,10 +8,10 @@ use super::{Menu, Purpose, Viewport, menu, picking};
 use crate::app::actions::{Action, Also, Request};
 use crate::app::drawing::worker::Pick;
 use crate::app::state::State;
-use crate::base::image::Size;
-use crate::edit::Refusal;
-use crate::render::Hit;
-use crate::scene::ItemId;
+use marraztu_core::base::image::Size;
+use marraztu_core::edit::Refusal;
+use marraztu_core::scene::ItemId;
+use marraztu_render::Hit;
 
 impl Viewport {
     /// Takes the answer to a pick; adds the requests that follow from it.

@@ -8,19 +8,19 @@ use std::sync::Arc;
 use egui::{Align2, ColorImage, Context, CursorIcon, Id, Pos2, Rect, Sense, Stroke, TextureHandle};
 use egui::{TextureOptions, Ui, pos2, vec2};
 
-use crate::accuracy::Settings;
-use crate::accuracy::Shot;
 use crate::app::actions::{LabRequest, Request};
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, in_words};
 use crate::app::tasks::Task;
 use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
-use crate::base::image::{Picture, Size};
-use crate::io::Progress;
-use crate::lab::error::{Error, amplified};
-use crate::lab::picture_source::{PictureSource as _, Reference, Studio};
-use crate::scene::{Scene, View};
+use marraztu_core::accuracy::Settings;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{Scene, View};
+use marraztu_io::Progress;
+use marraztu_lab::error::{Error, amplified};
+use marraztu_lab::picture_source::{PictureSource as _, Reference, Studio};
 
 /// Everything that the two pictures depend on.
 #[derive(Clone, Debug, PartialEq)]
@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn a_comparison_that_is_cancelled_gives_no_pictures() {
-        let (scene, view) = crate::io::default_scene();
+        let (scene, view) = marraztu_io::default_scene();
         let (settings, size) = (Settings::default(), Size::new(64, 48));
         for against in [Reference::Exact, Reference::Sampled] {
             let (scene, view) = (scene.clone(), view.clone());

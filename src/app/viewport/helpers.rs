@@ -10,9 +10,9 @@ use super::marks::Projection;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::number::short;
-use crate::base::math::Axis;
-use crate::edit::{arrange, steps};
-use crate::scene::{Bounds, ItemId};
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::{arrange, steps};
+use marraztu_core::scene::{Bounds, ItemId};
 
 /// The lines of the grid to each side of its middle.
 const LINES: i32 = 10;

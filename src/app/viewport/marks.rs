@@ -9,10 +9,10 @@ use glam::{DMat4, DVec3, DVec4};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::icons::Icon;
-use crate::base::image::Size;
-use crate::base::math;
-use crate::edit::aiming;
-use crate::scene::{Aim, HALF_APERTURE, ItemId, LightId};
+use marraztu_core::base::image::Size;
+use marraztu_core::base::math;
+use marraztu_core::edit::aiming;
+use marraztu_core::scene::{Aim, HALF_APERTURE, ItemId, LightId};
 
 /// The radius of a mark in points.
 const RADIUS: f32 = 9.0;
@@ -248,12 +248,13 @@ mod tests {
 
     #[test]
     fn a_place_on_the_screen_leads_back_to_its_point_of_the_world() {
-        let (scene, view) = crate::io::default_scene();
+        let (scene, view) = marraztu_io::default_scene();
         let mut state = State::new(scene, view);
         let rect = Rect::from_min_size(pos2(200.0, 30.0), vec2(800.0, 600.0));
-        for projection in
-            [crate::scene::Projection::Perspective, crate::scene::Projection::Orthographic]
-        {
+        for projection in [
+            marraztu_core::scene::Projection::Perspective,
+            marraztu_core::scene::Projection::Orthographic,
+        ] {
             state.view.projection = projection;
             let onto = Projection::new(&state, rect, Size::new(800, 600));
             for point in [DVec3::ZERO, DVec3::new(-100.0, 20.0, 30.0), DVec3::new(40.0, 9.0, -90.0)]
@@ -269,7 +270,7 @@ mod tests {
 
     #[test]
     fn what_is_behind_the_observer_has_no_place() {
-        let (scene, view) = crate::io::default_scene();
+        let (scene, view) = marraztu_io::default_scene();
         let state = State::new(scene, view);
         let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 600.0));
         let onto = Projection::new(&state, rect, Size::new(800, 600));

@@ -5,7 +5,7 @@ use egui::{Id, Ui};
 use super::Viewport;
 use crate::app::actions::{ADD_LIGHTS, Action, Request};
 use crate::app::state::State;
-use crate::scene::ItemId;
+use marraztu_core::scene::ItemId;
 
 impl Viewport {
     /// Shows the menu while it is open.

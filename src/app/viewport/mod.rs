@@ -30,11 +30,11 @@ use crate::app::drawing::worker::{News, Pick, Worker};
 use crate::app::input::keyboard::{Keyboard, Letters};
 use crate::app::state::State;
 use crate::app::widgets::plate::plate_ui;
-use crate::base::image::Size;
-use crate::render::Hit;
-use crate::scene::ItemId;
 use gizmo::{Gizmo, Grab};
 use marks::Projection;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::ItemId;
+use marraztu_render::Hit;
 use mouse::{Mouse, Under};
 use over::Over;
 

@@ -24,10 +24,10 @@ use super::gizmo::{Gizmo, Grab};
 use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::widgets::gestures;
-use crate::base::image::Size;
-use crate::edit::{Gesture, Refusal, navigation, steps};
-use crate::render::Hit;
-use crate::scene::{CameraMode, Command, Projection};
+use marraztu_core::base::image::Size;
+use marraztu_core::edit::{Gesture, Refusal, navigation, steps};
+use marraztu_core::scene::{CameraMode, Command, Projection};
+use marraztu_render::Hit;
 
 /// A drag that stays within this distance of its start, in points, is a click.
 const CLICK: f32 = 4.0;

@@ -9,7 +9,7 @@ use crate::app::actions::{Also, Request};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
-use crate::scene::ItemId;
+use marraztu_core::scene::ItemId;
 
 /// What lies over the picture and can be clicked.
 pub(super) struct Over {

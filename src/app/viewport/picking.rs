@@ -5,8 +5,8 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::marks::Projection;
 use crate::app::state::State;
-use crate::base::image::Size;
-use crate::scene::{Object, ObjectId, dvec3};
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{Object, ObjectId, dvec3};
 
 /// The transformations from an object's mesh to the picture.
 struct Onto {
@@ -102,9 +102,9 @@ fn depth_in(at: DVec2, [a, b, c]: [DVec3; 3]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::Shared;
-    use crate::io;
-    use crate::scene::{Command, Item, LoadOptions, MaterialChoice, Tracked};
+    use marraztu_core::base::Shared;
+    use marraztu_core::scene::{Command, Item, LoadOptions, MaterialChoice, Tracked};
+    use marraztu_io as io;
 
     const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\n\
         v 1 1 1\nv -1 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
@@ -117,7 +117,7 @@ mod tests {
         let model = Shared::new(loaded.model);
         let (mut scene, view) = io::default_scene();
         for id in scene.objects.ids().collect::<Vec<_>>() {
-            Command::Remove(crate::scene::ItemId::Object(id)).apply(&mut scene).unwrap();
+            Command::Remove(marraztu_core::scene::ItemId::Object(id)).apply(&mut scene).unwrap();
         }
         for (id, depth) in (100..).zip(depths) {
             let mut object = Object::new(model.clone(), MaterialChoice::File);

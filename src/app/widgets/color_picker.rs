@@ -16,8 +16,8 @@ use super::controls::focus_ring;
 use super::gestures;
 use super::number::{self, Number};
 use crate::app::theme;
-use crate::base::color::Color;
-use crate::edit::Gesture;
+use marraztu_core::base::color::Color;
+use marraztu_core::edit::Gesture;
 
 const WIDTH: f32 = 204.0;
 const SQUARE: f32 = 140.0;
@@ -183,7 +183,7 @@ fn numbers_ui(ui: &mut Ui, name: &str, color: Color) -> Option<(Color, Gesture)>
             let number = number.range(0.0..=255.0).speed(0.5).whole();
             if let Some((to, gesture)) = number.ui(ui, width, f64::from(color.0[i])) {
                 let mut color = color;
-                color.0[i] = crate::base::color::byte(to / 255.0);
+                color.0[i] = marraztu_core::base::color::byte(to / 255.0);
                 picked = Some((color, gesture));
             }
         }

@@ -7,7 +7,7 @@ use std::hash::{DefaultHasher, Hash, Hasher as _};
 
 use egui::{Context, Id, Response};
 
-use crate::edit::Gesture;
+use marraztu_core::edit::Gesture;
 
 /// The gesture that a change of this widget's value belongs to: part of the drag while a button of
 /// the mouse is down, whole for a typed value or an arrow key.

@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, FontId, Painter, Rect};
 use egui_material_icons::{MaterialIcon, icons};
 
-use crate::scene::{ItemId, Light, Scene};
+use marraztu_core::scene::{ItemId, Light, Scene};
 
 /// An icon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,9 +13,9 @@ use glam::{DMat3, DVec3};
 use super::expression;
 use super::gestures;
 use crate::app::theme;
-use crate::base::math::Axis;
-use crate::edit::Gesture;
-use crate::edit::angles::{nearest, same_turn};
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::Gesture;
+use marraztu_core::edit::angles::{nearest, same_turn};
 
 /// As many characters as a number at rest has at most.
 const ROOM: usize = 8;

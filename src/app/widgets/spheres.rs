@@ -12,19 +12,19 @@ use egui::{Color32, ColorImage, Id, Rect, TextureHandle, TextureOptions, Ui, pos
 use fearless_simd::Level;
 use glam::DVec3;
 
-use crate::accuracy::Settings;
-use crate::accuracy::Shot;
-use crate::base::Shared;
-use crate::base::image::{Picture, Size};
-use crate::base::math;
-use crate::io::cam_model;
-use crate::render::Renderer;
-use crate::render::plan_frame;
-use crate::scene::{
+use marraztu_core::accuracy::Settings;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::math;
+use marraztu_core::scene::{
     Camera, Command, Item, Lens, Light, LightId, LightKind, LoadOptions, Material, MaterialChoice,
     Mesh, MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Projection, Scene,
     SourceCorner, Tracked,
 };
+use marraztu_io::cam_model;
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
 
 /// Quarters of a pixel come from this many by this many.
 const FINER: usize = 2;
@@ -167,7 +167,7 @@ fn disk(picture: &Picture, side: usize) -> ColorImage {
             }
             let [r, g, b] = sum.map(|sum| u8::try_from((sum + 2) / 4).unwrap_or(u8::MAX));
             let away = (x as f32 + 0.5 - radius).hypot(y as f32 + 0.5 - radius);
-            let cover = crate::base::color::byte(f64::from(radius - 0.5 - away + 0.5));
+            let cover = marraztu_core::base::color::byte(f64::from(radius - 0.5 - away + 0.5));
             pixels.push(Color32::from_rgba_unmultiplied(r, g, b, cover));
         }
     }

@@ -1,13 +1,13 @@
 //! What is invisible changes nothing: a light that is off, a hidden object and an unused material
 //! change no byte, wherever they are inserted.
 
-use marraztu::base::Shared;
-use marraztu::base::rng::Rng;
-use marraztu::render::Renderer;
-use marraztu::scene::{
+use marraztu_core::base::Shared;
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{
     Command, Corner, FileMaterial, Item, Light, LightId, LightKind, MaterialChoice, Mesh,
     MeshSource, Model, NONE, Object, ObjectId, Part, SourceCorner, SpotOwner, Tracked, Undrawn,
 };
+use marraztu_render::Renderer;
 
 use super::plan::{SCENES, same, seeds};
 use super::random_scenes::{RandomScene, random_scene, shapes};

@@ -8,12 +8,12 @@
 use std::fmt::Write as _;
 use std::hint::black_box;
 
-use marraztu::accuracy::{AXES, Axis, AxisKind, Settings, Shot};
-use marraztu::base::image::Size;
-use marraztu::lab::candidates::{Group, candidates};
-use marraztu::lab::suite::{SUITE, SuiteScene};
-use marraztu::render::{FramePlan, Renderer, plan_frame};
-use marraztu::scene::{Scene, View};
+use marraztu_core::accuracy::{AXES, Axis, AxisKind, Settings, Shot};
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{Scene, View};
+use marraztu_lab::candidates::{Group, candidates};
+use marraztu_lab::suite::{SUITE, SuiteScene};
+use marraztu_render::{FramePlan, Renderer, plan_frame};
 use rayon::prelude::*;
 
 use super::instructions::level;

@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
+use marraztu_render::screen::coverage::{SUBPIXELS, Snapped};
 
 /// The first column of row `y` whose centre lies to the right of where the side from `p` to `q`
 /// crosses the row; `None` if it does not.

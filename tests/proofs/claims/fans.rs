@@ -7,10 +7,10 @@
 
 use super::exact::{span, wind};
 use super::{Proof, Tally};
-use marraztu::base::rng::Rng;
-use marraztu::lab::pictures::flat::{self, Flat};
-use marraztu::render::Renderer;
-use marraztu::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
+use marraztu_core::base::rng::Rng;
+use marraztu_lab::pictures::flat::{self, Flat};
+use marraztu_render::Renderer;
+use marraztu_render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
 
 pub(crate) const PROOF: Proof = Proof {
     name: "fans",

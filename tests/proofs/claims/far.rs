@@ -2,9 +2,9 @@
 
 use super::fans::compare;
 use super::{Proof, Tally};
-use marraztu::base::rng::Rng;
-use marraztu::lab::pictures::flat::Flat;
-use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
+use marraztu_core::base::rng::Rng;
+use marraztu_lab::pictures::flat::Flat;
+use marraztu_render::screen::coverage::{SUBPIXELS, Snapped};
 
 pub(crate) const PROOF: Proof = Proof {
     name: "samples",

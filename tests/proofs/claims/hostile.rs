@@ -7,14 +7,16 @@
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use super::Tally;
-use marraztu::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples, Settings, SpecularForm};
-use marraztu::base::color::Color;
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::rng::Rng;
-use marraztu::base::{Shared, math};
-use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{GesturePhase, placement};
-use marraztu::scene::{
+use marraztu_core::accuracy::{
+    Arithmetic, Filter, LeaveOut, LightAt, Samples, Settings, SpecularForm,
+};
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::base::{Shared, math};
+use marraztu_core::edit::transform::{self, Sign};
+use marraztu_core::edit::{GesturePhase, placement};
+use marraztu_core::scene::{
     Aim, Attenuation, Camera, CameraId, Command, Fill, Frame, Item, Lens, Light, LightId,
     LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource, Model, NONE, NormalLength,
     Normals, Object, ObjectId, Observer, Orbit, Part, Pose, PresetId, Projection, Scene, Sides,
@@ -289,7 +291,7 @@ impl Hostile {
         Camera {
             name: "camera".to_owned(),
             visible: self.bool(),
-            model: marraztu::io::cam_model(),
+            model: marraztu_io::cam_model(),
             material: MaterialChoice::Preset(PresetId::SILVER),
             pose: Tracked::new(pose),
             lens,

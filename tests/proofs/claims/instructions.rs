@@ -8,11 +8,11 @@ use std::process::Command;
 
 use fearless_simd::Level;
 
-use marraztu::accuracy::Settings;
-use marraztu::base::image::Size;
-use marraztu::base::rng::Rng;
-use marraztu::io;
-use marraztu::render::{FramePlan, Renderer};
+use marraztu_core::accuracy::Settings;
+use marraztu_core::base::image::Size;
+use marraztu_core::base::rng::Rng;
+use marraztu_io as io;
+use marraztu_render::{FramePlan, Renderer};
 
 use super::absent::with_lights_off;
 use super::random_scenes::RandomScene;

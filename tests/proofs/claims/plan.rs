@@ -1,12 +1,12 @@
 //! Leaving out changes nothing: pictures of randomly generated scenes are compared with pictures by
 //! plans that leave out nothing. `tests/breakages` breaks the rules one by one and sees this fail.
 
-use marraztu::accuracy::Shot;
-use marraztu::base::image::Picture;
-use marraztu::render::plan_everything;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::Picture;
+use marraztu_render::plan_everything;
 
-use marraztu::accuracy::{LeaveOut, Settings};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu_core::accuracy::{LeaveOut, Settings};
+use marraztu_render::{FramePlan, Renderer};
 
 use super::random_scenes::{RandomScene, random_scene};
 use super::{Proof, Tally};

@@ -9,12 +9,12 @@ use glam::{DMat3, DMat4, DVec3};
 
 use super::double_double::Double;
 use super::{Proof, Tally};
-use marraztu::base::math::Axis;
-use marraztu::base::rng::Rng;
-use marraztu::edit::GesturePhase;
-use marraztu::edit::transform::{self, Sign};
-use marraztu::io;
-use marraztu::scene::{Frame, Scene, Subject, Transformation, View};
+use marraztu_core::base::math::Axis;
+use marraztu_core::base::rng::Rng;
+use marraztu_core::edit::GesturePhase;
+use marraztu_core::edit::transform::{self, Sign};
+use marraztu_core::scene::{Frame, Scene, Subject, Transformation, View};
+use marraztu_io as io;
 
 pub(crate) const PROOF: Proof = Proof {
     name: "presses",

@@ -6,15 +6,15 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::hostile::Hostile;
 use super::{Proof, Tally};
-use marraztu::accuracy::Shot;
-use marraztu::accuracy::{Arithmetic, Settings};
-use marraztu::base::image::{Picture, Size};
-use marraztu::base::rng::Rng;
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::scene::{
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{Arithmetic, Settings};
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{
     Aim, Command, Item, Light, LightKind, MaterialChoice, Orbit, Scene, SpotOwner, Tracked, View,
 };
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
 
 pub(crate) const PROOF: Proof = Proof {
     name: "scenes",

@@ -3,14 +3,14 @@
 
 use super::fans::seen;
 use super::{Proof, Tally};
-use marraztu::accuracy::Settings;
-use marraztu::accuracy::Shot;
-use marraztu::base::image::Size;
-use marraztu::base::rng::Rng;
-use marraztu::lab::pictures::flat::{self, Flat};
-use marraztu::render::Renderer;
-use marraztu::render::plan_frame;
-use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
+use marraztu_core::accuracy::Settings;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::Size;
+use marraztu_core::base::rng::Rng;
+use marraztu_lab::pictures::flat::{self, Flat};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
+use marraztu_render::screen::coverage::{SUBPIXELS, Snapped};
 
 pub(crate) const PROOF: Proof = Proof {
     name: "sizes",

@@ -3,22 +3,22 @@
 use glam::{DVec2, DVec3};
 
 use super::{Proof, Tally};
-use marraztu::accuracy::Settings;
-use marraztu::base::Shared;
-use marraztu::base::image::Size;
-use marraztu::base::math::Axis;
-use marraztu::base::rng::Rng;
-use marraztu::edit::lights::{self, Channel};
-use marraztu::edit::navigation::{self, Pointer};
-use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{
+use marraztu_core::accuracy::Settings;
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::Size;
+use marraztu_core::base::math::Axis;
+use marraztu_core::base::rng::Rng;
+use marraztu_core::edit::lights::{self, Channel};
+use marraztu_core::edit::navigation::{self, Pointer};
+use marraztu_core::edit::transform::{self, Sign};
+use marraztu_core::edit::{
     Gesture, GesturePhase, History, Refusal, framing, items, motion, placement, selection,
 };
-use marraztu::io;
-use marraztu::scene::{
+use marraztu_core::scene::{
     Command, Frame, ItemId, LightKind, MaterialChoice, Model, Scene, SpotOwner, Subject,
     Transformation, View,
 };
+use marraztu_io as io;
 
 pub(crate) const PROOF: Proof = Proof {
     name: "undo",

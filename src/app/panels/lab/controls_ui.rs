@@ -2,7 +2,6 @@
 
 use egui::{ProgressBar, RichText, ScrollArea, Ui};
 
-use crate::accuracy::Samples;
 use crate::app::actions::{LabRequest, Request};
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, in_words};
@@ -10,11 +9,12 @@ use crate::app::theme;
 use crate::app::widgets::controls::{Choice, Switch, choices, choices_in_rows, row};
 use crate::app::widgets::number::Number;
 use crate::app::widgets::regions;
-use crate::lab::candidates::Thoroughness;
-use crate::lab::error::{Measure, Region};
-use crate::lab::picture_source::Reference;
-use crate::lab::report::{Budgets, Report, brief, tabs};
-use crate::lab::suite::SuiteDetail;
+use marraztu_core::accuracy::Samples;
+use marraztu_lab::candidates::Thoroughness;
+use marraztu_lab::error::{Measure, Region};
+use marraztu_lab::picture_source::Reference;
+use marraztu_lab::report::{Budgets, Report, brief, tabs};
+use marraztu_lab::suite::SuiteDetail;
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {

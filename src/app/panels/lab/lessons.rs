@@ -2,12 +2,12 @@
 
 use egui::{RichText, ScrollArea, Ui};
 
-use crate::accuracy::{AXES, AxisKind};
 use crate::app::actions::{LabRequest, Request};
 use crate::app::panels::view_switches::axis_ui;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::regions;
+use marraztu_core::accuracy::{AXES, AxisKind};
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {

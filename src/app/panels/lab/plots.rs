@@ -10,7 +10,7 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{self, Choice, choices_in_rows};
 use crate::app::widgets::regions;
-use crate::lab::report::{Panel, PanelMark, Panels, Report, TextBox, brief, place};
+use marraztu_lab::report::{Panel, PanelMark, Panels, Report, TextBox, brief, place};
 
 /// The height of a plot with its title, if the panel has room for it: 420 points and a line.
 const USUAL: f32 = 444.0;

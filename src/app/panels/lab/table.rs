@@ -7,9 +7,9 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{focus_ring, no_narrower, put_text, text};
 use crate::app::widgets::regions;
-use crate::lab::error::{Error, Region};
-use crate::lab::report::{Report, brief, heading};
-use crate::lab::sweep::{Measured, Row, Verdict};
+use marraztu_lab::error::{Error, Region};
+use marraztu_lab::report::{Report, brief, heading};
+use marraztu_lab::sweep::{Measured, Row, Verdict};
 
 /// A column: its heading, what it tells, and its share of the width.
 struct Column {

@@ -19,7 +19,7 @@ use crate::app::theme;
 use crate::app::widgets::controls::{self, icon_button};
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::regions;
-use crate::scene::{ItemId, ObjectId, Subject};
+use marraztu_core::scene::{ItemId, ObjectId, Subject};
 use order::{place, reorder};
 
 /// One line of the list.

@@ -5,8 +5,8 @@ use egui::Ui;
 use crate::app::actions::{Request, change};
 use crate::app::state::State;
 use crate::app::theme;
-use crate::edit::{Gesture, items, selection};
-use crate::scene::ItemId;
+use marraztu_core::edit::{Gesture, items, selection};
+use marraztu_core::scene::ItemId;
 
 /// The place of an item in its list, and the length of the list.
 pub(super) fn place(state: &State, id: ItemId) -> Option<(usize, usize)> {

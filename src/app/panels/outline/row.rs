@@ -12,8 +12,8 @@ use crate::app::theme;
 use crate::app::widgets::controls::{self, icon_at};
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::regions;
-use crate::edit::{Gesture, items};
-use crate::scene::{ItemId, ObjectId, Scene};
+use marraztu_core::edit::{Gesture, items};
+use marraztu_core::scene::{ItemId, ObjectId, Scene};
 
 /// Where icons of items begin, from the left end of the line.
 const INDENT: f32 = 20.0;

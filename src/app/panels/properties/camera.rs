@@ -9,9 +9,9 @@ use crate::app::panels::view_switches::frame_ui;
 use crate::app::state::State;
 use crate::app::widgets::controls::{Switch, row, section};
 use crate::app::widgets::number::{Number, keep_angles, shown_angles, vector};
-use crate::base::math::{self, Axis};
-use crate::edit::{Gesture, items, placement};
-use crate::scene::{Camera, CameraId, Lens};
+use marraztu_core::base::math::{self, Axis};
+use marraztu_core::edit::{Gesture, items, placement};
+use marraztu_core::scene::{Camera, CameraId, Lens};
 
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId) {
     let Some(camera) = state.scene.cameras.get(id) else { return };

@@ -6,8 +6,8 @@ use super::number_row;
 use crate::app::actions::{Request, change};
 use crate::app::state::State;
 use crate::app::widgets::number::Number;
-use crate::edit::{Gesture, items};
-use crate::scene::{Crease, Object, ObjectId};
+use marraztu_core::edit::{Gesture, items};
+use marraztu_core::scene::{Crease, Object, ObjectId};
 
 /// A mesh of more polygons than this gets its new normals when the drag ends: to compute them for
 /// every frame would be too slow.

@@ -11,9 +11,9 @@ use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Switch, row, section};
 use crate::app::widgets::gestures;
 use crate::app::widgets::number::{Number, vector};
-use crate::base::color;
-use crate::edit::{Gesture, items, lights, motion, placement};
-use crate::scene::{
+use marraztu_core::base::color;
+use marraztu_core::edit::{Gesture, items, lights, motion, placement};
+use marraztu_core::scene::{
     Aim, Anchor, Attenuation, ItemId, Light, LightId, Orbit, Scene, SpotOwner, Tracked,
 };
 

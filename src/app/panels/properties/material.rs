@@ -9,9 +9,9 @@ use crate::app::widgets::controls::{self, row};
 use crate::app::widgets::number::Number;
 use crate::app::widgets::regions;
 use crate::app::widgets::spheres::{self, Sphere};
-use crate::base::color::Color;
-use crate::edit::Gesture;
-use crate::scene::{Material, MaterialChoice, Object, PresetId};
+use marraztu_core::base::color::Color;
+use marraztu_core::edit::Gesture;
+use marraztu_core::scene::{Material, MaterialChoice, Object, PresetId};
 
 /// Spheres in a row: the nineteen, the file's and the user's own fill three rows.
 const COLUMNS: u8 = 7;

@@ -17,8 +17,8 @@ use crate::app::theme;
 use crate::app::widgets::controls::{self, Switch, row, section};
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::number::Number;
-use crate::edit;
-use crate::scene::{ItemId, Transformation};
+use marraztu_core::edit;
+use marraztu_core::scene::{ItemId, Transformation};
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {

@@ -10,11 +10,11 @@ use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Choice, Switch, choices, fact, row, section};
 use crate::app::widgets::number::{Number, keep_angles, short, shown_angles, vector};
 use crate::app::widgets::text::grouped;
-use crate::base::Shared;
-use crate::base::math::{self, Axis};
-use crate::edit::{Gesture, arrange, items, motion, placement, transform};
-use crate::io::is_example;
-use crate::scene::{Frame, Model, Object, ObjectId, Sides, Spin, UpAxis};
+use marraztu_core::base::Shared;
+use marraztu_core::base::math::{self, Axis};
+use marraztu_core::edit::{Gesture, arrange, items, motion, placement, transform};
+use marraztu_core::scene::{Frame, Model, Object, ObjectId, Sides, Spin, UpAxis};
+use marraztu_io::is_example;
 
 const LETTERS: [&str; 3] = ["X", "Y", "Z"];
 

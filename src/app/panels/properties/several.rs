@@ -6,8 +6,8 @@ use egui::{RichText, Ui};
 use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::widgets::number::set_mixed;
-use crate::edit::{placement, several as together};
-use crate::scene::{Anchor, Attenuation, ItemId, Light, Scene};
+use marraztu_core::edit::{placement, several as together};
+use marraztu_core::scene::{Anchor, Attenuation, ItemId, Light, Scene};
 
 /// Says how many items a change sets, and in which properties they differ. Gives those of the
 /// selected one's kind.

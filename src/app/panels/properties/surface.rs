@@ -9,8 +9,8 @@ use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Choice, choices, row};
 use crate::app::widgets::number::Number;
 use crate::app::widgets::text::file_name;
-use crate::edit::{Gesture, items};
-use crate::scene::{FileMaterial, MapKind, Object, ObjectId, Surface};
+use marraztu_core::edit::{Gesture, items};
+use marraztu_core::scene::{FileMaterial, MapKind, Object, ObjectId, Surface};
 
 pub(crate) fn show(
     ui: &mut Ui,

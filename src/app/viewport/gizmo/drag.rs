@@ -11,11 +11,11 @@ use super::{Gizmo, Handle, others};
 use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::widgets::{expression, number::short};
-use crate::base::image::Size;
-use crate::base::math::{self, Axis};
-use crate::edit::gizmo::{self, Amount};
-use crate::edit::{Gesture, GesturePhase, several};
-use crate::scene::{ItemId, Scene, Transformation, View};
+use marraztu_core::base::image::Size;
+use marraztu_core::base::math::{self, Axis};
+use marraztu_core::edit::gizmo::{self, Amount};
+use marraztu_core::edit::{Gesture, GesturePhase, several};
+use marraztu_core::scene::{ItemId, Scene, Transformation, View};
 
 /// Points of the window over which a scale doubles.
 const DOUBLE: f64 = 100.0;

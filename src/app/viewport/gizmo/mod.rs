@@ -13,11 +13,11 @@ use egui::{Pos2, Rect, Vec2};
 use glam::DVec3;
 
 use crate::app::state::State;
-use crate::base::image::Size;
-use crate::base::math::Axis;
-use crate::edit::gizmo::{Pivot, pivot};
-use crate::scene::Transformation;
 pub(crate) use drag::{Grab, Pull};
+use marraztu_core::base::image::Size;
+use marraztu_core::base::math::Axis;
+use marraztu_core::edit::gizmo::{Pivot, pivot};
+use marraztu_core::scene::Transformation;
 use sight::Sight;
 
 /// From the middle to the end of an axis, in points.

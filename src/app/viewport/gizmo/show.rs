@@ -5,8 +5,8 @@ use egui::{Ui, Vec2, vec2};
 
 use super::{Gizmo, Handle, MIDDLE, Part, Shape};
 use crate::app::theme;
-use crate::base::math::Axis;
-use crate::scene::Transformation;
+use marraztu_core::base::math::Axis;
+use marraztu_core::scene::Transformation;
 
 /// Behind lines, so that they are seen on any ground.
 const SHADE: Color32 = Color32::from_black_alpha(150);

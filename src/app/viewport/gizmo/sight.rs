@@ -7,8 +7,8 @@ use egui::{Pos2, Rect, vec2};
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::app::state::State;
-use crate::base::image::Size;
-use crate::scene::Projection;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::Projection;
 
 /// The observer and the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]

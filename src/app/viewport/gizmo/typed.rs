@@ -1,6 +1,6 @@
 //! An amount from the keyboard: an axis, and a number or a sum.
 
-use crate::base::math::Axis;
+use marraztu_core::base::math::Axis;
 
 /// What was typed: an axis, and a number.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use super::{CLICK, Motion, Mouse, Under};
 use crate::app::actions::Request;
 use crate::app::viewport::gizmo::{Grab, Pull};
 use crate::app::widgets::gestures;
-use crate::edit::Gesture;
+use marraztu_core::edit::Gesture;
 
 impl Mouse {
     /// The handle of the gizmo that is held, once it is more than a click.

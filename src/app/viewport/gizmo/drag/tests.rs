@@ -2,24 +2,34 @@
 
 use super::*;
 use crate::app::viewport::gizmo::Shape;
-use crate::scene::Frame;
 use egui::vec2;
 use glam::DMat4;
+use marraztu_core::scene::Frame;
 
 fn scene(offset: DVec3, size: f64) -> State {
-    let (scene, view) = crate::io::default_scene();
+    let (scene, view) = marraztu_io::default_scene();
     let mut state = State::new(scene, view);
-    state.view.subject = crate::scene::Subject::Object;
+    state.view.subject = marraztu_core::scene::Subject::Object;
     let id = state.view.object.unwrap();
     let m = DMat4::from_translation(offset) * DMat4::from_scale(DVec3::splat(size));
-    let command =
-        crate::edit::placement::object(&state.scene, &state.view, id, m, GesturePhase::First);
+    let command = marraztu_core::edit::placement::object(
+        &state.scene,
+        &state.view,
+        id,
+        m,
+        GesturePhase::First,
+    );
     command.unwrap().apply(&mut state.scene).unwrap();
     let turn = math::rotation(DVec3::Y, 0.4) * math::rotation(DVec3::X, -0.3);
     let eye = offset + turn * DVec3::new(20.0, 5.0, 300.0) * size;
     let camera = state.view.camera;
-    let command =
-        crate::edit::placement::camera(&state.scene, camera, eye, turn, GesturePhase::First);
+    let command = marraztu_core::edit::placement::camera(
+        &state.scene,
+        camera,
+        eye,
+        turn,
+        GesturePhase::First,
+    );
     command.unwrap().apply(&mut state.scene).unwrap();
     state
 }

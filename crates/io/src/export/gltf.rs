@@ -1,0 +1,142 @@
+//! Exports a scene as glTF 2.0: meshes with their placements, cameras and lights.
+//!
+//! Positions stay in the object's own space, bit for bit. Other programs find the names of the
+//! scene: a node for each object, below it one for each object and group of its file, and materials
+//! by name. What the format does not know is approximated, and said:
+//!
+//! * colours are display values here and linear there: `c = ((s + 0.055) / 1.055)^2.4`;
+//! * Phong's exponent n becomes roughness r = (2 / (4 n + 2))^(1/4): Blinn's exponent is about 4 n,
+//!   and that of a microfacet distribution is 2 / alpha^2 - 2 with alpha = r^2 (Walter et al.,
+//!   "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007);
+//! * lamps fade with the square of the distance there: theirs is the light that arrives at the
+//!   middle of the scene; light from everywhere is left out.
+
+use gltf_json::scene::Node;
+use gltf_json::validation::USize64;
+use gltf_json::{Index, Root};
+
+use super::gltf_buffer::Buffer;
+use super::look::{Detail, Looks};
+use super::names::Names;
+use super::{Content, escaped};
+use marraztu_core::scene::{Scene, View};
+
+/// Whether the buffer is a file of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// A text with a buffer beside it.
+    Separate,
+    /// One file.
+    Binary,
+}
+
+pub(super) struct Writer<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) view: &'a View,
+    pub(super) root: Root,
+    pub(super) buffer: Buffer,
+    pub(super) looks: Looks,
+    names: Names,
+    nodes: Vec<Index<Node>>,
+    pub(super) notes: Vec<String>,
+}
+
+/// The files.
+pub(super) fn written(
+    stem: &str,
+    scene: &Scene,
+    view: &View,
+    form: Form,
+) -> Result<Content, String> {
+    let mut writer = Writer {
+        scene,
+        view,
+        root: Root::default(),
+        buffer: Buffer { bytes: Vec::new() },
+        looks: Looks::new(Detail::Gltf),
+        names: Names::default(),
+        nodes: Vec::new(),
+        notes: Vec::new(),
+    };
+    writer.root.asset.generator = Some("Marraztu".to_owned());
+    for (_, object) in scene.objects.iter().filter(|(_, object)| object.visible) {
+        writer.object(object);
+    }
+    writer.materials()?;
+    for (_, camera) in scene.cameras.iter() {
+        writer.camera(camera);
+    }
+    writer.lights();
+    let Writer { mut root, buffer, nodes, notes, .. } = writer;
+    let all = gltf_json::Scene {
+        extensions: None,
+        extras: Default::default(),
+        name: Some(stem.to_owned()),
+        nodes,
+    };
+    root.scene = Some(root.push(all));
+    // A buffer without bytes is invalid: a scene without faces has none.
+    if !buffer.bytes.is_empty() {
+        let uri = (form == Form::Separate).then(|| format!("{}.bin", escaped(stem)));
+        root.buffers.push(gltf_json::Buffer {
+            byte_length: USize64::from(buffer.bytes.len()),
+            name: None,
+            uri,
+            extensions: None,
+            extras: Default::default(),
+        });
+    }
+    let text = root.to_vec().map_err(|error| error.to_string())?;
+    let mut files = Vec::new();
+    match form {
+        Form::Separate => {
+            if !buffer.bytes.is_empty() {
+                files.push((format!("{stem}.bin"), buffer.bytes));
+            }
+            files.push((format!("{stem}.gltf"), text));
+        }
+        Form::Binary => files.push((format!("{stem}.glb"), binary(text, buffer.bytes)?)),
+    }
+    Ok(Content { files, notes })
+}
+
+/// A .glb file: a header of 12 bytes, and the text and the buffer as chunks.
+fn binary(mut text: Vec<u8>, mut buffer: Vec<u8>) -> Result<Vec<u8>, String> {
+    text.resize(text.len().next_multiple_of(4), b' ');
+    buffer.resize(buffer.len().next_multiple_of(4), 0);
+    let length = |bytes: usize| u32::try_from(bytes).map_err(|_large| "it is too large".to_owned());
+    let more = if buffer.is_empty() { 0 } else { 8 + buffer.len() };
+    let whole = length(12 + 8 + text.len() + more)?;
+    let mut file = Vec::with_capacity(12 + 16 + text.len() + buffer.len());
+    file.extend(b"glTF");
+    file.extend(2_u32.to_le_bytes());
+    file.extend(whole.to_le_bytes());
+    let chunks = [(b"JSON", text), (b"BIN\0", buffer)];
+    for (kind, bytes) in chunks.into_iter().filter(|(_, bytes)| !bytes.is_empty()) {
+        file.extend(length(bytes.len())?.to_le_bytes());
+        file.extend(kind);
+        file.extend(bytes);
+    }
+    Ok(file)
+}
+
+impl Writer<'_> {
+    /// A node with a name, if that is not empty; some readers want no two of the same name.
+    pub(super) fn named(&mut self, name: &str) -> Node {
+        let name = (!name.is_empty()).then(|| self.names.take(name));
+        Node { name, ..Node::default() }
+    }
+
+    /// Adds a node to the scene.
+    pub(super) fn node(&mut self, node: Node) {
+        let node = self.root.push(node);
+        self.nodes.push(node);
+    }
+
+    pub(super) fn uses(&mut self, extension: &str) {
+        let used = &mut self.root.extensions_used;
+        if !used.iter().any(|other| other == extension) {
+            used.push(extension.to_owned());
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The buffer of a glTF file, the numbers that point into it, and how numbers are written.
+
+use std::collections::HashMap;
+
+use glam::{DMat4, DVec3};
+use gltf_json::accessor::{ComponentType, GenericComponentType, Type};
+use gltf_json::buffer::{Target, View};
+use gltf_json::validation::{Checked, USize64};
+use gltf_json::{Accessor, Index, Root, Value};
+
+/// A number of floats for each vertex, or indices, in the buffer.
+pub(super) struct Buffer {
+    pub(super) bytes: Vec<u8>,
+}
+
+impl Buffer {
+    /// Appends bytes, aligned to 4, as a view of the buffer.
+    pub(super) fn view(
+        &mut self,
+        root: &mut Root,
+        bytes: impl IntoIterator<Item = u8>,
+        target: Option<Target>,
+    ) -> Index<View> {
+        let start = self.bytes.len();
+        self.bytes.extend(bytes);
+        let length = self.bytes.len() - start;
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        root.push(View {
+            buffer: Index::new(0),
+            byte_length: USize64::from(length),
+            byte_offset: Some(USize64::from(start)),
+            byte_stride: None,
+            name: None,
+            target: target.map(Checked::Valid),
+            extensions: None,
+            extras: Default::default(),
+        })
+    }
+
+    /// Appends `N` floats for each vertex.
+    pub(super) fn floats<const N: usize>(
+        &mut self,
+        root: &mut Root,
+        all: &[[f32; N]],
+        limits: Limits,
+    ) -> Index<Accessor> {
+        let bytes = all.iter().flatten().flat_map(|x| x.to_le_bytes());
+        let view = self.view(root, bytes, Some(Target::ArrayBuffer));
+        let [min, max] = match limits {
+            Limits::Told => [f32::min, f32::max].map(|of| {
+                let limit =
+                    all.iter().copied().reduce(|a, b| std::array::from_fn(|i| of(a[i], b[i])));
+                limit.map(|limit| Value::from(limit.to_vec()))
+            }),
+            Limits::LeftOut => [None, None],
+        };
+        let kind = match N {
+            2 => Type::Vec2,
+            3 => Type::Vec3,
+            _ => Type::Vec4,
+        };
+        root.push(Accessor { min, max, ..accessor(view, all.len(), ComponentType::F32, kind) })
+    }
+
+    /// Appends indices.
+    pub(super) fn indices(&mut self, root: &mut Root, all: &[u32]) -> Index<Accessor> {
+        let bytes = all.iter().flat_map(|i| i.to_le_bytes());
+        let view = self.view(root, bytes, Some(Target::ElementArrayBuffer));
+        root.push(accessor(view, all.len(), ComponentType::U32, Type::Scalar))
+    }
+}
+
+/// Whether the least and the greatest numbers are told; of positions they have to be.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Limits {
+    Told,
+    LeftOut,
+}
+
+fn accessor(view: Index<View>, count: usize, component: ComponentType, kind: Type) -> Accessor {
+    Accessor {
+        buffer_view: Some(view),
+        byte_offset: Some(USize64(0)),
+        count: USize64::from(count),
+        component_type: Checked::Valid(GenericComponentType(component)),
+        extensions: None,
+        extras: Default::default(),
+        type_: Checked::Valid(kind),
+        min: None,
+        max: None,
+        name: None,
+        normalized: false,
+        sparse: None,
+    }
+}
+
+/// A vertex of glTF, which has all attributes of a corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Vertex {
+    /// The point, with the position and the normal.
+    pub(super) point: u32,
+    /// The texture coordinates, or [`marraztu_core::scene::NONE`].
+    pub(super) uv: u32,
+    /// The bits of the tangent, all 0 if none is needed.
+    pub(super) tangent: [u32; 4],
+}
+
+/// The vertices of a primitive, each once.
+#[derive(Debug, Default)]
+pub(super) struct Vertices {
+    numbers: HashMap<Vertex, u32>,
+    pub(super) all: Vec<Vertex>,
+}
+
+impl Vertices {
+    /// The number of a vertex.
+    pub(super) fn number(&mut self, vertex: Vertex) -> u32 {
+        let next = u32::try_from(self.all.len()).unwrap_or(u32::MAX);
+        let number = *self.numbers.entry(vertex).or_insert(next);
+        if number == next {
+            self.all.push(vertex);
+        }
+        number
+    }
+}
+
+pub(super) fn columns(world: &DMat4) -> [f32; 16] {
+    world.to_cols_array().map(single)
+}
+
+/// Whether all numbers of a placement are finite as single ones.
+pub(super) fn is_single(world: &DMat4) -> bool {
+    world.to_cols_array().into_iter().all(|x| x.abs() <= f64::from(f32::MAX))
+}
+
+/// A number of glTF, which is single and finite: infinite ones become the largest.
+#[expect(clippy::cast_possible_truncation, reason = "numbers of glTF are single")]
+pub(super) const fn single(x: f64) -> f32 {
+    if x.is_nan() { 0.0 } else { (x as f32).clamp(f32::MIN, f32::MAX) }
+}
+
+pub(super) fn single3(at: DVec3) -> [f32; 3] {
+    at.to_array().map(single)
+}

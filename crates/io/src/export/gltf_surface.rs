@@ -1,0 +1,122 @@
+//! Phong's materials as those of glTF.
+
+use gltf_json::material::{AlphaCutoff, AlphaMode, PbrBaseColorFactor, StrengthFactor};
+use gltf_json::validation::Checked;
+use gltf_json::{extensions, material};
+
+use super::gltf::Writer;
+use super::gltf_buffer::single;
+use super::gltf_texture::{Cover, Infos, Textures};
+use super::look::Look;
+use marraztu_core::base::Shared;
+use marraztu_core::scene::{MapKind, Texture};
+
+impl Writer<'_> {
+    /// Writes the materials, and the textures that they need.
+    pub(super) fn materials(&mut self) -> Result<(), String> {
+        let mut textures = Textures::default();
+        let looks = std::mem::take(&mut self.looks.all);
+        if looks.iter().any(loses_maps) {
+            let text = "glTF has no maps of heights, highlights and ambient light: left out";
+            self.notes.push(text.to_owned());
+        }
+        for look in &looks {
+            let infos = self.infos(&mut textures, look);
+            if look.unlit {
+                self.uses("KHR_materials_unlit");
+            }
+            if strength(look).is_some() {
+                self.uses("KHR_materials_emissive_strength");
+            }
+            self.root.push(surface(look, infos));
+        }
+        self.images(textures)
+    }
+}
+
+/// Whether a look has maps that glTF does not have. Ambient light shows the texture anyway.
+fn loses_maps(look: &Look) -> bool {
+    look.maps.iter().any(|(kind, map)| match kind {
+        MapKind::Specular | MapKind::Exponent => true,
+        MapKind::Bump => look.map(MapKind::Normal).is_none(),
+        MapKind::Ambient => {
+            let is_shown = |it: &Shared<Texture>| Shared::same(&it.picture, &map.texture.picture);
+            !look.texture.as_ref().is_some_and(is_shown)
+        }
+        MapKind::Opacity | MapKind::Emission | MapKind::Normal => false,
+    })
+}
+
+/// A material: Phong's as metallic roughness.
+fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
+    let Infos { base, emission, normal, cover } = infos;
+    let normal_texture = normal.map(|info| material::NormalTexture {
+        index: info.index,
+        scale: 1.0,
+        tex_coord: info.tex_coord,
+        extensions: None,
+        extras: Default::default(),
+    });
+    let [r, g, b] = look.base.map(linear);
+    let alpha_mode = match cover {
+        _ if look.opacity < 1.0 => AlphaMode::Blend,
+        Cover::Fades => AlphaMode::Blend,
+        Cover::Holes => AlphaMode::Mask,
+        Cover::Whole => AlphaMode::Opaque,
+    };
+    let strength = strength(look);
+    let emissive = look.material.emission.map(|x| unclamped(x) / strength.unwrap_or(1.0));
+    let extensions = extensions::material::Material {
+        unlit: look.unlit.then(extensions::material::Unlit::default),
+        emissive_strength: strength.map(|strength| extensions::material::EmissiveStrength {
+            emissive_strength: extensions::material::EmissiveStrengthFactor(single(strength)),
+        }),
+    };
+    let exponent = roughness(look.material.exponent);
+    let metallic = look.undrawn("Pm").unwrap_or(0.0);
+    gltf_json::Material {
+        alpha_cutoff: (alpha_mode == AlphaMode::Mask).then_some(AlphaCutoff(0.5)),
+        alpha_mode: Checked::Valid(alpha_mode),
+        double_sided: look.two_sided,
+        emissive_texture: emission,
+        emissive_factor: material::EmissiveFactor(emissive.map(factor)),
+        normal_texture,
+        name: Some(look.name.clone()).filter(|name| !name.is_empty()),
+        pbr_metallic_roughness: material::PbrMetallicRoughness {
+            base_color_factor: PbrBaseColorFactor([r, g, b, factor(look.opacity)]),
+            base_color_texture: base,
+            metallic_factor: StrengthFactor(factor(metallic)),
+            roughness_factor: StrengthFactor(factor(look.undrawn("Pr").unwrap_or(exponent))),
+            ..material::PbrMetallicRoughness::default()
+        },
+        extensions: Some(extensions),
+        ..gltf_json::Material::default()
+    }
+}
+
+/// How many times brighter than white a surface shines, if it is brighter.
+fn strength(look: &Look) -> Option<f64> {
+    let most = look.material.emission.into_iter().map(unclamped).fold(0.0, f64::max);
+    (most > 1.0 && !look.unlit).then_some(most)
+}
+
+/// The roughness for a highlight with Phong's exponent.
+fn roughness(exponent: f64) -> f64 {
+    libm::pow(2.0 / (4.0 * exponent.max(0.0) + 2.0), 0.25)
+}
+
+/// A factor from 0 to 1; NaN counts as 1.
+fn factor(x: f64) -> f32 {
+    if x < 1.0 { single(x.max(0.0)) } else { 1.0 }
+}
+
+/// A display value as linear light (IEC 61966-2-1).
+pub(super) fn linear(display: f64) -> f32 {
+    single(unclamped(display.min(1.0)))
+}
+
+/// As [`linear`], with values brighter than white.
+fn unclamped(display: f64) -> f64 {
+    let s = display.max(0.0);
+    if s <= 0.04045 { s / 12.92 } else { libm::pow((s + 0.055) / 1.055, 2.4) }
+}

@@ -1,0 +1,242 @@
+//! The materials of an export: how the parts of objects look, each look once.
+//!
+//! A look is found by a key of its name and numbers and of the addresses of its pictures, in
+//! constant time: scenes have up to a hundred thousand materials.
+
+use std::collections::{BTreeSet, HashMap};
+
+use rayon::prelude::*;
+
+use super::names::{Names, on_one_line};
+use crate::picture::PICTURE_FORMATS;
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::Picture;
+use marraztu_core::scene::{
+    FileMaterial, MapKind, Material, MaterialChoice, Object, PresetId, Surface, SurfaceMap,
+    Texture, Undrawn, Wrap,
+};
+
+/// How a part of an object looks.
+#[derive(Clone, Debug)]
+pub(super) struct Look {
+    /// Its name, which no other look has.
+    pub(super) name: String,
+    /// Its coefficients; the tint is multiplied into Ka and Kd.
+    pub(super) material: Material,
+    /// The colour that texture and vertex colours are multiplied by: Kd, or white if the file names
+    /// no material.
+    pub(super) base: [f64; 3],
+    pub(super) opacity: f64,
+    pub(super) texture: Option<Shared<Texture>>,
+    pub(super) two_sided: bool,
+    /// Whether Kd and texture are shown without light.
+    pub(super) unlit: bool,
+    /// Its maps beside the texture, with the factor of heights.
+    pub(super) maps: Vec<(MapKind, SurfaceMap)>,
+    /// Numbers of the file's material that are not drawn here.
+    pub(super) undrawn: Undrawn,
+}
+
+impl Look {
+    /// The map of a kind.
+    pub(super) fn map(&self, kind: MapKind) -> Option<&SurfaceMap> {
+        self.maps.iter().find(|(other, _)| *other == kind).map(|(_, map)| map)
+    }
+
+    /// A number that is not drawn.
+    pub(super) fn undrawn(&self, keyword: &str) -> Option<f64> {
+        self.undrawn.get(keyword)?.first().copied()
+    }
+}
+
+/// The materials that a format distinguishes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Detail {
+    /// MTL knows nothing of the sides of faces.
+    Mtl,
+    /// A material of glTF has sides, and no texture if the mesh has no texture coordinates.
+    Gltf,
+}
+
+/// All looks of a scene, each once.
+#[derive(Debug)]
+pub(super) struct Looks {
+    pub(super) all: Vec<Look>,
+    numbers: HashMap<Key, usize>,
+    names: Names,
+    detail: Detail,
+}
+
+/// Looks with equal keys are equal.
+#[derive(Debug, PartialEq, Eq, Hash)]
+struct Key {
+    name: String,
+    numbers: Vec<u64>,
+    undrawn: Vec<(&'static str, Vec<u64>)>,
+    maps: Vec<(Option<MapKind>, usize, Wrap, [u64; 5])>,
+}
+
+impl Key {
+    /// The key of a look with the name that it should have.
+    fn of(look: &Look) -> Self {
+        let Material { ambient, diffuse, specular, exponent, emission } = look.material;
+        let colors = [ambient, diffuse, specular, emission, look.base];
+        let flags = u64::from(look.two_sided) | u64::from(look.unlit) << 1;
+        let numbers = colors.into_iter().flatten().chain([exponent, look.opacity]);
+        let map = |kind, Texture { picture, wrap, offset, scale, .. }: &Texture, gain: f64| {
+            let bits = [offset[0], offset[1], scale[0], scale[1], gain].map(f64::to_bits);
+            (kind, Shared::address(picture), *wrap, bits)
+        };
+        let texture = look.texture.iter().map(|texture| map(None, texture, 1.0));
+        let maps = look.maps.iter().map(|(kind, of)| map(Some(*kind), &of.texture, of.gain));
+        let bits = |numbers: &Vec<f64>| numbers.iter().map(|x| x.to_bits()).collect();
+        Self {
+            name: look.name.clone(),
+            numbers: numbers.map(f64::to_bits).chain([flags]).collect(),
+            undrawn: look.undrawn.iter().map(|(word, of)| (*word, bits(of))).collect(),
+            maps: texture.chain(maps).collect(),
+        }
+    }
+}
+
+impl Looks {
+    pub(super) fn new(detail: Detail) -> Self {
+        Self { all: Vec::new(), numbers: HashMap::new(), names: Names::default(), detail }
+    }
+
+    /// The number of the look of a part.
+    pub(super) fn of_part(&mut self, object: &Object, part: u32) -> usize {
+        let file = file_material(object, part);
+        let asked = object.model.mesh.part_names(part).material.as_deref();
+        self.number(object, file, asked)
+    }
+
+    /// Adds the looks of all materials of the object's file, in their order, except for those that
+    /// only hidden parts have.
+    pub(super) fn add_file(&mut self, object: &Object) {
+        if object.material != MaterialChoice::File {
+            return;
+        }
+        let parts = || (0..).zip(object.model.mesh.parts());
+        let is_shown = |part: &u32| !object.hidden_parts.contains(part);
+        let [mut shown, mut hidden] = [BTreeSet::new(), BTreeSet::new()];
+        for (part, of) in parts() {
+            (if is_shown(&part) { &mut shown } else { &mut hidden }).extend(of.material);
+        }
+        for (number, file) in (0..).zip(&object.model.materials) {
+            if shown.contains(&number) || !hidden.contains(&number) {
+                self.number(object, Some(file), None);
+            }
+        }
+    }
+
+    fn number(
+        &mut self,
+        object: &Object,
+        file: Option<&FileMaterial>,
+        asked: Option<&str>,
+    ) -> usize {
+        let mut look = self.look(object, file, asked);
+        let key = Key::of(&look);
+        *self.numbers.entry(key).or_insert_with(|| {
+            look.name = self.names.take(&look.name);
+            self.all.push(look);
+            self.all.len() - 1
+        })
+    }
+
+    /// A look, with the name that it should have.
+    fn look(&self, object: &Object, file: Option<&FileMaterial>, asked: Option<&str>) -> Look {
+        let shown = object.material_look(file);
+        let of_file = object.material == MaterialChoice::File;
+        let is_bare = object.surface == Surface::Texture;
+        let tint = tint(object);
+        let mut material = shown.material;
+        material.ambient = std::array::from_fn(|i| material.ambient[i] * tint[i]);
+        material.diffuse = std::array::from_fn(|i| material.diffuse[i] * tint[i]);
+        if is_bare {
+            (material.diffuse, material.specular) = (tint, [0.0; 3]);
+            material.emission = [0.0; 3];
+        }
+        let mesh = &object.model.mesh;
+        let is_mapped = self.detail == Detail::Mtl || !mesh.uvs().is_empty();
+        let texture = shown.texture.filter(|_| is_mapped).cloned();
+        let is_painted = texture.is_some() || (has_colors(object) && self.detail == Detail::Gltf);
+        let is_nameless = of_file && file.is_none();
+        let map = |kind: MapKind| {
+            let is_seen = is_mapped && (!is_bare || kind == MapKind::Opacity);
+            Some((kind, shown.map(kind).filter(|_| is_seen)?.clone()))
+        };
+        Look {
+            name: on_one_line(wanted_name(object, file, asked)),
+            base: if is_nameless && is_painted { tint } else { material.diffuse },
+            material,
+            opacity: shown.opacity,
+            texture,
+            two_sided: self.detail == Detail::Gltf && object.is_two_sided(),
+            unlit: shown.unlit || is_bare,
+            maps: MapKind::ALL.into_iter().filter_map(map).collect(),
+            undrawn: file.filter(|_| of_file).map(|file| file.undrawn.clone()).unwrap_or_default(),
+        }
+    }
+}
+
+/// The name of a material: its own, that of the preset, or, if the user made it, the object's.
+fn wanted_name<'a>(
+    object: &'a Object,
+    file: Option<&'a FileMaterial>,
+    asked: Option<&'a str>,
+) -> &'a str {
+    match object.material {
+        MaterialChoice::Preset(id) => id.get().name,
+        MaterialChoice::Own(_) => &object.name,
+        MaterialChoice::File => {
+            let asked = asked.filter(|name| !name.is_empty());
+            file.map_or(asked.unwrap_or(PresetId::SILVER.get().name), |file| &file.name)
+        }
+    }
+}
+
+/// The material of the file that a part has.
+pub(super) fn file_material(object: &Object, part: u32) -> Option<&FileMaterial> {
+    let place = object.model.mesh.parts().get(part as usize)?.material?;
+    object.model.materials.get(place as usize)
+}
+
+/// The colour that the surface of an object is multiplied by.
+pub(super) fn tint(object: &Object) -> [f64; 3] {
+    if object.surface == Surface::Material { [1.0; 3] } else { object.tint.factors() }
+}
+
+/// Whether the colours of its vertices are shown.
+pub(super) fn has_colors(object: &Object) -> bool {
+    object.surface != Surface::Material && !object.model.mesh.colors().is_empty()
+}
+
+/// The polygons of an object that are exported.
+pub(super) fn polygons(object: &Object) -> impl Iterator<Item = u32> {
+    let parts = object.model.mesh.polygon_parts();
+    (0..).zip(parts).filter(|(_, part)| !object.hidden_parts.contains(part)).map(|(i, _)| i)
+}
+
+/// The pictures of an export, each once, whatever number of textures share it.
+#[derive(Debug, Default)]
+pub(super) struct Pictures {
+    pub(super) all: Vec<Shared<Picture>>,
+    numbers: HashMap<usize, usize>,
+}
+
+impl Pictures {
+    /// The number of a picture, from 0.
+    pub(super) fn number(&mut self, picture: &Shared<Picture>) -> usize {
+        *self.numbers.entry(Shared::address(picture)).or_insert_with(|| {
+            self.all.push(picture.clone());
+            self.all.len() - 1
+        })
+    }
+
+    /// The pictures as PNG, in the order of their numbers.
+    pub(super) fn encoded(&self) -> Result<Vec<Vec<u8>>, String> {
+        self.all.par_iter().map(|picture| PICTURE_FORMATS[0].encode(picture)).collect()
+    }
+}

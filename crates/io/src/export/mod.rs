@@ -1,0 +1,132 @@
+//! Exports a scene for other programs: as OBJ with MTL, or as glTF.
+//!
+//! Everything visible is exported: objects that are hidden, and hidden parts, are left out. What a
+//! format cannot say is told in notes.
+
+mod companion;
+mod gltf;
+mod gltf_buffer;
+mod gltf_lights;
+mod gltf_mesh;
+mod gltf_surface;
+mod gltf_texture;
+mod look;
+mod names;
+mod obj;
+mod placeholders;
+
+use std::path::{Path, PathBuf};
+
+use self::companion::check_companion;
+use super::replace::{SaveError, Worth, check_target, replace};
+use super::sources::Sources;
+use marraztu_core::scene::{Scene, View};
+
+/// The first line of the texts that are exported. A companion file that begins with it was written
+/// by this program and may be replaced.
+const SIGNATURE: &str = "# exported by Marraztu\n";
+
+/// The endings of the formats, without the dot.
+pub const EXPORT_ENDINGS: [&str; 3] = ["obj", "gltf", "glb"];
+
+/// What was exported.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Exported {
+    /// The files that were written.
+    pub files: Vec<PathBuf>,
+    /// What the format does not say as the scene does, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// The files of an export, in memory: their names and their bytes, the main one last.
+#[derive(Debug, Default)]
+struct Content {
+    files: Vec<(String, Vec<u8>)>,
+    notes: Vec<String>,
+}
+
+/// A format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Obj,
+    Gltf,
+    Glb,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self, SaveError> {
+        let ending = path.extension().map(|it| it.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("obj") => Ok(Self::Obj),
+            Some("gltf") => Ok(Self::Gltf),
+            Some("glb") => Ok(Self::Glb),
+            Some(_) | None => {
+                Err(SaveError::new(path, "its name has to end in .obj, .gltf or .glb"))
+            }
+        }
+    }
+}
+
+/// Checks whether a scene could be exported to `path`.
+///
+/// # Errors
+/// If it could not.
+pub fn check_export_target(path: &Path) -> Result<(), SaveError> {
+    Format::of(path)?;
+    check_target(path)
+}
+
+/// Exports the scene in the format of the name's ending, at the time of the view. Further files
+/// (materials, textures, the buffer of .gltf) are written next to it, under names that begin alike.
+///
+/// # Errors
+/// If a file cannot be written, is one of `sources`, or has the name of a companion file but was
+/// not written by an earlier export. Everything is checked before the first file is written, and
+/// the main one is written last.
+pub fn export(
+    path: &Path,
+    scene: &Scene,
+    view: &View,
+    sources: &Sources,
+) -> Result<Exported, SaveError> {
+    let format = Format::of(path)?;
+    check_target(path)?;
+    sources.spare(path)?;
+    let stem = path.file_stem().map(|it| it.to_string_lossy().into_owned()).unwrap_or_default();
+    let (scene, left_out) =
+        placeholders::without(scene).map_err(|reason| SaveError::new(path, reason))?;
+    let scene = &scene;
+    let content = match format {
+        Format::Obj => obj::written(&stem, scene, view),
+        Format::Gltf => gltf::written(&stem, scene, view, gltf::Form::Separate),
+        Format::Glb => gltf::written(&stem, scene, view, gltf::Form::Binary),
+    };
+    let Content { files, notes } = content.map_err(|reason| SaveError::new(path, reason))?;
+    let notes = left_out.into_iter().chain(notes).collect();
+    let last = files.len().saturating_sub(1);
+    let named = |(i, (name, bytes)): (usize, (String, Vec<u8>))| {
+        (if i == last { path.to_owned() } else { path.with_file_name(name) }, bytes)
+    };
+    let files: Vec<(PathBuf, Vec<u8>)> = files.into_iter().enumerate().map(named).collect();
+    for (companion, _) in &files[..last] {
+        sources.spare(companion)?;
+        check_companion(companion, path)?;
+    }
+    let mut exported = Exported { files: Vec::new(), notes };
+    for (file, bytes) in files {
+        replace(&file, &bytes, Worth::Product)?;
+        exported.files.push(file);
+    }
+    Ok(exported)
+}
+
+/// A name in a URI: everything but letters, digits, `-`, `_` and `.` as percent and digits.
+fn escaped(name: &str) -> String {
+    let byte = |byte: u8| match byte {
+        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' => {
+            char::from(byte).to_string()
+        }
+        _ => format!("%{byte:02X}"),
+    };
+    name.bytes().map(byte).collect()
+}

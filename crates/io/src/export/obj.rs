@@ -1,0 +1,199 @@
+//! Exports a scene as OBJ with MTL.
+//!
+//! Positions are those of the world, since the format knows no placement; polygons keep their
+//! corners, and a mirrored object has them in the opposite order, so its front stays its front. If
+//! an object is not moved, its numbers are those of its file, bit for bit.
+//!
+//! The statements `o`, `g` and `usemtl` of a file come back as they were ([`called`]).
+
+mod called;
+mod mtl;
+
+use std::fmt::Write;
+
+use glam::{DMat3, DMat4, DVec3};
+
+use self::called::Names;
+use super::look::{Detail, Looks, has_colors, polygons};
+use super::names::companion;
+use super::{Content, SIGNATURE};
+use marraztu_core::base::math::{normal_matrix, unit};
+use marraztu_core::scene::{Corner, NONE, Object, Scene, View, dvec3};
+
+/// An object that is farther from the origin than this many times its size is far.
+const FAR: f64 = 256.0;
+
+/// An OBJ file that is being written.
+struct Writer {
+    text: String,
+    looks: Looks,
+    names: Names,
+    /// How many positions, texture coordinates and normals have been written.
+    positions: usize,
+    uvs: usize,
+    normals: usize,
+}
+
+/// The files.
+pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content, String> {
+    let objects = scene.objects.iter().map(|(_, object)| object);
+    let (visible, mut hidden): (Vec<&Object>, Vec<&Object>) = objects.partition(|it| it.visible);
+    // A placeholder is noted with its file.
+    hidden.retain(|it| !it.model.is_placeholder());
+    let mut writer = Writer {
+        text: String::new(),
+        looks: Looks::new(Detail::Mtl),
+        names: Names::new(visible.len()),
+        positions: 0,
+        uvs: 0,
+        normals: 0,
+    };
+    for object in visible {
+        writer.object(object, view.time);
+    }
+    let mut content = Content::default();
+    let mut head = String::from(SIGNATURE);
+    if !writer.looks.all.is_empty() {
+        let stem = companion(stem);
+        let _ = writeln!(head, "mtllib {stem}.mtl");
+        content.files = mtl::written(&stem, &writer.looks)?;
+    }
+    content.files.push((format!("{stem}.obj"), (head + &writer.text).into_bytes()));
+    content.notes.push("OBJ has no cameras and no lights: they are left out".to_owned());
+    if !hidden.is_empty() {
+        content.notes.push(format!("hidden objects are left out: {}", hidden.len()));
+    }
+    Ok(content)
+}
+
+impl Writer {
+    fn object(&mut self, object: &Object, time: f64) {
+        let mesh = &object.model.mesh;
+        let turn = DMat3::from_mat4(object.world_from_object(time));
+        self.names.begin(object);
+        self.looks.add_file(object);
+        self.names.object_without_faces(object, &mut self.text);
+
+        // A piece of a model has only the vertices of that piece.
+        let all = object.hidden_parts.is_empty();
+        let corners = || polygons(object).flat_map(|polygon| mesh.polygon(polygon));
+        let point =
+            |corner: &Corner| if object.file_normals { corner.filed } else { corner.smooth };
+        let positions = Numbers::of(mesh.positions().len(), all, corners().map(|it| it.position));
+        let uvs = Numbers::of(mesh.uvs().len(), all, corners().map(|it| it.uv));
+        let normals = Numbers::of(mesh.points().len(), false, corners().map(point));
+        self.vertices(object, time, &positions);
+        for uv in &uvs.used {
+            let [u, v] = mesh.uvs()[*uv as usize];
+            let _ = writeln!(self.text, "vt {u} {v}");
+        }
+        for point in &normals.used {
+            let [x, y, z] = turned(&turn, mesh.points()[*point as usize].normal);
+            let _ = writeln!(self.text, "vn {x} {y} {z}");
+        }
+
+        let is_mirrored = turn.determinant() < 0.0;
+        for polygon in polygons(object) {
+            let part = mesh.polygon_parts()[polygon as usize];
+            self.names.part(object, part, &mut self.looks, &mut self.text);
+            self.text.push('f');
+            let text = &mut self.text;
+            let mut corner = |corner: &Corner| {
+                let position = self.positions + positions.number(corner.position);
+                let normal = self.normals + normals.number(point(corner));
+                let _ = match corner.uv {
+                    NONE => write!(text, " {position}//{normal}"),
+                    uv => write!(text, " {position}/{}/{normal}", self.uvs + uvs.number(uv)),
+                };
+            };
+            let corners = mesh.polygon(polygon);
+            if is_mirrored {
+                corners.iter().rev().for_each(&mut corner);
+            } else {
+                corners.iter().for_each(&mut corner);
+            }
+            self.text.push('\n');
+        }
+        self.positions += positions.used.len();
+        self.uvs += uvs.used.len();
+        self.normals += normals.used.len();
+    }
+
+    /// Writes positions, with their colours if these are shown.
+    fn vertices(&mut self, object: &Object, time: f64, positions: &Numbers) {
+        let mesh = &object.model.mesh;
+        let colors = if has_colors(object) { mesh.colors() } else { &[] };
+        let world_from_mesh = object.world_from_mesh(time);
+        let is_far = is_far(object, time);
+        for position in &positions.used {
+            let place = mesh.positions()[*position as usize];
+            place_to(&mut self.text, &world_from_mesh, place, is_far);
+            let _ = match colors.get(*position as usize) {
+                Some([r, g, b]) => writeln!(self.text, " {r} {g} {b}"),
+                None => writeln!(self.text),
+            };
+        }
+    }
+}
+
+/// The rows of a list that are written, and their numbers in the file.
+struct Numbers {
+    used: Vec<u32>,
+    /// The number of each row from 1; 0 if it is not written.
+    numbers: Vec<usize>,
+}
+
+impl Numbers {
+    /// All rows of a list of `count`, or the used ones; [`NONE`] is skipped.
+    fn of(count: usize, all: bool, used: impl Iterator<Item = u32>) -> Self {
+        let mut numbers = vec![usize::from(all); count];
+        if !all {
+            for row in used.filter(|row| *row != NONE) {
+                numbers[row as usize] = 1;
+            }
+        }
+        let mut used = Vec::new();
+        for (row, number) in (0..).zip(&mut numbers) {
+            if *number > 0 {
+                used.push(row);
+                *number = used.len();
+            }
+        }
+        Self { used, numbers }
+    }
+
+    fn number(&self, row: u32) -> usize {
+        self.numbers[row as usize]
+    }
+}
+
+/// Whether an object is so far from the origin that its positions need more digits than single
+/// numbers have.
+fn is_far(object: &Object, time: f64) -> bool {
+    let sphere = object.bounding_sphere(time);
+    object.model.mesh.offset() != DVec3::ZERO
+        || sphere.is_some_and(|(centre, radius)| centre.length() > FAR * radius)
+}
+
+/// Writes a position in the world; unchanged, bit for bit, if the object is not moved.
+fn place_to(text: &mut String, world_from_mesh: &DMat4, position: [f32; 3], is_far: bool) {
+    let place = world_from_mesh.transform_point3(dvec3(position));
+    let _ = if *world_from_mesh == DMat4::IDENTITY {
+        let [x, y, z] = position;
+        write!(text, "v {x} {y} {z}")
+    } else if is_far {
+        write!(text, "v {} {} {}", place.x, place.y, place.z)
+    } else {
+        let [x, y, z] = place.as_vec3().to_array();
+        write!(text, "v {x} {y} {z}")
+    };
+}
+
+/// A normal in the world, of length 1.
+fn turned(turn: &DMat3, normal: [f32; 3]) -> [f32; 3] {
+    if *turn == DMat3::IDENTITY {
+        return normal;
+    }
+    let placed = normal_matrix(*turn) * dvec3(normal);
+    unit(placed).unwrap_or(placed).as_vec3().to_array()
+}

@@ -1,0 +1,103 @@
+//! Reads a model or a scene from standard input, or from another input without a name.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::error::LoadError;
+use super::obj::{Loaded, MOST_BYTES, parse};
+use super::packed::{MAGIC, Unpacked};
+use super::progress::Progress;
+use super::scene_file::{Opened, SceneFileError, open_text};
+use super::up_axis::{StatedUp, stated_in};
+use marraztu_core::scene::LoadOptions;
+
+/// The name of the input in messages and in the outline.
+const NAME: &str = "standard input";
+
+/// The beginnings of scene files; no OBJ file begins with one.
+const SCENE: [&[u8]; 4] = [b"(", b"//", b"/*", b"#!["];
+
+/// A model or a scene whose bytes are in memory. The files that it names are looked for in the
+/// current folder.
+#[derive(Debug)]
+pub struct Input {
+    bytes: Vec<u8>,
+}
+
+impl Input {
+    /// Reads all of it, and unpacks it if it is packed.
+    ///
+    /// # Errors
+    /// If it cannot be read, or is too large.
+    pub fn read(source: impl Read) -> Result<Self, LoadError> {
+        let mut source = source;
+        let mut bytes = Vec::new();
+        let magic = u64::try_from(MAGIC.len()).unwrap_or(u64::MAX);
+        let system = |error: std::io::Error| LoadError::system(NAME, &error);
+        source.by_ref().take(magic).read_to_end(&mut bytes).map_err(system)?;
+        let packed = bytes == MAGIC;
+        let all = std::io::Cursor::new(std::mem::take(&mut bytes)).chain(source);
+        let limit = u64::try_from(MOST_BYTES).unwrap_or(u64::MAX).saturating_add(1);
+        let read = match packed {
+            true => Unpacked::new(all).take(limit).read_to_end(&mut bytes),
+            false => all.take(limit).read_to_end(&mut bytes),
+        };
+        read.map_err(system)?;
+        if bytes.len() > MOST_BYTES {
+            return Err(LoadError::too_large(NAME, MOST_BYTES));
+        }
+        Ok(Self { bytes })
+    }
+
+    /// Whether it is a scene, by its beginning.
+    #[must_use]
+    pub fn is_scene(&self) -> bool {
+        let text = self.bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&self.bytes);
+        let text = text.trim_ascii_start();
+        SCENE.iter().any(|begin| text.starts_with(begin))
+    }
+
+    /// The axis that the comments at its top state to point up.
+    #[must_use]
+    pub fn stated_up(&self) -> Option<StatedUp> {
+        stated_in(&self.bytes)
+    }
+
+    /// The model, if it is one.
+    ///
+    /// # Errors
+    /// As [`load`](super::load).
+    pub fn model(&self, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
+        parse(&self.bytes, NAME, Some(Path::new("")), options, progress)
+    }
+
+    /// The scene, if it is one.
+    ///
+    /// # Errors
+    /// As [`open`](super::open).
+    pub fn scene(&self, progress: &Progress) -> Result<Opened, SceneFileError> {
+        let text = std::str::from_utf8(&self.bytes).map_err(|_bytes| SceneFileError::File {
+            file: NAME.to_owned(),
+            reason: "this is not a scene file".to_owned(),
+        })?;
+        let here = std::env::current_dir().unwrap_or_else(|_gone| PathBuf::new());
+        open_text(text, NAME, here, progress)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_are_told_from_models_by_how_they_begin() {
+        let is_scene = |text: &str| Input::read(text.as_bytes()).unwrap().is_scene();
+        for scene in ["(version: 1)", "\u{feff}\n  (", "// mine\n(version: 1)", "#![enable(x)]\n("]
+        {
+            assert!(is_scene(scene), "{scene}");
+        }
+        for model in ["v 1 2 3", "# a model\nv 1 2 3", "", "o (cube)"] {
+            assert!(!is_scene(model), "{model}");
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! The first lines of a file of unsaved work: the scene file that it changes.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::fingerprint::Fingerprint;
+
+/// The first line of a file of work: a comment of a scene file, with the path in quotes.
+const HEAD: &str = "// unsaved changes of ";
+
+/// The second line: the content of that file on which the work is based.
+const CONTENT: &str = "// its content was ";
+
+/// The first lines of work on the scene in `file`, which had this content.
+pub(super) fn head(file: Option<&Path>, content: Option<Fingerprint>) -> String {
+    let content = content.map_or_else(String::new, |it| format!("{CONTENT}{}\n", it.text()));
+    match file.and_then(Path::to_str).map(ron::to_string) {
+        Some(Ok(quoted)) => format!("{HEAD}{quoted}\n{content}"),
+        _ => String::new(),
+    }
+}
+
+/// The file that the first line names, and the content that it had.
+pub(super) fn origin(work: &Path) -> (Option<PathBuf>, Option<Fingerprint>) {
+    let text = fs::read_to_string(work).unwrap_or_default();
+    let mut lines = text.lines();
+    let quoted = lines.next().and_then(|line| line.strip_prefix(HEAD));
+    let file = quoted.and_then(|quoted| ron::from_str::<PathBuf>(quoted).ok());
+    let content = lines.next().and_then(|line| line.strip_prefix(CONTENT));
+    (file, content.and_then(Fingerprint::from_text))
+}

@@ -1,0 +1,250 @@
+//! What the program remembers from one start to the next.
+//!
+//! A file that cannot be understood is set aside under another name, and said; it never stops the
+//! program.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::{Lock, OwnFolders, made};
+use crate::error::reason;
+use crate::replace::{Worth, replace};
+use crate::window_state::Panels;
+use marraztu_core::accuracy::Samples;
+use marraztu_core::scene::UpAxis;
+
+/// The most recent files that are remembered.
+pub const MOST_RECENT: usize = 10;
+
+/// What is remembered.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Preferences {
+    /// Whether the window is light or dark.
+    pub theme: Theme,
+    /// Which panels are open.
+    pub panels: Panels,
+    /// Whether handles to move, rotate and scale the selection lie over the picture.
+    pub gizmo: bool,
+    /// The zoom of the interface: 1 is the system's.
+    pub scale: f32,
+    /// The inner width and height of the window in points, if it was ever open.
+    pub window: Option<[f32; 2]>,
+    /// Whether the window fills the screen.
+    pub maximized: bool,
+    /// The widths in points and the shares of the panels that the user has chosen, by the names of
+    /// their borders.
+    pub shares: BTreeMap<String, f32>,
+    /// Whether the selection's outline, axes and marks of lights are drawn over the picture.
+    pub overlays: bool,
+    /// What helps to see where things stand.
+    pub helpers: Helpers,
+    /// Whether models are read again when their files change.
+    pub watches: bool,
+    /// The up axis of models if their files do not state one.
+    pub up: UpAxis,
+    /// Keys that the user has chosen: those of each action, by its name.
+    pub keys: BTreeMap<String, Vec<String>>,
+    /// Whether the window refines its picture while nothing happens.
+    pub refines: bool,
+    /// The samples per pixel that it is refined to.
+    pub refined: Samples,
+    /// The milliseconds that a picture may take while something moves.
+    pub budget_ms: u16,
+    /// The models and scenes opened or saved last, the latest first.
+    pub recent: Vec<PathBuf>,
+}
+
+/// What is drawn over the picture to show where things stand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Helpers {
+    /// A grid on the ground.
+    pub grid: bool,
+    /// The boxes around the selected objects, with their sizes.
+    pub dimensions: bool,
+    /// Where every sun and every spot shines, not only the selected one.
+    pub directions: bool,
+}
+
+/// Whether the window is light or dark.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Theme {
+    /// As the system is.
+    #[default]
+    System,
+    /// Light.
+    Light,
+    /// Dark.
+    Dark,
+}
+
+impl Default for Preferences {
+    fn default() -> Self {
+        Self {
+            theme: Theme::System,
+            panels: Panels::default(),
+            gizmo: true,
+            scale: 1.0,
+            window: None,
+            maximized: false,
+            shares: BTreeMap::new(),
+            overlays: true,
+            helpers: Helpers::default(),
+            watches: false,
+            up: UpAxis::default(),
+            keys: BTreeMap::new(),
+            refines: true,
+            refined: Samples::Sixteen,
+            budget_ms: 33,
+            recent: Vec::new(),
+        }
+    }
+}
+
+impl Preferences {
+    /// The size of the window at the first start, in points.
+    pub const WINDOW: [f32; 2] = [1280.0, 800.0];
+
+    /// What was remembered; and a sentence if the file was not understood and has been set aside.
+    #[must_use]
+    pub fn load(folders: &OwnFolders) -> (Self, Option<String>) {
+        let path = file(folders);
+        let text = match fs::read(&path) {
+            Ok(bytes) => String::from_utf8(bytes).map_err(|_bytes| "it is not text".to_owned()),
+            Err(error) if error.kind() == ErrorKind::NotFound => return (Self::default(), None),
+            Err(error) => {
+                let text = format!("The preferences in {} cannot be read: ", path.display());
+                return (Self::default(), Some(text + &reason(&error) + "."));
+            }
+        };
+        let read = text
+            .and_then(|text| ron::from_str::<Self>(&text).map_err(|error| format!("line {error}")));
+        match read {
+            Ok(preferences) => (preferences.within_limits(), None),
+            Err(why) => {
+                let text = format!("The preferences were not understood ({why}). ");
+                let rest = match set_aside(&path) {
+                    Ok(aside) => format!("They were set aside as {}.", aside.display()),
+                    Err(error) => format!("They could not be set aside: {error}."),
+                };
+                (Self::default(), Some(text + &rest))
+            }
+        }
+    }
+
+    /// Writes them in one step. Recent files that another program has added meanwhile stay: the
+    /// ones that are in the file, but not `known` to this program.
+    ///
+    /// # Errors
+    /// The reason, if they cannot be written.
+    pub fn save(&self, folders: &OwnFolders, known: &[PathBuf]) -> Result<(), String> {
+        made(&folders.config)?;
+        let path = file(folders);
+        let lock = Lock::take(&folders.config.join("lock")).map_err(|error| reason(&error))?;
+        let others = fs::read_to_string(&path).ok();
+        let others = others.and_then(|text| ron::from_str::<Self>(&text).ok());
+        let mut merged = self.clone();
+        for other in others.into_iter().flat_map(|other| other.recent) {
+            if !merged.recent.contains(&other) && !known.contains(&other) {
+                merged.recent.push(other);
+            }
+        }
+        merged.recent.truncate(MOST_RECENT);
+        let config = ron::ser::PrettyConfig::new().new_line("\n");
+        let text = ron::ser::to_string_pretty(&merged, config).map_err(|e| e.to_string())?;
+        replace(&path, (text + "\n").as_bytes(), Worth::Journal).map_err(|e| e.to_string())?;
+        drop(lock);
+        Ok(())
+    }
+
+    /// Puts a file at the front of the recent ones.
+    pub fn note_recent(&mut self, path: &Path) {
+        let path = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
+        self.recent.retain(|other| *other != path);
+        self.recent.insert(0, path);
+        self.recent.truncate(MOST_RECENT);
+    }
+
+    /// Numbers with which a window can be opened.
+    fn within_limits(mut self) -> Self {
+        let sound = |x: f32, min: f32, max: f32| x.is_finite() && x >= min && x <= max;
+        if !sound(self.scale, 0.2, 5.0) {
+            self.scale = 1.0;
+        }
+        self.window = self.window.filter(|size| size.iter().all(|x| sound(*x, 100.0, 20_000.0)));
+        self.shares.retain(|_, share| sound(*share, 0.0, 20_000.0));
+        self.budget_ms = self.budget_ms.clamp(1, 1000);
+        self.recent.truncate(MOST_RECENT);
+        self
+    }
+}
+
+fn file(folders: &OwnFolders) -> PathBuf {
+    folders.config.join("preferences.ron")
+}
+
+/// Renames a file to a name that is free.
+fn set_aside(path: &Path) -> Result<PathBuf, String> {
+    let named = |number: u32| path.with_extension(format!("broken-{number}.ron"));
+    let free = (1..1000).map(named).find(|aside| !aside.exists());
+    let aside = free.ok_or_else(|| "there are too many such files already".to_owned())?;
+    fs::rename(path, &aside).map_err(|error| reason(&error))?;
+    Ok(aside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn preferences_come_back_and_a_broken_file_is_set_aside_and_said() {
+        let folder = tempfile::tempdir().unwrap();
+        let folders = OwnFolders::within(folder.path());
+        assert_eq!(Preferences::load(&folders), (Preferences::default(), None));
+        let mut first = Preferences { scale: 1.5, ..Preferences::default() };
+        first.window = Some([900.0, 700.0]);
+        first.note_recent(Path::new("/a.obj"));
+        first.note_recent(Path::new("/b.obj"));
+        first.note_recent(Path::new("/a.obj"));
+        first.save(&folders, &[]).unwrap();
+        assert_eq!(first.recent, [PathBuf::from("/a.obj"), PathBuf::from("/b.obj")]);
+        assert_eq!(Preferences::load(&folders), (first, None));
+        for broken in [&b"(scale: "[..], b"\xff\xfe", b"(scale: 1.0) more"] {
+            fs::write(file(&folders), broken).unwrap();
+            let (preferences, said) = Preferences::load(&folders);
+            assert_eq!(preferences, Preferences::default());
+            assert!(said.unwrap().contains("set aside"));
+        }
+        let asides = fs::read_dir(&folders.config).unwrap().flatten();
+        assert_eq!(asides.filter(|e| e.path().to_string_lossy().contains("broken-")).count(), 3);
+        assert!(!file(&folders).exists());
+    }
+
+    #[test]
+    fn numbers_that_no_window_can_have_are_left_out() {
+        let wild = Preferences { scale: f32::NAN, window: Some([0.0, 5.0]), ..Default::default() };
+        assert_eq!(wild.within_limits(), Preferences::default());
+    }
+
+    #[test]
+    fn two_programs_keep_each_others_recent_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let folders = OwnFolders::within(folder.path());
+        for name in ["/a.obj", "/b.obj"] {
+            let mut own = Preferences::default();
+            own.note_recent(Path::new(name));
+            own.save(&folders, &[]).unwrap();
+        }
+        let both = [PathBuf::from("/b.obj"), PathBuf::from("/a.obj")];
+        assert_eq!(Preferences::load(&folders).0.recent, both);
+        // A program that has forgotten its files forgets only its own.
+        let known = [PathBuf::from("/a.obj")];
+        Preferences::default().save(&folders, &known).unwrap();
+        assert_eq!(Preferences::load(&folders).0.recent, both[..1]);
+    }
+}

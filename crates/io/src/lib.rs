@@ -1,0 +1,74 @@
+//! Models, textures, scene files and pictures, to and from the disk.
+//!
+//! Files come from elsewhere, so nothing in them may stop the program. A file is either refused
+//! with one reason, or loaded with a list of everything that was mended in it.
+//!
+//! ```
+//! let obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n";
+//! let (options, progress) = Default::default();
+//! let loaded = marraztu_io::parse(obj, "sail.obj", None, &options, &progress)?;
+//! assert_eq!(loaded.model.mesh.triangles().len(), 1);
+//! for finding in &loaded.findings {
+//!     println!("{}", finding.text);
+//! }
+//! # assert_eq!(loaded.findings.len(), 1);
+//! # Ok::<(), marraztu_io::LoadError>(())
+//! ```
+
+mod animation;
+mod assets;
+mod describe;
+mod dimples;
+mod error;
+mod examples;
+mod export;
+mod finding_kinds;
+mod findings;
+mod fingerprint;
+mod input;
+mod keeping;
+mod lessons;
+mod locate;
+mod mtl;
+mod obj;
+mod packed;
+mod picture;
+mod progress;
+mod read;
+mod replace;
+mod scene_file;
+mod sources;
+mod texture;
+mod up_axis;
+mod window_state;
+
+pub use animation::{Animation, AnimationFormat, AnimationWriter};
+pub use assets::{cam_model, default_scene, empty_scene, own_model, own_texture};
+pub use describe::{describe, shape};
+pub use error::LoadError;
+pub use examples::{EXAMPLES, Example, is_example};
+pub use export::{EXPORT_ENDINGS, Exported, check_export_target, export};
+pub use findings::{Finding, FindingKind, joined};
+pub use fingerprint::Fingerprint;
+pub use input::Input;
+pub use keeping::{
+    Abandoned, Discarded, Helpers, Journal, MOST_RECENT, OwnFolders, Preferences, Theme, Unsaved,
+};
+pub use lessons::lesson_scene;
+pub use obj::{Loaded, load, parse};
+pub use picture::{
+    PICTURE_FORMATS, PictureFormat, check_alpha, check_picture_target, save_picture,
+};
+pub use progress::{Cancelled, Progress};
+pub use read::check_file;
+pub use replace::SaveError;
+pub use scene_file::{
+    Fragment, Known, Opened, SCENE_ENDING, SceneFileError, items_of_text, items_to_text,
+    material_to_text, open, save, save_with_window, to_text,
+};
+pub use sources::Sources;
+pub use texture::{
+    load_picture, load_texture, load_texture_with, texture_endings, texture_formats,
+};
+pub use up_axis::{StatedUp, stated_up};
+pub use window_state::{Panels, WindowState};

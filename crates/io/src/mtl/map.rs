@@ -1,0 +1,130 @@
+//! The arguments of a map: a file's name, with options before or after it.
+
+use super::statement;
+use crate::obj::lines::decode;
+use marraztu_core::scene::Wrap;
+
+/// The file of a texture, and its options.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Map {
+    /// Its name in the MTL file.
+    pub(super) name: String,
+    pub(super) wrap: Wrap,
+    pub(super) offset: [f64; 2],
+    pub(super) scale: [f64; 2],
+    /// `-bm`.
+    pub(super) gain: f64,
+    /// Options that would change the picture and are ignored.
+    pub(super) ignored: Vec<&'static str>,
+}
+
+/// Options that would change the picture and are ignored, with the number of their arguments:
+/// turbulence, base and gain of the texels, the channel of a scalar map, boosted sharpness.
+const IGNORED: [(&str, usize); 4] = [("-t", 3), ("-mm", 2), ("-imfchan", 1), ("-boost", 1)];
+
+/// Parses the arguments; `None` if there is no name.
+pub(super) fn map(rest: &[u8]) -> Option<Map> {
+    let mut map = Map {
+        name: String::new(),
+        wrap: Wrap::Repeat,
+        offset: [0.0; 2],
+        scale: [1.0; 2],
+        gain: 1.0,
+        ignored: Vec::new(),
+    };
+    let text = decode(rest);
+    let words = words_with_places(&text);
+    // The range of the name: blanks inside it are kept.
+    let mut name: Option<(usize, usize)> = None;
+    let mut at = 0;
+    while let Some(&(begin, word)) = words.get(at) {
+        if word == "#" {
+            break;
+        }
+        match map.option(word, &words[at + 1..]) {
+            Some(arguments) => at += arguments,
+            None => name = Some((name.map_or(begin, |(first, _)| first), begin + word.len())),
+        }
+        at += 1;
+    }
+    let (begin, end) = name?;
+    map.name = statement::texture(&text[begin..end])?;
+    Some(map)
+}
+
+impl Map {
+    /// Applies an option with the words that follow it; returns how many of them are its arguments,
+    /// or `None` if the word is no option.
+    fn option(&mut self, word: &str, following: &[(usize, &str)]) -> Option<usize> {
+        let numbers = |most: usize| -> Vec<f64> {
+            let words = following.iter().take(most);
+            words.map_while(|(_, word)| statement::single(word.as_bytes())).collect()
+        };
+        let set = |target: &mut [f64; 2], given: &[f64]| {
+            for (target, given) in target.iter_mut().zip(given) {
+                *target = *given;
+            }
+            given.len()
+        };
+        let word = word.to_ascii_lowercase();
+        if let Some((option, most)) = IGNORED.iter().find(|(option, _)| *option == word) {
+            self.ignored.push(option);
+            return Some(if *option == "-imfchan" { 1 } else { numbers(*most).len() });
+        }
+        Some(match word.as_str() {
+            "-clamp" => {
+                let on = following.first().is_some_and(|(_, word)| word.eq_ignore_ascii_case("on"));
+                self.wrap = if on { Wrap::Clamp } else { Wrap::Repeat };
+                1
+            }
+            "-o" => set(&mut self.offset, &numbers(3)),
+            "-s" => set(&mut self.scale, &numbers(3)),
+            "-bm" => {
+                let given = numbers(1);
+                self.gain = given.first().copied().unwrap_or(self.gain);
+                given.len()
+            }
+            "-texres" => numbers(1).len(),
+            "-blendu" | "-blendv" | "-cc" | "-type" | "-colorspace" => 1,
+            _ => return None,
+        })
+    }
+}
+
+/// The words of a text, each with its offset.
+fn words_with_places(text: &str) -> Vec<(usize, &str)> {
+    // The address of a part gives its offset in the text.
+    let place = |word: &str| word.as_ptr().addr() - text.as_ptr().addr();
+    text.split_whitespace().map(|word| (place(word), word)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_of_a_map_stand_before_or_after_a_name_with_blanks() {
+        let map = |text: &str| map(text.as_bytes());
+        let plain = Map {
+            name: "a  b.png".into(),
+            wrap: Wrap::Repeat,
+            offset: [0.0; 2],
+            scale: [1.0; 2],
+            gain: 1.0,
+            ignored: Vec::new(),
+        };
+        assert_eq!(map("a  b.png"), Some(plain.clone()));
+        assert_eq!(
+            map("-clamp on -o 0.1 -s 2 3 0 -mm 0 1 -imfchan r a  b.png -bm 1.5 # x"),
+            Some(Map {
+                wrap: Wrap::Clamp,
+                offset: [0.1, 0.0],
+                scale: [2.0, 3.0],
+                gain: 1.5,
+                ignored: vec!["-mm", "-imfchan"],
+                ..plain
+            })
+        );
+        assert_eq!(map("-s 1 1 1"), None);
+    }
+}

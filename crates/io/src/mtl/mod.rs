@@ -1,0 +1,541 @@
+//! Reads the materials of an MTL file, and mends what exporters write wrongly.
+//!
+//! A faulty file is never a reason not to show the model: whatever is wrong is listed, and the rest
+//! is used. tobj therefore reads the statements one by one ([`statement`]), and a statement that it
+//! refuses affects no other.
+
+mod map;
+mod mend;
+mod normal_map;
+mod statement;
+mod undrawn;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use self::map::{Map, map};
+use self::mend::scale_bytes;
+use self::normal_map::shows_normals;
+use super::error::{LoadError, short_name, shown};
+use super::findings::{Finding, FindingKind, Findings, joined};
+use super::locate::Locator;
+use super::obj::lines::{Line, Lines, Oddity, decode, excerpt, words};
+use super::progress::Progress;
+use super::read::{MOST_WORDS, is_binary, is_utf_16, read, utf_8};
+use super::texture::{Pictures, Read};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::Picture;
+use marraztu_core::scene::{
+    BumpMaps, FileMaterial, MapKind, NONE, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
+};
+
+/// The most texels of all textures of a model: 2 GB.
+const MOST_TEXELS: usize = 1 << 29;
+
+/// How many different textures are looked for: each takes several accesses to the disk.
+const MOST_NAMES: usize = 10_000;
+
+/// The materials of the files that a model names, in their order.
+#[derive(Debug)]
+pub(super) struct Library<'a> {
+    materials: Vec<FileMaterial>,
+    /// The origin of each of `materials`.
+    origins: Vec<Origin>,
+    /// The findings of each file that was read.
+    findings: Vec<Findings>,
+    pub(super) locator: Locator,
+    /// The index of each name in `materials`.
+    places: BTreeMap<String, u32>,
+    /// The files that were read.
+    read: BTreeSet<PathBuf>,
+    pictures: &'a mut Pictures,
+    /// How bump maps are read.
+    bumps: BumpMaps,
+    /// The files whose texels are counted in `texels`.
+    counted: BTreeSet<PathBuf>,
+    texels: usize,
+    /// The paths of textures that were looked for, by the folder of the file that names them and
+    /// their name.
+    found: BTreeMap<(PathBuf, String), Option<PathBuf>>,
+    /// By path, wrapping, and the bits of offset and scale: equal textures are shared.
+    textures: BTreeMap<(PathBuf, bool, [u64; 4]), Shared<Texture>>,
+}
+
+/// The origin of a material, and how its opacity was given.
+#[derive(Debug)]
+struct Origin {
+    /// The index of its file's findings.
+    file: usize,
+    line: u32,
+    /// Whether it is fully transparent by `Tr 1` alone.
+    hidden_by_tr: bool,
+}
+
+/// A material as its statements give it.
+#[derive(Debug, Default)]
+struct Statements {
+    name: String,
+    line: u32,
+    ambient: Option<[f64; 3]>,
+    diffuse: Option<[f64; 3]>,
+    specular: Option<[f64; 3]>,
+    exponent: Option<f64>,
+    emission: Option<[f64; 3]>,
+    opacity: Option<f64>,
+    transparency: Option<f64>,
+    illumination: Option<f64>,
+    /// `bsdf pbr`: Ks holds occlusion, roughness and metalness.
+    is_packed: bool,
+    map: Option<(u32, Map)>,
+    /// The other maps.
+    maps: BTreeMap<MapKind, (u32, Map)>,
+    undrawn: Undrawn,
+}
+
+impl<'a> Library<'a> {
+    /// A library without materials, whose textures show `pictures`.
+    pub(super) fn new(pictures: &'a mut Pictures, bumps: BumpMaps) -> Self {
+        Self {
+            materials: Vec::new(),
+            origins: Vec::new(),
+            findings: Vec::new(),
+            locator: Locator::default(),
+            places: BTreeMap::new(),
+            read: BTreeSet::new(),
+            pictures,
+            bumps,
+            counted: BTreeSet::new(),
+            texels: 0,
+            found: BTreeMap::new(),
+            textures: BTreeMap::new(),
+        }
+    }
+
+    /// Reads one file, if it was not read before. Textures are looked for beside it, then beside
+    /// the model.
+    pub(super) fn read(&mut self, path: &Path, model_folder: &Path) {
+        if !self.read.insert(path.to_owned()) {
+            return;
+        }
+        let mut findings = Findings::new(&shown(path));
+        match read(path, MOST_WORDS, &Progress::new()) {
+            Ok(bytes) if !is_utf_16(&bytes) && is_binary(&bytes) => {
+                findings.add(FindingKind::MtlUnreadable, "this is not text", None);
+            }
+            Ok(bytes) => {
+                let folders = [path.parent().unwrap_or(Path::new("")), model_folder];
+                let mut materials = read_statements(&utf_8(bytes), &mut findings);
+                scale_bytes(&mut materials, &mut findings);
+                for statements in materials {
+                    self.add(statements, folders, &mut findings);
+                }
+            }
+            Err(LoadError::File { reason, .. }) => {
+                findings.add(FindingKind::MtlUnreadable, &reason, None);
+            }
+            Err(error) => findings.add(FindingKind::MtlUnreadable, &error.to_string(), None),
+        }
+        self.findings.push(findings);
+    }
+
+    /// The number of materials.
+    pub(super) fn count(&self) -> usize {
+        self.materials.len()
+    }
+
+    /// The index of the material with this name.
+    pub(super) fn place(&self, name: &str) -> Option<u32> {
+        self.places.get(name).copied()
+    }
+
+    /// The files that were read: MTL files, and the textures that they name.
+    pub(super) fn files(&self) -> Vec<PathBuf> {
+        let textures: BTreeSet<&PathBuf> = self.found.values().flatten().collect();
+        self.read.iter().chain(textures).cloned().collect()
+    }
+
+    /// The materials, and the findings in their files. `used` are the indices of those that the
+    /// model uses.
+    ///
+    /// Some programs write `Tr 1` for opaque materials. It is ignored if it would hide everything
+    /// that is used.
+    pub(super) fn finish(mut self, used: &BTreeSet<u32>) -> (Vec<FileMaterial>, Vec<Finding>) {
+        let hidden = |place: &u32| self.origins[*place as usize].hidden_by_tr;
+        let other_convention = !used.is_empty() && used.iter().all(hidden);
+        for (material, origin) in self.materials.iter_mut().zip(&self.origins) {
+            let kind = if other_convention && origin.hidden_by_tr {
+                material.opacity = 1.0;
+                FindingKind::MendedTransparency
+            } else if material.opacity == 0.0 {
+                FindingKind::Transparent
+            } else {
+                continue;
+            };
+            self.findings[origin.file].add(kind, &material.name, Some(origin.line));
+        }
+        let findings = self.findings.into_iter().flat_map(Findings::into_list).collect();
+        (self.materials, joined(findings))
+    }
+
+    fn add(&mut self, mut statements: Statements, folders: [&Path; 2], findings: &mut Findings) {
+        if self.place(&statements.name).is_some() {
+            findings.add(FindingKind::MaterialTwice, &statements.name, Some(statements.line));
+            return;
+        }
+        if statements.is_packed
+            && let Some((line, _)) = statements.maps.remove(&MapKind::Specular)
+        {
+            findings.add(FindingKind::MapUnused, "map_Ks", Some(line));
+        }
+        statements.unpack();
+        statements.keep_one_relief();
+        let mut read = |(line, map): &(u32, Map)| {
+            for option in &map.ignored {
+                findings.add(FindingKind::MapOption, option, Some(*line));
+            }
+            self.texture(map, folders, &mut |kind, name| findings.add(kind, name, Some(*line)))
+        };
+        let texture = statements.map.as_ref().and_then(&mut read);
+        let maps = statements.maps.iter().filter_map(|(kind, map)| {
+            let (texture, gain) = (read(map)?, map.1.gain);
+            Some((*kind, SurfaceMap { texture, gain }))
+        });
+        let mut maps: SurfaceMaps = maps.collect();
+        self.settle_bumps(&mut maps, &statements, findings);
+        let place = u32::try_from(self.materials.len()).unwrap_or(NONE);
+        self.places.insert(statements.name.clone(), place);
+        self.origins.push(Origin {
+            file: self.findings.len(),
+            line: statements.line,
+            hidden_by_tr: statements.opacity.is_none() && statements.transparency == Some(1.0),
+        });
+        self.materials.push(statements.mended((texture, maps), findings));
+    }
+
+    /// Takes a picture of normals that a file names as a bump map for a normal map, as Blender and
+    /// others write it. A map that the file itself calls a normal map is used first.
+    fn settle_bumps(
+        &self,
+        maps: &mut SurfaceMaps,
+        statements: &Statements,
+        findings: &mut Findings,
+    ) {
+        let Some(bump) = maps.get(&MapKind::Bump) else { return };
+        let has_normals = match self.bumps {
+            BumpMaps::Auto => shows_normals(&bump.texture.picture),
+            BumpMaps::Heights => false,
+            BumpMaps::Normals => true,
+        };
+        if !has_normals {
+            return;
+        }
+        if self.bumps == BumpMaps::Auto && !maps.contains_key(&MapKind::Normal) {
+            let line = statements.maps.get(&MapKind::Bump).map(|(line, _)| *line);
+            findings.add(FindingKind::BumpIsNormals, &short_name(&bump.texture.source), line);
+        }
+        if let Some(bump) = maps.remove(&MapKind::Bump) {
+            maps.entry(MapKind::Normal).or_insert(bump);
+        }
+    }
+
+    fn texture(
+        &mut self,
+        map: &Map,
+        folders: [&Path; 2],
+        note: &mut dyn FnMut(FindingKind, &str),
+    ) -> Option<Shared<Texture>> {
+        let key = (folders[0].to_owned(), map.name.clone());
+        if self.found.len() >= MOST_NAMES && !self.found.contains_key(&key) {
+            note(FindingKind::TextureMany, "");
+            return None;
+        }
+        let mut locate = |folder| self.locator.locate(folder, &map.name);
+        let path =
+            self.found.entry(key).or_insert_with(|| folders.into_iter().find_map(&mut locate));
+        let Some(path) = path.clone() else {
+            note(FindingKind::TextureMissing, &map.name);
+            return None;
+        };
+        let bits = [map.offset, map.scale].concat();
+        let bits = std::array::from_fn(|i| bits[i].to_bits());
+        let key = (path.clone(), map.wrap == Wrap::Clamp, bits);
+        if let Some(texture) = self.textures.get(&key) {
+            return Some(texture.clone());
+        }
+        let picture = self.picture(&path, note)?;
+        let &Map { wrap, offset, scale, .. } = map;
+        let texture = Shared::new(Texture { source: path, picture, wrap, offset, scale });
+        self.textures.insert(key, texture.clone());
+        Some(texture)
+    }
+
+    /// The picture of a file, if it and the earlier ones are not too large for the memory.
+    fn picture(
+        &mut self,
+        path: &Path,
+        note: &mut dyn FnMut(FindingKind, &str),
+    ) -> Option<Shared<Picture>> {
+        let counted = self.counted.contains(path);
+        let most = if counted { MOST_TEXELS } else { MOST_TEXELS - self.texels };
+        match self.pictures.read(path, most) {
+            Ok(Read { picture, cut_off }) => {
+                if !counted {
+                    self.counted.insert(path.to_owned());
+                    self.texels += picture.size().area();
+                }
+                if cut_off {
+                    note(FindingKind::TextureCutOff, &shown(path));
+                }
+                Some(picture)
+            }
+            Err(error) => {
+                note(FindingKind::TextureUnreadable, &error.to_string());
+                None
+            }
+        }
+    }
+}
+
+fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Statements> {
+    let mut list: Vec<Statements> = Vec::new();
+    for line in Lines::new(bytes) {
+        let (keyword, _) = line.statement();
+        if line.oddity == Some(Oddity::NotContinued) {
+            findings.add(FindingKind::NotContinued, &excerpt(keyword), Some(line.number));
+        }
+        if keyword == b"newmtl" {
+            let (name, line) = (line.name(), line.number);
+            list.push(Statements { name, line, ..Statements::default() });
+            continue;
+        }
+        if keyword.starts_with(b"#") {
+            continue;
+        }
+        match list.last_mut() {
+            Some(statements) => statements.read(&line, findings),
+            None => findings.add(FindingKind::MtlStray, &decode(keyword), Some(line.number)),
+        }
+    }
+    list
+}
+
+impl Statements {
+    fn read(&mut self, line: &Line<'_>, findings: &mut Findings) {
+        let (keyword, rest) = line.statement();
+        let plain = keyword.to_ascii_lowercase();
+        let mut read = true;
+        match &plain[..] {
+            b"ka" => read = set(&mut self.ambient, statement::ambient(rest)),
+            b"kd" => read = set(&mut self.diffuse, statement::diffuse(rest)),
+            b"ks" => read = set(&mut self.specular, statement::specular(rest)),
+            b"ns" => read = set(&mut self.exponent, statement::exponent(rest)),
+            b"d" => {
+                // `d -halo x` fades towards the centre; only x is used.
+                let rest = rest.strip_prefix(b"-halo").unwrap_or(rest);
+                read = set(&mut self.opacity, statement::opacity(rest));
+            }
+            b"tr" => read = set(&mut self.transparency, statement::opacity(rest)),
+            b"illum" => {
+                read = set(&mut self.illumination, statement::exponent(rest));
+                self.keep_model();
+            }
+            b"ke" => read = set(&mut self.emission, statement::emission(rest)),
+            b"bsdf" if words(rest).eq([b"pbr"]) => self.is_packed = true,
+            b"map_kd" => {
+                let map = map(rest).map(|map| (line.number, map));
+                read = set(&mut self.map, map);
+            }
+            b"disp" | b"decal" | b"refl" => {
+                findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
+            }
+            b"map_aat" => {}
+            _ if let Some(kind) = kind_of(&plain) => match map(rest) {
+                Some(map) => _ = self.maps.insert(kind, (line.number, map)),
+                None => read = false,
+            },
+            _ if plain.starts_with(b"map_") => {
+                findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
+            }
+            _ if self.keep_undrawn(keyword, rest) => {}
+            _ => findings.add(FindingKind::Unknown, &decode(keyword), Some(line.number)),
+        }
+        if !read {
+            findings.add(FindingKind::MtlNumber, &decode(keyword), Some(line.number));
+        }
+    }
+
+    /// Removes the map of heights if it is the map of normals: some files, and exports of this
+    /// program, name it twice, for readers that know only one of the statements.
+    fn keep_one_relief(&mut self) {
+        let name = |kind| self.maps.get(&kind).map(|(_, map): &(u32, Map)| &map.name);
+        if name(MapKind::Bump).is_some() && name(MapKind::Bump) == name(MapKind::Normal) {
+            self.maps.remove(&MapKind::Bump);
+        }
+    }
+}
+
+/// What a statement maps, by its keyword in lower case.
+fn kind_of(keyword: &[u8]) -> Option<MapKind> {
+    match keyword {
+        b"map_ka" => Some(MapKind::Ambient),
+        b"map_ks" => Some(MapKind::Specular),
+        b"map_ns" => Some(MapKind::Exponent),
+        b"map_d" => Some(MapKind::Opacity),
+        b"map_ke" => Some(MapKind::Emission),
+        b"bump" | b"map_bump" => Some(MapKind::Bump),
+        b"norm" | b"map_norm" | b"map_kn" => Some(MapKind::Normal),
+        _ => None,
+    }
+}
+
+/// Sets a value if it could be read; returns whether it could.
+fn set<T>(target: &mut Option<T>, value: Option<T>) -> bool {
+    let read = value.is_some();
+    if read {
+        *target = value;
+    }
+    read
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use marraztu_core::scene::Material;
+
+    fn read(text: &str) -> (FileMaterial, Vec<FindingKind>) {
+        let mut findings = Findings::new("a.mtl");
+        let mut pictures = Pictures::default();
+        let mut library = Library::new(&mut pictures, BumpMaps::Auto);
+        for statements in read_statements(text.as_bytes(), &mut findings) {
+            library.add(statements, [Path::new("nowhere"); 2], &mut findings);
+        }
+        library.findings.push(findings);
+        let (mut materials, findings) = library.finish(&BTreeSet::from([0]));
+        (materials.remove(0), findings.into_iter().map(|finding| finding.kind).collect())
+    }
+
+    #[test]
+    fn a_sound_material_is_taken_as_it_is() {
+        let (red, findings) =
+            read("newmtl red\nKa .1 0 0\nKd 0.5 0 0\nKs 1 1 1\nNs 20\nd 1\nillum 2\n");
+        assert_eq!(findings, []);
+        assert_eq!(red.name, "red");
+        let Material { ambient, diffuse, specular, exponent, .. } = red.material;
+        assert_eq!([ambient, diffuse, specular], [[0.1, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0; 3]]);
+        assert_eq!((exponent, red.opacity), (20.0, 1.0));
+    }
+
+    #[test]
+    fn each_nonsense_is_mended_by_its_rule_and_listed() {
+        use FindingKind::*;
+        type Row = (&'static str, FindingKind, fn(&FileMaterial) -> bool);
+        let rows: [Row; 12] = [
+            ("Kd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
+            ("Ka 1 1 1\nKd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
+            ("Ka .5 0 0\nKd .5 0 0\nKs 0 0 0", MendedAmbient, |m| {
+                m.material.ambient == [0.1, 0.0, 0.0]
+            }),
+            ("Ka 0 0 7\nKd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
+            ("Ka 0 0 0\nKs 0 0 0", MendedDiffuse, |m| m.material.diffuse == [0.8; 3]),
+            ("Ka 0 0 0\nKd 1 1 1", MendedSpecular, |m| m.material.specular == [0.0; 3]),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 1 1 1\nillum 1\nNs 9", MendedSpecular, |m| {
+                m.material.specular == [0.0; 3]
+            }),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 1 1 1\nNs .5", MendedExponent, |m| m.material.exponent == 1.0),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 1 1 1\nNs 0", MendedMatt, |m| m.material.specular == [0.0; 3]),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 1 1 1", MendedMatt, |m| m.material.specular == [0.0; 3]),
+            ("Ka 0 0 0\nKd 1 -1 9\nKs 0 0 0", MendedRange, |m| {
+                m.material.diffuse == [1.0, 0.0, 1.0]
+            }),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nd 0", Transparent, |m| m.opacity == 0.0),
+        ];
+        for (text, opacity) in [("Tr 0.75", 0.25), ("d 0.75", 0.75), ("d 0.01\nTr 0.5", 0.01)] {
+            let (material, findings) =
+                read(&format!("newmtl m\nKa 0 0 0\nKd 0.5\nKs 0 0 0\n{text}"));
+            assert_eq!((material.opacity, findings), (opacity, Vec::new()), "{text}");
+            assert_eq!(material.material.diffuse, [0.5; 3]);
+        }
+        for (text, kind, right) in rows {
+            let (material, findings) = read(&format!("newmtl m\n{text}\n"));
+            assert_eq!(findings, [kind], "{text}");
+            assert!(right(&material), "{text}: {material:?}");
+        }
+    }
+
+    #[test]
+    fn whole_numbers_above_16_are_bytes_and_other_colors_above_1_are_clamped() {
+        let read = |text: &str| {
+            let mut findings = Findings::new("a.mtl");
+            let mut materials = read_statements(text.as_bytes(), &mut findings);
+            scale_bytes(&mut materials, &mut findings);
+            let colors: Vec<_> = materials.iter().filter_map(|it| it.diffuse).collect();
+            (colors, !findings.into_list().is_empty())
+        };
+        let bytes = "newmtl a\nKd 255 51 0\nKs 0 0 0\nnewmtl b\nKd 1 0 0\n";
+        assert_eq!(read(bytes), (vec![[1.0, 0.2, 0.0], [1.0 / 255.0, 0.0, 0.0]], true));
+        for bright in ["newmtl a\nKd 2 1 0\n", "newmtl a\nKd 40.5 0 0\n", "newmtl a\nKd 16 16 16\n"]
+        {
+            assert!(!read(bright).1, "{bright}");
+        }
+    }
+
+    #[test]
+    fn packed_roughness_and_metalness_are_no_color_of_highlights() {
+        let packed = |ks| {
+            let text = format!("newmtl m\nbsdf pbr\nKa 0 0 0\nKd .5 .25 1\nKs {ks}\n");
+            let (material, findings) = read(&text);
+            assert_eq!(findings, [FindingKind::MendedPacked], "{ks}");
+            let Material { diffuse, specular, exponent, .. } = material.material;
+            assert_eq!(diffuse, [0.5, 0.25, 1.0]);
+            (specular, exponent)
+        };
+        assert_eq!(packed("0 1 0"), ([0.04; 3], 1.0), "rough");
+        assert_eq!(packed("0 1 1"), ([0.5, 0.25, 1.0], 1.0), "rough metal");
+        assert_eq!(packed("0 .5 0"), ([0.04 * 38.0 / 8.0; 3], 7.5), "2 / 0.25^2 - 2 = 30");
+        assert_eq!(packed("0 .25 0"), ([1.0; 3], 127.5), "smooth");
+        assert_eq!(packed("0 0 0"), ([1.0; 3], 1000.0), "a mirror has some width");
+        let (material, findings) =
+            read("newmtl m\nbsdf pbr\nKa 0 0 0\nKd 1 1 1\nKs 0 1 0\nNs 9\nmap_Ks t.png\n");
+        assert_eq!(material.material.exponent, 9.0, "as the file says");
+        assert_eq!(findings, [FindingKind::MendedPacked, FindingKind::MapUnused]);
+        let (material, _) = read("newmtl m\nbsdf pbr\nKa 0 0 0\nKd 1 1 1\n");
+        assert_eq!(material.material.specular, [0.0; 3], "nothing is packed");
+    }
+
+    #[test]
+    fn numbers_keep_more_digits_than_an_f32_has() {
+        let (material, _) = read(
+            "newmtl m\nKd 0.5882352941176471 0.1 1e-50\nKs 1 1 1\n\
+             Ns 96.078431\nd 0.3333333333333333\n",
+        );
+        assert_eq!(material.material.diffuse, [150.0 / 255.0, 0.1, 1e-50]);
+        assert_eq!((material.material.exponent, material.opacity), (96.078431, 1.0 / 3.0));
+    }
+
+    #[test]
+    fn statements_that_stop_tobj_cost_no_other() {
+        // It panics on one or two numbers, and refuses fractions of illum and numbers with
+        // comments.
+        let (material, findings) = read(
+            "newmtl m\nKa 0 0 0\nkd 0.5\nKd 0.1 0.2\nKs 1 1 1#x\n\
+             illum 1.0\nillum 2.5\nNs\nns 9 # x\nD -halo 1\n",
+        );
+        let Material { diffuse, specular, exponent, .. } = material.material;
+        assert_eq!((diffuse, specular, exponent), ([0.5; 3], [1.0; 3], 9.0));
+        assert_eq!(findings, [FindingKind::MtlNumber, FindingKind::Illumination]);
+    }
+
+    #[test]
+    fn a_texture_without_a_diffuse_colour_is_shown_in_its_own() {
+        let (material, findings) = read("newmtl m\nKa 0 0 0\nKs 0 0 0\nmap_Kd t.png\n");
+        assert_eq!(material.material.diffuse, [1.0; 3]);
+        assert_eq!(findings, [FindingKind::MendedDiffuse, FindingKind::TextureMissing]);
+    }
+
+    #[test]
+    fn numbers_that_cannot_be_read_and_stray_statements_are_listed() {
+        let (_, findings) =
+            read("Kd 1 1 1\nnewmtl m\nKa 0 0 0\nKd 1 1 1\nKs 0..5 0 0\nKs 0 0 0\nbsdf new\n");
+        assert_eq!(findings, [FindingKind::Unknown, FindingKind::MtlStray, FindingKind::MtlNumber]);
+    }
+}

@@ -1,0 +1,94 @@
+//! Reads the faces that the quick way leaves: `f 1/2/3 -1//2 4`.
+
+use super::faces::WRONG;
+use super::lines::{excerpt, words};
+use super::piece::{Counts, Piece, Stop};
+use crate::findings::FindingKind;
+use marraztu_core::scene::{NONE, SourceCorner};
+
+impl Piece {
+    pub(super) fn face(&mut self, rest: &[u8], line: u32) -> Result<(), Stop> {
+        // A minus in a comment stops the piece, too: nothing is lost but time.
+        if self.before.is_none() && rest.contains(&b'-') {
+            return Err(Stop::CountsBack);
+        }
+        let counts = self.counts().unwrap_or_default();
+        let begin = self.faces.corners();
+        let mut fault = None;
+        for word in words(rest) {
+            // A comment may follow a number at once.
+            let (word, comment) = match word.iter().position(|b| *b == b'#') {
+                Some(end) => (&word[..end], true),
+                None => (word, false),
+            };
+            match corner(word, counts) {
+                Some(corner) if corner.position == WRONG => {
+                    let reason = format!(
+                        "a face refers to vertex {}, which the file does not have",
+                        excerpt(word)
+                    );
+                    fault.get_or_insert((FindingKind::FaceRange, String::new(), reason));
+                }
+                Some(corner) => self.faces.push(corner),
+                None => {
+                    let text = excerpt(word);
+                    let reason = format!("\"{text}\" is not a corner of a face");
+                    fault.get_or_insert((FindingKind::FaceUnreadable, text, reason));
+                }
+            }
+            if comment {
+                break;
+            }
+        }
+        let corners = self.faces.corners() - begin;
+        if fault.is_none() && corners < 3 {
+            let reason = format!("a face needs at least three corners, but has {corners}");
+            fault = Some((FindingKind::FaceShort, String::new(), reason));
+        }
+        match fault {
+            None => self.end_face(corners, line),
+            Some((kind, name, reason)) => {
+                self.findings.add(kind, &name, Some(line));
+                self.faces.refused.get_or_insert((line, reason));
+                self.faces.truncate(begin);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` if it is not one.
+fn corner(word: &[u8], counts: Counts) -> Option<SourceCorner> {
+    let mut places = [NONE; 3];
+    for (i, part) in word.split(|b| *b == b'/').enumerate() {
+        if i == 3 {
+            return None;
+        }
+        if !part.is_empty() {
+            places[i] = index(part, counts[i])?;
+        }
+    }
+    let [position, uv, normal] = places;
+    (position != NONE).then_some(SourceCorner { position, uv, normal })
+}
+
+/// An index counted from 0: positive ones count from 1, negative ones back from `count`.
+fn index(digits: &[u8], count: u32) -> Option<u32> {
+    let (back, digits) = match digits {
+        [b'-', rest @ ..] => (true, rest),
+        [b'+', rest @ ..] => (false, rest),
+        _ => (false, digits),
+    };
+    if digits.is_empty() {
+        return None;
+    }
+    let value = digits.iter().try_fold(0_u64, |value, digit| {
+        let digit = digit.is_ascii_digit().then(|| digit - b'0')?;
+        // An index beyond 32 bits is as wrong as any other that is out of range.
+        Some((value * 10 + u64::from(digit)).min(u64::from(u32::MAX)))
+    })?;
+    let value = u32::try_from(value).unwrap_or(u32::MAX);
+    let place =
+        if back { count.checked_sub(value).filter(|_| value > 0) } else { value.checked_sub(1) };
+    Some(place.map_or(WRONG, |place| place.min(WRONG)))
+}

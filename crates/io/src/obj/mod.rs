@@ -1,0 +1,459 @@
+//! A model from an OBJ file.
+//!
+//! The text is cut into chunks ([`chunks`]), which are read by all threads: plain lines the quick
+//! way ([`quick`]), all others the tolerant way ([`scan`], [`faces`]). The numbers of `v`, `vt` and
+//! `vn` are read by tobj ([`rows`]). Faces are not: tobj reads them on one thread, forgets their
+//! lines, and refuses the file for one bad index. The chunks are put together as if they had been
+//! read in order ([`join`]), the faces that can be used are picked ([`sound`]), and a [`Mesh`] is
+//! made of them. A vertex of the mesh is a `v` of the file, used or not.
+//!
+//! Faults that can be left out or mended without guessing are, and each such case is a [`Finding`]:
+//! a vertex that cannot be read loses its faces, not the file.
+//!
+//! The format is that of Wavefront's "Advanced Visualizer", Appendix B1, with the colours of
+//! vertices that MeshLab and others write.
+
+mod chunks;
+mod corners;
+mod faces;
+mod join;
+pub(super) mod lines;
+mod parts;
+mod piece;
+mod quick;
+mod rows;
+mod scan;
+mod sound;
+
+use std::collections::BTreeSet;
+use std::io::Read;
+use std::path::Path;
+
+use rayon::prelude::*;
+
+pub(crate) use self::join::MOST_BYTES;
+
+use self::join::Content;
+use self::parts::NamedPart;
+use self::sound::FaceRuns;
+use super::error::{LoadError, short_name, shown};
+use super::findings::{Finding, FindingKind, Findings, joined};
+use super::mtl::Library;
+use super::packed::{Unpacked, unpacked_name};
+use super::progress::Progress;
+use super::read;
+use super::texture::{Pictures, texture_endings};
+use marraztu_core::scene::{
+    ClosedBodies, CornerLists, FileMaterial, LoadOptions, Mesh, MeshSource, Model, Part, Scale,
+    Smoothing, Texture, UpAxis, Winding, dvec3, newell, split_positions,
+};
+
+/// Why a file without anything in it is refused.
+const EMPTY: &str = "the file is empty";
+
+/// How many different statements `mtllib` are followed.
+const MOST_LIBRARIES: usize = 1000;
+
+/// A model, with what was found on the way.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The model.
+    pub model: Model,
+    /// What was mended, left out or odd.
+    pub findings: Vec<Finding>,
+}
+
+/// Reads an OBJ file, with the MTL files and textures that it names. A file whose name ends in
+/// `.gz` is unpacked.
+///
+/// # Errors
+/// If the file cannot be read, is not an OBJ file, has a number that cannot be read, or has faces
+/// but none that can be used; and if `progress` is cancelled.
+pub fn load(path: &Path, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
+    load_with(path, options, &mut Pictures::default(), progress)
+}
+
+/// As [`load`]; a picture that is among `pictures` already is not read again.
+pub(super) fn load_with(
+    path: &Path,
+    options: &LoadOptions,
+    pictures: &mut Pictures,
+    progress: &Progress,
+) -> Result<Loaded, LoadError> {
+    let file = shown(path);
+    let (text, size) = read::open(path, MOST_BYTES)?;
+    let mut findings = Findings::new(&file);
+    let part = progress.part(0.0, 0.6);
+    let content = match unpacked_name(&file) {
+        // Its size when unpacked is not known; text has about four times as much.
+        Some(_) => content(Unpacked::new(text), 4 * size, &file, &mut findings, &part)?,
+        None => content(text, size, &file, &mut findings, &part)?,
+    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut library = Library::new(pictures, options.bumps);
+    let missing = read_libraries(&mut library, &content, folder, &mut findings);
+    own_library(&mut library, &content, path, missing, &mut findings);
+    let progress = progress.part(0.6, 1.0);
+    let mut loaded = model(content, &file, library, options, findings, &progress)?;
+    // The path is absolute, so that it stays valid if the current folder changes.
+    loaded.model.source = Some(std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()));
+    Ok(loaded)
+}
+
+/// Reads the text of an OBJ file. `folder` is where its MTL files are looked for; if it is `None`
+/// none are.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse(
+    bytes: &[u8],
+    file: &str,
+    folder: Option<&Path>,
+    options: &LoadOptions,
+    progress: &Progress,
+) -> Result<Loaded, LoadError> {
+    let mut findings = Findings::new(file);
+    let content = content(bytes, bytes.len(), file, &mut findings, &progress.part(0.0, 0.6))?;
+    let mut pictures = Pictures::default();
+    let mut library = Library::new(&mut pictures, options.bumps);
+    if let Some(folder) = folder {
+        for (line, name) in read_libraries(&mut library, &content, folder, &mut findings) {
+            findings.add(FindingKind::MtlMissing, &name, Some(line));
+        }
+    }
+    model(content, file, library, options, findings, &progress.part(0.6, 1.0))
+}
+
+/// What the text of an OBJ file says; `size` is how many bytes it has, as far as that is known.
+fn content(
+    text: impl Read + Send,
+    size: usize,
+    file: &str,
+    findings: &mut Findings,
+    progress: &Progress,
+) -> Result<Content, LoadError> {
+    let text = read::in_utf_8(text, file)?;
+    let content = join::content(text, size, file, findings, progress)?;
+    refuse_nothing(file, &content)?;
+    if content.faces.runs.is_empty() {
+        findings.add(FindingKind::NoFaces, "", None);
+    }
+    Ok(content)
+}
+
+/// Makes a model of what a text says.
+fn model(
+    content: Content,
+    file: &str,
+    library: Library<'_>,
+    options: &LoadOptions,
+    mut findings: Findings,
+    progress: &Progress,
+) -> Result<Loaded, LoadError> {
+    let parts = named_parts(&content.parts, &library, &mut findings);
+    let used = parts.iter().filter_map(|part| part.material).collect();
+    if library.count() > 0 && content.parts.iter().all(|part| part.names.material.is_none()) {
+        findings.note_count(FindingKind::MaterialsUnused, library.count());
+    }
+    let companions = library.files();
+    let (materials, of_materials) = library.finish(&used);
+    let edge_color = content.edge_color;
+    progress.reached(1, 10)?;
+
+    let mut content = content;
+    let faces = FaceRuns::of(std::mem::take(&mut content.faces.runs));
+    let (source, corners) = source(content, &faces, parts, options)
+        .ok_or_else(|| LoadError::file(file, "the coordinates are too large at this scale"))?;
+    let mesh = Mesh::from_lists(source, corners);
+    let mesh = mesh.map_err(|error| LoadError::file(file, error.to_string()))?;
+    for polygon in mesh.without_area() {
+        findings.note(FindingKind::FaceNoArea, faces.line(*polygon));
+    }
+    note_crossings(&mesh, &faces, &mut findings);
+    note_orientation(&mesh, &faces, &mut findings);
+    if !mesh.unused_vertices().is_empty() && mesh.polygon_count() > 0 {
+        let count = mesh.unused_vertices().len();
+        findings.note_count(FindingKind::VertexUnused, count);
+    }
+    note_unmapped(&mesh, &materials, &mut findings);
+    progress.reached(1, 1)?;
+
+    let name = Path::new(unpacked_name(file).unwrap_or(file)).file_stem().unwrap_or_default();
+    let name = name.to_string_lossy().into_owned();
+    let options = *options;
+    let model = Model { name, source: None, companions, options, mesh, materials, edge_color };
+    let findings = findings.into_list().into_iter().chain(of_materials).collect();
+    Ok(Loaded { model, findings: joined(findings) })
+}
+
+/// Why a text that begins with these bytes cannot be an OBJ file, if they tell; `whole` says that
+/// there are no more.
+fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
+    let known = [
+        (&b"glTF"[..], "a glTF file"),
+        (b"PK\x03\x04", "a ZIP archive; unpack it first"),
+        (b"\x1F\x8B", "a gzip archive; unpack it first"),
+        (b"Kaydara FBX", "an FBX file"),
+        (b"BLENDER", "a Blender file; export it as OBJ"),
+        (b"\x89PNG", "a PNG picture"),
+        (b"\xFF\xD8\xFF", "a JPEG picture"),
+        (b"ply\n", "a PLY file"),
+        (b"ply\r\n", "a PLY file"),
+        (b"solid ", "an STL file"),
+        (b"OFF\n", "an OFF file"),
+    ];
+    if whole && bytes.trim_ascii().is_empty() {
+        return Some(EMPTY.to_owned());
+    }
+    for (begin, what) in known {
+        if bytes.starts_with(begin) {
+            return Some(format!("this is not an OBJ file but {what}"));
+        }
+    }
+    read::is_binary(&bytes[..bytes.len().min(4096)])
+        .then(|| "this is not an OBJ file: it is not text".into())
+}
+
+/// Refuses a file if nothing of it would be left.
+fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
+    if !content.faces.runs.is_empty() {
+        return Ok(());
+    }
+    // A vertex that cannot be read comes before the faces that refer to it.
+    if let Some((line, reason)) = &content.refused
+        && (content.positions.is_empty() || content.faces.refused.is_some())
+    {
+        let what = if content.positions.is_empty() { "the vertices" } else { "its faces" };
+        let reason = format!("{reason}; none of {what} can be used");
+        return Err(LoadError::line(file, *line, reason));
+    }
+    if let Some((line, reason)) = &content.faces.refused {
+        let reason = format!("{reason}; none of its faces can be used");
+        return Err(LoadError::line(file, *line, reason));
+    }
+    if !content.positions.is_empty() {
+        return Ok(());
+    }
+    Err(LoadError::file(
+        file,
+        match content.vertices {
+            0 => "this is not an OBJ file: it has neither vertices nor faces",
+            _ => "all of its vertices are infinite or NaN",
+        },
+    ))
+}
+
+/// Reads the MTL files in `folder`. Returns the missing ones, with their lines.
+fn read_libraries(
+    library: &mut Library<'_>,
+    content: &Content,
+    folder: &Path,
+    findings: &mut Findings,
+) -> Vec<(u32, String)> {
+    let mut missing = Vec::new();
+    let mut seen = BTreeSet::new();
+    for (line, names) in &content.libraries {
+        // Exporters repeat the statement for every object.
+        if !seen.insert(names) {
+            continue;
+        }
+        // Each is a look at the disk.
+        if seen.len() > MOST_LIBRARIES {
+            findings.note(FindingKind::MtlMany, *line);
+            continue;
+        }
+        for (name, path) in library.locator.locate_all(folder, names, ".mtl") {
+            match path {
+                Some(path) => library.read(&path, folder),
+                None => missing.push((*line, name)),
+            }
+        }
+    }
+    missing
+}
+
+/// Looks for an MTL file or a picture with the model's name.
+///
+/// Files are renamed and lose the MTL file that they name, or never named it. If faces name
+/// materials that no file has, the MTL file with the model's name is read, as Blender does.
+fn own_library(
+    library: &mut Library<'_>,
+    content: &Content,
+    path: &Path,
+    missing: Vec<(u32, String)>,
+    findings: &mut Findings,
+) {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let shown = shown(path);
+    let stem = Path::new(unpacked_name(&shown).unwrap_or(&shown)).file_stem().unwrap_or_default();
+    let stem = stem.to_string_lossy();
+    let mut own = |ending: &str| library.locator.locate(folder, &format!("{stem}.{ending}"));
+    let has_library = !content.libraries.is_empty() && missing.is_empty();
+    let Some(mtl) = (if has_library { None } else { own("mtl") }) else {
+        if content.libraries.is_empty()
+            && let Some(picture) = texture_endings().into_iter().find_map(own)
+        {
+            findings.add(FindingKind::PictureUnnamed, &short_name(&picture), None);
+        }
+        for (line, name) in missing {
+            findings.add(FindingKind::MtlMissing, &name, Some(line));
+        }
+        return;
+    };
+    let names_materials = content.parts.iter().any(|part| part.names.material.is_some());
+    if missing.is_empty() && !names_materials {
+        return findings.add(FindingKind::MtlUnnamed, &short_name(&mtl), None);
+    }
+    library.read(&mtl, folder);
+    match missing.first() {
+        Some((line, name)) => findings.add(FindingKind::MtlRenamed, name, Some(*line)),
+        None => findings.add(FindingKind::MtlOfModel, &short_name(&mtl), None),
+    }
+}
+
+/// The parts, by the names of their groups, objects or materials.
+fn named_parts(parts: &[NamedPart], library: &Library<'_>, findings: &mut Findings) -> Vec<Part> {
+    let named = |(i, part): (usize, &NamedPart)| {
+        let names = &part.names;
+        let material = names.material.as_deref().and_then(|name| {
+            let place = library.place(name);
+            if place.is_none() && !name.is_empty() {
+                findings.add(FindingKind::MaterialUnknown, name, Some(part.line));
+            }
+            place
+        });
+        let given = [&names.group, &names.object, &names.material];
+        let name = given.into_iter().flatten().find(|name| !name.is_empty());
+        let name = name.cloned().unwrap_or_else(|| format!("part {}", i + 1));
+        Part { name, material }
+    };
+    parts.iter().enumerate().map(named).collect()
+}
+
+/// The lists of the mesh, turned and scaled as asked for; `None` if they are not finite.
+fn source(
+    content: Content,
+    faces: &FaceRuns,
+    parts: Vec<Part>,
+    options: &LoadOptions,
+) -> Option<(MeshSource, CornerLists)> {
+    let Content { mut positions, uvs, mut normals, colors, has_smoothing, .. } = content;
+    let part_names = content.parts.into_iter().map(|part| part.names).collect();
+    if placement(options) != placement(&LoadOptions::default()) {
+        place(&mut positions, &mut normals, options);
+    }
+    let (offset, positions) = split_positions(&positions, &content.faces.corners.positions);
+    let (arities, polygon_parts) = (faces.arities(), faces.parts());
+    let smoothing = if has_smoothing {
+        Smoothing::Groups(faces.smoothing())
+    } else {
+        Smoothing::Crease(options.crease)
+    };
+    let mut corners = content.faces.corners;
+    if options.winding == Winding::Turned {
+        let CornerLists { positions, uvs, normals } = &mut corners;
+        for list in [positions, uvs, normals].into_iter().filter(|list| !list.is_empty()) {
+            let mut rest = &mut list[..];
+            for arity in &arities {
+                let (polygon, others) = rest.split_at_mut(*arity as usize);
+                polygon.reverse();
+                rest = others;
+            }
+        }
+    }
+    let finite = positions.iter().flatten().all(|x| x.is_finite());
+    let source = MeshSource {
+        offset,
+        positions,
+        colors,
+        uvs,
+        normals,
+        corners: Vec::new(),
+        arities,
+        polygon_parts,
+        parts,
+        part_names,
+        smoothing,
+    };
+    finite.then_some((source, corners))
+}
+
+/// The options that change positions and normals.
+const fn placement(options: &LoadOptions) -> (UpAxis, Scale, Winding) {
+    (options.up, options.scale, options.winding)
+}
+
+/// Turns and scales the positions and normals of a file as asked for.
+fn place(positions: &mut [[f64; 3]], normals: &mut [[f32; 3]], options: &LoadOptions) {
+    let LoadOptions { up, scale, .. } = options;
+    let turned = options.winding == Winding::Turned;
+    positions.par_iter_mut().for_each(|row| *row = up.upright(*row).map(|x| x * scale.get()));
+    let normal = |row: [f32; 3]| up.upright(row.map(|x| if turned { -x } else { x }));
+    normals.par_iter_mut().for_each(|row| *row = normal(*row));
+}
+
+/// Notes polygons whose triangles do not all run the polygon's way: they cross
+/// themselves, or were too large to be cut up rightly.
+fn note_crossings(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
+    if mesh.triangle_count() == mesh.polygon_count() {
+        return;
+    }
+    let crossing = |polygon: &u32| mesh.corners_of(*polygon).len() > 3 && crosses(mesh, *polygon);
+    let polygons = 0..u32::try_from(mesh.polygon_count()).unwrap_or(u32::MAX);
+    for polygon in polygons.into_par_iter().filter(crossing).collect::<Vec<_>>() {
+        let corners = mesh.corners_of(polygon).len().to_string();
+        findings.add(FindingKind::PolygonCrosses, &corners, Some(faces.line(polygon)));
+    }
+}
+
+/// Notes bodies that are inside out, and faces with normals on their wrong side.
+fn note_orientation(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
+    let ClosedBodies { all, inside_out } = mesh.closed_bodies();
+    let kind = match inside_out == all {
+        true => FindingKind::InsideOut,
+        false => FindingKind::InsideOutPartly,
+    };
+    findings.note_count(kind, inside_out);
+    let against = mesh.polygons_against_normals();
+    if let Some(first) = against.first() {
+        findings.note_all(FindingKind::NormalsAgainst, against.len(), faces.line(*first));
+    }
+}
+
+/// Notes textures on faces without texture coordinates.
+fn note_unmapped(mesh: &Mesh, materials: &[FileMaterial], findings: &mut Findings) {
+    let texture = |part: &Part| -> Option<(&FileMaterial, &Texture)> {
+        let material = materials.get(part.material? as usize)?;
+        let map = material.maps.values().map(|map| &map.texture).next();
+        Some((material, material.texture.as_ref().or(map)?))
+    };
+    if !mesh.parts().iter().any(|part| texture(part).is_some()) {
+        return;
+    }
+    let mut seen = vec![[false; 2]; mesh.parts().len()];
+    for (polygon, part) in (0..).zip(mesh.polygon_parts()) {
+        let [is_used, is_mapped] = &mut seen[*part as usize];
+        *is_used = true;
+        *is_mapped = *is_mapped || mesh.has_uvs(polygon);
+    }
+    for (part, seen) in mesh.parts().iter().zip(seen) {
+        if let ([true, false], Some((material, texture))) = (seen, texture(part)) {
+            let name = format!("{} of material \"{}\"", short_name(&texture.source), material.name);
+            findings.add(FindingKind::TextureUnmapped, &name, None);
+        }
+    }
+}
+
+fn crosses(mesh: &Mesh, polygon: u32) -> bool {
+    let normal = dvec3(mesh.polygon_normals()[polygon as usize]);
+    let at =
+        |corner: u32| dvec3(mesh.positions()[mesh.corners()[corner as usize].position as usize]);
+    // Polygons that are not quite flat have triangles that are only just turned away.
+    let [mut backwards, mut forwards] = [0.0; 2];
+    for triangle in &mesh.triangles()[mesh.triangles_of(polygon)] {
+        let area = newell(triangle.corners.into_iter().map(at)).dot(normal);
+        backwards += (-area).max(0.0);
+        forwards += area.max(0.0);
+    }
+    backwards > 1e-3 * forwards
+}

@@ -1,0 +1,185 @@
+//! Reads plain lines, as nearly all lines are written.
+//!
+//! A line is gone over once, from its keyword to its ending. A face is taken if the whole line is
+//! plain; a row of numbers is then left to tobj. Any other line is left untouched to the tolerant
+//! way, which knows comments, continued lines, odd numbers and every fault.
+
+use super::lines::Lines;
+use super::piece::{Counts, Piece, Trust};
+use marraztu_core::scene::{NONE, SourceCorner};
+
+impl Piece {
+    /// Reads the next line if it has the plain form; says how many bytes it has, with its ending.
+    #[inline]
+    pub(super) fn quick(&mut self, lines: &Lines<'_>) -> Option<usize> {
+        match lines.rest() {
+            text @ [b'f', b' ', rest @ ..] => {
+                let rest = self.quick_face(rest, lines.number().saturating_add(1))?;
+                Some(text.len() - rest.len())
+            }
+            text @ [b'v', ..] if self.trust == Trust::Plain => {
+                self.quick_row(text, lines.position())
+            }
+            _ => None,
+        }
+    }
+
+    /// `v x y z`, `v x y z r g b`, `vt u v`, `vt u v w` and `vn x y z` go to tobj as they are.
+    #[inline]
+    fn quick_row(&mut self, text: &[u8], begin: usize) -> Option<usize> {
+        let keyword = match text {
+            [_, b' ', ..] => 1,
+            [_, b'n' | b't', b' ', ..] => 2,
+            _ => return None,
+        };
+        let (words, length, ending) = plain(&text[keyword..])?;
+        let (length, end) = (keyword + length, begin + keyword + length);
+        match (&text[..keyword], words) {
+            (b"v", 3 | 6) => self.vertices.add_line(begin, end, words == 6),
+            (b"vn", 3) => self.normals.add_line(begin, end, false),
+            (b"vt", 2) => self.uvs.add_line(begin, end, false),
+            // tobj does not look at the third number.
+            (b"vt", 3) if is_number(&text[..length]) => self.uvs.add_line(begin, end, false),
+            _ => return None,
+        }
+        Some(length + ending)
+    }
+
+    /// Three corners or more.
+    #[inline]
+    fn quick_face<'a>(&mut self, mut rest: &'a [u8], line: u32) -> Option<&'a [u8]> {
+        let counts = self.counts();
+        let begin = self.faces.corners();
+        let after = loop {
+            if let Some(after) = line_end(rest) {
+                break Some(after);
+            }
+            let Some((corner, after)) = corner(blanks(rest), counts) else { break None };
+            self.faces.push(corner);
+            rest = after;
+        };
+        let corners = self.faces.corners() - begin;
+        if after.is_none() || corners < 3 {
+            self.faces.truncate(begin);
+            return None;
+        }
+        self.end_face(corners, line);
+        after
+    }
+}
+
+/// How many words a line has, how many bytes they take, and how many its ending; `None` if the line
+/// has anything but blanks and what numbers are written with. It begins with a blank.
+#[inline]
+fn plain(text: &[u8]) -> Option<(u32, usize, usize)> {
+    let (mut words, mut after_blank, mut length) = (0, false, 0);
+    while let Some(byte) = text.get(length) {
+        // Numbers are of any length, so a branch for each blank would be mispredicted.
+        let is_blank = matches!(byte, b' ' | b'\t');
+        let is_number = matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+' | b'e' | b'E');
+        if !(is_blank | is_number) {
+            break;
+        }
+        words += u32::from(after_blank & is_number);
+        after_blank = is_blank;
+        length += 1;
+    }
+    match text[length..] {
+        [b'\r', b'\n', ..] => Some((words, length, 2)),
+        [b'\n' | b'\r', ..] => Some((words, length, 1)),
+        [] => Some((words, length, 0)),
+        _ => None,
+    }
+}
+
+/// Whether the last word of a line is a number.
+fn is_number(line: &[u8]) -> bool {
+    let mut words = line.trim_ascii_end().rsplit(|b| matches!(b, b' ' | b'\t'));
+    let word = std::str::from_utf8(words.next().unwrap_or_default());
+    word.is_ok_and(|word| word.parse::<f32>().is_ok())
+}
+
+/// A corner `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+#[inline]
+fn corner(text: &[u8], counts: Option<Counts>) -> Option<(SourceCorner, &[u8])> {
+    let count = |i: usize| counts.map(|counts| counts[i]);
+    let (position, mut text) = index(text, count(0))?;
+    let [mut uv, mut normal] = [NONE; 2];
+    if let [b'/', rest @ ..] = text {
+        text = rest;
+        if !matches!(text, [b'/', ..]) {
+            (uv, text) = index(text, count(1))?;
+        }
+        if let [b'/', rest @ ..] = text {
+            (normal, text) = index(rest, count(2))?;
+        }
+    }
+    ends_word(text)?;
+    Some((SourceCorner { position, uv, normal }, text))
+}
+
+/// An index of up to nine digits, counted from 0; one that counts back has to count from somewhere.
+#[inline]
+fn index(text: &[u8], count: Option<u32>) -> Option<(u32, &[u8])> {
+    let (back, digits) = match text {
+        [b'-', rest @ ..] => (true, rest),
+        _ => (false, text),
+    };
+    let (mut value, first) = digits.first_chunk().map_or((0, 0), |eight| leading_digits(*eight));
+    let mut rest = &digits[first..];
+    if first == 8 || digits.len() < 8 {
+        while let [digit @ b'0'..=b'9', after @ ..] = rest {
+            value = value.wrapping_mul(10).wrapping_add(u32::from(digit - b'0'));
+            rest = after;
+        }
+    }
+    if value == 0 || digits.len() - rest.len() > 9 {
+        return None;
+    }
+    let place = if back { count?.checked_sub(value)? } else { value - 1 };
+    Some((place, rest))
+}
+
+/// A text without the blanks that it begins with.
+#[inline]
+fn blanks(mut text: &[u8]) -> &[u8] {
+    while let [b' ' | b'\t', rest @ ..] = text {
+        text = rest;
+    }
+    text
+}
+
+/// Whether a word ends where this text begins.
+#[inline]
+fn ends_word(text: &[u8]) -> Option<()> {
+    matches!(text, [] | [b' ' | b'\t' | b'\n' | b'\r', ..]).then_some(())
+}
+
+/// What follows the line's ending, if nothing but blanks is before it.
+#[inline]
+fn line_end(text: &[u8]) -> Option<&[u8]> {
+    match blanks(text) {
+        [b'\r', b'\n', rest @ ..] | [b'\n' | b'\r', rest @ ..] | rest @ [] => Some(rest),
+        _ => None,
+    }
+}
+
+/// The number that the leading digits of eight bytes make, and how many digits there are.
+#[inline]
+fn leading_digits(text: [u8; 8]) -> (u32, usize) {
+    // Digits become their values, other bytes more than 9.
+    let values = u64::from_le_bytes(text) ^ 0x3030_3030_3030_3030;
+    let beyond = values | values.wrapping_add(0x0606_0606_0606_0606);
+    // A carry spoils only what follows the first byte that is not a digit.
+    let count = (beyond & 0xf0f0_f0f0_f0f0_f0f0).trailing_zeros() / 8;
+    if count == 0 {
+        return (0, 0);
+    }
+    // To the end, behind zeros; then neighbours are joined: to pairs, to fours, to eight.
+    let values = values << (64 - 8 * count);
+    let pairs = values.wrapping_mul(10).wrapping_add(values >> 8);
+    let even = (pairs & 0x0000_00ff_0000_00ff).wrapping_mul(0x000f_4240_0000_0064);
+    let odd = ((pairs >> 16) & 0x0000_00ff_0000_00ff).wrapping_mul(0x0000_2710_0000_0001);
+    let value = (even.wrapping_add(odd) >> 32) as u32;
+    (value, count as usize)
+}

@@ -1,0 +1,339 @@
+//! Which faces of a file can be used, and what is odd about them.
+
+use super::faces::{Faces, INHERITED, Run, WRONG};
+use crate::findings::{FindingKind, Findings};
+use marraztu_core::base::lists::concatenated;
+use marraztu_core::scene::{CornerLists, NONE, SourceCorner};
+
+/// How many statements of a kind the file has, and which of them are lost, ascending.
+#[derive(Debug)]
+pub(super) struct Totals {
+    pub(super) count: u32,
+    pub(super) lost: Vec<u32>,
+}
+
+impl Totals {
+    /// The index of statement `i` among those that are kept; `None` if it is lost.
+    fn place(&self, i: u32) -> Option<u32> {
+        match self.lost.binary_search(&i) {
+            Ok(_) => None,
+            Err(before) => Some(i - u32::try_from(before).unwrap_or(i)),
+        }
+    }
+
+    /// Whether every index of a list names something, or is [`NONE`] if that is allowed.
+    fn holds(&self, list: &[u32], none: bool) -> bool {
+        // Counted, not searched: that is done for many at once.
+        let wrong = |i: &&u32| **i >= self.count && !(none && **i == NONE);
+        self.lost.is_empty() && list.iter().filter(wrong).count() == 0
+    }
+}
+
+/// Faces whose every index is in range or [`NONE`], counted among the rows that are kept.
+#[derive(Debug)]
+pub(super) struct SoundFaces {
+    pub(super) corners: CornerLists,
+    pub(super) runs: Vec<Run>,
+    /// The first face that cannot be used, with the reason.
+    pub(super) refused: Option<(u32, String)>,
+}
+
+/// The state at the beginning of a chunk.
+#[derive(Debug)]
+pub(super) struct Before {
+    /// How many lines are before it.
+    pub(super) lines: u32,
+    /// The places of its parts in the file's list.
+    pub(super) parts: Vec<u32>,
+    /// The smoothing group at its beginning.
+    pub(super) smoothing: u32,
+}
+
+/// The sound faces of one chunk.
+#[derive(Debug, Default)]
+pub(super) struct SoundPiece {
+    faces: Faces,
+    findings: Findings,
+    /// Faces without texture coordinates, and without normals.
+    without: [Without; 2],
+}
+
+/// Corners without something, and faces that have such corners.
+#[derive(Clone, Copy, Debug, Default)]
+struct Without {
+    corners: usize,
+    faces: usize,
+    /// The line of the first such face.
+    first: u32,
+}
+
+impl Without {
+    fn note(&mut self, corners: usize, line: u32) {
+        if corners > 0 {
+            self.append(Self { corners, faces: 1, first: line });
+        }
+    }
+
+    fn append(&mut self, following: Self) {
+        if self.faces == 0 {
+            self.first = following.first;
+        }
+        self.faces += following.faces;
+        self.corners += following.corners;
+    }
+}
+
+impl SoundPiece {
+    /// Leaves out faces whose vertices are missing, and takes missing texture coordinates and
+    /// normals from corners.
+    pub(super) fn of(mut faces: Faces, totals: &[Totals; 3], before: &Before) -> Self {
+        let Before { lines, ref parts, smoothing } = *before;
+        for run in &mut faces.runs {
+            (run.line, run.part) = (run.line.saturating_add(lines), parts[run.part as usize]);
+            if run.smoothing == INHERITED {
+                run.smoothing = smoothing;
+            }
+        }
+        if let Some((line, _)) = &mut faces.refused {
+            *line = line.saturating_add(lines);
+        }
+        let lists = &faces.corners;
+        let sound = totals[0].holds(&lists.positions, false)
+            && totals[1].holds(&lists.uvs, true)
+            && totals[2].holds(&lists.normals, true);
+        if sound { Self::of_sound(faces) } else { Self::mended(&faces, totals) }
+    }
+
+    /// Notes what is odd about faces that are all sound.
+    fn of_sound(faces: Faces) -> Self {
+        let mut piece = Self { faces, ..Self::default() };
+        let lists = &piece.faces.corners;
+        let mut begin = 0;
+        for (corners, line) in faces_of(&piece.faces.runs) {
+            let face = begin..begin + corners;
+            begin = face.end;
+            if repeats(&lists.positions[face.clone()]) {
+                piece.findings.note(FindingKind::FaceRepeats, line);
+            }
+            for (without, list) in piece.without.iter_mut().zip([&lists.uvs, &lists.normals]) {
+                if let Some(own) = list.get(face.clone()) {
+                    without.note(own.iter().filter(|i| **i == NONE).count(), line);
+                }
+            }
+        }
+        let all = Without {
+            corners: lists.positions.len(),
+            faces: piece.faces.runs.iter().map(|run| run.faces as usize).sum(),
+            first: piece.faces.runs.first().map_or(0, |run| run.line),
+        };
+        for (without, list) in piece.without.iter_mut().zip([&lists.uvs, &lists.normals]) {
+            if list.is_empty() {
+                *without = all;
+            }
+        }
+        piece
+    }
+
+    /// Takes up the faces one by one.
+    fn mended(faces: &Faces, totals: &[Totals; 3]) -> Self {
+        let refused = faces.refused.clone();
+        let mut piece = Self { faces: Faces { refused, ..Faces::default() }, ..Self::default() };
+        let mut begin = 0;
+        for run in &faces.runs {
+            for line in run.line..run.line.saturating_add(run.faces) {
+                let face = begin..begin + run.corners as usize;
+                begin = face.end;
+                let vertices = &faces.corners.positions[face.clone()];
+                match fault(vertices, &totals[0]) {
+                    Some((kind, reason)) => piece.refuse(kind, line, reason),
+                    None => piece.add(&faces.corners, face, Run { line, ..*run }, totals),
+                }
+            }
+        }
+        piece
+    }
+
+    fn refuse(&mut self, kind: FindingKind, line: u32, reason: String) {
+        self.findings.note(kind, line);
+        match &self.faces.refused {
+            Some((earlier, _)) if *earlier <= line => {}
+            _ => self.faces.refused = Some((line, reason)),
+        }
+    }
+
+    /// Takes up a face with its indices counted among the rows that are kept, and notes what is
+    /// odd.
+    fn add(
+        &mut self,
+        lists: &CornerLists,
+        face: std::ops::Range<usize>,
+        of: Run,
+        totals: &[Totals; 3],
+    ) {
+        let [vertices, uvs, normals] = totals;
+        let [mut wrong_uv, mut wrong_normal] = [false; 2];
+        let [mut no_uv, mut no_normal] = [0; 2];
+        let begin = self.faces.corners();
+        for i in face {
+            let corner = SourceCorner {
+                position: vertices.place(lists.positions[i]).unwrap_or(NONE),
+                uv: settled(lists.uv(i), uvs, &mut wrong_uv),
+                normal: settled(lists.normal(i), normals, &mut wrong_normal),
+            };
+            no_uv += usize::from(corner.uv == NONE);
+            no_normal += usize::from(corner.normal == NONE);
+            self.faces.push(corner);
+        }
+        self.faces.end_face(Run { faces: 1, ..of });
+        self.without[0].note(no_uv, of.line);
+        self.without[1].note(no_normal, of.line);
+        let odd = [
+            (wrong_uv, FindingKind::UvRange),
+            (wrong_normal, FindingKind::NormalRange),
+            (repeats(&self.faces.corners.positions[begin..]), FindingKind::FaceRepeats),
+        ];
+        for (_, kind) in odd.into_iter().filter(|(odd, _)| *odd) {
+            self.findings.note(kind, of.line);
+        }
+    }
+}
+
+impl SoundFaces {
+    /// Puts the faces of all chunks together.
+    pub(super) fn of(pieces: Vec<SoundPiece>, findings: &mut Findings) -> Self {
+        let mut all = Self { corners: CornerLists::default(), runs: Vec::new(), refused: None };
+        let mut without = [Without::default(); 2];
+        let [mut positions, mut uvs, mut normals] = [const { Vec::new() }; 3];
+        for piece in pieces {
+            // The lines are those of the file already.
+            findings.append(piece.findings, 0);
+            for (all, more) in without.iter_mut().zip(piece.without) {
+                all.append(more);
+            }
+            let Faces { corners, mut runs, refused } = piece.faces;
+            all.refused = all.refused.or(refused);
+            all.runs.append(&mut runs);
+            positions.push(corners.positions);
+            uvs.push(corners.uvs);
+            normals.push(corners.normals);
+        }
+        let lengths: Vec<usize> = positions.iter().map(Vec::len).collect();
+        all.corners = CornerLists {
+            positions: concatenated(positions),
+            uvs: optional(uvs, &lengths),
+            normals: optional(normals, &lengths),
+        };
+        // What no face has is not missing.
+        let kinds = [FindingKind::UvMixed, FindingKind::NormalMixed];
+        for (without, kind) in without.into_iter().zip(kinds) {
+            if without.corners < all.corners.positions.len() {
+                findings.note_all(kind, without.faces, without.first);
+            }
+        }
+        all
+    }
+}
+
+/// What faces are, without their corners.
+#[derive(Debug)]
+pub(super) struct FaceRuns {
+    runs: Vec<Run>,
+    /// How many faces there are up to the end of each run.
+    ends: Vec<u32>,
+}
+
+impl FaceRuns {
+    pub(super) fn of(runs: Vec<Run>) -> Self {
+        let ends = runs.iter().scan(0_u32, |end, run| {
+            *end = end.saturating_add(run.faces);
+            Some(*end)
+        });
+        Self { ends: ends.collect(), runs }
+    }
+
+    /// The line of a face.
+    pub(super) fn line(&self, face: u32) -> u32 {
+        let place = self.ends.partition_point(|end| *end <= face);
+        let (run, end) = (self.runs[place], self.ends[place]);
+        run.line.saturating_add(run.faces - (end - face))
+    }
+
+    /// How many corners each face has, in order.
+    pub(super) fn arities(&self) -> Vec<u32> {
+        self.by_face(|run| run.corners)
+    }
+
+    /// The part of each face, in order.
+    pub(super) fn parts(&self) -> Vec<u32> {
+        self.by_face(|run| run.part)
+    }
+
+    /// The smoothing group of each face, in order.
+    pub(super) fn smoothing(&self) -> Vec<u32> {
+        self.by_face(|run| run.smoothing)
+    }
+
+    fn by_face(&self, number: impl Fn(&Run) -> u32) -> Vec<u32> {
+        let faces = self.ends.last().copied().unwrap_or(0) as usize;
+        let mut numbers = Vec::with_capacity(faces);
+        for run in &self.runs {
+            numbers.resize(numbers.len() + run.faces as usize, number(run));
+        }
+        numbers
+    }
+}
+
+/// How many corners each face of these runs has, and its line.
+fn faces_of(runs: &[Run]) -> impl Iterator<Item = (usize, u32)> {
+    let faces = |run: &Run| {
+        let corners = run.corners as usize;
+        (run.line..run.line.saturating_add(run.faces)).map(move |line| (corners, line))
+    };
+    runs.iter().flat_map(faces)
+}
+
+/// Lists one after the other. A list of nothing but [`NONE`] may be empty; `lengths` says how long
+/// each is.
+fn optional(mut lists: Vec<Vec<u32>>, lengths: &[usize]) -> Vec<u32> {
+    if lists.iter().all(Vec::is_empty) {
+        return Vec::new();
+    }
+    for (list, length) in lists.iter_mut().zip(lengths) {
+        list.resize(*length, NONE);
+    }
+    concatenated(lists)
+}
+
+fn fault(face: &[u32], vertices: &Totals) -> Option<(FindingKind, String)> {
+    let count = vertices.count;
+    if let Some(wrong) = face.iter().find(|vertex| **vertex >= count) {
+        let named = u64::from(*wrong) + 1;
+        let reason = format!("a face refers to vertex {named}, but the file has {count} vertices");
+        return Some((FindingKind::FaceRange, reason));
+    }
+    let lost = |vertex: &u32| vertices.place(*vertex).is_none();
+    (!vertices.lost.is_empty() && face.iter().any(lost)).then(|| {
+        let reason = "a face refers to a vertex that is infinite or NaN".to_owned();
+        (FindingKind::FaceOnLostVertex, reason)
+    })
+}
+
+/// The place of an index among the rows that are kept, or [`NONE`].
+fn settled(index: u32, totals: &Totals, wrong: &mut bool) -> u32 {
+    let names = index < totals.count && index != WRONG;
+    *wrong |= !names && index != NONE;
+    if names { totals.place(index).unwrap_or(NONE) } else { NONE }
+}
+
+/// Whether a face names a vertex twice.
+fn repeats(vertices: &[u32]) -> bool {
+    match vertices {
+        [a, b, c] => a == b || b == c || c == a,
+        few if few.len() <= 8 => (1..few.len()).any(|i| few[..i].contains(&few[i])),
+        many => {
+            let mut many = many.to_vec();
+            many.sort_unstable();
+            many.windows(2).any(|two| two[0] == two[1])
+        }
+    }
+}

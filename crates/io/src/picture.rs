@@ -1,0 +1,297 @@
+//! Saves pictures.
+//!
+//! A PNG or PPM is written in bands of rows, directly into the file: a picture of a gigabyte is
+//! never copied.
+
+use std::fs::File;
+use std::io::{Read, Write};
+use std::path::Path;
+
+use image::codecs::jpeg::JpegEncoder;
+use image::codecs::webp::WebPEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+
+use super::replace::{SaveError, Worth, check_target, replace_by};
+use marraztu_core::base::image::Picture;
+
+/// The quality of a JPEG, from 1 to 100: differences are hardly visible.
+const JPEG_QUALITY: u8 = 92;
+
+/// How many bytes identify the format of a picture.
+const SIGNATURE: u64 = 64;
+
+/// A format that pictures are written in.
+#[derive(Debug)]
+pub struct PictureFormat {
+    /// What people call it.
+    pub name: &'static str,
+    /// How names of such files end, in lower case; the first is the usual one.
+    pub endings: &'static [&'static str],
+    /// Whether a pixel can be transparent.
+    pub has_alpha: bool,
+    encode: fn(&Picture, &mut dyn Write) -> Result<(), std::io::Error>,
+}
+
+/// The formats that pictures are written in.
+pub static PICTURE_FORMATS: &[PictureFormat] = &[
+    PictureFormat { name: "PNG", endings: &["png"], has_alpha: true, encode: write_png },
+    PictureFormat {
+        name: "JPEG",
+        endings: &["jpg", "jpeg"],
+        has_alpha: false,
+        encode: |picture, to| {
+            write_opaque(picture, JpegEncoder::new_with_quality(to, JPEG_QUALITY))
+        },
+    },
+    PictureFormat {
+        name: "WebP",
+        endings: &["webp"],
+        has_alpha: true,
+        encode: |picture, to| {
+            let picture_to = WebPEncoder::new_lossless(to);
+            write(picture, picture_to)
+        },
+    },
+    PictureFormat { name: "PPM", endings: &["ppm"], has_alpha: false, encode: write_ppm },
+];
+
+impl PictureFormat {
+    /// The format that the ending of a file's name asks for.
+    ///
+    /// # Errors
+    /// The endings of all formats, if it has none of them.
+    pub fn of(path: &Path) -> Result<&'static Self, String> {
+        let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+        let ending = ending.as_deref().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let found = PICTURE_FORMATS.iter().find(|format| format.endings.contains(&ending));
+        found.ok_or_else(|| format!("its name has to end in {}", Self::usual_endings()))
+    }
+
+    /// The usual endings of all formats: ".png, .jpg, .webp or .ppm".
+    #[must_use]
+    pub fn usual_endings() -> String {
+        either(PICTURE_FORMATS.iter().map(|format| format!(".{}", format.endings[0])))
+    }
+
+    /// The picture as the bytes of a file.
+    ///
+    /// # Errors
+    /// The reason, if the format cannot hold it.
+    pub fn encode(&self, picture: &Picture) -> Result<Vec<u8>, String> {
+        let mut content = Vec::new();
+        (self.encode)(picture, &mut content).map_err(|error| error.to_string())?;
+        Ok(content)
+    }
+}
+
+/// Words as a list in a sentence: "a, b or c".
+pub(super) fn either(words: impl Iterator<Item = String>) -> String {
+    let words: Vec<String> = words.collect();
+    match words.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+        None => String::new(),
+    }
+}
+
+/// Saves a picture in the format of its name's ending.
+///
+/// # Errors
+/// If the ending is unknown, or the file cannot be written; an existing file stays as it was.
+pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
+    let fail = |reason: String| SaveError::new(path, reason);
+    let format = PictureFormat::of(path).map_err(fail)?;
+    replace_by(path, Worth::Product, &mut |file| {
+        let mut file = std::io::BufWriter::new(file);
+        (format.encode)(picture, &mut file)?;
+        file.flush()
+    })
+}
+
+/// Checks whether the format of a transparent picture has an alpha channel.
+///
+/// # Errors
+/// If it has none.
+pub fn check_alpha(path: &Path) -> Result<(), SaveError> {
+    let fail = |reason: String| SaveError::new(path, reason);
+    let format = PictureFormat::of(path).map_err(fail)?;
+    if format.has_alpha {
+        return Ok(());
+    }
+    let able = PICTURE_FORMATS.iter().filter(|format| format.has_alpha);
+    let able = either(able.map(|format| format!(".{}", format.endings[0])));
+    Err(fail(format!("{} has no transparent pixels; choose a name in {able}", format.name)))
+}
+
+/// Checks, before anything is drawn, whether a picture could be saved at `path`. An existing file
+/// has to be a picture, or empty.
+///
+/// # Errors
+/// If it could not.
+pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
+    let fail = |reason: &str| SaveError::new(path, reason);
+    PictureFormat::of(path).map_err(|reason| fail(&reason))?;
+    check_target(path)?;
+    let mut begin = Vec::new();
+    let Ok(file) = File::open(path) else { return Ok(()) };
+    match file.take(SIGNATURE).read_to_end(&mut begin) {
+        Ok(0) => Ok(()),
+        Ok(_) if image::guess_format(&begin).is_ok() => Ok(()),
+        _ => {
+            Err(fail("there is a file of that name, and it is not a picture; choose another name"))
+        }
+    }
+}
+
+/// Rows of a picture that are converted at a time.
+const BAND: usize = 64;
+
+/// Whether a pixel is transparent.
+fn has_alpha(picture: &Picture) -> bool {
+    picture.pixels().iter().any(|pixel| pixel[3] != 255)
+}
+
+/// Writes a picture with an alpha channel only if a pixel needs one.
+fn write(picture: &Picture, encoder: impl ImageEncoder) -> std::io::Result<()> {
+    if !has_alpha(picture) {
+        return write_opaque(picture, encoder);
+    }
+    let [width, height] = sides(picture);
+    let bytes = picture.pixels().as_flattened();
+    let written = encoder.write_image(bytes, width, height, ExtendedColorType::Rgba8);
+    written.map_err(std::io::Error::other)
+}
+
+fn write_opaque(picture: &Picture, encoder: impl ImageEncoder) -> std::io::Result<()> {
+    let [width, height] = sides(picture);
+    let bytes = opaque_bytes(picture.pixels());
+    encoder
+        .write_image(&bytes, width, height, ExtendedColorType::Rgb8)
+        .map_err(std::io::Error::other)
+}
+
+fn sides(picture: &Picture) -> [u32; 2] {
+    let size = picture.size();
+    [size.width, size.height].map(|side| u32::try_from(side).unwrap_or(u32::MAX))
+}
+
+fn write_png(picture: &Picture, to: &mut dyn Write) -> std::io::Result<()> {
+    let [width, height] = sides(picture);
+    let has_alpha = has_alpha(picture);
+    let mut encoder = png::Encoder::new(to, width, height);
+    encoder.set_color(if has_alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    let mut writer = encoder.write_header()?;
+    let mut stream = writer.stream_writer()?;
+    for band in picture.pixels().chunks(BAND * picture.size().width.max(1)) {
+        match has_alpha {
+            true => stream.write_all(band.as_flattened())?,
+            false => stream.write_all(&opaque_bytes(band))?,
+        }
+    }
+    stream.finish()?;
+    writer.finish()?;
+    Ok(())
+}
+
+fn write_ppm(picture: &Picture, to: &mut dyn Write) -> std::io::Result<()> {
+    let size = picture.size();
+    write!(to, "P6\n{} {}\n255\n", size.width, size.height)?;
+    for band in picture.pixels().chunks(BAND * size.width.max(1)) {
+        to.write_all(&opaque_bytes(band))?;
+    }
+    Ok(())
+}
+
+fn opaque_bytes(pixels: &[[u8; 4]]) -> Vec<u8> {
+    pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load_picture;
+    use marraztu_core::base::image::Size;
+
+    fn picture(alpha: u8) -> Picture {
+        let pixels = vec![[255, 0, 0, 255], [0, 255, 0, alpha], [0, 0, 255, 255], [1, 2, 3, 255]];
+        Picture::from_pixels(Size::new(2, 2), pixels).unwrap()
+    }
+
+    #[test]
+    fn a_png_comes_back_as_it_went_with_and_without_alpha() {
+        let folder = tempfile::tempdir().unwrap();
+        for alpha in [255, 0, 7] {
+            let path = folder.path().join(format!("{alpha}.PNG"));
+            save_picture(&path, &picture(alpha)).unwrap();
+            assert_eq!(load_picture(&path).unwrap(), picture(alpha));
+        }
+    }
+
+    #[test]
+    fn a_webp_comes_back_as_it_went_and_a_jpeg_nearly() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.webp");
+        for alpha in [255, 7] {
+            save_picture(&path, &picture(alpha)).unwrap();
+            assert_eq!(load_picture(&path).unwrap(), picture(alpha));
+        }
+        let gray = Picture::filled(Size::new(16, 16), [100, 110, 120, 255]);
+        for name in ["a.jpg", "a.JPEG"] {
+            let path = folder.path().join(name);
+            save_picture(&path, &gray).unwrap();
+            assert!(std::fs::read(&path).unwrap().starts_with(b"\xFF\xD8\xFF"));
+            let [r, g, b, _] = load_picture(&path).unwrap().pixel(5, 5);
+            let near = |a: u8, b: u8| a.abs_diff(b) <= 2;
+            assert!(near(r, 100) && near(g, 110) && near(b, 120), "{r} {g} {b}");
+        }
+    }
+
+    #[test]
+    fn a_target_is_a_picture_or_a_new_file_in_a_folder_that_is_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let reason = |name: &str| {
+            let checked = check_picture_target(&folder.path().join(name));
+            checked.map_err(|error| error.reason)
+        };
+        save_picture(&folder.path().join("a.png"), &picture(255)).unwrap();
+        std::fs::write(folder.path().join("empty.jpg"), "").unwrap();
+        std::fs::write(folder.path().join("poem.ppm"), "Roses are red").unwrap();
+        std::fs::create_dir(folder.path().join("b.png")).unwrap();
+        assert_eq!(["a.png", "empty.jpg", "new.webp"].map(reason), [Ok(()), Ok(()), Ok(())]);
+        for (name, word) in [
+            ("poem.ppm", "it is not a picture"),
+            ("b.png", "this is a folder"),
+            ("none/a.png", "does not exist"),
+            ("poem.ppm/a.png", "is not a folder"),
+            ("a.tiff", "has to end in"),
+        ] {
+            assert!(reason(name).unwrap_err().contains(word), "{name}: {:?}", reason(name));
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4, "nothing was left there");
+    }
+
+    #[test]
+    fn a_ppm_is_three_bytes_a_pixel_after_its_size() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.ppm");
+        save_picture(&path, &picture(255)).unwrap();
+        let content = std::fs::read(&path).unwrap();
+        assert_eq!(content, b"P6\n2 2\n255\n\xFF\0\0\0\xFF\0\0\0\xFF\x01\x02\x03");
+    }
+
+    #[test]
+    fn another_ending_is_refused_and_a_failed_save_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.tiff");
+        let error = save_picture(&path, &picture(255)).unwrap_err();
+        let reason = "could not be saved: its name has to end in .png, .jpg, .webp or .ppm";
+        assert_eq!(error.to_string(), format!("{} {reason}", path.display()));
+        std::fs::create_dir(folder.path().join("b.png")).unwrap();
+        assert!(save_picture(&folder.path().join("b.png"), &picture(255)).is_err());
+        assert!(save_picture(&folder.path().join("none/c.png"), &picture(255)).is_err());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}

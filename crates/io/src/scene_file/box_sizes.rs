@@ -1,0 +1,86 @@
+//! The sizes of the boxes in the place of missing models.
+//!
+//! A box is a part of the median of the other objects' largest extents in the world: a cube as wide
+//! as they are would look larger than them. If there is no other object, it fills a part of the
+//! height that the camera sees at its distance.
+
+use glam::{DMat4, DVec3};
+
+use super::format::{FileModel, FileObject, FileScene};
+use marraztu_core::scene::{Model, Shape};
+
+/// The side of a box as a part of the usual extent.
+const PART_OF_USUAL: f64 = 0.6;
+
+/// The side of a box as a part of half the height that the camera sees, if there is no other
+/// object.
+const PART_SEEN: f64 = 0.5;
+
+/// What the sizes of boxes go by.
+pub(super) struct BoxSizes<'a> {
+    file: &'a FileScene,
+    /// The side that the other objects suggest.
+    usual: Option<f64>,
+}
+
+impl<'a> BoxSizes<'a> {
+    /// The sizes in this scene; `known` gives the models that are there.
+    pub(super) fn new<'m>(
+        file: &'a FileScene,
+        known: impl Fn(&FileModel) -> Option<&'m Model>,
+    ) -> Self {
+        let extent = |object: &FileObject| {
+            let bounds = known(&object.model)?.mesh.bounds()?;
+            let sides = column_lengths(object) * bounds.extent();
+            Some(sides.max_element()).filter(|extent| extent.is_finite() && *extent > 0.0)
+        };
+        let objects = file.objects.iter().filter(|object| !is_ground(&object.model));
+        let mut extents: Vec<f64> = objects.filter_map(extent).collect();
+        extents.sort_by(f64::total_cmp);
+        let usual = extents.get(extents.len() / 2);
+        Self { file, usual: usual.map(|extent| extent * PART_OF_USUAL) }
+    }
+
+    /// The side of the box for a missing model, in its own space. If several objects have it, the
+    /// first decides. Models of cameras are drawn in one size whatever theirs is.
+    pub(super) fn side(&self, model: &FileModel) -> f64 {
+        let Some(object) = self.file.objects.iter().find(|object| object.model == *model) else {
+            return 1.0;
+        };
+        let scale = column_lengths(object).max_element();
+        let side = self.usual.or_else(|| self.seen_at(object)).unwrap_or(1.0) / scale;
+        if side.is_finite() && side > 0.0 { side } else { 1.0 }
+    }
+
+    /// A size that is well seen at an object's place.
+    fn seen_at(&self, object: &FileObject) -> Option<f64> {
+        let cameras = &self.file.cameras;
+        let selected = cameras.iter().find(|camera| camera.id == self.file.view.camera);
+        let camera = selected.or(cameras.first())?;
+        let place = placement(object).w_axis.truncate();
+        let distance = DVec3::from_array(camera.eye).distance(place);
+        let size = PART_SEEN * distance * libm::tan(camera.lens.half_angle.to_radians());
+        Some(size).filter(|size| size.is_finite() && *size > 0.0)
+    }
+}
+
+fn is_ground(model: &FileModel) -> bool {
+    match model {
+        FileModel::Own(name) => Shape::named(name).is_some_and(Shape::is_ground),
+        FileModel::File { .. } => false,
+    }
+}
+
+fn placement(object: &FileObject) -> DMat4 {
+    DMat4::from_cols_array_2d(&object.placement)
+}
+
+/// The lengths of an object's axes in the world.
+fn column_lengths(object: &FileObject) -> DVec3 {
+    let m = placement(object);
+    DVec3::new(
+        m.x_axis.truncate().length(),
+        m.y_axis.truncate().length(),
+        m.z_axis.truncate().length(),
+    )
+}

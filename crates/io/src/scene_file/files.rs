@@ -1,0 +1,285 @@
+//! The models and textures that a scene file names.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use super::box_sizes::BoxSizes;
+use super::format::{FileModel, FileScene, FileTexture};
+use super::save::{file_model, file_texture};
+use super::{SceneFileError, open, paths};
+use crate::error::LoadError;
+use crate::examples;
+use crate::findings::{Finding, FindingKind, Findings};
+use crate::obj::load_with;
+use crate::progress::Progress;
+use crate::texture::Pictures;
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{
+    BumpMaps, Crease, LoadOptions, Model, Scale, Scene, Texture, UpAxis, Winding,
+};
+
+/// The identity of a model in a scene file: its name or path, and how it is read. The crease angle
+/// comes last, so that files that differ only in it are neighbours.
+type ModelKey = (String, Option<(UpAxis, u64, Winding, BumpMaps, u64)>);
+
+fn key(model: &FileModel) -> ModelKey {
+    match model {
+        FileModel::Own(name) => (name.clone(), None),
+        FileModel::File { path, up, scale, winding, crease, bumps } => {
+            (path.clone(), Some((*up, scale.to_bits(), *winding, *bumps, crease.to_bits())))
+        }
+    }
+}
+
+/// The models and textures of a scene, which need not be read again.
+#[derive(Debug, Default)]
+pub struct Known {
+    models: Vec<Shared<Model>>,
+    textures: Vec<Shared<Texture>>,
+}
+
+impl Known {
+    /// The models and textures of this scene.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let objects = || scene.objects.iter().map(|(_, object)| object);
+        let cameras = scene.cameras.iter().map(|(_, camera)| camera.model.clone());
+        Self {
+            models: objects().map(|object| object.model.clone()).chain(cameras).collect(),
+            textures: objects().filter_map(|object| object.texture.clone()).collect(),
+        }
+    }
+}
+
+/// The models and textures that a scene file names, loaded. A placeholder takes the place of each
+/// that is missing or cannot be read.
+pub(super) struct Files {
+    folder: PathBuf,
+    models: BTreeMap<ModelKey, Shared<Model>>,
+    textures: BTreeMap<String, Shared<Texture>>,
+    /// Those of models and of textures: one file may be both.
+    pictures: Pictures,
+    /// The findings in the files.
+    pub(super) findings: Vec<Finding>,
+    /// The files that are missing or cannot be read.
+    pub(super) lost: Findings,
+}
+
+impl Files {
+    /// The files of the scene file `name` in `folder`.
+    pub(super) fn new(folder: PathBuf, name: &str) -> Self {
+        let (models, textures) = (BTreeMap::new(), BTreeMap::new());
+        let (pictures, lost) = (Pictures::default(), Findings::new(name));
+        Self { folder, models, textures, pictures, findings: Vec::new(), lost }
+    }
+
+    /// Takes models and textures that need not be read. A file name that is not text is skipped: no
+    /// scene file can contain it.
+    pub(super) fn know(&mut self, known: &Known) {
+        let nowhere = Path::new("");
+        for model in &known.models {
+            if let Ok(named) = file_model(model, nowhere) {
+                self.models.insert(key(&named), model.clone());
+            }
+        }
+        for texture in &known.textures {
+            if let Ok(named) = file_texture(texture, nowhere) {
+                self.textures.insert(named.path, texture.clone());
+            }
+        }
+    }
+
+    /// The path of a file that the scene file names.
+    fn place(&self, path: &str) -> PathBuf {
+        if examples::is_example(Path::new(path)) {
+            return PathBuf::from(path);
+        }
+        paths::plain(&self.folder.join(path))
+    }
+
+    pub(super) fn load(
+        &mut self,
+        file: &FileScene,
+        name: &str,
+        progress: &Progress,
+    ) -> Result<(), SceneFileError> {
+        let of_objects = file.objects.iter().map(|object| &object.model);
+        let all = of_objects.chain(file.cameras.iter().map(|camera| &camera.model));
+        let mut keys = BTreeSet::new();
+        let is_new = |model: &&FileModel| !self.models.contains_key(&key(model));
+        let models: Vec<&FileModel> =
+            all.filter(is_new).filter(|model| keys.insert(key(model))).collect();
+        let mut lost = Vec::new();
+        for (i, model) in models.iter().enumerate() {
+            let (from, to) = (share(i, models.len()), share(i + 1, models.len()));
+            match self.load_model(model, name, &progress.part(from, to))? {
+                Some(loaded) => drop(self.models.insert(key(model), loaded)),
+                None => lost.push(*model),
+            }
+        }
+        // Last, since their size goes by that of the others.
+        let sizes = BoxSizes::new(file, |model| self.models.get(&key(model)).map(|model| &**model));
+        for model in lost {
+            if let FileModel::File { path, .. } = model {
+                let (_, options) = read_options(model, name)?;
+                let placeholder =
+                    Model::placeholder(complete(&self.place(path)), options, sizes.side(model));
+                self.models.insert(key(model), Shared::new(placeholder));
+            }
+        }
+        self.load_textures(file)
+    }
+
+    fn load_textures(&mut self, file: &FileScene) -> Result<(), SceneFileError> {
+        let chosen = file.objects.iter().filter_map(|object| object.texture.as_ref());
+        let paths: BTreeSet<&str> = chosen
+            .map(|texture| texture.path.as_str())
+            .filter(|path| !self.textures.contains_key(*path))
+            .collect();
+        for path in paths {
+            let texture = match crate::own_texture(path) {
+                Some(own) => own,
+                None => self.load_texture(path)?,
+            };
+            self.textures.insert(path.to_owned(), texture);
+        }
+        Ok(())
+    }
+
+    fn load_texture(&mut self, path: &str) -> Result<Shared<Texture>, SceneFileError> {
+        let place = self.place(path);
+        let loaded = match examples::content(&place) {
+            Some(content) => examples::texture(&place, content),
+            None => self.pictures.texture(&place, &mut self.findings),
+        };
+        match loaded {
+            Ok(texture) => Ok(texture),
+            Err(LoadError::Cancelled) => Err(LoadError::Cancelled.into()),
+            Err(error) => {
+                if place.exists() {
+                    self.lost.add(FindingKind::TextureUnreadable, &error.to_string(), None);
+                } else {
+                    self.lost.add(FindingKind::TextureMissing, path, None);
+                }
+                Ok(Shared::new(Texture::placeholder(complete(&place))))
+            }
+        }
+    }
+
+    /// The same file, loaded with another crease angle: it is not read twice.
+    fn with_other_crease(&self, model: &FileModel) -> Option<&Shared<Model>> {
+        let (path, options) = key(model);
+        let (up, scale, winding, bumps, _) = options?;
+        let with = |crease| (path.clone(), Some((up, scale, winding, bumps, crease)));
+        let mut others = self.models.range(with(0)..=with(u64::MAX));
+        others.next().map(|(_, loaded)| loaded)
+    }
+
+    /// A model of the scene; `None` if its file is missing or cannot be read.
+    fn load_model(
+        &mut self,
+        model: &FileModel,
+        name: &str,
+        progress: &Progress,
+    ) -> Result<Option<Shared<Model>>, SceneFileError> {
+        let (path, options) = match model {
+            FileModel::Own(own) => {
+                let own_model = crate::own_model(own);
+                return own_model.map(Some).ok_or_else(|| SceneFileError::File {
+                    file: name.to_owned(),
+                    reason: format!("there is no built-in model \"{own}\""),
+                });
+            }
+            FileModel::File { .. } => read_options(model, name)?,
+        };
+        if let Some(other) = self.with_other_crease(model) {
+            return Ok(Some(Shared::new(other.with_crease(options.crease))));
+        }
+        let place = self.place(path);
+        let loaded = match examples::content(&place) {
+            Some(content) => examples::model(&place, content, &options, progress),
+            None => load_with(&place, &options, &mut self.pictures, progress),
+        };
+        match loaded {
+            Ok(loaded) => {
+                // A scene says itself which pictures its objects show.
+                let counts = |finding: &Finding| finding.kind != FindingKind::PictureUnnamed;
+                self.findings.extend(loaded.findings.into_iter().filter(counts));
+                Ok(Some(Shared::new(loaded.model)))
+            }
+            Err(LoadError::Cancelled) => Err(LoadError::Cancelled.into()),
+            Err(error) => {
+                if place.exists() {
+                    self.lost.add(FindingKind::ModelUnreadable, &error.to_string(), None);
+                } else {
+                    self.lost.add(FindingKind::ModelMissing, path, None);
+                }
+                Ok(None)
+            }
+        }
+    }
+}
+
+/// The path of a model and how it is read.
+///
+/// # Errors
+/// If a number of them is not valid.
+fn read_options<'a>(
+    model: &'a FileModel,
+    name: &str,
+) -> Result<(&'a str, LoadOptions), SceneFileError> {
+    let fail = |reason: String| SceneFileError::File { file: name.to_owned(), reason };
+    let FileModel::File { path, up, scale, winding, crease, bumps } = model else {
+        return Ok(("", LoadOptions::default()));
+    };
+    let scale =
+        Scale::new(*scale).ok_or_else(|| fail(format!("the scale of {path} has to be above 0")))?;
+    let crease = Crease::new(*crease).ok_or_else(|| {
+        fail(format!("the crease angle of {path} has to be from 0 to 180 degrees"))
+    })?;
+    Ok((path, LoadOptions { up: *up, scale, winding: *winding, crease, bumps: *bumps }))
+}
+
+/// A path from the root on, which stays valid if the current folder changes.
+fn complete(path: &Path) -> PathBuf {
+    if examples::is_example(path) {
+        return path.to_owned();
+    }
+    std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned())
+}
+
+#[expect(clippy::cast_precision_loss, reason = "for the eye")]
+fn share(i: usize, of: usize) -> f64 {
+    i as f64 / of.max(1) as f64
+}
+
+impl open::Needs for Files {
+    fn model(&self, model: &FileModel) -> Shared<Model> {
+        self.models.get(&key(model)).expect("every model of the file was loaded").clone()
+    }
+
+    fn texture(&self, texture: &FileTexture) -> Shared<Texture> {
+        let plain = self.textures.get(&texture.path).expect("every texture of the file was loaded");
+        let FileTexture { wrap, offset, scale, .. } = *texture;
+        if (plain.wrap, plain.offset, plain.scale) == (wrap, offset, scale) {
+            return plain.clone();
+        }
+        Shared::new(Texture { wrap, offset, scale, ..Texture::clone(plain) })
+    }
+}
+
+/// Replaces models and textures if only the scene file itself is checked.
+pub(super) struct StandIns;
+
+impl open::Needs for StandIns {
+    fn model(&self, _: &FileModel) -> Shared<Model> {
+        crate::cam_model()
+    }
+
+    fn texture(&self, texture: &FileTexture) -> Shared<Texture> {
+        let FileTexture { wrap, offset, scale, .. } = *texture;
+        let picture = Picture::filled(Size::new(1, 1), [255; 4]).into();
+        Shared::new(Texture { source: PathBuf::new(), picture, wrap, offset, scale })
+    }
+}

@@ -1,0 +1,145 @@
+//! Lights in scene files: their form, and both ways between it and the scene's.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::fields::{finite, white, yes};
+use marraztu_core::base::color::Color;
+use marraztu_core::base::math;
+use marraztu_core::scene::{
+    Aim, Attenuation, CameraId, Light, LightKind, ObjectId, Orbit, SpotOwner, Tracked,
+};
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileLight {
+    pub(super) id: u32,
+    pub(super) name: String,
+    pub(super) slot: u32,
+    #[serde(default = "yes")]
+    pub(super) on: bool,
+    #[serde(default = "white")]
+    pub(super) color: [u8; 3],
+    #[serde(default)]
+    pub(super) attenuation: Attenuation,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(super) shadows: bool,
+    pub(super) kind: FileLightKind,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum FileLightKind {
+    Ambient,
+    Sun {
+        direction: [f64; 3],
+    },
+    Bulb {
+        position: [f64; 3],
+        #[serde(default)]
+        orbit: Orbit,
+    },
+    Spot {
+        owner: FileOwner,
+        half_aperture: f64,
+        exponent: f64,
+    },
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum FileOwner {
+    SelectedObject,
+    SelectedCamera,
+    Object(u32),
+    Camera(u32),
+    Fixed { position: [f64; 3], direction: [f64; 3] },
+}
+
+pub(super) fn file_light(id: u32, light: &Light) -> FileLight {
+    let Light { name, slot, on, color, attenuation, shadows, kind } = light;
+    let kind = match kind {
+        LightKind::Ambient => FileLightKind::Ambient,
+        LightKind::Sun { direction } => {
+            FileLightKind::Sun { direction: direction.now().to_array() }
+        }
+        LightKind::Bulb { position, orbit } => {
+            FileLightKind::Bulb { position: position.now().to_array(), orbit: *orbit }
+        }
+        LightKind::Spot { owner, half_aperture, exponent } => FileLightKind::Spot {
+            owner: file_owner(owner),
+            half_aperture: *half_aperture,
+            exponent: *exponent,
+        },
+    };
+    let (slot, on, color, attenuation) = (*slot, *on, color.0, *attenuation);
+    let shadows = *shadows;
+    FileLight { id, name: name.clone(), slot, on, color, attenuation, shadows, kind }
+}
+
+pub(super) fn file_owner(owner: &SpotOwner) -> FileOwner {
+    match owner {
+        SpotOwner::SelectedObject => FileOwner::SelectedObject,
+        SpotOwner::SelectedCamera => FileOwner::SelectedCamera,
+        SpotOwner::Object(id) => FileOwner::Object(id.0),
+        SpotOwner::Camera(id) => FileOwner::Camera(id.0),
+        SpotOwner::Fixed(aim) => {
+            let Aim { position, direction } = *aim.now();
+            let [position, direction] = [position, direction].map(|v| v.to_array());
+            FileOwner::Fixed { position, direction }
+        }
+    }
+}
+
+pub(super) fn read_light(light: &FileLight) -> Result<Light, String> {
+    let kind = match light.kind {
+        FileLightKind::Ambient => LightKind::Ambient,
+        FileLightKind::Sun { direction } => {
+            LightKind::Sun { direction: Tracked::new(read_direction(direction)?) }
+        }
+        FileLightKind::Bulb { position, orbit } => {
+            finite("its place", &position)?;
+            finite("its orbit", &[orbit.speed, orbit.since])?;
+            LightKind::Bulb { position: Tracked::new(DVec3::from_array(position)), orbit }
+        }
+        FileLightKind::Spot { ref owner, half_aperture, exponent } => {
+            let right =
+                (0.0..=90.0).contains(&half_aperture) && (0.0..f64::INFINITY).contains(&exponent);
+            if !right {
+                return Err("it needs a half-aperture of 0 to 90 and an exponent above 0".into());
+            }
+            LightKind::Spot { owner: read_owner(owner)?, half_aperture, exponent }
+        }
+    };
+    Ok(Light {
+        name: light.name.clone(),
+        slot: light.slot,
+        on: light.on,
+        color: Color(light.color),
+        attenuation: light.attenuation,
+        shadows: light.shadows,
+        kind,
+    })
+}
+
+pub(super) fn read_owner(owner: &FileOwner) -> Result<SpotOwner, String> {
+    Ok(match *owner {
+        FileOwner::SelectedObject => SpotOwner::SelectedObject,
+        FileOwner::SelectedCamera => SpotOwner::SelectedCamera,
+        FileOwner::Object(id) => SpotOwner::Object(ObjectId(id)),
+        FileOwner::Camera(id) => SpotOwner::Camera(CameraId(id)),
+        FileOwner::Fixed { position, direction } => {
+            finite("its place", &position)?;
+            let position = DVec3::from_array(position);
+            SpotOwner::Fixed(Tracked::new(Aim { position, direction: read_direction(direction)? }))
+        }
+    })
+}
+
+/// A direction of length 1, kept bit for bit if it has that length already.
+pub(super) fn read_direction(direction: [f64; 3]) -> Result<DVec3, String> {
+    finite("its direction", &direction)?;
+    let direction = DVec3::from_array(direction);
+    if (direction.length() - 1.0).abs() < 1e-9 {
+        return Ok(direction);
+    }
+    math::unit(direction).ok_or_else(|| "its direction has no length".to_owned())
+}

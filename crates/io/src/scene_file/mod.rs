@@ -1,0 +1,221 @@
+//! Saves and opens scene files.
+//!
+//! A file is a text that a person can read and change: RON, a version first, names for everything.
+//! Models are not in it but named, by their path relative to the file's folder, so that a folder
+//! with both can be moved. The view and the settings are saved with the scene; the history is not.
+
+mod box_sizes;
+mod fields;
+mod files;
+mod format;
+mod fragment;
+mod light;
+mod open;
+mod paths;
+mod save;
+mod view;
+mod words;
+
+use std::path::{Path, PathBuf};
+
+pub use self::files::Known;
+pub use self::fragment::{Fragment, items_of_text, items_to_text, material_to_text};
+
+use self::files::{Files, StandIns};
+use self::format::{FileScene, Head, VERSION};
+use super::error::{LoadError, shown};
+use super::examples;
+use super::findings::{Finding, Findings, joined};
+use super::fingerprint::Fingerprint;
+use super::progress::Progress;
+use super::read::{MOST_WORDS, read, utf_8};
+use super::replace::{SaveError, Worth, replace};
+use super::sources::Sources;
+use super::window_state::WindowState;
+use marraztu_core::accuracy::Settings;
+use marraztu_core::scene::{Scene, View};
+
+/// The ending of the names of scene files, without the dot.
+pub const SCENE_ENDING: &str = "marraztu";
+
+/// A scene from a file.
+#[derive(Debug)]
+pub struct Opened {
+    /// The scene.
+    pub scene: Scene,
+    /// Its view when it was saved.
+    pub view: View,
+    /// The state of the window when it was saved.
+    pub window: WindowState,
+    /// The settings of accuracy when it was saved.
+    pub settings: Settings,
+    /// The findings in its models.
+    pub findings: Vec<Finding>,
+    /// The content of the file.
+    pub content: Fingerprint,
+}
+
+/// Why a scene file cannot be opened. Nothing has changed then.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SceneFileError {
+    /// The file cannot be read, or its scene is not valid.
+    #[error("{file}: {reason}")]
+    File {
+        /// Its path, as the user gave it.
+        file: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A line of it cannot be understood.
+    #[error("{file}:{line}:{column}: {reason}")]
+    Line {
+        /// The file's path, as the user gave it.
+        file: String,
+        /// The line, counted from 1.
+        line: usize,
+        /// The column, in characters counted from 1.
+        column: usize,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The scene file cannot be read, or opening was cancelled.
+    #[error(transparent)]
+    Model(#[from] LoadError),
+}
+
+/// Saves a scene; the file that was there is kept, with `~` after its name.
+///
+/// # Errors
+/// If the file, or something in the scene, cannot be written. An existing file stays as it was.
+pub fn save(path: &Path, scene: &Scene, view: &View, settings: &Settings) -> Result<(), SaveError> {
+    save_with_window(path, scene, view, settings, &WindowState::DEFAULT).map(|_content| ())
+}
+
+/// Saves a scene as [`save()`] does, with the state of the window. Returns the content of the file.
+///
+/// # Errors
+/// As [`save()`].
+pub fn save_with_window(
+    path: &Path,
+    scene: &Scene,
+    view: &View,
+    settings: &Settings,
+    window: &WindowState,
+) -> Result<Fingerprint, SaveError> {
+    let text = text_with_window(path, scene, view, settings, window)?;
+    Sources::of(scene).spare(path)?;
+    replace(path, text.as_bytes(), Worth::Work)?;
+    Ok(Fingerprint::of(text.as_bytes()))
+}
+
+/// The text that [`save()`] would write to `path`.
+///
+/// # Errors
+/// If something in the scene cannot be written.
+pub fn to_text(
+    path: &Path,
+    scene: &Scene,
+    view: &View,
+    settings: &Settings,
+) -> Result<String, SaveError> {
+    text_with_window(path, scene, view, settings, &WindowState::DEFAULT)
+}
+
+pub(crate) fn text_with_window(
+    path: &Path,
+    scene: &Scene,
+    view: &View,
+    settings: &Settings,
+    window: &WindowState,
+) -> Result<String, SaveError> {
+    let fail = |reason: String| SaveError::new(path, reason);
+    let file = save::file_scene(scene, view, window, settings, &complete_folder(path));
+    let file = file.map_err(fail)?;
+    let config = ron::ser::PrettyConfig::new().new_line("\n");
+    let text = ron::ser::to_string_pretty(&file, config).map_err(|e| fail(e.to_string()))?;
+    // A number that is not finite could be written, but not read again.
+    let again = file_scene(&text, "").map_err(|error| fail(error.to_string()))?;
+    open::check_counts(&again).map_err(fail)?;
+    open::scene(&again, &StandIns, &mut Findings::default()).map_err(fail)?;
+    Ok(text + "\n")
+}
+
+/// Opens a scene file. Models and textures that are missing or cannot be read become placeholders,
+/// see [`Model::is_placeholder`](marraztu_core::scene::Model::is_placeholder), with a finding each.
+///
+/// # Errors
+/// If the file cannot be read or understood, and if `progress` is cancelled.
+pub fn open(path: &Path, progress: &Progress) -> Result<Opened, SceneFileError> {
+    let name = shown(path);
+    if let Some(text) = examples::scene_text(path) {
+        let folder = path.parent().unwrap_or(path).to_owned();
+        return open_text(text, &name, folder, progress);
+    }
+    let bytes = read(path, MOST_WORDS, &Progress::new())?;
+    let content = Fingerprint::of(&bytes);
+    let text = String::from_utf8(utf_8(bytes)).map_err(|_bytes| SceneFileError::File {
+        file: name.clone(),
+        reason: "this is not a scene file: it is not text".to_owned(),
+    })?;
+    let folder = path.parent().map_or_else(PathBuf::new, paths::plain);
+    Ok(Opened { content, ..open_text(&text, &name, folder, progress)? })
+}
+
+/// Opens the text of a scene file called `name`, with paths relative to `folder`.
+pub(crate) fn open_text(
+    text: &str,
+    name: &str,
+    folder: PathBuf,
+    progress: &Progress,
+) -> Result<Opened, SceneFileError> {
+    let fail = |reason: String| SceneFileError::File { file: name.to_owned(), reason };
+    let file = file_scene(text, name)?;
+    open::check_counts(&file).map_err(fail)?;
+    let mut files = Files::new(folder, name);
+    files.load(&file, name, progress)?;
+    let mut own = std::mem::take(&mut files.lost);
+    let (scene, view) = open::scene(&file, &files, &mut own).map_err(fail)?;
+    let findings = joined(own.into_list().into_iter().chain(files.findings).collect());
+    let (window, settings) = (file.view.window(), file.settings);
+    let content = Fingerprint::of(text.as_bytes());
+    Ok(Opened { scene, view, window, settings, findings, content })
+}
+
+/// The folder of a file, from the root on.
+fn complete_folder(path: &Path) -> PathBuf {
+    let complete = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
+    complete.parent().map_or_else(PathBuf::new, paths::plain)
+}
+
+/// The text of a scene file as its types.
+fn file_scene(text: &str, name: &str) -> Result<FileScene, SceneFileError> {
+    let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
+    let fail = |error: ron::error::SpannedError| SceneFileError::Line {
+        file: name.to_owned(),
+        line: error.span.start.line,
+        column: error.span.start.col,
+        reason: words::sentence(&error.code),
+    };
+    if !text.trim_start().starts_with(['(', '#', '/']) {
+        let reason = "this is not a scene file: it does not begin with \"(\"".to_owned();
+        return Err(SceneFileError::Line { file: name.to_owned(), line: 1, column: 1, reason });
+    }
+    let Head { version } = ron::from_str(text).map_err(fail)?;
+    if (1..=VERSION).contains(&version) {
+        return ron::from_str(text).map_err(fail);
+    }
+    let place = text.lines().zip(1..).find_map(|(line, number)| {
+        let before = line.find("version")?;
+        Some((number, line[..before].chars().count() + 1))
+    });
+    let (line, column) = place.unwrap_or((1, 1));
+    let reason = if version == 0 {
+        "0 is not a version: the first one is 1".to_owned()
+    } else {
+        format!(
+            "the file has version {version}, which a newer program has written; this one reads \
+             versions up to {VERSION}"
+        )
+    };
+    Err(SceneFileError::Line { file: name.to_owned(), line, column, reason })
+}

@@ -1,0 +1,217 @@
+//! Makes a scene from the text of a file.
+//!
+//! Items are inserted by the same commands as in the editor: whatever those refuse (an id used
+//! twice, a NaN) is refused here.
+
+use std::collections::BTreeSet;
+
+use glam::{DMat3, DMat4, DVec3};
+
+use super::fields::finite;
+use super::format::{FileCamera, FileMode, FileModel, FileObject, FileScene, FileTexture};
+use super::light::read_light;
+use super::view::read_view;
+use crate::findings::{FindingKind, Findings};
+use marraztu_core::base::{Shared, color::Color};
+use marraztu_core::scene::{
+    Camera, CameraId, CameraMode, Command, CommandError, Item, LightId, List, MaterialChoice,
+    Model, Object, ObjectId, Pose, Scene, Sides, SpotOwner, Texture, Tracked, View,
+};
+
+/// The most items of a kind in a scene: each is looked up among all others.
+const MOST_ITEMS: usize = 10_000;
+
+/// The most hidden parts of missing models that are kept, so that a damaged file costs little
+/// memory.
+const MOST_HIDDEN: usize = 1_000_000;
+
+/// Checks that there are few enough items for a scene.
+///
+/// # Errors
+/// The reason, if there are too many.
+pub(super) fn check_counts(file: &FileScene) -> Result<(), String> {
+    let counts = [
+        ("objects", file.objects.len()),
+        ("cameras", file.cameras.len()),
+        ("lights", file.lights.len()),
+    ];
+    match counts.into_iter().find(|(_, count)| *count > MOST_ITEMS) {
+        Some((what, count)) => {
+            Err(format!("it has {count} {what}, but a scene has at most {MOST_ITEMS}"))
+        }
+        None => Ok(()),
+    }
+}
+
+/// The models and textures that a scene file needs.
+pub(super) trait Needs {
+    /// The model that the file names.
+    fn model(&self, model: &FileModel) -> Shared<Model>;
+    /// The texture that the file names.
+    fn texture(&self, texture: &FileTexture) -> Shared<Texture>;
+}
+
+/// The scene and the view that a file holds.
+///
+/// # Errors
+/// The reason, if its scene is not valid.
+pub(super) fn scene(
+    file: &FileScene,
+    needs: &dyn Needs,
+    findings: &mut Findings,
+) -> Result<(Scene, View), String> {
+    let mut scene = Scene {
+        objects: List::default(),
+        cameras: List::default(),
+        lights: List::default(),
+        background: Color(file.background),
+        next_id: 0,
+        locked: BTreeSet::new(),
+    };
+    let mut largest = 0;
+    let mut insert = |at: usize, item: Item, id: u32, what: String| {
+        largest = largest.max(id);
+        let insertion = Command::Insert { at, item };
+        insertion.apply(&mut scene).map(|_| ()).map_err(|error| match error {
+            CommandError::AlreadyThere(_) => format!("{what}: its id is used twice"),
+            error => format!("{what}: {error}"),
+        })
+    };
+    let mut room = MOST_HIDDEN;
+    for (at, object) in file.objects.iter().enumerate() {
+        let what = format!("object {} \"{}\"", object.id, object.name);
+        let item =
+            read_object(object, needs, &mut room).map_err(|reason| format!("{what}: {reason}"))?;
+        insert(at, Item::Object(ObjectId(object.id), Box::new(item)), object.id, what)?;
+    }
+    for (at, camera) in file.cameras.iter().enumerate() {
+        let what = format!("camera {} \"{}\"", camera.id, camera.name);
+        let item = read_camera(camera, needs).map_err(|reason| format!("{what}: {reason}"))?;
+        insert(at, Item::Camera(CameraId(camera.id), Box::new(item)), camera.id, what)?;
+    }
+    let mut slots = BTreeSet::new();
+    for (at, light) in file.lights.iter().enumerate() {
+        let what = format!("light {} \"{}\"", light.id, light.name);
+        if !slots.insert(light.slot) {
+            return Err(format!("{what}: another light has slot {} already", light.slot));
+        }
+        let item = read_light(light).map_err(|reason| format!("{what}: {reason}"))?;
+        insert(at, Item::Light(LightId(light.id), Box::new(item)), light.id, what)?;
+    }
+    if file.cameras.is_empty() {
+        return Err("a scene needs a camera".to_owned());
+    }
+    let after = largest.checked_add(1).ok_or("an id is too large for another to follow")?;
+    scene.next_id = file.next_id.max(after);
+    scene.locked = file.locked.within(&scene);
+    note_missing_owners(&scene, findings);
+    let view = read_view(&file.view, &scene, findings)?;
+    Ok((scene, view))
+}
+
+/// Notes spots and cameras that are attached to something that is missing.
+fn note_missing_owners(scene: &Scene, findings: &mut Findings) {
+    let mut note = |what: String| findings.add(FindingKind::OwnerMissing, &what, None);
+    for (_, light) in scene.lights.iter() {
+        let Some(owner) = light.kind.owner() else { continue };
+        let owner = match *owner {
+            SpotOwner::Object(id) if scene.objects.get(id).is_none() => format!("object {}", id.0),
+            SpotOwner::Camera(id) if scene.cameras.get(id).is_none() => format!("camera {}", id.0),
+            SpotOwner::Object(_) | SpotOwner::Camera(_) | SpotOwner::Fixed(_) => continue,
+            SpotOwner::SelectedObject | SpotOwner::SelectedCamera => continue,
+        };
+        note(format!("the light \"{}\" belongs to {owner}", light.name));
+    }
+    for (_, camera) in scene.cameras.iter() {
+        if let CameraMode::Analysis { target } = camera.pose.now().mode
+            && scene.objects.get(target).is_none()
+        {
+            note(format!("the camera \"{}\" is aimed at object {}", camera.name, target.0));
+        }
+    }
+}
+
+/// Checks a material.
+///
+/// # Errors
+/// The reason, if a number of it is not valid.
+pub(super) fn read_material(material: &MaterialChoice) -> Result<MaterialChoice, String> {
+    if let MaterialChoice::Own(own) = material {
+        let colors = [own.ambient, own.diffuse, own.specular].concat();
+        finite("its material", &colors)?;
+        finite("its material", &[own.exponent])?;
+        let right = colors.iter().all(|x| (0.0..=1.0).contains(x)) && own.exponent >= 0.0;
+        if !right {
+            return Err("its material needs colours from 0 to 1 and an exponent above 0".into());
+        }
+    }
+    Ok(material.clone())
+}
+
+/// An object of the file. `room` is left for the hidden parts of missing models.
+fn read_object(object: &FileObject, needs: &dyn Needs, room: &mut usize) -> Result<Object, String> {
+    finite("its placement", object.placement.as_flattened())?;
+    finite("its spin", &[object.spin.speed, object.spin.since])?;
+    finite("its opacity", &[object.opacity])?;
+    if let Some(texture) = &object.texture {
+        finite("its texture", &[texture.offset, texture.scale].concat())?;
+    }
+    let model = needs.model(&object.model);
+    let hidden_parts = if model.is_placeholder() {
+        let kept = object.hidden_parts.smallest(*room);
+        *room -= kept.len();
+        kept
+    } else {
+        // The model may have changed since, and have fewer parts now.
+        object.hidden_parts.below(model.mesh.parts().len())
+    };
+    Ok(Object {
+        name: object.name.clone(),
+        visible: object.visible,
+        model,
+        hidden_parts,
+        placement: Tracked::new(DMat4::from_cols_array_2d(&object.placement)),
+        spin: object.spin,
+        material: read_material(&object.material)?,
+        surface: object.surface,
+        texture: object.texture.as_ref().map(|texture| needs.texture(texture)),
+        tint: Color(object.tint),
+        opacity: object.opacity.clamp(0.0, 1.0),
+        sides: read_sides(object),
+        file_normals: object.file_normals,
+        edge_color: Color(object.edge_color),
+    })
+}
+
+/// The sides that a scene file names; earlier files say whether there are two. Built-in models have
+/// one if nothing is said.
+fn read_sides(object: &FileObject) -> Sides {
+    let earlier = object.two_sided.map(|two| if two { Sides::Two } else { Sides::One });
+    object.sides.or(earlier).unwrap_or(match object.model {
+        FileModel::Own(_) => Sides::One,
+        FileModel::File { .. } => Sides::Auto,
+    })
+}
+
+fn read_camera(camera: &FileCamera, needs: &dyn Needs) -> Result<Camera, String> {
+    finite("its place", &camera.eye)?;
+    finite("its axes", camera.axes.as_flattened())?;
+    let axes = DMat3::from_cols_array_2d(&camera.axes);
+    let error = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array();
+    if error.iter().any(|x| x.abs() > 1e-6) || axes.determinant() < 0.0 {
+        return Err("its axes are not at right angles, of length 1 and right-handed".to_owned());
+    }
+    let mode = match camera.mode {
+        FileMode::Fly => CameraMode::Fly,
+        FileMode::Analysis(target) => CameraMode::Analysis { target: ObjectId(target) },
+    };
+    let eye = DVec3::from_array(camera.eye);
+    Ok(Camera {
+        name: camera.name.clone(),
+        visible: camera.visible,
+        model: needs.model(&camera.model),
+        material: read_material(&camera.material)?,
+        pose: Tracked::new(Pose { eye, axes, mode }),
+        lens: camera.lens,
+    })
+}

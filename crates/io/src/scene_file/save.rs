@@ -1,0 +1,136 @@
+//! Makes the text of a scene file.
+//!
+//! Every type of the scene is destructured, so that a new field cannot be forgotten here.
+
+use std::path::Path;
+
+use super::fields::Numbers;
+use super::format::{
+    FileCamera, FileLocked, FileMode, FileModel, FileObject, FileScene, FileTexture, VERSION,
+};
+use super::light::file_light;
+use super::paths::relative;
+use super::view::FileView;
+use crate::window_state::WindowState;
+use crate::{is_example, own_texture};
+use marraztu_core::accuracy::Settings;
+use marraztu_core::scene::{
+    Camera, CameraMode, LoadOptions, Model, Object, Pose, Scene, Texture, View,
+};
+
+/// A scene with its view and settings, in the types of the file. `folder` is the file's, absolute.
+///
+/// # Errors
+/// The reason, if a model is in no file, or a path or a number cannot be written.
+pub(super) fn file_scene(
+    scene: &Scene,
+    view: &View,
+    window: &WindowState,
+    settings: &Settings,
+    folder: &Path,
+) -> Result<FileScene, String> {
+    let Scene { objects, cameras, lights, background, next_id, locked: _ } = scene;
+    let objects: Result<_, String> =
+        objects.iter().map(|(id, item)| file_object(id.0, item, folder)).collect();
+    let cameras: Result<_, String> =
+        cameras.iter().map(|(id, item)| file_camera(id.0, item, folder)).collect();
+    Ok(FileScene {
+        version: VERSION,
+        background: background.0,
+        next_id: *next_id,
+        objects: objects?,
+        cameras: cameras?,
+        lights: lights.iter().map(|(id, item)| file_light(id.0, item)).collect(),
+        locked: FileLocked::of(scene),
+        view: FileView::of(view, window),
+        settings: *settings,
+    })
+}
+
+pub(super) fn file_model(model: &Model, folder: &Path) -> Result<FileModel, String> {
+    let Model { name, source, options, .. } = model;
+    let Some(source) = source else {
+        return if crate::own_model(name).is_some() {
+            Ok(FileModel::Own(name.clone()))
+        } else {
+            Err(format!("the model \"{name}\" is in no file"))
+        };
+    };
+    let LoadOptions { up, scale, winding, crease, bumps } = *options;
+    let path = file_path(source, folder)?;
+    let (scale, crease) = (scale.get(), crease.get());
+    Ok(FileModel::File { path, up, scale, winding, crease, bumps })
+}
+
+fn file_path(path: &Path, folder: &Path) -> Result<String, String> {
+    if let Some(example) = path.to_str().filter(|_| is_example(path)) {
+        return Ok(example.to_owned());
+    }
+    let complete = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
+    relative(folder, &complete)
+        .ok_or_else(|| format!("the name {} cannot be written as text", path.display()))
+}
+
+pub(super) fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, String> {
+    let Object {
+        name,
+        visible,
+        model,
+        hidden_parts,
+        placement,
+        spin,
+        material,
+        surface,
+        texture,
+        tint,
+        opacity,
+        sides,
+        file_normals,
+        edge_color,
+    } = object;
+    let texture = texture.as_ref().map(|texture| file_texture(texture, folder)).transpose()?;
+    Ok(FileObject {
+        id,
+        name: name.clone(),
+        visible: *visible,
+        model: file_model(model, folder)?,
+        hidden_parts: Numbers::of(hidden_parts),
+        placement: placement.now().to_cols_array_2d(),
+        spin: *spin,
+        material: material.clone(),
+        surface: *surface,
+        texture,
+        tint: tint.0,
+        opacity: *opacity,
+        sides: Some(*sides),
+        two_sided: None,
+        file_normals: *file_normals,
+        edge_color: edge_color.0,
+    })
+}
+
+pub(super) fn file_texture(texture: &Texture, folder: &Path) -> Result<FileTexture, String> {
+    let Texture { source, picture: _, wrap, offset, scale } = texture;
+    let own = source.to_str().filter(|path| own_texture(path).is_some());
+    let path = own.map_or_else(|| file_path(source, folder), |own| Ok(own.to_owned()))?;
+    Ok(FileTexture { path, wrap: *wrap, offset: *offset, scale: *scale })
+}
+
+pub(super) fn file_camera(id: u32, camera: &Camera, folder: &Path) -> Result<FileCamera, String> {
+    let Camera { name, visible, model, material, pose, lens } = camera;
+    let Pose { eye, axes, mode } = *pose.now();
+    Ok(FileCamera {
+        id,
+        name: name.clone(),
+        visible: *visible,
+        model: file_model(model, folder)?,
+        material: material.clone(),
+        eye: eye.to_array(),
+        axes: axes.to_cols_array_2d(),
+        mode: match mode {
+            CameraMode::Fly => FileMode::Fly,
+            CameraMode::Analysis { target } => FileMode::Analysis(target.0),
+        },
+        lens: *lens,
+    })
+}

@@ -1,0 +1,76 @@
+//! The files that a scene was read from.
+//!
+//! A picture, a turntable or an export has further files (materials, textures, frames), and each of
+//! them could have the name of a file that the scene needs. Every writer therefore asks here before
+//! it writes its first byte.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::replace::SaveError;
+use marraztu_core::scene::{Object, Scene};
+
+/// The files that a scene was read from: models with their MTL files and textures, and the scene
+/// file itself. No result of the scene replaces one of them.
+#[derive(Clone, Debug, Default)]
+pub struct Sources {
+    /// The paths without links, and as they were given.
+    places: BTreeMap<PathBuf, PathBuf>,
+}
+
+impl Sources {
+    /// The files of all objects.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let mut sources = Self::default();
+        for (_, object) in scene.objects.iter() {
+            sources.add_all(files(object));
+        }
+        sources
+    }
+
+    /// These and further files, such as the scene file.
+    #[must_use]
+    pub fn with<P: AsRef<Path>>(mut self, files: impl IntoIterator<Item = P>) -> Self {
+        self.add_all(files);
+        self
+    }
+
+    fn add_all<P: AsRef<Path>>(&mut self, files: impl IntoIterator<Item = P>) {
+        for file in files {
+            let file = file.as_ref();
+            // A file that does not exist cannot be replaced.
+            if let Ok(place) = file.canonicalize() {
+                self.places.entry(place).or_insert_with(|| file.to_owned());
+            }
+        }
+    }
+
+    /// Checks that writing to `target` would not replace one of the files, by whatever path or link
+    /// it is named.
+    ///
+    /// # Errors
+    /// If it would.
+    pub fn spare(&self, target: &Path) -> Result<(), SaveError> {
+        let place = target.canonicalize().ok();
+        match place.and_then(|place| self.places.get(&place)) {
+            None => Ok(()),
+            Some(file) if file == target => {
+                Err(SaveError::new(target, "the scene is read from it; choose another name"))
+            }
+            Some(file) => {
+                let reason =
+                    format!("the scene is read from it ({}); choose another name", file.display());
+                Err(SaveError::new(target, reason))
+            }
+        }
+    }
+}
+
+/// The files that an object was read from.
+fn files(object: &Object) -> impl Iterator<Item = &Path> {
+    let model = &object.model;
+    let texture = object.texture.iter().map(|texture| texture.source.as_path());
+    let companions = model.companions.iter().map(PathBuf::as_path);
+    model.source.as_deref().into_iter().chain(companions).chain(texture)
+}

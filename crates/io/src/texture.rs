@@ -1,0 +1,335 @@
+//! Reads textures and other pictures.
+
+use std::collections::BTreeMap;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+
+use super::error::{LoadError, shown};
+use super::findings::{Finding, FindingKind, Findings};
+use super::picture::either;
+use super::progress::Progress;
+use super::read::read;
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{Texture, Wrap};
+
+/// The largest side of a texture, in texels.
+const LARGEST_SIDE: u32 = 16_384;
+
+/// The most memory that reading a picture may take.
+const MOST_MEMORY: u64 = 2 << 30;
+
+/// The most bytes of a file.
+const MOST_BYTES: usize = 2 << 30;
+
+/// The formats that textures are read in, by the names that people call them.
+const FORMATS: &[(&str, ImageFormat)] = &[
+    ("PNG", ImageFormat::Png),
+    ("JPEG", ImageFormat::Jpeg),
+    ("WebP", ImageFormat::WebP),
+    ("TIFF", ImageFormat::Tiff),
+    ("BMP", ImageFormat::Bmp),
+    ("TGA", ImageFormat::Tga),
+    ("GIF", ImageFormat::Gif),
+];
+
+/// The formats that textures are read in, as a list in a sentence.
+#[must_use]
+pub fn texture_formats() -> String {
+    either(FORMATS.iter().map(|(name, _)| (*name).to_owned()))
+}
+
+/// How names of textures end.
+#[must_use]
+pub fn texture_endings() -> Vec<&'static str> {
+    FORMATS.iter().flat_map(|(_, format)| format.extensions_str()).copied().collect()
+}
+
+/// The message for a file of another kind.
+fn unknown() -> String {
+    format!("this is not a {}", texture_formats())
+}
+
+/// Reads a texture that the user chooses: it repeats, and follows the model's texture coordinates.
+///
+/// # Errors
+/// If the file cannot be read or is not a picture.
+pub fn load_texture(path: &Path) -> Result<Shared<Texture>, LoadError> {
+    load_texture_with(path, &mut Vec::new())
+}
+
+/// As [`load_texture`]; notes what is odd about the file.
+///
+/// # Errors
+/// As [`load_texture`].
+pub fn load_texture_with(
+    path: &Path,
+    findings: &mut Vec<Finding>,
+) -> Result<Shared<Texture>, LoadError> {
+    Pictures::default().texture(path, findings)
+}
+
+/// Reads a picture in any of the formats that textures have, whatever its name ends in; of a GIF,
+/// the first picture.
+///
+/// # Errors
+/// If the file cannot be read, is not a picture, or is too large.
+pub fn load_picture(path: &Path) -> Result<Picture, LoadError> {
+    let (picture, _) = decode(path, usize::MAX)?;
+    Ok(picture)
+}
+
+/// The pictures that were read for one model or scene: each is read once and shared.
+#[derive(Debug, Default)]
+pub(super) struct Pictures {
+    read: BTreeMap<PathBuf, Result<Read, LoadError>>,
+}
+
+/// A picture from a file.
+#[derive(Clone, Debug)]
+pub(super) struct Read {
+    pub(super) picture: Shared<Picture>,
+    /// The file ends before the picture does.
+    pub(super) cut_off: bool,
+}
+
+impl Pictures {
+    /// The picture of a file.
+    ///
+    /// # Errors
+    /// If it cannot be read, is not a picture, or has more than `most` texels; these are counted
+    /// before any is decoded.
+    pub(super) fn read(&mut self, path: &Path, most: usize) -> Result<Read, LoadError> {
+        // One file may have several paths.
+        let file = std::fs::canonicalize(path).unwrap_or_else(|_missing| path.to_owned());
+        if let Some(read) = self.read.get(&file) {
+            let fits = |read: &Read| read.picture.size().area() <= most;
+            return match read {
+                Ok(read) if !fits(read) => Err(too_many_texels(path)),
+                known => known.clone(),
+            };
+        }
+        let read = decode(path, most)
+            .map(|(picture, cut_off)| Read { picture: Shared::new(picture), cut_off });
+        // With a higher limit it may still be read.
+        if read.as_ref().err() != Some(&too_many_texels(path)) {
+            self.read.insert(file, read.clone());
+        }
+        read
+    }
+
+    /// The texture of a file. It repeats, and follows the model's texture coordinates.
+    ///
+    /// # Errors
+    /// If the file cannot be read or is not a picture.
+    pub(super) fn texture(
+        &mut self,
+        path: &Path,
+        findings: &mut Vec<Finding>,
+    ) -> Result<Shared<Texture>, LoadError> {
+        let Read { picture, cut_off } = self.read(path, usize::MAX)?;
+        if cut_off {
+            let mut own = Findings::new(&shown(path));
+            own.add(FindingKind::TextureCutOff, &shown(path), None);
+            findings.extend(own.into_list());
+        }
+        Ok(Shared::new(Texture {
+            // The path is absolute, so that it stays valid if the current folder changes.
+            source: std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()),
+            picture,
+            wrap: Wrap::Repeat,
+            offset: [0.0; 2],
+            scale: [1.0; 2],
+        }))
+    }
+}
+
+fn too_many_texels(path: &Path) -> LoadError {
+    LoadError::file(&shown(path), "with it the textures take more than 2 GB of memory")
+}
+
+/// The picture of a file, and whether the file ends before it does.
+fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
+    let file = shown(path);
+    let fail = |reason: String| LoadError::file(&file, reason);
+    let bytes = read(path, MOST_BYTES, &Progress::new())?;
+    let mut reader = ImageReader::new(Cursor::new(&bytes));
+    // A TGA can be recognised only by its name.
+    if let Ok(format) = ImageFormat::from_path(path) {
+        reader.set_format(format);
+    }
+    let mut reader =
+        reader.with_guessed_format().map_err(|error| LoadError::system(&file, &error))?;
+    if reader.format().is_none() {
+        return Err(fail(unknown()));
+    }
+    let cut_off = reader.format() == Some(ImageFormat::Jpeg) && jpeg_ends_early(&bytes);
+    let mut limits = image::Limits::default();
+    limits.max_image_width = Some(LARGEST_SIDE);
+    limits.max_image_height = Some(LARGEST_SIDE);
+    limits.max_alloc = Some(MOST_MEMORY);
+    reader.limits(limits);
+    let decoded = move || {
+        let decoder = reader.into_decoder()?;
+        let (width, height) = decoder.dimensions();
+        if width as usize * height as usize > most {
+            return Ok(None);
+        }
+        DynamicImage::from_decoder(decoder).map(Some)
+    };
+    // A decoder that panics on a damaged file must not take the editor with it.
+    let decoded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(decoded))
+        .map_err(|_panic| fail("the picture is damaged".to_owned()))?
+        .map_err(|error| fail(reason(&error)))?
+        .ok_or_else(|| too_many_texels(path))?;
+    drop(bytes);
+    let picture = picture(decoded).ok_or_else(|| fail("the picture is damaged".to_owned()))?;
+    if picture.size().area() == 0 {
+        return Err(fail("the picture is empty".to_owned()));
+    }
+    Ok((picture, cut_off))
+}
+
+fn picture(decoded: DynamicImage) -> Option<Picture> {
+    let size = Size::new(decoded.width() as usize, decoded.height() as usize);
+    let texels = match decoded {
+        DynamicImage::ImageRgb8(texels) => {
+            let (texels, _) = texels.as_chunks();
+            texels.iter().map(|[r, g, b]| [*r, *g, *b, 255]).collect()
+        }
+        other => other.into_rgba8().as_chunks().0.to_vec(),
+    };
+    Picture::from_pixels(size, texels)
+}
+
+/// Whether a JPEG ends before its marker of the end: the decoder fills up the missing part.
+fn jpeg_ends_early(bytes: &[u8]) -> bool {
+    // After the marker of the beginning: FF, a kind, and for most kinds a length and a content.
+    let mut rest = bytes.get(2..).unwrap_or_default();
+    while let [first, kind, after @ ..] = rest {
+        rest = match (first, kind) {
+            (0xFF, 0xD9) => return false,
+            // Stuffing, restarts and fill bytes have no content. Everything else is the picture
+            // itself.
+            (0xFF, 0x00 | 0x01 | 0xD0..=0xD8) => after,
+            (0xFF, 0xFF) | (0..=0xFE, _) => &rest[1..],
+            _ => {
+                let [high, low, ..] = after else { return true };
+                let length = usize::from(u16::from_be_bytes([*high, *low]));
+                after.get(length..).unwrap_or_default()
+            }
+        };
+    }
+    true
+}
+
+/// A built-in picture; `None` if it cannot be read.
+pub(super) fn own_picture(content: &[u8]) -> Option<Picture> {
+    picture(image::load_from_memory(content).ok()?)
+}
+
+fn reason(error: &image::ImageError) -> String {
+    use image::ImageError;
+    use image::error::LimitErrorKind;
+    match error {
+        ImageError::Limits(limit) if matches!(limit.kind(), LimitErrorKind::DimensionError) => {
+            format!("the picture is larger than {LARGEST_SIDE} x {LARGEST_SIDE}")
+        }
+        ImageError::Limits(_) => {
+            format!("the picture takes more than {} GB of memory", MOST_MEMORY >> 30)
+        }
+        ImageError::Unsupported(_) => unknown(),
+        _ => "the picture is damaged".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_picture_is_read_whatever_its_name_ends_in() {
+        let folder = tempfile::tempdir().unwrap();
+        let texels = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]];
+        let drawn = image::RgbaImage::from_fn(8, 8, |x, y| {
+            image::Rgba(texels[(x / 4 + y / 4 * 2) as usize])
+        });
+        for (_, format) in FORMATS.iter().copied() {
+            // Only a TGA has nothing in it that tells what it is.
+            let path =
+                folder.path().join(if format == ImageFormat::Tga { "a.tga" } else { "a.picture" });
+            let written = DynamicImage::from(drawn.clone()).to_rgb8();
+            written.save_with_format(&path, format).unwrap();
+            let read = load_picture(&path).unwrap();
+            assert_eq!(read.size(), Size::new(8, 8), "{format:?}");
+            for (x, y, texel) in [(0, 0, texels[0]), (7, 0, texels[1]), (0, 7, texels[2])] {
+                for (got, expected) in read.pixel(x, y).into_iter().zip(texel) {
+                    // JPEG blurs; a row or a channel in the wrong place would differ by more.
+                    assert!(got.abs_diff(expected) < 64, "{format:?} at {x}, {y}: {got}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_file_that_is_not_a_picture_or_is_too_large_or_truncated_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let file = format!("{}: ", path.display());
+        let refusal = || {
+            let refusal = load_picture(&path).unwrap_err().to_string();
+            refusal.strip_prefix(&file).unwrap().to_owned()
+        };
+        assert_eq!(refusal(), "there is no such file");
+        image::RgbImage::new(16_385, 1).save(&path).unwrap();
+        assert_eq!(refusal(), "the picture is larger than 16384 x 16384");
+        image::RgbImage::new(64, 64).save(&path).unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+        assert!(refusal().starts_with("the picture is damaged"), "{}", refusal());
+        std::fs::write(&path, b"hello").unwrap();
+        assert!(refusal().starts_with("the picture is damaged"), "{}", refusal());
+    }
+
+    #[test]
+    fn a_jpeg_that_ends_early_is_read_with_a_finding_wherever_it_is_cut() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.jpg");
+        let noise =
+            |x: u32, y: u32| image::Rgb([x * 37 + y * 91, x * y, x].map(|n| n.to_le_bytes()[0]));
+        image::RgbImage::from_fn(64, 64, noise).save(&path).unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        let found = |bytes: &[u8]| {
+            std::fs::write(&path, bytes).unwrap();
+            let mut findings = Vec::new();
+            let loaded = load_texture_with(&path, &mut findings);
+            loaded.map(|_| findings.iter().map(|finding| finding.kind).collect::<Vec<_>>())
+        };
+        assert_eq!(found(&whole), Ok(vec![]));
+        assert_eq!(found(&[&whole[..], b"more"].concat()), Ok(vec![]));
+        for part in 1..8 {
+            let cut = whole.len() / 2 + whole.len() * part / 16;
+            assert_eq!(found(&whole[..cut]), Ok(vec![FindingKind::TextureCutOff]), "{cut}");
+        }
+    }
+
+    #[test]
+    fn a_picture_is_decoded_once_and_never_if_its_texels_are_too_many() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        image::RgbImage::new(16, 16).save(&path).unwrap();
+        let mut pictures = Pictures::default();
+        let first = pictures.read(&path, 256).unwrap().picture;
+        let again = pictures.read(&folder.path().join("./a.png"), 256).unwrap().picture;
+        assert!(Shared::same(&first, &again));
+        assert_eq!(pictures.read(&path, 255).unwrap_err(), too_many_texels(&path));
+        // A header without texels: it is refused for their number, before memory is allocated.
+        let whole = std::fs::read(&path).unwrap();
+        let headless = folder.path().join("b.png");
+        std::fs::write(&headless, &whole[..50]).unwrap();
+        assert_eq!(decode(&headless, 255).unwrap_err(), too_many_texels(&headless));
+        assert_ne!(decode(&headless, 256).unwrap_err(), too_many_texels(&headless));
+    }
+}

@@ -1,0 +1,156 @@
+//! Which axis of a model's file points up, if the file states it.
+//!
+//! OBJ has no statement for the up axis. Some exporters say it in a comment at the top, and some
+//! programs always write Z up. The shape is not considered: models that lie, stand and hang look
+//! alike, and a surface far from the origin has to give the same picture as one at the origin.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::packed::{Unpacked, unpacked_name};
+use marraztu_core::scene::UpAxis;
+
+/// The bytes of a file that are looked at.
+const HEAD: u64 = 8192;
+
+/// Programs that always write Z up, by a comment of theirs in lower case.
+const WRITE_Z_UP: [&str; 4] =
+    ["openscad obj exporter", "tinkercad", "created by freecad", "freecad v"];
+
+/// The most letters of a comment that are quoted.
+const LONGEST: usize = 60;
+
+/// The statement of a file about its up axis.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StatedUp {
+    /// The axis.
+    pub up: UpAxis,
+    /// The comment that states it.
+    pub comment: String,
+}
+
+/// The axis that the comments at the top of a file state; `None` if they state none, or if the file
+/// cannot be read.
+#[must_use]
+pub fn stated_up(path: &Path) -> Option<StatedUp> {
+    // Reading a pipe would take what is read from it later.
+    if !std::fs::metadata(path).ok()?.is_file() {
+        return None;
+    }
+    let file = File::open(path).ok()?;
+    let is_packed = path.file_name()?.to_str().and_then(unpacked_name).is_some();
+    let mut head = Vec::new();
+    let read = match is_packed {
+        true => Unpacked::new(file).take(HEAD).read_to_end(&mut head),
+        false => file.take(HEAD).read_to_end(&mut head),
+    };
+    read.ok()?;
+    stated_in(&head)
+}
+
+/// The axis that the comments before the first statement state.
+pub(super) fn stated_in(bytes: &[u8]) -> Option<StatedUp> {
+    let head = &bytes[..bytes.len().min(usize::try_from(HEAD).unwrap_or(usize::MAX))];
+    let text = String::from_utf8_lossy(head);
+    let text = text.strip_prefix('\u{FEFF}').unwrap_or(&text);
+    let comments = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let comments = comments.map_while(|line| line.strip_prefix('#'));
+    comments.into_iter().find_map(|comment| {
+        let comment = comment.trim_start_matches('#').trim();
+        let up = up_of(&comment.to_lowercase())?;
+        let end = comment.char_indices().nth(LONGEST).map_or(comment.len(), |(at, _)| at);
+        Some(StatedUp { up, comment: comment[..end].to_owned() })
+    })
+}
+
+/// The axis that a comment in lower case states: "z-up", "up axis: -y", "axis_forward=-z, up=y".
+fn up_of(comment: &str) -> Option<UpAxis> {
+    if WRITE_Z_UP.iter().any(|program| comment.contains(program)) {
+        return Some(UpAxis::Z);
+    }
+    comment.split([',', ';', '|']).find_map(|clause| {
+        let words = words(clause);
+        let at =
+            words.iter().position(|word| ["up", "upaxis", "upvector", "zup"].contains(&&**word))?;
+        if words[at] == "zup" {
+            return Some(UpAxis::Z);
+        }
+        let small = |word: &&String| ["axis", "is", "vector", "points"].contains(&word.as_str());
+        let mut after = words[at + 1..].iter().skip_while(small);
+        let (next, second) = (after.next(), after.next());
+        let is_forward = second.is_some_and(|word| word == "forward" || word == "front");
+        if let Some(up) = next.filter(|_| !is_forward).and_then(|word| axis(word)) {
+            return Some(up);
+        }
+        words[..at].iter().rev().find(|word| !small(word)).and_then(|word| axis(word))
+    })
+}
+
+/// The words of a clause. A sign belongs to a letter if nothing but a separator is before it.
+fn words(clause: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    for letter in clause.chars() {
+        let is_new = words.last().is_none_or(String::is_empty);
+        match letter {
+            '-' if is_new => words.push("-".to_owned()),
+            'a'..='z' | '0'..='9' => {
+                if let Some(word) = words.last_mut() {
+                    word.push(letter);
+                }
+            }
+            _ => words.push(String::new()),
+        }
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+/// The axis of a word. X is left out: no program puts it up, and "up x 2" is a factor.
+fn axis(word: &str) -> Option<UpAxis> {
+    let all = [UpAxis::Y, UpAxis::Z, UpAxis::MinusY, UpAxis::MinusZ];
+    all.into_iter().find(|up| up.word() == word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_that_a_comment_states_is_found() {
+        for (comment, up) in [
+            ("Z-up", UpAxis::Z),
+            ("z_up, units: mm", UpAxis::Z),
+            ("ZUP", UpAxis::Z),
+            ("up axis: Z", UpAxis::Z),
+            ("Up = +Z", UpAxis::Z),
+            ("up_axis=Y", UpAxis::Y),
+            ("The Z axis is up", UpAxis::Z),
+            ("Z up, Y forward", UpAxis::Z),
+            ("Z up Y forward", UpAxis::Z),
+            ("axis_forward='-Z', axis_up='Y'", UpAxis::Y),
+            ("up: -Y", UpAxis::MinusY),
+            ("OpenSCAD obj exporter", UpAxis::Z),
+            ("Object Export From Tinkercad Server 2015", UpAxis::Z),
+            ("Created by FreeCAD <https://www.freecad.org>", UpAxis::Z),
+        ] {
+            let text = format!("\n# first\n#  {comment}\nv 1 2 3\n");
+            let stated = stated_in(text.as_bytes()).map(|stated| stated.up);
+            assert_eq!(stated, Some(up), "{comment}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_concluded_from_other_comments_and_statements() {
+        for text in [
+            "",
+            "# Blender 4.0.2\n# www.blender.org\nv 0 0 1\n",
+            "# cleaned up by hand\nv 0 0 1",
+            "# set up a mesh\n# group z\nv 0 0 1",
+            "v 0 0 1\n# z-up\n",
+            "# 8 vertices\no up_z\n",
+        ] {
+            assert_eq!(stated_in(text.as_bytes()), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Attributes the error of one pixel to the axes of accuracy.
+//!
+//! The picture is drawn again with one axis at a time at its most exact choice. What that takes off
+//! the error is the share of the axis. Shares need not add up to the error, since errors may cancel
+//! or depend on each other.
+
+use serde::Serialize;
+
+use super::picture_source::PictureSource;
+use marraztu_core::accuracy::{AXES, Axis, AxisKind, Settings};
+
+/// One pixel, and where its error comes from.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Attribution {
+    /// Column and row, from the upper left.
+    pub at: [usize; 2],
+    /// The reference's red, green and blue.
+    pub exact: [u8; 3],
+    /// Those of the settings that are judged.
+    pub ours: [u8; 3],
+    /// Whether the reference shows another primitive there.
+    pub coverage_differs: bool,
+    /// The axes that are not at their most exact choice, the largest share first.
+    pub shares: Vec<Share>,
+}
+
+/// The share of one axis in the error of a pixel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Share {
+    /// The axis's key.
+    pub axis: &'static str,
+    /// The current choice.
+    pub chosen: &'static str,
+    /// The most exact choice.
+    pub exact: &'static str,
+    /// The pixel with that axis alone made exact.
+    pub value: [u8; 3],
+    /// The byte steps of all channels together by which that reduces the error; below 0 it grows.
+    pub steps: i32,
+}
+
+/// Judges a pixel of the picture that these settings draw; `None` if it is outside.
+#[must_use]
+pub fn attribute(
+    source: &mut dyn PictureSource,
+    settings: &Settings,
+    at: [usize; 2],
+) -> Option<Attribution> {
+    let mut look = |settings: &Settings| -> Option<([u8; 3], u32)> {
+        source.draw(settings);
+        let size = source.picture().size();
+        if at[0] >= size.width || at[1] >= size.height {
+            return None;
+        }
+        let [r, g, b, _] = source.picture().pixel(at[0], at[1]);
+        Some(([r, g, b], source.primitives()[at[1] * size.width + at[0]]))
+    };
+    // A pixel of several samples is judged against as many, each lit.
+    let reference = Settings { samples: settings.samples, ..settings.reference() };
+    let lit = AXES.iter().filter(|axis| axis.kind == AxisKind::Scored);
+    let reference = lit.fold(reference, |now, axis| axis.most_exact(&now).of(&now));
+    let (exact, exact_primitive) = look(&reference)?;
+    let (ours, primitive) = look(settings)?;
+    let mut shares = Vec::new();
+    let judged = |axis: &&Axis| match axis.kind {
+        AxisKind::Scored => true,
+        AxisKind::ScoredApart | AxisKind::Model => false,
+    };
+    for axis in AXES.iter().filter(judged) {
+        let (chosen, best) = (axis.chosen(settings), axis.most_exact(settings));
+        if chosen.word == best.word {
+            continue;
+        }
+        let (value, _) = look(&best.of(settings))?;
+        let steps = distance(ours, exact) - distance(value, exact);
+        let (chosen, exact) = (chosen.word, best.word);
+        shares.push(Share { axis: axis.key, chosen, exact, value, steps });
+    }
+    shares.sort_by_key(|share| std::cmp::Reverse(share.steps));
+    let coverage_differs = primitive != exact_primitive;
+    Some(Attribution { at, exact, ours, coverage_differs, shares })
+}
+
+/// The byte steps between two colours, all channels together.
+fn distance(a: [u8; 3], b: [u8; 3]) -> i32 {
+    (0..3).map(|i| i32::from(a[i].abs_diff(b[i]))).sum()
+}
+
+impl Attribution {
+    /// The byte steps between exact and ours, all channels together.
+    #[must_use]
+    pub fn steps(&self) -> i32 {
+        distance(self.ours, self.exact)
+    }
+
+    /// A description, line by line.
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        let [x, y] = self.at;
+        let color = |[r, g, b]: [u8; 3]| format!("({r}, {g}, {b})");
+        let mut lines = vec![
+            format!("pixel {x},{y}"),
+            format!("  exact  {}", color(self.exact)),
+            format!("  ours   {}: {} byte steps off", color(self.ours), self.steps()),
+        ];
+        if self.coverage_differs {
+            lines.push("  the exact picture shows another triangle there".to_owned());
+        }
+        for Share { axis, chosen, exact, value, steps } in &self.shares {
+            let how = match steps {
+                0 => "no nearer".to_owned(),
+                1.. => format!("{steps} steps nearer"),
+                _ => format!("{} steps farther", -steps),
+            };
+            lines.push(format!("  {axis} {exact} instead of {chosen}: {}, {how}", color(*value)));
+        }
+        if self.shares.is_empty() {
+            lines.push("  every axis is at its most exact".to_owned());
+        }
+        lines
+    }
+}

@@ -1,0 +1,331 @@
+//! Chooses which settings are measured: each axis by itself, the presets, and some combinations.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use super::pairs::Limits;
+use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Settings};
+use marraztu_core::scene::{Scene, View};
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thoroughness {
+    /// Its name on the command line and in reports.
+    pub word: &'static str,
+    /// How long each choice is measured.
+    pub limits: Limits,
+    /// The largest number of combinations that are measured.
+    pub combinations: usize,
+    /// No combination is begun after this time.
+    pub time: Duration,
+}
+
+impl Thoroughness {
+    /// Some 25 seconds for the first scene on two cores.
+    pub const QUICK: Self = Self {
+        word: "quick",
+        limits: Limits { pairs: 11, least: 7, time: Duration::from_millis(300) },
+        combinations: 12,
+        time: Duration::from_secs(20),
+    };
+    /// At most 4 minutes for the first scene on two cores.
+    pub const WHOLE: Self = Self {
+        word: "whole",
+        limits: Limits { pairs: 31, least: 7, time: Duration::from_secs(3) },
+        combinations: 48,
+        time: Duration::from_secs(200),
+    };
+}
+
+/// Settings to measure, with their name in the table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// Why they are measured.
+    pub group: Group,
+    /// Their name in the table.
+    pub name: String,
+    /// The settings.
+    pub settings: Settings,
+}
+
+/// Why settings are measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(tag = "group", content = "axis", rename_all = "lowercase")]
+pub enum Group {
+    /// A preset.
+    Preset,
+    /// The default with another choice of one axis, which has this key.
+    Axis(&'static str),
+    /// The settings that the picture is drawn with now.
+    Current,
+    /// Other choices of several axes.
+    Combination,
+}
+
+/// Something that is not measured, with the reason.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct LeftOut {
+    /// What it is.
+    pub what: String,
+    /// The reason.
+    pub reason: String,
+}
+
+/// What is measured, and what is not.
+#[derive(Clone, Debug, Default)]
+pub struct Candidates {
+    /// In the order of measurement; the first is the default.
+    pub all: Vec<Candidate>,
+    /// What makes no difference in this scene, and combinations beyond the limit.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// The settings to measure for these axes in this scene.
+#[must_use]
+pub fn candidates(
+    scene: &Scene,
+    view: &View,
+    current: &Settings,
+    axes: &[&'static Axis],
+    most_combinations: usize,
+) -> Candidates {
+    let base = Settings::default().modelled_as(current);
+    let mut found = Candidates::default();
+    let mut add = |group, name: String, settings| {
+        found.all.push(Candidate { group, name, settings });
+    };
+    for preset in ACCURACY_PRESETS.iter().filter(|preset| preset.of(current) == base) {
+        add(Group::Preset, preset.label.to_owned(), base);
+    }
+    let (sensible, senseless): (Vec<&Axis>, Vec<&Axis>) =
+        axes.iter().partition(|axis| (axis.sense)(scene, view).is_ok());
+    for axis in &sensible {
+        for choice in offered(axis, (scene, view), &base) {
+            add(Group::Axis(axis.key), choice.label.to_owned(), choice.of(&base));
+        }
+    }
+    for preset in ACCURACY_PRESETS.iter().filter(|preset| preset.of(current) != base) {
+        add(Group::Preset, preset.label.to_owned(), preset.of(current));
+    }
+    add(Group::Current, current.in_words(), *current);
+    let (combinations, count) = combinations(&base, &sensible, (scene, view), most_combinations);
+    for settings in combinations {
+        add(Group::Combination, settings.in_words(), settings);
+    }
+    for axis in senseless {
+        let reason = (axis.sense)(scene, view).err().unwrap_or_default().to_owned();
+        found.left_out.push(LeftOut { what: axis.label.to_owned(), reason });
+    }
+    for axis in &sensible {
+        for choice in axis.choices {
+            if let Err(reason) = choice.is_of_its_own(scene, view, &base) {
+                let (what, reason) = (axis.in_words(choice), reason.to_owned());
+                found.left_out.push(LeftOut { what, reason });
+            }
+        }
+    }
+    if count > most_combinations {
+        found.left_out.push(LeftOut {
+            what: format!("{} of {count} combinations", count - most_combinations),
+            reason: format!("{most_combinations} are enough for a front"),
+        });
+    }
+    found
+}
+
+/// The choices of an axis that differ from all others in this scene, with these settings of the
+/// other axes.
+fn offered<'a>(
+    axis: &'static Axis,
+    (scene, view): (&'a Scene, &'a View),
+    settings: &'a Settings,
+) -> impl Iterator<Item = &'static Choice> + 'a {
+    axis.choices.iter().filter(|choice| choice.is_of_its_own(scene, view, settings).is_ok())
+}
+
+/// A choice that is combined with others, and the index of its axis.
+type Pick = (usize, &'static Choice);
+
+/// Settings that differ from `base` in two or more axes, models excepted: at most `most` of them,
+/// and the number of those that were listed. All that differ in two axes come first, then those
+/// that differ in three, and so on.
+///
+/// Among those that differ in the same number of axes, the next is the one whose axes were chosen
+/// least often before, so that even a few are spread over all axes.
+fn combinations(
+    base: &Settings,
+    axes: &[&'static Axis],
+    seen: (&Scene, &View),
+    most: usize,
+) -> (Vec<Settings>, usize) {
+    let picks: Vec<Pick> = (0..axes.len())
+        .flat_map(|i| axes[i].choices.iter().map(move |choice| (i, choice)))
+        .filter(|(i, choice)| is_combined(axes[*i], choice, base, seen))
+        .collect();
+    let of = |combination: &[Pick]| {
+        combination.iter().fold(*base, |settings, (_, choice)| choice.of(&settings))
+    };
+    let mut all: Vec<Vec<Pick>> = picks.iter().map(|pick| vec![*pick]).collect();
+    let (mut chosen, mut count, mut spread) = (Vec::new(), 0, Spread::default());
+    while chosen.len() < most && !all.is_empty() {
+        let grown = all.iter().flat_map(|combination| {
+            let last = combination.last().map_or(0, |(axis, _)| *axis);
+            let later = picks.iter().filter(move |(axis, _)| *axis > last);
+            later.map(move |pick| [combination.as_slice(), &[*pick]].concat())
+        });
+        all = grown.take(MOST).collect();
+        let is_new = |combination: &&Vec<Pick>| {
+            let settings = of(combination);
+            combination.iter().all(|(_, choice)| (choice.among)(&settings).is_ok())
+        };
+        let mut left: Vec<&Vec<Pick>> = all.iter().filter(is_new).collect();
+        count += left.len();
+        while chosen.len() < most && !left.is_empty() {
+            let next = (0..left.len()).min_by_key(|i| spread.weight(left[*i]));
+            let next = left.remove(next.expect("some are left"));
+            spread.add(next);
+            chosen.push(of(next));
+        }
+    }
+    (chosen, count)
+}
+
+/// Whether the choice is combined with others. Choices without an effect, models, historical
+/// choices, and the samples that all others are judged against are not.
+fn is_combined(
+    axis: &Axis,
+    choice: &Choice,
+    base: &Settings,
+    (scene, view): (&Scene, &View),
+) -> bool {
+    let judges = axis.kind == AxisKind::ScoredApart && choice.word == axis.most_exact(base).word;
+    axis.kind != AxisKind::Model
+        && !judges
+        && !choice.is(base)
+        && !HISTORICAL.contains(&(axis.key, choice.word))
+        && (choice.sense)(scene, view).is_ok()
+}
+
+/// Choices that are offered for teaching only.
+const HISTORICAL: [(&str, &str); 6] = [
+    ("coverage", "points"),
+    ("coverage", "scan-lines"),
+    ("interpolation", "affine"),
+    ("interpolation", "every-sixteen"),
+    ("stretched", "as-it-is"),
+    ("rounding", "truncated"),
+];
+
+/// How often each axis, set of axes and choice was chosen.
+#[derive(Default)]
+struct Spread {
+    axes: BTreeMap<usize, usize>,
+    sets: BTreeMap<Vec<usize>, usize>,
+    choices: BTreeMap<(usize, &'static str), usize>,
+}
+
+impl Spread {
+    /// How often the parts of a combination were chosen, axes first.
+    fn weight(&self, combination: &[Pick]) -> [usize; 3] {
+        let axes = combination.iter().filter_map(|(axis, _)| self.axes.get(axis));
+        let choices = combination.iter().filter_map(|(i, it)| self.choices.get(&(*i, it.word)));
+        let set = self.sets.get(&set(combination)).copied().unwrap_or_default();
+        [axes.sum(), set, choices.sum()]
+    }
+
+    fn add(&mut self, combination: &[Pick]) {
+        *self.sets.entry(set(combination)).or_default() += 1;
+        for (axis, choice) in combination {
+            *self.axes.entry(*axis).or_default() += 1;
+            *self.choices.entry((*axis, choice.word)).or_default() += 1;
+        }
+    }
+}
+
+/// The axes of a combination.
+fn set(combination: &[Pick]) -> Vec<usize> {
+    combination.iter().map(|(axis, _)| *axis).collect()
+}
+
+/// The largest number of combinations that are listed: many axes have more.
+const MOST: usize = 4096;
+
+/// All axes.
+#[must_use]
+pub fn all_axes() -> Vec<&'static Axis> {
+    AXES.iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The combinations in the first scene, at most `most`.
+    fn combined(most: usize) -> Vec<Settings> {
+        let (scene, view) = marraztu_io::default_scene();
+        let found = candidates(&scene, &view, &Settings::default(), &all_axes(), most);
+        let all = found.all.into_iter().filter(|it| it.group == Group::Combination);
+        all.map(|it| it.settings).collect()
+    }
+
+    /// The choices of these settings that are not the default's, by axis.
+    fn words(settings: &Settings) -> Vec<(&'static str, &'static str)> {
+        let words = AXES.iter().map(|axis| (axis, axis.chosen(settings).word));
+        let own = words.filter(|(axis, word)| *word != axis.default_choice().word);
+        own.map(|(axis, word)| (axis.key, word)).collect()
+    }
+
+    #[test]
+    fn few_combinations_are_spread_over_all_axes_and_none_is_history() {
+        let all = combined(Thoroughness::QUICK.combinations);
+        assert_eq!(all.len(), Thoroughness::QUICK.combinations);
+        let words: Vec<_> = all.iter().map(words).collect();
+        // Axes that have choices beyond historical ones, make a difference in the first scene, and
+        // are not models.
+        let of_axes = |key: &str| words.iter().flatten().filter(|(axis, _)| *axis == key).count();
+        for key in [
+            "shading",
+            "arithmetic",
+            "power",
+            "normalising",
+            "faint",
+            "vertices",
+            "subpixels",
+            "coverage",
+            "depth",
+            "samples",
+            "rounding",
+        ] {
+            assert!((1..=4).contains(&of_axes(key)), "{key} in {words:?}");
+        }
+        for key in ["interpolation", "stretched", "filter", "specular"] {
+            assert_eq!(of_axes(key), 0, "{key} in {words:?}");
+        }
+        for settings in combined(400) {
+            assert!(words_are_of_today(&settings), "{}", settings.in_words());
+        }
+    }
+
+    fn words_are_of_today(settings: &Settings) -> bool {
+        words(settings).iter().all(|word| !HISTORICAL.contains(word))
+    }
+
+    #[test]
+    fn ways_of_history_are_choices_of_the_table() {
+        for (key, word) in HISTORICAL {
+            assert!(Axis::named(key).and_then(|axis| axis.choice(word)).is_some(), "{key} {word}");
+        }
+    }
+
+    #[test]
+    fn no_combination_is_listed_twice_or_differs_in_one_axis_alone() {
+        let all = combined(200);
+        assert_eq!(all.len(), 200);
+        for (i, settings) in all.iter().enumerate() {
+            assert!(words(settings).len() >= 2, "{}", settings.in_words());
+            assert!(!all[..i].contains(settings), "{}", settings.in_words());
+            let one = settings.samples == marraztu_core::accuracy::Samples::One;
+            assert!(!one || settings.light != marraztu_core::accuracy::LightAt::Sample);
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! Explains which effects a frame uses, and measures what each costs in pixels and milliseconds.
+//!
+//! A time is measured by pairs of frames in turn, one with the effect and one without it. The
+//! result is the median of the differences, with half of their interquartile range as its spread.
+//! Pairs of equal frames, measured first, give the noise: a time within it means nothing.
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use super::statistics::Quartiles;
+use super::timing::time;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::Size;
+use marraztu_render::explain_frame;
+use marraztu_render::plan_frame;
+use marraztu_render::{Effect, EffectUse, FramePlan, Renderer};
+
+/// The smallest number of pairs that are measured for each effect.
+const PAIRS: usize = 7;
+
+/// The largest number.
+const MOST_PAIRS: usize = 31;
+
+/// A frame, explained.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Explained {
+    /// The effects that are used and those that are left out, sorted by effect.
+    pub uses: Vec<EffectUse>,
+    /// The largest error of a channel before rounding, in byte steps, that leaving out causes.
+    pub off_by: f64,
+    /// The picture's.
+    pub size: Size,
+}
+
+/// The uses of one effect; there is at least one.
+#[derive(Clone, Copy, Debug)]
+pub struct Group<'a> {
+    /// The effect.
+    pub effect: Effect,
+    /// The uses and the omissions.
+    pub uses: &'a [EffectUse],
+}
+
+impl Explained {
+    /// The uses by effect.
+    pub fn groups(&self) -> impl Iterator<Item = Group<'_>> {
+        let groups = self.uses.chunk_by(|a, b| a.effect == b.effect);
+        groups.map(|uses| Group { effect: uses[0].effect, uses })
+    }
+}
+
+impl Group<'_> {
+    /// The number of items that the effect is on for.
+    #[must_use]
+    pub fn on(&self) -> usize {
+        self.uses.iter().filter(|one| one.state.is_on()).count()
+    }
+
+    /// Whether all uses are in the same state, for the same reason.
+    #[must_use]
+    pub fn is_alike(&self) -> bool {
+        self.uses.iter().all(|one| one.state == self.uses[0].state)
+    }
+
+    /// The number of pixels of all uses together.
+    #[must_use]
+    pub fn pixels(&self) -> Option<u64> {
+        let counted = self.uses.iter().filter_map(|one| one.pixels);
+        counted.reduce(|sum, pixels| sum + pixels)
+    }
+
+    /// The items that it is on for, in words.
+    #[must_use]
+    pub fn of(&self) -> String {
+        let (on, all) = (self.on(), self.uses.len());
+        match &self.uses[0].on {
+            None => "the frame".to_owned(),
+            Some(thing) if all == 1 => thing.name.clone(),
+            Some(_) if self.is_alike() => format!("all {all} objects"),
+            Some(_) => format!("{on} of {all} objects"),
+        }
+    }
+}
+
+/// What an effect costs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// The effect.
+    pub effect: Effect,
+    /// The milliseconds that it adds to a frame.
+    pub milliseconds: f64,
+    /// Half of the interquartile range of that.
+    pub spread: f64,
+}
+
+/// The measurements of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Costs {
+    /// The time of the frame in milliseconds.
+    pub frame: f64,
+    /// The apparent difference of two equal frames in milliseconds.
+    pub noise: f64,
+    /// The cost of each effect that is on and can be taken out.
+    pub effects: Vec<Cost>,
+}
+
+impl Costs {
+    /// The cost of an effect, if it was measured.
+    #[must_use]
+    pub fn of(&self, effect: Effect) -> Option<&Cost> {
+        self.effects.iter().find(|cost| cost.effect == effect)
+    }
+
+    /// Whether a cost is more than noise.
+    #[must_use]
+    pub fn is_clear(&self, cost: &Cost) -> bool {
+        cost.milliseconds.abs() > self.noise + cost.spread
+    }
+}
+
+/// Plans and draws a picture, and counts the pixels of each of its effects.
+#[must_use]
+pub fn explain(shot: &Shot) -> Explained {
+    let mut renderer = Renderer::default();
+    renderer.render(&plan_frame(shot));
+    explain_with(&mut renderer, shot)
+}
+
+/// The same for the picture that `renderer` drew last.
+#[must_use]
+pub fn explain_with(renderer: &mut Renderer, shot: &Shot) -> Explained {
+    let (_, mut uses) = explain_frame(shot);
+    let off_by = renderer.count(&mut uses);
+    Explained { uses, off_by, size: shot.size }
+}
+
+/// Measures what the effects of a picture cost, within about `budget` of time. When `stopped`
+/// returns true, returns what was measured so far.
+#[must_use]
+pub fn measure(shot: &Shot, budget: Duration, stopped: impl Fn() -> bool) -> Costs {
+    let (plan, uses) = explain_frame(shot);
+    let mut effects: Vec<Effect> =
+        uses.iter().filter(|one| one.state.is_on()).map(|one| one.effect).collect();
+    effects.dedup();
+    let without: Vec<(Effect, FramePlan)> =
+        effects.iter().filter_map(|effect| Some((*effect, plan.without(*effect)?))).collect();
+    let share = budget / u32::try_from(without.len() + 1).unwrap_or(u32::MAX);
+
+    let mut bench = Bench::default();
+    for _ in 0..3 {
+        bench.time(&plan);
+    }
+    let control = bench.pairs(&plan, &plan, share, &stopped);
+    let mut costs =
+        Costs { frame: control.frame, noise: noise(&control.difference), effects: Vec::new() };
+    for (effect, without) in &without {
+        if stopped() {
+            break;
+        }
+        let difference = bench.pairs(&plan, without, share, &stopped).difference;
+        let (milliseconds, spread) = (difference.median, difference.spread());
+        costs.effects.push(Cost { effect: *effect, milliseconds, spread });
+    }
+    costs
+}
+
+#[derive(Default)]
+struct Bench {
+    renderer: Renderer,
+}
+
+/// The median frame in milliseconds, and how much longer the first frame of a pair took.
+struct Pairs {
+    frame: f64,
+    difference: Quartiles,
+}
+
+impl Bench {
+    fn time(&mut self, plan: &FramePlan) -> f64 {
+        let render = || {
+            black_box(self.renderer.render(plan));
+        };
+        time(render).as_secs_f64() * 1e3
+    }
+
+    /// Frames in turn: with, without, without, with.
+    fn pairs(
+        &mut self,
+        with: &FramePlan,
+        without: &FramePlan,
+        share: Duration,
+        stopped: &impl Fn() -> bool,
+    ) -> Pairs {
+        let begun = Instant::now();
+        let (mut frames, mut differences) = (Vec::new(), Vec::new());
+        // The first frame allocates memory and is not counted.
+        self.time(without);
+        while differences.len() < MOST_PAIRS
+            && (differences.len() < PAIRS || begun.elapsed() < share)
+            && !stopped()
+        {
+            let (a, b) = if differences.len().is_multiple_of(2) {
+                let a = self.time(with);
+                (a, self.time(without))
+            } else {
+                let b = self.time(without);
+                (self.time(with), b)
+            };
+            frames.push(a);
+            differences.push(a - b);
+        }
+        // Stopped before the first pair: nothing was measured.
+        let none = Quartiles { lower: 0.0, median: 0.0, upper: 0.0 };
+        let [frame, difference] =
+            [frames, differences].map(|all| Quartiles::of(&all).unwrap_or(none));
+        Pairs { frame: frame.median, difference }
+    }
+}
+
+/// The apparent difference of equal frames: |median| and half of the interquartile range.
+fn noise(differences: &Quartiles) -> f64 {
+    differences.median.abs() + differences.spread()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Differences with the median -1 and the quartiles -3 and 3.
+    const DIFFERENCES: [f64; 9] = [4.0, -7.0, -3.0, 3.0, -1.0, 2.0, -2.0, 5.0, -4.0];
+
+    #[test]
+    fn the_noise_is_the_median_and_half_of_the_interquartile_range() {
+        let differences = Quartiles::of(&DIFFERENCES).unwrap();
+        assert_eq!(differences.spread(), 3.0);
+        assert_eq!(noise(&differences), 4.0);
+    }
+
+    #[test]
+    fn a_cost_within_the_noise_and_its_own_spread_is_not_clear() {
+        let costs = Costs { frame: 9.0, noise: 4.0, effects: Vec::new() };
+        let cost = |milliseconds| Cost { effect: Effect::Texture, milliseconds, spread: 3.0 };
+        for within in [0.0, 6.5, 7.0, -7.0] {
+            assert!(!costs.is_clear(&cost(within)), "{within}");
+        }
+        for beyond in [7.1, -7.1] {
+            assert!(costs.is_clear(&cost(beyond)), "{beyond}");
+        }
+    }
+}

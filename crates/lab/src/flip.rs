@@ -1,0 +1,304 @@
+//! FLIP: how different two pictures look to an observer who flips between them.
+//!
+//! The metric is for display values on a screen 0.7 m and 3840 pixels wide, seen from 0.7 m: 67
+//! pixels per degree. 0 is equal, 1 the largest difference.
+//!
+//! Source: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild, "FLIP: A Difference
+//! Evaluator for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2), 2020, for low
+//! dynamic range. Every filter in it is a sum of products of two functions of one coordinate each,
+//! and is run as such, along rows and then along columns; at a border the last pixel goes on.
+
+use libm::{ceil, exp, pow, sqrt};
+use rayon::prelude::*;
+
+use marraztu_core::base::image::{Picture, Size};
+
+/// Pixels to a degree: 0.7 (3840 / 0.7) (pi / 180).
+const PIXELS_A_DEGREE: f64 = 3840.0 * std::f64::consts::PI / 180.0;
+
+/// The white that colours are seen against: X, Y and Z of D65.
+const WHITE: [f64; 3] = [0.950_428_545, 1.0, 1.088_900_371];
+
+/// X, Y and Z from linear red, green and blue of sRGB.
+const XYZ_FROM_RGB: [[f64; 3]; 3] = [
+    [10_135_552.0 / 24_577_794.0, 8_788_810.0 / 24_577_794.0, 4_435_075.0 / 24_577_794.0],
+    [2_613_072.0 / 12_288_897.0, 8_788_810.0 / 12_288_897.0, 887_015.0 / 12_288_897.0],
+    [1_425_312.0 / 73_733_382.0, 8_788_810.0 / 73_733_382.0, 70_074_185.0 / 73_733_382.0],
+];
+
+/// Linear red, green and blue from X, Y and Z.
+const RGB_FROM_XYZ: [[f64; 3]; 3] = [
+    [3.241_003_275, -1.537_398_934, -0.498_615_861],
+    [-0.969_224_334, 1.875_930_071, 0.041_554_224],
+    [0.055_639_423, -0.204_011_202, 1.057_148_933],
+];
+
+/// The part of the metric that does not depend on the other picture.
+#[derive(Debug)]
+pub struct Perceived {
+    size: Size,
+    /// The picture filtered by the eye's contrast sensitivity, in CIELAB with Hunt's adjustment.
+    color: Vec<[f64; 3]>,
+    /// The strength of edges and of points.
+    features: Vec<[f64; 2]>,
+}
+
+impl Perceived {
+    /// Filters a picture.
+    #[must_use]
+    pub fn new(picture: &Picture) -> Self {
+        let size = picture.size();
+        let opponent: Vec<[f64; 3]> = picture.pixels().par_iter().map(|p| opponent(*p)).collect();
+        let plane = |i: usize| -> Vec<f64> { opponent.iter().map(|pixel| pixel[i]).collect() };
+        let planes = [plane(0), plane(1), plane(2)];
+        let filtered: Vec<Vec<f64>> =
+            planes.iter().zip(&SENSITIVITY).map(|(plane, of)| contrast(plane, size, of)).collect();
+        let color = (0..size.area())
+            .into_par_iter()
+            .map(|i| lab([filtered[0][i], filtered[1][i], filtered[2][i]]))
+            .collect();
+        let bright: Vec<f64> = planes[0].par_iter().map(|y| (y + 16.0) / 116.0).collect();
+        Self { size, color, features: features(&bright, size) }
+    }
+
+    /// The mean over all pixels of the difference to another picture of the same size, from 0 to 1.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 pixels")]
+    pub fn difference(&self, other: &Self) -> f64 {
+        assert_eq!(self.size, other.size, "pictures of one size are compared");
+        let most = most_color_error();
+        let rows = self.size.width.max(1);
+        // Summed row by row, so that the result does not depend on the number of threads.
+        let sums: Vec<f64> = (0..self.size.height)
+            .into_par_iter()
+            .map(|y| (y * rows..(y + 1) * rows).map(|i| self.at(other, i, most)).sum())
+            .collect();
+        sums.iter().sum::<f64>() / self.size.area().max(1) as f64
+    }
+
+    fn at(&self, other: &Self, i: usize, most: f64) -> f64 {
+        let color = compressed(pow(hyab(self.color[i], other.color[i]), COLOR_EXPONENT), most);
+        let (a, b) = (self.features[i], other.features[i]);
+        let feature = (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+        let feature = sqrt(feature / std::f64::consts::SQRT_2);
+        pow(color, 1.0 - feature)
+    }
+}
+
+/// q_c: differences of colour are raised to it.
+const COLOR_EXPONENT: f64 = 0.7;
+
+/// The sensitivity of the eye to contrast, as a sum of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in
+/// degrees.
+const SENSITIVITY: [[[f64; 2]; 2]; 3] =
+    [[[1.0, 0.0047], [0.0, 1e-5]], [[1.0, 0.0053], [0.0, 1e-5]], [[34.1, 0.04], [13.5, 0.025]]];
+
+fn times(m: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+    m.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
+}
+
+/// Y C_x C_z, a linear relative of CIELAB.
+fn opponent(pixel: [u8; 4]) -> [f64; 3] {
+    let linear = |byte: u8| {
+        let c = f64::from(byte) / 255.0;
+        if c <= 0.04045 { c / 12.92 } else { pow((c + 0.055) / 1.055, 2.4) }
+    };
+    let [r, g, b, _] = pixel;
+    opponent_of_linear([r, g, b].map(linear))
+}
+
+fn opponent_of_linear(rgb: [f64; 3]) -> [f64; 3] {
+    let [x, y, z] = relative(times(XYZ_FROM_RGB, rgb));
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+fn relative(xyz: [f64; 3]) -> [f64; 3] {
+    [xyz[0] / WHITE[0], xyz[1] / WHITE[1], xyz[2] / WHITE[2]]
+}
+
+/// CIELAB with Hunt's adjustment, from Y C_x C_z brought into the range of the screen.
+fn lab([luminance, cx, cz]: [f64; 3]) -> [f64; 3] {
+    let y = (luminance + 16.0) / 116.0;
+    let (x, z) = (y + cx / 500.0, y - cz / 200.0);
+    let rgb = times(RGB_FROM_XYZ, [x * WHITE[0], y * WHITE[1], z * WHITE[2]]);
+    hunt(rgb.map(|c| c.clamp(0.0, 1.0)))
+}
+
+fn hunt(rgb: [f64; 3]) -> [f64; 3] {
+    const DELTA: f64 = 6.0 / 29.0;
+    let f = |t: f64| {
+        if t > DELTA * DELTA * DELTA {
+            libm::cbrt(t)
+        } else {
+            t / (3.0 * DELTA * DELTA) + 4.0 / 29.0
+        }
+    };
+    let [x, y, z] = relative(times(XYZ_FROM_RGB, rgb)).map(f);
+    let lightness = 116.0 * y - 16.0;
+    [lightness, 500.0 * (x - y) * 0.01 * lightness, 200.0 * (y - z) * 0.01 * lightness]
+}
+
+/// The HyAB distance: large differences of colour are judged better by it than by Euclid's.
+fn hyab(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let (da, db) = (a[1] - b[1], a[2] - b[2]);
+    (a[0] - b[0]).abs() + sqrt(da * da + db * db)
+}
+
+/// The largest difference of colour, from green to blue, raised to its exponent.
+fn most_color_error() -> f64 {
+    pow(hyab(hunt([0.0, 1.0, 0.0]), hunt([0.0, 0.0, 1.0])), COLOR_EXPONENT)
+}
+
+/// Brings a difference of colour into 0 to 1: what is below 0.4 of the most fills 0.95 of it.
+fn compressed(error: f64, most: f64) -> f64 {
+    let (corner, height) = (0.4 * most, 0.95);
+    if error < corner {
+        height / corner * error
+    } else {
+        height + (error - corner) / (most - corner) * (1.0 - height)
+    }
+}
+
+/// A channel as the eye's sensitivity to contrast leaves it.
+fn contrast(plane: &[f64], size: Size, of: &[[f64; 2]; 2]) -> Vec<f64> {
+    use std::f64::consts::PI;
+    let radius = ceil(3.0 * sqrt(0.04 / (2.0 * PI * PI)) * PIXELS_A_DEGREE);
+    let kernel = |b: f64| {
+        taps(radius, |x| {
+            let degrees = x / PIXELS_A_DEGREE;
+            exp(-PI * PI * degrees * degrees / b)
+        })
+    };
+    let parts: Vec<(f64, Vec<f64>)> =
+        of.iter().filter(|[a, _]| *a > 0.0).map(|[a, b]| (a * sqrt(PI / b), kernel(*b))).collect();
+    let sum: f64 = parts.iter().map(|(a, taps)| a * pow(taps.iter().sum::<f64>(), 2.0)).sum();
+    let mut all = vec![0.0; plane.len()];
+    for (a, taps) in parts {
+        let part = filter(plane, size, &taps, &taps);
+        let weight = a / sum;
+        all.par_iter_mut().zip(&part).for_each(|(all, part)| *all += weight * part);
+    }
+    all
+}
+
+/// The strength of edges and of points at each pixel.
+fn features(bright: &[f64], size: Size) -> Vec<[f64; 2]> {
+    let deviation = 0.5 * 0.082 * PIXELS_A_DEGREE;
+    let radius = ceil(3.0 * deviation);
+    let smooth = |x: f64| exp(-x * x / (2.0 * deviation * deviation));
+    let across = taps(radius, smooth);
+    let edge = taps(radius, |x| -x * smooth(x));
+    let point = taps(radius, |x| (x * x / (deviation * deviation) - 1.0) * smooth(x));
+    let weigh = |along: Vec<f64>| {
+        // What is above 0 adds up to 1, what is below to -1.
+        let sum: f64 = across.iter().sum();
+        let up: f64 = along.iter().filter(|t| **t > 0.0).sum::<f64>() * sum;
+        let down: f64 = -along.iter().filter(|t| **t < 0.0).sum::<f64>() * sum;
+        along.into_iter().map(|t| if t > 0.0 { t / up } else { t / down }).collect::<Vec<f64>>()
+    };
+    let length = |along: &[f64]| -> Vec<f64> {
+        let x = filter(bright, size, along, &across);
+        let y = filter(bright, size, &across, along);
+        x.par_iter().zip(&y).map(|(x, y)| sqrt(x * x + y * y)).collect()
+    };
+    let (edges, points) = (length(&weigh(edge)), length(&weigh(point)));
+    edges.into_iter().zip(points).map(|(edge, point)| [edge, point]).collect()
+}
+
+/// A function at the whole numbers from -radius to radius.
+#[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
+fn taps(radius: f64, of: impl Fn(f64) -> f64) -> Vec<f64> {
+    let radius = radius as i32;
+    (-radius..=radius).map(|x| of(f64::from(x))).collect()
+}
+
+/// Runs one filter along rows, then another along columns.
+fn filter(plane: &[f64], size: Size, along: &[f64], down: &[f64]) -> Vec<f64> {
+    let Size { width, height } = size;
+    if size.area() == 0 {
+        return Vec::new();
+    }
+    let radius = along.len() / 2;
+    let mut rows = vec![0.0; plane.len()];
+    rows.par_chunks_mut(width).zip(plane.par_chunks(width)).for_each(|(out, row)| {
+        let mut wide = vec![row[0]; radius];
+        wide.extend_from_slice(row);
+        wide.extend(std::iter::repeat_n(row[width - 1], radius));
+        for (i, tap) in along.iter().enumerate() {
+            for (out, value) in out.iter_mut().zip(&wide[i..]) {
+                *out += tap * value;
+            }
+        }
+    });
+    let mut all = vec![0.0; plane.len()];
+    let radius = down.len() / 2;
+    all.par_chunks_mut(width).enumerate().for_each(|(y, out)| {
+        for (i, tap) in down.iter().enumerate() {
+            let from = (y + i).saturating_sub(radius).min(height - 1);
+            for (out, value) in out.iter_mut().zip(&rows[from * width..]) {
+                *out += tap * value;
+            }
+        }
+    });
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(side: usize, of: impl Fn(usize, usize) -> [usize; 3]) -> Perceived {
+        let pixels = (0..side * side).map(|i| {
+            let [r, g, b] = of(i % side, i / side).map(|c| u8::try_from(c % 256).unwrap());
+            [r, g, b, 255]
+        });
+        let size = Size::new(side, side);
+        Perceived::new(&Picture::from_pixels(size, pixels.collect()).unwrap())
+    }
+
+    fn pattern(x: usize, y: usize) -> [usize; 3] {
+        [x * 8, y * 8, x * y]
+    }
+
+    /// The same pattern with a changed rectangle and a changed column.
+    fn changed(x: usize, y: usize) -> [usize; 3] {
+        let [r, g, b] = pattern(x, y);
+        match (x, y) {
+            (8..16, 8..20) => [255 - r, g, b],
+            (24, _) => [r, g + 40, b],
+            _ => [r, g, b],
+        }
+    }
+
+    /// The numbers are those of the authors' own program, `flip_evaluator` 1.7 (LDR), which
+    /// computes in 32 bits.
+    #[test]
+    fn differences_are_those_of_the_authors_program() {
+        let (a, b) = (picture(32, pattern), picture(32, changed));
+        assert!((a.difference(&b) - 0.116_092_6).abs() < 2e-5, "{}", a.difference(&b));
+        let most = most_color_error();
+        let places = [
+            ((8, 8), 0.568_076_8),
+            ((12, 14), 0.463_154_1),
+            ((24, 5), 0.161_033_7),
+            ((20, 20), 0.058_617_2),
+            ((31, 31), 0.042_659_3),
+            ((16, 9), 0.105_954_4),
+        ];
+        for ((x, y), expected) in places {
+            let got = a.at(&b, y * 32 + x, most);
+            assert!((got - expected).abs() < 1e-4, "{x} {y}: {got}");
+        }
+        let grey = |value| picture(16, move |_, _| [value; 3]);
+        assert!((grey(100).difference(&grey(101)) - 0.030_794).abs() < 1e-4);
+        assert!((grey(255).difference(&grey(0)) - 0.967_391).abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_picture_is_not_different_from_itself_and_green_is_most_different_from_blue() {
+        let a = picture(16, pattern);
+        assert_eq!(a.difference(&a), 0.0);
+        let (green, blue) = (picture(16, |_, _| [0, 255, 0]), picture(16, |_, _| [0, 0, 255]));
+        assert!((green.difference(&blue) - 1.0).abs() < 1e-6);
+    }
+}

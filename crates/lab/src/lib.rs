@@ -1,0 +1,32 @@
+//! Measures how long pictures take and how far they are from exact ones, and checks that this
+//! processor draws the listed pictures.
+//!
+//! ```
+//! use marraztu_core::base::image::{Picture, Size};
+//! use marraztu_lab::error::Rendering;
+//!
+//! let size = Size::new(32, 32);
+//! let grey = |byte| Picture::filled(size, [byte, byte, byte, 255]);
+//! let grey = |byte| Rendering::new(grey(byte), vec![0; size.area()]);
+//! let error = grey(102).error(&grey(100));
+//! assert_eq!(error.whole.largest, 2);
+//! ```
+
+pub mod attribution;
+pub mod candidates;
+pub mod cost;
+pub mod error;
+pub mod flip;
+pub mod front;
+pub mod hash;
+pub mod instructions;
+pub mod kernels;
+pub mod pairs;
+pub mod picture_source;
+pub mod pictures;
+pub mod pixel;
+pub mod report;
+pub mod statistics;
+pub mod suite;
+pub mod sweep;
+pub mod timing;

@@ -1,0 +1,313 @@
+//! Measures how much longer one way of drawing takes than another, so that disturbances cancel.
+//!
+//! A pair is four pictures, A B B A, so that a steady drift of the machine's speed affects both
+//! alike. The result is the median and the quartiles of the ratios of all pairs, and the interval
+//! in which their true median lies. Every picture is hashed after it is timed: the compiler cannot
+//! leave out work, and the same settings have to give the same bytes.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+
+use super::picture_source::{PictureSource, hash};
+use super::statistics::{Quartiles, median_interval};
+use super::timing::{Clock, Work};
+use marraztu_core::accuracy::Settings;
+use marraztu_io::{Cancelled, Progress};
+
+/// How long to measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// The largest number of pairs for each choice.
+    pub pairs: usize,
+    /// The smallest number.
+    pub least: usize,
+    /// Once there are enough pairs, none is begun after this time.
+    pub time: Duration,
+}
+
+/// Connects measurements with the user who waits for them, and may disturb them.
+#[derive(Clone, Debug, Default)]
+pub struct Watch {
+    /// Reports progress, and cancels.
+    pub progress: Progress,
+    touches: Arc<Touches>,
+}
+
+#[derive(Debug, Default)]
+struct Touches {
+    /// Odd while the machine does something else.
+    count: AtomicU64,
+    last: Mutex<Option<Instant>>,
+    /// The time of the last pair in milliseconds.
+    pair: AtomicU64,
+}
+
+/// The machine does something else as long as this lives.
+#[derive(Debug)]
+pub struct Touch(Arc<Touches>);
+
+/// Time for what follows a touch, such as showing the window.
+const AFTERMATH: Duration = Duration::from_millis(40);
+
+/// A touch is waited for no longer than this: a busy machine may take long to show the window.
+const PATIENCE: Duration = Duration::from_secs(if cfg!(test) { 1 } else { 10 });
+
+impl Watch {
+    /// The same with the progress of other work.
+    #[must_use]
+    pub fn with(self, progress: &Progress) -> Self {
+        Self { progress: progress.clone(), ..self }
+    }
+
+    /// Marks the machine as used for something else from now on: the pair that is being measured is
+    /// thrown away.
+    #[must_use]
+    pub fn touch(&self) -> Touch {
+        self.touches.count.fetch_add(1, Ordering::Relaxed);
+        Touch(Arc::clone(&self.touches))
+    }
+
+    /// The time that a pair takes now. Touches that are more frequent disturb all pairs.
+    #[must_use]
+    pub fn pair(&self) -> Duration {
+        Duration::from_millis(self.touches.pair.load(Ordering::Relaxed))
+    }
+
+    fn touches(&self) -> u64 {
+        self.touches.count.load(Ordering::Relaxed)
+    }
+
+    /// Waits for the touch of now to end, and for the aftermath of the last one, but only once:
+    /// touches without pause must not stop the work. `endless` is the touch that did not end.
+    fn settle(&self, endless: &mut Option<u64>) {
+        let (touch, begun) = (self.touches(), Instant::now());
+        while !touch.is_multiple_of(2) && *endless != Some(touch) && self.touches() == touch {
+            if begun.elapsed() > PATIENCE {
+                *endless = Some(touch);
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let last = *self.touches.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(rest) = last.and_then(|last| AFTERMATH.checked_sub(last.elapsed())) {
+            std::thread::sleep(rest);
+        }
+    }
+}
+
+impl Drop for Touch {
+    fn drop(&mut self) {
+        self.0.count.fetch_add(1, Ordering::Relaxed);
+        *self.0.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
+    }
+}
+
+/// The measurement of a choice, B, against another, A.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Ratio {
+    /// How many times as long B takes.
+    pub quartiles: Quartiles,
+    /// The true median lies between these with a probability of [`CONFIDENCE`].
+    pub interval: [f64; 2],
+    /// The number of pairs that count.
+    pub pairs: usize,
+    /// The number of pairs that were thrown away.
+    pub thrown: usize,
+    /// The median time of a picture of A in milliseconds.
+    pub a_ms: f64,
+}
+
+/// How probable it is that a [`Ratio::interval`] holds the true median: of seven pairs, the least
+/// number, it is all of them, 98%.
+pub const CONFIDENCE: f64 = 0.95;
+
+impl Ratio {
+    /// The interval of ratios that may be meant by this one, where differences up to `floor` mean
+    /// nothing: the larger, on each side, of its own interval and of the floor about its median.
+    #[must_use]
+    pub fn noise(&self, floor: f64) -> [f64; 2] {
+        let ([lower, upper], median) = (self.interval, self.quartiles.median);
+        [lower.min(median / (1.0 + floor)), upper.max(median * (1.0 + floor))]
+    }
+}
+
+/// Why a measurement fails.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unmeasured {
+    /// It was cancelled.
+    #[error("cancelled")]
+    Cancelled,
+    /// The interface was busy all the time.
+    #[error("no pair was left undisturbed")]
+    Disturbed,
+    /// The same settings gave different bytes.
+    #[error("{0}: the same settings gave two different pictures")]
+    Unsteady(String),
+}
+
+impl From<Cancelled> for Unmeasured {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+/// Measures how many times as long B takes as A.
+///
+/// # Errors
+/// If it was cancelled, or disturbed all the time, or if a picture differs from the one before.
+pub fn measure(
+    clock: &mut dyn Clock,
+    source: &mut dyn PictureSource,
+    [a, b]: [&Settings; 2],
+    limits: &Limits,
+    watch: &Watch,
+) -> Result<Ratio, Unmeasured> {
+    let mut expected = [None; 2];
+    let mut draw = |which: usize| {
+        let settings = [a, b][which];
+        let time = clock.time(Work::Picture(settings), &mut || source.draw(settings));
+        let hash = hash(source.picture());
+        match expected[which].replace(hash) {
+            Some(before) if before != hash => Err(Unmeasured::Unsteady(settings.in_words())),
+            _ => Ok(time.as_secs_f64() * 1e3),
+        }
+    };
+    abba(limits, watch, &mut draw)
+}
+
+/// Measures two pieces of work in pairs; `run` does number 0 or 1 and returns its milliseconds.
+///
+/// # Errors
+/// If it was cancelled, or disturbed all the time, or if `run` fails.
+pub fn abba(
+    limits: &Limits,
+    watch: &Watch,
+    run: &mut dyn FnMut(usize) -> Result<f64, Unmeasured>,
+) -> Result<Ratio, Unmeasured> {
+    // The first runs fill caches and are not counted.
+    run(0)?;
+    run(1)?;
+    let (mut ratios, mut of_a, mut thrown, mut spent) = (Vec::new(), Vec::new(), 0, 0.0);
+    let mut endless = None;
+    while ratios.len() < limits.pairs && thrown < MOST_THROWN * limits.pairs {
+        if ratios.len() >= limits.least && spent >= limits.time.as_secs_f64() * 1e3 {
+            break;
+        }
+        if watch.progress.is_cancelled() {
+            return Err(Unmeasured::Cancelled);
+        }
+        watch.settle(&mut endless);
+        let before = watch.touches();
+        let [a1, b1, b2, a2] = [run(0)?, run(1)?, run(1)?, run(0)?];
+        let pair = a1 + b1 + b2 + a2;
+        spent += pair;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a time")]
+        watch.touches.pair.store(pair.ceil() as u64, Ordering::Relaxed);
+        let is_undisturbed = watch.touches() == before && before.is_multiple_of(2);
+        if is_undisturbed || pair >= LONG {
+            ratios.push((b1 + b2) / (a1 + a2));
+            of_a.extend([a1, a2]);
+        } else {
+            thrown += 1;
+        }
+    }
+    let quartiles = Quartiles::of(&ratios).ok_or(Unmeasured::Disturbed)?;
+    let interval = median_interval(&ratios, CONFIDENCE).ok_or(Unmeasured::Disturbed)?;
+    let a_ms = Quartiles::of(&of_a).ok_or(Unmeasured::Disturbed)?.median;
+    Ok(Ratio { quartiles, interval, pairs: ratios.len(), thrown, a_ms })
+}
+
+/// Pairs of this many milliseconds count even if they were touched: a window that is drawn a few
+/// times a second touches each of them, and takes a small part of it.
+const LONG: f64 = 500.0;
+
+/// The number of pairs that may be thrown away for each that is wanted.
+const MOST_THROWN: usize = 3;
+
+#[cfg(test)]
+mod tests {
+    use std::thread::Builder;
+
+    use super::*;
+
+    const LIMITS: Limits = Limits { pairs: 9, least: 3, time: Duration::from_millis(40) };
+
+    #[test]
+    fn a_steady_drift_cancels_and_twice_the_time_is_twice() {
+        let mut clock = 0.0;
+        let ratio = abba(&LIMITS, &Watch::default(), &mut |which| {
+            clock += 0.1;
+            Ok(if which == 0 { 1.0 } else { 2.0 } * (1.0 + clock))
+        });
+        let ratio = ratio.unwrap();
+        assert!((ratio.quartiles.median - 2.0).abs() < 0.01, "{ratio:?}");
+    }
+
+    #[test]
+    fn the_noise_of_a_ratio_is_the_larger_of_its_own_and_the_floor() {
+        let mut times = [1.0, 1.0, 1.1, 1.0, 1.2, 1.0, 1.3, 1.0, 1.2].into_iter().cycle();
+        let mut run = |which| Ok(if which == 0 { 1.0 } else { times.next().unwrap_or(1.0) });
+        let ratio = abba(&LIMITS, &Watch::default(), &mut run).unwrap();
+        let [lower, upper] = ratio.interval;
+        let median = ratio.quartiles.median;
+        assert!(lower < median && median < upper, "{ratio:?}");
+        assert_eq!(ratio.noise(0.0), ratio.interval);
+        assert_eq!(ratio.noise(1.0), [median / 2.0, median * 2.0]);
+    }
+
+    #[test]
+    fn a_choice_has_at_least_the_least_and_at_most_the_most_pairs() {
+        let pairs = |ms: f64| abba(&LIMITS, &Watch::default(), &mut |_| Ok(ms)).unwrap().pairs;
+        assert_eq!([pairs(0.001), pairs(2.0), pairs(100.0)], [9, 5, 3]);
+    }
+
+    #[test]
+    fn a_pair_that_was_touched_is_thrown_away_and_counted() {
+        let (watch, mut runs) = (Watch::default(), 0);
+        let ratio = abba(&LIMITS, &watch, &mut |which| {
+            runs += 1;
+            // The second pair, after two runs that are not counted.
+            if runs == 8 {
+                drop(watch.touch());
+                return Ok(LONG / 2.0);
+            }
+            Ok(if which == 0 { 2.0 } else { 1.0 } * 0.001)
+        });
+        let ratio = ratio.unwrap();
+        assert_eq!((ratio.thrown, ratio.quartiles.upper), (1, 0.5));
+        let touch = watch.touch();
+        let long = abba(&LIMITS, &watch, &mut |_| Ok(LONG / 4.0)).unwrap();
+        assert!(long.pairs > 0 && long.thrown == 0, "{long:?}");
+        let disturbed = abba(&LIMITS, &watch, &mut |_| Ok(1.0));
+        drop(touch);
+        assert_eq!(disturbed, Err(Unmeasured::Disturbed));
+    }
+
+    /// Short pairs would all be over before a window that takes long is shown.
+    #[test]
+    fn a_touch_that_takes_longer_than_all_pairs_is_waited_for() {
+        let watch = Watch::default();
+        let touch = watch.touch();
+        let show = move || {
+            std::thread::sleep(Duration::from_millis(50));
+            drop(touch);
+        };
+        let shown = Builder::new().name("window".to_owned()).spawn(show).unwrap();
+        let limits = Limits { pairs: 1, least: 1, time: Duration::ZERO };
+        let ratio = abba(&limits, &watch, &mut |_| Ok(0.001)).unwrap();
+        shown.join().unwrap();
+        assert_eq!((ratio.pairs, ratio.thrown), (1, 0));
+    }
+
+    #[test]
+    fn who_waits_can_end_it() {
+        let watch = Watch::default();
+        let ended = abba(&LIMITS, &watch, &mut |_| {
+            watch.progress.cancel();
+            Ok(1.0)
+        });
+        assert_eq!(ended, Err(Unmeasured::Cancelled));
+    }
+}

@@ -1,0 +1,151 @@
+//! Scenes in units of pixels, whose pictures tell which triangle each pixel shows.
+//!
+//! In orthographic projection, with a side that is a power of two, a corner in parts of a pixel
+//! reaches the screen without any rounding. The colour of each triangle, which no light changes, is
+//! its number: coverage, depth and order can be read off a picture, pixel by pixel.
+
+use glam::{DMat4, DVec3};
+
+use marraztu_core::accuracy::Settings;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::Shared;
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{
+    Camera, CameraId, Lens, List, LoadOptions, MaterialChoice, Mesh, MeshSource, Model, NONE,
+    Object, ObjectId, Part, Pose, PresetId, Projection, Scene, Sides, SourceCorner, Surface,
+    Tracked, View,
+};
+use marraztu_render::Renderer;
+use marraztu_render::plan_frame;
+use marraztu_render::screen::coverage::{SUBPIXELS, Snapped};
+
+/// How far the camera sees, in units.
+pub const FAR: f64 = 1024.0;
+
+/// A triangle in parts of a pixel, at a distance from 0 to [`FAR`] for each corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flat {
+    /// Its corners.
+    pub corners: [Snapped; 3],
+    /// Their distances from the camera.
+    pub distances: [f64; 3],
+}
+
+impl Flat {
+    /// A triangle at half of the farthest distance.
+    #[must_use]
+    pub const fn new(corners: [Snapped; 3]) -> Self {
+        Self { corners, distances: [FAR / 2.0; 3] }
+    }
+}
+
+/// The colour of the triangle with this number.
+#[must_use]
+pub fn color_of(number: usize) -> [u8; 4] {
+    let [r, g, b, ..] = (number + 1).to_le_bytes();
+    [r, g, b, 255]
+}
+
+/// The number of the triangle of this colour; `None` for the background.
+#[must_use]
+pub fn number_of([r, g, b, _]: [u8; 4]) -> Option<usize> {
+    (usize::from(r) | usize::from(g) << 8 | usize::from(b) << 16).checked_sub(1)
+}
+
+/// A scene of one object for each list of triangles, the oldest first, for a picture with a side
+/// that is a power of two. Triangles are numbered through all lists.
+///
+/// # Panics
+/// If a coordinate has more than 24 bits, which a mesh cannot hold.
+#[must_use]
+#[expect(clippy::cast_precision_loss, reason = "a side is at most 2^14")]
+pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
+    assert!(side.is_power_of_two(), "only then is every corner exact");
+    let camera = Camera {
+        name: "camera".to_owned(),
+        visible: false,
+        model: model(&[], side, 0),
+        material: MaterialChoice::Preset(PresetId::SILVER),
+        pose: Tracked::new(Pose::facing_minus_z(DVec3::ZERO)),
+        lens: Lens {
+            half_size: side as f64 / 2.0,
+            parallel_near: 0.0,
+            parallel_far: FAR,
+            ..Lens::default()
+        },
+    };
+    let mut number = 0;
+    let objects = objects.iter().zip(1..).map(|(triangles, id)| {
+        let silver = MaterialChoice::Preset(PresetId::SILVER);
+        let mut object = Object::new(model(triangles, side, number), silver);
+        number += triangles.len();
+        object.surface = Surface::Texture;
+        object.sides = Sides::Two;
+        (ObjectId(id), object)
+    });
+    let mut scene = Scene::with_camera(camera);
+    scene.objects = List::from_iter(objects);
+    scene.next_id = u32::MAX;
+    scene.background = Color::BLACK;
+    let mut view = View::new(scene.objects.first(), CameraId(0), None);
+    (view.projection, view.marks) = (Projection::Orthographic, false);
+    (scene, view)
+}
+
+/// Draws a scene of [`scene`].
+#[must_use]
+pub fn draw((scene, view): &(Scene, View), side: usize, renderer: &mut Renderer) -> Picture {
+    let plan = plan_frame(&Shot::new(scene, view, &Settings::default(), Size::new(side, side)));
+    renderer.render(&plan).clone()
+}
+
+/// Draws triangles as one object.
+#[must_use]
+pub fn draw_triangles(triangles: &[Flat], side: usize, renderer: &mut Renderer) -> Picture {
+    draw(&scene(&[triangles.to_vec()], side), side, renderer)
+}
+
+/// The position in the world of a corner in parts of a pixel.
+#[must_use]
+#[expect(clippy::cast_precision_loss, reason = "a side is at most 2^14")]
+pub fn place(corner: Snapped, distance: f64, side: usize) -> DVec3 {
+    let (half, parts) = (side as f64 / 2.0, f64::from(SUBPIXELS));
+    DVec3::new(f64::from(corner.x) / parts - half, half - f64::from(corner.y) / parts, -distance)
+}
+
+fn model(triangles: &[Flat], side: usize, first: usize) -> Shared<Model> {
+    let mut source = MeshSource {
+        parts: vec![Part { name: "triangles".to_owned(), material: None }],
+        arities: vec![3; triangles.len()],
+        polygon_parts: vec![0; triangles.len()],
+        ..MeshSource::default()
+    };
+    for (number, triangle) in triangles.iter().enumerate() {
+        for (corner, distance) in triangle.corners.into_iter().zip(triangle.distances) {
+            let place = place(corner, distance, side);
+            let narrow = place.as_vec3();
+            assert_eq!(narrow.as_dvec3(), place, "a corner has too many bits");
+            let position = u32::try_from(source.positions.len()).expect("few triangles");
+            source.corners.push(SourceCorner { position, uv: NONE, normal: NONE });
+            source.positions.push(narrow.to_array());
+            let [r, g, b, _] = color_of(first + number).map(|byte| f32::from(byte) / 255.0);
+            source.colors.push([r, g, b]);
+        }
+    }
+    Shared::new(Model {
+        name: "triangles".to_owned(),
+        source: None,
+        companions: Vec::new(),
+        options: LoadOptions::default(),
+        mesh: Mesh::new(source).expect("numbers of pictures are finite"),
+        materials: Vec::new(),
+        edge_color: None,
+    })
+}
+
+/// The placement that moves a scene by a number of pixels to the right and down.
+#[must_use]
+pub fn moved(right: f64, down: f64) -> DMat4 {
+    DMat4::from_translation(DVec3::new(right, -down, 0.0))
+}

@@ -1,0 +1,224 @@
+//! The listed pictures: the same bytes on every processor.
+//!
+//! Some show one thing each, and one is drawn for each choice of each axis of accuracy. Their sums
+//! are listed in `tests/pictures.sums`, and that list is part of the program: `marraztu verify`
+//! draws the pictures and compares.
+
+pub mod flat;
+
+use fearless_simd::Level;
+use glam::{DMat4, DVec3};
+
+use self::flat::Flat;
+use super::hash::fnv1a;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{
+    AXES, Arithmetic, Filter, LightAt, Samples, Settings, SpecularForm, SpecularPower,
+};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::rng::Rng;
+use marraztu_core::scene::{
+    Command, Fill, Item, LoadOptions, Mesh, MeshSource, Model, NONE, Normals, Object, Part,
+    Projection, Scene, SourceCorner, Texture, View, Wrap,
+};
+use marraztu_io as io;
+use marraztu_render::plan_frame;
+use marraztu_render::screen::coverage::{SUBPIXELS, Snapped};
+use marraztu_render::{FramePlan, Renderer};
+
+/// The width and height of the pictures in pixels.
+const SIDE: usize = 128;
+
+/// A picture whose bytes are the same on every processor.
+#[derive(Debug)]
+pub struct TestPicture {
+    /// What it shows.
+    pub name: String,
+    plan: FramePlan,
+}
+
+impl TestPicture {
+    /// The sum of the picture, drawn with these instructions by this number of threads.
+    ///
+    /// # Panics
+    /// If the system has no more threads to give.
+    #[must_use]
+    pub fn sum(&self, level: Level, threads: usize) -> u64 {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.expect("the system gives threads");
+        pool.install(|| sum(Renderer::new(level).render(&self.plan)))
+    }
+}
+
+/// FNV-1a over the width, the height and the bytes of a picture.
+#[must_use]
+pub fn sum(picture: &Picture) -> u64 {
+    let Size { width, height } = picture.size();
+    let sides = [width, height].map(|side| (side as u64).to_le_bytes());
+    let bytes = sides.as_flattened().iter().chain(picture.pixels().as_flattened());
+    fnv1a(bytes.copied().map(u64::from))
+}
+
+/// The list: the name of each picture with its sum.
+///
+/// # Panics
+/// If a line of the list is neither a comment nor a sum and a name.
+#[must_use]
+pub fn listed() -> Vec<(&'static str, u64)> {
+    let line = |line: &'static str| {
+        let (sum, name) = line.split_once("  ")?;
+        Some((name, u64::from_str_radix(sum, 16).ok()?))
+    };
+    include_str!("../../../../tests/pictures.sums")
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|text| line(text).expect("a line has a sum and a name"))
+        .collect()
+}
+
+/// The pictures, in the order of the list.
+#[must_use]
+pub fn all() -> Vec<TestPicture> {
+    let (scene, view) = io::default_scene();
+    let near = nearer(&scene);
+    let settings = Settings::default();
+    let picture = |name: &str, scene: &Scene, view: &View, settings: Settings| {
+        let plan = plan_frame(&Shot::new(scene, view, &settings, Size::new(SIDE, SIDE)));
+        TestPicture { name: String::from(name), plan }
+    };
+    let (arithmetic, power) = (Arithmetic::F64, SpecularPower::Library);
+    let exact = Settings { arithmetic, power, ..settings };
+    let at = |light| Settings { light, ..settings };
+    let parallel = View { projection: Projection::Orthographic, ..view.clone() };
+    let faces = View { normals: Normals::Face, ..view.clone() };
+    let edges = View { fill: Fill::Edges, back_faces: true, ..view.clone() };
+    let drawn = View {
+        edges_over_fill: true,
+        wide_lines: true,
+        face_normals: true,
+        vertex_normals: true,
+        ..view.clone()
+    };
+    let of = |samples| Settings { samples, ..settings };
+    let each_lit = Settings { light: LightAt::Sample, ..of(Samples::Four) };
+    let half = Settings { specular: SpecularForm::HalfVector, ..settings };
+    let (textured, rough) = (textured(&near), Settings { filter: Filter::Nearest, ..settings });
+    let (stage, from_above) = flat::scene(&[scattered()], SIDE);
+    let mut all = vec![
+        picture("first scene", &scene, &view, settings),
+        picture("first scene in f64", &scene, &view, exact),
+        picture("near", &near, &view, settings),
+        picture("near, lit at vertices", &near, &view, at(LightAt::Vertex)),
+        picture("near, lit at faces", &near, &view, at(LightAt::Face)),
+        picture("near, half-vector", &near, &view, half),
+        picture("face normals", &near, &faces, settings),
+        picture("in parallel", &scene, &parallel, settings),
+        picture("edges and back faces", &near, &edges, settings),
+        picture("edges and normals over", &near, &drawn, settings),
+        picture("texture", &textured, &view, settings),
+        picture("texture, nearest", &textured, &view, rough),
+        picture("scattered triangles", &stage, &from_above, settings),
+        picture("four samples", &near, &drawn, of(Samples::Four)),
+        picture("sixteen samples", &stage, &from_above, of(Samples::Sixteen)),
+        picture("four samples, each lit", &near, &drawn, each_lit),
+    ];
+    let bent = bent(&textured);
+    for (axis, choice) in AXES.iter().flat_map(|axis| axis.choices.iter().map(move |it| (axis, it)))
+    {
+        let rare = choice.of(&settings);
+        if rare != settings && rare.is_alike_everywhere() {
+            let name = format!("{} {}", axis.key, choice.word);
+            all.push(picture(&name, &bent, &view, rare));
+        }
+    }
+    all
+}
+
+/// The same with its first object stretched.
+fn bent(scene: &Scene) -> Scene {
+    change(scene, |object| {
+        let stretch = DMat4::from_scale(DVec3::new(1.0, 0.4, 1.0));
+        object.placement = object.placement.replaced(*object.placement.now() * stretch);
+    })
+}
+
+/// The first scene with its first object moved so near that the near plane cuts it.
+fn nearer(scene: &Scene) -> Scene {
+    change(scene, |object| {
+        let place = DMat4::from_translation(DVec3::new(5.0, -8.0, 370.0));
+        let turn = DMat4::from_rotation_y(0.7) * DMat4::from_rotation_x(0.3);
+        object.placement = object.placement.replaced(place * turn);
+    })
+}
+
+/// The same with a texture of noise on its first object.
+fn textured(scene: &Scene) -> Scene {
+    let mut rng = Rng::new(5);
+    let texels = (0..64).map(|_| rng.bits().to_le_bytes());
+    let texels = texels.map(|[r, g, b, ..]| [r, g, b, 255]).collect();
+    let texture = Shared::new(Texture {
+        source: std::path::PathBuf::new(),
+        picture: Picture::from_pixels(Size::new(8, 8), texels).unwrap_or_default().into(),
+        wrap: Wrap::Repeat,
+        offset: [0.1, 0.2],
+        scale: [3.0, 5.0],
+    });
+    change(scene, |object| {
+        object.model = wall();
+        object.texture = Some(texture);
+    })
+}
+
+/// A leaning square of 2 x 2 quads with texture coordinates.
+fn wall() -> Shared<Model> {
+    let mut source = MeshSource {
+        parts: vec![Part { name: "wall".to_owned(), material: None }],
+        polygon_parts: vec![0; 4],
+        arities: vec![4; 4],
+        ..MeshSource::default()
+    };
+    for i in 0..9_u8 {
+        let (x, y) = (f32::from(i % 3) - 1.0, f32::from(i / 3) - 1.0);
+        source.positions.push([9.0 * x, 9.0 * y, -3.0 * x * y]);
+        source.uvs.push([x, y]);
+    }
+    for first in [0, 1, 3, 4] {
+        for i in [first, first + 1, first + 4, first + 3] {
+            source.corners.push(SourceCorner { position: i, uv: i, normal: NONE });
+        }
+    }
+    Shared::new(Model {
+        name: "wall".to_owned(),
+        source: None,
+        companions: Vec::new(),
+        options: LoadOptions::default(),
+        mesh: Mesh::new(source).expect("these numbers are finite"),
+        materials: Vec::new(),
+        edge_color: None,
+    })
+}
+
+fn change(scene: &Scene, change: impl FnOnce(&mut Object)) -> Scene {
+    let mut scene = scene.clone();
+    let id = scene.objects.first().expect("the first scene has objects");
+    let mut object = scene.objects.get(id).expect("it is the first").clone();
+    change(&mut object);
+    let command = Command::Replace(Item::Object(id, Box::new(object)));
+    command.apply(&mut scene).expect("it is there");
+    scene
+}
+
+/// Overlapping triangles of all sizes.
+fn scattered() -> Vec<Flat> {
+    let mut rng = Rng::new(7);
+    let far = i32::try_from(SIDE).expect("small") * SUBPIXELS;
+    let mut triangle = |_| {
+        let mut corner =
+            || Snapped { x: rng.between(-far / 2, 2 * far), y: rng.between(-far / 2, 2 * far) };
+        let corners = [corner(), corner(), corner()];
+        let distances = [0, 1, 2].map(|_| f64::from(rng.between(0, 1024)));
+        Flat { corners, distances }
+    };
+    (0..300).map(&mut triangle).collect()
+}

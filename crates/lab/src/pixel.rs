@@ -1,0 +1,146 @@
+//! A pixel explained, in words and numbers: what is seen there, and what its colour is made of.
+//!
+//! One row a term: a term that the renderer adds becomes a row here without another line.
+
+use glam::DVec3;
+
+use marraztu_core::accuracy::LightAt;
+use marraztu_core::scene::{ItemId, LightId, Scene};
+use marraztu_render::{LightRay, PixelColor, SurfacePoint, Term};
+
+/// A row of the sum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// "sun, diffuse"
+    pub label: String,
+    /// Red, green and blue, in steps of a byte.
+    pub value: [f64; 3],
+}
+
+/// The rows whose sum is the colour of the pixel: terms, and what rounding takes.
+#[must_use]
+pub fn rows(scene: &Scene, explained: &PixelColor) -> Vec<Row> {
+    let steps = |value: [f64; 3]| value.map(|x| x * 255.0);
+    let label = |term: &Term| {
+        let part = match term.light {
+            Some(id) => format!("{}, {}", light_name(scene, id), term.part.name()),
+            None => term.part.name().to_owned(),
+        };
+        if term.layer == 0 { part } else { format!("behind: {part}") }
+    };
+    let row = |term: &Term| Row { label: label(term), value: steps(term.value) };
+    let mut rows: Vec<Row> = explained.terms.iter().map(row).collect();
+    if explained.rounding != [0.0; 3] {
+        rows.push(Row { label: "rounding".to_owned(), value: steps(explained.rounding) });
+    }
+    rows
+}
+
+/// The name of a light.
+#[must_use]
+pub fn light_name(scene: &Scene, id: LightId) -> &str {
+    scene.lights.get(id).map_or("a light", |light| &light.name)
+}
+
+/// Facts about the surface, name and value.
+#[must_use]
+pub fn facts(scene: &Scene, point: &SurfacePoint) -> Vec<[String; 2]> {
+    let name = match point.item {
+        ItemId::Object(id) => scene.objects.get(id).map(|object| &object.name),
+        ItemId::Camera(id) => scene.cameras.get(id).map(|camera| &camera.name),
+        ItemId::Light(id) => scene.lights.get(id).map(|light| &light.name),
+    };
+    let side = if point.back { "back" } else { "front" };
+    let light = match point.light_at {
+        None => "not lit",
+        Some(LightAt::Face) => "at the face",
+        Some(LightAt::Vertex) => "at the corners",
+        Some(LightAt::Pixel | LightAt::Sample) => "at the pixel",
+    };
+    let mut facts = vec![
+        ["shows".to_owned(), format!("{}, {side}", name.map_or("nothing", String::as_str))],
+        ["polygon".to_owned(), format!("{}, triangle {}", point.polygon, point.triangle)],
+        ["barycentrics".to_owned(), vector(point.weights)],
+        ["distance".to_owned(), number(point.distance)],
+        ["position".to_owned(), vector(point.position)],
+        ["N".to_owned(), direction(point.normal)],
+        ["V".to_owned(), direction(point.to_eye)],
+        ["light".to_owned(), light.to_owned()],
+    ];
+    if point.own != [1.0; 3] {
+        facts.push(["texture and tint".to_owned(), vector(DVec3::from_array(point.own))]);
+    }
+    facts
+}
+
+/// How a light reaches the point, in one line.
+#[must_use]
+pub fn ray_line(ray: &LightRay) -> String {
+    let cosine = if ray.half_vector { "N.H" } else { "R.V" };
+    let mut line = format!(
+        "L {}  R {}  N.L {}  {cosine} {}",
+        direction(ray.to_light),
+        direction(ray.reflected),
+        number(ray.n_l),
+        number(ray.highlight)
+    );
+    if let Some(distance) = ray.distance {
+        line += &format!("  d {}  att {}", number(distance), number(ray.attenuation));
+    }
+    if ray.shadow != 1.0 {
+        line += "  in shadow";
+    }
+    if ray.cone != 1.0 {
+        line += &format!("  spot {}", number(ray.cone));
+    }
+    line
+}
+
+/// All of it as text, line by line.
+#[must_use]
+pub fn lines(scene: &Scene, explained: &PixelColor) -> Vec<String> {
+    let [x, y] = explained.at;
+    let mut lines = vec![format!("pixel {x},{y}")];
+    if let Some(point) = &explained.surface {
+        let facts = facts(scene, point);
+        lines.extend(facts.iter().map(|[name, value]| format!("  {name:<17}{value}")));
+    }
+    for term in &explained.terms {
+        if let (Some(ray), Some(id)) = (&term.ray, term.light) {
+            lines.push(format!("  {:<17}{}", light_name(scene, id), ray_line(ray)));
+        }
+    }
+    lines.push(format!("  {:<34}{:>10}{:>10}{:>10}", "in steps of a byte", "red", "green", "blue"));
+    let line = |label: &str, value: [f64; 3]| {
+        let [r, g, b] = value.map(|x| format!("{x:.4}"));
+        format!("  {label:<34}{r:>10}{g:>10}{b:>10}")
+    };
+    lines.extend(rows(scene, explained).iter().map(|row| line(&row.label, row.value)));
+    lines.push(line("sum", explained.color.map(|x| x * 255.0)));
+    if explained.linear {
+        lines.push("  linear light: encoded in sRGB before it is rounded".to_owned());
+    }
+    let [r, g, b] = explained.bytes;
+    lines.push(format!("  {:<34}{r:>10}{g:>10}{b:>10}", "clamped and rounded"));
+    lines
+}
+
+/// A number with up to four decimals.
+#[must_use]
+pub fn number(x: f64) -> String {
+    let text = if x != 0.0 && (x.abs() < 1e-3 || x.abs() >= 1e6) {
+        format!("{x:.3e}")
+    } else {
+        format!("{x:.4}")
+    };
+    if text == "-0.0000" { "0.0000".to_owned() } else { text }
+}
+
+fn vector(v: DVec3) -> String {
+    format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
+}
+
+/// A vector of length 1: what would be shown as 0 with four decimals is 0.
+fn direction(v: DVec3) -> String {
+    vector(v.map(|x| if x.abs() < 5e-5 { 0.0 } else { x }))
+}

@@ -1,0 +1,186 @@
+//! Reports the results of a sweep in words, as a table, as data and as plots.
+
+mod labels;
+mod page;
+mod panels;
+mod plot;
+mod table;
+mod verdict;
+
+use serde::Serialize;
+
+pub use self::labels::{TextBox, place};
+pub use self::page::{page_html, page_markdown, plot_name, sections};
+pub use self::panels::{Panel, PanelMark, Panels, Scale};
+pub use self::plot::{Look, PlotError, overview_names, panel_svg, png, svg};
+pub use self::table::{brief, csv, heading, markdown, tabs, text};
+use super::candidates::Group;
+use super::error::{Measure, Region};
+use super::front::{Point, fastest_within, front, most_exact_within};
+use super::sweep::{Findings, Measured, Row, Verdict};
+use marraztu_core::accuracy::Axis;
+
+/// The results of a sweep, with how they are to be reported.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The name of what was drawn: "teapot.obj".
+    pub scene: String,
+    /// The command that measures it again.
+    pub command: String,
+    /// The error metric of the plots, the front and the budgets.
+    pub measure: Measure,
+    /// The pixels that it is taken over.
+    pub region: Region,
+    /// The limits that the user has set.
+    pub budgets: Budgets,
+    /// The results.
+    #[serde(flatten)]
+    pub findings: Findings,
+}
+
+/// The limits that the user has set.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Budgets {
+    /// The largest error, in the unit of the report's metric.
+    pub error: Option<f64>,
+    /// The longest time of a picture in milliseconds.
+    pub ms: Option<f64>,
+}
+
+/// The part of the error that a slower choice has to cut for a place on the front.
+const LEAST_CUT: f64 = 0.02;
+
+/// The largest number of names in the overview.
+const NAMES: usize = 10;
+
+impl Report {
+    /// The rows of the table. Presets are measured first and last, but listed together.
+    #[must_use]
+    pub fn rows(&self) -> Vec<&Row> {
+        let mut rows: Vec<&Row> = self.findings.rows.iter().collect();
+        rows.sort_by_key(|row| row.group != Group::Preset);
+        rows
+    }
+
+    /// The error of a row against its own reference.
+    #[must_use]
+    pub fn error(&self, row: &Row) -> f64 {
+        self.measure.of(self.findings.error_of(row), self.region)
+    }
+
+    /// The points as time and error against 256 samples per pixel: one reference for all. Another
+    /// model is judged against its own reference.
+    #[must_use]
+    pub fn points(&self) -> Vec<Point> {
+        let error =
+            |p: &Measured| self.measure.of(p.sampled.as_ref().unwrap_or(&p.error), self.region);
+        self.findings.points.iter().map(|p| Point { time: p.ms, error: error(p) }).collect()
+    }
+
+    /// The points that can be compared with one another, with their indices: no other models.
+    fn comparable(&self) -> (Vec<usize>, Vec<Point>) {
+        let all = self.points().into_iter().enumerate();
+        all.filter(|(i, _)| self.findings.points[*i].sampled.is_some()).unzip()
+    }
+
+    /// The front, each of whose points cuts the error by at least this part. A time within the
+    /// noise is the default's, and the default stands for all that is as fast and as exact.
+    fn front_by(&self, least: f64) -> Vec<usize> {
+        let (places, mut points) = self.comparable();
+        let Some(default) = points.first().copied() else { return Vec::new() };
+        for (place, point) in places.iter().zip(&mut points) {
+            if self.findings.points[*place].verdict == Verdict::Alike {
+                point.time = default.time;
+                if point.error > default.error * (1.0 - least) {
+                    point.error = point.error.max(default.error);
+                }
+            }
+        }
+        front(&points, least).into_iter().map(|i| places[i]).collect()
+    }
+
+    /// The indices of the points on the front, the fastest first.
+    #[must_use]
+    pub fn front(&self) -> Vec<usize> {
+        self.front_by(LEAST_CUT)
+    }
+
+    /// The default and the front, at most ten points, the fastest first: if there are more, those
+    /// that cut the error most.
+    #[must_use]
+    pub fn overview(&self) -> Vec<usize> {
+        let mut least = LEAST_CUT;
+        loop {
+            let mut found = self.front_by(least);
+            if !found.contains(&0) && !self.findings.points.is_empty() {
+                found.push(0);
+                let ms = |i: &usize| self.findings.points[*i].ms;
+                found.sort_by(|a, b| ms(a).total_cmp(&ms(b)));
+            }
+            if found.len() <= NAMES || least > 0.9 {
+                found.truncate(NAMES);
+                return found;
+            }
+            least *= 1.3;
+        }
+    }
+
+    /// The fastest point whose error is within the budget; `None` without such a budget.
+    #[must_use]
+    pub fn fastest(&self) -> Option<Option<usize>> {
+        let (places, points) = self.comparable();
+        self.budgets.error.map(|most| fastest_within(&points, most).map(|i| places[i]))
+    }
+
+    /// The most exact point within the budget of time; `None` without such a budget.
+    #[must_use]
+    pub fn most_exact(&self) -> Option<Option<usize>> {
+        let (places, points) = self.comparable();
+        self.budgets.ms.map(|most| most_exact_within(&points, most).map(|i| places[i]))
+    }
+
+    /// The index of the point that the picture is drawn with now.
+    #[must_use]
+    pub fn current(&self) -> Option<usize> {
+        self.findings.points.iter().position(|point| point.settings == self.findings.current)
+    }
+
+    /// What the figures say, in sentences.
+    #[must_use]
+    pub fn verdict(&self) -> Vec<String> {
+        verdict::verdict(self)
+    }
+
+    /// What the figures say about one axis, in a paragraph.
+    #[must_use]
+    pub fn verdict_on(&self, axis: &Axis) -> String {
+        verdict::verdict_on(self, axis)
+    }
+
+    /// The report as JSON.
+    #[must_use]
+    pub fn json(&self) -> String {
+        serde_json::to_string_pretty(self).expect("a report is plain data")
+    }
+
+    /// The answer to each budget, as a sentence.
+    #[must_use]
+    pub fn answers(&self) -> Vec<String> {
+        let points = self.points();
+        let named = |found: Option<usize>| match found {
+            Some(i) => {
+                let (name, Point { time, error }) = (&self.findings.points[i].name, points[i]);
+                format!("{name}: {} ms, {}", brief(time), brief(error))
+            }
+            None => "none that was measured".to_owned(),
+        };
+        let label = self.measure.label();
+        let fastest = self.budgets.error.zip(self.fastest()).map(|(most, found)| {
+            format!("the fastest with {label} at most {}: {}", brief(most), named(found))
+        });
+        let exact = self.budgets.ms.zip(self.most_exact()).map(|(most, found)| {
+            format!("the most exact within {} ms: {}", brief(most), named(found))
+        });
+        fastest.into_iter().chain(exact).collect()
+    }
+}

@@ -1,0 +1,122 @@
+//! A page of the suite: for each axis a panel, a table, a paragraph, and the command that repeats
+//! it.
+
+use std::fmt::Write as _;
+
+use super::{Look, PlotError, Report, markdown, panel_svg};
+use marraztu_core::accuracy::{AXES, Axis};
+
+/// The axes of some reports, each with the reports that measured it.
+pub fn sections(reports: &[Report]) -> impl Iterator<Item = (&'static Axis, Vec<&Report>)> {
+    let all = AXES.iter().map(|axis| {
+        let measured = |report: &&Report| report.findings.rows_of(axis).count() > 1;
+        (axis, reports.iter().filter(measured).collect::<Vec<_>>())
+    });
+    all.filter(|(_, reports)| !reports.is_empty())
+}
+
+/// The name of the plot of an axis on a scene of the suite: "depth-first".
+#[must_use]
+pub fn plot_name(axis: &Axis, report: &Report) -> String {
+    let scene = report.scene.split_whitespace().last().unwrap_or_default();
+    format!("{}-{scene}", axis.key)
+}
+
+/// What the figures rest on, in a paragraph.
+fn basis(reports: &[Report]) -> String {
+    let Some(first) = reports.first() else { return String::new() };
+    let findings = &first.findings;
+    let [width, height] = findings.size;
+    let threads = if findings.threads == 1 { "thread" } else { "threads" };
+    format!(
+        "Measured at {width} x {height} on {} {threads} with {}. Times are multiples of the \
+         default's, as medians of pairs drawn in turn. What a time may mean is the interval of \
+         its median (95%, by a sign test), or the noise of the default against itself if that is \
+         more; times differ if their intervals do not meet, and else are noise. Errors are over \
+         all pixels, in steps of 255, against every axis at its most exact; those of samples per \
+         pixel are against 256 samples, each lit.",
+        findings.threads, findings.instructions
+    )
+}
+
+/// The page as Markdown. `picture` gives the address of the plot of an axis, by its key.
+#[must_use]
+pub fn page_markdown(reports: &[Report], picture: &dyn Fn(&str) -> String) -> String {
+    let mut text = format!("{}\n", basis(reports));
+    for report in reports {
+        let _ = writeln!(text, "\n- {}", report.verdict().join(" "));
+    }
+    for (axis, reports) in sections(reports) {
+        let _ = writeln!(text, "\n### {}", axis.label);
+        for report in reports {
+            let _ = write!(
+                text,
+                "\n{}\n\n![{}: time against error]({})\n\n{}\nAgain: `{}`\n",
+                report.verdict_on(axis),
+                axis.label,
+                picture(&plot_name(axis, report)),
+                markdown(report, axis),
+                report.command
+            );
+        }
+    }
+    text
+}
+
+const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem}\
+    svg{max-width:100%;height:auto}\
+    table{border-collapse:collapse;font-size:.85rem}td,th{padding:.2rem .6rem;text-align:right;\
+    border-bottom:1px solid #8884}td:first-child,th:first-child{text-align:left}\
+    .dark{display:none}@media(prefers-color-scheme:dark){body{background:#18181c;color:#e6e6ea}\
+    .dark{display:block}.light{display:none}}";
+
+/// The page as HTML, complete in one file, light and dark.
+///
+/// # Errors
+/// If a plot cannot be drawn.
+pub fn page_html(reports: &[Report]) -> Result<String, PlotError> {
+    let mut text = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+         <title>What accuracy costs</title><style>{STYLE}</style></head><body>\n\
+         <h1>What accuracy costs</h1>\n<p>{}</p>\n<ul>\n",
+        escaped(&basis(reports))
+    );
+    for report in reports {
+        let _ = writeln!(text, "<li>{}</li>", escaped(&report.verdict().join(" ")));
+    }
+    text += "</ul>\n";
+    for (axis, reports) in sections(reports) {
+        let _ = writeln!(text, "<h2>{}</h2>", axis.label);
+        for report in reports {
+            let [light, dark] =
+                [Look::Light, Look::Dark].map(|look| panel_svg(report, Some(axis.key), look));
+            let _ = write!(
+                text,
+                "<p>{}</p>\n<div class=\"light\">{}</div><div class=\"dark\">{}</div>\n\
+                 {}<pre>{}</pre>\n",
+                escaped(&report.verdict_on(axis)),
+                light?,
+                dark?,
+                html_table(&markdown(report, axis)),
+                escaped(&report.command)
+            );
+        }
+    }
+    Ok(text + "</body></html>\n")
+}
+
+/// A table in Markdown as HTML.
+fn html_table(markdown: &str) -> String {
+    let mut text = "<table>\n".to_owned();
+    for (i, line) in markdown.lines().enumerate().filter(|(i, _)| *i != 1) {
+        let cell = if i == 0 { "th" } else { "td" };
+        let cells = line.trim_matches('|').split('|');
+        let cells = cells.map(|it| format!("<{cell}>{}</{cell}>", escaped(it.trim())));
+        let _ = writeln!(text, "<tr>{}</tr>", cells.collect::<String>());
+    }
+    text + "</table>\n"
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}

@@ -1,0 +1,351 @@
+//! Draws the plots of a report as SVG and PNG, light and dark.
+//!
+//! `plotters` draws them with the fonts of the window, so that a plot does not depend on the
+//! machine. At the head stand the title and the verdict, under them the overview, then a panel for
+//! each axis, all on one scale.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{FontStyle, register_font};
+
+use super::labels::{TextBox, place};
+use super::{Panel, Panels, Report, Scale};
+use marraztu_core::base::image::{Picture, Size};
+
+/// A plot could not be drawn.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the plot could not be drawn: {0}")]
+pub struct PlotError(String);
+
+/// The colours of a plot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Look {
+    /// Dark ink on white.
+    #[default]
+    Light,
+    /// Light ink on black.
+    Dark,
+}
+
+/// The colours, the data strongest and the grid faintest.
+struct Colors {
+    paper: RGBColor,
+    ink: RGBColor,
+    faint: RGBColor,
+    grid: RGBColor,
+    noise: RGBColor,
+    /// The choices of an axis.
+    data: RGBColor,
+    /// The default.
+    default: RGBColor,
+}
+
+// The data have colours of Okabe and Ito, which people with colour blindness can tell apart.
+const LIGHT: Colors = Colors {
+    paper: RGBColor(255, 255, 255),
+    ink: RGBColor(34, 34, 40),
+    faint: RGBColor(104, 104, 112),
+    grid: RGBColor(236, 236, 239),
+    noise: RGBColor(222, 226, 236),
+    data: RGBColor(0, 114, 178),
+    default: RGBColor(213, 94, 0),
+};
+const DARK: Colors = Colors {
+    paper: RGBColor(24, 24, 28),
+    ink: RGBColor(230, 230, 234),
+    faint: RGBColor(160, 160, 168),
+    grid: RGBColor(42, 42, 48),
+    noise: RGBColor(50, 54, 66),
+    data: RGBColor(86, 180, 233),
+    default: RGBColor(230, 159, 0),
+};
+
+impl Look {
+    const fn colors(self) -> &'static Colors {
+        match self {
+            Self::Light => &LIGHT,
+            Self::Dark => &DARK,
+        }
+    }
+}
+
+const WIDTH: i32 = 1120;
+const EDGE: i32 = 20;
+/// The height of a line of the verdict.
+const LINE: i32 = 20;
+const OVERVIEW: i32 = 340;
+const COLUMNS: i32 = 3;
+const ROW: i32 = 250;
+/// The room of a panel for its title above, its ticks to the left and below.
+const ROOM: [i32; 3] = [26, 54, 42];
+/// Half the width of a mark.
+const MARK: i32 = 5;
+
+/// The plot as SVG.
+///
+/// # Errors
+/// If the plotting library fails.
+pub fn svg(report: &Report, look: Look) -> Result<String, PlotError> {
+    let sheet = Sheet::new(report, look);
+    let size = (WIDTH.cast_unsigned(), sheet.height().cast_unsigned());
+    drawn_svg(size, |area| sheet.draw(area))
+}
+
+/// The panel of one axis as SVG; the overview if the axis was not measured.
+///
+/// # Errors
+/// If the plotting library fails.
+pub fn panel_svg(report: &Report, key: Option<&str>, look: Look) -> Result<String, PlotError> {
+    let sheet = Sheet::new(report, look);
+    let (width, height) = (640, 340);
+    drawn_svg((640, 340), |area| {
+        area.fill(&sheet.colors.paper)?;
+        sheet.panel(area, sheet.panels.of(key), [8, 8, width - 8, height - 8])
+    })
+}
+
+/// The plot as a picture.
+///
+/// # Errors
+/// If the plotting library fails.
+pub fn png(report: &Report, look: Look) -> Result<Picture, PlotError> {
+    let sheet = Sheet::new(report, look);
+    let (width, height) = (WIDTH.cast_unsigned(), sheet.height().cast_unsigned());
+    let size = Size::new(width as usize, height as usize);
+    let mut bytes = vec![255; 3 * size.area()];
+    let area = BitMapBackend::with_buffer(&mut bytes, (width, height)).into_drawing_area();
+    sheet.draw(&area).map_err(|error| PlotError(error.to_string()))?;
+    drop(area);
+    let pixels = bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2], 255]).collect();
+    Picture::from_pixels(size, pixels).ok_or_else(|| PlotError("its size is wrong".to_owned()))
+}
+
+/// The names of the overview with their boxes in the plot.
+#[must_use]
+pub fn overview_names(report: &Report) -> Vec<(String, TextBox)> {
+    let sheet = Sheet::new(report, Look::Light);
+    let frame = inner(sheet.overview_rect());
+    let panel = &sheet.panels.overview;
+    let names = panel.marks.iter().map(|mark| mark.label.clone());
+    names.zip(sheet.names(panel, frame)).filter_map(|(name, at)| Some((name, at?))).collect()
+}
+
+fn drawn_svg(
+    size: (u32, u32),
+    draw: impl for<'a> FnOnce(&DrawingArea<SVGBackend<'a>, Shift>) -> Drawn<SVGBackend<'a>>,
+) -> Result<String, PlotError> {
+    let mut text = String::new();
+    let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+    draw(&area).and_then(|()| area.present()).map_err(|error| PlotError(error.to_string()))?;
+    drop(area);
+    Ok(text)
+}
+
+type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
+type Rect = [i32; 4];
+
+/// A font of the window, under the name that SVG knows.
+fn font(size: u32) -> TextStyle<'static> {
+    // Registering a valid font cannot fail, and registering it again changes nothing.
+    let _ = register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
+    ("sans-serif", size).into_font().into()
+}
+
+fn styled(size: u32, color: RGBColor, h: HPos, v: VPos) -> TextStyle<'static> {
+    TextStyle { color: color.to_backend_color(), pos: Pos::new(h, v), ..font(size) }
+}
+
+/// The size of a text; a little more than that of the font, since a reader of SVG may have another.
+#[expect(clippy::cast_precision_loss, reason = "pixels of a plot")]
+fn size_of(text: &str, size: u32) -> [f32; 2] {
+    let (width, height) = font(size).font.box_size(text).unwrap_or((0, 0));
+    [width as f32 * 1.06 + 4.0, (height as f32).max(size as f32) + 2.0]
+}
+
+/// The rectangle of the scales in that of a panel.
+const fn inner([left, top, right, bottom]: Rect) -> Rect {
+    [left + ROOM[1], top + ROOM[0], right - 6, bottom - ROOM[2]]
+}
+
+/// Everything that is drawn.
+struct Sheet {
+    title: String,
+    verdict: Vec<String>,
+    panels: Panels,
+    colors: &'static Colors,
+}
+
+impl Sheet {
+    fn new(report: &Report, look: Look) -> Self {
+        let findings = &report.findings;
+        let [width, height] = findings.size;
+        let threads = if findings.threads == 1 { "thread" } else { "threads" };
+        let title = format!(
+            "What accuracy costs: {}, {width} x {height}, {} {threads}, {}",
+            report.scene, findings.threads, findings.instructions
+        );
+        let verdict = wrapped(&report.verdict(), 14, WIDTH - 2 * EDGE);
+        Self { title, verdict, panels: Panels::new(report), colors: look.colors() }
+    }
+
+    fn head(&self) -> i32 {
+        52 + LINE * i32::try_from(self.verdict.len()).unwrap_or(0)
+    }
+
+    const fn overview_of(head: i32) -> Rect {
+        [EDGE, head, WIDTH - EDGE, head + OVERVIEW]
+    }
+
+    fn overview_rect(&self) -> Rect {
+        Self::overview_of(self.head())
+    }
+
+    fn height(&self) -> i32 {
+        let panels = i32::try_from(self.panels.axes.len()).unwrap_or(0);
+        self.head() + OVERVIEW + 16 + (panels + COLUMNS - 1) / COLUMNS * ROW + 34
+    }
+
+    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Drawn<DB> {
+        let colors = self.colors;
+        area.fill(&colors.paper)?;
+        let left = |size, color| styled(size, color, HPos::Left, VPos::Top);
+        area.draw(&Text::new(self.title.clone(), (EDGE, 14), left(18, colors.ink)))?;
+        let mut y = 44;
+        for line in &self.verdict {
+            area.draw(&Text::new(line.clone(), (EDGE, y), left(14, colors.ink)))?;
+            y += LINE;
+        }
+        self.panel(area, &self.panels.overview, self.overview_rect())?;
+        let (top, width) = (self.head() + OVERVIEW + 16, (WIDTH - 2 * EDGE) / COLUMNS);
+        let mut place = (0, 0);
+        for panel in &self.panels.axes {
+            let (x, y) = (EDGE + place.0 * width, top + place.1 * ROW);
+            self.panel(area, panel, [x, y, x + width - 10, y + ROW - 6])?;
+            place = if place.0 + 1 == COLUMNS { (0, place.1 + 1) } else { (place.0 + 1, place.1) };
+        }
+        let note = format!(
+            "From left to right: {}. Upwards: {}. Orange: the default. Band: its noise. Lines \
+             through marks: what their time may be. All panels have one scale.",
+            self.panels.x.label, self.panels.y.label
+        );
+        area.draw(&Text::new(note, (EDGE, self.height() - 26), left(13, colors.faint)))?;
+        area.present()
+    }
+
+    fn panel<DB: DrawingBackend>(
+        &self,
+        area: &DrawingArea<DB, Shift>,
+        panel: &Panel,
+        rect: Rect,
+    ) -> Drawn<DB> {
+        let (colors, frame) = (self.colors, inner(rect));
+        let title = styled(15, colors.ink, HPos::Left, VPos::Top);
+        area.draw(&Text::new(panel.title.clone(), (frame[0], rect[1] + 2), title))?;
+        let note = styled(12, colors.faint, HPos::Right, VPos::Top);
+        area.draw(&Text::new(panel.note, (frame[2], rect[1] + 5), note))?;
+        self.scales(area, frame)?;
+        let at: Vec<(i32, i32)> =
+            panel.marks.iter().map(|mark| self.place(frame, mark.at)).collect();
+        area.draw(&PathElement::new(at.clone(), colors.data.stroke_width(2)))?;
+        for (mark, at) in panel.marks.iter().zip(&at) {
+            let color = if mark.is_default { colors.default } else { colors.data };
+            let [left, _, right, _] = frame;
+            let noise = mark.noise.map(|x| along(&self.panels.x, x, left, right));
+            let noise = noise.map(|x| (x.clamp(left, right), at.1));
+            area.draw(&PathElement::new(noise.to_vec(), color.stroke_width(1)))?;
+            area.draw(&Circle::new(*at, MARK, color.filled()))?;
+            if mark.current {
+                area.draw(&Circle::new(*at, MARK + 4, colors.ink.stroke_width(2)))?;
+            }
+        }
+        for (mark, text) in panel.marks.iter().zip(self.names(panel, frame)) {
+            let Some(text) = text else { continue };
+            let color = if mark.is_default { colors.default } else { colors.ink };
+            let style = styled(13, color, HPos::Left, VPos::Top);
+            area.draw(&Text::new(mark.label.clone(), corner(&text), style))?;
+        }
+        Ok(())
+    }
+
+    /// The boxes of the names of a panel.
+    #[expect(clippy::cast_precision_loss, reason = "pixels of a plot")]
+    fn names(&self, panel: &Panel, frame: Rect) -> Vec<Option<TextBox>> {
+        let at = |mark: &super::PanelMark| {
+            let (x, y) = self.place(frame, mark.at);
+            [x as f32, y as f32]
+        };
+        let marks: Vec<[f32; 2]> = panel.marks.iter().map(at).collect();
+        let sizes: Vec<[f32; 2]> =
+            panel.marks.iter().map(|mark| size_of(&mark.label, 13)).collect();
+        let [left, top, right, bottom] = frame.map(|edge| edge as f32);
+        let frame = TextBox { min: [left, top], max: [right, bottom] };
+        // The ring around the current choice is clear, too.
+        place(&marks, &sizes, &frame, MARK as f32 + 4.0)
+    }
+
+    /// The pixel of a position on the scales.
+    fn place(&self, [left, top, right, bottom]: Rect, [x, y]: [f64; 2]) -> (i32, i32) {
+        (along(&self.panels.x, x, left, right), along(&self.panels.y, y, bottom, top))
+    }
+
+    fn scales<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, frame: Rect) -> Drawn<DB> {
+        let (colors, panels, [left, top, right, bottom]) = (self.colors, &self.panels, frame);
+        let small = |h, v| styled(12, colors.faint, h, v);
+        let band = panels.noise.map(|x| along(&panels.x, x, left, right).clamp(left, right));
+        let band = [(band[0], top), (band[1].max(band[0] + 1), bottom)];
+        area.draw(&Rectangle::new(band, colors.noise.filled()))?;
+        let mut free = left;
+        for (x, label) in &panels.x.ticks {
+            let x = along(&panels.x, *x, left, right);
+            area.draw(&PathElement::new(vec![(x, top), (x, bottom)], colors.grid))?;
+            if x >= free {
+                let style = small(HPos::Center, VPos::Top);
+                area.draw(&Text::new(label.clone(), (x, bottom + 5), style))?;
+                free = x + 34;
+            }
+        }
+        let mut free = bottom;
+        for (y, label) in &panels.y.ticks {
+            let y = along(&panels.y, *y, bottom, top);
+            let line = if label == "0" { colors.faint } else { colors.grid };
+            area.draw(&PathElement::new(vec![(left, y), (right, y)], line))?;
+            if y <= free {
+                let style = small(HPos::Right, VPos::Center);
+                area.draw(&Text::new(label.clone(), (left - 7, y), style))?;
+                free = y - 16;
+            }
+        }
+        area.draw(&Text::new(
+            panels.x.label.clone(),
+            (i32::midpoint(left, right), bottom + 21),
+            small(HPos::Center, VPos::Top),
+        ))
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a pixel of the plot")]
+fn corner(text: &TextBox) -> (i32, i32) {
+    (text.min[0].round() as i32 + 2, text.min[1].round() as i32)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a pixel of the plot")]
+fn along(scale: &Scale, place: f64, from: i32, to: i32) -> i32 {
+    let [first, last] = scale.range;
+    let part = (place - first) / (last - first);
+    (f64::from(from) + part * f64::from(to - from)).round() as i32
+}
+
+/// Sentences one after the other, in lines of at most `width` pixels.
+#[expect(clippy::cast_precision_loss, reason = "pixels of a plot")]
+fn wrapped(sentences: &[String], size: u32, width: i32) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in sentences.iter().flat_map(|sentence| sentence.split_whitespace()) {
+        let longer = lines.last().map(|line| format!("{line} {word}"));
+        match longer.filter(|line| size_of(line, size)[0] <= width as f32) {
+            Some(longer) => *lines.last_mut().expect("it was the last") = longer,
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}

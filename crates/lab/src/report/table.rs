@@ -1,0 +1,361 @@
+//! Writes the table of a sweep for people and for other programs.
+
+use std::fmt::Write as _;
+
+use super::Report;
+use crate::candidates::Group;
+use crate::error::Region;
+use crate::sweep::{Measured, Row, Verdict};
+use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind};
+
+/// A number with three significant digits: "0", "0.0123", "4.57", "137", "1.2e-5".
+#[must_use]
+pub fn brief(number: f64) -> String {
+    let size = number.abs();
+    if size == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e5).contains(&size) {
+        return format!("{number:.1e}");
+    }
+    let text = match size {
+        100.0.. => format!("{number:.0}"),
+        10.0.. => format!("{number:.1}"),
+        1.0.. => format!("{number:.2}"),
+        0.1.. => format!("{number:.3}"),
+        0.01.. => format!("{number:.4}"),
+        _ => format!("{number:.5}"),
+    };
+    if !text.contains('.') {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// The heading of a row's group.
+#[must_use]
+pub fn heading(row: &Row) -> String {
+    match row.group {
+        Group::Preset => "presets".to_owned(),
+        Group::Axis(key) => {
+            let Some(axis) = Axis::named(key) else { return key.to_owned() };
+            let scored = match axis.kind {
+                AxisKind::Scored => "",
+                AxisKind::ScoredApart => " (against 256 samples, each lit)",
+                AxisKind::Model => " (a model: not scored)",
+            };
+            format!("{}{scored}, --{key}", axis.label)
+        }
+        Group::Current => "now".to_owned(),
+        Group::Combination => "combinations".to_owned(),
+    }
+}
+
+/// The table as text, with the verdict above it and the meaning of the marks below.
+#[must_use]
+pub fn text(report: &Report) -> String {
+    let mut text = head(report);
+    for sentence in report.verdict() {
+        let _ = writeln!(text, "{}", wrapped(&sentence, 92));
+    }
+    let _ = writeln!(
+        text,
+        "\n  {:30} {:>8} {:>15} {:>8} {:>5} {:7} {:>7} {:>8} {:>7} {:>7} {:>8} {:>8}",
+        "",
+        "time",
+        "IQR",
+        "ms",
+        "pairs",
+        "",
+        "largest",
+        "RMSE",
+        "PSNR",
+        "bytes",
+        "coverage",
+        "FLIP"
+    );
+    let (front, current) = (report.front(), report.current());
+    let mut last = String::new();
+    for row in report.rows() {
+        let heading = heading(row);
+        if heading != last {
+            let _ = writeln!(text, "{heading}");
+            last = heading;
+        }
+        let marks = [
+            if row.point == 0 { '*' } else { ' ' },
+            if current == Some(row.point) { '>' } else { ' ' },
+            if front.contains(&row.point) { '+' } else { ' ' },
+        ];
+        let marks: String = marks.iter().collect();
+        let name = format!("{marks} {}", row.name);
+        let _ = writeln!(text, "  {name:30} {}", figures(report, row));
+    }
+    let _ = writeln!(
+        text,
+        "\n* the default  > now  + nothing is both faster and more exact against 256 samples.\n\
+         Errors are of {}, against every axis at its most exact with one sample\n\
+         per pixel; those of samples per pixel, against 256 samples, each lit.",
+        match report.region {
+            Region::Whole => "all pixels",
+            Region::Inside => "the pixels whose coverage does not differ",
+        }
+    );
+    foot(&mut text, report);
+    text
+}
+
+fn head(report: &Report) -> String {
+    let findings = &report.findings;
+    let [width, height] = findings.size;
+    let quartiles = &findings.control.quartiles;
+    let threads = if findings.threads == 1 { "thread" } else { "threads" };
+    let mut text = format!(
+        "{}: {width} x {height} pixels, {} {threads}, {}, {}\n",
+        report.scene, findings.threads, findings.instructions, findings.thoroughness
+    );
+    let _ = writeln!(
+        text,
+        "The default takes {} ms. Against itself it took {:.3} times as long, with an\n\
+         interquartile range (IQR) of {} pairs from {:.3} to {:.3}: a difference of less than\n\
+         {:.1} % means nothing, nor one within the interval of a row's own median (95 %).",
+        brief(findings.control.a_ms),
+        quartiles.median,
+        findings.control.pairs,
+        quartiles.lower,
+        quartiles.upper,
+        findings.floor * 100.0
+    );
+    text
+}
+
+fn figures(report: &Report, row: &Row) -> String {
+    let point = &report.findings.points[row.point];
+    let (ratio, error) = (&point.ratio, report.findings.error_of(row));
+    let figures = error.over(report.region);
+    let quartiles = &ratio.quartiles;
+    let psnr = figures.psnr.map_or_else(|| "exact".to_owned(), |psnr| format!("{psnr:.1}"));
+    format!(
+        "{:>7.3}x {:>15} {:>8} {:>5} {:7} {:>7} {:>8} {:>7} {:>6}% {:>8} {:>8}",
+        quartiles.median,
+        format!("{:.3} - {:.3}", quartiles.lower, quartiles.upper),
+        brief(point.ms),
+        ratio.pairs,
+        point.verdict.word(),
+        figures.largest,
+        brief(figures.rmse),
+        psnr,
+        brief(figures.differing * 100.0),
+        error.coverage,
+        brief(error.flip)
+    )
+}
+
+fn foot(text: &mut String, report: &Report) {
+    for preset in ACCURACY_PRESETS.iter().filter(|preset| !preset.faults.is_empty()) {
+        let _ = writeln!(text, "{}, --preset {}: {}", preset.label, preset.word, preset.in_words());
+    }
+    for left_out in &report.findings.left_out {
+        let _ = writeln!(text, "not measured: {}: {}", left_out.what, left_out.reason);
+    }
+    if !report.findings.kernels.is_empty() {
+        let _ = writeln!(text, "\narithmetic on one thread: SIMD against the plain loop");
+    }
+    for kernel in &report.findings.kernels {
+        let quartiles = &kernel.ratio.quartiles;
+        let middle = format!("{:.3} - {:.3}", quartiles.lower, quartiles.upper);
+        let _ = writeln!(
+            text,
+            "      {:26} {:>7.3}x {middle:>15} {:>8} {:>5} {}",
+            kernel.name,
+            quartiles.median,
+            brief(kernel.ratio.a_ms * quartiles.median),
+            kernel.ratio.pairs,
+            if kernel.equal { "equal results" } else { "DIFFERENT RESULTS" }
+        );
+    }
+    let answers = report.answers();
+    if !answers.is_empty() {
+        let _ = writeln!(text);
+    }
+    for answer in answers {
+        let _ = writeln!(text, "{answer}");
+    }
+    let _ = writeln!(text, "\nagain: {}", report.command);
+}
+
+/// A sentence in lines of at most `width` letters.
+fn wrapped(sentence: &str, width: usize) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for word in sentence.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                *line += &format!(" {word}");
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines.join("\n")
+}
+
+/// The rows of one axis as a table in Markdown, with its figures over all pixels.
+#[must_use]
+pub fn markdown(report: &Report, axis: &Axis) -> String {
+    let mut text = "| choice | time | interquartile range | maximum | RMSE | PSNR | differing \
+                    bytes | pixels whose coverage differs | FLIP |\n\
+                    |---|--:|--:|--:|--:|--:|--:|--:|--:|\n"
+        .to_owned();
+    for row in report.findings.rows_of(axis) {
+        let (point, error) = (&report.findings.points[row.point], report.findings.error_of(row));
+        let quartiles = &point.ratio.quartiles;
+        let star = if row.point == 0 { " (default)" } else { "" };
+        let time = match (row.point, point.verdict) {
+            (0, _) => "1x".to_owned(),
+            (_, Verdict::Alike) => format!("{:.2}x (noise)", quartiles.median),
+            _ => format!("{:.2}x", quartiles.median),
+        };
+        let _ = writeln!(
+            text,
+            "| {}{star} | {time} | {:.2} to {:.2} | {} | {} | {} | {}% | {} | {} |",
+            row.name,
+            quartiles.lower,
+            quartiles.upper,
+            error.whole.largest,
+            brief(error.whole.rmse),
+            error.whole.psnr.map_or_else(|| "exact".to_owned(), |psnr| format!("{psnr:.1}")),
+            brief(error.whole.differing * 100.0),
+            error.coverage,
+            brief(error.flip)
+        );
+    }
+    text
+}
+
+/// The table as comma-separated values, with the choice of every axis in each row.
+#[must_use]
+pub fn csv(report: &Report) -> String {
+    joined(report, ",", quoted)
+}
+
+/// The same separated by tabs, for pasting into a spreadsheet.
+#[must_use]
+pub fn tabs(report: &Report) -> String {
+    joined(report, "\t", |field| field.replace(['\t', '\n'], " "))
+}
+
+fn joined(report: &Report, separator: &str, field: fn(&str) -> String) -> String {
+    let line = |row: Vec<String>| {
+        let fields: Vec<String> = row.iter().map(|text| field(text)).collect();
+        fields.join(separator) + "\n"
+    };
+    cells(report).into_iter().map(line).collect()
+}
+
+/// The cells of the table; the first row has the names of the columns.
+fn cells(report: &Report) -> Vec<Vec<String>> {
+    const FIGURES: [&str; 23] = [
+        "ms",
+        "ratio",
+        "ratio_lower",
+        "ratio_upper",
+        "noise_lower",
+        "noise_upper",
+        "pairs",
+        "thrown_away",
+        "verdict",
+        "against",
+        "largest",
+        "rmse",
+        "psnr",
+        "differing",
+        "coverage",
+        "flip",
+        "inside_largest",
+        "inside_rmse",
+        "inside_differing",
+        "rmse_against_256_samples",
+        "hash",
+        "front",
+        "current",
+    ];
+    let (front, current) = (report.front(), report.current());
+    let axes = AXES.iter().map(|axis| axis.key);
+    let head = ["group", "name"].into_iter().chain(axes).chain(FIGURES);
+    let mut cells = vec![head.map(str::to_owned).collect()];
+    for row in &report.findings.rows {
+        let Measured { settings, ms, ratio, verdict, sampled, hash, .. } =
+            &report.findings.points[row.point];
+        let error = report.findings.error_of(row);
+        let (whole, inside) = (&error.whole, &error.inside);
+        let quartiles = &ratio.quartiles;
+        let [lower, upper] = report.findings.noise_of(row.point);
+        let psnr = whole.psnr.map_or_else(|| "inf".to_owned(), |psnr| psnr.to_string());
+        let figures: [String; FIGURES.len()] = [
+            ms.to_string(),
+            quartiles.median.to_string(),
+            quartiles.lower.to_string(),
+            quartiles.upper.to_string(),
+            lower.to_string(),
+            upper.to_string(),
+            ratio.pairs.to_string(),
+            ratio.thrown.to_string(),
+            verdict.word().to_owned(),
+            row.against.word().to_owned(),
+            whole.largest.to_string(),
+            whole.rmse.to_string(),
+            psnr,
+            whole.differing.to_string(),
+            error.coverage.to_string(),
+            error.flip.to_string(),
+            inside.largest.to_string(),
+            inside.rmse.to_string(),
+            inside.differing.to_string(),
+            sampled.map(|error| error.whole.rmse.to_string()).unwrap_or_default(),
+            hash.clone(),
+            front.contains(&row.point).to_string(),
+            (current == Some(row.point)).to_string(),
+        ];
+        let axes = AXES.iter().map(|axis| axis.chosen(settings).word.to_owned());
+        let names = [heading(row), row.name.clone()].into_iter();
+        cells.push(names.chain(axes).chain(figures).collect());
+    }
+    cells
+}
+
+/// A field that may hold commas (RFC 4180).
+fn quoted(field: &str) -> String {
+    if field.contains([',', '"', '\n']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_the_three_digits_that_count() {
+        let pairs = [
+            (0.0, "0"),
+            (1.0, "1"),
+            (0.012_345, "0.0123"),
+            (4.567, "4.57"),
+            (136.6, "137"),
+            (0.000_012, "1.2e-5"),
+            (0.5, "0.5"),
+            (1200.0, "1200"),
+            (0.1, "0.1"),
+        ];
+        for (number, text) in pairs {
+            assert_eq!(brief(number), text);
+        }
+    }
+
+    #[test]
+    fn a_field_with_a_comma_is_quoted() {
+        assert_eq!(quoted("a, \"b\""), "\"a, \"\"b\"\"\"");
+        assert_eq!(quoted("a b"), "a b");
+    }
+}

@@ -1,0 +1,321 @@
+//! What the figures of a sweep say, in sentences, by rules.
+//!
+//! A choice is compared with the default of its axis: its time by the verdict on their ratio
+//! ([`Findings::noise_of`](crate::sweep::Findings::noise_of) says what is noise), its error by
+//! the RMSE over all pixels against the reference of its axis. An error counts as cut or raised if
+//! it changes by a twentieth. Every choice that differs beyond the noise in time, or in error,
+//! falls under one of the rules, so that nothing is passed over in silence.
+
+use super::Report;
+use crate::sweep::{Measured, Row, Verdict};
+use marraztu_core::accuracy::{AXES, Axis, AxisKind};
+
+/// Changes of the error by less than this part of it mean nothing.
+const MARGIN: f64 = 0.05;
+
+/// The largest number of choices that a list names.
+const LISTED: usize = 3;
+
+/// A choice that says something.
+struct Said<'a> {
+    axis: &'static Axis,
+    row: &'a Row,
+    point: &'a Measured,
+    /// Its error and the default's.
+    error: f64,
+    before: f64,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// Slower, and cuts the error.
+    Buys,
+    /// Slower and finer, but nothing is gained.
+    NotWorth,
+    /// Slower, coarser, and no more exact.
+    Wasted,
+    /// Faster, and raises the error.
+    Saves,
+    /// Faster, or finer and more exact, at no cost.
+    Free,
+    /// No faster, but less exact.
+    Worse,
+}
+
+/// A paragraph on one axis.
+pub(super) fn verdict_on(report: &Report, axis: &Axis) -> String {
+    if axis.kind == AxisKind::Model {
+        return "A model: none of its choices is an error of another.".to_owned();
+    }
+    let said: Vec<Said<'_>> =
+        said(report).into_iter().filter(|it| it.axis.key == axis.key).collect();
+    let noise = noise(report, report.findings.rows_of(axis).map(|row| row.point));
+    let mut sentences = told(&said);
+    if sentences.is_empty() {
+        sentences.push("No choice differs from the default beyond the noise here.".to_owned());
+    }
+    sentences.extend(reasons(report, axis));
+    let capital: Vec<String> = sentences.iter().map(|sentence| capitalized(sentence)).collect();
+    let [width, height] = report.findings.size;
+    format!("{} (At {width}x{height} on {}; noise {noise}.)", capital.join(" "), report.scene)
+}
+
+/// Why choices take longer than more exact ones, for those that do here.
+fn reasons(report: &Report, axis: &Axis) -> Vec<String> {
+    let rows = report.findings.rows_of(axis);
+    let mut measured: Vec<(usize, [f64; 2])> = rows
+        .filter_map(|row| {
+            let point = &report.findings.points[row.point];
+            let word = axis.chosen(&point.settings).word;
+            let place = axis.choices.iter().position(|choice| choice.word == word)?;
+            Some((place, report.findings.noise_of(row.point)))
+        })
+        .collect();
+    measured.sort_by_key(|(place, _)| *place);
+    let is_slower = |i: usize| {
+        let mut others = measured[i + 1..].iter();
+        others.any(|(_, other)| Verdict::between(measured[i].1, *other) == Verdict::Slower)
+    };
+    let reason = |i: usize| {
+        let choice = &axis.choices[measured[i].0];
+        let because = choice.slower_because.filter(|_| is_slower(i))?;
+        Some(format!("{} takes longer than a more exact choice: {because}.", axis.in_words(choice)))
+    };
+    (0..measured.len()).filter_map(reason).collect()
+}
+
+/// The sentences on a report.
+pub(super) fn verdict(report: &Report) -> Vec<String> {
+    let said = said(report);
+    let mut sentences = told(&said);
+    let is_faster = |it: &Said<'_>| it.point.verdict == Verdict::Faster;
+    let nothing = if said.iter().any(is_faster) { "nothing else" } else { "nothing" };
+    let noise = noise(report, report.findings.rows.iter().map(|row| row.point));
+    sentences.push(format!("{nothing} saves more than the noise ({noise})."));
+    let [width, height] = report.findings.size;
+    if let Some(first) = sentences.first_mut() {
+        *first = format!("At {width}x{height} on {}: {first}", report.scene);
+    }
+    // The first goes on after a colon.
+    sentences.iter_mut().skip(1).for_each(|sentence| *sentence = capitalized(sentence));
+    sentences
+}
+
+/// The noise of some points, in per cent: "1.2%", or "1.2 to 4.5%" if they differ.
+fn noise(report: &Report, points: impl Iterator<Item = usize>) -> String {
+    let [least, most] = report.findings.noises(points).map(|it| digits((it * 100.0).max(0.1)));
+    if least == most { format!("{most}%") } else { format!("{least} to {most}%") }
+}
+
+/// The sentences on some choices.
+fn told(said: &[Said<'_>]) -> Vec<String> {
+    let of = |kind: Kind| -> Vec<&Said<'_>> { said.iter().filter(|it| it.kind == kind).collect() };
+    let mut sentences = Vec::new();
+    sentences.extend(bought(&of(Kind::Buys)));
+    sentences.extend(of(Kind::NotWorth).into_iter().map(not_worth));
+    sentences.extend(of(Kind::Free).into_iter().map(free));
+    let saves = of(Kind::Saves);
+    sentences.extend(saves.iter().map(|it| saved(it)));
+    let wasted: Vec<String> = sorted(of(Kind::Wasted), |it| it.ratio())
+        .map(|it| format!("{} ({})", it.name(), times(it.ratio())))
+        .collect();
+    sentences.extend(listed("slower and no more exact here", &wasted));
+    let worse: Vec<String> = sorted(of(Kind::Worse), |it| it.error)
+        .map(|it| format!("{} ({})", it.name(), digits(it.error)))
+        .collect();
+    sentences.extend(listed("less exact and no faster here, with the error in brackets", &worse));
+    sentences
+}
+
+/// Every choice that differs from the default of its axis in time or error.
+fn said(report: &Report) -> Vec<Said<'_>> {
+    let mut said = Vec::new();
+    for axis in AXES.iter().filter(|axis| axis.kind != AxisKind::Model) {
+        let finer = |word: &str| axis.choices.iter().position(|choice| choice.word == word);
+        let default = finer(axis.default_choice().word);
+        for row in report.findings.rows_of(axis).filter(|row| row.point != 0) {
+            let point = &report.findings.points[row.point];
+            let before = Row { point: 0, ..row.clone() };
+            let rmse = |row: &Row| report.findings.error_of(row).whole.rmse;
+            let (error, before) = (rmse(row), rmse(&before));
+            let is_finer = finer(axis.chosen(&point.settings).word) > default;
+            let Some(kind) = kind(point, [error, before], is_finer) else { continue };
+            said.push(Said { axis, row, point, error, before, kind });
+        }
+    }
+    said
+}
+
+fn kind(point: &Measured, [error, before]: [f64; 2], is_finer: bool) -> Option<Kind> {
+    let cut = error < before * (1.0 - MARGIN);
+    let raised = error > before * (1.0 + MARGIN);
+    // One step is below what an eye sees.
+    let seen = point.change.largest > 1;
+    Some(match (point.verdict, cut, raised) {
+        (Verdict::Slower, true, _) if seen => Kind::Buys,
+        (Verdict::Slower, _, false) if is_finer => Kind::NotWorth,
+        (Verdict::Slower, ..) => Kind::Wasted,
+        (Verdict::Faster, _, true) => Kind::Saves,
+        (Verdict::Faster, ..) => Kind::Free,
+        // A coarser choice that is closer to the reference is so in a few pixels.
+        (Verdict::Alike, true, _) if seen && is_finer => Kind::Free,
+        (Verdict::Alike, _, true) => Kind::Worse,
+        (Verdict::Alike, ..) => return None,
+    })
+}
+
+impl Said<'_> {
+    fn name(&self) -> String {
+        self.axis.in_words(self.axis.chosen(&self.point.settings))
+    }
+
+    fn ratio(&self) -> f64 {
+        self.point.ratio.quartiles.median
+    }
+
+    /// "cost" or "costs".
+    fn verb(&self, verb: &str) -> String {
+        let name = self.name();
+        let several = name.starts_with(|c: char| c.is_ascii_digit()) && !name.starts_with("1 ");
+        let several = several || ["vertices", "normals"].iter().any(|word| name.starts_with(word));
+        if several { verb.to_owned() } else { format!("{verb}s") }
+    }
+
+    fn error_change(&self) -> String {
+        format!("the error from {} to {} of 255", digits(self.before), digits(self.error))
+    }
+}
+
+/// Finer choices that are worth their time; of each axis the first in a sentence, others beside it.
+fn bought(all: &[&Said<'_>]) -> Vec<String> {
+    let mut sentences = Vec::new();
+    for axis in AXES {
+        let mut own = all.iter().filter(|it| it.axis.key == axis.key);
+        let Some(first) = own.next() else { continue };
+        let (cost, cut) = (first.verb("cost"), first.verb("cut"));
+        let times_first = times(first.ratio());
+        let mut text =
+            format!("{} {cost} {times_first} and {cut} {}", first.name(), first.error_change());
+        let more = |it: &&Said<'_>| {
+            format!("{}: {}, {}", it.row.name, times(it.ratio()), digits(it.error))
+        };
+        let others: Vec<String> = own.map(more).collect();
+        if !others.is_empty() {
+            text += &format!(" ({})", others.join("; "));
+        }
+        sentences.push(text + ".");
+    }
+    // Samples per pixel change the picture most.
+    sentences.sort_by_key(|text| !text.contains("samples"));
+    sentences
+}
+
+fn not_worth(it: &Said<'_>) -> String {
+    let (name, cost, change) = (it.name(), it.verb("cost"), &it.point.change);
+    let changes = match change.largest {
+        0 => format!("{} no byte", it.verb("change")),
+        largest => {
+            let by =
+                if largest == 1 { "one step".to_owned() } else { format!("up to {largest} steps") };
+            let part = digits(change.differing * 100.0);
+            format!("{} {part}% of the bytes by {by}", it.verb("change"))
+        }
+    };
+    format!("{name} {cost} {} and {changes}: not worth it here.", times(it.ratio()))
+}
+
+fn free(it: &Said<'_>) -> String {
+    let name = it.name();
+    match it.point.verdict {
+        Verdict::Faster => {
+            let saves = it.verb("save");
+            format!("{name} {saves} {}% and {} no accuracy here.", less(it), it.verb("cost"))
+        }
+        Verdict::Slower | Verdict::Alike => {
+            let cut = it.verb("cut");
+            format!("{name} {cut} {} in the same time.", it.error_change())
+        }
+    }
+}
+
+fn saved(it: &Said<'_>) -> String {
+    let (saves, raises) = (it.verb("save"), it.verb("raise"));
+    format!("{} {saves} {}% and {raises} {}.", it.name(), less(it), it.error_change())
+}
+
+/// The part of the time that is saved, in per cent.
+fn less(it: &Said<'_>) -> String {
+    digits((1.0 - it.ratio()) * 100.0)
+}
+
+fn sorted<'a, 'b>(
+    mut all: Vec<&'a Said<'b>>,
+    by: fn(&Said<'b>) -> f64,
+) -> impl Iterator<Item = &'a Said<'b>> {
+    all.sort_by(|a, b| by(b).total_cmp(&by(a)));
+    all.into_iter()
+}
+
+/// "Slower and no more exact here: this, that and 4 others."
+fn listed(what: &str, all: &[String]) -> Option<String> {
+    let (named, others) = all.split_at(all.len().min(LISTED));
+    let more = match others.len() {
+        0 => String::new(),
+        1 => " and one other".to_owned(),
+        count => format!(" and {count} others"),
+    };
+    (!all.is_empty()).then(|| format!("{what}: {}{more}.", named.join(", ")))
+}
+
+/// "2.1x".
+fn times(ratio: f64) -> String {
+    match ratio {
+        10.0.. => format!("{ratio:.0}x"),
+        1.2.. => format!("{ratio:.1}x"),
+        _ => format!("{ratio:.2}x"),
+    }
+}
+
+/// A number with two significant digits.
+fn digits(number: f64) -> String {
+    if number == 0.0 {
+        return "0".to_owned();
+    }
+    let decimals = 1.0 - libm::floor(libm::log10(number.abs()));
+    let decimals = if decimals > 0.0 { decimals.min(9.0) } else { 0.0 };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 9")]
+    let text = format!("{number:.*}", decimals as usize);
+    if !text.contains('.') {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_have_two_digits() {
+        let all = [(2.345, "2.3"), (0.0042, "0.0042"), (12.6, "13"), (6.0, "6"), (0.0, "0")];
+        for (number, text) in all {
+            assert_eq!(digits(number), text);
+        }
+        assert_eq!([1.04, 2.13, 16.4].map(times), ["1.04x", "2.1x", "16x"]);
+    }
+
+    #[test]
+    fn a_long_list_names_three_and_counts_the_rest() {
+        let names = ["a", "b", "c", "d", "e"].map(str::to_owned);
+        assert_eq!(listed("Slow", &names[..2]).unwrap(), "Slow: a, b.");
+        assert_eq!(listed("Slow", &names).unwrap(), "Slow: a, b, c and 2 others.");
+        assert_eq!(listed("Slow", &[]), None);
+    }
+}

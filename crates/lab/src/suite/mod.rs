@@ -1,0 +1,211 @@
+//! The suite: scenes in which each axis of accuracy matters.
+//!
+//! On an ordinary scene most choices make no difference, because something else is what it costs.
+//! Each scene here is bound by one thing, and each axis is measured on the scene that is bound by
+//! what the axis decides. The scenes are made by generators, so they can be of any detail.
+
+mod scenes;
+
+use super::candidates::{Group, Thoroughness, candidates};
+use super::error::{Measure, Region};
+use super::pairs::{Limits, Unmeasured, Watch};
+use super::picture_source::Studio;
+use super::report::{Budgets, Report};
+use super::sweep::{Bench, Question};
+use super::timing::Clock;
+use marraztu_core::accuracy::{Axis, Settings, Shot};
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{Scene, View};
+use marraztu_io as io;
+use std::time::Duration;
+
+/// A scene of the suite.
+#[derive(Debug)]
+pub struct SuiteScene {
+    /// Its word on the command line.
+    pub word: &'static str,
+    /// What it shows, as a phrase.
+    pub what: &'static str,
+    /// The keys of the axes that are measured on it.
+    pub axes: &'static [&'static str],
+    make: fn(u32) -> (Scene, View),
+}
+
+/// The scenes; each axis of accuracy is measured on at least one.
+pub const SUITE: &[SuiteScene] = &[
+    SuiteScene {
+        word: "first",
+        what: "the first scene of the editor",
+        axes: &["samples", "shading", "arithmetic"],
+        make: |_| io::default_scene(),
+    },
+    SuiteScene {
+        word: "pixels",
+        what: "one lit triangle over the whole picture",
+        axes: &["arithmetic", "normalising", "faint", "rounding", "values"],
+        make: scenes::pixels,
+    },
+    SuiteScene {
+        word: "vertices",
+        what: "a million triangles, each about a pixel",
+        axes: &["vertices", "subpixels"],
+        make: scenes::vertices,
+    },
+    SuiteScene {
+        word: "highlights",
+        what: "balls with exponents from 5 to 500, one of them flattened",
+        axes: &["shading", "power", "stretched", "specular"],
+        make: scenes::highlights,
+    },
+    SuiteScene {
+        word: "textures",
+        what: "a textured floor up to the horizon",
+        axes: &["filter", "interpolation"],
+        make: scenes::textures,
+    },
+    SuiteScene {
+        word: "edges",
+        what: "a fence of thin slats",
+        axes: &["samples", "coverage"],
+        make: scenes::edges,
+    },
+    SuiteScene {
+        word: "far",
+        what: "a ship 100,000 units from the origin",
+        axes: &["vertices"],
+        make: scenes::far,
+    },
+    SuiteScene {
+        word: "depth",
+        what: "pairs of surfaces 0.001 apart, from 2 to 2000 units away",
+        axes: &["depth"],
+        make: scenes::depth,
+    },
+    SuiteScene {
+        word: "layers",
+        what: "thirty-two glass balls, one inside another, each cut through by its neighbours",
+        axes: &["transparency"],
+        make: scenes::layers,
+    },
+    SuiteScene {
+        word: "bumps",
+        what: "balls with a map of heights, near and far",
+        axes: &["bumps", "tangents"],
+        make: scenes::bumps,
+    },
+    SuiteScene {
+        word: "shadows",
+        what: "balls on a floor under a sun, a bulb and a spot that cast shadows",
+        axes: &["shadow-method", "terminator"],
+        make: scenes::shadows,
+    },
+];
+
+/// How thoroughly the suite is measured, and in which detail.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SuiteDetail {
+    /// The size of the pictures.
+    pub size: Size,
+    /// How long each choice is measured.
+    pub thoroughness: Thoroughness,
+    /// The thousandths of the scenes' triangles.
+    pub detail: u32,
+}
+
+impl SuiteDetail {
+    /// Less than ten minutes on two cores.
+    pub const WHOLE: Self = Self {
+        size: Size::new(1280, 720),
+        thoroughness: Thoroughness { combinations: 0, ..Thoroughness::QUICK },
+        detail: 1000,
+    };
+    /// A few seconds, to see that it works.
+    pub const TINY: Self = Self {
+        size: Size::new(64, 36),
+        thoroughness: Thoroughness {
+            word: "tiny",
+            limits: Limits { pairs: 1, least: 1, time: Duration::ZERO },
+            combinations: 0,
+            time: Duration::ZERO,
+        },
+        detail: 2,
+    };
+}
+
+impl SuiteScene {
+    /// The scene with this word.
+    #[must_use]
+    pub fn named(word: &str) -> Option<&'static Self> {
+        SUITE.iter().find(|scene| scene.word == word)
+    }
+
+    /// The scene and its view, with this many thousandths of its triangles.
+    #[must_use]
+    pub fn open(&self, detail: u32) -> (Scene, View) {
+        (self.make)(detail.max(1))
+    }
+
+    /// The axes that are measured on it.
+    #[must_use]
+    pub fn measured(&self) -> Vec<&'static Axis> {
+        self.axes.iter().filter_map(|key| Axis::named(key)).collect()
+    }
+
+    /// The command that measures it again.
+    #[must_use]
+    pub fn command(&self) -> String {
+        format!("marraztu lab --suite={}", self.word)
+    }
+}
+
+/// Measures these scenes of the suite one after the other. `tell` is called after each.
+///
+/// # Errors
+/// As [`super::sweep::sweep`].
+pub fn run(
+    scenes: &[&'static SuiteScene],
+    detail: &SuiteDetail,
+    clock: &mut dyn Clock,
+    watch: &Watch,
+    tell: &mut dyn FnMut(&Report),
+) -> Result<Vec<Report>, Unmeasured> {
+    let mut reports = Vec::new();
+    for (i, suite) in scenes.iter().enumerate() {
+        let part = |i: usize| f64::from(u32::try_from(i).unwrap_or(0)) / scenes.len() as f64;
+        let watch = watch.clone().with(&watch.progress.part(part(i), part(i + 1)));
+        let report = measured(suite, detail, clock, &watch)?;
+        tell(&report);
+        reports.push(report);
+    }
+    Ok(reports)
+}
+
+/// Measures one scene: the default, and the choices of its axes.
+fn measured(
+    suite: &'static SuiteScene,
+    detail: &SuiteDetail,
+    clock: &mut dyn Clock,
+    watch: &Watch,
+) -> Result<Report, Unmeasured> {
+    let (scene, view) = suite.open(detail.detail);
+    let current = Settings::default();
+    let question = Question { current, axes: suite.measured(), thoroughness: detail.thoroughness };
+    let mut found = candidates(&scene, &view, &current, &question.axes, 0);
+    // The default comes first. The ancestors' algorithms would take minutes on some scenes.
+    let mut first = true;
+    found.all.retain(|candidate| {
+        std::mem::take(&mut first) || matches!(candidate.group, Group::Axis(_))
+    });
+    let mut studio = Studio::new(Shot::new(&scene, &view, &current, detail.size));
+    let size = detail.size;
+    let mut bench = Bench { clock, source: &mut studio, watch, question: &question, size };
+    let findings = bench.run(found, &mut |_| {})?;
+    Ok(Report {
+        scene: format!("suite scene {}", suite.word),
+        command: suite.command(),
+        measure: Measure::Rmse,
+        region: Region::Whole,
+        budgets: Budgets::default(),
+        findings,
+    })
+}

@@ -1,0 +1,329 @@
+//! The generators of the suite's scenes. Space is right-handed, Y up; cameras look along -Z.
+
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "coordinates of small scenes"
+)]
+
+use std::path::PathBuf;
+
+use glam::{DMat4, DVec3};
+
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{
+    Aim, Camera, Light, LightId, LightKind, List, LoadOptions, Material, MaterialChoice, Mesh,
+    MeshSource, Model, NONE, Object, ObjectId, Orbit, Part, Pose, Scene, Smoothing, SourceCorner,
+    SpotOwner, Surface, Texture, Tracked, View, Wrap,
+};
+use marraztu_io::{default_scene, empty_scene, own_model};
+
+/// A mesh while it is made.
+#[derive(Default)]
+struct Maker {
+    source: MeshSource,
+}
+
+impl Maker {
+    /// Adds a vertex, with texture coordinates if the mesh has them, and gives its number.
+    fn vertex(&mut self, at: [f64; 3], uv: Option<[f64; 2]>) -> u32 {
+        let number = self.source.positions.len() as u32;
+        self.source.positions.push(at.map(|x| x as f32));
+        self.source.uvs.extend(uv.map(|uv| uv.map(|x| x as f32)));
+        number
+    }
+
+    fn polygon(&mut self, vertices: &[u32]) {
+        let textured = !self.source.uvs.is_empty();
+        let corner = |position: &u32| {
+            let uv = if textured { *position } else { NONE };
+            SourceCorner { position: *position, uv, normal: NONE }
+        };
+        self.source.corners.extend(vertices.iter().map(corner));
+        self.source.arities.push(vertices.len() as u32);
+        self.source.polygon_parts.push(0);
+    }
+
+    fn model(mut self, name: &str) -> Shared<Model> {
+        self.source.parts = vec![Part { name: name.to_owned(), material: None }];
+        Shared::new(Model {
+            name: name.to_owned(),
+            source: None,
+            companions: Vec::new(),
+            options: LoadOptions::default(),
+            mesh: Mesh::new(self.source).expect("the coordinates are finite"),
+            materials: Vec::new(),
+            edge_color: None,
+        })
+    }
+}
+
+/// A ball of radius 1 with `rings` rings, smooth.
+fn ball(rings: u32) -> Shared<Model> {
+    let (rings, segments) = (rings.max(3), 2 * rings.max(3));
+    let mut maker = Maker::default();
+    maker.source.smoothing = Smoothing::default();
+    maker.vertex([0.0, 1.0, 0.0], None);
+    maker.vertex([0.0, -1.0, 0.0], None);
+    for ring in 1..rings {
+        let polar = std::f64::consts::PI * f64::from(ring) / f64::from(rings);
+        for segment in 0..segments {
+            let angle = std::f64::consts::TAU * f64::from(segment) / f64::from(segments);
+            let (s, c) = (libm::sin(polar), libm::cos(polar));
+            maker.vertex([s * libm::sin(angle), c, s * libm::cos(angle)], None);
+        }
+    }
+    let at = |ring: u32, segment: u32| 2 + (ring - 1) * segments + segment % segments;
+    for segment in 0..segments {
+        maker.polygon(&[0, at(1, segment), at(1, segment + 1)]);
+        maker.polygon(&[1, at(rings - 1, segment + 1), at(rings - 1, segment)]);
+        for ring in 1..rings - 1 {
+            let (a, b) = (at(ring, segment), at(ring + 1, segment));
+            maker.polygon(&[a, b, at(ring + 1, segment + 1), at(ring, segment + 1)]);
+        }
+    }
+    maker.model("ball")
+}
+
+fn shiny(color: [f64; 3], exponent: f64) -> MaterialChoice {
+    let [ambient, diffuse] = [0.15, 0.55].map(|part| color.map(|c| c * part));
+    MaterialChoice::Own(Material {
+        ambient,
+        diffuse,
+        specular: [0.8; 3],
+        exponent,
+        emission: [0.0; 3],
+    })
+}
+
+fn object(model: Shared<Model>, material: MaterialChoice, placement: DMat4) -> Object {
+    let mut object = Object::new(model, material);
+    object.placement = Tracked::new(placement);
+    object
+}
+
+/// A scene of these objects, with ambient light, a sun and a lamp, seen from `eye`.
+fn stage(objects: Vec<Object>, eye: DVec3) -> (Scene, View) {
+    let (mut scene, _) = empty_scene();
+    let cameras = scene.cameras.iter().map(|(id, camera)| {
+        let pose = Tracked::new(Pose::facing_minus_z(eye));
+        (id, Camera { pose, ..camera.clone() })
+    });
+    scene.cameras = List::from_iter(cameras.collect::<Vec<_>>());
+    let direction = DVec3::new(-0.4, -0.7, -0.6).normalize_or(DVec3::NEG_Y);
+    let sun = LightKind::Sun { direction: Tracked::new(direction) };
+    let position = Tracked::new(eye + DVec3::new(-60.0, 50.0, 0.0));
+    let lamp = LightKind::Bulb { position, orbit: Orbit::default() };
+    let lights = [
+        Light::new("ambient", 0, LightKind::Ambient),
+        Light::new("sun", 1, sun),
+        Light::new("lamp", 2, lamp),
+    ];
+    scene.lights = lights.into_iter().zip(1000..).map(|(light, id)| (LightId(id), light)).collect();
+    scene.objects =
+        List::from_iter(objects.into_iter().zip(1..).map(|(it, id)| (ObjectId(id), it)));
+    scene.next_id = 2000;
+    let mut view = scene.first_view();
+    view.marks = false;
+    (scene, view)
+}
+
+/// One lit triangle over the whole picture, close to a lamp, so that its light changes everywhere.
+pub(super) fn pixels(_: u32) -> (Scene, View) {
+    let mut maker = Maker::default();
+    let corners = [[-900.0, -500.0, 40.0], [900.0, -500.0, -60.0], [0.0, 1200.0, 0.0]];
+    let corners = corners.map(|at| maker.vertex(at, None));
+    maker.polygon(&corners);
+    let placed = object(maker.model("triangle"), shiny([0.9, 0.6, 0.3], 40.0), DMat4::IDENTITY);
+    stage(vec![placed], DVec3::new(0.0, 0.0, 220.0))
+}
+
+/// A million triangles in a grid of waves.
+pub(super) fn vertices(detail: u32) -> (Scene, View) {
+    let side = libm::sqrt(500.0 * f64::from(detail)) as u32;
+    let mut maker = Maker::default();
+    for y in 0..=side {
+        for x in 0..=side {
+            let [u, v] = [x, y].map(|i| f64::from(i) / f64::from(side) - 0.5);
+            let wave = libm::sin(u * 40.0) * libm::cos(v * 30.0);
+            maker.vertex([u * 560.0, v * 330.0, wave * 6.0], None);
+        }
+    }
+    for y in 0..side {
+        for x in 0..side {
+            let at = y * (side + 1) + x;
+            maker.polygon(&[at, at + 1, at + side + 2, at + side + 1]);
+        }
+    }
+    let placed = object(maker.model("waves"), shiny([0.3, 0.6, 0.8], 20.0), DMat4::IDENTITY);
+    stage(vec![placed], DVec3::new(0.0, 0.0, 400.0))
+}
+
+/// Balls with exponents from 5 to 500, coarse enough for light at vertices to miss highlights; one
+/// is flattened.
+pub(super) fn highlights(_: u32) -> (Scene, View) {
+    let model = ball(12);
+    let exponents = [5.0, 16.0, 40.0, 76.8, 150.0, 500.0];
+    let balls = exponents.iter().enumerate().map(|(i, exponent)| {
+        let at = DVec3::new((i % 3) as f64 * 90.0 - 90.0, 45.0 - (i / 3) as f64 * 90.0, 0.0);
+        let scale = if i == 4 { DVec3::new(44.0, 14.0, 44.0) } else { DVec3::splat(42.0) };
+        let placement = DMat4::from_translation(at) * DMat4::from_scale(scale);
+        let color = [0.3 + 0.1 * i as f64, 0.5, 0.9 - 0.1 * i as f64];
+        object(model.clone(), shiny(color, *exponent), placement)
+    });
+    stage(balls.collect(), DVec3::new(0.0, 0.0, 260.0))
+}
+
+/// A floor with a texture of fine lines, from under the camera to the horizon.
+pub(super) fn textures(_: u32) -> (Scene, View) {
+    let mut maker = Maker::default();
+    let (near, far) = (10.0, -1900.0);
+    let corners = [[-900.0, near], [900.0, near], [900.0, far], [-900.0, far]];
+    let corners = corners.map(|[x, z]| maker.vertex([x, -20.0, z], Some([x / 24.0, -z / 24.0])));
+    maker.polygon(&corners);
+    let mut floor = object(maker.model("floor"), shiny([0.8; 3], 10.0), DMat4::IDENTITY);
+    let side = 64;
+    let mut picture = Picture::filled(Size::new(side, side), [225, 220, 205, 255]);
+    for (i, pixel) in picture.pixels_mut().iter_mut().enumerate() {
+        let (x, y) = (i % side, i / side);
+        if x % 32 < 3 || y % 32 < 3 {
+            *pixel = [60, 50, 70, 255];
+        } else if (x / 32 + y / 32) % 2 == 0 {
+            *pixel = [190, 90, 60, 255];
+        }
+    }
+    let source = PathBuf::from("tiles");
+    let (picture, wrap) = (Shared::new(picture), Wrap::default());
+    let texture = Texture { source, picture, wrap, offset: [0.0; 2], scale: [1.0; 2] };
+    floor.texture = Some(Shared::new(texture));
+    floor.surface = Surface::default();
+    stage(vec![floor], DVec3::ZERO)
+}
+
+/// Thin slats before a bright ground, all a little out of the vertical.
+pub(super) fn edges(_: u32) -> (Scene, View) {
+    let mut maker = Maker::default();
+    let mut slat = |from: [f64; 2], to: [f64; 2], width: f64, z: f64| {
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let length = libm::hypot(dx, dy);
+        let side = [-dy / length * width / 2.0, dx / length * width / 2.0];
+        let corner = |[x, y]: [f64; 2], sign: f64| [x + sign * side[0], y + sign * side[1], z];
+        let corners = [corner(from, 1.0), corner(from, -1.0), corner(to, -1.0), corner(to, 1.0)];
+        let corners = corners.map(|at| maker.vertex(at, None));
+        maker.polygon(&corners);
+    };
+    for i in 0..70 {
+        let x = f64::from(i) * 8.0 - 276.0;
+        slat([x, 120.0], [x + 9.0, -120.0], 2.2, f64::from(i % 3));
+    }
+    for y in [-80.0, -10.0, 60.0] {
+        slat([-290.0, y], [290.0, y + 23.0], 3.1, 6.0);
+    }
+    let mut fence = object(maker.model("fence"), shiny([0.9, 0.8, 0.6], 8.0), DMat4::IDENTITY);
+    fence.sides = marraztu_core::scene::Sides::Two;
+    stage(vec![fence], DVec3::new(0.0, 0.0, 300.0))
+}
+
+/// A ship of the first scene, with its camera beside it, 100,000 units from the origin.
+pub(super) fn far(_: u32) -> (Scene, View) {
+    let away = DVec3::new(1e5, 3e4, -7e4);
+    let (first, _) = default_scene();
+    let ship = first.objects.first().and_then(|id| first.objects.get(id)).cloned();
+    let ship = ship.map(|mut ship| {
+        ship.placement = Tracked::new(DMat4::from_translation(away));
+        ship
+    });
+    stage(ship.into_iter().collect(), away + DVec3::new(0.0, 15.0, 120.0))
+}
+
+/// Pairs of plates 0.001 apart, the nearer one smaller, from 2 to 2000 units away.
+pub(super) fn depth(_: u32) -> (Scene, View) {
+    let mut maker = Maker::default();
+    for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+        maker.vertex([x, y, 0.0], None);
+    }
+    maker.polygon(&[0, 1, 2, 3]);
+    let model = maker.model("plate");
+    let mut plates = Vec::new();
+    for i in 0..12 {
+        // From 2 to 1990 units in equal ratios.
+        let z = 2.0 * libm::pow(995.0, f64::from(i) / 11.0);
+        let at = [f64::from(i % 4) - 1.5, 1.0 - f64::from(i / 4)].map(|k| k * 0.2 * z);
+        for (size, lift, color) in [(0.09, 0.0, [0.9, 0.3, 0.2]), (0.06, 0.001, [0.2, 0.4, 0.9])] {
+            let place = DMat4::from_translation(DVec3::new(at[0], at[1], lift - z));
+            let placement = place * DMat4::from_scale(DVec3::splat(size * z));
+            plates.push(object(model.clone(), shiny(color, 8.0), placement));
+        }
+    }
+    stage(plates, DVec3::ZERO)
+}
+
+/// Balls of glass in eight groups, each of four that are one inside another; groups that stand side
+/// by side cut through each other.
+pub(super) fn layers(detail: u32) -> (Scene, View) {
+    let model = ball((detail / 25).clamp(8, 40));
+    let balls = (0..32_u32).map(|i| {
+        let (group, within) = (i / 4, i % 4);
+        let [column, row] = [group % 4, group / 4].map(f64::from);
+        let at = DVec3::new(column * 70.0 - 105.0, 45.0 - row * 90.0, row * 20.0);
+        let scale = DVec3::splat(52.0 - 11.0 * f64::from(within));
+        let placement = DMat4::from_translation(at) * DMat4::from_scale(scale);
+        let color = [0.9, 0.6, 0.3].map(|part| part - 0.1 * f64::from(within));
+        let turned = [color[group as usize % 3], color[1], color[(group as usize + 2) % 3]];
+        let mut ball = object(model.clone(), shiny(turned, 60.0), placement);
+        ball.opacity = 0.25 + 0.1 * f64::from(within);
+        ball
+    });
+    stage(balls.collect(), DVec3::new(0.0, 0.0, 280.0))
+}
+
+/// Balls with a map of heights, the farther ones with many texels in a pixel.
+pub(super) fn bumps(_: u32) -> (Scene, View) {
+    let model = own_model("dimples").expect("the program has it");
+    let balls = (0..9).map(|i| {
+        let far = f64::from(i / 3);
+        let at = DVec3::new(f64::from(i % 3) - 1.0, 0.6 - 0.6 * far, 0.0) * (90.0 + 60.0 * far);
+        let placement = DMat4::from_translation(at - DVec3::Z * (200.0 * far));
+        object(model.clone(), MaterialChoice::File, placement)
+    });
+    stage(balls.collect(), DVec3::new(0.0, 0.0, 260.0))
+}
+
+/// Balls of three sizes on a floor, under a sun, a bulb and a spot that cast shadows.
+pub(super) fn shadows(detail: u32) -> (Scene, View) {
+    let model = ball((detail / 25).clamp(8, 40));
+    let mut maker = Maker::default();
+    let corners = [[-900.0, 300.0], [900.0, 300.0], [900.0, -900.0], [-900.0, -900.0]];
+    let corners = corners.map(|[x, z]| maker.vertex([x, -60.0, z], None));
+    maker.polygon(&corners);
+    let floor = object(maker.model("floor"), shiny([0.8; 3], 10.0), DMat4::IDENTITY);
+    let balls = (0..24_u32).map(|i| {
+        let [column, row] = [i % 6, i / 6].map(f64::from);
+        let radius = 10.0 + 4.0 * f64::from(i % 3);
+        let across = column * 52.0 - 130.0 + row * 9.0;
+        let at = DVec3::new(across, radius - 60.0, 40.0 - row * 55.0);
+        let placement = DMat4::from_translation(at) * DMat4::from_scale(DVec3::splat(radius));
+        let color = [0.9 - 0.1 * row, 0.5, 0.3 + 0.1 * column];
+        object(model.clone(), shiny(color, 30.0), placement)
+    });
+    let (mut scene, view) =
+        stage(std::iter::once(floor).chain(balls).collect(), DVec3::new(0.0, 40.0, 230.0));
+    let aim = Aim { position: DVec3::new(150.0, 120.0, 120.0), direction: aimed_down() };
+    let owner = SpotOwner::Fixed(Tracked::new(aim));
+    let spot = LightKind::Spot { owner, half_aperture: 30.0, exponent: 3.0 };
+    let spot = (LightId(1003), Light::new("spot", 3, spot));
+    let lights = scene.lights.iter().map(|(id, light)| (id, light.clone())).chain([spot]);
+    let cast = |(id, light): (LightId, Light)| {
+        let shadows = light.can_cast_shadows();
+        (id, Light { shadows, ..light })
+    };
+    scene.lights = lights.map(cast).collect::<Vec<_>>().into_iter().collect();
+    (scene, view)
+}
+
+/// A direction down and to the left.
+fn aimed_down() -> DVec3 {
+    DVec3::new(-0.62, -0.62, -0.48).normalize_or(DVec3::NEG_Y)
+}

@@ -1,0 +1,223 @@
+//! How many pixels each effect of a picture takes part in.
+//!
+//! A pixel with several samples counts for what most of them show.
+//!
+//! The count is made afterwards from the visibility of each pixel, so drawing itself pays nothing
+//! for it.
+
+use std::collections::BTreeMap;
+
+use fearless_simd::Level;
+use rayon::prelude::*;
+
+use crate::frame::FramePlan;
+use crate::frame::draw::{Pipeline, Shaded, Stage};
+use crate::lights::Form;
+use crate::plan::features::{of_surface, presence};
+use crate::plan::tile::TilePlan;
+use crate::plan::uses::{Effect, EffectUse};
+use crate::raster::geometry::ScreenGeometry;
+use crate::raster::lines::LineNumber;
+use crate::raster::visibility_buffer::{Visible, seen};
+use crate::screen::clip::{Screen, ScreenVertex, faces_observer};
+use crate::screen::coverage::{PixelBox, doubled_area};
+use crate::screen::tiles::{BLOCK_PIXELS, tiles_of};
+use crate::shading::painter::bounds_of;
+use crate::tile_layers::TileLayers;
+use marraztu_core::accuracy::LightAt;
+use marraztu_core::scene::ItemId;
+
+/// The triangle that a sample of the visibility buffer shows.
+fn triangle(word: u64) -> Option<u32> {
+    match seen(word) {
+        Visible::Triangle(number) => Some(number),
+        Visible::Background | Visible::Line(_) => None,
+    }
+}
+
+/// The pixels of each effect on each item, and the largest error of any of them.
+#[derive(Debug, Default)]
+struct Counts {
+    pixels: BTreeMap<(Effect, ItemId), u64>,
+    off_by: f64,
+}
+
+impl Counts {
+    fn add(&mut self, effect: Effect, item: ItemId, pixels: u64) {
+        *self.pixels.entry((effect, item)).or_default() += pixels;
+    }
+
+    fn with(mut self, other: Self) -> Self {
+        for ((effect, item), pixels) in other.pixels {
+            self.add(effect, item, pixels);
+        }
+        Self { off_by: self.off_by.max(other.off_by), ..self }
+    }
+}
+
+impl FramePlan {
+    /// See [`Renderer::count`](crate::Renderer::count).
+    pub(crate) fn count(
+        &self,
+        level: Level,
+        frame: &ScreenGeometry,
+        uses: &mut [EffectUse],
+    ) -> f64 {
+        let [columns, rows] = tiles_of(self.size);
+        let tiles = usize::try_from(columns * rows).expect("not negative");
+        let counts = (0..tiles)
+            .into_par_iter()
+            .map_init(
+                || (TileLayers::default(), TilePlan::default()),
+                |(seen, tile_plan), tile| {
+                    let bounds = bounds_of(tile, self.size);
+                    seen.draw(level, self, frame, (tile, bounds));
+                    tile_plan.begin(self, bounds, || seen.depths(level));
+                    self.count_tile(level, frame, (seen, bounds), tile_plan)
+                },
+            )
+            .reduce(Counts::default, Counts::with);
+        for one in uses.iter_mut().filter(|one| one.state.is_on()) {
+            let Some(thing) = &one.on else { continue };
+            one.pixels = Some(counts.pixels.get(&(one.effect, thing.item)).copied().unwrap_or(0));
+        }
+        counts.off_by
+    }
+
+    fn count_tile(
+        &self,
+        level: Level,
+        frame: &ScreenGeometry,
+        (tile_seen, bounds): (&mut TileLayers, PixelBox),
+        tile: &mut TilePlan,
+    ) -> Counts {
+        let mut counts = Counts::default();
+        // By draw and pipeline.
+        let mut surfaces = BTreeMap::<(u32, u32), u64>::new();
+        let mut draws = BTreeMap::<u32, u64>::new();
+        let surface = |number: u32| {
+            let (draw, start) = frame.draw_of(number);
+            (draw, self.draws[draw as usize].pipeline_of(number - start.number))
+        };
+        let rows = bounds.top..bounds.bottom;
+        for (y, x) in rows.flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x))) {
+            // A surface that shows in some samples only counts towards the error, but not as a
+            // pixel.
+            let (samples, count) = tile_seen.visibility.samples(level, x, y);
+            for number in samples[1..count].iter().filter_map(|word| triangle(*word)) {
+                surfaces.entry(surface(number)).or_default();
+            }
+        }
+        let (mut last, mut own) = (None, Vec::new());
+        for block in 0..BLOCK_PIXELS {
+            tile_seen.each(level, frame, block, |_, nearest, words| {
+                if let Visible::Line(line) = seen(nearest) {
+                    self.count_line(frame, line, &mut counts);
+                }
+                own.clear();
+                own.extend(words.iter().filter_map(|word| triangle(*word)));
+                for number in &own {
+                    let same = last.filter(|(other, _)| other == number);
+                    let back = same.map_or_else(
+                        || {
+                            let (draw, start) = frame.draw_of(*number);
+                            self.is_back(frame, draw, number - start.number)
+                        },
+                        |(_, back)| back,
+                    );
+                    last = Some((*number, back));
+                    if back {
+                        let (draw, _) = frame.draw_of(*number);
+                        counts.add(Effect::BackFaces, self.draws[draw as usize].item, 1);
+                    }
+                }
+                let mut once: Vec<(u32, u32)> = own.iter().map(|number| surface(*number)).collect();
+                once.sort_unstable();
+                once.dedup();
+                for key in &once {
+                    *surfaces.entry(*key).or_default() += 1;
+                }
+                once.dedup_by_key(|(draw, _)| *draw);
+                for (draw, _) in once {
+                    *draws.entry(draw).or_default() += 1;
+                }
+            });
+        }
+        for (draw, pixels) in draws {
+            let item = self.draws[draw as usize].item;
+            counts.add(presence(item), item, pixels);
+        }
+        for ((draw, pipeline), pixels) in surfaces {
+            let item = self.draws[draw as usize].item;
+            if let Pipeline::Shaded(shaded) = &self.pipelines[pipeline as usize] {
+                self.count_surface(item, pipeline, shaded, pixels, tile, &mut counts);
+            }
+        }
+        counts
+    }
+
+    /// Whether the observer sees the back of a triangle.
+    fn is_back(&self, frame: &ScreenGeometry, draw: u32, number: u32) -> bool {
+        let own = &self.draws[draw as usize];
+        let vertices = frame.corners_of(draw);
+        let order = own.model.mesh.draw_order();
+        let ids = order.vertices_of(number);
+        let corners = ids.map(|vertex| vertices[vertex as usize]);
+        let front = if corners.iter().all(ScreenVertex::is_inside) {
+            doubled_area(corners.map(|corner| corner.at())) < 0
+        } else {
+            let screen = Screen::new(own.clip_from_object, self.size);
+            faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
+        };
+        front == own.mirrored
+    }
+
+    /// Counts a pixel of a line. Normals of faces and of vertices are not distinguished: it counts
+    /// for both.
+    fn count_line(&self, frame: &ScreenGeometry, line: LineNumber, counts: &mut Counts) {
+        let Some((draw, _)) = frame.line_seen(self, line) else { return };
+        let draw = &self.draws[draw as usize];
+        if frame.is_edge(line) {
+            return counts.add(Effect::Edges, draw.item, 1);
+        }
+        if draw.lines.face_normals.is_some() {
+            counts.add(Effect::FaceNormals, draw.item, 1);
+        }
+        if draw.lines.vertex_normals.is_some() {
+            counts.add(Effect::VertexNormals, draw.item, 1);
+        }
+    }
+
+    fn count_surface(
+        &self,
+        item: ItemId,
+        pipeline: u32,
+        shaded: &Shaded,
+        pixels: u64,
+        tile: &mut TilePlan,
+        counts: &mut Counts,
+    ) {
+        let light = tile.light(self, pipeline, shaded);
+        let stages: Vec<&Stage> = match light.kept {
+            None => light.stages.iter().collect(),
+            Some(kept) => kept.iter().map(|place| &light.stages[*place as usize]).collect(),
+        };
+        let mirrors = stages.iter().any(|stage| stage.highlight != Form::Plain);
+        for stage in stages {
+            let id = self.light_ids[stage.light as usize];
+            counts.add(Effect::Light(id), item, pixels);
+            if self.shadows.source(stage.light).is_some() {
+                counts.add(Effect::Shadows(id), item, pixels);
+            }
+        }
+        let features = [
+            (Effect::Highlights, mirrors),
+            (Effect::Normals, self.light_at == LightAt::Pixel && light.needs_positions),
+        ];
+        let of_light = features.into_iter().filter(|(_, there)| *there).map(|(effect, _)| effect);
+        for effect in of_light.chain(of_surface(shaded)) {
+            counts.add(effect, item, pixels);
+        }
+        counts.off_by = counts.off_by.max(light.dropped + shaded.cut_off);
+    }
+}

@@ -1,0 +1,303 @@
+//! Finds which tiles of a picture another plan damages, and so which have to be painted again.
+//!
+//! Only plans are compared; no pixel is touched. A tile stays valid as long as everything that
+//! reaches into it is drawn as before, so the damaged tiles are those in the old and in the new
+//! bounds of every draw that changed. Bounds are boxes of pixels: sometimes too large, never too
+//! small.
+//!
+//! Numbers are compared by their bits. 0 and -0 are equal, but one divided by them is not.
+
+use std::collections::BTreeMap;
+
+use glam::DVec4;
+
+use crate::frame::FramePlan;
+use crate::frame::draw::{Draw, Lines};
+use crate::screen::coverage::PixelBox;
+use crate::screen::tiles::{TILE, tiles_of};
+use marraztu_core::base::image::Size;
+use marraztu_core::base::math::same_bits;
+use marraztu_core::scene::ItemId;
+
+mod compared;
+pub(crate) mod kept_shadows;
+mod shadow_reach;
+
+use compared::Compared;
+
+/// The tiles that are painted again, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Damage {
+    pub(crate) tiles: Tiles,
+    /// The tiles in which another triangle may show, or the same one elsewhere.
+    surfaces: Tiles,
+    /// Whether the triangles and lines on the screen changed, or their numbers did.
+    pub(crate) geometry: bool,
+    cause: DamageCause,
+}
+
+/// Why tiles are painted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum DamageCause {
+    /// There is no finished picture yet.
+    First,
+    /// The picture has another size.
+    Size,
+    /// Everything moved on the screen: another camera, lens or projection.
+    Camera,
+    /// The background has another colour.
+    Background,
+    /// The settings of accuracy changed.
+    Settings,
+    /// A light that casts shadows changed, or something that casts them.
+    Shadows,
+    /// The order of draws changed, which decides between equal depths.
+    Order,
+    /// These items changed; the list is empty if the picture stays as it is.
+    Items(Vec<(ItemId, Change)>),
+}
+
+/// How the drawing of an item changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// It was not drawn before.
+    Came,
+    /// It is no longer drawn.
+    Went,
+    /// It moved.
+    Moved,
+    /// Other polygons or lines of it are drawn.
+    Shape,
+    /// Its colours, its texture or the light on it changed.
+    Look,
+}
+
+impl Damage {
+    /// Damages every tile.
+    pub(crate) fn all(cause: DamageCause, size: Size) -> Self {
+        let tiles = Tiles::all(size);
+        Self { surfaces: tiles.clone(), tiles, geometry: true, cause }
+    }
+
+    /// Compares two plans.
+    pub(crate) fn between(before: &FramePlan, after: &FramePlan) -> Self {
+        if let Some(cause) = whole(before, after) {
+            return Self::all(cause, after.size);
+        }
+        let mut old: BTreeMap<ItemId, usize> = BTreeMap::new();
+        for (i, draw) in before.draws.iter().enumerate() {
+            old.insert(draw.item, i);
+        }
+        let mut compared = Compared { before, after, pipelines: BTreeMap::new() };
+        let mut tiles = Tiles::none(after.size);
+        let mut surfaces = tiles.clone();
+        let mut items = Vec::new();
+        let mut geometry = before.draws.len() != after.draws.len();
+        let mut next = 0;
+        for draw in &after.draws {
+            let Some(at) = old.remove(&draw.item) else {
+                items.push((draw.item, Change::Came));
+                surfaces.add(reach(draw, after));
+                geometry = true;
+                continue;
+            };
+            if at < next {
+                return Self::all(DamageCause::Order, after.size);
+            }
+            next = at + 1;
+            let earlier = &before.draws[at];
+            let Some(change) = compared.change(earlier, draw) else { continue };
+            items.push((draw.item, change));
+            let shows_others = change != Change::Look || compared.has_other_holes(earlier, draw);
+            let changed = if shows_others { &mut surfaces } else { &mut tiles };
+            changed.add(reach(earlier, before));
+            changed.add(reach(draw, after));
+            geometry |= change != Change::Look;
+        }
+        for (item, at) in old {
+            items.push((item, Change::Went));
+            surfaces.add(reach(&before.draws[at], before));
+            geometry = true;
+        }
+        tiles.add_all(&surfaces);
+        if !shadow_reach::add(before, after, &mut tiles) {
+            return Self { surfaces, ..Self::all(DamageCause::Shadows, after.size) };
+        }
+        let out_of_view = items.is_empty() && tiles.count() > 0;
+        let cause = if out_of_view { DamageCause::Shadows } else { DamageCause::Items(items) };
+        Self { tiles, surfaces, geometry, cause }
+    }
+
+    /// How many tiles of 64 x 64 pixels are painted.
+    #[must_use]
+    pub fn tiles(&self) -> usize {
+        self.tiles.count()
+    }
+
+    /// How many tiles the picture has.
+    #[must_use]
+    pub const fn tiles_in_all(&self) -> usize {
+        self.tiles.painted.len()
+    }
+
+    /// Whether the picture stays as it is.
+    #[must_use]
+    pub fn is_nothing(&self) -> bool {
+        self.tiles() == 0
+    }
+
+    /// The reason.
+    #[must_use]
+    pub const fn cause(&self) -> &DamageCause {
+        &self.cause
+    }
+}
+
+/// The reason why everything has to be painted, if there is one.
+fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
+    // The other fields are compared draw by draw, or do not show in the picture.
+    let FramePlan {
+        size,
+        background,
+        eye,
+        arithmetic,
+        light_at,
+        samples,
+        lit_by_sample,
+        shift: _,
+        filter,
+        transparency,
+        variants,
+        view_from_world,
+        clip_from_view,
+        line_width,
+        lights: _,
+        shadows,
+        draws: _,
+        pipelines: _,
+        leave_out,
+        rules,
+        light_ids: _,
+    } = after;
+    let moved = *eye != before.eye
+        || !same_bits(view_from_world, &before.view_from_world)
+        || !same_bits(clip_from_view, &before.clip_from_view);
+    let settings = *arithmetic != before.arithmetic
+        || *light_at != before.light_at
+        || *samples != before.samples
+        || *lit_by_sample != before.lit_by_sample
+        || *filter != before.filter
+        || *transparency != before.transparency
+        || *variants != before.variants
+        || *line_width != before.line_width
+        || *leave_out != before.leave_out
+        || *rules != before.rules;
+    match () {
+        () if *size != before.size => Some(DamageCause::Size),
+        () if moved => Some(DamageCause::Camera),
+        () if settings => Some(DamageCause::Settings),
+        () if *background != before.background => Some(DamageCause::Background),
+        () if !shadows.is_same(&before.shadows) && !shadow_reach::is_known(before, after) => {
+            Some(DamageCause::Shadows)
+        }
+        () => None,
+    }
+}
+
+/// The pixels that a draw may cover.
+///
+/// The projection of what lies before the near plane is within the projection of any box about it.
+/// If the box reaches the near plane, or normals stick out of it, the bounds are the whole picture.
+fn reach(draw: &Draw, plan: &FramePlan) -> PixelBox {
+    let [right, bottom] = [plan.size.width, plan.size.height]
+        .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
+    let all = PixelBox { left: 0, top: 0, right, bottom };
+    let Lines { edges: _, face_normals, vertex_normals, color: _ } = draw.lines;
+    let Some(bounds) = draw.model.mesh.bounds() else { return all };
+    if face_normals.is_some() || vertex_normals.is_some() {
+        return all;
+    }
+    let corners = bounds.corners().map(|corner| draw.clip_from_object * corner.extend(1.0));
+    // The width of lines.
+    around(plan, &corners, f64::from(plan.line_width)).unwrap_or(all)
+}
+
+/// The pixels that the convex hull of points in clip space may cover, with a margin; `None` if it
+/// reaches the near plane.
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    reason = "brought into the picture, which is small"
+)]
+fn around(plan: &FramePlan, points: &[DVec4], margin: f64) -> Option<PixelBox> {
+    let [right, bottom] = [plan.size.width, plan.size.height]
+        .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
+    let all = PixelBox { left: 0, top: 0, right, bottom };
+    let (width, height) = (plan.size.width as f64, plan.size.height as f64);
+    let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for clip in points {
+        let before_the_near_plane = clip.w > 0.0 && clip.z <= clip.w;
+        let at = [(clip.x / clip.w + 1.0) * width / 2.0, (1.0 - clip.y / clip.w) * height / 2.0];
+        if !before_the_near_plane || !at.iter().all(|at| at.is_finite()) {
+            return None;
+        }
+        for axis in 0..2 {
+            (low[axis], high[axis]) = (low[axis].min(at[axis]), high[axis].max(at[axis]));
+        }
+    }
+    // One pixel for rounding and snapping.
+    let margin = margin + 1.0;
+    let [left, top] = low.map(|at| (at - margin).floor().clamp(-1e6, 1e6) as i32);
+    let [right, bottom] = high.map(|at| (at + margin).ceil().clamp(-1e6, 1e6) as i32);
+    Some(PixelBox { left, top, right, bottom }.intersection(all))
+}
+
+/// A set of tiles of a picture, row by row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Tiles {
+    columns: i32,
+    painted: Vec<bool>,
+}
+
+impl Tiles {
+    fn all(size: Size) -> Self {
+        let [columns, rows] = tiles_of(size);
+        let count = usize::try_from(columns * rows).expect("not negative");
+        Self { columns, painted: vec![true; count] }
+    }
+
+    fn none(size: Size) -> Self {
+        let mut tiles = Self::all(size);
+        tiles.painted.fill(false);
+        tiles
+    }
+
+    /// Adds the tiles that a box of pixels touches.
+    fn add(&mut self, pixels: PixelBox) {
+        if pixels.is_empty() {
+            return;
+        }
+        for row in pixels.top / TILE..=(pixels.bottom - 1) / TILE {
+            for column in pixels.left / TILE..=(pixels.right - 1) / TILE {
+                let tile = usize::try_from(row * self.columns + column).expect("not negative");
+                self.painted[tile] = true;
+            }
+        }
+    }
+
+    /// Adds those of another set of the same picture.
+    fn add_all(&mut self, others: &Self) {
+        for (own, other) in self.painted.iter_mut().zip(&others.painted) {
+            *own |= other;
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.painted.iter().filter(|painted| **painted).count()
+    }
+
+    /// Whether a tile is in the set.
+    pub(crate) fn contains(&self, tile: usize) -> bool {
+        self.painted[tile]
+    }
+}

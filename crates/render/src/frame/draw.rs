@@ -1,0 +1,338 @@
+//! Draws of a frame, and the pipelines that colour them.
+
+use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use glam::{DMat3, DMat4};
+
+use super::FramePlan;
+use super::extras::{Extras, bits};
+use crate::lights::{self, Form, LightRow, PhongMaterial};
+use marraztu_core::accuracy::{LightAt, Tangents};
+use marraztu_core::base::{Shared, color::Color};
+use marraztu_core::scene::{Derived, ItemId, Model, NormalSource, Normals, Texture};
+
+/// One mesh of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Draw {
+    /// The item that it draws.
+    pub(crate) item: ItemId,
+    /// Its shape.
+    pub(crate) model: Shared<Model>,
+    pub(crate) clip_from_object: DMat4,
+    pub(crate) view_from_object: DMat4,
+    /// The normal transform: sign(det) cof.
+    pub(crate) view_from_normal: DMat3,
+    /// Whether the placement mirrors, so that front faces run clockwise.
+    pub(crate) mirrored: bool,
+    pub(crate) back: Back,
+    /// Whether back faces of opaque parts are culled though those of transparent ones are lit.
+    pub(crate) culls_opaque: bool,
+    pub(crate) normals: Normals,
+    pub(crate) normal_source: NormalSource,
+    /// The pipeline of each part; `None` for parts that are not drawn.
+    pub(crate) part_pipelines: Vec<Option<u32>>,
+    /// The pipeline of all parts, if they share one.
+    pub(crate) uniform: Option<u32>,
+    /// The polygons that are drawn, if not all are.
+    pub(crate) polygons: Option<BTreeSet<u32>>,
+    pub(crate) filled: bool,
+    pub(crate) lines: Lines,
+}
+
+impl Draw {
+    /// Whether a polygon is shown: its part is, and it is among the polygons that are drawn.
+    pub(crate) fn shows(&self, polygon: u32) -> bool {
+        let part = self.model.mesh.polygon_parts()[polygon as usize];
+        self.part_pipelines[part as usize].is_some()
+            && self.polygons.as_ref().is_none_or(|some| some.contains(&polygon))
+    }
+
+    /// Computes every derived table of the mesh that drawing reads, so that threads compute none of
+    /// them while they draw.
+    pub(crate) fn prepare(&self, plan: &FramePlan) {
+        let pipelines = self.part_pipelines.iter().flatten();
+        let shaded: Vec<&Shaded> = pipelines
+            .filter_map(|pipeline| match &plan.pipelines[*pipeline as usize] {
+                Pipeline::Shaded(shaded) => Some(shaded),
+                Pipeline::Flat(_) => None,
+            })
+            .collect();
+        for shaded in shaded.iter().filter(|shaded| shaded.opacity.is_some()) {
+            // What alphas its pictures have is asked at every fragment.
+            let pictures = shaded.texture.iter().chain(&shaded.opacity_map);
+            pictures.for_each(|texture| _ = texture.picture.least_alpha());
+        }
+        let lit = shaded.iter().any(|shaded| shaded.light.is_some());
+        let flat = lit && plan.light_at == LightAt::Face;
+        let by_face = lit && self.normals == Normals::Face;
+        // Whether a map of opacity counts by its alpha or its brightness, and whether the alpha of
+        // a texture beside it counts at all.
+        for shaded in &shaded {
+            let texture = shaded.texture.as_ref().filter(|_| shaded.opacity.is_some());
+            for map in shaded.opacity_map.iter().chain(texture) {
+                let _least: u8 = map.picture.least_alpha();
+            }
+        }
+        let is_bumpy = shaded.iter().any(|shaded| shaded.extras.bump.is_some());
+        let at_vertices = is_bumpy && plan.variants.tangents == Tangents::Vertex;
+        let Lines { edges, face_normals, .. } = self.lines;
+        for (what, needed) in [
+            (Derived::DrawOrder, true),
+            (Derived::Tangents(self.normal_source), at_vertices),
+            (Derived::PolygonOf, true),
+            (Derived::EdgeOrder, edges),
+            (Derived::Facets, flat),
+            (Derived::PolygonNormals, by_face || face_normals.is_some()),
+            (Derived::Triangles, by_face),
+            (Derived::Corners, by_face || edges),
+        ] {
+            if needed {
+                self.model.mesh.prepare(what);
+            }
+        }
+    }
+
+    /// The pipeline of a triangle that is drawn.
+    #[inline(always)]
+    pub(crate) fn pipeline_of(&self, triangle: u32) -> u32 {
+        self.uniform.unwrap_or_else(|| {
+            let mesh = &self.model.mesh;
+            let polygon = mesh.polygon_of(triangle);
+            let part = mesh.polygon_parts()[polygon as usize];
+            self.part_pipelines[part as usize].unwrap_or(0)
+        })
+    }
+}
+
+/// How back faces are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Back {
+    /// They are culled.
+    Culled,
+    /// They are red, and not lit.
+    Red,
+    /// They are lit with reversed normals.
+    Lit,
+}
+
+/// The lines that a draw has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lines {
+    /// Whether the outlines of polygons are drawn.
+    pub(crate) edges: bool,
+    /// How long the normals of faces are drawn, in object space.
+    pub(crate) face_normals: Option<f64>,
+    /// How long the normals of vertices are drawn, in object space.
+    pub(crate) vertex_normals: Option<f64>,
+    /// Their colour.
+    pub(crate) color: Color,
+}
+
+/// The stages that colour a surface, in order.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a frame has few pipelines, most of them shaded")]
+pub(crate) enum Pipeline {
+    /// One colour, whatever the light.
+    Flat(Color),
+    /// Texture, tint and vertex colours, and light if the surface is lit.
+    Shaded(Shaded),
+}
+
+impl Pipeline {
+    /// See [`FramePlan::keys`](super::FramePlan::keys).
+    pub(crate) fn key(&self) -> String {
+        let Self::Shaded(shaded) = self else { return "flat".to_owned() };
+        let mut key = Vec::new();
+        let light = shaded.light.as_deref();
+        key.extend(light.is_none().then(|| "unlit".to_owned()));
+        key.extend(shaded.needs_positions.then(|| "places".to_owned()));
+        key.extend(light.unwrap_or_default().iter().map(|stage| match stage.highlight {
+            Form::Plain => stage.effect.name.to_owned(),
+            Form::Reflection => format!("{} R.V", stage.effect.name),
+            Form::HalfVector => format!("{} N.H", stage.effect.name),
+        }));
+        key.extend(shaded.texture.as_ref().map(|_| "texture".to_owned()));
+        key.extend(shaded.cutout.map(|_| "holes".to_owned()));
+        key.extend(shaded.opacity.map(|_| "transparent".to_owned()));
+        key.extend(shaded.opacity_map.as_ref().map(|_| "opacity map".to_owned()));
+        key.extend(shaded.vertex_colors.then(|| "vertex colours".to_owned()));
+        key.extend(shaded.extras.key().map(str::to_owned));
+        key.join(" + ")
+    }
+
+    /// A hash: equal pipelines share it, different ones hardly ever do.
+    pub(crate) fn fingerprint(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        match self {
+            Self::Flat(color) => color.0.hash(&mut hasher),
+            Self::Shaded(shaded) => shaded.hash_into(&mut hasher),
+        }
+        hasher.finish()
+    }
+
+    /// Whether it needs the alpha test.
+    pub(crate) const fn is_cutout(&self) -> bool {
+        matches!(self, Self::Shaded(Shaded { cutout: Some(_), .. }))
+    }
+
+    /// Its opacity, if it is transparent.
+    pub(crate) const fn opacity(&self) -> Option<f64> {
+        match self {
+            Self::Shaded(Shaded { opacity, .. }) => *opacity,
+            Self::Flat(_) => None,
+        }
+    }
+}
+
+/// See [`Pipeline::Shaded`].
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Shaded {
+    /// The Phong material.
+    pub(crate) material: PhongMaterial,
+    /// The lights that are evaluated; `None` if the surface is not lit.
+    pub(crate) light: Option<Vec<Stage>>,
+    /// Whether any of them reads positions and normals.
+    pub(crate) needs_positions: bool,
+    /// Whether lights may be culled tile by tile: nothing of the surface is clipped, so each
+    /// pixel's depth tells its position.
+    pub(crate) tiled: bool,
+    /// An upper bound of what the lights that were left out add, in steps of a byte.
+    pub(crate) dropped: f64,
+    /// An upper bound of what the tails of highlights that were cut off add, in steps of a byte.
+    pub(crate) cut_off: f64,
+    /// Whether vertex colours are multiplied in.
+    pub(crate) vertex_colors: bool,
+    /// The tint as factors.
+    pub(crate) tint: [f64; 3],
+    /// The texture.
+    pub(crate) texture: Option<Shared<Texture>>,
+    /// For the alpha test: the material's opacity, if the texture's alpha may bring it below one
+    /// half.
+    pub(crate) cutout: Option<f64>,
+    /// If it is transparent: its opacity, which the texture's alpha multiplies.
+    pub(crate) opacity: Option<f64>,
+    /// The map of the material's opacity, which is multiplied with it for the alpha test.
+    pub(crate) opacity_map: Option<Shared<Texture>>,
+    /// Light of its own, and further maps.
+    pub(crate) extras: Extras,
+}
+
+impl Shaded {
+    /// An opaque surface of a material that no light reaches, without any texture or map.
+    pub(crate) fn unlit(material: PhongMaterial) -> Self {
+        Self {
+            material,
+            light: None,
+            needs_positions: false,
+            tiled: false,
+            dropped: 0.0,
+            cut_off: 0.0,
+            vertex_colors: false,
+            tint: [1.0; 3],
+            texture: None,
+            cutout: None,
+            opacity: None,
+            opacity_map: None,
+            extras: Extras::default(),
+        }
+    }
+
+    /// Hashes what equal surfaces have in common; of a texture, only its source.
+    fn hash_into(&self, hasher: &mut DefaultHasher) {
+        let Self {
+            material,
+            light,
+            needs_positions,
+            tiled,
+            dropped,
+            cut_off,
+            vertex_colors,
+            tint,
+            texture,
+            cutout,
+            opacity,
+            opacity_map,
+            extras,
+        } = self;
+        let PhongMaterial { ambient, diffuse, specular, exponent, floor, least_cosine } = material;
+        for color in [ambient, diffuse, specular, tint] {
+            color.map(bits).hash(hasher);
+        }
+        [*exponent, *floor, *least_cosine, *dropped, *cut_off].map(bits).hash(hasher);
+        (*needs_positions, *tiled, *vertex_colors).hash(hasher);
+        (cutout.map(bits), opacity.map(bits)).hash(hasher);
+        for stage in light.iter().flatten() {
+            (stage.effect.name, stage.light).hash(hasher);
+        }
+        texture.as_ref().map(|texture| &texture.source).hash(hasher);
+        opacity_map.as_ref().map(|map| &map.source).hash(hasher);
+        extras.hash_into(hasher);
+    }
+}
+
+/// One light on one surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stage {
+    pub(crate) effect: &'static LightRow,
+    /// The index of its light in the plan.
+    pub(crate) light: u32,
+    pub(crate) highlight: Form,
+    /// Whether a map multiplies the exponent of its highlight.
+    pub(crate) is_mapped: bool,
+}
+
+impl Stage {
+    /// The light shader, compiled for the stage's highlight.
+    pub(crate) const fn variant(&self) -> &'static lights::Variant {
+        match (self.highlight, self.is_mapped) {
+            (Form::Plain, _) => &self.effect.plain,
+            (Form::Reflection, false) => &self.effect.reflection,
+            (Form::HalfVector, false) => &self.effect.half_vector,
+            (Form::Reflection, true) => &self.effect.mapped_reflection,
+            (Form::HalfVector, true) => &self.effect.mapped_half_vector,
+        }
+    }
+}
+
+impl PartialEq for Stage {
+    fn eq(&self, other: &Self) -> bool {
+        let key = |stage: &Self| (stage.effect.name, stage.light, stage.highlight, stage.is_mapped);
+        key(self) == key(other)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::extras::Glow;
+
+    fn shaded(change: impl FnOnce(&mut Shaded)) -> u64 {
+        let mut shaded = Shaded::unlit(PhongMaterial::default());
+        shaded.light = Some(Vec::new());
+        change(&mut shaded);
+        Pipeline::Shaded(shaded).fingerprint()
+    }
+
+    #[test]
+    fn equal_pipelines_share_a_fingerprint_and_others_are_told_apart() {
+        let plain = shaded(|_| {});
+        assert_eq!(shaded(|shaded| shaded.dropped = -0.0), plain, "0 and -0 are equal");
+        let others = [
+            shaded(|shaded| shaded.material.diffuse[1] = 0.5),
+            shaded(|shaded| shaded.material.exponent = 9.0),
+            shaded(|shaded| shaded.material.floor = -3.0),
+            shaded(|shaded| shaded.tint[2] = 0.5),
+            shaded(|shaded| shaded.cutout = Some(1.0)),
+            shaded(|shaded| shaded.opacity = Some(1.0)),
+            shaded(|shaded| shaded.vertex_colors = true),
+            shaded(|shaded| {
+                shaded.extras.emission = Some(Glow { color: [0.0, 0.0, 0.5], map: None });
+            }),
+            Pipeline::Flat(Color::WHITE).fingerprint(),
+            Pipeline::Flat(Color::BACK_FACE).fingerprint(),
+        ];
+        let all: BTreeSet<u64> = others.into_iter().chain([plain]).collect();
+        assert_eq!(all.len(), 11);
+    }
+}

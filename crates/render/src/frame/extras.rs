@@ -1,0 +1,151 @@
+//! What a surface shows beside light, one texture and vertex colours: light of its own, and maps of
+//! its coefficients and normals.
+
+use std::hash::{Hash, Hasher};
+
+use marraztu_core::base::Shared;
+use marraztu_core::scene::Texture;
+
+/// What a surface shows beside light, one texture and vertex colours; by default nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Extras {
+    /// Light of its own: Ke.
+    pub(crate) emission: Option<Glow>,
+    /// Ambient light that is coloured by a map of its own: the sum of Ia Ka over all ambient
+    /// lights. They are not among the surface's stages then.
+    pub(crate) ambient: Option<Glow>,
+    /// The map of Ks, by which highlights are multiplied.
+    pub(crate) specular: Option<Shared<Texture>>,
+    /// The map of Ns, whose brightness multiplies the exponent of highlights.
+    pub(crate) exponent: Option<Shared<Texture>>,
+    /// The map that tilts normals.
+    pub(crate) bump: Option<Bump>,
+}
+
+/// Light that does not depend on where it falls.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Glow {
+    pub(crate) color: [f64; 3],
+    /// The map by which it is multiplied.
+    pub(crate) map: Option<Shared<Texture>>,
+}
+
+/// A map that tilts normals.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Bump {
+    pub(crate) map: Shared<Texture>,
+    /// For heights: how many texels high a white texel is. `None` for normals in tangent space.
+    pub(crate) gain: Option<f64>,
+}
+
+impl Extras {
+    /// Whether there are none.
+    pub(crate) const fn is_empty(&self) -> bool {
+        let Self { emission, ambient, specular, exponent, bump } = self;
+        emission.is_none()
+            && ambient.is_none()
+            && specular.is_none()
+            && exponent.is_none()
+            && bump.is_none()
+    }
+
+    /// Light of its own that is the same at every pixel, 0 without any; `None` if there is
+    /// something else.
+    pub(crate) fn even_glow(&self) -> Option<[f64; 3]> {
+        let Self { emission, ambient, specular, exponent, bump } = self;
+        let is_else = ambient.is_some() || specular.is_some() || exponent.is_some();
+        if is_else || bump.is_some() {
+            return None;
+        }
+        match emission {
+            None => Some([0.0; 3]),
+            Some(Glow { color, map: None }) => Some(*color),
+            Some(Glow { map: Some(_), .. }) => None,
+        }
+    }
+
+    /// Whether the colour of a pixel depends on the map of a glow or of highlights.
+    pub(crate) fn reads_texels(&self) -> bool {
+        self.specular.is_some() || self.glows().any(|glow| glow.map.is_some())
+    }
+
+    /// Whether there is a map of Ka, Ks or Ns.
+    pub(crate) const fn has_maps(&self) -> bool {
+        self.ambient.is_some() || self.specular.is_some() || self.exponent.is_some()
+    }
+
+    /// Light that is added to the colour of a surface.
+    pub(crate) fn glows(&self) -> impl Iterator<Item = &Glow> {
+        self.emission.iter().chain(&self.ambient)
+    }
+
+    /// The maps that are colours.
+    pub(crate) fn colors(&self) -> impl Iterator<Item = &Shared<Texture>> {
+        self.glows().filter_map(|glow| glow.map.as_ref()).chain(&self.specular)
+    }
+
+    /// The names of the stages, for [`FramePlan::keys`](super::FramePlan::keys).
+    pub(crate) fn key(&self) -> impl Iterator<Item = &'static str> {
+        let Self { emission, ambient, specular, exponent, bump } = self;
+        let mapped = |glow: &Option<Glow>| glow.as_ref().is_some_and(|glow| glow.map.is_some());
+        [
+            ("emission", emission.is_some()),
+            ("emission map", mapped(emission)),
+            ("ambient map", ambient.is_some()),
+            ("specular map", specular.is_some()),
+            ("exponent map", exponent.is_some()),
+            ("bump map", bump.as_ref().is_some_and(|bump| bump.gain.is_some())),
+            ("normal map", bump.as_ref().is_some_and(|bump| bump.gain.is_none())),
+        ]
+        .into_iter()
+        .filter_map(|(name, is)| is.then_some(name))
+    }
+
+    /// Hashes what equal surfaces have in common; of maps, only their sources.
+    pub(crate) fn hash_into(&self, hasher: &mut impl Hasher) {
+        let Self { emission, ambient, specular, exponent, bump } = self;
+        for glow in [emission, ambient] {
+            let glow = glow.as_ref();
+            glow.map(|glow| glow.color.map(bits)).hash(hasher);
+            glow.and_then(|glow| glow.map.as_ref()).map(|map| &map.source).hash(hasher);
+        }
+        for map in [specular, exponent] {
+            map.as_ref().map(|map| &map.source).hash(hasher);
+        }
+        bump.as_ref().map(|bump| (&bump.map.source, bump.gain.map(bits))).hash(hasher);
+    }
+
+    /// Whether both are drawn alike, bit for bit; maps are alike if they are the same.
+    pub(crate) fn are_alike(&self, other: &Self) -> bool {
+        let Self { emission, ambient, specular, exponent, bump } = self;
+        let maps = |a: &Option<Shared<Texture>>, b: &Option<Shared<Texture>>| match (a, b) {
+            (Some(a), Some(b)) => Shared::same(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        let glows = |a: &Option<Glow>, b: &Option<Glow>| match (a, b) {
+            (Some(a), Some(b)) => {
+                a.color.map(f64::to_bits) == b.color.map(f64::to_bits) && maps(&a.map, &b.map)
+            }
+            (None, None) => true,
+            _ => false,
+        };
+        let bumps = match (bump, &other.bump) {
+            (Some(a), Some(b)) => {
+                Shared::same(&a.map, &b.map) && a.gain.map(f64::to_bits) == b.gain.map(f64::to_bits)
+            }
+            (None, None) => true,
+            _ => false,
+        };
+        glows(emission, &other.emission)
+            && glows(ambient, &other.ambient)
+            && maps(specular, &other.specular)
+            && maps(exponent, &other.exponent)
+            && bumps
+    }
+}
+
+/// The bits of a number, the same for 0 and -0, which are equal.
+pub(super) fn bits(x: f64) -> u64 {
+    (x + 0.0).to_bits()
+}

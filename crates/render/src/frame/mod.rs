@@ -1,0 +1,133 @@
+//! What a frame draws, as plain data. Nothing here makes a decision or touches a pixel.
+
+pub(crate) mod draw;
+pub(crate) mod extras;
+pub(crate) mod shadows;
+pub(crate) mod variants;
+
+use glam::{DMat4, DVec3};
+
+use self::draw::{Draw, Pipeline};
+use self::shadows::Shadows;
+use self::variants::Variants;
+use super::lights::ViewLight;
+use marraztu_core::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples, Transparency};
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::LightId;
+
+/// Everything that a frame needs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FramePlan {
+    /// Pixels.
+    pub(crate) size: Size,
+    /// The colour of pixels that show nothing.
+    pub(crate) background: Color,
+    /// The kind of projection, which the direction V to the observer depends on.
+    pub(crate) eye: Eye,
+    /// The numbers that light is computed in.
+    pub(crate) arithmetic: Arithmetic,
+    /// Whether light is evaluated at faces, vertices, pixels or samples.
+    pub(crate) light_at: LightAt,
+    /// Samples per pixel.
+    pub(crate) samples: Samples,
+    /// Whether each sample is lit, as if it were the centre of a pixel; `light_at` is then `Pixel`.
+    pub(crate) lit_by_sample: bool,
+    /// The offset of the sample from the centre of its pixel, in subpixels, if each sample is drawn
+    /// as a picture of its own.
+    pub(crate) shift: [i32; 2],
+    /// The filter of textures.
+    pub(crate) filter: Filter,
+    /// How transparent surfaces are laid over each other.
+    pub(crate) transparency: Transparency,
+    /// The variants of stages that the settings choose.
+    pub(crate) variants: Variants,
+    /// The view transform.
+    pub(crate) view_from_world: DMat4,
+    /// `clip_from_view`.
+    pub(crate) clip_from_view: DMat4,
+    /// Width of lines in pixels: 1 or 2.
+    pub(crate) line_width: i32,
+    /// The lights in view space, the oldest first.
+    pub(crate) lights: Vec<ViewLight>,
+    /// The ids of the lights, in the same order.
+    pub(crate) light_ids: Vec<LightId>,
+    /// Which lights cast shadows, and what casts them.
+    pub(crate) shadows: Shadows,
+    /// What is drawn, in the order that decides between equal depths.
+    pub(crate) draws: Vec<Draw>,
+    /// The distinct pipelines of all draws.
+    pub(crate) pipelines: Vec<Pipeline>,
+    /// Which light may be left out as too faint.
+    pub(crate) leave_out: LeaveOut,
+    /// Whether rules leave out what no pixel shows.
+    pub(crate) rules: Rules,
+}
+
+/// How directions to the observer are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Eye {
+    /// Perspective: to the origin of view space.
+    Point,
+    /// Orthographic: along +Z.
+    Parallel,
+}
+
+/// Whether a frame leaves out work that changes no bit of its picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rules {
+    /// Such work is left out.
+    Applied,
+    /// Everything that the scene names is computed; the rules are tested against this.
+    Ignored,
+}
+
+impl FramePlan {
+    /// The plan of the picture that one sample of each pixel sees, `shift` subpixels from the
+    /// centre: right and down, in 1/256 pixel.
+    #[must_use]
+    pub fn seen_from(&self, shift: [i32; 2]) -> Self {
+        Self { shift, ..self.clone() }
+    }
+
+    /// Computes every derived table of the meshes that drawing reads. Drawing threads compute none
+    /// of them themselves: see [`together`](crate::work_stealing::together).
+    pub(crate) fn prepare(&self) {
+        self.draws.iter().for_each(|draw| draw.prepare(self));
+        self.shadows.prepare(self.variants.shadow_method);
+    }
+
+    /// Whether any surface is transparent.
+    pub(crate) fn is_transparent(&self) -> bool {
+        self.pipelines.iter().any(|pipeline| pipeline.opacity().is_some())
+    }
+
+    /// The place of each draw in the order from far to near, by the middles of their boxes; of
+    /// equals, the younger is the farther.
+    pub(crate) fn far_to_near(&self) -> Vec<u32> {
+        let away = |draw: &Draw| {
+            let middle = draw.model.mesh.bounds().map_or(DVec3::ZERO, |bounds| bounds.centre());
+            -draw.view_from_object.transform_point3(middle).z
+        };
+        let mut order: Vec<(f64, usize)> = self.draws.iter().map(away).zip(0..).collect();
+        order.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        let mut places = vec![0; order.len()];
+        for (place, (_, draw)) in (0..).zip(order) {
+            places[draw] = place;
+        }
+        places
+    }
+
+    /// Pixels.
+    #[must_use]
+    pub const fn size(&self) -> Size {
+        self.size
+    }
+
+    /// The stages of each pipeline by name, in order: two frames with the same keys do the same
+    /// work for each pixel.
+    #[must_use]
+    pub fn keys(&self) -> Vec<String> {
+        self.pipelines.iter().map(Pipeline::key).collect()
+    }
+}

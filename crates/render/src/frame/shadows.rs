@@ -1,0 +1,174 @@
+//! Which lights of a frame cast shadows, and what casts them.
+
+use std::collections::BTreeSet;
+
+use glam::{DMat4, DVec3};
+
+use super::draw::Stage;
+use marraztu_core::accuracy::ShadowMethod;
+use marraztu_core::base::Shared;
+use marraztu_core::base::math::same_bits;
+use marraztu_core::scene::{Derived, ItemId, Model, Texture};
+
+/// The shadows of a frame; empty if no light casts any.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Shadows {
+    /// For each light of the plan, the end of the rays to it, if it casts shadows.
+    pub(crate) sources: Vec<Option<ShadowSource>>,
+    /// What casts shadows, the oldest first.
+    pub(crate) casters: Vec<Caster>,
+}
+
+/// The end of the rays to a light, in world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum ShadowSource {
+    /// At a point.
+    Point(DVec3),
+    /// At a point that shines along a direction, as far to each side as this cosine says.
+    Cone { at: DVec3, direction: DVec3, cos_half_aperture: f64 },
+    /// Infinitely far away in this direction.
+    Direction(DVec3),
+}
+
+impl ShadowSource {
+    /// Whether it is the same, bit by bit.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        self.numbers().map(f64::to_bits) == other.numbers().map(f64::to_bits)
+    }
+
+    /// All that it is made of.
+    fn numbers(&self) -> [f64; 8] {
+        match *self {
+            Self::Point(at) => [0.0, at.x, at.y, at.z, 0.0, 0.0, 0.0, 0.0],
+            Self::Direction(to) => [1.0, to.x, to.y, to.z, 0.0, 0.0, 0.0, 0.0],
+            Self::Cone { at, direction: d, cos_half_aperture } => {
+                [2.0, at.x, at.y, at.z, d.x, d.y, d.z, cos_half_aperture]
+            }
+        }
+    }
+}
+
+/// An object that casts shadows, seen by the observer or not.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Caster {
+    pub(crate) item: ItemId,
+    pub(crate) model: Shared<Model>,
+    pub(crate) world_from_object: DMat4,
+    /// Its parts; `None` for those that are not drawn.
+    pub(crate) parts: Vec<Option<CasterPart>>,
+    /// The polygons that are drawn, if not all are.
+    pub(crate) polygons: Option<BTreeSet<u32>>,
+}
+
+/// A part of an object that casts shadows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct CasterPart {
+    /// The pictures whose holes let light through, if there are any.
+    pub(crate) holes: Option<Holes>,
+}
+
+/// What a part lets light through: wherever the product of all three is below one half.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Holes {
+    /// The texture, whose alpha counts.
+    pub(crate) texture: Option<Shared<Texture>>,
+    /// The map of opacity: its alpha, or its brightness if all of it is opaque.
+    pub(crate) map: Option<Shared<Texture>>,
+    /// The opacity of the material and of the object.
+    pub(crate) opacity: f64,
+}
+
+impl Holes {
+    fn is_same(&self, other: &Self) -> bool {
+        let same = |a: &Option<Shared<Texture>>, b: &Option<Shared<Texture>>| match (a, b) {
+            (Some(a), Some(b)) => Shared::same(a, b),
+            (None, None) => true,
+            (Some(_), None) | (None, Some(_)) => false,
+        };
+        let Self { texture, map, opacity } = self;
+        same(texture, &other.texture)
+            && same(map, &other.map)
+            && opacity.to_bits() == other.opacity.to_bits()
+    }
+}
+
+impl Caster {
+    /// The part of a triangle, if it is drawn.
+    #[inline(always)]
+    pub(crate) fn part_of(&self, triangle: u32) -> Option<&CasterPart> {
+        let mesh = &self.model.mesh;
+        let polygon = mesh.polygon_of(triangle);
+        if self.polygons.as_ref().is_some_and(|some| !some.contains(&polygon)) {
+            return None;
+        }
+        self.parts[mesh.polygon_parts()[polygon as usize] as usize].as_ref()
+    }
+
+    /// Whether all of its triangles are drawn and have no holes.
+    pub(crate) fn is_solid(&self) -> bool {
+        let solid =
+            |part: &Option<CasterPart>| part.as_ref().is_some_and(|part| part.holes.is_none());
+        self.polygons.is_none() && self.parts.iter().all(solid)
+    }
+
+    /// Whether it casts the same shadows.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let Self { item, model, world_from_object, parts, polygons } = self;
+        let holes = |a: &Option<CasterPart>, b: &Option<CasterPart>| match (a, b) {
+            (Some(a), Some(b)) => match (&a.holes, &b.holes) {
+                (Some(a), Some(b)) => a.is_same(b),
+                (None, None) => true,
+                (Some(_), None) | (None, Some(_)) => false,
+            },
+            (None, None) => true,
+            (Some(_), None) | (None, Some(_)) => false,
+        };
+        *item == other.item
+            && Shared::same(model, &other.model)
+            && same_bits(world_from_object, &other.world_from_object)
+            && *polygons == other.polygons
+            && parts.len() == other.parts.len()
+            && parts.iter().zip(&other.parts).all(|(a, b)| holes(a, b))
+    }
+}
+
+impl Shadows {
+    /// Whether any light casts a shadow.
+    pub(crate) fn are_cast(&self) -> bool {
+        !self.casters.is_empty() && self.sources.iter().any(Option::is_some)
+    }
+
+    /// The end of the rays to a light, if it casts shadows.
+    #[inline(always)]
+    pub(crate) fn source(&self, light: u32) -> Option<ShadowSource> {
+        self.sources.get(light as usize).copied().flatten()
+    }
+
+    /// Whether any of these lights casts shadows.
+    pub(crate) fn any_of(&self, stages: &[Stage]) -> bool {
+        self.are_cast() && stages.iter().any(|stage| self.source(stage.light).is_some())
+    }
+
+    /// Whether all shadows are where they are in another frame.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let cast = |source: &&Option<ShadowSource>| source.is_some();
+        let own = self.sources.iter().filter(cast).flatten();
+        let others = other.sources.iter().filter(cast).flatten();
+        self.casters.len() == other.casters.len()
+            && own.clone().count() == others.clone().count()
+            && own.zip(others).all(|(a, b)| a.is_same(b))
+            && self.casters.iter().zip(&other.casters).all(|(a, b)| a.is_same(b))
+    }
+
+    /// Computes what deciding shadows by a method reads of the meshes.
+    pub(crate) fn prepare(&self, method: ShadowMethod) {
+        for caster in &self.casters {
+            let mesh = &caster.model.mesh;
+            match method.map() {
+                None => mesh.prepare(Derived::RayTree),
+                Some(_) => mesh.prepare(Derived::DrawOrder),
+            }
+            mesh.prepare(Derived::PolygonOf);
+        }
+    }
+}

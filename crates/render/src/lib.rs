@@ -1,0 +1,91 @@
+//! From a scene to a picture, drawn by the CPU alone.
+//!
+//! ```text
+//! Shot  ->  FramePlan  ->  Renderer  ->  Picture
+//! ```
+//!
+//! A red ball in the light of one sun:
+//!
+//! ```
+//! use marraztu_core::accuracy::{Settings, Shot};
+//! use marraztu_core::base::image::Size;
+//! use marraztu_core::edit::{Gesture, History, shapes};
+//! use marraztu_core::scene::{
+//!     Camera, Command, Item, Lens, Light, LightId, MaterialChoice, Pose, PresetId, Scene, Shape,
+//!     Tracked,
+//! };
+//! use marraztu_render::{Renderer, plan_frame};
+//!
+//! let mut scene = Scene::with_camera(Camera {
+//!     name: "camera 1".to_owned(),
+//!     visible: true,
+//!     model: Shape::Cube.model(),
+//!     material: MaterialChoice::Preset(PresetId::OBSIDIAN),
+//!     pose: Tracked::new(Pose::facing_minus_z(glam::DVec3::new(0.0, 0.0, 200.0))),
+//!     lens: Lens::default(),
+//! });
+//! let [_, sun, ..] = Light::five();
+//! let sun = Command::Insert { at: 0, item: Item::Light(LightId(1), Box::new(sun)) };
+//! let ball = shapes::insert(&scene, &scene.first_view(), Shape::Sphere);
+//! for command in [sun, ball] {
+//!     History::new().perform(&mut scene, command, Gesture::Whole, "build")?;
+//! }
+//!
+//! let size = Size::new(64, 48);
+//! let plan = plan_frame(&Shot::new(&scene, &scene.first_view(), &Settings::default(), size));
+//! let mut renderer = Renderer::default();
+//! let picture = renderer.render(&plan);
+//! assert_eq!(picture.pixel(0, 0), scene.background.opaque());
+//! assert_ne!(picture.pixel(32, 24), scene.background.opaque());
+//! # Ok::<(), marraztu_core::scene::CommandError>(())
+//! ```
+//!
+//! Modules use those before them in this list (`tests/rooms.rs`):
+//!
+//! * `cancellation`, `work_stealing`: parallel work that can be given up.
+//! * [`simd`]: the numbers that light is computed in, eight or sixteen at a time.
+//! * `texture`: colours of textures at a position, and their mip maps.
+//! * [`lights`]: one file and one table row for each kind of light; the Phong terms.
+//! * `frame`: what a frame draws, as plain data.
+//! * [`screen`]: clipping, snapping, coverage, sample positions and tiles.
+//! * [`plan`]: decides what a frame draws before any pixel is touched, and says why.
+//! * `reference`: the fill algorithm of ancestor A, as a whole.
+//! * `raster`: vertices to the screen, triangles and lines into the bins of tiles, and from there
+//!   to the visibility buffer.
+//! * `shadow`: rays from lit points to lights, and what stands between.
+//! * `shading`: the colours of what is visible, and their bytes in the picture.
+//! * `tile_layers`: what the pixels of a tile show.
+//! * `renderer`, `damage`, `count`, `unseen`, `exposure`, `without_ground`: draw plans, and answer
+//!   questions about what was drawn.
+
+mod cancellation;
+mod count;
+mod damage;
+mod exposure;
+mod frame;
+pub mod lights;
+pub mod plan;
+mod raster;
+mod reference;
+mod renderer;
+pub mod screen;
+mod shading;
+mod shadow;
+pub mod simd;
+mod texture;
+mod tile_layers;
+mod timings;
+mod unseen;
+mod without_ground;
+mod work_stealing;
+
+pub use damage::{Change, Damage, DamageCause};
+pub use exposure::fitted_exposure;
+pub use frame::FramePlan;
+pub use plan::{Class, Effect, EffectState, EffectUse, explain_frame, plan_everything, plan_frame};
+pub use renderer::{Cancelled, Hit, Renderer};
+pub use shading::pixel_color::{LightRay, Part, PixelColor, SurfacePoint, Term};
+pub use shadow::rays::RayCount;
+pub use timings::Timings;
+pub use unseen::{Unseen, unseen};
+pub use without_ground::without_ground;

@@ -1,0 +1,115 @@
+//! Batches of positions that light shaders read and write: an array for each quantity.
+
+use crate::simd::{BATCH, Lanes, Number, Vec3};
+
+/// A batch of positions on surfaces, with their normals and their light: an array for each
+/// quantity.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub struct Batch<T> {
+    /// The number of positions; entries beyond it are meaningless.
+    pub len: usize,
+    /// The positions, in view space.
+    pub position: [[T; BATCH]; 3],
+    /// Their normals: of length 1, or zero at positions without a normal.
+    pub normal: [[T; BATCH]; 3],
+    /// The directions to the observer, of length 1: V.
+    pub to_eye: [[T; BATCH]; 3],
+    /// What a map multiplies the exponents of their highlights with, if there is one.
+    pub exponent: [T; BATCH],
+    /// Light that is multiplied with the colour of the surface: ambient and diffuse.
+    pub diffuse: [[T; BATCH]; 3],
+    /// Light that keeps its own colour: specular.
+    pub specular: [[T; BATCH]; 3],
+}
+
+impl<T: Copy + Default> Default for Batch<T> {
+    fn default() -> Self {
+        let zero = [[T::default(); BATCH]; 3];
+        Self {
+            len: 0,
+            position: zero,
+            normal: zero,
+            to_eye: zero,
+            exponent: [T::default(); BATCH],
+            diffuse: zero,
+            specular: zero,
+        }
+    }
+}
+
+impl<T: Copy + Default> Batch<T> {
+    /// Sets the light at all positions to 0.
+    pub(crate) fn darken(&mut self) {
+        let end = self.len.next_multiple_of(16).min(BATCH);
+        for row in self.diffuse.iter_mut().chain(&mut self.specular) {
+            row[..end].fill(T::default());
+        }
+    }
+}
+
+impl<T: Number> Batch<T> {
+    /// Stores samples from `at` on.
+    #[inline(always)]
+    pub(crate) fn put<M: Lanes<Number = T>>(&mut self, lanes: M, sample: Sample<M::R>, at: usize) {
+        store(lanes, sample.position, &mut self.position, at);
+        store(lanes, sample.normal, &mut self.normal, at);
+        store(lanes, sample.to_eye, &mut self.to_eye, at);
+    }
+}
+
+/// A position on a surface, with its normal and direction to the observer; or several.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<R> {
+    /// See [`Batch::position`].
+    pub position: Vec3<R>,
+    /// See [`Batch::normal`].
+    pub normal: Vec3<R>,
+    /// See [`Batch::to_eye`].
+    pub to_eye: Vec3<R>,
+    /// See [`Batch::exponent`].
+    pub exponent: R,
+}
+
+/// The light that one light shader reflects from a position to the observer.
+#[derive(Clone, Copy, Debug)]
+pub struct Reflected<R> {
+    /// See [`Batch::diffuse`].
+    pub diffuse: Vec3<R>,
+    /// See [`Batch::specular`]; `None` if it is zero.
+    pub specular: Option<Vec3<R>>,
+}
+
+/// Three numbers, the same for all lanes.
+#[inline(always)]
+pub(crate) fn set<M: Lanes>(lanes: M, numbers: [M::Number; 3]) -> Vec3<M::R> {
+    Vec3([lanes.set(numbers[0]), lanes.set(numbers[1]), lanes.set(numbers[2])])
+}
+
+/// Three rows of numbers.
+pub(crate) type Rows<T> = [[T; BATCH]; 3];
+
+/// Loads three numbers from three rows.
+#[inline(always)]
+pub(crate) fn load<M: Lanes>(lanes: M, [x, y, z]: &Rows<M::Number>, at: usize) -> Vec3<M::R> {
+    Vec3([lanes.load(x, at), lanes.load(y, at), lanes.load(z, at)])
+}
+
+/// Stores three numbers in three rows.
+#[inline(always)]
+pub(crate) fn store<M: Lanes>(
+    lanes: M,
+    value: Vec3<M::R>,
+    [x, y, z]: &mut Rows<M::Number>,
+    at: usize,
+) {
+    lanes.store(value.0[0], x, at);
+    lanes.store(value.0[1], y, at);
+    lanes.store(value.0[2], z, at);
+}
+
+#[inline(always)]
+pub(super) fn add<M: Lanes>(lanes: M, more: Vec3<M::R>, rows: &mut Rows<M::Number>, at: usize) {
+    let sum = load(lanes, rows, at).plus(more);
+    store(lanes, sum, rows, at);
+}

@@ -1,0 +1,57 @@
+//! The kinds of light, and their table.
+//!
+//! A kind of light is one file in this folder and one row of [`LIGHT_SHADERS`]. It says when a
+//! scene needs it and how it lights a surface, once, over [`Real`](super::simd::Real); the row
+//! holds its compiled variants. A frame pays only for the lights that it has.
+//!
+//! Light is computed in view space, for a batch of positions at a time: of pixels, vertices or
+//! faces.
+
+mod ambient;
+mod batch;
+mod bulb;
+mod phong;
+pub(crate) mod region;
+mod shader;
+mod spot;
+mod sun;
+mod together;
+pub(crate) mod turning;
+
+pub use batch::{Batch, Reflected, Sample};
+pub(crate) use batch::{Rows, load, set, store};
+pub use phong::{
+    Form, HalfVector, Highlight, LightTerm, Nothing, PhongMaterial, Reflection, ViewLight,
+};
+pub use region::Region;
+pub use shader::{Light, LightRow, LightShader, Variant, Which};
+pub(crate) use together::Together;
+pub use turning::Turning;
+
+use marraztu_core::scene::LightKind;
+
+/// The row of ambient light.
+pub static AMBIENT: LightRow = LightRow::of::<ambient::Ambient>();
+/// The row of the sun.
+pub static SUN: LightRow = LightRow::of::<sun::Sun>();
+/// The row of bulbs.
+pub static BULB: LightRow = LightRow::of::<bulb::Bulb>();
+/// The row of spots.
+pub static SPOT: LightRow = LightRow::of::<spot::Spot>();
+
+/// Every kind of light.
+pub static LIGHT_SHADERS: &[&LightRow] = &[&AMBIENT, &SUN, &BULB, &SPOT];
+
+/// The row of a light.
+#[must_use]
+pub const fn row_of(kind: &LightKind) -> &'static LightRow {
+    match kind {
+        LightKind::Ambient => &AMBIENT,
+        LightKind::Sun { .. } => &SUN,
+        LightKind::Bulb { .. } => &BULB,
+        LightKind::Spot { .. } => &SPOT,
+    }
+}
+
+#[cfg(test)]
+mod tests;

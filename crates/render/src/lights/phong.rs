@@ -1,0 +1,278 @@
+//! Phong lighting: lights, materials, their products, and the specular highlight.
+//!
+//! Phong, "Illumination for Computer Generated Pictures", CACM 1975.
+
+use super::batch::{Reflected, Sample, set};
+use super::region::Region;
+use crate::simd::power::least_cosine;
+use crate::simd::{Lanes, Number, Power, Real, Vec3};
+use marraztu_core::accuracy::{Normalising, SpecularPower};
+
+/// A light of a frame, in view space.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ViewLight {
+    /// Its colour as factors.
+    pub color: [f64; 3],
+    /// Its position.
+    pub position: [f64; 3],
+    /// The direction in which its light travels, of length 1.
+    pub direction: [f64; 3],
+    /// The coefficients of 1, d and d^2 in its attenuation.
+    pub attenuation: [f64; 3],
+    /// The cosine of its cone's half-aperture.
+    pub cos_half_aperture: f64,
+    /// The exponent by which its light is concentrated along the axis.
+    pub exponent: f64,
+}
+
+/// The coefficients of the Phong model.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PhongMaterial {
+    /// Ka.
+    pub ambient: [f64; 3],
+    /// Kd.
+    pub diffuse: [f64; 3],
+    /// Ks.
+    pub specular: [f64; 3],
+    /// Ns.
+    pub exponent: f64,
+    /// A power below 2^`floor` counts as 0.
+    pub floor: f64,
+    /// The power of every cosine up to this one counts as 0.
+    pub least_cosine: f64,
+}
+
+impl PhongMaterial {
+    /// Whether a light can have a highlight on it.
+    #[must_use]
+    pub fn mirrors(&self, light: &ViewLight) -> bool {
+        self.specular.iter().zip(light.color).any(|(ks, color)| ks * color != 0.0)
+    }
+
+    /// Sets the floor below which powers count as 0, for a variant of powers.
+    #[must_use]
+    pub fn with_floor(self, floor: f64, variant: SpecularPower) -> Self {
+        // The cosine whose power is the floor, or a little less, so that rounding leaves nothing
+        // out.
+        let least = least_cosine(variant, self.exponent, floor);
+        Self { floor, least_cosine: least * (1.0 - 1e-5), ..self }
+    }
+}
+
+/// The products of a light and a material, in the shading arithmetic.
+#[derive(Clone, Debug)]
+pub struct LightTerm<T> {
+    /// I Ka.
+    pub ambient: [T; 3],
+    /// I Kd.
+    pub diffuse: [T; 3],
+    /// I Ks.
+    pub specular: [T; 3],
+    /// See [`ViewLight::position`].
+    pub position: [T; 3],
+    /// The reverse of the direction in which its light travels.
+    pub axis: [T; 3],
+    /// See [`ViewLight::attenuation`].
+    pub attenuation: [T; 3],
+    /// Whether its light fades with distance.
+    pub fades: bool,
+    /// See [`ViewLight::cos_half_aperture`].
+    pub cos_half_aperture: T,
+    /// The exponent by which its light is concentrated along the axis.
+    pub gathered: Power,
+    /// The power of the highlight, with the exponent Ns.
+    pub highlight: Power,
+    /// See [`PhongMaterial::least_cosine`].
+    pub least_cosine: T,
+    /// The variant of roots, if it is not the default.
+    pub(super) variant: Option<Normalising>,
+}
+
+impl<T: Number> LightTerm<T> {
+    /// Multiplies a light and a material.
+    #[must_use]
+    pub fn new(light: &ViewLight, material: &PhongMaterial) -> Self {
+        let all = |numbers: [f64; 3]| numbers.map(T::from_f64);
+        let times = |k: [f64; 3]| all([0, 1, 2].map(|i| light.color[i] * k[i]));
+        Self {
+            ambient: times(material.ambient),
+            diffuse: times(material.diffuse),
+            specular: times(material.specular),
+            position: all(light.position),
+            axis: all(light.direction.map(|x| -x)),
+            attenuation: all(light.attenuation),
+            fades: light.attenuation != [1.0, 0.0, 0.0],
+            cos_half_aperture: T::from_f64(light.cos_half_aperture),
+            gathered: Power::new(light.exponent, GATHERED_FLOOR),
+            highlight: Power::new(material.exponent, material.floor),
+            least_cosine: T::from_f64(material.least_cosine),
+            variant: None,
+        }
+    }
+
+    /// Whether roots are computed by the default.
+    pub(crate) const fn is_usual(&self) -> bool {
+        self.variant.is_none()
+    }
+
+    /// The same by a variant, if there is one, with the power of the material's highlight.
+    #[must_use]
+    pub(crate) fn by(
+        variant: Option<Normalising>,
+        light: &ViewLight,
+        material: &PhongMaterial,
+        highlight: &Power,
+    ) -> Self {
+        match variant {
+            None => Self::new(light, material),
+            variant => Self { highlight: highlight.clone(), variant, ..Self::new(light, material) },
+        }
+    }
+}
+
+/// The floor of the powers by which spots concentrate their light: less than 2^-24 counts as 0.
+const GATHERED_FLOOR: f64 = -24.0;
+
+/// The forms of specular highlights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// None: Ks is 0.
+    Plain,
+    /// (R.V)^Ns
+    Reflection,
+    /// (N.H)^Ns
+    HalfVector,
+}
+
+/// The form of a specular highlight, as a type.
+pub trait Highlight {
+    /// Whether the exponent differs from position to position: see [`Sample::exponent`].
+    const IS_MAPPED: bool = false;
+    /// The cosine whose power is the highlight, if there is one; `n_l` is N.L, more than 0.
+    fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R>;
+}
+
+/// No highlight.
+#[derive(Debug)]
+pub struct Nothing;
+/// R.V with R = 2 (N.L) N - L: Phong, "Illumination for Computer Generated Pictures", CACM 1975.
+#[derive(Debug)]
+pub struct Reflection;
+/// N.H with H half-way between L and V: Blinn, "Models of Light Reflection for Computer Synthesized
+/// Pictures", SIGGRAPH 1977.
+#[derive(Debug)]
+pub struct HalfVector;
+
+impl Highlight for Nothing {
+    #[inline(always)]
+    fn cosine<R: Real>(_: Sample<R>, _: Vec3<R>, _: R) -> Option<R> {
+        None
+    }
+}
+
+impl Highlight for Reflection {
+    #[inline(always)]
+    fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R> {
+        let n_v = sample.normal.dot(sample.to_eye);
+        let two = n_l.lift(2.0);
+        Some(two * n_l * n_v - to_light.dot(sample.to_eye))
+    }
+}
+
+impl Highlight for HalfVector {
+    #[inline(always)]
+    fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, _: R) -> Option<R> {
+        Some(sample.normal.dot(to_light.plus(sample.to_eye).unit()))
+    }
+}
+
+/// A form of highlight whose exponent is multiplied by a map.
+#[derive(Debug)]
+pub(super) struct Mapped<H>(std::marker::PhantomData<H>);
+
+impl<H: Highlight> Highlight for Mapped<H> {
+    const IS_MAPPED: bool = true;
+
+    #[inline(always)]
+    fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R> {
+        H::cosine(sample, to_light, n_l)
+    }
+}
+
+/// Light at a grazing angle has no highlight, up to this cosine of its angle to the normal.
+///
+/// A highlight starts abruptly as N.L rises above 0. If a light lies in the plane of a face, which
+/// is not rare, N.L is only a rounding error, which would decide whether all of the face has a
+/// highlight. The bound is a hundred times that error, and 0.0006 degrees.
+const GRAZING: f64 = 1e-5;
+
+/// Multiplies light by a strength, if there is one.
+#[inline(always)]
+fn weakened<R: Real>(part: R, strength: Option<R>) -> R {
+    match strength {
+        Some(strength) => part * strength,
+        None => part,
+    }
+}
+
+/// Phong reflection of the light that arrives from a direction, diffuse and specular:
+///
+///   diffuse = s I Kd max(0, N.L),   specular = s I Ks [N.L > 0 and c > 0] c^Ns
+///
+/// with s the remaining `strength` of the light's intensity I (1 if it is `None`), L the direction
+/// `to_light`, and c the cosine of the [`Highlight`].
+#[inline(always)]
+pub(super) fn phong<M: Lanes, H: Highlight>(
+    lanes: M,
+    sample: Sample<M::R>,
+    to_light: Vec3<M::R>,
+    strength: Option<M::R>,
+    term: &LightTerm<M::Number>,
+) -> Option<Reflected<M::R>> {
+    let zero = lanes.lift(0.0);
+    let n_l = sample.normal.dot(to_light);
+    if !lanes.any_more(n_l, zero) {
+        return None;
+    }
+    let diffuse = set(lanes, term.diffuse).times(weakened(Real::max(n_l, zero), strength));
+    let mut specular = None;
+    if let Some(cosine) = H::cosine(sample, to_light, n_l) {
+        let lit = n_l.if_more(lanes.lift(GRAZING), cosine, zero);
+        // A map can widen the highlight to any cosine.
+        let least = if H::IS_MAPPED { zero } else { lanes.set(term.least_cosine) };
+        if lanes.any_more(lit, least) {
+            // Rounding can bring a cosine above 1.
+            let cosine = Real::min(lit, lanes.lift(1.0));
+            let power = match H::IS_MAPPED {
+                true => cosine.power_times(&term.highlight, sample.exponent),
+                false => cosine.power(&term.highlight),
+            };
+            specular = Some(set(lanes, term.specular).times(weakened(power, strength)));
+        }
+    }
+    Some(Reflected { diffuse, specular })
+}
+
+/// The largest of a surface's three channels in a light.
+pub(super) fn max_channel(color: [f64; 3], sent_back: [f64; 3]) -> f64 {
+    color.iter().zip(sent_back).map(|(color, part)| color * part).fold(0.0, f64::max)
+}
+
+/// The largest attenuation factor of a light over a region.
+pub(super) fn max_attenuation(light: &ViewLight, region: Option<&Region>) -> f64 {
+    let d = region.map_or(0.0, |region| region.least_distance(light.position.into()));
+    let [a0, a1, a2] = light.attenuation;
+    1.0 / (a0 + (a1 + a2 * d) * d)
+}
+
+/// Why a light adds nothing to a material, if so.
+pub(super) fn light_is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
+    let zero = |color: [f64; 3]| color == [0.0; 3];
+    if zero(light.color) {
+        Some("its colour is black")
+    } else if zero(material.diffuse) && zero(material.specular) {
+        Some("Kd and Ks of the material are 0")
+    } else {
+        None
+    }
+}

@@ -1,0 +1,214 @@
+//! How one kind of light reaches a surface, and its compiled variants.
+
+use std::marker::PhantomData;
+
+use fearless_simd::Level;
+
+use super::batch::{Batch, Reflected, Sample, add, load};
+use super::phong::{
+    HalfVector, Highlight, LightTerm, Mapped, Nothing, PhongMaterial, Reflection, ViewLight,
+    max_channel,
+};
+use super::region::Region;
+use super::turning::Turning;
+use crate::simd::{Kernel, Lanes, Number};
+
+/// The shader of a kind of light.
+pub trait LightShader {
+    /// Its name in the plan.
+    const NAME: &'static str;
+    /// Which of the shaders it is.
+    const WHICH: Which;
+    /// Whether it reads positions, normals or directions to the observer.
+    const READS_POSITIONS: bool = true;
+    /// Whether it has a position, and fades with the distance from it.
+    const HAS_POSITION: bool = true;
+    /// Whether its reach is limited, so that `is_culled` may cull it.
+    const HAS_REACH: bool = false;
+    /// Why it adds nothing to a material, if so: leaving it out then changes no bit.
+    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str>;
+    /// Why none of it arrives in a region, if so: leaving it out there then changes no bit.
+    fn is_culled(_: &ViewLight, _: &Region) -> Option<&'static str> {
+        None
+    }
+    /// Whether it comes from behind all faces of a region, whose normals are `turning`: leaving it
+    /// out there then changes no bit.
+    fn is_behind(_: &ViewLight, _: &Region, _: &Turning) -> bool {
+        false
+    }
+    /// The largest fraction of its light that arrives in a region, or anywhere without one.
+    fn max_falloff(_: &ViewLight, _: Option<&Region>) -> f64 {
+        1.0
+    }
+    /// The fraction of its light that goes in a direction, by the cosine between that and its axis;
+    /// for explanations.
+    fn fraction_at(_: &ViewLight, _cosine: f64) -> f64 {
+        1.0
+    }
+    /// The most that it adds to a channel at any position of a region, with its highlight or
+    /// without, as a factor. A texture can only reduce that.
+    fn max_contribution(
+        light: &ViewLight,
+        material: &PhongMaterial,
+        highlight: bool,
+        region: Option<&Region>,
+    ) -> f64 {
+        let mut sent_back = material.diffuse;
+        if highlight {
+            for (kd, ks) in sent_back.iter_mut().zip(material.specular) {
+                *kd += ks;
+            }
+        }
+        max_channel(light.color, sent_back) * Self::max_falloff(light, region)
+    }
+    /// Shades some positions; `None` if it adds nothing at any of them.
+    fn shade<M: Lanes, H: Highlight>(
+        lanes: M,
+        sample: Sample<M::R>,
+        term: &LightTerm<M::Number>,
+    ) -> Option<Reflected<M::R>>;
+}
+
+/// The shader of a row of the table of light kinds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// Ambient light.
+    Ambient,
+    /// A sun.
+    Sun,
+    /// A bulb.
+    Bulb,
+    /// A spot.
+    Spot,
+}
+
+/// A light shader compiled for one form of highlight: in f64 for the reference, and in f32 for the
+/// editor.
+#[derive(Clone, Copy, Debug)]
+pub struct Variant {
+    reference: fn(Level, &mut Batch<f64>, &LightTerm<f64>),
+    fast: fn(Level, &mut Batch<f32>, &LightTerm<f32>),
+}
+
+/// A row of the table of light kinds.
+#[derive(Clone, Copy, Debug)]
+pub struct LightRow {
+    /// See [`LightShader::NAME`].
+    pub name: &'static str,
+    /// See [`LightShader::WHICH`].
+    pub which: Which,
+    /// See [`LightShader::READS_POSITIONS`].
+    pub reads_positions: bool,
+    /// See [`LightShader::HAS_POSITION`].
+    pub has_position: bool,
+    /// See [`LightShader::HAS_REACH`].
+    pub has_reach: bool,
+    /// See [`LightShader::is_noop`].
+    pub is_noop: fn(&ViewLight, &PhongMaterial) -> Option<&'static str>,
+    /// See [`LightShader::is_culled`].
+    pub is_culled: fn(&ViewLight, &Region) -> Option<&'static str>,
+    /// See [`LightShader::is_behind`].
+    pub is_behind: fn(&ViewLight, &Region, &Turning) -> bool,
+    /// See [`LightShader::max_falloff`].
+    pub max_falloff: fn(&ViewLight, Option<&Region>) -> f64,
+    /// See [`LightShader::fraction_at`].
+    pub fraction_at: fn(&ViewLight, f64) -> f64,
+    /// See [`LightShader::max_contribution`].
+    pub max_contribution: fn(&ViewLight, &PhongMaterial, bool, Option<&Region>) -> f64,
+    /// Without a highlight.
+    pub plain: Variant,
+    /// With [`Reflection`].
+    pub reflection: Variant,
+    /// With [`HalfVector`].
+    pub half_vector: Variant,
+    /// With [`Reflection`] and a map of its exponent.
+    pub mapped_reflection: Variant,
+    /// With [`HalfVector`] and a map of its exponent.
+    pub mapped_half_vector: Variant,
+}
+
+impl LightRow {
+    /// Makes the row of a shader.
+    pub(super) const fn of<E: LightShader>() -> Self {
+        Self {
+            name: E::NAME,
+            which: E::WHICH,
+            reads_positions: E::READS_POSITIONS,
+            has_position: E::HAS_POSITION,
+            has_reach: E::HAS_REACH,
+            is_noop: E::is_noop,
+            is_culled: E::is_culled,
+            is_behind: E::is_behind,
+            max_falloff: E::max_falloff,
+            fraction_at: E::fraction_at,
+            max_contribution: E::max_contribution,
+            plain: variant::<E, Nothing>(),
+            reflection: variant::<E, Reflection>(),
+            half_vector: variant::<E, HalfVector>(),
+            mapped_reflection: variant::<E, Mapped<Reflection>>(),
+            mapped_half_vector: variant::<E, Mapped<HalfVector>>(),
+        }
+    }
+}
+
+const fn variant<E: LightShader, H: Highlight>() -> Variant {
+    Variant { reference: shade::<f64, E, H>, fast: shade::<f32, E, H> }
+}
+
+/// Adds the light of a shader at every position of a batch.
+fn shade<T: Number, E: LightShader, H: Highlight>(
+    level: Level,
+    batch: &mut Batch<T>,
+    term: &LightTerm<T>,
+) {
+    T::run_variant(level, term.variant, Shade::<T, E, H> { batch, term, of: PhantomData });
+}
+
+struct Shade<'a, T, E, H> {
+    batch: &'a mut Batch<T>,
+    term: &'a LightTerm<T>,
+    of: PhantomData<(E, H)>,
+}
+
+impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let batch = self.batch;
+        for at in (0..batch.len).step_by(M::LANES) {
+            let sample = Sample {
+                position: load(lanes, &batch.position, at),
+                normal: load(lanes, &batch.normal, at),
+                to_eye: load(lanes, &batch.to_eye, at),
+                exponent: match H::IS_MAPPED {
+                    true => lanes.load(&batch.exponent, at),
+                    false => lanes.lift(1.0),
+                },
+            };
+            let Some(reflected) = E::shade::<M, H>(lanes, sample, self.term) else {
+                continue;
+            };
+            add(lanes, reflected.diffuse, &mut batch.diffuse, at);
+            if let Some(specular) = reflected.specular {
+                add(lanes, specular, &mut batch.specular, at);
+            }
+        }
+    }
+}
+
+/// Numbers that light shaders are compiled for.
+pub trait Light: Number {
+    /// Adds the light of a shader at every position of the batch.
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>);
+}
+
+impl Light for f64 {
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
+        (variant.reference)(level, batch, term);
+    }
+}
+
+impl Light for f32 {
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
+        (variant.fast)(level, batch, term);
+    }
+}

@@ -1,0 +1,71 @@
+//! Spot lights.
+
+use super::batch::{Reflected, Sample, set};
+use super::bulb::arriving;
+use super::phong::{
+    Highlight, LightTerm, PhongMaterial, ViewLight, light_is_noop, max_attenuation, phong,
+};
+use super::region::Region;
+use super::shader::{LightShader, Which};
+use super::turning::Turning;
+use crate::simd::{Lanes, Real};
+
+/// A point that shines in a cone around an axis.
+pub(crate) struct Spot;
+
+impl LightShader for Spot {
+    const NAME: &'static str = "Spot";
+    const WHICH: Which = Which::Spot;
+    const HAS_REACH: bool = true;
+
+    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
+        light_is_noop(light, material)
+    }
+
+    fn is_culled(light: &ViewLight, region: &Region) -> Option<&'static str> {
+        let (apex, axis) = (light.position.into(), light.direction.into());
+        if light.cos_half_aperture >= 1.0 {
+            // No cosine is more than 1.
+            Some("its cone is closed")
+        } else if region.misses_cone(apex, axis, light.cos_half_aperture) {
+            Some("nothing is within its cone")
+        } else {
+            None
+        }
+    }
+
+    fn is_behind(light: &ViewLight, region: &Region, turning: &Turning) -> bool {
+        turning.all(|normal| region.faces_away(normal, light.position.into()))
+    }
+
+    fn max_falloff(light: &ViewLight, region: Option<&Region>) -> f64 {
+        let (apex, axis) = (light.position.into(), light.direction.into());
+        let cosine = region.map_or(1.0, |region| region.most_cosine(apex, axis));
+        max_attenuation(light, region) * libm::pow(cosine.max(0.0), light.exponent)
+    }
+
+    fn fraction_at(light: &ViewLight, cosine: f64) -> f64 {
+        let inside = cosine > light.cos_half_aperture;
+        if inside { libm::pow(cosine, light.exponent) } else { 0.0 }
+    }
+
+    /// With c = min(1, F.(-L)), F the axis: c^n of the light arrives if c is more than the cosine
+    /// of the half-aperture, and none otherwise. Warn, "Lighting Controls for Synthetic Images",
+    /// SIGGRAPH 1983.
+    #[inline(always)]
+    fn shade<M: Lanes, H: Highlight>(
+        lanes: M,
+        sample: Sample<M::R>,
+        term: &LightTerm<M::Number>,
+    ) -> Option<Reflected<M::R>> {
+        let (to_light, strength) = arriving(lanes, sample.position, term);
+        let c = Real::min(set(lanes, term.axis).dot(to_light), lanes.lift(1.0));
+        let border = lanes.set(term.cos_half_aperture);
+        if !lanes.any_more(c, border) {
+            return None;
+        }
+        let gathered = c.power(&term.gathered);
+        let strength = c.if_more(border, strength * gathered, lanes.lift(0.0));
+        phong::<M, H>(lanes, sample, to_light, Some(strength), term)
+    }
+}

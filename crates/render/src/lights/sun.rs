@@ -1,0 +1,37 @@
+//! Directional lights.
+
+use glam::DVec3;
+
+use super::batch::{Reflected, Sample, set};
+use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight, light_is_noop, phong};
+use super::region::{EDGE_ON, Region};
+use super::shader::{LightShader, Which};
+use super::turning::Turning;
+use crate::simd::Lanes;
+
+/// The same direction at every position, and no attenuation.
+pub(crate) struct Sun;
+
+impl LightShader for Sun {
+    const NAME: &'static str = "Sun";
+    const WHICH: Which = Which::Sun;
+    const HAS_POSITION: bool = false;
+
+    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
+        light_is_noop(light, material)
+    }
+
+    fn is_behind(light: &ViewLight, _: &Region, turning: &Turning) -> bool {
+        let direction = DVec3::from_array(light.direction);
+        turning.all(|normal| normal.dot(direction) > EDGE_ON)
+    }
+
+    #[inline(always)]
+    fn shade<M: Lanes, H: Highlight>(
+        lanes: M,
+        sample: Sample<M::R>,
+        term: &LightTerm<M::Number>,
+    ) -> Option<Reflected<M::R>> {
+        phong::<M, H>(lanes, sample, set(lanes, term.axis), None, term)
+    }
+}

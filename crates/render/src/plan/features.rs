@@ -1,0 +1,336 @@
+//! Explains the effects of an object's surface and lines, finds the pixels that they take part in,
+//! and removes them: one row for each effect that is not a light.
+//!
+//! The rows read the finished draw, so the explanation agrees with what is drawn.
+
+use std::borrow::Cow;
+
+use super::planning::{Planner, Planning};
+use super::rules::Reading;
+use super::uses::{Effect, EffectState, EffectUse, Thing};
+use crate::frame::FramePlan;
+use crate::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
+use crate::lights::Form;
+use marraztu_core::accuracy::{Filter, LightAt, Settings, Tangents, Transparency};
+use marraztu_core::scene::{ItemId, MapKind, Normals, Object, Sides, Surface};
+
+/// What a row reads.
+struct Facts<'a> {
+    settings: &'a Settings,
+    object: &'a Object,
+    draw: &'a Draw,
+    /// The pipelines of its lit or textured parts.
+    shaded: Vec<&'a Shaded>,
+}
+
+/// A row of the table: an effect, its explanation, and whether a surface has it, if surfaces do.
+struct Feature(Effect, fn(&Facts<'_>) -> EffectState, Option<fn(&Shaded) -> bool>);
+
+/// The table: one row for each effect of surfaces or lines.
+const FEATURES: &[Feature] = &[
+    Feature(Effect::Surfaces, surfaces, None),
+    Feature(Effect::Normals, normals, None),
+    Feature(Effect::Texture, texture, Some(|shaded| shaded.texture.is_some())),
+    Feature(Effect::AlphaTest, holes, Some(|shaded| shaded.cutout.is_some())),
+    Feature(Effect::Transparency, transparency, Some(|shaded| shaded.opacity.is_some())),
+    Feature(Effect::VertexColors, vertex_colors, Some(|shaded| shaded.vertex_colors)),
+    Feature(Effect::Emission, emission, Some(|shaded| shaded.extras.emission.is_some())),
+    Feature(Effect::Maps, maps, Some(|shaded| shaded.extras.has_maps())),
+    Feature(Effect::Bumps, bumps, Some(|shaded| shaded.extras.bump.is_some())),
+    Feature(Effect::BackFaces, back_faces, None),
+    Feature(Effect::Edges, |it| switched(it.draw.lines.edges), None),
+    Feature(Effect::FaceNormals, |it| switched(it.draw.lines.face_normals.is_some()), None),
+    Feature(Effect::VertexNormals, |it| switched(it.draw.lines.vertex_normals.is_some()), None),
+];
+
+/// The effect that stands for an item being drawn at all.
+pub(crate) const fn presence(item: ItemId) -> Effect {
+    match item {
+        ItemId::Object(_) => Effect::Surfaces,
+        ItemId::Camera(_) | ItemId::Light(_) => Effect::Marks,
+    }
+}
+
+/// The effects of a surface that are not lights.
+pub(crate) fn of_surface(shaded: &Shaded) -> impl Iterator<Item = Effect> {
+    let there = |row: &&Feature| row.2.is_some_and(|is_in| is_in(shaded));
+    FEATURES.iter().filter(there).map(|row| row.0)
+}
+
+impl Planner<'_> {
+    /// Notes the effects of a draw that are not lights.
+    pub(super) fn note_features(&self, into: &mut Planning, object: &Object, draw: &Draw) {
+        let Planning { plan, notes, .. } = into;
+        let facts = || {
+            let pipelines = draw.part_pipelines.iter().flatten();
+            let pipelines = pipelines.map(|pipeline| &plan.pipelines[*pipeline as usize]);
+            let shaded = pipelines.filter_map(|pipeline| match pipeline {
+                Pipeline::Shaded(shaded) => Some(shaded),
+                Pipeline::Flat(_) => None,
+            });
+            Facts { settings: &self.shot.settings, object, draw, shaded: shaded.collect() }
+        };
+        let note = |effect: Effect, state: EffectState| EffectUse {
+            effect,
+            name: effect.label().to_owned(),
+            on: Some(Thing { item: draw.item, name: object.name.clone() }),
+            state,
+            pixels: None,
+        };
+        let presence = presence(draw.item);
+        if presence == Effect::Marks {
+            return notes.add(|| note(presence, EffectState::ON));
+        }
+        for Feature(effect, state, _) in FEATURES {
+            notes.add(|| note(*effect, state(&facts())));
+        }
+    }
+}
+
+impl FramePlan {
+    /// The plan without an effect: another picture, and less work. `None` if it does not use the
+    /// effect, or cannot do without it.
+    #[must_use]
+    pub fn without(&self, effect: Effect) -> Option<Self> {
+        let mut plan = self.clone();
+        match effect {
+            Effect::Light(id) => {
+                let index = self.light_ids.iter().position(|light| *light == id)?;
+                plan.for_each_light(|stages| stages.retain(|stage| stage.light as usize != index));
+            }
+            Effect::Shadows(id) => {
+                let index = self.light_ids.iter().position(|light| *light == id)?;
+                *plan.shadows.sources.get_mut(index)? = None;
+            }
+            Effect::Highlights => plan.for_each_light(|stages| {
+                stages.iter_mut().for_each(|stage| stage.highlight = Form::Plain);
+            }),
+            Effect::Texture => plan.for_each_shaded(|shaded| {
+                shaded.texture = None;
+                if shaded.opacity_map.is_none() {
+                    shaded.cutout = None;
+                }
+            }),
+            Effect::AlphaTest => plan.for_each_shaded(|shaded| {
+                if shaded.cutout.is_some() {
+                    (shaded.cutout, shaded.opacity_map) = (None, None);
+                }
+            }),
+            Effect::Transparency => plan.for_each_shaded(|shaded| shaded.opacity = None),
+            Effect::VertexColors => plan.for_each_shaded(|shaded| shaded.vertex_colors = false),
+            Effect::Emission => plan.for_each_shaded(|shaded| shaded.extras.emission = None),
+            Effect::Maps => plan.for_each_shaded(|shaded| {
+                shaded.extras.ambient.iter_mut().for_each(|ambient| ambient.map = None);
+                (shaded.extras.specular, shaded.extras.exponent) = (None, None);
+                for stage in shaded.light.iter_mut().flatten() {
+                    stage.is_mapped = false;
+                }
+            }),
+            Effect::Bumps => plan.for_each_shaded(|shaded| shaded.extras.bump = None),
+            // A factor of the lights costs nothing.
+            Effect::Exposure => return None,
+            Effect::LinearLight => plan.variants = plan.variants.in_stored_values(),
+            Effect::BackFaces => plan.draws.iter_mut().for_each(|draw| draw.back = Back::Culled),
+            Effect::Edges => plan.draws.iter_mut().for_each(|draw| draw.lines.edges = false),
+            Effect::FaceNormals => {
+                plan.draws.iter_mut().for_each(|draw| draw.lines.face_normals = None);
+            }
+            Effect::VertexNormals => {
+                plan.draws.iter_mut().for_each(|draw| draw.lines.vertex_normals = None);
+            }
+            Effect::Marks => plan.draws.retain(|draw| matches!(draw.item, ItemId::Object(_))),
+            Effect::Surfaces => plan.draws.iter_mut().for_each(|draw| draw.filled = false),
+            Effect::Normals => return None,
+        }
+        (plan != *self).then_some(plan)
+    }
+
+    fn for_each_shaded(&mut self, change: impl Fn(&mut Shaded)) {
+        for pipeline in &mut self.pipelines {
+            if let Pipeline::Shaded(shaded) = pipeline {
+                change(shaded);
+            }
+        }
+    }
+
+    fn for_each_light(&mut self, change: impl Fn(&mut Vec<Stage>)) {
+        let rules = self.rules;
+        self.for_each_shaded(|shaded| {
+            if let Some(stages) = &mut shaded.light {
+                change(stages);
+                shaded.needs_positions = rules.positions(&Reading::of(stages.iter())).is_none();
+            }
+        });
+    }
+}
+
+fn switched(on: bool) -> EffectState {
+    if on { EffectState::ON } else { EffectState::exact("switched off") }
+}
+
+fn surfaces(it: &Facts<'_>) -> EffectState {
+    if !it.draw.filled {
+        EffectState::exact("edges only")
+    } else if it.draw.part_pipelines.iter().all(Option::is_none) {
+        EffectState::exact("every part is hidden, or its opacity is too low")
+    } else {
+        EffectState::ON
+    }
+}
+
+/// On if `is` holds for any part of the object.
+fn any(
+    it: &Facts<'_>,
+    is: impl Fn(&Shaded) -> bool,
+    word: Cow<'static, str>,
+) -> Option<EffectState> {
+    it.shaded.iter().any(|shaded| is(shaded)).then_some(EffectState::On(word))
+}
+
+fn normals(it: &Facts<'_>) -> EffectState {
+    let whose = match it.draw.normals {
+        Normals::Vertex => "of vertices, interpolated",
+        Normals::Face => "of faces",
+    };
+    let left_out = match it.settings.light {
+        _ if !it.draw.filled => "edges only",
+        LightAt::Face => "light is evaluated at faces",
+        LightAt::Vertex => "light is evaluated at vertices",
+        LightAt::Pixel | LightAt::Sample => "no light reads them",
+    };
+    let per_pixel = it.settings.light == LightAt::Pixel;
+    any(it, |shaded| per_pixel && shaded.needs_positions, whose.into())
+        .unwrap_or(EffectState::exact(left_out))
+}
+
+fn texture(it: &Facts<'_>) -> EffectState {
+    let filter = match it.settings.filter {
+        Filter::Nearest => "nearest texel",
+        Filter::Bilinear => "bilinear",
+        Filter::Trilinear => "trilinear",
+    };
+    let left_out = if !it.draw.filled {
+        "edges only"
+    } else if it.object.surface == Surface::Material {
+        "only the material is shown"
+    } else if it.object.model.mesh.uvs().is_empty() {
+        "the file places none"
+    } else {
+        "there is none"
+    };
+    any(it, |shaded| shaded.texture.is_some(), filter.into())
+        .unwrap_or(EffectState::exact(left_out))
+}
+
+fn holes(it: &Facts<'_>) -> EffectState {
+    let textured = it.shaded.iter().any(|shaded| shaded.texture.is_some());
+    let left_out = if textured { "every texel is opaque" } else { "no texture" };
+    let mapped = |shaded: &Shaded| shaded.cutout.is_some() && shaded.opacity_map.is_some();
+    if let Some(on) = any(it, mapped, "with map_d".into()) {
+        return on;
+    }
+    any(it, |shaded| shaded.cutout.is_some(), "".into()).unwrap_or(EffectState::exact(left_out))
+}
+
+fn transparency(it: &Facts<'_>) -> EffectState {
+    let how = match it.settings.transparency {
+        Transparency::Exact => "pixel by pixel, the farthest first",
+        Transparency::Objects => "object by object, the farthest first",
+        Transparency::Weighted => "a weighted mean",
+        Transparency::Threshold => return EffectState::exact("a threshold of one half"),
+    };
+    any(it, |shaded| shaded.opacity.is_some(), how.into())
+        .unwrap_or(EffectState::exact("it is opaque"))
+}
+
+/// Whether a part of the object names a map of one of these kinds.
+fn names(it: &Facts<'_>, kinds: &[MapKind]) -> bool {
+    let parts = u32::try_from(it.object.model.mesh.parts().len()).unwrap_or(u32::MAX);
+    let named = |part: u32| kinds.iter().any(|kind| it.object.part_look(part).map(*kind).is_some());
+    (0..parts).any(named)
+}
+
+fn emission(it: &Facts<'_>) -> EffectState {
+    let mapped = any(
+        it,
+        |shaded| shaded.extras.emission.as_ref().is_some_and(|glow| glow.map.is_some()),
+        "Ke times map_Ke".into(),
+    );
+    let plain = any(it, |shaded| shaded.extras.emission.is_some(), "Ke".into());
+    let left_out = match it.object.surface {
+        _ if !it.draw.filled => "edges only",
+        Surface::Texture => "the texture is shown, not lit",
+        Surface::Material | Surface::TextureAndLight => "Ke is 0",
+    };
+    mapped.or(plain).unwrap_or(EffectState::exact(left_out))
+}
+
+fn maps(it: &Facts<'_>) -> EffectState {
+    type Reads = fn(&Shaded) -> bool;
+    let rows: [(&str, Reads); 3] = [
+        ("map_Ka", |shaded| shaded.extras.ambient.is_some()),
+        ("map_Ks", |shaded| shaded.extras.specular.is_some()),
+        ("map_Ns", |shaded| shaded.extras.exponent.is_some()),
+    ];
+    let on = rows.iter().filter(|(_, is)| it.shaded.iter().any(|shaded| is(shaded)));
+    let on: Vec<&str> = on.map(|(name, _)| *name).collect();
+    if !on.is_empty() {
+        return EffectState::On(on.join(", ").into());
+    }
+    let named = names(it, &[MapKind::Ambient, MapKind::Specular, MapKind::Exponent]);
+    EffectState::exact(match it.settings.light {
+        _ if !it.draw.filled => "edges only",
+        _ if !named => "the file has none",
+        _ if it.object.model.mesh.uvs().is_empty() => "the file places none",
+        LightAt::Face | LightAt::Vertex => "no light at pixels reads them",
+        LightAt::Pixel | LightAt::Sample => "no light reads them",
+    })
+}
+
+fn bumps(it: &Facts<'_>) -> EffectState {
+    let heights = |shaded: &Shaded| shaded.extras.bump.as_ref().is_some_and(|it| it.gain.is_some());
+    let tangents = match it.settings.tangents {
+        Tangents::Vertex => "tangents at vertices",
+        Tangents::Pixel => "tangents at pixels",
+    };
+    let normals =
+        any(it, |shaded| shaded.extras.bump.is_some(), format!("normals, {tangents}").into());
+    let heights = any(it, heights, format!("heights, {tangents}").into());
+    let left_out = match it.settings.light {
+        _ if !it.draw.filled => "edges only",
+        _ if !names(it, &[MapKind::Bump, MapKind::Normal]) => "the file has none",
+        _ if it.object.model.mesh.uvs().is_empty() => "the file places none",
+        LightAt::Face => "light is evaluated at faces",
+        LightAt::Vertex => "light is evaluated at vertices",
+        LightAt::Pixel | LightAt::Sample => "no light reads them, or their -bm is 0",
+    };
+    heights.or(normals).unwrap_or(EffectState::exact(left_out))
+}
+
+fn vertex_colors(it: &Facts<'_>) -> EffectState {
+    let left_out = if !it.draw.filled {
+        "edges only"
+    } else if it.object.surface == Surface::Material {
+        "only the material is shown"
+    } else {
+        "the file has none"
+    };
+    any(it, |shaded| shaded.vertex_colors, "".into()).unwrap_or(EffectState::exact(left_out))
+}
+
+fn back_faces(it: &Facts<'_>) -> EffectState {
+    match it.draw.back {
+        Back::Culled if it.object.sides == Sides::Auto => {
+            EffectState::exact("the surface is closed")
+        }
+        Back::Culled => EffectState::exact("one side is drawn"),
+        Back::Red => EffectState::On("red, not lit".into()),
+        Back::Lit if it.draw.culls_opaque => {
+            EffectState::On("lit: they show through the front".into())
+        }
+        Back::Lit if it.object.sides == Sides::Auto => {
+            EffectState::On("lit: the surface is open".into())
+        }
+        Back::Lit => EffectState::On("lit from both sides".into()),
+    }
+}

@@ -1,0 +1,73 @@
+//! Helpers: models that stand for cameras and bulbs, which have no surface of their own.
+
+use std::sync::OnceLock;
+
+use glam::{DMat3, DMat4, DVec3};
+
+use super::observer::ObserverSpace;
+use marraztu_core::base::once::get_or_compute;
+use marraztu_core::base::{Shared, color::Color, math};
+use marraztu_core::scene::{
+    Camera, LoadOptions, Mesh, MeshSource, Model, NONE, Part, SourceCorner,
+};
+
+/// The colour of a bulb's diamond.
+pub(super) const YELLOW: Color = Color([255, 255, 0]);
+
+/// The size of a camera model: its longest side, in units of the world.
+const CAMERA_MARK: f64 = 24.0;
+
+/// Half of a diamond's diagonal in units of the world.
+const DIAMOND: f64 = 1.0;
+
+/// The least length of a diamond's diagonal in pixels.
+const DIAMOND_PIXELS: f64 = 9.0;
+
+/// Places a camera model at the camera's eye, in its frame.
+pub(super) fn world_from_mark(camera: &Camera) -> DMat4 {
+    let extent = camera.model.mesh.bounds().map_or(0.0, |bounds| bounds.extent().max_element());
+    let scale = if extent > 0.0 { CAMERA_MARK / extent } else { 1.0 };
+    camera.pose.now().world_from_camera() * DMat4::from_scale(DVec3::splat(scale))
+}
+
+/// Places the diamond of a bulb: it faces the observer and is never smaller than nine pixels.
+/// `None` if the bulb is not in front of the observer.
+pub(super) fn world_from_diamond(observer: &ObserverSpace, bulb: DVec3) -> Option<DMat4> {
+    let place = observer.view_from_world.transform_point3(bulb);
+    let w = (observer.clip_from_view * place.extend(1.0)).w;
+    if w <= 0.0 {
+        return None;
+    }
+    // The size of a unit of the world at that distance, in pixels.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 rows")]
+    let pixels =
+        observer.clip_from_view.y_axis.y * observer.unit / w * observer.size.height as f64 / 2.0;
+    let half = DIAMOND.max(DIAMOND_PIXELS / 2.0 / pixels);
+    let axes = DMat3::from_mat4(observer.world_from_view);
+    Some(math::placed(axes * half, bulb))
+}
+
+/// A square on its corner, from -1 to 1, facing +Z.
+pub(super) fn diamond() -> &'static Shared<Model> {
+    static DIAMOND: OnceLock<Shared<Model>> = OnceLock::new();
+    get_or_compute(&DIAMOND, || {
+        let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
+        let mesh = Mesh::new(MeshSource {
+            positions: vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]],
+            corners: [0, 1, 2, 3].map(corner).to_vec(),
+            arities: vec![4],
+            polygon_parts: vec![0],
+            parts: vec![Part { name: "diamond".to_owned(), material: None }],
+            ..MeshSource::default()
+        });
+        Shared::new(Model {
+            name: "diamond".to_owned(),
+            source: None,
+            companions: Vec::new(),
+            options: LoadOptions::default(),
+            mesh: mesh.expect("a square is a mesh"),
+            materials: Vec::new(),
+            edge_color: None,
+        })
+    })
+}

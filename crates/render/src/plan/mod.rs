@@ -1,0 +1,132 @@
+//! Decides what a frame draws, and says why. No pixel is touched here.
+//!
+//! A [`FramePlan`] holds a snapshot of everything that drawing reads, transformed to view space.
+//! What the scene does not need is left out of it; [`explain_frame`] says what, and why. Light that
+//! only some tiles need is culled tile by tile, when their depths are known (`TilePlan`).
+
+mod bounded;
+mod cover;
+pub(crate) mod features;
+mod ground;
+mod helpers;
+mod maps;
+mod observer;
+mod planner;
+mod planning;
+mod range;
+mod rules;
+mod shadows;
+mod surfaces;
+pub(crate) mod tile;
+mod turning;
+pub(crate) mod uses;
+mod view_lights;
+
+use self::observer::ObserverSpace;
+use self::planning::{Planner, Planning};
+use self::uses::Notes;
+pub use self::uses::{Class, Effect, EffectState, EffectUse, Thing};
+use self::view_lights::view_lights;
+use crate::frame::shadows::Shadows;
+use crate::frame::variants::Variants;
+use crate::frame::{Eye, FramePlan, Rules};
+use marraztu_core::accuracy::{
+    Arithmetic, LeaveOut, LightAt, LightValues, Samples, Settings, Shot,
+};
+use marraztu_core::scene::Projection;
+
+/// Plans the picture of a shot.
+#[must_use]
+pub fn plan_frame(shot: &Shot) -> FramePlan {
+    planned(Rules::Applied, Notes::default, shot).plan
+}
+
+/// Plans the same picture with everything that the scene names, needed or not. It is slower;
+/// [`plan_frame`] is tested against it.
+#[must_use]
+pub fn plan_everything(shot: &Shot) -> FramePlan {
+    planned(Rules::Ignored, Notes::default, shot).plan
+}
+
+/// Plans a frame like [`plan_frame`], and explains for each effect of the scene whether the frame
+/// uses it, and why not.
+#[must_use]
+pub fn explain_frame(shot: &Shot) -> (FramePlan, Vec<EffectUse>) {
+    let Planning { plan, notes, .. } = planned(Rules::Applied, Notes::wanted, shot);
+    (plan, notes.into_uses())
+}
+
+/// Plans in the chosen arithmetic, or in f64 if the frame's numbers do not fit f32.
+fn planned(rules: Rules, notes: fn() -> Notes, shot: &Shot) -> Planning {
+    let as_asked = planned_in(rules, notes(), shot);
+    if shot.settings.arithmetic == Arithmetic::F64 || as_asked.plan.has_room() {
+        return as_asked;
+    }
+    let settings = Settings { arithmetic: Arithmetic::F64, ..shot.settings };
+    planned_in(rules, notes(), &shot.with(settings))
+}
+
+fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
+    let observer = ObserverSpace::new(shot);
+    let by_sample = shot.settings.light == LightAt::Sample;
+    let light = if by_sample { LightAt::Pixel } else { shot.settings.light };
+    let shot = &shot.with(Settings { light, ..shot.settings });
+    let Shot { scene, view, settings, size } = shot;
+    let plan = FramePlan {
+        size: *size,
+        background: scene.background,
+        eye: match view.projection {
+            Projection::Perspective => Eye::Point,
+            Projection::Orthographic => Eye::Parallel,
+        },
+        arithmetic: settings.arithmetic,
+        light_at: settings.light,
+        samples: settings.samples,
+        lit_by_sample: by_sample && settings.samples != Samples::One,
+        shift: [0; 2],
+        filter: settings.filter,
+        transparency: settings.transparency,
+        variants: Variants::of(settings),
+        view_from_world: observer.view_from_world,
+        clip_from_view: observer.clip_from_view,
+        line_width: if view.wide_lines { 2 } else { 1 },
+        lights: Vec::new(),
+        light_ids: Vec::new(),
+        shadows: Shadows::default(),
+        draws: Vec::new(),
+        pipelines: Vec::new(),
+        // How faint light shows in linear values depends on what else is there.
+        leave_out: match settings.light_values {
+            LightValues::Stored => settings.leave_out,
+            LightValues::Linear => LeaveOut::Unseen,
+        },
+        rules,
+    };
+    let mut into = Planning::new(plan, notes);
+    into.notes.add(|| EffectUse {
+        effect: Effect::LinearLight,
+        name: Effect::LinearLight.label().to_owned(),
+        on: None,
+        state: match settings.light_values {
+            LightValues::Linear => EffectState::On("colours decoded, pictures encoded".into()),
+            LightValues::Stored => EffectState::exact("colours are used as they are stored"),
+        },
+        pixels: None,
+    });
+    let shining = view_lights(&mut into, scene, view, &observer);
+    let planner = Planner { shot, observer, shining };
+    planner.add_shadows(&mut into);
+    planner.add_objects(&mut into);
+    if view.marks {
+        planner.add_marks(&mut into);
+    } else {
+        into.notes.add(|| EffectUse {
+            effect: Effect::Marks,
+            name: Effect::Marks.label().to_owned(),
+            on: None,
+            state: EffectState::exact("switched off"),
+            pixels: None,
+        });
+    }
+    into
+}

@@ -1,0 +1,171 @@
+//! The observer's spaces, and what is outside the view.
+
+use glam::{DMat3, DMat4, DVec3, DVec4};
+
+use crate::lights::region::Region;
+use crate::screen::clip::Screen;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::Size;
+use marraztu_core::base::math;
+use marraztu_core::scene::{Lens, Projection, Spheres};
+
+/// The distance of the far plane in units of view space: at least this, and less than twice this.
+const FAR: f64 = 1024.0;
+
+/// The unit of view space for a lens, clamped so that its square fits f64.
+fn unit(lens: &Lens, projection: Projection) -> f64 {
+    let far = match projection {
+        Projection::Perspective => lens.far,
+        Projection::Orthographic => {
+            lens.parallel_near.abs().max(lens.parallel_far.abs()).max(lens.half_size)
+        }
+    };
+    FAR / math::power_of_two_near(far.clamp(1e-120, 1e120))
+}
+
+/// The observer's spaces.
+///
+/// View space has a unit of its own, a power of two, in which the far plane is about a thousand
+/// units away. So lighting in f32 works alike for scenes of atoms and of stars; for scenes of
+/// ordinary size the unit is that of the world.
+#[derive(Debug)]
+pub(crate) struct ObserverSpace {
+    /// Units of view space per unit of the world.
+    pub(crate) unit: f64,
+    pub(crate) world_from_view: DMat4,
+    pub(crate) view_from_world: DMat4,
+    pub(crate) clip_from_view: DMat4,
+    pub(crate) size: Size,
+}
+
+impl ObserverSpace {
+    pub(super) fn new(shot: &Shot) -> Self {
+        let Shot { scene, view, size, .. } = shot;
+        let size = *size;
+        let world_from_view = scene.observer_frame(view);
+        // The axes are orthonormal, so the inverse rotation is the transposed one.
+        let turn = DMat3::from_mat4(world_from_view).transpose();
+        let eye = world_from_view.w_axis.truncate();
+        let lens = scene.selected_camera(view).lens;
+        let unit = unit(&lens, view.projection);
+        let turned = math::placed(turn, DVec3::ZERO) * DMat4::from_translation(-eye);
+        let lens = Lens {
+            near: lens.near * unit,
+            far: lens.far * unit,
+            half_size: lens.half_size * unit,
+            parallel_near: lens.parallel_near * unit,
+            parallel_far: lens.parallel_far * unit,
+            ..lens
+        };
+        Self {
+            unit,
+            world_from_view,
+            view_from_world: DMat4::from_scale(DVec3::splat(unit)) * turned,
+            clip_from_view: lens.clip_from_view(view.projection, size),
+            size,
+        }
+    }
+
+    /// Whether a box lies wholly outside one of the view's planes, so far that no line along its
+    /// border reaches in.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    pub(super) fn misses(&self, clip_from_object: DMat4, corners: [DVec3; 8]) -> bool {
+        let clip = corners.map(|corner| clip_from_object * corner.extend(1.0));
+        let aside = |pixels: usize| 1.0 + 2.0 * LINE / pixels as f64;
+        let (x, y) = (aside(self.size.width), aside(self.size.height));
+        // Some margin for rounding, so that nothing is culled that geometry would keep.
+        let beyond = |distance: &dyn Fn(DVec4) -> f64| {
+            clip.iter().all(|p| distance(*p) < -1e-9 * (p.w.abs() + p.abs().max_element()))
+        };
+        beyond(&|p| p.w * x + p.x)
+            || beyond(&|p| p.w * x - p.x)
+            || beyond(&|p| p.w * y + p.y)
+            || beyond(&|p| p.w * y - p.y)
+            || beyond(&|p| p.z)
+            || beyond(&|p| p.w - p.z)
+    }
+
+    /// The view's planes for spheres in the world, each moved outwards as for [`Self::misses`].
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    pub(super) fn spheres_outside(&self) -> SpherePlanes {
+        let rows = (self.clip_from_view * self.view_from_world).transpose();
+        let [x, y, z, w] = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis];
+        let aside = |pixels: usize| 1.0 + 2.0 * LINE / pixels as f64;
+        let (wx, wy) = (w * aside(self.size.width), w * aside(self.size.height));
+        let sizes = [x, y, z, w].map(|row| row.abs());
+        let sum = sizes.into_iter().sum::<DVec4>();
+        SpherePlanes {
+            planes: [wx + x, wx - x, wy + y, wy - y, z, w - z]
+                .map(|plane| (plane, plane.truncate().length())),
+            per_distance: MARGIN * sum.truncate().max_element(),
+            fixed: MARGIN * sum.w,
+        }
+    }
+
+    /// Whether a box lies so far inside the clipping planes that nothing in it is clipped.
+    pub(super) fn holds(&self, clip_from_object: DMat4, corners: [DVec3; 8]) -> bool {
+        let screen = Screen::new(clip_from_object, self.size);
+        corners.iter().all(|corner| screen.holds(screen.clip(corner.to_array())))
+    }
+
+    /// The region of the positions at which a box's content is lit per pixel, provided that nothing
+    /// of it is clipped.
+    ///
+    /// A pixel's position is the point of its ray at the depth of the snapped triangle: part of a
+    /// pixel beside the true one, and in perspective its w is as inexact as 1/w is at the
+    /// triangle's nearest corner.
+    pub(super) fn seen_region(&self, view_from_object: DMat4, corners: [DVec3; 8]) -> Region {
+        let placed = Region::placed(view_from_object, corners, 0.0);
+        let w =
+            corners.map(|corner| (self.clip_from_view * view_from_object * corner.extend(1.0)).w);
+        let (nearest, farthest) =
+            w.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), w| (low.min(*w), high.max(*w)));
+        let beside = SNAPPED * self.pixel() * farthest;
+        let deeper = ROUNDING * placed.reach() * (1.0 + farthest / nearest);
+        Region::placed(view_from_object, corners, beside + deeper)
+    }
+
+    /// The size of a pixel in view space at w = 1.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    fn pixel(&self) -> f64 {
+        let Size { width, height } = self.size;
+        let across = 2.0 / (width as f64 * self.clip_from_view.x_axis.x);
+        across.max(2.0 / (height as f64 * self.clip_from_view.y_axis.y))
+    }
+}
+
+/// The planes of a view in the world, whose inside is positive.
+#[derive(Debug)]
+pub(super) struct SpherePlanes {
+    /// Each with the length of its normal.
+    planes: [(DVec4, f64); 6],
+    /// The margin for rounding: this much for each unit of distance from the origin,
+    per_distance: f64,
+    /// and this much everywhere.
+    fixed: f64,
+}
+
+impl SpherePlanes {
+    /// Whether sphere `i` lies wholly outside one of the planes.
+    pub(super) fn misses(&self, spheres: &Spheres, i: usize) -> bool {
+        let [x, y, z] = math::each([0, 1, 2], |axis| spheres.centres[axis][i]);
+        let radius = spheres.radii[i];
+        let far = x.abs() + y.abs() + z.abs() + radius;
+        let margin = far * self.per_distance + self.fixed;
+        let centre = DVec4::new(x, y, z, 1.0);
+        self.planes.iter().any(|(plane, length)| plane.dot(centre) + length * radius < -margin)
+    }
+}
+
+/// More than the margin of [`ObserverSpace::misses`], so that both agree.
+const MARGIN: f64 = 1e-8;
+
+/// How many pixels beside its position a line may be drawn: half of its width, and half a pixel of
+/// rounding.
+const LINE: f64 = 2.0;
+
+/// Twice the distance in pixels by which snapping may move a position.
+const SNAPPED: f64 = 0.006;
+
+/// The error of interpolation in f32, relative to the largest value.
+const ROUNDING: f64 = 2e-6;

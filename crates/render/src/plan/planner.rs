@@ -1,0 +1,305 @@
+//! Turns the items of a scene into draws.
+
+use std::collections::BTreeSet;
+
+use glam::{DMat3, DMat4, DVec3};
+
+use super::cover::Cover;
+use super::features::presence;
+use super::ground::Ground;
+use super::helpers;
+use super::observer::ObserverSpace;
+use super::planning::{Planner, Planning};
+use super::rules::Thing;
+use super::turning::{shows_fronts_only, turning_of};
+use super::uses::{self, EffectState, EffectUse};
+use crate::frame::Rules;
+use crate::frame::draw::{Back, Draw, Lines, Pipeline};
+use crate::frame::variants::Variants;
+use crate::lights::region::Region;
+use marraztu_core::accuracy::{LightAt, NormalMatrix, VertexArithmetic};
+use marraztu_core::base::{Shared, color::Color, math};
+use marraztu_core::scene::{
+    Fill, ItemId, LightId, Model, NormalLength, NormalSource, Object, ObjectId, Observer,
+};
+
+/// The transforms of an object for the observer.
+struct Placement {
+    view_from_object: DMat4,
+    clip_from_object: DMat4,
+}
+
+impl Planner<'_> {
+    /// Adds objects, the oldest first.
+    pub(super) fn add_objects(&self, into: &mut Planning) {
+        let scene = &self.shot.scene;
+        let spheres = scene.objects.spheres();
+        let outside = self.culls_spheres(into).then(|| self.observer.spheres_outside());
+        for (i, place) in spheres.places.iter().enumerate() {
+            if outside.as_ref().is_some_and(|planes| planes.misses(spheres, i)) {
+                continue;
+            }
+            let (id, object) = scene.objects.at(*place as usize).expect("a sphere for each object");
+            match self.not_asked_for(id, object) {
+                Some(reason) => left_out(into, ItemId::Object(id), &object.name, reason),
+                None => self.add_object(into, ItemId::Object(id), object),
+            }
+        }
+    }
+
+    /// Whether objects whose spheres are outside the view are skipped: nothing of them can be
+    /// seen, and no one asks why.
+    fn culls_spheres(&self, into: &Planning) -> bool {
+        let view = &self.shot.view;
+        into.plan.rules == Rules::Applied
+            && !into.notes.are_wanted()
+            && !into.plan.variants.has_geometry_variant()
+            && !view.face_normals
+            && !view.vertex_normals
+    }
+
+    /// The reason why the view does not show an object, if there is one.
+    fn not_asked_for(&self, id: ObjectId, object: &Object) -> Option<&'static str> {
+        let alone = self.shot.view.only_selected || self.shot.view.polygons.is_some();
+        if !object.visible {
+            Some("hidden")
+        } else if alone && self.shot.view.object != Some(id) {
+            Some("only the selected object is shown")
+        } else {
+            None
+        }
+    }
+
+    /// Whether the view shows an object.
+    pub(super) fn is_asked_for(&self, id: ObjectId, object: &Object) -> bool {
+        self.not_asked_for(id, object).is_none()
+    }
+
+    fn add_object(&self, into: &mut Planning, item: ItemId, object: &Object) {
+        let selected = self.shot.view.object.map(ItemId::Object) == Some(item);
+        let polygons = self.shot.view.polygons.as_ref().filter(|_| selected).map(|mode| {
+            if self.shot.view.polygons_stay {
+                mode.shown.clone()
+            } else {
+                BTreeSet::from([mode.current])
+            }
+        });
+        let back = match (object.is_two_sided(), self.shot.view.back_faces) {
+            (true, _) => Back::Lit,
+            (false, true) => Back::Red,
+            (false, false) => Back::Culled,
+        };
+        let draw = Draw {
+            back,
+            normal_source: if object.file_normals {
+                NormalSource::File
+            } else {
+                NormalSource::Computed
+            },
+            polygons,
+            lines: self.lines(&object.model, object.edge_color),
+            ..self.draw(item, &object.model, object.world_from_mesh(self.shot.view.time))
+        };
+        self.add(into, object, draw);
+    }
+
+    /// A draw of a placed mesh, whose surface is not decided yet.
+    fn draw(&self, item: ItemId, model: &Shared<Model>, world_from_object: DMat4) -> Draw {
+        let Placement { view_from_object, clip_from_object } = self.placement(world_from_object);
+        let linear = DMat3::from_mat4(view_from_object);
+        Draw {
+            item,
+            model: model.clone(),
+            clip_from_object,
+            view_from_object,
+            view_from_normal: match self.shot.settings.stretched {
+                NormalMatrix::Cofactor => math::normal_matrix(linear),
+                NormalMatrix::AsItIs => math::at_power_of_two(linear),
+            },
+            mirrored: linear.determinant() < 0.0,
+            back: Back::Culled,
+            culls_opaque: false,
+            normals: self.shot.view.normals,
+            normal_source: NormalSource::File,
+            part_pipelines: Vec::new(),
+            uniform: None,
+            polygons: None,
+            filled: self.shot.view.fill == Fill::Filled,
+            lines: Lines {
+                edges: false,
+                face_normals: None,
+                vertex_normals: None,
+                color: Color::WHITE,
+            },
+        }
+    }
+
+    /// Composes an object's placement with the observer's transforms.
+    fn placement(&self, world_from_object: DMat4) -> Placement {
+        let ObserverSpace { view_from_world, clip_from_view, .. } = self.observer;
+        if self.shot.settings.vertices == VertexArithmetic::F32 {
+            let view_from_object = view_from_world.as_mat4() * world_from_object.as_mat4();
+            let clip_from_object = (clip_from_view.as_mat4() * view_from_object).as_dmat4();
+            return Placement { view_from_object: view_from_object.as_dmat4(), clip_from_object };
+        }
+        let view_from_object = view_from_world * world_from_object;
+        Placement { view_from_object, clip_from_object: clip_from_view * view_from_object }
+    }
+
+    /// Adds the draw of an object, or of a helper that was made into one, unless nothing of it can
+    /// be seen.
+    fn add(&self, into: &mut Planning, object: &Object, mut draw: Draw) {
+        let item = draw.item;
+        let mesh = &object.model.mesh;
+        let Some(bounds) = mesh.bounds() else {
+            return left_out(into, item, &object.name, "it has no vertices");
+        };
+        let transparency = self.shot.settings.transparency;
+        if draw.back == Back::Culled
+            && draw.filled
+            && Cover::is_any_transparent(object, transparency)
+        {
+            // What is behind its front shows through it.
+            (draw.back, draw.culls_opaque) = (Back::Lit, true);
+        }
+        let moves = into.plan.variants.has_geometry_variant();
+        if draw.back == Back::Lit
+            && !draw.culls_opaque
+            && !moves
+            && shows_fronts_only(&draw, self.shot.view.projection)
+        {
+            draw.back = Back::Culled;
+        }
+        let thing = Thing { observer: &self.observer, draw: &draw, bounds };
+        let rules = into.plan.rules;
+        let reason = if mesh.polygon_count() == 0 {
+            Some("it has no faces")
+        } else if !math::has_full_rank(DMat3::from_mat4(draw.view_from_object)) {
+            Some("its placement is flat: it has no inside and no outside")
+        } else if moves {
+            // A variant may move it on the screen.
+            None
+        } else {
+            rules.thing(&thing)
+        };
+        if let Some(reason) = reason {
+            return left_out(into, item, &object.name, reason);
+        }
+        if draw.part_pipelines.is_empty() {
+            let seen = rules.surfaces(&thing).is_none();
+            let (region, tiled) = self.region(&draw, bounds.corners());
+            let turning = turning_of(&draw, self.shot.settings.light);
+            let ground = Ground { item, object, region, turning, tiled, seen };
+            draw.part_pipelines = self.part_pipelines(into, &ground);
+        }
+        let first = draw.part_pipelines.first().copied().flatten();
+        let alike = draw.part_pipelines.iter().all(|pipeline| *pipeline == first);
+        draw.uniform = first.filter(|_| alike);
+        self.note_features(into, object, &draw);
+        into.plan.draws.push(draw);
+    }
+
+    /// The pipeline of each part; `None` for parts that are hidden or not opaque enough.
+    fn part_pipelines(&self, into: &mut Planning, ground: &Ground<'_>) -> Vec<Option<u32>> {
+        let shown = |part: &u32| ground.object.shows_part(*part);
+        (0..ground.object.model.mesh.parts().len())
+            .map(|part| u32::try_from(part).expect("parts are numbered by 32 bits"))
+            .map(|part| Some(part).filter(shown))
+            .map(|part| part.and_then(|part| self.pipeline_of_part(into, ground, part)))
+            .collect()
+    }
+
+    /// The region in which an object is lit, if it is known, and whether nothing of it is clipped.
+    fn region(&self, draw: &Draw, corners: [DVec3; 8]) -> (Option<Region>, bool) {
+        if self.shot.settings.light != LightAt::Pixel {
+            // Lit at vertices or faces: clipping does not matter.
+            let exact = Region::placed(draw.view_from_object, corners, 0.0);
+            let error = 2e-6 * exact.reach();
+            return (Some(Region::placed(draw.view_from_object, corners, error)), false);
+        }
+        let sure = !Variants::of(&self.shot.settings).has_geometry_variant();
+        if !sure || !self.observer.holds(draw.clip_from_object, corners) {
+            return (None, false);
+        }
+        (Some(self.observer.seen_region(draw.view_from_object, corners)), true)
+    }
+
+    fn lines(&self, model: &Model, color: Color) -> Lines {
+        let view = &self.shot.view;
+        let extent = model.mesh.bounds().map_or(0.0, |bounds| bounds.extent().max_element());
+        let length = match view.normal_length {
+            NormalLength::Units => 5.0,
+            NormalLength::BySize => extent / 20.0,
+        };
+        Lines {
+            edges: view.fill == Fill::Edges || view.edges_over_fill,
+            face_normals: view.face_normals.then_some(length),
+            vertex_normals: view.vertex_normals.then_some(length),
+            color,
+        }
+    }
+
+    /// Adds helpers: the cameras other than the observer, and the bulbs that are on.
+    pub(super) fn add_marks(&self, into: &mut Planning) {
+        let object_looks = self.shot.view.observer == Observer::Object
+            && self.shot.view.object.is_some_and(|id| self.shot.scene.objects.get(id).is_some());
+        for (id, camera) in self.shot.scene.cameras.iter() {
+            let looks = !object_looks && self.shot.view.camera == id;
+            let reason = match (looks, camera.visible) {
+                (true, _) => Some("it looks"),
+                (false, false) => Some("hidden"),
+                (false, true) => None,
+            };
+            if let Some(reason) = reason {
+                left_out(into, ItemId::Camera(id), &camera.name, reason);
+                continue;
+            }
+            let mark = Object {
+                name: camera.name.clone(),
+                ..Object::new(camera.model.clone(), camera.material.clone())
+            };
+            let placement = helpers::world_from_mark(camera);
+            let draw = Draw {
+                back: if self.shot.view.back_faces { Back::Red } else { Back::Culled },
+                lines: self.lines(&mark.model, mark.edge_color),
+                ..self.draw(ItemId::Camera(id), &mark.model, placement)
+            };
+            self.add(into, &mark, draw);
+        }
+        let on = self.shot.scene.lights.iter().filter(|(_, light)| light.on);
+        for (id, position) in on.filter_map(|(id, _)| self.bulb_place(id)) {
+            let Some(placement) = helpers::world_from_diamond(&self.observer, position) else {
+                continue;
+            };
+            let pipeline = into.pipeline(Pipeline::Flat(helpers::YELLOW));
+            let draw = Draw {
+                part_pipelines: vec![Some(pipeline)],
+                filled: true,
+                ..self.draw(ItemId::Light(id), helpers::diamond(), placement)
+            };
+            let name =
+                self.shot.scene.lights.get(id).map_or_else(String::new, |light| light.name.clone());
+            let model = draw.model.clone();
+            let mark =
+                Object { name, ..Object::new(model, marraztu_core::scene::MaterialChoice::File) };
+            self.add(into, &mark, draw);
+        }
+    }
+
+    fn bulb_place(&self, id: LightId) -> Option<(LightId, DVec3)> {
+        let kind = &self.shot.scene.lights.get(id)?.kind;
+        let origin = self.shot.scene.light_origin(&self.shot.view, kind)?;
+        kind.has_diamond().then_some((id, origin.position?))
+    }
+}
+
+/// Notes that an item is not drawn.
+fn left_out(into: &mut Planning, item: ItemId, name: &str, reason: &'static str) {
+    into.notes.add(|| EffectUse {
+        effect: presence(item),
+        name: presence(item).label().to_owned(),
+        on: Some(uses::Thing { item, name: name.to_owned() }),
+        state: EffectState::exact(reason),
+        pixels: None,
+    });
+}

@@ -1,0 +1,58 @@
+//! The state of planning: the plan so far, and what planning reads.
+
+use std::collections::HashMap;
+
+use super::observer::ObserverSpace;
+use super::uses::Notes;
+use crate::frame::FramePlan;
+use crate::frame::draw::Pipeline;
+use crate::lights::LightRow;
+use marraztu_core::accuracy::Shot;
+use marraztu_core::scene::LightId;
+
+/// The plan so far, with the notes that explain it.
+#[derive(Debug)]
+pub(super) struct Planning {
+    pub(super) plan: FramePlan,
+    pub(super) notes: Notes,
+    /// The indices of the plan's pipelines, by fingerprint.
+    places: HashMap<u64, Vec<u32>>,
+}
+
+impl Planning {
+    pub(super) fn new(plan: FramePlan, notes: Notes) -> Self {
+        Self { plan, notes, places: HashMap::new() }
+    }
+
+    /// The index of a pipeline in the frame; adds it if it is new.
+    pub(super) fn pipeline(&mut self, pipeline: Pipeline) -> u32 {
+        let pipelines = &mut self.plan.pipelines;
+        let alike = self.places.entry(pipeline.fingerprint()).or_default();
+        let same = alike.iter().find(|at| pipelines[**at as usize] == pipeline);
+        same.copied().unwrap_or_else(|| {
+            let at = u32::try_from(pipelines.len()).expect("fewer than 2^32 pipelines");
+            pipelines.push(pipeline);
+            alike.push(at);
+            at
+        })
+    }
+}
+
+/// What planning reads.
+pub(super) struct Planner<'a> {
+    pub(super) shot: &'a Shot,
+    pub(super) observer: ObserverSpace,
+    pub(super) shining: Vec<Shining>,
+}
+
+/// A light that is evaluated in this frame.
+#[derive(Clone, Debug)]
+pub(super) struct Shining {
+    pub(super) id: LightId,
+    pub(super) name: String,
+    pub(super) effect: &'static LightRow,
+    /// The index of its light in the plan.
+    pub(super) light: u32,
+    /// Whether it is on and has a position.
+    pub(super) shines: bool,
+}

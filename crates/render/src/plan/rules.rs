@@ -1,0 +1,222 @@
+//! The rules that leave work out of a frame because it changes no bit of the picture.
+//!
+//! All rules are here, one function for each decision, and planning uses no others. Each gives the
+//! reason why something is left out. [`Rules::Ignored`] leaves nothing out and has to give the same
+//! picture, which is how the rules are tested.
+
+use super::observer::ObserverSpace;
+use super::turning::is_turned_away;
+use crate::frame::Rules;
+use crate::frame::draw::{Draw, Stage};
+use crate::lights::region::Region;
+use crate::lights::turning::Turning;
+use crate::lights::{LightRow, PhongMaterial, ViewLight};
+use marraztu_core::accuracy::Transparency;
+use marraztu_core::scene::{Bounds, Light, SpotOwner, Texture};
+
+/// Why something is left out; `None` if it is not.
+type Verdict = Option<&'static str>;
+
+/// A light, and whether it has a position.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LightFacts<'a> {
+    /// The light.
+    pub light: &'a Light,
+    /// Whether the item that it is fixed to exists, if it is fixed to one.
+    pub is_placed: bool,
+}
+
+/// A light and a surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LitSurface<'a> {
+    /// The row of the light's kind.
+    pub effect: &'static LightRow,
+    /// The light.
+    pub light: &'a ViewLight,
+    /// The surface.
+    pub material: &'a PhongMaterial,
+    /// The region of the surface, if it is known.
+    pub region: Option<&'a Region>,
+    /// The normals of its faces, if they are known.
+    pub turning: Option<&'a Turning>,
+}
+
+/// The lights of a surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Reading {
+    /// The number of lights.
+    pub lights: usize,
+    /// How many of them read positions, normals or directions to the observer.
+    pub of_positions: usize,
+}
+
+impl Reading {
+    pub(super) fn of<'a>(stages: impl Iterator<Item = &'a Stage>) -> Self {
+        stages.fold(Self::default(), |sum, stage| Self {
+            lights: sum.lights + 1,
+            of_positions: sum.of_positions + usize::from(stage.effect.reads_positions),
+        })
+    }
+}
+
+/// A placed mesh and its observer.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Thing<'a> {
+    pub(super) observer: &'a ObserverSpace,
+    pub(super) draw: &'a Draw,
+    pub(super) bounds: Bounds,
+}
+
+impl Thing<'_> {
+    /// Whether all of it lies outside the view: its box does, and no drawn normals stick out of the
+    /// box.
+    #[must_use]
+    pub(crate) fn is_outside(&self) -> bool {
+        let corners = self.bounds.corners();
+        !self.draws_normals() && self.observer.misses(self.draw.clip_from_object, corners)
+    }
+
+    /// Whether all of its faces are culled as back faces; only answered for small meshes.
+    #[must_use]
+    pub(crate) fn is_turned_away(&self) -> bool {
+        !self.draws_normals() && is_turned_away(self.draw, self.observer.size)
+    }
+
+    /// Whether its polygons are filled.
+    #[must_use]
+    pub(crate) const fn is_filled(&self) -> bool {
+        self.draw.filled
+    }
+
+    const fn draws_normals(&self) -> bool {
+        self.draw.lines.face_normals.is_some() || self.draw.lines.vertex_normals.is_some()
+    }
+}
+
+/// A texture on a surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TexturedSurface<'a> {
+    /// The texture, if there is one.
+    pub texture: Option<&'a Texture>,
+    /// The map of its opacity, if there is one.
+    pub opacity_map: Option<&'a Texture>,
+    /// What its alpha is multiplied with. If the product is below one half, the alpha test fails.
+    pub opacity: f64,
+}
+
+impl TexturedSurface<'_> {
+    /// Whether each of its texels passes the alpha test, and so anything interpolated between them.
+    #[must_use]
+    pub(crate) fn passes_everywhere(&self) -> bool {
+        let least = |byte: u8| f64::from(byte) / 255.0;
+        let texture = self.texture.map_or(1.0, |texture| least(texture.picture.least_alpha()));
+        let map = self.opacity_map.map_or(1.0, |map| match map.picture.least_alpha() {
+            // Its brightness counts, which may be 0.
+            255 => 0.0,
+            alpha => least(alpha),
+        });
+        texture * map * self.opacity >= 0.5
+    }
+}
+
+impl Rules {
+    /// Whether a light is left out of the whole frame.
+    pub(super) fn light(self, it: &LightFacts<'_>) -> Verdict {
+        self.verdict(|| {
+            because(!it.light.on, "switched off")
+                .or_else(|| because(it.light.color.0 == [0; 3], "its colour is black"))
+                .or_else(|| without_owner(it))
+        })
+    }
+
+    /// Whether a light is left out on a surface, wherever that is.
+    pub(super) fn reflection(self, it: &LitSurface<'_>) -> Verdict {
+        self.verdict(|| (it.effect.is_noop)(it.light, it.material))
+    }
+
+    /// Whether a light's highlight is left out on a surface.
+    pub(super) fn highlight(self, it: &LitSurface<'_>) -> Verdict {
+        self.verdict(|| because(!it.material.mirrors(it.light), "Ks is 0"))
+    }
+
+    /// Whether a light is left out on an object.
+    pub(super) fn object(self, it: &LitSurface<'_>) -> Verdict {
+        self.verdict(|| (it.effect.is_culled)(it.light, it.region?).or_else(|| behind(it)))
+    }
+
+    /// Whether a light is left out on what a tile of the picture shows.
+    pub(super) fn tile(self, it: &LitSurface<'_>) -> Verdict {
+        self.verdict(|| (it.effect.is_culled)(it.light, it.region?))
+    }
+
+    /// Whether the positions and normals of fragments are left out.
+    pub(super) fn positions(self, it: &Reading) -> Verdict {
+        self.verdict(|| because(it.of_positions == 0, "no light reads them"))
+    }
+
+    /// Whether the colours of surfaces are left out.
+    pub(super) fn surfaces(self, it: &Thing<'_>) -> Verdict {
+        self.verdict(|| because(!it.is_filled(), "edges only"))
+    }
+
+    /// Whether an object is left out.
+    pub(super) fn thing(self, it: &Thing<'_>) -> Verdict {
+        self.verdict(|| {
+            because(it.is_outside(), "outside the view")
+                .or_else(|| because(it.is_turned_away(), "every face is turned away"))
+        })
+    }
+
+    /// Whether a texture is left out.
+    pub(super) fn texture(self, it: Option<&Texture>) -> Verdict {
+        self.verdict(|| because(it.is_none(), "there is none"))
+    }
+
+    /// Whether a surface whose opacity is 1 hides what is behind it, and is not laid over it. With
+    /// other ways than the exact one that is not the same.
+    pub(super) fn layer(self, transparency: Transparency) -> Verdict {
+        let exact = transparency == Transparency::Exact;
+        self.verdict(|| Some("it is opaque")).or_else(|| because(!exact, "it is opaque"))
+    }
+
+    /// Whether the alpha test of a texture is left out.
+    pub(super) fn alpha_test(self, it: &TexturedSurface<'_>) -> Verdict {
+        self.verdict(|| because(it.passes_everywhere(), "it has no holes"))
+    }
+
+    /// Whether light of a surface's own is left out.
+    pub(super) fn emission(self, color: [f64; 3]) -> Verdict {
+        self.verdict(|| because(color == [0.0; 3], "Ke is 0"))
+    }
+
+    /// Whether bumps of heights are left out.
+    pub(super) fn bumps(self, gain: f64) -> Verdict {
+        self.verdict(|| because(gain == 0.0, "its -bm is 0"))
+    }
+
+    /// The verdict of a rule, if rules apply.
+    fn verdict(self, rule: impl FnOnce() -> Verdict) -> Verdict {
+        match self {
+            Self::Applied => rule(),
+            Self::Ignored => None,
+        }
+    }
+}
+
+fn because(left_out: bool, reason: &'static str) -> Verdict {
+    left_out.then_some(reason)
+}
+
+fn behind(it: &LitSurface<'_>) -> Verdict {
+    let is_behind = (it.effect.is_behind)(it.light, it.region?, it.turning?);
+    is_behind.then_some("it comes from behind every face")
+}
+
+fn without_owner(it: &LightFacts<'_>) -> Verdict {
+    let reason = match it.light.kind.owner() {
+        Some(SpotOwner::SelectedObject) => "no object",
+        Some(SpotOwner::Object(_) | SpotOwner::Camera(_)) => "what it is fixed to is not there",
+        Some(SpotOwner::SelectedCamera | SpotOwner::Fixed(_)) | None => "its place is no number",
+    };
+    (!it.is_placed).then_some(reason)
+}

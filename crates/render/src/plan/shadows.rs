@@ -1,0 +1,132 @@
+//! Plans shadows: which lights cast them, and which objects.
+//!
+//! Whatever is drawn filled casts shadows, seen by the observer or not, from both of its sides.
+//! What is not drawn casts none: hidden objects and parts, a wireframe, parts whose opacity is
+//! below one half, polygons that are left out, and the marks of cameras and bulbs. Light passes
+//! through holes of textures.
+
+use std::collections::BTreeSet;
+
+use glam::DMat3;
+
+use super::ground::Ground;
+use super::maps::holds_same_alpha;
+use super::planning::{Planner, Planning, Shining};
+use super::rules::TexturedSurface;
+use super::uses::{Effect, EffectState, EffectUse};
+use crate::frame::shadows::{Caster, CasterPart, Holes, Shadows};
+use marraztu_core::base::math;
+use marraztu_core::scene::{Fill, ItemId, MapKind, Object, ObjectId};
+
+impl Planner<'_> {
+    /// Adds what casts shadows, if any light casts them.
+    pub(super) fn add_shadows(&self, into: &mut Planning) {
+        let is_filled = self.shot.view.fill == Fill::Filled;
+        if is_filled && into.plan.shadows.sources.iter().any(Option::is_some) {
+            let mut objects: Vec<_> = self.shot.scene.objects.iter().collect();
+            objects.sort_by_key(|(id, _)| *id);
+            let shown = objects.into_iter().filter(|(id, object)| self.is_asked_for(*id, object));
+            into.plan.shadows.casters =
+                shown.filter_map(|(id, object)| self.caster(id, object)).collect();
+        }
+        if into.plan.shadows.casters.is_empty() {
+            into.plan.shadows = Shadows::default();
+        }
+        for shining in &self.shining {
+            let Some(light) = self.shot.scene.lights.get(shining.id) else { continue };
+            let reason = match () {
+                () if !light.can_cast_shadows() => continue,
+                () if !light.shadows => "switched off",
+                () if !is_filled => "edges only",
+                () if into.plan.shadows.casters.is_empty() => "nothing casts them",
+                () => continue,
+            };
+            into.notes.add(|| EffectUse {
+                effect: Effect::Shadows(shining.id),
+                name: name(shining),
+                on: None,
+                state: EffectState::exact(reason),
+                pixels: None,
+            });
+        }
+    }
+
+    fn caster(&self, id: ObjectId, object: &Object) -> Option<Caster> {
+        let world_from_object = object.world_from_mesh(self.shot.view.time);
+        let mesh = &object.model.mesh;
+        let is_flat = !math::has_full_rank(DMat3::from_mat4(world_from_object));
+        if is_flat || mesh.polygon_count() == 0 {
+            return None;
+        }
+        let parts = (0..mesh.parts().len())
+            .map(|part| u32::try_from(part).expect("parts are numbered by 32 bits"))
+            .map(|part| caster_part(object, part))
+            .collect();
+        let selected = self.shot.view.object == Some(id);
+        let polygons = self.shot.view.polygons.as_ref().filter(|_| selected).map(|mode| {
+            if self.shot.view.polygons_stay {
+                mode.shown.clone()
+            } else {
+                BTreeSet::from([mode.current])
+            }
+        });
+        let (item, model) = (ItemId::Object(id), object.model.clone());
+        Some(Caster { item, model, world_from_object, parts, polygons })
+    }
+
+    /// Notes whether the shadows of a light that casts them fall on an object; `no_light` is the
+    /// reason why its light does not, if there is one.
+    pub(super) fn note_shadows(
+        into: &mut Planning,
+        ground: &Ground<'_>,
+        shining: &Shining,
+        no_light: Option<&'static str>,
+    ) {
+        if into.plan.shadows.source(shining.light).is_none() {
+            return;
+        }
+        let is_mark = !matches!(ground.item, ItemId::Object(_));
+        let method = match into.plan.variants.shadow_method.map() {
+            None => "exact",
+            Some(form) if form.is_filtered => "shadow maps, 3 x 3 texels",
+            Some(_) => "shadow maps",
+        };
+        let reason = if is_mark { Some("a mark takes none") } else { no_light };
+        into.notes.add(|| EffectUse {
+            effect: Effect::Shadows(shining.id),
+            name: name(shining),
+            on: ground.thing(),
+            state: reason.map_or(EffectState::On(method.into()), EffectState::exact),
+            pixels: None,
+        });
+    }
+}
+
+/// The name of a light's shadows in the plan.
+fn name(shining: &Shining) -> String {
+    format!("Shadows of {}", shining.name)
+}
+
+/// How a part of an object casts shadows; `None` if it is not drawn.
+fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
+    let look = object.part_look(part);
+    if !object.shows_part(part) || look.opacity < 0.5 {
+        return None;
+    }
+    let mapped = !object.model.mesh.uvs().is_empty();
+    let texture = look.texture.filter(|_| mapped);
+    let map = look.map(MapKind::Opacity).filter(|_| mapped).map(|map| &map.texture);
+    let map = map.filter(|map| !holds_same_alpha(texture, map));
+    let surface = TexturedSurface {
+        texture: texture.map(|texture| &**texture),
+        opacity_map: map.map(|map| &**map),
+        opacity: look.opacity,
+    };
+    let holes = || Holes {
+        texture: texture.cloned(),
+        map: map.cloned(),
+        opacity: if look.opacity < 1.0 { look.opacity } else { 1.0 },
+    };
+    let is_pictured = texture.is_some() || map.is_some();
+    Some(CasterPart { holes: (is_pictured && !surface.passes_everywhere()).then(holes) })
+}

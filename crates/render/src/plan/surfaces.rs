@@ -1,0 +1,325 @@
+//! Turns materials, textures and lights into pipelines.
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use super::bounded;
+use super::cover::Cover;
+use super::ground::{Ground, LARGEST};
+use super::maps::{decoded, emission, holds_same_alpha, mapped, mapped_ambient};
+use super::planning::{Planner, Planning, Shining};
+use super::rules::{LitSurface, Reading, TexturedSurface};
+use super::uses::{Class, Effect, EffectState, EffectUse};
+use crate::frame::draw::{Pipeline, Shaded, Stage};
+use crate::lights::region::Region;
+use crate::lights::{Form, PhongMaterial};
+use marraztu_core::accuracy::{Arithmetic, LeaveOut, LightAt, SpecularForm};
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::once::get_or_compute;
+use marraztu_core::base::{
+    Shared,
+    color::{self, Color},
+};
+use marraztu_core::scene::{MapKind, PartLook, Surface, Texture, Wrap};
+
+/// A white texture, which leaves a surface as it is.
+fn white() -> &'static Shared<Texture> {
+    static WHITE: OnceLock<Shared<Texture>> = OnceLock::new();
+    get_or_compute(&WHITE, || {
+        Shared::new(Texture {
+            source: PathBuf::new(),
+            picture: Picture::filled(Size::new(1, 1), [255; 4]).into(),
+            wrap: Wrap::Repeat,
+            offset: [0.0; 2],
+            scale: [1.0; 2],
+        })
+    })
+}
+
+impl Planner<'_> {
+    /// The pipeline of one part of an object; `None` if it is too transparent to be drawn.
+    pub(super) fn pipeline_of_part(
+        &self,
+        into: &mut Planning,
+        ground: &Ground<'_>,
+        part: u32,
+    ) -> Option<u32> {
+        let object = ground.object;
+        let mut look = object.part_look(part);
+        let textured = !object.model.mesh.uvs().is_empty();
+        let settings = &self.shot.settings;
+        let cover = Cover::of(&look, textured, settings.transparency);
+        if let Cover::Nothing(_) = cover {
+            return None;
+        }
+        let linear = into.plan.variants.are_linear();
+        if linear {
+            look.material = decoded(&look.material);
+        }
+        if !ground.seen {
+            return Some(into.pipeline(Pipeline::Flat(Color([0; 3]))));
+        }
+        let mesh = &object.model.mesh;
+        let rules = into.plan.rules;
+        let texture = look.texture.filter(|_| !mesh.uvs().is_empty());
+        let texture = match rules.texture(texture.map(|texture| &**texture)) {
+            Some(_) => None,
+            None => texture.or_else(|| Some(white()).filter(|_| !mesh.uvs().is_empty())),
+        };
+        let opacity_map = mapped(ground, &look, MapKind::Opacity).map(|map| &map.texture);
+        let opacity_map = opacity_map.filter(|map| !holds_same_alpha(texture, map));
+        let surface = TexturedSurface {
+            texture: texture.map(|texture| &**texture),
+            opacity_map: opacity_map.map(|map| &**map),
+            opacity: look.opacity,
+        };
+        let is_textured = texture.is_some() || opacity_map.is_some();
+        let has_holes = is_textured && rules.alpha_test(&surface).is_none();
+        let colored = object.surface != Surface::Material;
+        let mut tint = if colored { object.tint.factors() } else { [1.0; 3] };
+        if linear {
+            tint = tint.map(color::linear);
+        }
+        let lit = self.lit(into, ground, &look, texture);
+        if look.unlit && object.surface != Surface::Texture {
+            tint = std::array::from_fn(|i| tint[i] * lit.material.diffuse[i]);
+        }
+        let shaded = Shaded {
+            vertex_colors: colored && !mesh.colors().is_empty(),
+            tint,
+            texture: texture.cloned(),
+            cutout: match cover {
+                Cover::Threshold(opacity) => has_holes.then_some(opacity),
+                Cover::Transparent(_) | Cover::Nothing(_) => None,
+            },
+            opacity: match cover {
+                Cover::Transparent(opacity) => Some(opacity),
+                // One with a texture has an alpha test then. Linear values are kept in fixed point
+                // while they are blended, which may round to another byte.
+                Cover::Threshold(opacity) => Some(opacity).filter(|_| {
+                    !is_textured && !linear && rules.layer(settings.transparency).is_none()
+                }),
+                Cover::Nothing(_) => None,
+            },
+            opacity_map: opacity_map
+                .filter(|_| has_holes || matches!(cover, Cover::Transparent(_)))
+                .cloned(),
+            ..lit
+        };
+        Some(into.pipeline(Pipeline::Shaded(shaded)))
+    }
+
+    /// The light of a material.
+    fn lit(
+        &self,
+        into: &mut Planning,
+        ground: &Ground<'_>,
+        look: &PartLook<'_>,
+        texture: Option<&Shared<Texture>>,
+    ) -> Shaded {
+        let material = coefficients(look);
+        let floor = self.floor(into, ground.region.as_ref(), &material);
+        let mut material = material.with_floor(floor, self.shot.settings.power);
+        let mut shaded = Shaded::unlit(material);
+        if ground.object.surface == Surface::Texture {
+            return shaded;
+        }
+        shaded.extras.emission =
+            emission(into.plan.rules, ground, look, self.shot.view.light_factor());
+        if look.unlit {
+            return shaded;
+        }
+        let bump = self.bump(into.plan.rules, ground, look);
+        let mut stages = self.stages(into, (ground, bump.is_some()), &material);
+        shaded.extras.ambient =
+            mapped_ambient(into, ground, (look, texture), &material, &mut stages);
+        if into.plan.leave_out == LeaveOut::HalfStep {
+            shaded.dropped = self.thin(into, ground, &material, &mut stages);
+            (material, shaded.cut_off) = self.cut(into, ground, material, &mut stages);
+        }
+        shaded.material = material;
+        self.map_highlights(ground, look, &mut shaded.extras, &mut stages);
+        shaded.needs_positions = into.plan.rules.positions(&Reading::of(stages.iter())).is_none();
+        shaded.extras.bump = bump.filter(|_| shaded.needs_positions);
+        // Light is culled tile by tile if some light has a limited reach, or may be too faint in
+        // some tiles.
+        shaded.tiled = ground.tiled
+            && (into.plan.leave_out == LeaveOut::HalfStep
+                || stages.iter().any(|stage| stage.effect.has_reach));
+        shaded.light = Some(stages);
+        shaded
+    }
+
+    /// The floor of highlights: powers below 2^floor count as 0.
+    fn floor(&self, into: &Planning, region: Option<&Region>, material: &PhongMaterial) -> f64 {
+        // Computed from the scene, before anything is left out.
+        let with_highlight = |shining: &&Shining| {
+            let light = &into.plan.lights[shining.light as usize];
+            shining.shines
+                && material.mirrors(light)
+                && (shining.effect.is_noop)(light, material).is_none()
+        };
+        let lit = || self.shining.iter().filter(with_highlight);
+        // A highlight that is stronger than its light needs a lower floor, and so does a light that
+        // is stronger where it arrives than at its source.
+        let strongest = material.specular.iter().fold(1.0_f64, |most, ks| most.max(ks.abs()));
+        // Not at vertices: a vertex very near to a light receives unbounded light, and the little
+        // that is cut off here would be all that its polygons show.
+        let arriving = |shining: &Shining| {
+            let light = &into.plan.lights[shining.light as usize];
+            (shining.effect.max_falloff)(light, region)
+        };
+        let arriving = match self.shot.settings.light {
+            LightAt::Face | LightAt::Vertex => 1.0,
+            LightAt::Pixel | LightAt::Sample => lit().map(arriving).fold(1.0, f64::max),
+        };
+        // The curve of sRGB is steepest at black: it multiplies differences by 12.92.
+        let steepest = if into.plan.variants.are_linear() { 12.92 } else { 1.0 };
+        let exposed = self.shot.view.light_factor().max(1.0);
+        let times = strongest * arriving * steepest * exposed;
+        let deeper = |floor: f64| (floor - libm::log2(times)).max(LOWEST);
+        if self.shot.settings.arithmetic == Arithmetic::F64 {
+            return deeper(-24.0);
+        }
+        let count = lit().count().max(1);
+        let count = u32::try_from(count).unwrap_or(u32::MAX);
+        // 2^-10 divided among the highlights, so that all that is left out stays below a quarter of
+        // a step of a byte.
+        deeper(-10.0 - libm::log2(f64::from(count)))
+    }
+
+    /// The lights that a material needs, in the order of the scene.
+    fn stages(
+        &self,
+        into: &mut Planning,
+        (ground, is_bumpy): (&Ground<'_>, bool),
+        material: &PhongMaterial,
+    ) -> Vec<Stage> {
+        let mut stages = Vec::new();
+        let mut no_highlight = Some("no light is on it");
+        for shining in &self.shining {
+            let Shining { id, name, effect, light, .. } = shining;
+            let source = into.plan.lights[*light as usize];
+            // Bumps turn normals any way.
+            let turning = ground.turning.as_ref().filter(|_| !is_bumpy);
+            let region = ground.region.as_ref();
+            let meeting = LitSurface { effect, light: &source, material, region, turning };
+            let rules = &into.plan.rules;
+            let reason = rules.reflection(&meeting).or_else(|| rules.object(&meeting));
+            into.notes.add(|| EffectUse {
+                effect: Effect::Light(*id),
+                name: name.clone(),
+                on: ground.thing(),
+                state: reason.map_or(EffectState::ON, EffectState::exact),
+                pixels: None,
+            });
+            Self::note_shadows(into, ground, shining, reason);
+            if reason.is_some() {
+                continue;
+            }
+            let plain = into.plan.rules.highlight(&meeting);
+            if effect.reads_positions {
+                no_highlight = no_highlight.and(plain);
+            }
+            let highlight = match self.shot.settings.specular {
+                _ if plain.is_some() => Form::Plain,
+                SpecularForm::Reflection => Form::Reflection,
+                SpecularForm::HalfVector => Form::HalfVector,
+            };
+            stages.push(Stage { effect, light: *light, highlight, is_mapped: false });
+        }
+        into.notes.add(|| self.note_highlights(ground, no_highlight.map(EffectState::exact)));
+        stages
+    }
+
+    fn note_highlights(&self, ground: &Ground<'_>, left_out: Option<EffectState>) -> EffectUse {
+        let form = match self.shot.settings.specular {
+            SpecularForm::Reflection => "(R.V)^Ns",
+            SpecularForm::HalfVector => "(N.H)^Ns",
+        };
+        EffectUse {
+            effect: Effect::Highlights,
+            name: Effect::Highlights.label().to_owned(),
+            on: ground.thing(),
+            state: left_out.unwrap_or(EffectState::On(form.into())),
+            pixels: None,
+        }
+    }
+
+    /// Removes lights that are too faint. Returns what they add, in steps of a byte.
+    fn thin(
+        &self,
+        into: &mut Planning,
+        ground: &Ground<'_>,
+        material: &PhongMaterial,
+        stages: &mut Vec<Stage>,
+    ) -> f64 {
+        let Planning { plan, notes, .. } = into;
+        let tell = |stage: &Stage, bound: f64| {
+            let shining = self.shining.iter().find(|shining| shining.light == stage.light);
+            let Some(Shining { id, name, .. }) = shining else { return };
+            notes.replace(|| EffectUse {
+                effect: Effect::Light(*id),
+                name: name.clone(),
+                on: ground.thing(),
+                state: EffectState::LeftOut {
+                    reason: "too faint".into(),
+                    class: Class::Bounded(bound),
+                },
+                pixels: None,
+            });
+        };
+        let region = ground.region.as_ref();
+        let most = |stage: &Stage| {
+            bounded::most(stage, &plan.lights[stage.light as usize], material, region)
+        };
+        bounded::thin(stages, most, bounded::LIGHTS, tell)
+    }
+
+    /// Raises the floor of highlights to cut off their tails. Returns what they lose, in steps of a
+    /// byte.
+    fn cut(
+        &self,
+        into: &mut Planning,
+        ground: &Ground<'_>,
+        material: PhongMaterial,
+        stages: &mut [Stage],
+    ) -> (PhongMaterial, f64) {
+        let lit = (&into.plan.lights[..], &material);
+        let region = ground.region.as_ref();
+        let Some(power) = bounded::least_power(stages, lit, region) else { return (material, 0.0) };
+        let floor = libm::log2(power);
+        if floor <= material.floor {
+            return (material, 0.0);
+        }
+        let cut_off = bounded::cut_off(stages, lit, region, power.min(1.0));
+        if power < 1.0 {
+            return (material.with_floor(floor, self.shot.settings.power), cut_off);
+        }
+        for stage in stages {
+            stage.highlight = Form::Plain;
+        }
+        let class = Class::Bounded(cut_off);
+        let faint = EffectState::LeftOut { reason: "too faint".into(), class };
+        into.notes.replace(|| self.note_highlights(ground, Some(faint)));
+        (material, cut_off)
+    }
+}
+
+/// The lowest floor that powers are computed down to.
+const LOWEST: f64 = -60.0;
+
+/// The Phong material of a part. A file may hold any number: NaN counts as 0, and exponents below 0
+/// are raised to 0.
+fn coefficients(look: &PartLook<'_>) -> PhongMaterial {
+    let material = look.material;
+    let number = |k: f64| if k.is_nan() { 0.0 } else { k };
+    let clamped = |color: [f64; 3]| color.map(|k| number(k).clamp(-LARGEST, LARGEST));
+    PhongMaterial {
+        ambient: clamped(material.ambient),
+        diffuse: clamped(material.diffuse),
+        specular: clamped(material.specular),
+        exponent: number(material.exponent).clamp(0.0, LARGEST),
+        ..PhongMaterial::default()
+    }
+}

@@ -1,0 +1,171 @@
+//! Culls the lights of a tile, once its depths are known and before it is coloured.
+//!
+//! The pixels of a tile and its nearest and farthest depth bound a piece of the view frustum, which
+//! holds all that the tile shows. A light that does not reach the piece is removed from the stages
+//! of the tile, so no pixel has to check.
+
+use glam::DVec3;
+
+use super::bounded;
+use super::rules::{LitSurface, Reading};
+use crate::frame::draw::{Pipeline, Shaded, Stage};
+use crate::frame::{Eye, FramePlan};
+use crate::lights::region::Region;
+use crate::screen::coverage::PixelBox;
+use marraztu_core::accuracy::{LeaveOut, Samples};
+
+/// The error of interpolating a depth or 1/w in f32, relative to the largest value.
+const ROUNDING: f64 = 2e-6;
+
+/// The stages of a tile. Each thread keeps its own from tile to tile.
+#[derive(Debug, Default)]
+pub(crate) struct TilePlan {
+    /// The region that holds all that the tile shows, if any pipeline needs it.
+    region: Option<Region>,
+    /// For each pipeline, the decision for this tile, if it was made already.
+    decided: Vec<Option<Decided>>,
+    /// The pipelines with a decision for this tile.
+    seen: Vec<usize>,
+    /// The indices of the stages that are kept, one list after another.
+    kept: Vec<u32>,
+    /// The list that is being made.
+    own: Vec<u32>,
+}
+
+/// The decision about a pipeline in a tile: a range of `kept`.
+#[derive(Clone, Copy, Debug)]
+struct Decided {
+    from: usize,
+    to: usize,
+    needs_positions: bool,
+    dropped: f64,
+}
+
+/// The lights that a tile is coloured by, with one pipeline.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TileLight<'a> {
+    /// All stages of the pipeline, in the order of the scene.
+    pub(crate) stages: &'a [Stage],
+    /// The indices of the stages that are evaluated, if not all are.
+    pub(crate) kept: Option<&'a [u32]>,
+    /// Whether any of them reads positions and normals.
+    pub(crate) needs_positions: bool,
+    /// The most that the lights that were left out add, in steps of a byte.
+    pub(crate) dropped: f64,
+}
+
+impl TilePlan {
+    /// Begins a tile. `depths` gives the least and the largest depth of its triangles, if it has
+    /// any.
+    pub(crate) fn begin(
+        &mut self,
+        plan: &FramePlan,
+        bounds: PixelBox,
+        depths: impl FnOnce() -> Option<[f32; 2]>,
+    ) {
+        for pipeline in self.seen.drain(..) {
+            self.decided[pipeline] = None;
+        }
+        self.kept.clear();
+        let tiled =
+            |pipeline: &Pipeline| matches!(pipeline, Pipeline::Shaded(Shaded { tiled: true, .. }));
+        let middles = plan.samples == Samples::One || plan.lit_by_sample;
+        let tiled = middles && plan.pipelines.iter().any(tiled);
+        let depths = tiled.then(depths);
+        self.region = depths.flatten().map(|depths| region(plan, bounds, depths.map(f64::from)));
+        self.decided.resize(plan.pipelines.len(), None);
+    }
+
+    /// The lights of a surface in this tile.
+    pub(crate) fn light<'a>(
+        &'a mut self,
+        plan: &FramePlan,
+        pipeline: u32,
+        shaded: &'a Shaded,
+    ) -> TileLight<'a> {
+        let stages = shaded.light.as_deref().unwrap_or_default();
+        let Shaded { needs_positions, dropped, .. } = *shaded;
+        let whole = TileLight { stages, kept: None, needs_positions, dropped };
+        let Some(region) = self.region.filter(|_| shaded.tiled) else { return whole };
+        let at = pipeline as usize;
+        let decided = match self.decided[at] {
+            Some(decided) => decided,
+            None => self.decide(plan, shaded, stages, &region),
+        };
+        if self.decided[at].replace(decided).is_none() {
+            self.seen.push(at);
+        }
+        let Decided { from, to, needs_positions, dropped } = decided;
+        TileLight { stages, kept: Some(&self.kept[from..to]), needs_positions, dropped }
+    }
+
+    fn decide(
+        &mut self,
+        plan: &FramePlan,
+        shaded: &Shaded,
+        stages: &[Stage],
+        region: &Region,
+    ) -> Decided {
+        let material = &shaded.material;
+        let light = |place: u32| &plan.lights[stages[place as usize].light as usize];
+        let reaches = |place: &u32| {
+            let effect = stages[*place as usize].effect;
+            let (light, region, turning) = (light(*place), Some(region), None);
+            plan.rules.tile(&LitSurface { effect, light, material, region, turning }).is_none()
+        };
+        self.own.clear();
+        let count = u32::try_from(stages.len()).expect("fewer than 2^32 lights");
+        self.own.extend((0..count).filter(reaches));
+        let mut dropped = shaded.dropped;
+        if plan.leave_out == LeaveOut::HalfStep {
+            let budget = bounded::LIGHTS - dropped;
+            let most = |place: &u32| {
+                bounded::most(&stages[*place as usize], light(*place), material, Some(region))
+            };
+            dropped += bounded::thin(&mut self.own, most, budget, |_, _| {});
+        }
+        let kept = self.own.iter().map(|place| &stages[*place as usize]);
+        let needs_positions = plan.rules.positions(&Reading::of(kept)).is_none();
+        let from = self.kept.len();
+        self.kept.extend_from_slice(&self.own);
+        Decided { from, to: self.kept.len(), needs_positions, dropped }
+    }
+}
+
+/// The region of view space that projects to these pixels and depths.
+fn region(plan: &FramePlan, bounds: PixelBox, [low, high]: [f64; 2]) -> Region {
+    let m = &plan.clip_from_view;
+    let (zz, zw) = (m.z_axis.z, m.w_axis.z);
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    let (width, height) = (plan.size.width as f64, plan.size.height as f64);
+    let ray = |x: i32, y: i32| {
+        let (x, y) = (f64::from(x) * 2.0 / width - 1.0, 1.0 - f64::from(y) * 2.0 / height);
+        [x / m.x_axis.x, y / m.y_axis.y]
+    };
+    let rays = [
+        ray(bounds.left, bounds.top),
+        ray(bounds.right, bounds.top),
+        ray(bounds.left, bounds.bottom),
+        ray(bounds.right, bounds.bottom),
+    ];
+    let place: [fn([f64; 2], f64) -> DVec3; 2] =
+        [|[x, y], w| DVec3::new(x * w, y * w, -w), |[x, y], z| DVec3::new(x, y, z)];
+    let (ends, place) = match plan.eye {
+        // The depth is zw / w - zz, and 1/w is at most that of the near plane, where it is 1.
+        Eye::Point => {
+            let inverse = |depth: f64| (depth + zz) / zw;
+            let error = ROUNDING * inverse(1.0);
+            let farthest = inverse(0.0);
+            let w = |inverse_w: f64| 1.0 / inverse_w.max(farthest * (1.0 - ROUNDING));
+            ([w(inverse(low) - error), w(inverse(high) + error)], place[0])
+        }
+        // The depth is zz z + zw.
+        Eye::Parallel => {
+            let z = |depth: f64| (depth - zw) / zz;
+            let error = ROUNDING * (z(0.0).abs() + z(1.0).abs() + (z(1.0) - z(0.0)).abs());
+            ([z(low) - error, z(high) + error], place[1])
+        }
+    };
+    let corner = |i: usize| place(rays[i / 2], ends[i % 2]);
+    Region::new(std::array::from_fn(corner), 0.0)
+}

@@ -1,0 +1,209 @@
+//! Explains which effects a frame uses and which it leaves out, and why.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fmt;
+
+use marraztu_core::scene::{ItemId, LightId};
+
+/// An effect that the renderer can use in a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Effect {
+    /// Filled polygons.
+    Surfaces,
+    /// A light.
+    Light(LightId),
+    /// The shadows in a light.
+    Shadows(LightId),
+    /// The highlights of all lights.
+    Highlights,
+    /// Positions and normals at every pixel.
+    Normals,
+    /// Textures.
+    Texture,
+    /// The alpha test of textures.
+    AlphaTest,
+    /// Transparent surfaces.
+    Transparency,
+    /// The colours of vertices.
+    VertexColors,
+    /// Light of the surface's own.
+    Emission,
+    /// The maps of Ka, Ks and Ns.
+    Maps,
+    /// Maps of heights or normals.
+    Bumps,
+    /// Light in linear sRGB.
+    LinearLight,
+    /// Light that is made brighter or darker as a whole.
+    Exposure,
+    /// Back faces.
+    BackFaces,
+    /// The edges of polygons.
+    Edges,
+    /// The normals of faces, as lines.
+    FaceNormals,
+    /// The normals of vertices, as lines.
+    VertexNormals,
+    /// Helpers: the models of cameras and bulbs.
+    Marks,
+}
+
+impl Effect {
+    /// Its label; a light has a name of its own.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Surfaces => "Surfaces",
+            Self::Light(_) => "Light",
+            Self::Shadows(_) => "Shadows",
+            Self::Highlights => "Highlights",
+            Self::Normals => "Normals at pixels",
+            Self::Texture => "Textures",
+            Self::AlphaTest => "Holes of textures",
+            Self::Transparency => "Transparency",
+            Self::VertexColors => "Vertex colours",
+            Self::Emission => "Emission",
+            Self::Maps => "Maps of Ka, Ks, Ns",
+            Self::Bumps => "Bumps",
+            Self::LinearLight => "Linear light",
+            Self::Exposure => "Exposure",
+            Self::BackFaces => "Back faces",
+            Self::Edges => "Edges",
+            Self::FaceNormals => "Face normals",
+            Self::VertexNormals => "Vertex normals",
+            Self::Marks => "Marks",
+        }
+    }
+}
+
+/// An effect on an item, or on the frame as a whole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectUse {
+    /// The effect.
+    pub effect: Effect,
+    /// Its label, or the name of a light.
+    pub name: String,
+    /// The object or camera that it is on; `None` if it belongs to the frame as a whole.
+    pub on: Option<Thing>,
+    /// Whether it is used.
+    pub state: EffectState,
+    /// How many pixels it takes part in, if they were counted.
+    pub pixels: Option<u64>,
+}
+
+/// An object, or a camera that is drawn as a helper.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Thing {
+    /// Its id.
+    pub item: ItemId,
+    /// Its name in the outline.
+    pub name: String,
+}
+
+/// Whether an effect is used.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EffectState {
+    /// It is computed; with a remark, or an empty text.
+    On(Cow<'static, str>),
+    /// It is left out, for this reason.
+    LeftOut {
+        /// The reason, in plain words.
+        reason: Cow<'static, str>,
+        /// How the picture changes by it.
+        class: Class,
+    },
+}
+
+/// How the picture changes if something is left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Class {
+    /// No bit changes.
+    Exact,
+    /// Each channel changes by this many steps of a byte at most, before rounding.
+    Bounded(f64),
+}
+
+impl EffectState {
+    /// It is computed, without a remark.
+    pub const ON: Self = Self::On(Cow::Borrowed(""));
+
+    /// It is left out without any change of the picture.
+    pub(super) fn exact(reason: impl Into<Cow<'static, str>>) -> Self {
+        Self::LeftOut { reason: reason.into(), class: Class::Exact }
+    }
+
+    /// Whether it is computed.
+    #[must_use]
+    pub const fn is_on(&self) -> bool {
+        matches!(self, Self::On(_))
+    }
+
+    /// The reason, or the remark.
+    #[must_use]
+    pub fn why(&self) -> &str {
+        match self {
+            Self::On(word) => word,
+            Self::LeftOut { reason, .. } => reason,
+        }
+    }
+}
+
+/// The reason, with its bound if there is one, or the remark.
+impl fmt::Display for EffectState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.why())?;
+        match self {
+            Self::LeftOut { class: Class::Bounded(steps), .. } => {
+                write!(f, ": at most {steps:.4} of a step")
+            }
+            Self::On(_) | Self::LeftOut { class: Class::Exact, .. } => Ok(()),
+        }
+    }
+}
+
+/// The explanations that planning collects while it decides; empty if they were not requested.
+#[derive(Debug, Default)]
+pub(super) struct Notes {
+    wanted: bool,
+    /// By effect, then by item.
+    uses: BTreeMap<(Effect, Option<ItemId>), EffectUse>,
+}
+
+impl Notes {
+    pub(super) fn wanted() -> Self {
+        Self { wanted: true, ..Self::default() }
+    }
+
+    /// Whether decisions are noted.
+    pub(super) const fn are_wanted(&self) -> bool {
+        self.wanted
+    }
+
+    /// Notes a decision. What is on for one part of an object is on for the object.
+    pub(super) fn add(&mut self, make: impl FnOnce() -> EffectUse) {
+        if !self.wanted {
+            return;
+        }
+        let new = make();
+        let key = (new.effect, new.on.as_ref().map(|thing| thing.item));
+        let before = self.uses.entry(key).or_insert_with(|| new.clone());
+        if new.state.is_on() && !before.state.is_on() {
+            *before = new;
+        }
+    }
+
+    /// Notes that what was on for a part is left out after all.
+    pub(super) fn replace(&mut self, make: impl FnOnce() -> EffectUse) {
+        if self.wanted {
+            let new = make();
+            let key = (new.effect, new.on.as_ref().map(|thing| thing.item));
+            self.uses.insert(key, new);
+        }
+    }
+
+    /// All of them: first those of the whole frame, then item by item.
+    pub(super) fn into_uses(self) -> Vec<EffectUse> {
+        self.uses.into_values().collect()
+    }
+}

@@ -1,0 +1,168 @@
+//! The lights of a frame, in view space.
+
+use glam::DVec3;
+
+use super::observer::ObserverSpace;
+use super::planning::{Planning, Shining};
+use super::rules::LightFacts;
+use super::uses::{Effect, EffectState, EffectUse};
+use crate::frame::shadows::ShadowSource;
+use crate::lights::{self, LightRow, ViewLight};
+use marraztu_core::base::{color, math};
+use marraztu_core::scene::{
+    Attenuation, CONCENTRATION, HALF_APERTURE, Light, LightKind, LightOrigin, Scene, View,
+};
+
+/// Transforms the lights that a frame evaluates to view space.
+pub(super) fn view_lights(
+    into: &mut Planning,
+    scene: &Scene,
+    view: &View,
+    observer: &ObserverSpace,
+) -> Vec<Shining> {
+    let mut shining = Vec::new();
+    let linear = into.plan.variants.are_linear();
+    let factor = exposure(into, view);
+    // The oldest first, as with objects, so that the order of the list does not change the last bit
+    // of a sum.
+    let mut lights: Vec<_> = scene.lights.iter().collect();
+    lights.sort_by_key(|(id, _)| *id);
+    for (id, light) in lights {
+        let place_of = |source: &Source| observer.view_from_world.transform_point3(source.position);
+        let source = source(scene, view, &light.kind).filter(|source| place_of(source).is_finite());
+        let facts = LightFacts { light, is_placed: source.is_some() };
+        if let Some(reason) = into.plan.rules.light(&facts) {
+            into.notes.add(|| EffectUse {
+                effect: Effect::Light(id),
+                name: light.name.clone(),
+                on: None,
+                state: EffectState::exact(reason),
+                pixels: None,
+            });
+            continue;
+        }
+        // A light that is off or has no position is black, so that it can be computed, too.
+        let shines = light.on && source.is_some();
+        let source = source.unwrap_or_else(|| Source::new(&lights::SPOT));
+        let index = u32::try_from(into.plan.lights.len()).expect("fewer than 2^32 lights");
+        let (position, attenuation) =
+            within_reach(place_of(&source), &light.attenuation, observer.unit);
+        let turned = math::unit(observer.view_from_world.transform_vector3(source.direction));
+        into.plan.shadows.sources.push(shadow_source(light, &source).filter(|_| shines));
+        into.plan.light_ids.push(id);
+        into.plan.lights.push(ViewLight {
+            color: match (shines, linear) {
+                (false, _) => [0.0; 3],
+                (true, false) => light.color.factors().map(|x| x * factor),
+                (true, true) => light.color.factors().map(|x| color::linear(x) * factor),
+            },
+            position: position.to_array(),
+            direction: turned.unwrap_or(DVec3::NEG_Z).to_array(),
+            attenuation,
+            cos_half_aperture: source.cos_half_aperture,
+            exponent: source.exponent.min(LARGEST),
+        });
+        shining.push(Shining {
+            id,
+            name: light.name.clone(),
+            effect: source.effect,
+            light: index,
+            shines,
+        });
+    }
+    shining
+}
+
+/// The factor of all light, with its row in the explanation.
+fn exposure(into: &mut Planning, view: &View) -> f64 {
+    let factor = view.light_factor();
+    into.notes.add(|| EffectUse {
+        effect: Effect::Exposure,
+        name: Effect::Exposure.label().to_owned(),
+        on: None,
+        state: match view.exposure {
+            0.0 => EffectState::exact("it is 0"),
+            _ => EffectState::On(format!("all light times {factor:.3}").into()),
+        },
+        pixels: None,
+    });
+    factor
+}
+
+/// The end of the rays of shadows, if the light casts any.
+fn shadow_source(light: &Light, source: &Source) -> Option<ShadowSource> {
+    let end = if light.kind.has_position() && light.kind.has_direction() {
+        match math::unit(source.direction) {
+            Some(direction) => ShadowSource::Cone {
+                at: source.position,
+                direction,
+                cos_half_aperture: source.cos_half_aperture,
+            },
+            None => ShadowSource::Point(source.position),
+        }
+    } else if light.kind.has_position() {
+        ShadowSource::Point(source.position)
+    } else if light.kind.has_direction() {
+        ShadowSource::Direction(-math::unit(source.direction)?)
+    } else {
+        return None;
+    };
+    light.shadows.then_some(end)
+}
+
+/// The largest distance of a light, in units of view space, whose square fits f32.
+const REACH: f64 = 1e15;
+
+/// The largest exponent of a spot: everything off its axis is dark long before.
+const LARGEST: f64 = 1e30;
+
+/// A light's position and attenuation in view space. A light that is farther than [`REACH`] is
+/// moved to that distance, with its attenuation in proportion: within a view of some thousand
+/// units, neither its direction nor its light changes by a part in 10^11.
+fn within_reach(place: DVec3, fades: &Attenuation, unit: f64) -> (DVec3, [f64; 3]) {
+    let largest = place.abs().max_element();
+    let nearer = if largest > REACH { largest / REACH } else { 1.0 };
+    // Clamped, so that its square fits f64.
+    let step = (nearer / unit).min(1e150);
+    // A coefficient beyond the largest number is dark at any distance.
+    let clamped = |coefficient: f64| coefficient.min(f64::MAX);
+    let coefficients =
+        [fades.constant, clamped(fades.linear * step), clamped(fades.quadratic * step * step)];
+    (place / nearer, coefficients)
+}
+
+/// The source of a light in world space.
+struct Source {
+    effect: &'static LightRow,
+    position: DVec3,
+    direction: DVec3,
+    cos_half_aperture: f64,
+    exponent: f64,
+}
+
+impl Source {
+    /// Light that goes everywhere from the origin.
+    const fn new(effect: &'static LightRow) -> Self {
+        Self {
+            effect,
+            position: DVec3::ZERO,
+            direction: DVec3::NEG_Z,
+            cos_half_aperture: -1.0,
+            exponent: 0.0,
+        }
+    }
+}
+
+/// The source of a light at the view's time; `None` for a spot whose owner does not exist.
+fn source(scene: &Scene, view: &View, kind: &LightKind) -> Option<Source> {
+    let LightOrigin { position, direction } = scene.light_origin(view, kind)?;
+    let everywhere = Source::new(lights::row_of(kind));
+    Some(Source {
+        position: position.unwrap_or(everywhere.position),
+        direction: direction.unwrap_or(everywhere.direction),
+        cos_half_aperture: (HALF_APERTURE.get)(kind)
+            .map_or(everywhere.cos_half_aperture, |degrees| libm::cos(degrees.to_radians())),
+        exponent: (CONCENTRATION.get)(kind).unwrap_or(everywhere.exponent),
+        ..everywhere
+    })
+}

@@ -1,0 +1,204 @@
+//! The alpha test: a pixel whose opacity is below one half shows what is behind it. The opacity is
+//! the material's, times the texture's alpha, times the map of opacity.
+//!
+//! Alpha is sampled sixteen pixels at a time in f32. Where that could decide otherwise than f64, it
+//! is sampled again in f64. Triangles and blocks whose texels are all opaque, or all holes, are not
+//! sampled at all: see [`Opacity::holes`].
+
+use fearless_simd::{
+    Simd, SimdBase as _, SimdFloat as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8,
+};
+
+use super::geometry::ScreenGeometry;
+use super::large;
+use crate::frame::FramePlan;
+use crate::frame::draw::Pipeline;
+use crate::screen::tiles::BLOCK;
+use crate::screen::weights::Weights;
+use crate::texture::exact_placement::ExactPlacement;
+use crate::texture::lanes::Sampler;
+use crate::texture::opacity::{Channel, Holes, Opacity, between};
+use crate::texture::uv::{Uvs, uv, uvs};
+
+/// How near to one half an alpha in f32 decides nothing.
+const NEAR: f32 = 1.0 / 128.0;
+/// How near to a border, in texels, a position does not tell the texel. Positions in f32 are off by
+/// 1/1024 texel at most.
+const BORDER: f32 = 1.0 / 512.0;
+
+/// The surfaces of a pipeline that need the alpha test.
+#[derive(Debug)]
+pub(crate) struct AlphaSurface<'a> {
+    pipeline: u32,
+    opacity: Opacity<'a>,
+    /// How lanes sample each of its pictures.
+    samplers: [Option<Sampler<'a>>; 2],
+}
+
+/// A triangle that needs the alpha test.
+#[derive(Debug)]
+pub(crate) struct AlphaTest<'a, 'b> {
+    surface: &'b AlphaSurface<'a>,
+    weights: Weights,
+    uvs: Uvs,
+    /// The triangle on each picture; `None` if it is too large for lanes.
+    placements: [Option<ExactPlacement>; 2],
+}
+
+impl<'a> AlphaSurface<'a> {
+    /// That of a triangle, which `last` becomes if it is another one; `None` if it has no holes.
+    pub(crate) fn of<'b>(
+        last: &'b mut Option<Self>,
+        plan: &'a FramePlan,
+        frame: &ScreenGeometry,
+        number: u32,
+    ) -> Option<&'b Self> {
+        let (index, start) = frame.draw_of(number);
+        let pipeline = plan.draws[index as usize].pipeline_of(number - start.number);
+        if last.as_ref().is_none_or(|last| last.pipeline != pipeline) {
+            *last = Self::new(plan, pipeline);
+        }
+        last.as_ref()
+    }
+
+    fn new(plan: &'a FramePlan, pipeline: u32) -> Option<Self> {
+        let Pipeline::Shaded(shaded) = &plan.pipelines[pipeline as usize] else { return None };
+        let opacity = Opacity::of(shaded, plan.filter)?;
+        let samplers = opacity
+            .layers()
+            .map(|layer| Sampler::new(std::slice::from_ref(layer?.texture), plan.filter));
+        Some(Self { pipeline, opacity, samplers })
+    }
+}
+
+impl<'a, 'b> AlphaTest<'a, 'b> {
+    /// The alpha test of a triangle at samples with this offset; `None` if it has no texture
+    /// coordinates.
+    pub(crate) fn of(
+        surface: &'b AlphaSurface<'a>,
+        (plan, frame): (&FramePlan, &ScreenGeometry),
+        number: u32,
+        shift: [i32; 2],
+    ) -> Option<Self> {
+        let (index, start) = frame.draw_of(number);
+        let draw = &plan.draws[index as usize];
+        let number = number - start.number;
+        let uvs = uvs(draw, number)?;
+        let placements =
+            surface.opacity.layers().map(|layer| ExactPlacement::new(uvs, layer?.texture));
+        let weights = Weights::new(plan, draw, frame.corners_of(index), number, shift);
+        Some(Self { surface, weights, uvs, placements })
+    }
+
+    /// Where in a block there are holes, by its first pixel.
+    #[inline(always)]
+    pub(crate) fn holes_in_block(&self, [x, y]: [i32; 2]) -> Holes {
+        let [right, bottom] = [x + BLOCK - 1, y + BLOCK - 1];
+        let corners = [[x, y], [right, y], [x, bottom], [right, bottom]];
+        let mut uvs = [[0.0; 2]; 4];
+        for (corner, at) in uvs.iter_mut().zip(corners) {
+            let Some(weights) = self.weights.projected(at) else { return Holes::Somewhere };
+            *corner = uv(self.uvs, weights);
+        }
+        self.surface.opacity.holes(between(uvs))
+    }
+
+    /// Whether its weights follow from edge functions alone.
+    pub(crate) fn has_edges(&self) -> bool {
+        self.weights.follow_from_edges()
+    }
+
+    /// Which of sixteen pixels are opaque, a bit for each, by eight and eight edge functions of the
+    /// second and the third corner. `pixel` gives the pixel of a lane. They are those of two rows
+    /// that begin at `first`; or any, if its weights follow from edge functions.
+    #[inline(always)]
+    pub(crate) fn opaque<S: Simd>(
+        &self,
+        simd: S,
+        first: [i32; 2],
+        edges: [[f64x8<S>; 2]; 2],
+        pixels: u64,
+        pixel: impl Fn(usize) -> [i32; 2],
+    ) -> u64 {
+        let [solid, open] = self.decide(simd, first, edges).unwrap_or([0, u64::MAX]);
+        let (mut solid, mut open) = (solid & !open & pixels, open & pixels);
+        while open != 0 {
+            let lane = open.trailing_zeros() as usize;
+            open &= open - 1;
+            solid |= u64::from(self.is_opaque(pixel(lane))) << lane;
+        }
+        solid
+    }
+
+    /// Whether it passes the test at a pixel.
+    #[inline(always)]
+    pub(crate) fn is_opaque(&self, pixel: [i32; 2]) -> bool {
+        self.surface.opacity.at(uv(self.uvs, self.weights.at(pixel))) >= 0.5
+    }
+
+    /// The pixels of two rows that are opaque and those that f32 cannot decide, a bit for each. The
+    /// edge functions are those of the second and the third corner in each row.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+    fn decide<S: Simd>(
+        &self,
+        simd: S,
+        [x, y]: [i32; 2],
+        [upper, lower]: [[f64x8<S>; 2]; 2],
+    ) -> Option<[u64; 2]> {
+        let AlphaSurface { opacity, samplers, .. } = self.surface;
+        let upper = self.weights.of_row(simd, [x, y], upper)?;
+        let lower = self.weights.of_row(simd, [x, y + 1], lower)?;
+        let mut alpha = f32x16::splat(simd, opacity.of_material() as f32);
+        let mut border = alpha.simd_lt(0.0);
+        for (i, layer) in opacity.layers().iter().enumerate() {
+            let Some(layer) = layer else { continue };
+            let (placement, sampler) = (self.placements[i].as_ref()?, samplers[i].as_ref()?);
+            let [u, v] = placement.of_row(upper);
+            let [u_below, v_below] = placement.of_row(lower);
+            let position = [u.narrow(u_below), v.narrow(v_below)];
+            alpha = match layer.channel {
+                Channel::Alpha => sampler.alpha(simd, position) * alpha,
+                Channel::Brightness => sampler.brightness(simd, position) * alpha,
+            };
+            if sampler.shows_texels() {
+                for at in position {
+                    border |= ((at - at.floor()) - 0.5).abs().simd_gt(0.5 - BORDER);
+                }
+            }
+        }
+        let open = (alpha - 0.5).abs().simd_lt(NEAR) | border;
+        Some([alpha.simd_gt(0.5).to_bitmask(), open.to_bitmask()])
+    }
+}
+
+/// The alpha test of a triangle in one block.
+pub(crate) struct BlockHoles<'a, 'b, 'c> {
+    pub(crate) test: &'c AlphaTest<'a, 'b>,
+    /// The first pixel of the block in the picture.
+    pub(crate) first: [i32; 2],
+}
+
+impl<S: Simd> large::InFront<S> for BlockHoles<'_, '_, '_> {
+    #[inline(always)]
+    fn matters(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn opaque(
+        &mut self,
+        simd: S,
+        pair: usize,
+        pixels: u64,
+        edges: [[f64x8<S>; 2]; 2],
+        _: f32x16<S>,
+    ) -> u64 {
+        let [x, y] = self.first;
+        let y = y + 2 * i32::try_from(pair).unwrap_or(0);
+        self.test.opaque(simd, [x, y], edges, pixels, |lane| {
+            let at = i32::try_from(lane).unwrap_or(0);
+            [x + at % BLOCK, y + at / BLOCK]
+        })
+    }
+}

@@ -1,0 +1,18 @@
+//! How far beyond their bounding boxes triangles may cover centres, by the variants of coverage.
+
+use marraztu_core::accuracy::Coverage;
+
+/// How far beyond its bounding box a triangle may cover centres, in 1/256 pixel.
+pub(crate) const fn beyond(coverage: Coverage) -> i32 {
+    match coverage {
+        Coverage::Exact => 0,
+        Coverage::F32Edges => 16,
+        Coverage::ScanLines | Coverage::Points => 384,
+    }
+}
+
+/// The least and the largest offsets of samples, with those of centres beyond a box.
+#[inline(always)]
+pub(crate) const fn reach([least, most]: [[i32; 2]; 2], by: i32) -> [[i32; 2]; 2] {
+    [[least[0] - by, least[1] - by], [most[0] + by, most[1] + by]]
+}

@@ -1,0 +1,71 @@
+//! Entries of the visibility buffer.
+//!
+//! A sample's entry is one 64-bit word: the key of the depth above, the inverted number of the
+//! primitive below. So the depth test is a maximum: the larger entry is visible.
+
+use fearless_simd::{Bytes as _, Simd, SimdBase as _, f64x8, u32x16};
+
+use crate::screen::sample_positions::FOUR;
+
+/// The entry of a primitive with a key of the depth format.
+#[inline(always)]
+pub(crate) fn word(key: u32, number: u32) -> u64 {
+    u64::from(key) << 32 | u64::from(!number)
+}
+
+/// The depth of an entry, as a key of the depth format.
+pub(crate) const fn key(word: u64) -> u32 {
+    (word >> 32) as u32
+}
+
+/// Stores the entries of sixteen primitives with these keys and numbers.
+#[inline(always)]
+pub(crate) fn put_words<S: Simd>(keys: u32x16<S>, numbers: u32x16<S>, to: &mut [u64]) {
+    let [first, last] = halves(keys, numbers);
+    let to: &mut [f64] = bytemuck::cast_slice_mut(to);
+    first.store_slice(&mut to[..8]);
+    last.store_slice(&mut to[8..16]);
+}
+
+/// The same for four samples of sixteen pixels: the entries of a pixel's samples lie side by side.
+#[inline(always)]
+pub(crate) fn put_samples<S: Simd>(
+    keys: [u32x16<S>; FOUR],
+    numbers: [u32x16<S>; FOUR],
+    to: &mut [u64],
+) {
+    let [a, b, c, d] = [
+        halves(keys[0], numbers[0]),
+        halves(keys[1], numbers[1]),
+        halves(keys[2], numbers[2]),
+        halves(keys[3], numbers[3]),
+    ];
+    let to: &mut [f64] = bytemuck::cast_slice_mut(to);
+    for half in 0..2 {
+        let (even_low, even_high) = a[half].interleave(c[half]);
+        let (odd_low, odd_high) = b[half].interleave(d[half]);
+        let (first, second) = even_low.interleave(odd_low);
+        let (third, fourth) = even_high.interleave(odd_high);
+        for (eight, at) in [first, second, third, fourth].into_iter().zip((32 * half..).step_by(8))
+        {
+            eight.store_slice(&mut to[at..at + 8]);
+        }
+    }
+}
+
+/// The first eight and the last eight of sixteen entries.
+#[inline(always)]
+fn halves<S: Simd>(keys: u32x16<S>, numbers: u32x16<S>) -> [f64x8<S>; 2] {
+    let (low, high) = (!numbers).interleave(keys);
+    [low.bitcast(), high.bitcast()]
+}
+
+/// The keys and the numbers of sixteen entries.
+#[inline(always)]
+pub(crate) fn keys_and_numbers<S: Simd>(simd: S, words: &[u64]) -> (u32x16<S>, u32x16<S>) {
+    let halves: &[u32] = bytemuck::cast_slice(words);
+    let first = u32x16::from_slice(simd, &halves[..16]);
+    let last = u32x16::from_slice(simd, &halves[16..32]);
+    let (numbers, keys) = first.deinterleave(last);
+    (keys, !numbers)
+}

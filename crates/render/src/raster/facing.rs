@@ -1,0 +1,158 @@
+//! Finds the colour of the outlines of polygons.
+//!
+//! It depends on the side that the observer sees, which the sign of the area on the screen gives.
+//! If all polygons are triangles, they are computed sixteen at a time in draw order; others one by
+//! one.
+
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16};
+
+use super::hits::PACK;
+use super::setup::NARROW;
+use super::vertices::fetch_vertices;
+use crate::frame::draw::{Back, Draw};
+use crate::screen::clip::{Screen, ScreenVertex};
+use crate::screen::coverage::doubled_area;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{DrawTriangle, Mesh};
+
+/// The colour of an outline. An edge has the largest of its polygons'.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Outline {
+    /// It is not drawn.
+    Not,
+    /// The colour of back faces.
+    Back,
+    /// The draw's own colour.
+    Own,
+}
+
+impl Outline {
+    /// The outline with a number.
+    #[inline(always)]
+    pub(crate) const fn of(number: u8) -> Self {
+        match number {
+            0 => Self::Not,
+            1 => Self::Back,
+            _ => Self::Own,
+        }
+    }
+}
+
+/// The inputs of finding the outlines of one draw.
+#[derive(Debug)]
+pub(crate) struct Facing<'a> {
+    draw: &'a Draw,
+    mesh: &'a Mesh,
+    vertices: &'a [ScreenVertex],
+    screen: Screen,
+    /// The outlines of polygons with a negative and with a positive area.
+    outlines: [Outline; 2],
+}
+
+impl<'a> Facing<'a> {
+    pub(crate) fn new(draw: &'a Draw, vertices: &'a [ScreenVertex], size: Size) -> Self {
+        let back = match draw.back {
+            Back::Lit => Outline::Own,
+            Back::Red => Outline::Back,
+            Back::Culled => Outline::Not,
+        };
+        let outlines = if draw.mirrored { [back, Outline::Own] } else { [Outline::Own, back] };
+        let screen = Screen::new(draw.clip_from_object, size);
+        Self { draw, mesh: &draw.model.mesh, vertices, screen, outlines }
+    }
+
+    /// Finds the outlines of polygons that are single triangles.
+    pub(crate) fn of_triangles(&self, level: Level, triangles: &[DrawTriangle], all: &[AtomicU8]) {
+        dispatch!(level, simd => self.all(simd, triangles, all));
+    }
+
+    #[inline(always)]
+    fn all<S: Simd>(&self, simd: S, triangles: &[DrawTriangle], all: &[AtomicU8]) {
+        let (whole, rest) = triangles.as_chunks::<PACK>();
+        for sixteen in whole {
+            self.sixteen(simd, sixteen, all);
+        }
+        for triangle in rest {
+            self.one(triangle.number, all);
+        }
+    }
+
+    #[inline(always)]
+    fn sixteen<S: Simd>(&self, simd: S, triangles: &[DrawTriangle; PACK], all: &[AtomicU8]) {
+        let [x0, y0] = self.corners(simd, triangles, 0);
+        let [x1, y1] = self.corners(simd, triangles, 1);
+        let [x2, y2] = self.corners(simd, triangles, 2);
+        let (low_x, high_x) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
+        let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
+        let beyond = low_x.simd_eq(ScreenVertex::BEYOND);
+        let wide = (high_x - low_x).simd_gt(NARROW) | (high_y - low_y).simd_gt(NARROW);
+        let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
+        let [negative, positive] = self.outlines.map(|outline| i32x16::splat(simd, outline as i32));
+        let outlines = area.simd_lt(0).select(negative, positive);
+        let outlines = area.simd_eq(0).select(i32x16::splat(simd, Outline::Not as i32), outlines);
+        let outlines: [i32; PACK] = *outlines;
+        let mut odd = (beyond | wide).to_bitmask();
+        let choosy = self.draw.polygons.is_some() || self.draw.uniform.is_none();
+        for (lane, triangle) in triangles.iter().enumerate() {
+            let shown = !choosy || self.draw.shows(triangle.number);
+            let [outline, ..] = outlines[lane].to_le_bytes();
+            let outline = if shown { outline } else { Outline::Not as u8 };
+            all[triangle.number as usize].store(outline, Ordering::Relaxed);
+        }
+        while odd != 0 {
+            self.one(triangles[odd.trailing_zeros() as usize].number, all);
+            odd &= odd - 1;
+        }
+    }
+
+    #[inline(always)]
+    fn corners<S: Simd>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle; PACK],
+        corner: usize,
+    ) -> [i32x16<S>; 2] {
+        let [x, y, _, _] = fetch_vertices(
+            simd,
+            self.vertices,
+            #[inline(always)]
+            |lane| triangles[lane].vertices[corner],
+        );
+        [x, y]
+    }
+
+    /// Finds the outline of a polygon.
+    pub(crate) fn one(&self, polygon: u32, all: &[AtomicU8]) {
+        let outline = if self.draw.shows(polygon) { self.seen(polygon) } else { Outline::Not };
+        all[polygon as usize].store(outline as u8, Ordering::Relaxed);
+    }
+
+    fn seen(&self, polygon: u32) -> Outline {
+        let triangles = self.mesh.triangles_of(polygon);
+        let number = |i: usize| u32::try_from(i).expect("triangles have 32-bit numbers");
+        let area: i64 = triangles.map(|triangle| self.area_on_screen(number(triangle))).sum();
+        match area {
+            ..0 => self.outlines[0],
+            0 => Outline::Not,
+            1.. => self.outlines[1],
+        }
+    }
+
+    /// Twice the area of a triangle on the screen after clipping, in square subpixels.
+    fn area_on_screen(&self, triangle: u32) -> i64 {
+        let order = self.mesh.draw_order();
+        let corners = order.vertices_of(triangle);
+        let own = corners.map(|vertex| self.vertices[vertex as usize]);
+        if own.iter().all(ScreenVertex::is_inside) {
+            return doubled_area(own.map(|corner| corner.at()));
+        }
+        let clip = corners.map(|vertex| self.screen.clip(order.position(vertex)));
+        let pieces = self.screen.cut(clip);
+        let piece = |i: usize| {
+            doubled_area([pieces[0], pieces[i - 1], pieces[i]].map(|p| self.screen.piece(p).at()))
+        };
+        (2..pieces.len()).map(piece).sum()
+    }
+}

@@ -1,0 +1,405 @@
+//! The geometry of a frame on the screen: vertices, and triangles and lines in bins.
+
+use std::ops::Range;
+use std::sync::atomic::AtomicU8;
+use std::sync::{Mutex, PoisonError};
+
+use fearless_simd::Level;
+use glam::DMat4;
+use rayon::prelude::*;
+
+use super::bins::Bins;
+use super::edges::{self, DrawnNormal};
+use super::hit_colors::CornerLight;
+use super::hole_tables::HoleTables;
+use super::lines::LineNumber;
+use super::parts::{Parts, share_out};
+use super::rule::{Rule as _, with_rule};
+use super::starts::{DrawCorners, Start, number};
+use super::vertex_variants;
+use super::vertices::Vertices;
+use super::work::{FEW, FEW_VERTICES, What, WorkList, piece_of};
+use crate::cancellation::Cancellation;
+use crate::frame::FramePlan;
+use crate::frame::draw::Draw;
+use crate::frame::variants::Variants;
+use crate::screen::clip::{Screen, ScreenVertex};
+use crate::screen::coverage::Grid;
+use crate::screen::sample_positions::SamplePositions;
+use crate::timings::{Laps, Timings};
+use crate::work_stealing::{WorkStealing, together};
+use marraztu_core::accuracy::Transparency;
+use marraztu_core::base::Shared;
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::Size;
+use marraztu_core::base::math::same_bits;
+use marraztu_core::scene::Model;
+
+/// The geometry of a frame on the screen.
+#[derive(Debug, Default)]
+pub(crate) struct ScreenGeometry {
+    /// The vertices of all draws, in the draw order of their meshes.
+    vertices: Vertices,
+    /// What the vertices of each draw were made of; `None` if they have to be transformed.
+    held: Vec<Option<Held>>,
+    starts: Vec<Start>,
+    /// For each polygon of draws with edges, the number of an [`Outline`](super::facing::Outline).
+    outlines: Vec<AtomicU8>,
+    /// The normals that are drawn.
+    normals: Vec<DrawnNormal>,
+    /// Where triangles have holes.
+    holes: HoleTables,
+    /// The vertices to transform.
+    placing: WorkList<()>,
+    /// The triangles to set up, and the polygons whose outlines are needed.
+    set_up: WorkList<What>,
+    /// The edges and normals to set up.
+    lines: WorkList<What>,
+    bins: Vec<Bins>,
+    /// The samples of the pass.
+    sample_positions: SamplePositions,
+    /// The place of each draw in the order from far to near, if the frame needs it.
+    far_to_near: Vec<u32>,
+}
+
+/// What the screen vertices of a draw were made of.
+#[derive(Debug)]
+struct Held {
+    model: Shared<Model>,
+    clip_from_object: DMat4,
+    size: Size,
+    variants: Variants,
+    shift: [i32; 2],
+    vertex: usize,
+}
+
+impl Held {
+    fn new(draw: &Draw, plan: &FramePlan, vertex: usize) -> Self {
+        let FramePlan { size, variants, shift, .. } = *plan;
+        let (model, clip_from_object) = (draw.model.clone(), draw.clip_from_object);
+        Self { model, clip_from_object, size, variants, shift, vertex }
+    }
+
+    fn is_of(&self, draw: &Draw, plan: &FramePlan, vertex: usize) -> bool {
+        Shared::same(&self.model, &draw.model)
+            && same_bits(&self.clip_from_object, &draw.clip_from_object)
+            && (self.size, self.variants, self.shift) == (plan.size, plan.variants, plan.shift)
+            && self.vertex == vertex
+    }
+}
+
+impl ScreenGeometry {
+    /// Forgets all vertices.
+    pub(crate) fn forget(&mut self) {
+        self.held.clear();
+    }
+
+    /// Transforms and bins everything that the plan draws, for a pass with these samples, unless it
+    /// is cancelled; hits are coloured by the `light` at vertices, if there is any. Vertices that
+    /// are still valid are kept. Returns how long it took.
+    pub(crate) fn build(
+        &mut self,
+        level: Level,
+        plan: &FramePlan,
+        (sample_positions, light): (SamplePositions, Option<&dyn CornerLight>),
+        watch: &Cancellation<'_>,
+    ) -> Timings {
+        let mut laps = Laps::start();
+        self.sample_positions = sample_positions;
+        self.number(plan);
+        self.place(level, plan, watch);
+        let vertices = laps.lap();
+        self.set_up(level, plan, light, watch);
+        let set_up = laps.lap();
+        if !watch.is_given_up() {
+            self.add_lines(level, plan, watch);
+        }
+        Timings { vertices, set_up, lines: laps.lap(), ..Timings::default() }
+    }
+
+    /// Finds where the numbers of each draw begin.
+    fn number(&mut self, plan: &FramePlan) {
+        self.starts.clear();
+        let mut start = Start::default();
+        let (mut vertex, mut outline) = (0, 0);
+        for draw in &plan.draws {
+            let mesh = &draw.model.mesh;
+            (start.vertex, start.outline) = (vertex, outline);
+            start.number = start.end;
+            start.end += number(mesh.draw_order().triangles.len());
+            vertex += mesh.draw_order().x.len();
+            start.vertex_end = vertex;
+            outline += if draw.lines.edges { mesh.polygon_count() } else { 0 };
+            self.starts.push(start);
+        }
+        self.far_to_near.clear();
+        if plan.transparency == Transparency::Objects && plan.is_transparent() {
+            self.far_to_near = plan.far_to_near();
+        }
+        // Vertices that are not kept are overwritten from here on.
+        self.held.resize_with(plan.draws.len(), || None);
+        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
+            *held = held.take().filter(|held| held.is_of(draw, plan, start.vertex));
+        }
+        self.vertices.usual.resize(vertex, ScreenVertex::default());
+        self.outlines.resize_with(outline, AtomicU8::default);
+    }
+
+    /// Transforms the vertices of all draws together.
+    fn place(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
+        self.placing.clear();
+        for (i, draw) in plan.draws.iter().enumerate().filter(|(i, _)| self.held[*i].is_none()) {
+            let order = draw.model.mesh.draw_order();
+            let position = |i| order.position(number(i));
+            self.placing.add((i, draw), ((), order.x.len()), plan.size, position);
+        }
+        // The slices of all pieces, in the order in which they were added.
+        let (mut rest, mut pieces) = (&mut self.vertices.usual[..], Vec::new());
+        pieces.reserve_exact(self.placing.len());
+        for (start, held) in self.starts.iter().zip(&self.held) {
+            let (own, others) = rest.split_at_mut(start.vertex_end - start.vertex);
+            rest = others;
+            if held.is_none() {
+                pieces.extend(own.chunks_mut(piece_of(own.len())).map(Mutex::new));
+            }
+        }
+        let threads = self.placing.threads(FEW_VERTICES);
+        let work = self.placing.sorted();
+        let shares = WorkStealing::new(work.len(), threads);
+        together(threads, || {
+            while let Some(work) = shares.next().map(|i| &work[i]).filter(|_| watch.goes_on()) {
+                let draw = &plan.draws[work.draw];
+                let screen = Screen::new(draw.clip_from_object, plan.size);
+                let order = draw.model.mesh.draw_order();
+                let out = &mut *pieces[work.place].lock().unwrap_or_else(PoisonError::into_inner);
+                vertex_variants::transform(plan.variants, level, &screen, order, work.from, out);
+                see_from(out, plan.shift);
+            }
+        });
+        drop(pieces);
+        self.place_otherwise(level, plan);
+        if watch.is_given_up() {
+            return;
+        }
+        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
+            held.get_or_insert_with(|| Held::new(draw, plan, start.vertex));
+        }
+    }
+
+    /// Transforms vertices to a finer grid, or to pixels, if the settings need that.
+    fn place_otherwise(&mut self, level: Level, plan: &FramePlan) {
+        let Vertices { usual, fine, unsnapped } = &mut self.vertices;
+        fine.clear();
+        unsnapped.clear();
+        let grid = plan.variants.grid();
+        let is_fine = grid != Grid::Usual;
+        if !is_fine && !with_rule!(plan.variants, R => R::UNSNAPPED) {
+            return;
+        }
+        fine.resize(if is_fine { usual.len() } else { 0 }, ScreenVertex::default());
+        unsnapped.resize(if is_fine { 0 } else { usual.len() }, [0.0; 2]);
+        for (draw, start) in plan.draws.iter().zip(&self.starts) {
+            let screen = Screen::new(draw.clip_from_object, plan.size).on(grid);
+            let screen = screen.seen_from(grid.offset(plan.shift));
+            let (order, own) = (draw.model.mesh.draw_order(), start.vertex..start.vertex_end);
+            let piece = piece_of(own.len());
+            if is_fine {
+                fine[own].par_chunks_mut(piece).enumerate().for_each(|(i, out)| {
+                    let at = i * piece;
+                    vertex_variants::transform(plan.variants, level, &screen, order, at, out);
+                    see_from(out, grid.offset(plan.shift));
+                });
+            } else {
+                unsnapped[own].par_chunks_mut(piece).enumerate().for_each(|(i, out)| {
+                    let at = i * piece;
+                    vertex_variants::to_pixels(plan.variants, level, &screen, order, at, out);
+                });
+            }
+        }
+    }
+
+    /// Sets up triangles into bins, one set for each thread, and finds which polygons face the
+    /// observer, for their outlines.
+    fn set_up(
+        &mut self,
+        level: Level,
+        plan: &FramePlan,
+        light: Option<&dyn CornerLight>,
+        watch: &Cancellation<'_>,
+    ) {
+        self.set_up.clear();
+        for (i, draw) in plan.draws.iter().enumerate() {
+            let mesh = &draw.model.mesh;
+            let triangles = mesh.draw_order().triangles.len();
+            let mut add = |what: What, count| {
+                let position = |i| what.position(draw, i);
+                self.set_up.add((i, draw), (what, count), plan.size, position);
+            };
+            if draw.filled {
+                add(What::Triangles, triangles);
+            }
+            if draw.lines.edges && mesh.edge_order().triangles {
+                add(What::Facing, triangles);
+            } else if draw.lines.edges {
+                add(What::FacingOneByOne, mesh.polygon_count());
+            }
+        }
+        self.bins.resize_with(self.set_up.threads(FEW), Bins::default);
+        for bins in &mut self.bins {
+            let transparent = plan.is_transparent().then(|| bins.take_transparent());
+            bins.clear(plan.size, self.sample_positions);
+            if light.is_some() {
+                // Of every thread: one that takes no triangles may still take lines.
+                bins.hits.begin_colors();
+            }
+            if let Some(transparent) = transparent {
+                bins.clear_transparent(transparent, plan.size);
+            }
+        }
+        self.holes.update(plan);
+        let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+        let parts = parts.with_holes(&self.holes).with_light(light);
+        share_out(level, self.set_up.sorted(), &parts, &mut self.bins, watch);
+    }
+
+    /// Sets up lines into bins.
+    fn add_lines(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
+        self.lines.clear();
+        self.normals.clear();
+        let mut next = 0;
+        for (i, draw) in plan.draws.iter().enumerate() {
+            if !watch.goes_on() {
+                return;
+            }
+            let edges = if draw.lines.edges { draw.model.mesh.edge_order().edges.len() } else { 0 };
+            let start = &mut self.starts[i];
+            (start.line, start.normal) = (next, next + number(edges));
+            start.normal_place = self.normals.len();
+            edges::list_normals(draw, &mut self.normals);
+            let normals = &self.normals[start.normal_place..];
+            next = start.normal + number(normals.len());
+            start.line_end = next;
+            let position = |edge| What::Edges.position(draw, edge);
+            self.lines.add((i, draw), (What::Edges, edges), plan.size, position);
+            let position = |i: usize| What::Normals.position(draw, normals[i].polygon as usize);
+            self.lines.add((i, draw), (What::Normals, normals.len()), plan.size, position);
+        }
+        if self.lines.len() > 0 {
+            let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+            let parts = parts.with_normals(&self.normals);
+            share_out(level, self.lines.sorted(), &parts, &mut self.bins, watch);
+        }
+    }
+
+    /// Forgets the colours of hits, which belong to the frame that the geometry was built for.
+    pub(crate) fn forget_colors(&mut self) {
+        self.bins.iter_mut().for_each(|bins| bins.hits.forget_colors());
+    }
+
+    /// Distributes the tiles of the picture, so that each thread mostly draws what it has set up.
+    pub(crate) fn shares_of_tiles(&self, tiles: usize) -> WorkStealing {
+        self.set_up.shares_of_tiles(tiles)
+    }
+
+    /// The bins of all threads.
+    pub(crate) fn bins(&self) -> &[Bins] {
+        &self.bins
+    }
+
+    /// The bins of transparent triangles of all threads.
+    pub(crate) fn transparent_bins(&self) -> impl Iterator<Item = &Bins> {
+        self.bins.iter().filter_map(Bins::transparent)
+    }
+
+    /// Whether a transparent triangle reaches into a tile.
+    pub(crate) fn is_layered(&self, tile: usize) -> bool {
+        self.transparent_bins().any(|bins| !bins.is_empty(tile))
+    }
+
+    /// The samples of the pass.
+    pub(crate) const fn sample_positions(&self) -> SamplePositions {
+        self.sample_positions
+    }
+
+    /// Whether nothing reaches into a tile.
+    pub(crate) fn is_empty(&self, tile: usize) -> bool {
+        self.bins.iter().all(|bins| bins.is_empty(tile))
+    }
+
+    /// The draw that a triangle belongs to, and where its numbers begin.
+    #[inline(always)]
+    pub(crate) fn draw_of(&self, triangle: u32) -> (u32, Start) {
+        self.corners().draw_of(triangle)
+    }
+
+    /// The number after that of the last triangle.
+    pub(crate) fn triangle_numbers(&self) -> usize {
+        self.starts.last().map_or(0, |start| start.end as usize)
+    }
+
+    /// The triangles of the draw to which one belongs, and the draw's place in the order from far
+    /// to near, if draws are laid over each other as wholes.
+    pub(crate) fn place_of_draw(&self, triangle: u32) -> (Range<u32>, u64) {
+        let (draw, start) = self.draw_of(triangle);
+        let place = self.far_to_near.get(draw as usize).map_or(0, |place| u64::from(*place) + 1);
+        (start.number..start.end, place)
+    }
+
+    /// The corners of a draw's triangles: on the finer grid, if there is one.
+    pub(crate) fn corners_of(&self, draw: u32) -> &[ScreenVertex] {
+        self.corners().of(draw as usize)
+    }
+
+    fn corners(&self) -> DrawCorners<'_> {
+        DrawCorners { corners: self.vertices.corners(), starts: &self.starts }
+    }
+
+    /// The colour of a line.
+    pub(crate) fn line_color(&self, plan: &FramePlan, line: LineNumber) -> [u8; 4] {
+        if line.is_back() {
+            return Color::BACK_FACE.opaque();
+        }
+        plan.draws[self.draw_of_line(line)].lines.color.opaque()
+    }
+
+    /// Whether a line is an edge, and not a normal.
+    pub(crate) fn is_edge(&self, line: LineNumber) -> bool {
+        line.line() < self.starts[self.draw_of_line(line)].normal
+    }
+
+    /// The draw of a line, and the polygon that it is drawn for.
+    pub(crate) fn line_seen(&self, plan: &FramePlan, line: LineNumber) -> Option<(u32, u32)> {
+        let draw = self.draw_of_line(line);
+        let start = self.starts[draw];
+        let polygon = match line.line().checked_sub(start.normal) {
+            Some(normal) => self.normals[start.normal_place + normal as usize].polygon,
+            None => {
+                let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+                edges::polygon_of(
+                    &plan.draws[draw],
+                    line.line() - start.line,
+                    parts.outlines_of(draw),
+                )?
+            }
+        };
+        Some((number(draw), polygon))
+    }
+
+    fn draw_of_line(&self, line: LineNumber) -> usize {
+        self.starts.partition_point(|start| start.line_end <= line.line())
+    }
+
+    /// The number of triangles that face the observer and may cover a pixel.
+    pub(crate) fn triangles(&self) -> usize {
+        self.bins.iter().map(Bins::triangles).sum()
+    }
+}
+
+/// Moves vertices to where a sample with this offset in subpixels sees them.
+fn see_from(vertices: &mut [ScreenVertex], shift: [i32; 2]) {
+    if shift != [0; 2] {
+        for vertex in vertices.iter_mut().filter(|vertex| vertex.is_inside()) {
+            *vertex = vertex.seen_from(shift);
+        }
+    }
+}

@@ -1,0 +1,393 @@
+//! Hits: pixels that small primitives cover, tile by tile.
+//!
+//! Small triangles and short lines are rasterized sixteen at a time, one in each lane, before tiles
+//! are drawn. The pixels that they cover are hits. They are stored in pages, which are allocated to
+//! tiles as needed and reused in the next frame.
+
+use fearless_simd::{Bytes as _, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16, u32x16};
+
+use prefetch_index::prefetch_index;
+
+use super::depth_format::Format;
+use super::entries::{keys_and_numbers, put_words, word};
+use crate::screen::coverage::PixelBox;
+use crate::screen::tiles::{TILE, lanes_place};
+
+/// Primitives that are rasterized at once.
+pub(crate) const PACK: usize = 16;
+
+/// Hits of a page.
+const PAGE: usize = 512;
+
+/// The page that is never written: it counts as full, and ends every chain.
+const FULL: u32 = 0;
+
+/// The most tiles that sixteen primitives may reach into to be added tile by tile.
+const FEW_TILES: i32 = 6;
+
+/// Some hits of one tile.
+#[derive(Clone, Debug)]
+struct Page {
+    /// The index of the sample in the tile's visibility buffer.
+    place: [u32; PAGE],
+    /// The entry in the visibility buffer, if keys are the bits of depths.
+    word: [u64; PAGE],
+    count: usize,
+    /// The page before it of the same tile, or [`FULL`].
+    previous: u32,
+}
+
+impl Page {
+    const fn new(count: usize) -> Self {
+        Self { place: [0; PAGE], word: [0; PAGE], count, previous: FULL }
+    }
+
+    /// Asks the cache for its first lines; processors fetch the lines after them by themselves.
+    #[inline(always)]
+    fn prefetch(&self) {
+        for at in (0..64).step_by(16) {
+            prefetch_index(self.place.as_slice(), at);
+        }
+        for at in (0..64).step_by(8) {
+            prefetch_index(self.word.as_slice(), at);
+        }
+    }
+
+    /// Adds those of sixteen hits that are in a mask.
+    #[inline(always)]
+    fn add<S: Simd>(&mut self, place: u32x16<S>, pixels: &Pixels<S>, some: mask32x16<S>) {
+        let to = self.count..self.count + PACK;
+        place.compress(some).store_slice(&mut self.place[to.clone()]);
+        let (depth, number) = (pixels.depth.compress(some), pixels.number.compress(some));
+        put_words(depth, number, &mut self.word[to]);
+        self.count += some.to_bitmask().count_ones() as usize;
+    }
+
+    /// Adds the first `count` of sixteen hits.
+    #[inline(always)]
+    fn add_first<S: Simd>(&mut self, place: u32x16<S>, pixels: &Pixels<S>, count: usize) {
+        let to = self.count..self.count + PACK;
+        place.store_slice(&mut self.place[to.clone()]);
+        put_words(pixels.depth, pixels.number, &mut self.word[to]);
+        self.count += count;
+    }
+}
+
+/// The [colours](super::hit_colors) of the hits of a page. They begin in other lines of the cache
+/// than those of the page before.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+struct ColorRow([u32; PAGE + PACK]);
+
+impl ColorRow {
+    const NONE: Self = Self([0; PAGE + PACK]);
+}
+
+/// A pixel of each of sixteen primitives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pixels<S: Simd> {
+    pub(crate) x: i32x16<S>,
+    pub(crate) y: i32x16<S>,
+    /// The bits of the depth.
+    pub(crate) depth: u32x16<S>,
+    /// The number of the primitive.
+    pub(crate) number: u32x16<S>,
+    /// The colour, or 0 if it is not known; `None` if hits have none.
+    pub(crate) color: Option<u32x16<S>>,
+}
+
+/// Which tiles sixteen primitives may reach into.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Reach {
+    /// One tile, and nothing of them lies outside the picture.
+    One(usize),
+    /// A few of them.
+    Few(PixelBox),
+    /// Many of them.
+    Many,
+}
+
+/// The hits that one thread has found.
+#[derive(Debug)]
+pub(crate) struct Hits {
+    /// Columns and rows of the picture.
+    extent: [i32; 2],
+    /// Columns and rows of tiles.
+    tiles: [i32; 2],
+    /// The last page of each tile.
+    last: Vec<u32>,
+    pages: Vec<Page>,
+    /// The colours of the hits of each page, if hits have colours.
+    colors: Vec<ColorRow>,
+    /// How many pages are handed out.
+    used: usize,
+    /// Whether hits have colours.
+    colored: bool,
+}
+
+impl Default for Hits {
+    fn default() -> Self {
+        let pages = vec![Page::new(PAGE)];
+        Self {
+            extent: [0; 2],
+            tiles: [0; 2],
+            last: Vec::new(),
+            pages,
+            colors: Vec::new(),
+            used: 1,
+            colored: false,
+        }
+    }
+}
+
+impl Hits {
+    /// Removes all hits, for a picture of this many columns and rows of pixels and of tiles.
+    pub(crate) fn clear(&mut self, extent: [i32; 2], tiles: [i32; 2]) {
+        (self.extent, self.tiles) = (extent, tiles);
+        self.last.clear();
+        self.last.resize(usize::try_from(tiles[0] * tiles[1]).expect("not negative"), FULL);
+        self.used = 1;
+        self.colored = false;
+    }
+
+    /// From now on, the hits that are added have colours.
+    pub(crate) const fn begin_colors(&mut self) {
+        self.colored = true;
+    }
+
+    /// Forgets the colours of all hits.
+    pub(crate) const fn forget_colors(&mut self) {
+        self.colored = false;
+    }
+
+    /// Whether hits have colours.
+    #[inline(always)]
+    pub(crate) const fn are_colored(&self) -> bool {
+        self.colored
+    }
+
+    /// Columns and rows of the picture.
+    #[inline(always)]
+    pub(crate) const fn extent(&self) -> [i32; 2] {
+        self.extent
+    }
+
+    /// Whether a tile has no hits.
+    #[inline(always)]
+    pub(crate) fn is_empty(&self, tile: usize) -> bool {
+        self.last[tile] == FULL
+    }
+
+    /// The tiles that a box of pixels reaches into; it may be empty, or reach beyond the picture.
+    #[inline(always)]
+    pub(crate) fn reach(&self, pixels: PixelBox) -> Reach {
+        let [columns, rows] = self.tiles;
+        let [width, height] = self.extent;
+        let tiles = PixelBox {
+            left: (pixels.left >> 6).max(0),
+            top: (pixels.top >> 6).max(0),
+            right: (((pixels.right - 1) >> 6) + 1).min(columns),
+            bottom: (((pixels.bottom - 1) >> 6) + 1).min(rows),
+        };
+        let whole =
+            pixels.left >= 0 && pixels.top >= 0 && pixels.right <= width && pixels.bottom <= height;
+        match (tiles.width(), tiles.height()) {
+            (1, 1) if whole => Reach::One((tiles.top * columns + tiles.left) as usize),
+            (columns, rows) if i64::from(columns) * i64::from(rows) <= i64::from(FEW_TILES) => {
+                Reach::Few(tiles)
+            }
+            _ => Reach::Many,
+        }
+    }
+
+    /// Adds those of the first `count` of sixteen pixels, covered in one of their `N` samples, that
+    /// are in the picture.
+    #[inline(always)]
+    pub(crate) fn add_first<S: Simd, const N: usize>(
+        &mut self,
+        reach: &Reach,
+        (pixels, sample): (&Pixels<S>, usize),
+        count: usize,
+    ) {
+        let Pixels { x, y, .. } = *pixels;
+        if let Reach::One(tile) = *reach {
+            let place = lanes_place::<S, N>(x & (TILE - 1), y & (TILE - 1), sample).bitcast();
+            if let Some(color) = pixels.color {
+                color.store_slice(self.next_colors(tile));
+            }
+            self.page(tile).add_first(place, pixels, count);
+        } else {
+            let covered = mask32x16::from_bitmask(x.simd, (1 << count) - 1);
+            self.add::<S, N>(reach, (pixels, sample), covered);
+        }
+    }
+
+    /// Adds those of sixteen pixels that are covered in one of their `N` samples and in the
+    /// picture.
+    #[inline(always)]
+    pub(crate) fn add<S: Simd, const N: usize>(
+        &mut self,
+        reach: &Reach,
+        (pixels, sample): (&Pixels<S>, usize),
+        covered: mask32x16<S>,
+    ) {
+        let Pixels { x, y, .. } = *pixels;
+        let place = lanes_place::<S, N>(x & (TILE - 1), y & (TILE - 1), sample).bitcast();
+        let (column, row) = (x >> 6, y >> 6);
+        let [width, height] = self.extent;
+        match *reach {
+            Reach::One(tile) => self.add_to(tile, place, pixels, covered),
+            Reach::Few(tiles) => {
+                let covered = covered & x.simd_lt(width) & y.simd_lt(height);
+                for own_row in tiles.top..tiles.bottom {
+                    for own_column in tiles.left..tiles.right {
+                        let some = covered & row.simd_eq(own_row) & column.simd_eq(own_column);
+                        if some.any_true() {
+                            let tile = (own_row * self.tiles[0] + own_column) as usize;
+                            self.add_to(tile, place, pixels, some);
+                        }
+                    }
+                }
+            }
+            Reach::Many => {
+                let inside = x.simd_ge(0) & y.simd_ge(0) & x.simd_lt(width) & y.simd_lt(height);
+                let tile = row * self.tiles[0] + column;
+                let mut left = (covered & inside).to_bitmask();
+                while left != 0 {
+                    let lane = left.trailing_zeros() as usize;
+                    left &= left - 1;
+                    let tile = tile[lane] as usize;
+                    if let Some(color) = pixels.color {
+                        self.next_colors(tile)[0] = color[lane];
+                    }
+                    let page = self.page(tile);
+                    let at = page.count;
+                    page.place[at] = place[lane];
+                    page.word[at] = word(pixels.depth[lane], pixels.number[lane]);
+                    page.count = at + 1;
+                }
+            }
+        }
+    }
+
+    /// Adds those of sixteen hits of a tile that are in a mask.
+    #[inline(always)]
+    fn add_to<S: Simd>(
+        &mut self,
+        tile: usize,
+        place: u32x16<S>,
+        pixels: &Pixels<S>,
+        some: mask32x16<S>,
+    ) {
+        if let Some(color) = pixels.color {
+            color.compress(some).store_slice(self.next_colors(tile));
+        }
+        self.page(tile).add(place, pixels, some);
+    }
+
+    /// The colours of the sixteen hits that are added to a tile next.
+    #[inline(always)]
+    fn next_colors(&mut self, tile: usize) -> &mut [u32] {
+        let at = self.page(tile).count;
+        &mut self.colors[self.last[tile] as usize].0[at..at + PACK]
+    }
+
+    /// The last page of a tile, which has room for sixteen hits.
+    #[inline(always)]
+    fn page(&mut self, tile: usize) -> &mut Page {
+        let page = self.last[tile] as usize;
+        if self.pages[page].count > PAGE - PACK {
+            return self.turn(tile);
+        }
+        &mut self.pages[page]
+    }
+
+    /// A new page for a tile.
+    #[cold]
+    #[inline(never)]
+    fn turn(&mut self, tile: usize) -> &mut Page {
+        if self.used == self.pages.len() {
+            self.pages.push(Page::new(0));
+        }
+        if self.colored && self.colors.len() < self.pages.len() {
+            self.colors.resize(self.pages.len(), ColorRow::NONE);
+        }
+        let new = u32::try_from(self.used).expect("fewer than 2^32 pages");
+        let page = &mut self.pages[self.used];
+        page.count = 0;
+        page.previous = std::mem::replace(&mut self.last[tile], new);
+        self.used += 1;
+        page
+    }
+
+    /// Calls `take` with the index and the entry of each hit in a tile.
+    #[inline(always)]
+    pub(crate) fn each<S: Simd, D: Format>(
+        &self,
+        (format, simd): (D, S),
+        tile: usize,
+        mut take: impl FnMut(u32, u64),
+    ) {
+        self.each_page(
+            (format, simd),
+            tile,
+            #[inline(always)]
+            |_, places, words| {
+                places.iter().zip(words).for_each(
+                    #[inline(always)]
+                    |(place, word)| take(*place, *word),
+                );
+            },
+        );
+    }
+
+    /// Calls `take` with the index, the entry and the colour of each hit in a tile, if hits have
+    /// colours.
+    #[inline(always)]
+    pub(crate) fn each_colored<S: Simd, D: Format>(
+        &self,
+        (format, simd): (D, S),
+        tile: usize,
+        mut take: impl FnMut(u32, u64, u32),
+    ) {
+        self.each_page(
+            (format, simd),
+            tile,
+            #[inline(always)]
+            |page, places, words| {
+                places.iter().zip(words).zip(&self.colors[page].0).for_each(
+                    #[inline(always)]
+                    |((place, word), color)| take(*place, *word, *color),
+                );
+            },
+        );
+    }
+
+    /// Calls `take` with each page of a tile: its number, the indices and the entries of its hits.
+    #[inline(always)]
+    fn each_page<S: Simd, D: Format>(
+        &self,
+        (format, simd): (D, S),
+        tile: usize,
+        mut take: impl FnMut(usize, &[u32], &[u64; PAGE]),
+    ) {
+        let mut page = self.last[tile];
+        while page != FULL {
+            let Page { place, word, count, previous } = &self.pages[page as usize];
+            self.pages[*previous as usize].prefetch();
+            if D::KEEPS_BITS {
+                take(page as usize, &place[..*count], word);
+            } else {
+                let mut words = [0; PAGE];
+                for at in (0..*count).step_by(PACK) {
+                    let (depth, number) = keys_and_numbers(simd, &word[at..at + PACK]);
+                    let lines = (number >> 31) * format.lines_nearer();
+                    let keys = format.keys(depth.bitcast()) + lines;
+                    put_words(keys, number, &mut words[at..at + PACK]);
+                }
+                take(page as usize, &place[..*count], &words);
+            }
+            page = *previous;
+        }
+    }
+}

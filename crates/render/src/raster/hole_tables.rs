@@ -1,0 +1,151 @@
+//! Which triangles of surfaces with holes have none, and which are nothing else.
+//!
+//! That depends on a mesh and its textures, not on the observer: it is found once, and kept from
+//! frame to frame. What is left needs the alpha test in each frame.
+
+use rayon::prelude::*;
+
+use super::starts::number;
+use crate::frame::FramePlan;
+use crate::frame::draw::{Draw, Pipeline, Shaded};
+use crate::texture::opacity::{Holes, Opacity, between};
+use crate::texture::uv::uvs;
+use marraztu_core::accuracy::Filter;
+use marraztu_core::base::Shared;
+use marraztu_core::scene::{Model, Texture};
+
+/// The tables of the draws of a frame.
+#[derive(Debug, Default)]
+pub(crate) struct HoleTables {
+    tables: Vec<HoleTable>,
+    /// For each draw the index of its table, if it has holes.
+    of_draws: Vec<Option<usize>>,
+}
+
+/// The triangles of a mesh with its surfaces.
+#[derive(Debug)]
+struct HoleTable {
+    model: Shared<Model>,
+    /// The surface of each part, if it has holes.
+    surfaces: Vec<Option<Surface>>,
+    filter: Filter,
+    holes: Vec<Holes>,
+    /// Whether the frame needs it.
+    is_used: bool,
+}
+
+/// What the holes of a surface follow from.
+#[derive(Clone, Debug)]
+struct Surface {
+    opacity: f64,
+    pictures: [Option<Shared<Texture>>; 2],
+}
+
+impl Surface {
+    fn of(shaded: &Shaded) -> Option<Self> {
+        let pictures = [shaded.texture.clone(), shaded.opacity_map.clone()];
+        Some(Self { opacity: shaded.cutout?, pictures })
+    }
+
+    fn is_of(&self, shaded: &Shaded) -> bool {
+        shaded.cutout.is_some_and(|opacity| opacity.to_bits() == self.opacity.to_bits())
+            && Shared::both_same(self.pictures[0].as_ref(), shaded.texture.as_ref())
+            && Shared::both_same(self.pictures[1].as_ref(), shaded.opacity_map.as_ref())
+    }
+}
+
+/// The surface with holes of each part of a draw.
+fn with_holes<'a>(
+    draw: &'a Draw,
+    plan: &'a FramePlan,
+) -> impl ExactSizeIterator<Item = Option<&'a Shaded>> {
+    draw.part_pipelines.iter().map(|pipeline| match &plan.pipelines[(*pipeline)? as usize] {
+        Pipeline::Shaded(shaded) => shaded.cutout.is_some().then_some(shaded),
+        Pipeline::Flat(_) => None,
+    })
+}
+
+impl HoleTable {
+    fn new(draw: &Draw, plan: &FramePlan) -> Self {
+        let mesh = &draw.model.mesh;
+        let parts: Vec<Option<Opacity<'_>>> =
+            with_holes(draw, plan).map(|shaded| Opacity::of(shaded?, plan.filter)).collect();
+        // Outside of the parallel section.
+        parts.iter().flatten().for_each(Opacity::prepare);
+        let of = |triangle: usize| {
+            let triangle = number(triangle);
+            let part = mesh.polygon_parts()[mesh.polygon_of(triangle) as usize];
+            let uvs = uvs(draw, triangle);
+            let opacity = parts[part as usize].as_ref().zip(uvs);
+            opacity.map_or(Holes::Nowhere, |(opacity, uvs)| opacity.holes(between(uvs)))
+        };
+        Self {
+            model: draw.model.clone(),
+            surfaces: with_holes(draw, plan).map(|it| it.and_then(Surface::of)).collect(),
+            filter: plan.filter,
+            holes: (0..mesh.triangle_count()).into_par_iter().with_min_len(4096).map(of).collect(),
+            is_used: true,
+        }
+    }
+
+    fn is_of(&self, draw: &Draw, plan: &FramePlan) -> bool {
+        let same = |(own, shaded): (&Option<Surface>, Option<&Shaded>)| match (own, shaded) {
+            (Some(own), Some(shaded)) => own.is_of(shaded),
+            (None, None) => true,
+            (Some(_), None) | (None, Some(_)) => false,
+        };
+        Shared::same(&self.model, &draw.model)
+            && self.filter == plan.filter
+            && self.surfaces.len() == draw.part_pipelines.len()
+            && self.surfaces.iter().zip(with_holes(draw, plan)).all(same)
+    }
+}
+
+impl HoleTables {
+    /// Makes the tables that a frame needs, and forgets all others.
+    pub(crate) fn update(&mut self, plan: &FramePlan) {
+        let last = std::mem::take(&mut self.of_draws);
+        self.tables.iter_mut().for_each(|table| table.is_used = false);
+        for (i, draw) in plan.draws.iter().enumerate() {
+            if !draw.filled || with_holes(draw, plan).all(|surface| surface.is_none()) {
+                self.of_draws.push(None);
+                continue;
+            }
+            // Mostly the one of the last frame.
+            let last = last.get(i).copied().flatten();
+            let found = last.filter(|table| self.tables[*table].is_of(draw, plan));
+            let found = found.or_else(|| self.tables.iter().position(|it| it.is_of(draw, plan)));
+            let table = found.unwrap_or_else(|| {
+                self.tables.push(HoleTable::new(draw, plan));
+                self.tables.len() - 1
+            });
+            self.tables[table].is_used = true;
+            self.of_draws.push(Some(table));
+        }
+        if self.tables.iter().any(|table| !table.is_used) {
+            self.forget_unused();
+        }
+    }
+
+    fn forget_unused(&mut self) {
+        let mut left = 0;
+        let places: Vec<usize> = self
+            .tables
+            .iter()
+            .map(|table| {
+                left += usize::from(table.is_used);
+                left.saturating_sub(1)
+            })
+            .collect();
+        self.tables.retain(|table| table.is_used);
+        for table in self.of_draws.iter_mut().flatten() {
+            *table = places[*table];
+        }
+    }
+
+    /// What is known of each triangle of a draw; empty if the draw has no holes.
+    pub(crate) fn of_draw(&self, draw: usize) -> &[Holes] {
+        let table = self.of_draws.get(draw).copied().flatten();
+        table.map_or(&[], |table| &self.tables[table].holes)
+    }
+}

@@ -1,0 +1,516 @@
+//! Layers: the transparent triangles of a tile that are in front of what is opaque.
+//!
+//! Transparent triangles have bins of their own and hide nothing. Block by block, every pixel gets
+//! the list of those that cover it in front of its entry in the visibility buffer, sorted from far
+//! to near. So neither the order of objects nor of triangles shows, and triangles that cut through
+//! each other change places at the pixel where they do. Of equal depths the lower number is in
+//! front, as among opaque triangles: it belongs to the older object or is the earlier face.
+//!
+//! A list holds [`MOST`] layers. If a pixel has more, the farthest are taken first, and the block
+//! is gathered again for the next, so memory is bounded whatever the number of layers.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use fearless_simd::{Level, Simd, dispatch};
+
+use super::beyond;
+use super::bins::LargeTriangle;
+use super::depth_format::{Any, Format as _, depths_between};
+use super::edges_in_floats::{Everywhere, FloatTriangle, in_pixels};
+use super::entries::word;
+use super::geometry::ScreenGeometry;
+use super::large::{Large, Solid, Touched};
+use super::scan_lines::ScanLines;
+use crate::frame::FramePlan;
+use crate::reference::points;
+use crate::screen::coverage::{Grid, PixelBox, Triangle};
+use crate::screen::sample_positions::{FOUR, SamplePositions};
+use crate::screen::tiles::{BLOCK_PIXELS, block_at, within};
+use marraztu_core::accuracy::{Coverage, DepthFormat, Transparency};
+use marraztu_core::base::math::each;
+
+/// The layers of a pixel that are held at once.
+const MOST: usize = 1024;
+/// Those that are kept when they become more: the farthest.
+const KEPT: usize = MOST / 2;
+
+/// The layers of one tile, and of the block that was gathered last.
+#[derive(Debug)]
+pub(crate) struct Layers {
+    sample_positions: SamplePositions,
+    bounds: PixelBox,
+    /// The blocks that any triangle touches, a bit for each.
+    touched: u64,
+    /// The pixels of small triangles, for each sample of each block: the pixel of the block and the
+    /// word that the visibility buffer would hold.
+    hits: Vec<Vec<(u8, u64)>>,
+    large: Vec<(Layer, Touched)>,
+    depth_format: DepthFormat,
+    grid: Grid,
+    /// The least and the largest depth.
+    depths: [f32; 2],
+    block: Held,
+}
+
+/// A triangle that is not small.
+#[derive(Debug)]
+enum Layer {
+    Large(Large),
+    Floats(FloatTriangle),
+    /// Scan lines, of one sample.
+    Rows(Box<ScanLines>, usize),
+}
+
+impl Layer {
+    /// The largest depth of its corners.
+    const fn high(&self) -> f32 {
+        match self {
+            Self::Large(large) => large.high,
+            Self::Floats(triangle) => triangle.high,
+            Self::Rows(rows, _) => rows.high,
+        }
+    }
+}
+
+/// The layers of a block's pixels: row after row, the farthest first.
+#[derive(Debug)]
+struct Held {
+    rows: Vec<[u64; BLOCK_PIXELS]>,
+    counts: [usize; BLOCK_PIXELS],
+    /// Keys up to these were taken before.
+    floor: [u64; BLOCK_PIXELS],
+    /// Keys above these are taken later.
+    ceiling: [u64; BLOCK_PIXELS],
+    /// The pixels that have such keys, a bit for each.
+    more: u64,
+}
+
+impl Default for Held {
+    fn default() -> Self {
+        Self {
+            rows: Vec::new(),
+            counts: [0; BLOCK_PIXELS],
+            floor: [0; BLOCK_PIXELS],
+            ceiling: [u64::MAX; BLOCK_PIXELS],
+            more: 0,
+        }
+    }
+}
+
+impl Default for Layers {
+    fn default() -> Self {
+        Self {
+            sample_positions: SamplePositions::default(),
+            bounds: PixelBox { left: 0, top: 0, right: 0, bottom: 0 },
+            touched: 0,
+            hits: vec![Vec::new(); FOUR * BLOCK_PIXELS],
+            large: Vec::new(),
+            depth_format: DepthFormat::default(),
+            grid: Grid::default(),
+            depths: [f32::INFINITY, 0.0],
+            block: Held::default(),
+        }
+    }
+}
+
+impl Layers {
+    /// Begins a tile without any layers.
+    pub(crate) fn begin_none(&mut self) {
+        self.touched = 0;
+    }
+
+    /// Begins a tile: finds the blocks that its transparent triangles touch.
+    pub(crate) fn begin(
+        &mut self,
+        level: Level,
+        plan: &FramePlan,
+        frame: &ScreenGeometry,
+        (tile, bounds): (usize, PixelBox),
+    ) {
+        (self.sample_positions, self.bounds) = (frame.sample_positions(), bounds);
+        (self.depth_format, self.grid) = (plan.variants.depth, plan.variants.grid());
+        (self.touched, self.depths) = (0, [f32::INFINITY, 0.0]);
+        self.hits.iter_mut().for_each(Vec::clear);
+        self.large.clear();
+        for bins in frame.transparent_bins() {
+            let samples = self.sample_positions.count();
+            let format = Any(self.depth_format);
+            dispatch!(level, simd => bins.hits.each((format, simd), tile, |place, word| {
+                self.add_hit(place as usize, samples, word);
+            }));
+            for &number in &bins.tiles[tile].large {
+                let triangle = &bins.large[number as usize];
+                match bins.unsnapped.get(number as usize) {
+                    None => self.add_large(level, triangle),
+                    Some(corners) => {
+                        self.add_variant(level, (plan, frame), (triangle, *corners));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds a pixel by its index in the visibility buffer.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the upper half is the depth")]
+    fn add_hit(&mut self, place: usize, samples: usize, word: u64) {
+        let (plane, pixel) = (place / BLOCK_PIXELS, place % BLOCK_PIXELS);
+        self.touched |= 1 << (plane / samples);
+        let [low, high] = depths_between(self.depth_format, [(word >> 32) as u32; 2]);
+        self.depths = [self.depths[0].min(low), self.depths[1].max(high)];
+        self.hits[plane].push((pixel as u8, word));
+    }
+
+    fn add_large(&mut self, level: Level, triangle: &LargeTriangle) {
+        let corners = each(triangle.corners, |corner| corner.at());
+        let reached = PixelBox::reached_on(self.grid, corners, self.reach());
+        let Some(area) = self.in_tile(reached) else { return };
+        let Some(edges) = Triangle::on(self.grid, corners) else { return };
+        let large = Large::new(triangle, &edges, [self.bounds.left, self.bounds.top]);
+        let samples = &self.sample_positions;
+        let touched = match samples.are_many() {
+            true => dispatch!(level, simd => large.blocks::<_, FOUR>(simd, area, samples)),
+            false => dispatch!(level, simd => large.blocks::<_, 1>(simd, area, samples)),
+        };
+        self.touched |= touched.some;
+        for depth in triangle.corners.map(|corner| corner.depth) {
+            self.depths = [self.depths[0].min(depth), self.depths[1].max(depth)];
+        }
+        self.large.push((Layer::Large(large), touched));
+    }
+
+    /// Adds a triangle by the chosen variant of coverage.
+    fn add_variant(
+        &mut self,
+        level: Level,
+        (plan, frame): (&FramePlan, &ScreenGeometry),
+        (triangle, corners): (&LargeTriangle, [[f32; 2]; 3]),
+    ) {
+        let depths = each(triangle.corners, |corner| corner.depth);
+        for depth in depths {
+            self.depths = [self.depths[0].min(depth), self.depths[1].max(depth)];
+        }
+        match plan.variants.coverage {
+            Coverage::Points => self.add_points(plan, frame, triangle.number),
+            Coverage::ScanLines => {
+                for sample in 0..self.sample_positions.count() {
+                    let [dx, dy] = in_pixels(self.shift(sample));
+                    let seen = each(corners, |[x, y]| [x - dx, y - dy]);
+                    let rows = ScanLines::new(seen, depths, triangle.number, self.bounds);
+                    let Some(rows) = rows else { continue };
+                    let mut touched = Touched::default();
+                    for block in rows.blocks() {
+                        touched.some |= 1 << block;
+                    }
+                    self.touched |= touched.some;
+                    self.large.push((Layer::Rows(Box::new(rows), sample), touched));
+                }
+            }
+            Coverage::Exact | Coverage::F32Edges => {
+                let reach = self.reach();
+                let reach = beyond::reach(reach, beyond::beyond(plan.variants.coverage));
+                let at = each(triangle.corners, |corner| corner.at());
+                let Some(area) = self.in_tile(PixelBox::reached(at, reach)) else { return };
+                let PixelBox { left, top, .. } = self.bounds;
+                let own = FloatTriangle::new(corners, depths, triangle.number, [left, top]);
+                let samples = &self.sample_positions;
+                let touched = match samples.are_many() {
+                    true => dispatch!(level, simd => own.blocks::<_, FOUR>(simd, area, samples)),
+                    false => dispatch!(level, simd => own.blocks::<_, 1>(simd, area, samples)),
+                };
+                self.touched |= touched.some;
+                self.large.push((Layer::Floats(own), touched));
+            }
+        }
+    }
+
+    /// Adds the points of a triangle. They cover a pixel more than once: the nearest counts.
+    fn add_points(&mut self, plan: &FramePlan, frame: &ScreenGeometry, number: u32) {
+        let (draw, start) = frame.draw_of(number);
+        let (draw, count) = (&plan.draws[draw as usize], self.sample_positions.count());
+        let mut all = BTreeMap::new();
+        for sample in 0..count {
+            let shift = self.shift(sample);
+            let shift = [shift[0] + plan.shift[0], shift[1] + plan.shift[1]];
+            let own = number - start.number;
+            points::cover(plan, draw, own, (self.bounds, shift), &mut |x, y, depth| {
+                let (x, y) = (x - self.bounds.left, y - self.bounds.top);
+                let place = (block_at(x, y) * count + sample) * BLOCK_PIXELS + within(x, y);
+                let key = Any(self.depth_format).key(depth);
+                let nearest: &mut u32 = all.entry(place).or_default();
+                *nearest = key.max(*nearest);
+            });
+        }
+        for (place, key) in all {
+            self.add_hit(place, count, word(key, number));
+        }
+    }
+
+    /// The offset of a sample.
+    fn shift(&self, sample: usize) -> [i32; 2] {
+        if self.sample_positions.are_many() {
+            self.sample_positions.shift::<FOUR>(sample)
+        } else {
+            [0; 2]
+        }
+    }
+
+    /// How far from centres of pixels samples lie.
+    fn reach(&self) -> [[i32; 2]; 2] {
+        match self.sample_positions.are_many() {
+            true => self.sample_positions.reach::<FOUR>(),
+            false => self.sample_positions.reach::<1>(),
+        }
+    }
+
+    /// The pixels of the tile in a box, counted from the tile's first; `None` if there are none.
+    fn in_tile(&self, pixels: PixelBox) -> Option<PixelBox> {
+        let area = pixels.intersection(self.bounds);
+        let PixelBox { left, top, .. } = self.bounds;
+        (!area.is_empty()).then_some(PixelBox {
+            left: area.left - left,
+            top: area.top - top,
+            right: area.right - left,
+            bottom: area.bottom - top,
+        })
+    }
+
+    /// Whether a triangle touches a block.
+    pub(crate) const fn touches(&self, block: usize) -> bool {
+        self.touched >> block & 1 != 0
+    }
+
+    /// The blocks that any triangle touches, a bit for each.
+    pub(crate) const fn touched(&self) -> u64 {
+        self.touched
+    }
+
+    /// Bounds of the depths of all layers, and of these of what is opaque.
+    pub(crate) fn depths_with(&self, opaque: Option<[f32; 2]>) -> Option<[f32; 2]> {
+        let [low, high] = self.depths;
+        let own = Some([low, high]).filter(|_| self.touched != 0);
+        match (own, opaque) {
+            (Some([low, high]), Some([least, most])) => Some([low.min(least), high.max(most)]),
+            (own, opaque) => own.or(opaque),
+        }
+    }
+
+    /// Begins a sample of a block.
+    pub(crate) fn open(&mut self) {
+        self.block.floor = [0; BLOCK_PIXELS];
+        self.block.more = u64::MAX;
+    }
+
+    /// Gathers the farthest layers of a sample of a block that were not taken before, in front of
+    /// the `opaque` entries. Returns whether there are any.
+    pub(crate) fn take(
+        &mut self,
+        level: Level,
+        (frame, order): (&ScreenGeometry, Transparency),
+        (block, sample): (usize, usize),
+        opaque: &[u64; BLOCK_PIXELS],
+    ) -> bool {
+        if self.block.more == 0 {
+            return false;
+        }
+        let by_draw = order == Transparency::Objects;
+        let mut key = Keys { by_draw, frame, last: (0..0, 0) };
+        self.block.begin();
+        let samples = self.sample_positions;
+        for (pixel, word) in &self.hits[block * samples.count() + sample] {
+            let pixel = usize::from(*pixel) % BLOCK_PIXELS;
+            if *word > opaque[pixel] {
+                self.block.add(pixel, key.of(*word));
+            }
+        }
+        let shift = if samples.are_many() { samples.shift::<FOUR>(sample) } else { [0; 2] };
+        dispatch!(level, simd => self.take_large(simd, &mut key, (block, sample, shift), opaque));
+        self.block.end()
+    }
+
+    #[inline(always)]
+    fn take_large<S: Simd>(
+        &mut self,
+        simd: S,
+        key: &mut Keys<'_>,
+        (block, sample, shift): (usize, usize, [i32; 2]),
+        opaque: &[u64; BLOCK_PIXELS],
+    ) {
+        let Self { large, block: held, depth_format, .. } = self;
+        let format = Any(*depth_format);
+        let farthest = opaque.iter().fold(u64::MAX, |least, word| *word.min(&least));
+        let mut plane = [0; BLOCK_PIXELS];
+        for (large, touched) in large.iter().filter(|(_, touched)| touched.some >> block & 1 != 0) {
+            if u64::from(format.key(large.high())) << 32 | u64::from(u32::MAX) < farthest {
+                continue;
+            }
+            plane.fill(0);
+            let (at, whole) = ((block, shift), touched.whole >> block & 1 != 0);
+            match large {
+                Layer::Large(large) => large.draw(format, simd, at, whole, &mut Solid, &mut plane),
+                Layer::Floats(own) => own.draw(format, simd, at, whole, &Everywhere, &mut plane),
+                Layer::Rows(rows, own) if *own == sample => {
+                    rows.draw(format, simd, block, &Everywhere, &mut plane);
+                }
+                Layer::Rows(..) => {}
+            }
+            for (pixel, (word, opaque)) in plane.iter().zip(opaque).enumerate() {
+                if word > opaque {
+                    held.add(pixel, key.of(*word));
+                }
+            }
+        }
+    }
+
+    /// The number of layers of the pixel that has the most.
+    pub(crate) const fn len(&self) -> usize {
+        self.block.rows.len()
+    }
+
+    /// The layers `i` of a block's pixels, 0 where a pixel has fewer. The lower halves are those of
+    /// words of the visibility buffer, and so are the upper halves unless objects are drawn one by
+    /// one.
+    pub(crate) fn row(&self, order: Transparency, i: usize) -> [u64; BLOCK_PIXELS] {
+        let flip = if order == Transparency::Objects { u64::from(u32::MAX) } else { 0 };
+        let mut row = self.block.rows[i];
+        for (word, count) in row.iter_mut().zip(&self.block.counts) {
+            *word = if *count > i { *word ^ flip } else { 0 };
+        }
+        row
+    }
+
+    /// Whether all layers of the block's sample were gathered at once.
+    pub(crate) const fn are_all(&self) -> bool {
+        self.block.more == 0
+    }
+}
+
+/// By what layers are sorted: the larger key is laid over the smaller.
+struct Keys<'a> {
+    by_draw: bool,
+    frame: &'a ScreenGeometry,
+    /// The triangles of the draw that was asked for last, and its place above.
+    last: (Range<u32>, u64),
+}
+
+impl Keys<'_> {
+    /// The key of a word of the visibility buffer: itself, or the draw's place in the order from
+    /// far to near above and the triangle's number below.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the lower half is the number")]
+    fn of(&mut self, word: u64) -> u64 {
+        if !self.by_draw {
+            return word;
+        }
+        let triangle = !(word as u32);
+        if !self.last.0.contains(&triangle) {
+            self.last = self.frame.place_of_draw(triangle);
+        }
+        self.last.1 << 32 | u64::from(triangle)
+    }
+}
+
+impl Held {
+    fn begin(&mut self) {
+        self.rows.clear();
+        self.counts = [0; BLOCK_PIXELS];
+        // Pixels whose layers were all taken are left out.
+        for (pixel, floor) in self.floor.iter_mut().enumerate() {
+            if self.more >> pixel & 1 == 0 {
+                *floor = u64::MAX;
+            }
+        }
+        self.ceiling = [u64::MAX; BLOCK_PIXELS];
+        self.more = 0;
+    }
+
+    #[inline(always)]
+    fn add(&mut self, pixel: usize, key: u64) {
+        if key <= self.floor[pixel] {
+            return;
+        }
+        if key > self.ceiling[pixel] {
+            self.more |= 1 << pixel;
+            return;
+        }
+        let row = self.counts[pixel];
+        if row == self.rows.len() {
+            if row == MOST {
+                return self.add_to_full(pixel, key);
+            }
+            self.rows.push([0; BLOCK_PIXELS]);
+        }
+        self.rows[row][pixel] = key;
+        self.counts[pixel] = row + 1;
+    }
+
+    /// Keeps the farthest layers of a pixel that has too many, and adds one.
+    #[cold]
+    fn add_to_full(&mut self, pixel: usize, key: u64) {
+        let mut column: Vec<u64> = self.rows.iter().map(|row| row[pixel]).collect();
+        column.select_nth_unstable(KEPT - 1);
+        for (row, key) in self.rows.iter_mut().zip(&column[..KEPT]) {
+            row[pixel] = *key;
+        }
+        self.counts[pixel] = KEPT;
+        self.ceiling[pixel] = column[KEPT - 1];
+        self.more |= 1 << pixel;
+        self.add(pixel, key);
+    }
+
+    /// Sorts the layers of each pixel. Returns whether there are any.
+    fn end(&mut self) -> bool {
+        let mut column = Vec::new();
+        for (pixel, count) in self.counts.iter().enumerate() {
+            let sorted = (1..*count).all(|i| self.rows[i - 1][pixel] < self.rows[i][pixel]);
+            if !sorted {
+                column.clear();
+                column.extend(self.rows[..*count].iter().map(|row| row[pixel]));
+                column.sort_unstable();
+                for (row, key) in self.rows.iter_mut().zip(&column) {
+                    row[pixel] = *key;
+                }
+            }
+        }
+        self.floor = self.ceiling;
+        !self.rows.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The layers that are taken of one pixel, in as many turns as it needs.
+    fn taken(keys: &[u64]) -> (Vec<u64>, usize) {
+        let mut held = Held { more: u64::MAX, floor: [0; BLOCK_PIXELS], ..Held::default() };
+        let (mut all, mut turns) = (Vec::new(), 0);
+        while held.more != 0 {
+            held.begin();
+            keys.iter().for_each(|key| held.add(7, *key));
+            held.end();
+            all.extend(held.rows[..held.counts[7]].iter().map(|row| row[7]));
+            turns += 1;
+        }
+        (all, turns)
+    }
+
+    #[test]
+    fn every_layer_is_taken_once_from_far_to_near_however_many_there_are() {
+        let mut state = 1_u64;
+        for count in [1, 2, 7, KEPT, MOST, MOST + 1, 5 * MOST + 3] {
+            let keys: Vec<u64> = (0..count)
+                .map(|_| {
+                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                    state | 1
+                })
+                .collect();
+            let mut want = keys.clone();
+            want.sort_unstable();
+            let (got, turns) = taken(&keys);
+            assert_eq!(got, want, "{count}");
+            assert!(turns <= count / KEPT + 1, "{turns} turns for {count}");
+        }
+    }
+}

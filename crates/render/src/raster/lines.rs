@@ -1,0 +1,528 @@
+//! Rasterizes lines: which pixels a line covers.
+//!
+//! A line covers, in each column that it crosses (or in each row, if it is steep), the pixel that
+//! contains it at the column's centre. At its ends the diamond-exit rule of Vulkan and Direct3D
+//! decides: a pixel is covered if the line leaves the diamond |x| + |y| < 1/2 around its centre. So
+//! a line of length 0 covers none, and two consecutive lines cover no pixel twice. The ends are
+//! snapped and everything is computed in integers.
+//!
+//! Short lines are drawn sixteen at a time, one in each lane, and become hits; the others are
+//! stepped through in each tile. Both cover the same pixels at the same depths.
+
+use fearless_simd::{
+    Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _,
+    SimdNarrow as _, SimdWiden as _, f32x16, f64x8, i32x16, i64x8, mask32x16, u32x16,
+};
+
+use super::hits::{Hits, Pixels};
+use crate::screen::clip::ScreenVertex;
+use crate::screen::coverage::{PixelBox, SUBPIXELS, Snapped};
+use crate::screen::tiles::TILE;
+
+/// Half of a pixel.
+const HALF: i32 = SUBPIXELS / 2;
+
+/// The longest line, in subpixels along its major axis, that counts as short: dividends stay below
+/// 2^23, so that f32 gives the integer part of quotients exactly.
+pub(crate) const SHORT: i32 = 8 * SUBPIXELS;
+
+/// Numbers of lines have this bit.
+const LINE: u32 = 1 << 31;
+
+/// The number of a line in the frame, and whether it has the colour of back faces, as stored in the
+/// visibility buffer. Of two lines the one with the lower number is the older.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct LineNumber(u32);
+
+impl LineNumber {
+    /// The number of the line, and whether it has the colour of back faces.
+    pub(crate) fn new(line: u32, back: bool) -> Self {
+        assert!(line < LINE / 2, "fewer than 2^30 lines");
+        Self(LINE | line << 1 | u32::from(back))
+    }
+
+    /// The line with this primitive number, if it is a line's.
+    pub(crate) const fn of(number: u32) -> Option<Self> {
+        if number & LINE == 0 { None } else { Some(Self(number)) }
+    }
+
+    /// Its number among the lines of the frame.
+    pub(crate) const fn line(self) -> u32 {
+        (self.0 & !LINE) >> 1
+    }
+
+    /// Whether it has the colour of back faces.
+    pub(crate) const fn is_back(self) -> bool {
+        self.0 & 1 != 0
+    }
+
+    /// Its primitive number.
+    pub(crate) const fn bits(self) -> u32 {
+        self.0
+    }
+}
+
+/// A line on the screen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ScreenLine {
+    pub(crate) ends: [ScreenVertex; 2],
+    /// Its number, as [`LineNumber::bits`].
+    pub(crate) number: u32,
+    /// The depth bias: by how many steps of depth it is drawn nearer.
+    pub(crate) nearer: u32,
+}
+
+impl ScreenLine {
+    /// The line relative to a sample with this offset in subpixels.
+    #[inline(always)]
+    pub(crate) fn seen_from(&self, shift: [i32; 2]) -> Self {
+        Self { ends: self.ends.map(|end| end.seen_from(shift)), ..*self }
+    }
+}
+
+/// The bounding box of the pixels that a line may cover.
+pub(crate) fn bounds([a, b]: [Snapped; 2], width: i32) -> PixelBox {
+    let low = |p: i32, q: i32| p.min(q).div_euclid(SUBPIXELS) - width;
+    let high = |p: i32, q: i32| p.max(q).div_euclid(SUBPIXELS) + 1 + width;
+    PixelBox {
+        left: low(a.x, b.x),
+        top: low(a.y, b.y),
+        right: high(a.x, b.x),
+        bottom: high(a.y, b.y),
+    }
+}
+
+/// Bounding boxes of a line's pixels in `clip`: one for each column of tiles, or for each row if it
+/// is steep.
+pub(crate) fn stretches(
+    line: &ScreenLine,
+    width: i32,
+    clip: PixelBox,
+) -> impl Iterator<Item = PixelBox> {
+    let [a, b] = line.ends.map(|end| end.at());
+    let all = bounds([a, b], width).intersection(clip);
+    let steep = (b.y - a.y).abs() > (b.x - a.x).abs();
+    let (ua, va, ub, vb) = if steep { (a.y, a.x, b.y, b.x) } else { (a.x, a.y, b.x, b.y) };
+    let (du, dv) = (i64::from(ub) - i64::from(ua), i64::from(vb) - i64::from(va));
+    let (first, last) = if steep { (all.top, all.bottom) } else { (all.left, all.right) };
+    // The line's minor coordinate at a major one, rounded down to pixels.
+    let across = move |pixel: i32| {
+        let along = i64::from(pixel) * i64::from(SUBPIXELS) - i64::from(ua);
+        let v = i64::from(va) + along * dv / if du == 0 { 1 } else { du };
+        i32::try_from(v.div_euclid(i64::from(SUBPIXELS))).unwrap_or(0)
+    };
+    let tiles = first.div_euclid(TILE)..(last - 1).div_euclid(TILE) + 1;
+    let tiles = if all.is_empty() { 0..0 } else { tiles };
+    tiles.map(move |tile| {
+        let (from, to) = ((tile * TILE).max(first), (tile * TILE + TILE).min(last));
+        let (p, q) = (across(from), across(to));
+        let (low, high) = (p.min(q) - width - 1, p.max(q) + width + 2);
+        let own = if steep {
+            PixelBox { left: low, top: from, right: high, bottom: to }
+        } else {
+            PixelBox { left: from, top: low, right: to, bottom: high }
+        };
+        own.intersection(all)
+    })
+}
+
+/// Calls `take` with every pixel of a line inside `clip`, and with the depth there.
+#[inline(always)]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "the nearest number is meant"
+)]
+pub(crate) fn pixels(
+    line: &ScreenLine,
+    width: i32,
+    clip: PixelBox,
+    mut take: impl FnMut(i32, i32, f32),
+) {
+    let [a, b] = line.ends;
+    let steep = (b.at().y - a.at().y).abs() > (b.at().x - a.at().x).abs();
+    // Along the major axis u, and across it v. A wide line is centred on the segment: the segment
+    // is moved back by half of the added width, and each of its pixels is repeated.
+    let shift = (width - 1) * SUBPIXELS / 2;
+    let turn = |p: ScreenVertex| {
+        let Snapped { x, y } = p.at();
+        if steep { (y, x - shift) } else { (x, y - shift) }
+    };
+    let ((ua, va), (ub, vb)) = (turn(a), turn(b));
+    let (du, dv) = (i64::from(ub) - i64::from(ua), i64::from(vb) - i64::from(va));
+    if du == 0 {
+        return;
+    }
+    let (columns, rows) = ((clip.left, clip.right), (clip.top, clip.bottom));
+    let ((first, last), (low, high)) = if steep { (rows, columns) } else { (columns, rows) };
+    let begin = ua.min(ub).div_euclid(SUBPIXELS).max(first);
+    let end = (ua.max(ub).div_euclid(SUBPIXELS) + 1).min(last);
+    let pixel = i64::from(SUBPIXELS);
+    let at = |u: i32| i64::from(u) * pixel + i64::from(HALF) - i64::from(ua);
+    let first = i64::from(va) * du + dv * at(begin);
+    let mut crossing = Crossing::new(first, dv * pixel, du * pixel);
+    for u in begin..end {
+        let (v, along) = (crossing.next(), at(u));
+        let Ok(v) = i32::try_from(v) else { continue };
+        if v >= high || v <= low - width {
+            continue;
+        }
+        let is_end = along.abs() <= pixel || (along - du).abs() <= pixel;
+        if is_end && !leaves(u, v, along, du, (ua, va), (ub, vb)) {
+            continue;
+        }
+        let t = (along as f64 / du as f64).clamp(0.0, 1.0);
+        let depth = f64::from(a.depth) + t * (f64::from(b.depth) - f64::from(a.depth));
+        let depth = nearer(depth as f32, line.nearer);
+        for v in v.max(low)..(v + width).min(high) {
+            let (x, y) = if steep { (v, u) } else { (u, v) };
+            take(x, y, depth);
+        }
+    }
+}
+
+/// v where a line crosses the centres of columns: (va du + dv along) / du, rounded down. From one
+/// column to the next the quotient and the remainder grow by the same, so that none is divided.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    quotient: i64,
+    remainder: i64,
+    /// What both grow by.
+    step: [i64; 2],
+    divisor: i64,
+}
+
+impl Crossing {
+    /// From a dividend, its growth and a divisor, which is not 0.
+    const fn new(dividend: i64, growth: i64, divisor: i64) -> Self {
+        let (dividend, growth) = (dividend * divisor.signum(), growth * divisor.signum());
+        let divisor = divisor.abs();
+        Self {
+            quotient: dividend.div_euclid(divisor),
+            remainder: dividend.rem_euclid(divisor),
+            step: [growth.div_euclid(divisor), growth.rem_euclid(divisor)],
+            divisor,
+        }
+    }
+
+    /// The quotient in this column; goes on to the next one.
+    #[inline(always)]
+    const fn next(&mut self) -> i64 {
+        let Self { quotient, remainder, step, divisor } = *self;
+        let carry = remainder + step[1] >= divisor;
+        self.quotient = quotient + step[0] + carry as i64;
+        self.remainder = remainder + step[1] - if carry { divisor } else { 0 };
+        quotient
+    }
+}
+
+/// Whether a line leaves the diamond of the pixel in this column.
+fn leaves(u: i32, v: i32, along: i64, du: i64, from: (i32, i32), to: (i32, i32)) -> bool {
+    let within = |(pu, pv): (i32, i32)| {
+        let (cu, cv) = (u * SUBPIXELS + HALF, v * SUBPIXELS + HALF);
+        (pu - cu).abs() + (pv - cv).abs() < HALF
+    };
+    if within(to) {
+        return false;
+    }
+    let crosses = if du > 0 { along >= 0 && along <= du } else { along <= 0 && along >= du };
+    crosses || within(from)
+}
+
+/// A depth that is some steps nearer.
+fn nearer(depth: f32, steps: u32) -> f32 {
+    f32::from_bits(depth.to_bits() + steps).min(1.0)
+}
+
+/// One end of sixteen lines: x, y and depth.
+pub(crate) type Ends<S> = [i32x16<S>; 3];
+
+/// What sixteen short lines have in common, and the mask of those that are drawn.
+pub(crate) struct Short<S: Simd> {
+    pub(crate) some: mask32x16<S>,
+    pub(crate) number: u32x16<S>,
+    pub(crate) width: i32,
+    /// The depth bias, in steps of depth.
+    pub(crate) nearer: u32,
+    /// The sample that they are drawn for.
+    pub(crate) sample: usize,
+}
+
+/// Draws sixteen lines that are at most [`SHORT`], for one of `N` samples per pixel.
+///
+/// In the turned axes of [`pixels`]: v = floor((va du + dv along) / (256 du)).
+#[inline(always)]
+pub(crate) fn draw_short<S: Simd, const N: usize>(
+    a: Ends<S>,
+    b: Ends<S>,
+    lines: &Short<S>,
+    hits: &mut Hits,
+) {
+    let simd = a[0].simd;
+    let ([xa, ya, da], [xb, yb, db]) = (a, b);
+    let steep = (yb - ya).abs().simd_gt((xb - xa).abs());
+    let shift = (lines.width - 1) * SUBPIXELS / 2;
+    let (ua, va) = (steep.select(ya, xa), steep.select(xa, ya) - shift);
+    let (ub, vb) = (steep.select(yb, xb), steep.select(xb, yb) - shift);
+    let (du, dv) = (ub - ua, vb - va);
+    let some = lines.some & !du.simd_eq(0);
+    let backward = du.simd_lt(0);
+    let (begin, end) = (ua.min(ub) >> 8, (ua.max(ub) >> 8) + 1);
+    let zero = i32x16::splat(simd, 0);
+    let columns = some.select(end - begin, zero).reduce_max();
+    let reach = hits.reach(bounds_of([xa, ya], [xb, yb], some, lines.width));
+    let below = (du.abs() << 8).max(1).to_float::<f32x16<S>>();
+    let depths = Depths::new(da, db, du);
+    for column in 0..columns {
+        let u = begin + column;
+        let along = (u << 8) + HALF - ua;
+        let above = (va & (SUBPIXELS - 1)) * du + dv * along;
+        let above = backward.select(-above, above).to_float::<f32x16<S>>();
+        let v = (va >> 8) + (above / below).floor().to_int::<i32x16<S>>();
+        let across = (v << 8) + HALF;
+        let within_a = (along.abs() + (va - across).abs()).simd_lt(HALF);
+        let within_b = ((along - du).abs() + (vb - across).abs()).simd_lt(HALF);
+        let passed = backward.select(-along, along);
+        let crosses = passed.simd_ge(0) & passed.simd_le(du.abs());
+        let covered = some & u.simd_lt(end) & (crosses | within_a) & !within_b;
+        if !covered.any_true() {
+            continue;
+        }
+        let depth = (depths.at(along) + lines.nearer.cast_signed()).min(ONE.cast_signed());
+        let depth = depth.bitcast();
+        for side in 0..lines.width {
+            let v = v + side;
+            let (x, y) = (steep.select(v, u), steep.select(u, v));
+            let color = hits.are_colored().then(
+                #[inline(always)]
+                || u32x16::splat(x.simd, 0),
+            );
+            let pixels = Pixels { x, y, depth, number: lines.number, color };
+            hits.add::<S, N>(&reach, (&pixels, lines.sample), covered);
+        }
+    }
+}
+
+/// The bits of the largest depth.
+const ONE: u32 = 1.0_f32.to_bits();
+
+/// The depths along sixteen lines: a + t (b - a), t = along / du, clamped to 0..1, in f64.
+struct Depths<S: Simd> {
+    from: [f64x8<S>; 2],
+    gain: [f64x8<S>; 2],
+    length: [f64x8<S>; 2],
+}
+
+impl<S: Simd> Depths<S> {
+    #[inline(always)]
+    fn new(a: i32x16<S>, b: i32x16<S>, du: i32x16<S>) -> Self {
+        let (a_low, a_high) = a.bitcast::<f32x16<S>>().widen();
+        let (b_low, b_high) = b.bitcast::<f32x16<S>>().widen();
+        let gain = [b_low - a_low, b_high - a_high];
+        Self { from: [a_low, a_high], gain, length: wide(du) }
+    }
+
+    /// The bits of the depths.
+    #[inline(always)]
+    fn at(&self, along: i32x16<S>) -> i32x16<S> {
+        let [low, high] = wide(along);
+        self.half(0, low).narrow(self.half(1, high)).bitcast()
+    }
+
+    #[inline(always)]
+    fn half(&self, i: usize, along: f64x8<S>) -> f64x8<S> {
+        let t = along / self.length[i];
+        let (zero, one) = (f64x8::splat(t.simd, 0.0), f64x8::splat(t.simd, 1.0));
+        let t = t.simd_lt(0.0).select(zero, t);
+        let t = t.simd_gt(1.0).select(one, t);
+        self.from[i] + t * self.gain[i]
+    }
+}
+
+#[inline(always)]
+fn wide<S: Simd>(x: i32x16<S>) -> [f64x8<S>; 2] {
+    let (low, high): (i64x8<S>, i64x8<S>) = x.widen();
+    [low.to_float(), high.to_float()]
+}
+
+/// The bounding box of the pixels that some of sixteen lines may cover.
+#[inline(always)]
+fn bounds_of<S: Simd>(
+    [xa, ya]: [i32x16<S>; 2],
+    [xb, yb]: [i32x16<S>; 2],
+    some: mask32x16<S>,
+    width: i32,
+) -> PixelBox {
+    // If the mask is empty, the box is inverted, but far from overflow.
+    let far = i32x16::splat(xa.simd, 1 << 29);
+    let first = Snapped {
+        x: some.select(xa.min(xb), far).reduce_min(),
+        y: some.select(ya.min(yb), far).reduce_min(),
+    };
+    let last = Snapped {
+        x: some.select(xa.max(xb), -far).reduce_max(),
+        y: some.select(ya.max(yb), -far).reduce_max(),
+    };
+    if first.x > last.x {
+        return PixelBox { left: 0, top: 0, right: 0, bottom: 0 };
+    }
+    bounds([first, last], width)
+}
+
+#[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::super::depth_format::Reversed;
+    use super::*;
+
+    const EVERYWHERE: PixelBox = PixelBox { left: -99, top: -99, right: 199, bottom: 199 };
+
+    fn drawn(ends: [(f64, f64); 2]) -> Vec<(i32, i32)> {
+        drawn_wide(ends, 1)
+    }
+
+    fn drawn_wide(ends: [(f64, f64); 2], width: i32) -> Vec<(i32, i32)> {
+        let vertex = |(x, y): (f64, f64)| {
+            ScreenVertex::new(Snapped { x: (x * 256.0) as i32, y: (y * 256.0) as i32 }, 0.5)
+        };
+        let line = ScreenLine { ends: ends.map(vertex), number: 0, nearer: 0 };
+        let mut pixels = Vec::new();
+        super::pixels(&line, width, EVERYWHERE, |x, y, _| pixels.push((x, y)));
+        pixels.sort_unstable();
+        pixels
+    }
+
+    /// The same, drawn in a lane.
+    fn drawn_short(ends: [(f64, f64); 2], width: i32) -> Vec<(i32, i32)> {
+        let mut hits = Hits::default();
+        hits.clear([99, 99], [2, 2]);
+        let end = |(x, y): (f64, f64)| [(x * 256.0) as i32, (y * 256.0) as i32];
+        dispatch!(Level::new(), simd => {
+            let [a, b] = ends.map(|ends| end(ends).map(|x| i32x16::splat(simd, x)));
+            let depth = i32x16::splat(simd, 0.5_f32.to_bits().cast_signed());
+            let some = mask32x16::from_bitmask(simd, 1 << 5);
+            let short = Short { some, number: u32x16::splat(simd, 0), width, nearer: 0, sample: 0 };
+            draw_short::<_, 1>([a[0], a[1], depth], [b[0], b[1], depth], &short, &mut hits);
+        });
+        let mut pixels = Vec::new();
+        for tile in 0..4 {
+            let mut take = |place: u32| {
+                let (place, tile) = (place as i32, tile as i32);
+                let (block, within) = (place / 64, place % 64);
+                let x = tile % 2 * TILE + block % 8 * 8 + within % 8;
+                pixels.push((x, tile / 2 * TILE + block / 8 * 8 + within / 8));
+            };
+            dispatch!(Level::new(), simd => {
+                hits.each((Reversed, simd), tile, |place, _| take(place));
+            });
+        }
+        pixels.sort_unstable();
+        pixels
+    }
+
+    #[test]
+    fn a_line_in_a_lane_takes_the_same_pixels_at_the_same_depths() {
+        let mut state = 3_u64;
+        let mut random = move |below: i32| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            ((state >> 33) % below.cast_unsigned() as u64) as i32
+        };
+        let picture = |&(x, y): &(i32, i32)| (0..99).contains(&x) && (0..99).contains(&y);
+        for _ in 0..20_000 {
+            let (x, y) = (random(100 * 256), random(100 * 256));
+            let mut far = |from: i32| from + random(2 * SHORT + 1) - SHORT;
+            let ends = [(x, y), (far(x), far(y))].map(|(x, y)| {
+                let place = |a: i32| f64::from(if a % 3 == 0 { a / 128 * 128 } else { a }) / 256.0;
+                (place(x), place(y))
+            });
+            for width in [1, 2] {
+                let mut want = drawn_wide(ends, width);
+                want.retain(picture);
+                assert_eq!(drawn_short(ends, width), want, "{ends:?}, {width} wide");
+            }
+        }
+    }
+
+    /// The rule itself, tested at many points of the line: it leaves a diamond if its last point
+    /// inside is not its end.
+    fn by_the_rule([from, to]: [(f64, f64); 2]) -> Vec<(i32, i32)> {
+        let n = 200_000;
+        let mut entered = Vec::new();
+        let inside = |x: f64, y: f64| {
+            let (column, row) = (x.floor(), y.floor());
+            ((x - column - 0.5).abs() + (y - row - 0.5).abs() < 0.5)
+                .then_some((column as i32, row as i32))
+        };
+        for i in 0..=n {
+            let t = f64::from(i) / f64::from(n);
+            let at = inside(from.0 + (to.0 - from.0) * t, from.1 + (to.1 - from.1) * t);
+            entered.extend(at.filter(|pixel| entered.last() != Some(pixel)));
+        }
+        if let Some(last) = inside(to.0, to.1) {
+            entered.retain(|pixel| *pixel != last);
+        }
+        entered.sort_unstable();
+        entered.dedup();
+        entered
+    }
+
+    #[test]
+    fn a_line_takes_the_pixels_whose_diamonds_it_leaves() {
+        let lines = [
+            [(0.3, 0.4), (9.7, 3.9)],
+            [(9.7, 3.9), (0.3, 0.4)],
+            [(5.2, -7.6), (3.1, 8.4)],
+            [(3.1, 8.4), (5.2, -7.6)],
+            [(0.6, 0.55), (4.45, 4.6)],
+            [(2.05, 2.45), (2.9, 2.55)],
+            [(-3.4, 6.3), (4.4, -1.7)],
+            [(1.9, 1.9), (2.1, 7.2)],
+        ];
+        for ends in lines {
+            let snapped = ends.map(|(x, y): (f64, f64)| {
+                ((x * 256.0).trunc() / 256.0, (y * 256.0).trunc() / 256.0)
+            });
+            assert_eq!(drawn(ends), by_the_rule(snapped), "{ends:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_two_pixels_wide_has_its_middle_on_the_segment() {
+        // Along the border of rows 4 and 5, and of columns 4 and 5.
+        let level = drawn_wide([(0.5, 5.0), (3.5, 5.0)], 2);
+        assert_eq!(level, [(0, 4), (0, 5), (1, 4), (1, 5), (2, 4), (2, 5)]);
+        let upright = drawn_wide([(5.0, 0.5), (5.0, 3.5)], 2);
+        assert_eq!(upright, [(4, 0), (4, 1), (4, 2), (5, 0), (5, 1), (5, 2)]);
+    }
+
+    #[test]
+    fn two_lines_that_follow_one_another_take_no_pixel_twice() {
+        let (a, b, c) = ((0.3, 0.4), (5.6, 2.3), (9.1, 7.7));
+        let first = drawn([a, b]);
+        assert!(drawn([b, c]).iter().all(|pixel| !first.contains(pixel)));
+    }
+
+    #[test]
+    fn every_pixel_of_a_long_line_lies_in_one_of_its_stretches() {
+        let mut state = 9_u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            ((state >> 33) % (500 * 256)) as i32 - 100 * 256
+        };
+        let picture = PixelBox { left: 0, top: 0, right: 320, bottom: 256 };
+        for i in 0..2000 {
+            let ends = [0, 0].map(|_| ScreenVertex::new(Snapped { x: random(), y: random() }, 0.5));
+            let line = ScreenLine { ends, number: 0, nearer: 0 };
+            let width = 1 + i % 2;
+            let boxes: Vec<PixelBox> = stretches(&line, width, picture).collect();
+            pixels(&line, width, picture, |x, y, _| {
+                let holds = |own: &&PixelBox| {
+                    (own.left..own.right).contains(&x) && (own.top..own.bottom).contains(&y)
+                };
+                assert_eq!(boxes.iter().filter(holds).count(), 1, "{x}, {y}: {ends:?}");
+            });
+        }
+    }
+}

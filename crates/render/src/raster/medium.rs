@@ -1,0 +1,211 @@
+//! Rasterizes a triangle whose bounding box has at most 64 x 64 pixels, in one tile.
+//!
+//! It does what [`large`](super::large) does, to the same bits: edge functions relative to the tile
+//! fit 32 bits, so that sixteen pixels or blocks are tested at once. Depths are computed from edge
+//! functions in f64, which holds these integers exactly.
+
+use fearless_simd::{
+    Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8,
+    i32x16,
+};
+
+use super::bins::LargeTriangle;
+use super::depth_format::Format;
+use super::large::Touched;
+use super::paint::Painted;
+use super::visibility_buffer::{in_front, put_rows};
+use crate::screen::coverage::{PixelBox, SUBPIXELS};
+use crate::screen::sample_positions::SamplePositions;
+use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE};
+use crate::simd::in_f64;
+use marraztu_core::base::math::each;
+
+/// The longest sides of the bounding box, in pixels.
+pub(crate) const LONGEST: i32 = TILE;
+
+/// Columns and rows of the pixels of two rows of a block, or of the blocks of two rows of a tile.
+const ACROSS: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
+const DOWN: [i32; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
+
+/// Two rows of a block at a time.
+const PAIRS: i32 = BLOCK / 2;
+
+/// A triangle relative to a tile.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Medium<S: Simd> {
+    /// The edge functions at the first pixel of the tile, less their least values at covered
+    /// centres.
+    edges: [i32; 3],
+    /// The least values of the second and the third corner's, which depth needs.
+    least: [i32; 2],
+    /// Their steps by a subpixel to the right, and by one down.
+    right: [i32; 3],
+    down: [i32; 3],
+    /// Their offsets within two rows of a block.
+    gains: [i32x16<S>; 3],
+    depth: f64,
+    to_second: f64,
+    to_third: f64,
+    low: f32,
+    /// The largest depth of its corners.
+    pub(crate) high: f32,
+    number: u32,
+}
+
+impl<S: Simd> Medium<S> {
+    /// Sets up a triangle for the tile with this first pixel; `None` if it has no area. Its
+    /// bounding box must reach into the tile.
+    #[inline(always)]
+    pub(crate) fn new(simd: S, large: &LargeTriangle, [left, top]: [i32; 2]) -> Option<Self> {
+        // Relative to the centre of the first pixel, so that e(0, 0) is the constant term.
+        let half = SUBPIXELS / 2;
+        let (cx, cy) = (left * SUBPIXELS + half, top * SUBPIXELS + half);
+        let [p, q, r] = each(large.corners, |corner| {
+            let at = corner.at();
+            [at.x - cx, at.y - cy]
+        });
+        let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+        if area == 0 {
+            return None;
+        }
+        let lines = if area > 0 { [[q, r], [r, p], [p, q]] } else { [[r, q], [p, r], [q, p]] };
+        let right = each(lines, |[p, q]| p[1] - q[1]);
+        let down = each(lines, |[p, q]| q[0] - p[0]);
+        let at = |i: usize| -(right[i] * lines[i][0][0] + down[i] * lines[i][0][1]);
+        // The top-left rule, as in `coverage`.
+        let least = |i: usize| i32::from(right[i] < 0 || (right[i] == 0 && down[i] <= 0));
+        let (across, below) = (i32x16::from_slice(simd, &ACROSS), i32x16::from_slice(simd, &DOWN));
+        let [by_x, by_y] = [each(right, |by| by * SUBPIXELS), each(down, |by| by * SUBPIXELS)];
+        let [a, b, c] = each(large.corners, |corner| corner.depth);
+        let per_area = 1.0 / f64::from(area.abs());
+        Some(Self {
+            edges: [at(0) - least(0), at(1) - least(1), at(2) - least(2)],
+            least: [least(1), least(2)],
+            right,
+            down,
+            gains: [
+                across * by_x[0] + below * by_y[0],
+                across * by_x[1] + below * by_y[1],
+                across * by_x[2] + below * by_y[2],
+            ],
+            depth: f64::from(a),
+            to_second: (f64::from(b) - f64::from(a)) * per_area,
+            to_third: (f64::from(c) - f64::from(a)) * per_area,
+            low: a.min(b).min(c),
+            high: a.max(b).max(c),
+            number: large.number,
+        })
+    }
+
+    /// The change of an edge function by an offset in subpixels.
+    #[inline(always)]
+    fn gain(&self, i: usize, [x, y]: [i32; 2]) -> i32 {
+        self.right[i] * x + self.down[i] * y
+    }
+
+    /// Finds the blocks of the tile that the triangle touches in any of the `N` samples of their
+    /// pixels, out of those that `area` reaches into. `area` must not be empty, and is in pixels
+    /// from the tile's first.
+    #[inline(always)]
+    pub(crate) fn blocks<const N: usize>(
+        &self,
+        simd: S,
+        area: PixelBox,
+        sample_positions: &SamplePositions,
+    ) -> Touched {
+        let side = BLOCK * SUBPIXELS;
+        let (first, last) = (area.left / BLOCK, (area.right - 1) / BLOCK);
+        let columns = 0x0101 * ((0xff_u64 << first) & (0xff >> (7 - last)));
+        let (across, below) = (i32x16::from_slice(simd, &ACROSS), i32x16::from_slice(simd, &DOWN));
+        let mut gains = [i32x16::splat(simd, 0); 3];
+        let (mut most, mut least) = ([0; 3], [0; 3]);
+        for i in 0..3 {
+            if N > 1 {
+                (most[i], least[i]) = (i32::MIN, i32::MAX);
+                for sample in 0..N {
+                    let gain = self.gain(i, sample_positions.shift::<N>(sample));
+                    (most[i], least[i]) = (most[i].max(gain), least[i].min(gain));
+                }
+            }
+            let (x, y) = (7 * SUBPIXELS * self.right[i], 7 * SUBPIXELS * self.down[i]);
+            most[i] += x.max(0) + y.max(0);
+            least[i] += x.min(0) + y.min(0);
+            gains[i] = across * (side * self.right[i]) + below * (side * self.down[i]);
+        }
+        let mut touched = Touched::default();
+        let (first, last) = (area.top / BLOCK, (area.bottom - 1) / BLOCK);
+        for row in (first..=last).step_by(2) {
+            let at = |i: usize| gains[i] + (self.edges[i] + row * side * self.down[i]);
+            let [a, b, c] = [at(0), at(1), at(2)];
+            // Bits of signs: an edge function is negative outside.
+            let some = (a + most[0]) | (b + most[1]) | (c + most[2]);
+            let whole = (a + least[0]) | (b + least[1]) | (c + least[2]);
+            let rows = if row == last { 0xff } else { 0xffff };
+            let some = some.simd_ge(0).to_bitmask() & columns & rows;
+            let whole = whole.simd_ge(0).to_bitmask() & some;
+            touched.some |= some << (8 * row);
+            touched.whole |= whole << (8 * row);
+        }
+        touched
+    }
+
+    /// Draws the triangle into those rows of a block that `area` reaches into, for the sample with
+    /// this offset, and paints those pixels in which it is in front. `area` is in pixels from the
+    /// tile's first.
+    #[inline(always)]
+    pub(crate) fn draw(
+        &self,
+        format: impl Format,
+        simd: S,
+        (block, shift): (usize, [i32; 2]),
+        area: PixelBox,
+        mut painted: Option<Painted<'_>>,
+        visibility: &mut [u64; BLOCK_PIXELS],
+    ) {
+        let block = i32::try_from(block % BLOCK_PIXELS).unwrap_or(0);
+        let (column, row) = (block % BLOCK * BLOCK, block / BLOCK * BLOCK);
+        let place = [column * SUBPIXELS + shift[0], row * SUBPIXELS + shift[1]];
+        let gain = [self.gain(0, place), self.gain(1, place), self.gain(2, place)];
+        let (pairs, _) = visibility.as_chunks_mut::<16>();
+        let first = (area.top - row).max(0) / 2;
+        let end = ((area.bottom - row + 1) / 2).min(PAIRS);
+        let above = 2 * first * SUBPIXELS;
+        let at = |i: usize| self.gains[i] + (self.edges[i] + gain[i] + above * self.down[i]);
+        let two_down = |i: usize| 2 * SUBPIXELS * self.down[i];
+        let [mut a, mut b, mut c] = [at(0), at(1), at(2)];
+        for pair in first..end {
+            let covered = (a | b | c).simd_ge(0);
+            if covered.any_true() {
+                let (second, third) = (b + self.least[0], c + self.least[1]);
+                let depth = self.depths(simd, second, third);
+                let pair = pair as usize % 4;
+                let entries = &mut pairs[pair];
+                if let Some(painted) = &mut painted {
+                    let front = in_front(format, simd, covered, depth, self.number, entries);
+                    if front != 0 {
+                        painted.put(pair, front, [second.to_float(), third.to_float()]);
+                    }
+                }
+                put_rows(format, simd, covered, depth, self.number, entries);
+            }
+            (a, b, c) = (a + two_down(0), b + two_down(1), c + two_down(2));
+        }
+    }
+
+    /// The depths of two rows of a block, from their edge functions.
+    #[inline(always)]
+    fn depths(&self, simd: S, second: i32x16<S>, third: i32x16<S>) -> f32x16<S> {
+        let (second, third) = (in_f64(second), in_f64(third));
+        let upper = self.depth_at(second[0], third[0]);
+        let depth = upper.narrow(self.depth_at(second[1], third[1]));
+        let (low, high) = (f32x16::splat(simd, self.low), f32x16::splat(simd, self.high));
+        let depth = depth.simd_gt(low).select(depth, low);
+        depth.simd_lt(high).select(depth, high)
+    }
+
+    /// The depths of a row, before they are clamped to the corners'.
+    #[inline(always)]
+    fn depth_at(&self, second: f64x8<S>, third: f64x8<S>) -> f64x8<S> {
+        second * self.to_second + self.depth + third * self.to_third
+    }
+}

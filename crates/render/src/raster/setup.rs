@@ -1,0 +1,472 @@
+//! Triangle setup: from vertices on the screen to triangles in bins.
+//!
+//! Sixteen triangles at a time: those that face away, cover no pixel's centre (or sample) or lie
+//! outside the picture are culled before anything of theirs is copied. Triangles with a corner
+//! beyond the clipping planes are clipped, and those whose area needs 64 bits are set up one by
+//! one.
+
+use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16};
+
+use super::beyond;
+use super::bins::{Bins, LargeTriangle};
+use super::hit_colors::Brush;
+use super::hits::PACK;
+use super::queue::{Pack, SMALL};
+use super::rule::Rule;
+use super::small;
+use super::tile_queues::FIRST_SIZE;
+use super::vertices::{fetch, fetch_vertices};
+use crate::frame::draw::{Back, Draw, Pipeline, Shaded};
+use crate::screen::clip::{Screen, ScreenVertex};
+use crate::screen::coverage::{Grid, PixelBox, doubled_area};
+use crate::screen::sample_positions::FOUR;
+use crate::texture::opacity::Holes;
+use marraztu_core::accuracy::Coverage;
+use marraztu_core::base::image::Size;
+use marraztu_core::base::math::each;
+use marraztu_core::scene::{DrawOrder, DrawTriangle};
+
+/// The largest bounding box, in subpixels, whose doubled area fits 31 bits.
+pub(crate) const NARROW: i32 = 1 << 14;
+
+/// The inputs of setting up the triangles of one draw.
+#[derive(Debug)]
+pub(crate) struct Setup<'a> {
+    pub(crate) draw: &'a Draw,
+    pub(crate) order: &'a DrawOrder,
+    pub(crate) vertices: &'a [ScreenVertex],
+    pub(crate) screen: Screen,
+    /// The number of the draw's first triangle in the frame.
+    pub(crate) base: u32,
+    /// Whether some triangles are not drawn, need the alpha test or are transparent, so that each
+    /// has to be checked.
+    pub(crate) choosy: bool,
+    /// The vertices in pixels, before they were snapped, if the rule of coverage needs them.
+    pub(crate) unsnapped: &'a [[f32; 2]],
+    pub(crate) coverage: Coverage,
+    /// Where its triangles have holes, if any has.
+    pub(crate) holes: &'a [Holes],
+    /// Whether all triangles that are drawn are transparent.
+    pub(crate) transparent: bool,
+}
+
+/// Those of sixteen triangles that may be visible.
+#[derive(Clone, Copy, Debug)]
+struct Visible<S: Simd> {
+    /// Those that need no alpha test, and those that do.
+    plain: mask32x16<S>,
+    cutout: u64,
+    /// Those that run clockwise on the screen.
+    clockwise: u64,
+    /// Their bounding boxes: left, top, right and bottom.
+    boxes: [i32x16<S>; 4],
+}
+
+/// How a triangle is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Not,
+    Plain,
+    Cutout,
+    Transparent,
+}
+
+impl<'a> Setup<'a> {
+    pub(crate) fn new(
+        draw: &'a Draw,
+        pipelines: &[Pipeline],
+        vertices: &'a [ScreenVertex],
+        size: Size,
+        base: u32,
+    ) -> Self {
+        let transparent =
+            draw.uniform.is_some_and(|pipeline| pipelines[pipeline as usize].opacity().is_some());
+        let choosy = draw.polygons.is_some()
+            || draw.part_pipelines.iter().any(|pipeline| {
+                pipeline.is_none_or(|pipeline| {
+                    let pipeline = &pipelines[pipeline as usize];
+                    pipeline.is_cutout() || (!transparent && pipeline.opacity().is_some())
+                })
+            });
+        let screen = Screen::new(draw.clip_from_object, size);
+        let order = draw.model.mesh.draw_order();
+        Self {
+            draw,
+            order,
+            vertices,
+            screen,
+            base,
+            choosy,
+            transparent,
+            unsnapped: &[],
+            coverage: Coverage::Exact,
+            holes: &[],
+        }
+    }
+
+    /// The same for vertices relative to a sample with this offset in 1/256 pixel, on a grid.
+    pub(crate) fn seen_from(self, shift: [i32; 2], grid: Grid) -> Self {
+        Self { screen: self.screen.on(grid).seen_from(grid.offset(shift)), ..self }
+    }
+
+    /// Sets up some of the draw's triangles into bins.
+    pub(crate) fn run<R: Rule>(
+        &self,
+        level: Level,
+        triangles: &[DrawTriangle],
+        pipelines: &[Pipeline],
+        into: (&mut Bins, &mut Brush<'_>),
+    ) {
+        if into.0.sample_positions.are_many() {
+            dispatch!(level, simd => self.all::<_, R, FOUR>(simd, triangles, pipelines, into));
+        } else {
+            dispatch!(level, simd => self.all::<_, R, 1>(simd, triangles, pipelines, into));
+        }
+    }
+
+    #[inline(always)]
+    fn all<S: Simd, R: Rule, const N: usize>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle],
+        pipelines: &[Pipeline],
+        (bins, brush): (&mut Bins, &mut Brush<'_>),
+    ) {
+        for some in triangles.chunks(PACK) {
+            let mut last = [some[0]; PACK];
+            let sixteen = some.first_chunk().unwrap_or_else(|| {
+                last[..some.len()].copy_from_slice(some);
+                &last
+            });
+            self.sixteen::<S, R, N>(simd, (sixteen, some.len()), pipelines, bins, brush);
+        }
+    }
+
+    /// Sets up the first `count` of sixteen triangles.
+    #[inline(always)]
+    fn sixteen<S: Simd, R: Rule, const N: usize>(
+        &self,
+        simd: S,
+        (triangles, count): (&[DrawTriangle; PACK], usize),
+        pipelines: &[Pipeline],
+        bins: &mut Bins,
+        brush: &mut Brush<'_>,
+    ) {
+        let [x0, y0, d0, _] = self.corners(simd, triangles, 0);
+        let [x1, y1, d1, _] = self.corners(simd, triangles, 1);
+        let [x2, y2, d2, _] = self.corners(simd, triangles, 2);
+        let (low_x, high_x) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
+        let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
+
+        let (half, log2) = (R::GRID.parts() / 2, R::GRID.parts().trailing_zeros());
+        let [least, most] = self.reach::<R, N>(bins);
+        let (least, most) = (R::GRID.offset(least), R::GRID.offset(most));
+        let left = (low_x + (half - 1 - most[0])) >> log2;
+        let right = ((high_x - (half + least[0])) >> log2) + 1;
+        let top = (low_y + (half - 1 - most[1])) >> log2;
+        let bottom = ((high_y - (half + least[1])) >> log2) + 1;
+        let [width, height] = bins.hits.extent();
+        let seen = left.simd_lt(right)
+            & top.simd_lt(bottom)
+            & right.simd_gt(0)
+            & bottom.simd_gt(0)
+            & left.simd_lt(width)
+            & top.simd_lt(height);
+        let beyond = low_x.simd_eq(ScreenVertex::BEYOND);
+        let wide = (high_x - low_x).simd_gt(NARROW) | (high_y - low_y).simd_gt(NARROW);
+        let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
+        let faces = match (self.draw.back, self.draw.mirrored) {
+            (Back::Culled, false) => area.simd_lt(0),
+            (Back::Culled, true) => area.simd_gt(0),
+            _ => !area.simd_eq(0),
+        };
+        let there = mask32x16::from_bitmask(simd, (1 << count) - 1);
+        let odd = (beyond | (wide & seen)) & there;
+        let plain = seen & faces & there & !odd;
+        if plain.any_true() {
+            let [v0, v1, v2, number] = fetch(
+                simd,
+                #[inline(always)]
+                |lane| triangles[lane].row(),
+            );
+            let number = number + self.base.cast_signed();
+            let mut pack = [x0, y0, x1, y1, x2, y2, d0, d1, d2, number];
+            if R::UNSNAPPED && self.has_small::<R>() {
+                for corner in 0..3 {
+                    let [x, y] = self.unsnapped_corners(simd, triangles, corner);
+                    (pack[2 * corner], pack[2 * corner + 1]) = (x, y);
+                }
+            }
+            let boxes = [left, top, right, bottom];
+            let front = if self.draw.mirrored { area.simd_gt(0) } else { area.simd_lt(0) };
+            let (plain, front) = (plain.to_bitmask(), front.to_bitmask());
+            let clockwise = area.simd_gt(0).to_bitmask();
+            for (some, cutout, transparent) in self.kinds(triangles, plain, front, pipelines) {
+                if some | cutout != 0 {
+                    let plain = mask32x16::from_bitmask(simd, some);
+                    let visible = Visible { plain, cutout, clockwise, boxes };
+                    let bins = bins.of(transparent);
+                    let rows = (&pack, &[v0, v1, v2]);
+                    self.sort::<S, R, N>(triangles, rows, visible, bins, brush);
+                }
+            }
+        }
+        let mut odd = odd.to_bitmask();
+        while odd != 0 {
+            let lane = odd.trailing_zeros() as usize;
+            odd &= odd - 1;
+            self.add_odd::<R, N>(&triangles[lane], pipelines, (bins, brush));
+        }
+    }
+
+    /// x, y, depth and 1/w of one corner of sixteen triangles.
+    #[inline(always)]
+    fn corners<S: Simd>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle; PACK],
+        corner: usize,
+    ) -> [i32x16<S>; 4] {
+        fetch_vertices(
+            simd,
+            self.vertices,
+            #[inline(always)]
+            |lane| triangles[lane].vertices[corner],
+        )
+    }
+
+    /// x and y of one corner of sixteen triangles, in pixels and before they were snapped, as bits.
+    #[inline(always)]
+    fn unsnapped_corners<S: Simd>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle; PACK],
+        corner: usize,
+    ) -> [i32x16<S>; 2] {
+        let last = self.unsnapped.len().saturating_sub(1);
+        let [x, y, _, _] = fetch(
+            simd,
+            #[inline(always)]
+            |lane| {
+                let [x, y] = self.unsnapped[(triangles[lane].vertices[corner] as usize).min(last)];
+                [x.to_bits().cast_signed(), y.to_bits().cast_signed(), 0, 0]
+            },
+        );
+        [x, y]
+    }
+
+    /// Sorts visible triangles by the larger sides of their bounding boxes: into the queues of
+    /// small ones, of this thread or of the tiles that they reach into, or to the large ones.
+    #[inline(always)]
+    fn sort<S: Simd, R: Rule, const N: usize>(
+        &self,
+        triangles: &[DrawTriangle; PACK],
+        (pack, vertices): (&Pack<S>, &[i32x16<S>; 3]),
+        Visible { plain, cutout, clockwise, boxes }: Visible<S>,
+        bins: &mut Bins,
+        brush: &mut Brush<'_>,
+    ) {
+        let [left, top, right, bottom] = boxes;
+        let side = (right - left).max(bottom - top);
+        let in_tiles = N > 1 && R::IN_TILES && bins.tile_queues.are_used();
+        let tiles = bins.tile_queues.boxes(boxes);
+        let mut above = 0;
+        let queues = if self.has_small::<R>() { R::QUEUES } else { 0 };
+        for (queue, limit) in SMALL[..queues].iter().copied().enumerate() {
+            let some = plain & side.simd_gt(above) & side.simd_le(limit);
+            above = limit;
+            let count = some.to_bitmask().count_ones() as usize;
+            if count == 0 {
+                continue;
+            }
+            bins.drawn += count;
+            if in_tiles && queue >= FIRST_SIZE {
+                bins.tile_queues.add(queue - FIRST_SIZE, (pack, &tiles), some);
+                continue;
+            }
+            let vertices = bins.hits.are_colored().then_some(vertices);
+            if bins.queues[queue].add((pack, vertices), some, count) {
+                small::draw_queue::<S, R, N>(side.simd, queue, bins, brush);
+            }
+        }
+        let mut large = (plain & side.simd_gt(above)).to_bitmask() | cutout;
+        while large != 0 {
+            let lane = large.trailing_zeros() as usize;
+            large &= large - 1;
+            let corners = each(triangles[lane].vertices, |i| self.vertices[i as usize]);
+            let number = self.base + triangles[lane].number;
+            let cutout = cutout >> lane & 1 != 0;
+            if R::UNSNAPPED {
+                let own = each(triangles[lane].vertices, |i| self.unsnapped[i as usize]);
+                bins.unsnapped.push(own);
+            }
+            if N == 1 && bins.hits.are_colored() {
+                let clockwise = clockwise >> lane & 1 == 1;
+                let colors = brush.corners(number, triangles[lane].vertices, clockwise);
+                bins.color_next(colors);
+            }
+            self.add_large::<R, N>(LargeTriangle { corners, number, cutout }, bins);
+        }
+    }
+
+    /// Adds a triangle that is not small, or not drawn with small ones.
+    #[inline(always)]
+    fn add_large<R: Rule, const N: usize>(&self, triangle: LargeTriangle, bins: &mut Bins) {
+        let at = each(triangle.corners, |corner| corner.at());
+        let reach = self.reach::<R, N>(bins);
+        bins.add_large(triangle, PixelBox::reached_on(R::GRID, at, reach));
+    }
+
+    /// How far from centres of pixels they may be covered.
+    #[inline(always)]
+    fn reach<R: Rule, const N: usize>(&self, bins: &Bins) -> [[i32; 2]; 2] {
+        let reach = bins.sample_positions.reach::<N>();
+        if R::UNSNAPPED { beyond::reach(reach, beyond::beyond(self.coverage)) } else { reach }
+    }
+
+    /// Whether small triangles are drawn sixteen at a time.
+    #[inline(always)]
+    fn has_small<R: Rule>(&self) -> bool {
+        !R::UNSNAPPED || self.coverage == Coverage::F32Edges
+    }
+
+    /// Which of the triangles in a mask are drawn: without the alpha test, with it, and whether
+    /// these are the transparent ones; `front` says which face the camera.
+    #[inline(always)]
+    fn kinds(
+        &self,
+        triangles: &[DrawTriangle; PACK],
+        some: u64,
+        front: u64,
+        pipelines: &[Pipeline],
+    ) -> [(u64, u64, bool); 2] {
+        if !self.choosy {
+            let (opaque, transparent) = if self.transparent { (0, some) } else { (some, 0) };
+            return [(opaque, 0, false), (transparent, 0, true)];
+        }
+        let [mut plain, mut cutout, transparent] =
+            self.kinds_one_by_one(triangles, some, pipelines);
+        if self.draw.culls_opaque {
+            (plain, cutout) = (plain & front, cutout & front);
+        }
+        [(plain, cutout, false), (transparent, 0, true)]
+    }
+
+    /// The masks of the triangles that are drawn without and with the alpha test, and of those that
+    /// are transparent.
+    fn kinds_one_by_one(
+        &self,
+        triangles: &[DrawTriangle; PACK],
+        some: u64,
+        pipelines: &[Pipeline],
+    ) -> [u64; 3] {
+        let mut kinds = [0; 3];
+        let mut left = some;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            match self.kind(triangles[lane].number, pipelines) {
+                Kind::Not => {}
+                Kind::Plain => kinds[0] |= 1 << lane,
+                Kind::Cutout => kinds[1] |= 1 << lane,
+                Kind::Transparent => kinds[2] |= 1 << lane,
+            }
+        }
+        kinds
+    }
+
+    /// Adds a triangle that has to be clipped, or whose area needs 64 bits.
+    fn add_odd<R: Rule, const N: usize>(
+        &self,
+        triangle: &DrawTriangle,
+        pipelines: &[Pipeline],
+        (bins, brush): (&mut Bins, &mut Brush<'_>),
+    ) {
+        let kind = self.kind(triangle.number, pipelines);
+        if kind == Kind::Not {
+            return;
+        }
+        let vertices = triangle.vertices.map(|vertex| self.vertices[vertex as usize]);
+        let (mut pieces, mut unsnapped) = (Vec::new(), Vec::new());
+        let is_whole = vertices.iter().all(ScreenVertex::is_inside);
+        if is_whole {
+            pieces.extend(vertices);
+            if R::UNSNAPPED {
+                unsnapped.extend(triangle.vertices.map(|i| self.unsnapped[i as usize]));
+            }
+        } else {
+            for clip in self.screen.cut(self.clip_corners(triangle.vertices)) {
+                pieces.push(self.screen.piece(clip));
+                if R::UNSNAPPED {
+                    unsnapped.push(self.screen.pixels_seen(clip));
+                }
+            }
+        }
+        for i in 2..pieces.len() {
+            let corners = [pieces[0], pieces[i - 1], pieces[i]];
+            let area = doubled_area(corners.map(|corner| corner.at()));
+            let front = (area < 0) != self.draw.mirrored;
+            if area == 0 || (!front && self.culls_back(kind)) {
+                continue;
+            }
+            let bins = bins.of(kind == Kind::Transparent);
+            let number = self.base + triangle.number;
+            let cutout = kind == Kind::Cutout;
+            if N == 1 && is_whole && bins.hits.are_colored() {
+                bins.color_next(brush.corners(number, triangle.vertices, area > 0));
+            }
+            if R::UNSNAPPED {
+                bins.unsnapped.push([unsnapped[0], unsnapped[i - 1], unsnapped[i]]);
+            }
+            self.add_large::<R, N>(LargeTriangle { corners, number, cutout }, bins);
+        }
+    }
+
+    /// The corners of a triangle in clip space.
+    fn clip_corners(&self, vertices: [u32; 3]) -> [crate::screen::clip::Clip; 3] {
+        vertices.map(|vertex| self.screen.clip(self.order.position(vertex)))
+    }
+
+    pub(crate) fn kind(&self, number: u32, pipelines: &[Pipeline]) -> Kind {
+        let mesh = &self.draw.model.mesh;
+        let polygon = mesh.polygon_of(number);
+        if self.draw.polygons.as_ref().is_some_and(|some| !some.contains(&polygon)) {
+            return Kind::Not;
+        }
+        match self.draw.part_pipelines[mesh.polygon_parts()[polygon as usize] as usize] {
+            None => Kind::Not,
+            Some(pipeline) => match &pipelines[pipeline as usize] {
+                Pipeline::Shaded(Shaded { cutout: Some(_), .. }) => {
+                    match self.holes.get(number as usize) {
+                        Some(Holes::Nowhere) => Kind::Plain,
+                        Some(Holes::Everywhere) => Kind::Not,
+                        Some(Holes::Somewhere) | None => Kind::Cutout,
+                    }
+                }
+                Pipeline::Shaded(Shaded { opacity: Some(_), .. }) => Kind::Transparent,
+                Pipeline::Shaded(_) | Pipeline::Flat(_) => Kind::Plain,
+            },
+        }
+    }
+
+    /// Whether the back faces of a kind are culled.
+    pub(crate) fn culls_back(&self, kind: Kind) -> bool {
+        self.draw.back == Back::Culled || (kind != Kind::Transparent && self.draw.culls_opaque)
+    }
+}
+
+/// Draws the small triangles that are still waiting.
+pub(crate) fn finish<R: Rule>(level: Level, bins: &mut Bins, brush: &mut Brush<'_>) {
+    if bins.transparent().is_some() {
+        finish::<R>(level, bins.of(true), brush);
+    }
+    let many = bins.sample_positions.are_many();
+    dispatch!(level, simd => {
+        for queue in 0..R::QUEUES {
+            match many {
+                true => small::draw_queue::<_, R, FOUR>(simd, queue, bins, brush),
+                false => small::draw_queue::<_, R, 1>(simd, queue, bins, brush),
+            }
+        }
+    });
+}

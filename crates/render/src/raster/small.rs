@@ -1,0 +1,332 @@
+//! Rasterizes small triangles, sixteen at a time, one in each lane.
+//!
+//! Triangles whose bounding box has at most 16 x 16 pixels wait in queues by the size of their
+//! boxes. When there are sixteen, their edge functions are stepped together over the pixels of the
+//! boxes, and the pixels that they cover are listed: few lanes of a step cover theirs. Then each
+//! lane takes a pixel of the list, computes its depth and adds it to the hits of the bins: set-up
+//! of triangles of 5 pixels takes 0.55 of what it takes if each step computes depths (AVX-512). If
+//! pixels have several samples, triangles of more than a few pixels wait for their tile instead
+//! (`tile_queues`), whose pixels are listed once for all samples.
+//!
+//! How edge functions are computed depends on the rule of coverage: see `small_edges`.
+
+use fearless_simd::{
+    Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, f32x16, i32x16,
+    mask32x16, u32x16,
+};
+
+use super::bins::Bins;
+use super::covered::{Covered, MOST, SAMPLES};
+use super::hit_colors::{Brush, Triangles};
+use super::hits::{PACK, Pixels};
+use super::queue::{Pack, SMALL};
+use super::rule::Rule;
+use super::small_edges::Edges;
+use crate::screen::coverage::PixelBox;
+use crate::screen::sample_positions::SamplePositions;
+use crate::simd::gather::permute;
+use crate::simd::{Real, UP_TO_SIXTEEN};
+
+/// Draws the triangles that wait in a queue, in packs of sixteen, with `N` samples per pixel.
+///
+/// Compiled as a function of its own, since what calls it does so at several places.
+#[inline(always)]
+pub(crate) fn draw_queue<S: Simd, R: Rule, const N: usize>(
+    simd: S,
+    queue: usize,
+    bins: &mut Bins,
+    brush: &mut Brush<'_>,
+) {
+    if N == 1 && bins.hits.are_colored() {
+        simd.vectorize(
+            #[inline(always)]
+            || draw_packs::<S, R, 1, true>(simd, queue, bins, brush),
+        );
+    } else {
+        simd.vectorize(
+            #[inline(always)]
+            || draw_packs::<S, R, N, false>(simd, queue, bins, brush),
+        );
+    }
+}
+
+#[inline(always)]
+fn draw_packs<S: Simd, R: Rule, const N: usize, const COLORED: bool>(
+    simd: S,
+    queue: usize,
+    bins: &mut Bins,
+    brush: &mut Brush<'_>,
+) {
+    for at in (0..bins.queues[queue].waiting()).step_by(PACK) {
+        let pack = bins.queues[queue].pack(simd, at);
+        draw_pack::<S, R, N, COLORED>((queue, at), &pack, bins, brush);
+    }
+    bins.queues[queue].forget();
+}
+
+/// Draws sixteen triangles of a queue, from `at` on.
+#[inline(always)]
+pub(super) fn draw_pack<S: Simd, R: Rule, const N: usize, const COLORED: bool>(
+    (queue, at): (usize, usize),
+    pack: &Pack<S>,
+    bins: &mut Bins,
+    brush: &mut Brush<'_>,
+) {
+    if queue + 1 == SMALL.len() {
+        draw::<S, R::LastEdges<S>, N, COLORED>((queue, at), pack, bins, brush);
+    } else {
+        draw::<S, R::Edges<S>, N, COLORED>((queue, at), pack, bins, brush);
+    }
+}
+
+#[inline(always)]
+fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
+    (queue, at): (usize, usize),
+    pack: &Pack<S>,
+    bins: &mut Bins,
+    brush: &mut Brush<'_>,
+) {
+    let simd = pack[0].simd;
+    let sample_positions = bins.sample_positions;
+    let lanes = Lanes::<S, E>::new(simd, pack, sample_positions.reach::<N>());
+    let reach = bins.hits.reach(lanes.bounds());
+    let Bins { hits, covered, queues, .. } = bins;
+    let shifts = lanes.edges.shifts::<N>(&sample_positions);
+    for (sample, shift) in shifts.into_iter().enumerate() {
+        let shift = (N > 1).then_some([shift]);
+        lanes.scan(shift.as_ref(), covered);
+        let mut mix = None;
+        if COLORED && covered.count > 0 {
+            let (per_area, clockwise) = areas(pack);
+            let triangles = Triangles {
+                numbers: &lanes.number.into(),
+                vertices: &queues[queue].vertices(at),
+                some: covered.lanes(),
+                clockwise,
+            };
+            mix = brush.mix(per_area, &triangles);
+        }
+        lanes.each_pixel(
+            shift.as_ref(),
+            covered,
+            #[inline(always)]
+            |own, count| {
+                let CoveredPixels { x, y, number, depth: [depth], .. } = *own;
+                let color = match (&mix, lanes.edges.functions(own.lanes, own.by)) {
+                    _ if !COLORED => None,
+                    (Some(mix), Some(functions)) => Some(mix.colors(own.lanes, functions, [x, y])),
+                    _ => Some(u32x16::splat(simd, 0)),
+                };
+                let pixels = Pixels { x, y, depth: depth.bitcast(), number, color };
+                hits.add_first::<S, N>(&reach, (&pixels, sample), count);
+            },
+        );
+    }
+}
+
+/// Calls `take` with the pixels of a box that sixteen triangles cover in any of `N` samples,
+/// sixteen at a time, and their number.
+#[inline(always)]
+pub(super) fn each_in<S: Simd, E: Edges<S>, const N: usize>(
+    (pack, within): (&Pack<S>, PixelBox),
+    sample_positions: &SamplePositions,
+    covered: &mut Covered,
+    take: impl FnMut(&CoveredPixels<S, N>, usize),
+) {
+    let lanes = Lanes::<S, E>::new(pack[0].simd, pack, sample_positions.reach::<N>());
+    let shifts = lanes.edges.shifts::<N>(sample_positions);
+    lanes.scan(Some(&shifts), covered);
+    if lanes.bounds().intersection(within) != lanes.bounds() {
+        lanes.keep(within, covered);
+    }
+    lanes.each_pixel(Some(&shifts), covered, take);
+}
+
+/// 1 / the doubled areas of sixteen triangles, and which of them run clockwise on the screen.
+#[inline(always)]
+fn areas<S: Simd>([x0, y0, x1, y1, x2, y2, ..]: &Pack<S>) -> (f32x16<S>, u64) {
+    let area = (*x1 - *x0) * (*y2 - *y0) - (*y1 - *y0) * (*x2 - *x0);
+    let doubled: f32x16<S> = area.max(i32x16::splat(x0.simd, 0) - area).to_float();
+    (f32x16::splat(x0.simd, 1.0) / doubled, area.simd_gt(0).to_bitmask())
+}
+
+/// Sixteen small triangles, set up for rasterization.
+struct Lanes<S: Simd, E> {
+    /// The bounding boxes.
+    left: i32x16<S>,
+    top: i32x16<S>,
+    right: i32x16<S>,
+    bottom: i32x16<S>,
+    number: u32x16<S>,
+    edges: E,
+    low: f32x16<S>,
+    high: f32x16<S>,
+}
+
+impl<S: Simd, E: Edges<S>> Lanes<S, E> {
+    #[inline(always)]
+    fn new(simd: S, pack: &Pack<S>, reach: [[i32; 2]; 2]) -> Self {
+        let [x0, y0, x1, y1, x2, y2, d0, d1, d2, number] = *pack;
+        let corners = [[x0, y0], [x1, y1], [x2, y2]];
+        let [left, top, right, bottom] = E::bounds(corners, reach);
+        let (d0, d1, d2) =
+            (d0.bitcast::<f32x16<S>>(), d1.bitcast::<f32x16<S>>(), d2.bitcast::<f32x16<S>>());
+        Self {
+            left,
+            top,
+            right,
+            bottom,
+            number: number.bitcast(),
+            edges: E::new(simd, corners, [left, top, right, bottom], [d0, d1, d2]),
+            low: Real::min(Real::min(d0, d1), d2),
+            high: Real::max(Real::max(d0, d1), d2),
+        }
+    }
+
+    /// The bounding box of all boxes.
+    #[inline(always)]
+    fn bounds(&self) -> PixelBox {
+        PixelBox {
+            left: self.left.reduce_min(),
+            top: self.top.reduce_min(),
+            right: self.right.reduce_max(),
+            bottom: self.bottom.reduce_max(),
+        }
+    }
+
+    /// Lists the pixels that the triangles cover in any of the samples with these offsets, by
+    /// default at their centres.
+    #[inline(always)]
+    fn scan<const N: usize>(&self, shifts: Option<&[E::Shift; N]>, covered: &mut Covered) {
+        let columns = (self.right - self.left).reduce_max();
+        let rows = (self.bottom - self.top).reduce_max();
+        let mut row = self.edges.first();
+        if let Some([shift]) = shifts.map(<[_; N]>::as_slice) {
+            row = self.edges.moved(row, *shift);
+        }
+        let mut count = 0;
+        let mut row_pixels = i32x16::from_slice(self.left.simd, &UP_TO_SIXTEEN);
+        for _ in 0..rows {
+            let (mut at, mut pixels) = (row, row_pixels);
+            for _ in 0..columns {
+                let (some, listed) = match shifts {
+                    Some(shifts) if N > 1 => self.covered_samples(shifts, at, pixels),
+                    _ => (self.edges.covered(at), pixels),
+                };
+                let to = count % MOST;
+                listed.compress(some).store_slice(&mut covered.pixels[to..to + PACK]);
+                count = to + some.to_bitmask().count_ones() as usize;
+                at = self.edges.right(at);
+                pixels += 1 << 4;
+            }
+            row = self.edges.below(row);
+            row_pixels += 1 << 8;
+        }
+        covered.count = count;
+    }
+
+    /// Which triangles cover any sample of a pixel, and the pixel as it is listed, with a bit for
+    /// each sample that they cover.
+    #[inline(always)]
+    fn covered_samples<const N: usize>(
+        &self,
+        shifts: &[E::Shift; N],
+        at: E::At,
+        pixels: i32x16<S>,
+    ) -> (mask32x16<S>, i32x16<S>) {
+        let (mut any, mut listed) = (mask32x16::splat(pixels.simd, false), pixels);
+        for (bit, shift) in (SAMPLES..).zip(shifts) {
+            let some = self.edges.covered(self.edges.moved(at, *shift));
+            listed = some.select(listed | (1 << bit), listed);
+            any |= some;
+        }
+        (any, listed)
+    }
+
+    /// Removes the listed pixels that are not in a box.
+    #[inline(always)]
+    fn keep(&self, within: PixelBox, covered: &mut Covered) {
+        let mut kept = 0;
+        for at in (0..covered.count).step_by(PACK) {
+            let pixels = i32x16::from_slice(self.left.simd, &covered.pixels[at..at + PACK]);
+            let [x, y] = self.place(pixels);
+            let inside = x.simd_ge(within.left)
+                & x.simd_lt(within.right)
+                & y.simd_ge(within.top)
+                & y.simd_lt(within.bottom)
+                & first(self.left.simd, covered.count - at);
+            pixels.compress(inside).store_slice(&mut covered.pixels[kept..kept + PACK]);
+            kept += inside.to_bitmask().count_ones() as usize;
+        }
+        covered.count = kept;
+    }
+
+    /// Columns and rows of listed pixels.
+    #[inline(always)]
+    fn place(&self, pixels: i32x16<S>) -> [i32x16<S>; 2] {
+        let lanes = pixels & 15;
+        let by = [(pixels >> 4) & 15, (pixels >> 8) & 15];
+        [permute(self.left, lanes) + by[0], permute(self.top, lanes) + by[1]]
+    }
+
+    /// Calls `take` with the pixels of a list, sixteen at a time, and their number.
+    #[inline(always)]
+    fn each_pixel<const N: usize>(
+        &self,
+        shifts: Option<&[E::Shift; N]>,
+        covered: &Covered,
+        mut take: impl FnMut(&CoveredPixels<S, N>, usize),
+    ) {
+        for at in (0..covered.count).step_by(PACK) {
+            let pixels = i32x16::from_slice(self.left.simd, &covered.pixels[at..at + PACK]);
+            let by = [(pixels >> 4) & 15, (pixels >> 8) & 15];
+            let lanes = pixels & 15;
+            let low = permute(self.low.bitcast(), lanes).bitcast::<f32x16<S>>();
+            let high = permute(self.high.bitcast(), lanes).bitcast::<f32x16<S>>();
+            let mut depth = [low; N];
+            for (sample, depth) in depth.iter_mut().enumerate() {
+                let shift = shifts.map(|shifts| &shifts[sample]);
+                let linear = self.edges.depths(lanes, by, shift);
+                // Clamped to the depths of the corners.
+                let linear = linear.simd_gt(low).select(linear, low);
+                *depth = linear.simd_lt(high).select(linear, high);
+            }
+            let [x, y] = self.place(pixels);
+            let number = permute(self.number.bitcast(), lanes).bitcast();
+            let own = CoveredPixels { lanes, by, x, y, number, depth, samples: pixels >> SAMPLES };
+            take(&own, (covered.count - at).min(PACK));
+        }
+    }
+}
+
+/// Sixteen pixels that some of sixteen triangles cover in any of `N` samples.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CoveredPixels<S: Simd, const N: usize> {
+    /// The lanes of their triangles.
+    lanes: i32x16<S>,
+    /// Their distances from the first pixels of the boxes.
+    by: [i32x16<S>; 2],
+    pub(super) x: i32x16<S>,
+    pub(super) y: i32x16<S>,
+    /// The numbers of their triangles.
+    pub(super) number: u32x16<S>,
+    /// Their depths in each sample.
+    pub(super) depth: [f32x16<S>; N],
+    /// The samples that are covered, a bit for each of several.
+    samples: i32x16<S>,
+}
+
+impl<S: Simd, const N: usize> CoveredPixels<S, N> {
+    /// Which of the first `count` are covered in one of several samples.
+    #[inline(always)]
+    pub(super) fn covered(&self, sample: usize, count: usize) -> mask32x16<S> {
+        let bit = 1 << sample;
+        (self.samples & bit).simd_eq(bit) & first(self.x.simd, count)
+    }
+}
+
+/// The first lanes, up to sixteen.
+#[inline(always)]
+fn first<S: Simd>(simd: S, count: usize) -> mask32x16<S> {
+    mask32x16::from_bitmask(simd, (1 << count.min(PACK)) - 1)
+}

@@ -1,0 +1,146 @@
+//! Lists of the pixels in which a small triangle with holes is in front.
+//!
+//! A triangle that covers few pixels of a tile reaches into up to four blocks, and has a few pixels
+//! in each pair of rows. They are listed first, then sixteen of them at a time are tested: 0.9 of
+//! the time of a frame of 70,000 triangles with holes (bilinear, AVX-512).
+
+use fearless_simd::{
+    Simd, SimdBase as _, SimdMask as _, f32x16, f64x8, i32x16, mask32x16, mask64x8,
+};
+
+use crate::raster::alpha_test::AlphaTest;
+use crate::raster::depth_format::Format;
+use crate::raster::entries::word;
+use crate::raster::large;
+use crate::screen::sample_positions::FOUR;
+use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS};
+use crate::simd::UP_TO_SIXTEEN;
+
+/// The most pixels of the bounding box of a triangle whose fragments are listed.
+pub(super) const MOST: i32 = 64;
+/// Room for one more group of fragments.
+const ROOM: usize = MOST as usize + 16;
+
+/// The pixels in which a small triangle is in front, before the alpha test.
+#[derive(Debug)]
+pub(super) struct Fragments {
+    count: usize,
+    /// Their places in the visibility buffer.
+    places: [i32; ROOM],
+    depths: [f32; ROOM],
+    /// Their edge functions of the second and the third corner.
+    edges: [[f64; ROOM]; 2],
+}
+
+impl Default for Fragments {
+    fn default() -> Self {
+        Self { count: 0, places: [0; ROOM], depths: [0.0; ROOM], edges: [[0.0; ROOM]; 2] }
+    }
+}
+
+/// Lists the pixels of a block in which a triangle is in front, and draws none.
+pub(super) struct List<'a> {
+    pub(super) fragments: &'a mut Fragments,
+    /// The place of its first entry in the visibility buffer.
+    pub(super) first: usize,
+}
+
+impl<S: Simd> large::InFront<S> for List<'_> {
+    #[inline(always)]
+    fn matters(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn opaque(
+        &mut self,
+        simd: S,
+        pair: usize,
+        pixels: u64,
+        [upper, lower]: [[f64x8<S>; 2]; 2],
+        depth: f32x16<S>,
+    ) -> u64 {
+        let Fragments { count, places, depths, edges } = &mut *self.fragments;
+        let to = *count % (ROOM - 16);
+        let mask = mask32x16::from_bitmask(simd, pixels);
+        let first = i32::try_from(self.first + 16 * pair).unwrap_or(0);
+        let place = i32x16::from_slice(simd, &UP_TO_SIXTEEN) + first;
+        place.compress(mask).store_slice(&mut places[to..to + 16]);
+        depth.compress(mask).store_slice(&mut depths[to..to + 16]);
+        let [up, down] = [pixels & 0xff, pixels >> 8 & 0xff];
+        let below = to + up.count_ones() as usize;
+        let (up, down) = (mask64x8::from_bitmask(simd, up), mask64x8::from_bitmask(simd, down));
+        for i in 0..2 {
+            upper[i].compress(up).store_slice(&mut edges[i][to..to + 8]);
+            lower[i].compress(down).store_slice(&mut edges[i][below..below + 8]);
+        }
+        *count = to + pixels.count_ones() as usize;
+        0
+    }
+}
+
+impl Fragments {
+    pub(super) fn forget(&mut self) {
+        self.count = 0;
+    }
+
+    pub(super) fn are_none(&self) -> bool {
+        self.count == 0
+    }
+
+    /// Draws those that pass the alpha test of a triangle into a tile with this first pixel.
+    #[inline(always)]
+    pub(super) fn put<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        format: impl Format,
+        (test, [left, top]): (Option<&AlphaTest<'_, '_>>, [i32; 2]),
+        number: u32,
+        buffer: &mut [u64; FOUR * PIXELS],
+    ) {
+        for at in (0..self.count).step_by(16) {
+            let pixels = (1 << (self.count - at).min(16)) - 1;
+            let [second, third] = &self.edges;
+            let edges = [
+                [
+                    f64x8::from_slice(simd, &second[at..at + 8]),
+                    f64x8::from_slice(simd, &third[at..at + 8]),
+                ],
+                [
+                    f64x8::from_slice(simd, &second[at + 8..at + 16]),
+                    f64x8::from_slice(simd, &third[at + 8..at + 16]),
+                ],
+            ];
+            let pixel = |lane: usize| {
+                let [x, y] = pixel_of::<N>(self.place(at + lane));
+                [left + x, top + y]
+            };
+            let mut opaque = match test {
+                Some(test) => test.opaque(simd, [0; 2], edges, pixels, pixel),
+                None => pixels,
+            };
+            let depth = f32x16::from_slice(simd, &self.depths[at..at + 16]);
+            let keys = <[u32; 16]>::from(format.keys(depth));
+            while opaque != 0 {
+                let lane = opaque.trailing_zeros() as usize % 16;
+                opaque &= opaque - 1;
+                let entry = &mut buffer[self.place(at + lane)];
+                *entry = word(keys[lane], number).max(*entry);
+            }
+        }
+    }
+
+    /// The place of one of them in the visibility buffer.
+    #[inline(always)]
+    fn place(&self, i: usize) -> usize {
+        self.places[i].cast_unsigned() as usize % (FOUR * PIXELS)
+    }
+}
+
+/// The column and row in the tile of an entry of the visibility buffer.
+fn pixel_of<const N: usize>(place: usize) -> [i32; 2] {
+    let (block, within) = (place / (N * BLOCK_PIXELS), place % BLOCK_PIXELS);
+    let (side, blocks) = (BLOCK as usize, BLOCKS as usize);
+    let (x, y) = (block % blocks * side + within % side, block / blocks * side + within / side);
+    [x, y].map(|i| i32::try_from(i).unwrap_or(0))
+}

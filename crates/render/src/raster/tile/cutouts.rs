@@ -1,0 +1,185 @@
+//! Draws the triangles of a tile that may have holes.
+
+use fearless_simd::{Level, Simd};
+
+use super::Visibility;
+use super::cutout_fragments::{Fragments, List, MOST};
+use crate::frame::FramePlan;
+use crate::raster::alpha_test::{AlphaSurface, AlphaTest, BlockHoles};
+use crate::raster::bins::LargeTriangle;
+use crate::raster::depth_format::Any;
+use crate::raster::geometry::ScreenGeometry;
+use crate::raster::large::{Large, Solid, Touched};
+use crate::screen::tiles::BLOCK_PIXELS;
+use crate::texture::opacity::Holes;
+
+/// What is kept from one triangle with holes of a tile to the next.
+#[derive(Debug, Default)]
+pub(super) struct Cutouts<'a> {
+    surface: Option<AlphaSurface<'a>>,
+    fragments: Fragments,
+}
+
+/// In which pixels of a block a triangle has holes, for all samples.
+#[inline(always)]
+fn holes_in_block<const N: usize>(
+    tests: &[Option<AlphaTest<'_, '_>>; N],
+    first: [i32; 2],
+) -> Holes {
+    let mut each = tests
+        .iter()
+        .map(|test| test.as_ref().map_or(Holes::Nowhere, |it| it.holes_in_block(first)));
+    let own = each.next().unwrap_or(Holes::Somewhere);
+    if each.all(|other| other == own) { own } else { Holes::Somewhere }
+}
+
+impl Visibility {
+    /// Draws a triangle with the alpha test in each sample.
+    #[inline(always)]
+    pub(super) fn draw_cutout<'a, S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        (plan, frame): (&'a FramePlan, &ScreenGeometry),
+        triangle: &LargeTriangle,
+        cutouts: &mut Cutouts<'a>,
+    ) {
+        let Some((large, area)) = self.set_up::<N>(triangle) else { return };
+        let Touched { mut some, whole } = large.blocks::<S, N>(simd, area, &self.sample_positions);
+        let (mut blocks, high) = (some, self.key(large.high));
+        while blocks != 0 {
+            let block = blocks.trailing_zeros();
+            blocks &= blocks - 1;
+            if high < self.farthest[block as usize] {
+                some &= !(1 << block);
+            }
+        }
+        if some == 0 {
+            return;
+        }
+        let Cutouts { surface, fragments } = cutouts;
+        let surface = AlphaSurface::of(surface, plan, frame, triangle.number);
+        let positions = self.sample_positions;
+        let test = |sample: usize| {
+            let shift = positions.shift::<N>(sample);
+            AlphaTest::of(surface?, (plan, frame), triangle.number, shift)
+        };
+        if area.width() * area.height() <= MOST
+            && self.draw_few::<S, N>(simd, &large, (some, whole), test, fragments)
+        {
+            return;
+        }
+        let tests: [Option<AlphaTest<'_, '_>>; N] = std::array::from_fn(test);
+        some &= !self.draw_even_blocks::<N>(simd.level(), &large, some & whole, &tests);
+        while some != 0 {
+            let block = some.trailing_zeros() as usize;
+            some &= some - 1;
+            self.write::<N>(simd.level(), block);
+            let (first, whole) = (self.corner(block), whole >> block & 1 != 0);
+            let format = Any(self.depth_format);
+            for (sample, test) in tests.iter().enumerate() {
+                let at = (block, self.sample_positions.shift::<N>(sample));
+                let plane = self.plane::<N>(block, sample);
+                // Compiled once, whatever `N` is.
+                simd.vectorize(
+                    #[inline(always)]
+                    || match test {
+                        Some(test) => {
+                            large.draw(
+                                format,
+                                simd,
+                                at,
+                                whole,
+                                &mut BlockHoles { test, first },
+                                plane,
+                            );
+                        }
+                        None => large.draw(format, simd, at, whole, &mut Solid, plane),
+                    },
+                );
+            }
+        }
+    }
+
+    /// Draws a triangle into those of some blocks that it covers fully in which it has no holes.
+    /// Returns them, and those in which it has nothing else.
+    #[inline(always)]
+    fn draw_even_blocks<const N: usize>(
+        &mut self,
+        level: Level,
+        large: &Large,
+        mut blocks: u64,
+        tests: &[Option<AlphaTest<'_, '_>>; N],
+    ) -> u64 {
+        let (mut done, mut place) = (0, None);
+        // Looking costs a tenth of sampling: if it hardly ever helps, it ends.
+        let mut credit = 4;
+        while blocks != 0 && credit > 0 {
+            let block = blocks.trailing_zeros() as usize;
+            blocks &= blocks - 1;
+            let holes = holes_in_block(tests, self.corner(block));
+            if holes == Holes::Somewhere {
+                credit -= 1;
+                continue;
+            }
+            credit += 1;
+            done |= 1 << block;
+            if holes == Holes::Nowhere {
+                self.draw_full_block::<N>(level, large, block, &mut place);
+            }
+        }
+        done
+    }
+
+    /// Draws a triangle that covers few pixels of the tile: first it is found in which it is in
+    /// front, then sixteen of those at a time are tested. Returns whether it is drawn; clipped
+    /// triangles are not.
+    #[inline(always)]
+    fn draw_few<'a, 'b, S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        large: &Large,
+        (some, whole): (u64, u64),
+        test: impl Fn(usize) -> Option<AlphaTest<'a, 'b>>,
+        fragments: &mut Fragments,
+    ) -> bool
+    where
+        'a: 'b,
+    {
+        let format = Any(self.depth_format);
+        for sample in 0..N {
+            let shift = self.sample_positions.shift::<N>(sample);
+            let mut blocks = some;
+            fragments.forget();
+            while blocks != 0 {
+                let block = blocks.trailing_zeros() as usize;
+                blocks &= blocks - 1;
+                self.write::<N>(simd.level(), block);
+                let first = (block * N + sample) * BLOCK_PIXELS;
+                let whole = whole >> block & 1 != 0;
+                let mut list = List { fragments, first };
+                let plane = self.plane::<N>(block, sample);
+                simd.vectorize(
+                    #[inline(always)]
+                    || large.draw(format, simd, (block, shift), whole, &mut list, plane),
+                );
+            }
+            if fragments.are_none() {
+                continue;
+            }
+            let test = test(sample);
+            if test.as_ref().is_some_and(|test| !test.has_edges()) {
+                return false;
+            }
+            let corner = [self.bounds.left, self.bounds.top];
+            let buffer = &mut self.buffer.0;
+            simd.vectorize(
+                #[inline(always)]
+                || {
+                    let test = (test.as_ref(), corner);
+                    fragments.put::<S, N>(simd, format, test, large.number, buffer);
+                },
+            );
+        }
+        true
+    }
+}

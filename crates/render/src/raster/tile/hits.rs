@@ -1,0 +1,122 @@
+//! Draws the hits of a tile: pixels of small triangles and of short lines.
+//!
+//! Hits may have [colours](super::super::hit_colors), like other triangles that are
+//! [painted](super::super::paint). Then those of the nearest stay beside their entries, in blocks
+//! that one of them reaches; whatever else is drawn into such a block later forgets them.
+
+use std::hint::select_unpredictable;
+
+use fearless_simd::{Level, Simd};
+
+use super::Visibility;
+use crate::raster::bins::Bins;
+use crate::raster::depth_format::{Format as _, with_format};
+use crate::screen::tiles::{BLOCK_PIXELS, PIXELS};
+
+/// The colours of pixels, block by block: red, green, blue and 255; or 0 if they are not known.
+/// What follows the last is for hits that are hidden.
+#[derive(Debug)]
+#[repr(align(64))]
+pub(super) struct HitColors([u32; PIXELS + BLOCK_PIXELS]);
+
+impl Default for HitColors {
+    fn default() -> Self {
+        Self([0; PIXELS + BLOCK_PIXELS])
+    }
+}
+
+impl HitColors {
+    /// Those of a block.
+    #[inline(always)]
+    pub(super) fn block_mut(&mut self, block: usize) -> &mut [u32; BLOCK_PIXELS] {
+        &mut self.0.as_chunks_mut().0[block]
+    }
+}
+
+impl Visibility {
+    /// Draws the hits of a tile from the bins of one thread.
+    #[inline(always)]
+    pub(super) fn draw_hits<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
+        if N == 1 && bins.hits.are_colored() {
+            return simd.vectorize(
+                #[inline(always)]
+                || self.draw_colored_hits(simd, bins, tile),
+            );
+        }
+        with_format!(self.depth_format, D => bins.hits.each(
+            (D::of(self.depth_format), simd),
+            tile,
+            #[inline(always)]
+            |place, word| {
+                let place = place as usize % (N * PIXELS);
+                let block = place / (N * BLOCK_PIXELS);
+                if self.written >> block & 1 == 0 {
+                    self.write::<N>(simd.level(), block);
+                }
+                let old = &mut self.buffer.0[place];
+                *old = word.max(*old);
+            },
+        ));
+    }
+
+    /// The same for hits that have colours, with one sample per pixel.
+    #[inline(always)]
+    fn draw_colored_hits<S: Simd>(&mut self, simd: S, bins: &Bins, tile: usize) {
+        with_format!(self.depth_format, D => bins.hits.each_colored(
+            (D::of(self.depth_format), simd),
+            tile,
+            #[inline(always)]
+            |place, word, color| {
+                let place = place as usize % PIXELS;
+                let block = place / BLOCK_PIXELS;
+                self.color(simd.level(), block);
+                let old = &mut self.buffer.0[place];
+                let to = select_unpredictable(word > *old, place, PIXELS);
+                self.colors.0[to] = color;
+                *old = word.max(*old);
+            },
+        ));
+    }
+
+    /// Ensures that a block has entries and colours.
+    #[inline(always)]
+    pub(super) fn color(&mut self, level: Level, block: usize) {
+        if self.colored >> block & 1 == 0 {
+            self.begin_colors(level, block);
+        }
+    }
+
+    /// The same for a block that has no colours: those of what was drawn before are not known.
+    #[inline(never)]
+    fn begin_colors(&mut self, level: Level, block: usize) {
+        let is_empty = !self.shows(block);
+        self.write::<1>(level, block);
+        self.colored |= 1 << block;
+        let entries = &self.buffer.0.as_chunks::<BLOCK_PIXELS>().0[block];
+        let colors = &mut self.colors.0.as_chunks_mut::<BLOCK_PIXELS>().0[block];
+        if is_empty {
+            return colors.fill(self.background);
+        }
+        for (color, entry) in colors.iter_mut().zip(entries) {
+            *color = if *entry == 0 { self.background } else { 0 };
+        }
+    }
+
+    /// The colours of a block's pixels, those of pixels that show nothing included, and whether all
+    /// are known; `None` if the block has none.
+    pub(crate) fn colors(&self, block: usize) -> Option<(&[u32; BLOCK_PIXELS], bool)> {
+        if self.colored >> block & 1 == 0 {
+            return None;
+        }
+        let colors = &self.colors.0.as_chunks().0[block];
+        let all = colors.iter().fold(u32::MAX, |all, color| all & color);
+        Some((colors, all >> 24 != 0))
+    }
+
+    /// The entries of a block whose pixels have no known colour; 0 for the others.
+    pub(crate) fn uncolored(&self, block: usize) -> [u64; BLOCK_PIXELS] {
+        let entries = self.block(block);
+        let colors = &self.colors.0.as_chunks::<BLOCK_PIXELS>().0[block];
+        std::array::from_fn(|i| if colors[i] == 0 { entries[i] } else { 0 })
+    }
+}

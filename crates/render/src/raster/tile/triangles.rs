@@ -1,0 +1,220 @@
+//! Draws the triangles of a tile that are not small and have no holes: medium and large ones.
+
+use fearless_simd::{Level, Simd, dispatch};
+
+use super::{Shown, Visibility};
+use crate::raster::bins::LargeTriangle;
+use crate::raster::depth_format::{Format as _, with_format};
+use crate::raster::entries::word;
+use crate::raster::large::{Large, Touched};
+use crate::raster::medium::{self, Medium};
+use crate::raster::paint::{Paint, Painted};
+use crate::screen::coverage::{Grid, PixelBox, Snapped, Triangle};
+use crate::screen::tiles::BLOCK_PIXELS;
+use marraztu_core::base::math::each;
+
+impl Visibility {
+    /// Draws a triangle that is not small and has no holes, and colours its pixels if it has a
+    /// paint; with one sample per pixel.
+    #[inline(always)]
+    pub(super) fn draw_large<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        triangle: &LargeTriangle,
+        paint: Option<&Paint<'_>>,
+    ) {
+        let corners = each(triangle.corners, |corner| corner.at());
+        let reached = PixelBox::reached(corners, self.sample_positions.reach::<N>());
+        // The fine grid needs more bits.
+        let is_medium = reached.width() <= medium::LONGEST && reached.height() <= medium::LONGEST;
+        if is_medium && self.grid == Grid::Usual {
+            return self.draw_medium::<S, N>(simd, triangle, paint);
+        }
+        let Some((large, area)) = self.set_up::<N>(triangle) else { return };
+        let touched = large.blocks::<S, N>(simd, area, &self.sample_positions);
+        let (mut some, high) = (touched.some, self.key(large.high));
+        let mut place = None;
+        while some != 0 {
+            let block = some.trailing_zeros() as usize;
+            some &= some - 1;
+            if high < self.farthest[block] {
+                continue;
+            }
+            let whole = touched.whole >> block & 1 != 0;
+            if !(whole && self.note_full_block::<N>(&large, block, &mut place)) {
+                match paint {
+                    Some(paint) => self.paint_block(simd.level(), &large, block, whole, paint),
+                    None => {
+                        self.write::<N>(simd.level(), block);
+                        self.draw_planes::<N>(simd.level(), &large, block, whole);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Draws a triangle whose bounding box is at most as large as a tile.
+    #[inline(always)]
+    fn draw_medium<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        triangle: &LargeTriangle,
+        paint: Option<&Paint<'_>>,
+    ) {
+        let corners = each(triangle.corners, |corner| corner.at());
+        let Some(area) = self.reached::<N>(corners) else { return };
+        let first = [self.bounds.left, self.bounds.top];
+        let Some(medium) = Medium::new(simd, triangle, first) else { return };
+        let Touched { mut some, whole } = medium.blocks::<N>(simd, area, &self.sample_positions);
+        let high = self.key(medium.high);
+        let (mut large, mut place) = (None, None);
+        with_format!(self.depth_format, D => while some != 0 {
+            let block = some.trailing_zeros() as usize % BLOCK_PIXELS;
+            some &= some - 1;
+            if high < self.farthest[block] {
+                continue;
+            }
+            if whole >> block & 1 != 0 {
+                large = large
+                    .or_else(|| Some(Large::new(triangle, &Triangle::new(corners)?, first)));
+                if large.is_some_and(|it| self.note_full_block::<N>(&it, block, &mut place)) {
+                    continue;
+                }
+            }
+            let format = D::of(self.depth_format);
+            if let Some(paint) = paint {
+                self.color(simd.level(), block);
+                let entries = &mut self.buffer.0.as_chunks_mut().0[block];
+                let painted = Painted { paint, colors: self.colors.block_mut(block) };
+                medium.draw(format, simd, (block, [0; 2]), area, Some(painted), entries);
+                continue;
+            }
+            self.write::<N>(simd.level(), block);
+            for sample in 0..N {
+                let shift = self.sample_positions.shift::<N>(sample);
+                let plane = self.plane::<N>(block, sample);
+                medium.draw(format, simd, (block, shift), area, None, plane);
+            }
+        });
+    }
+
+    /// Draws a triangle into a block that it covers fully or in part, and colours it, with one
+    /// sample per pixel.
+    #[inline(never)]
+    fn paint_block(
+        &mut self,
+        level: Level,
+        large: &Large,
+        block: usize,
+        whole: bool,
+        paint: &Paint<'_>,
+    ) {
+        self.color(level, block);
+        let entries = &mut self.buffer.0.as_chunks_mut().0[block];
+        let mut painted = Painted { paint, colors: self.colors.block_mut(block) };
+        let format = self.depth_format;
+        dispatch!(level, simd => with_format!(format, D => {
+            large.draw(D::of(format), simd, (block, [0; 2]), whole, &mut painted, entries);
+        }));
+    }
+
+    /// Draws a triangle into a block that it covers fully; `place` is its index in `large`, once it
+    /// has one.
+    pub(super) fn draw_full_block<const N: usize>(
+        &mut self,
+        level: Level,
+        large: &Large,
+        block: usize,
+        place: &mut Option<u32>,
+    ) {
+        if !self.note_full_block::<N>(large, block, place) {
+            self.write::<N>(level, block);
+            self.draw_planes::<N>(level, large, block, true);
+        }
+    }
+
+    /// Draws a triangle into a block that it covers fully if no entries have to be written for
+    /// that: if it is hidden, or alone. Returns whether that was so.
+    #[inline(never)]
+    fn note_full_block<const N: usize>(
+        &mut self,
+        large: &Large,
+        block: usize,
+        place: &mut Option<u32>,
+    ) -> bool {
+        let [low, high] = large.depths::<N>(block).map(|depth| self.key(depth));
+        let own = ([low, high], large.number);
+        let is_done = self.hides(block, high, large.number)
+            || self.show_whole(block, own, place, || Shown::Large(*large));
+        self.farthest[block] = self.farthest[block].max(low);
+        is_done
+    }
+
+    /// Whether a block hides a triangle that reaches up to this key in it. Of equal depths the
+    /// lower number is in front: coarse formats have many.
+    #[inline(always)]
+    pub(super) fn hides(&self, block: usize, high: u32, number: u32) -> bool {
+        match self.whole(block) {
+            Some(other) => word(high, number) < word(self.farthest[block], other),
+            None => high < self.farthest[block],
+        }
+    }
+
+    /// Notes that the triangle with this number covers a block fully, with depths between these
+    /// keys, if no entries have to be written for that. Returns whether that was so.
+    #[inline(always)]
+    pub(super) fn show_whole(
+        &mut self,
+        block: usize,
+        ([low, high], number): ([u32; 2], u32),
+        place: &mut Option<u32>,
+        triangle: impl FnOnce() -> Shown,
+    ) -> bool {
+        let bit = 1 << block;
+        let alone = (self.written | self.whole) & bit == 0;
+        let is_behind = |other| word(low, number) > word(self.nearest[block], other);
+        let noted = alone || self.whole(block).is_some_and(is_behind);
+        if noted {
+            self.shown[block] = *place.get_or_insert_with(|| {
+                self.large.push(triangle());
+                u32::try_from(self.large.len() - 1).expect("fewer than 2^32 triangles")
+            });
+            self.whole |= bit;
+            self.nearest[block] = high;
+        }
+        noted
+    }
+
+    /// A triangle relative to the tile, and the pixels of its bounding box in it, counted from the
+    /// tile's first; `None` if there are none.
+    pub(super) fn set_up<const N: usize>(
+        &self,
+        triangle: &LargeTriangle,
+    ) -> Option<(Large, PixelBox)> {
+        let corners = each(triangle.corners, |corner| corner.at());
+        let area = self.reached::<N>(corners)?;
+        let edges = Triangle::on(self.grid, corners)?;
+        Some((Large::new(triangle, &edges, [self.bounds.left, self.bounds.top]), area))
+    }
+
+    /// The pixels of the tile that a triangle's bounding box reaches into, counted from the tile's
+    /// first.
+    #[inline(always)]
+    fn reached<const N: usize>(&self, corners: [Snapped; 3]) -> Option<PixelBox> {
+        let reach = self.sample_positions.reach::<N>();
+        self.in_tile(PixelBox::reached_on(self.grid, corners, reach))
+    }
+
+    /// The pixels of the tile in a box, counted from the tile's first.
+    #[inline(always)]
+    pub(super) fn in_tile(&self, pixels: PixelBox) -> Option<PixelBox> {
+        let area = pixels.intersection(self.bounds);
+        let PixelBox { left, top, .. } = self.bounds;
+        (!area.is_empty()).then_some(PixelBox {
+            left: area.left - left,
+            top: area.top - top,
+            right: area.right - left,
+            bottom: area.bottom - top,
+        })
+    }
+}

@@ -1,0 +1,86 @@
+//! Transforms the vertices of a mesh to the screen, and fetches them sixteen at a time.
+//!
+//! The loop is plain arithmetic over rows of coordinates, compiled for each instruction set: it
+//! does to eight vertices at once what [`Screen::vertex`] does to one, with the same bits.
+
+use fearless_simd::{Level, Simd, SimdBase as _, SimdCombine as _, dispatch, i32x4, i32x16};
+
+use crate::screen::clip::{Screen, ScreenVertex};
+use marraztu_core::scene::DrawOrder;
+
+/// The vertices of a frame on the screen.
+#[derive(Debug, Default)]
+pub(crate) struct Vertices {
+    /// On the usual grid.
+    pub(crate) usual: Vec<ScreenVertex>,
+    /// On a finer grid, if the settings choose one.
+    pub(crate) fine: Vec<ScreenVertex>,
+    /// In pixels, before they were snapped, if the rule of coverage needs them.
+    pub(crate) unsnapped: Vec<[f32; 2]>,
+}
+
+impl Vertices {
+    /// The corners of triangles: on the finer grid, if there is one.
+    pub(crate) fn corners(&self) -> &[ScreenVertex] {
+        if self.fine.is_empty() { &self.usual } else { &self.fine }
+    }
+}
+
+/// Transforms vertices of a mesh to the screen, from number `first` on.
+pub(crate) fn transform(
+    level: Level,
+    screen: &Screen,
+    order: &DrawOrder,
+    first: usize,
+    out: &mut [ScreenVertex],
+) {
+    let rows = first..first + out.len();
+    let [x, y, z] = [&order.x, &order.y, &order.z].map(|row| &row[rows.clone()]);
+    dispatch!(level, simd => chunk(simd, screen, [x, y, z], out));
+}
+
+#[inline(always)]
+fn chunk<S: Simd>(_: S, screen: &Screen, [x, y, z]: [&[f32]; 3], out: &mut [ScreenVertex]) {
+    for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
+        *out = screen.vertex(screen.clip([f64::from(*x), f64::from(*y), f64::from(*z)]));
+    }
+}
+
+/// Fetches x, y, depth and 1/w of sixteen vertices, by their numbers. A number beyond the last
+/// counts as the last, which saves a check in each lane.
+#[inline(always)]
+pub(crate) fn fetch_vertices<S: Simd>(
+    simd: S,
+    vertices: &[ScreenVertex],
+    number: impl Fn(usize) -> u32,
+) -> [i32x16<S>; 4] {
+    if vertices.is_empty() {
+        return [i32x16::splat(simd, 0); 4];
+    }
+    let last = vertices.len() - 1;
+    fetch(
+        simd,
+        #[inline(always)]
+        |lane| vertices[(number(lane) as usize).min(last)].row(),
+    )
+}
+
+/// Transposes sixteen rows of four numbers to four rows of sixteen.
+#[inline(always)]
+pub(crate) fn fetch<S: Simd>(simd: S, row: impl Fn(usize) -> [i32; 4]) -> [i32x16<S>; 4] {
+    let (even_low, odd_low) = four(simd, 0, &row).deinterleave(four(simd, 4, &row));
+    let (even_high, odd_high) = four(simd, 8, &row).deinterleave(four(simd, 12, &row));
+    let (a, c) = even_low.deinterleave(even_high);
+    let (b, d) = odd_low.deinterleave(odd_high);
+    [a, b, c, d]
+}
+
+/// Four rows of four numbers, one after another.
+#[inline(always)]
+fn four<S: Simd>(simd: S, at: usize, row: &impl Fn(usize) -> [i32; 4]) -> i32x16<S> {
+    let a = i32x4::from_slice(simd, &row(at));
+    let b = i32x4::from_slice(simd, &row(at + 1));
+    let c = i32x4::from_slice(simd, &row(at + 2));
+    let d = i32x4::from_slice(simd, &row(at + 3));
+    a.combine(b).combine(c.combine(d))
+}

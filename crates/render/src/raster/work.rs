@@ -1,0 +1,193 @@
+//! Divides the setup of a frame into pieces of work for threads.
+//!
+//! A piece is a range of vertices, triangles or edges of one draw. They are neighbours, so a piece
+//! has a home tile on the screen: the one that contains its middle element. Pieces are distributed
+//! in the order of their homes, and tiles in the same order, so that each thread mostly draws what
+//! it has set up itself.
+
+use crate::frame::draw::Draw;
+use crate::screen::clip::Screen;
+use crate::screen::tiles::{TILE, tiles_of};
+use crate::work_stealing::WorkStealing;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{CLUSTER, NONE};
+
+/// The number of pieces that many vertices, triangles, polygons or edges are divided into: the
+/// smaller they are, the more of them are drawn near their home.
+const PIECES: usize = 256;
+
+/// The least and the largest size of a piece.
+const LEAST: usize = 4 * CLUSTER;
+const MOST: usize = 32 * CLUSTER;
+
+/// The size of a piece of `count` elements; a multiple of clusters.
+pub(crate) fn piece_of(count: usize) -> usize {
+    (count / PIECES).next_multiple_of(CLUSTER).clamp(LEAST, MOST)
+}
+
+/// Fewer triangles, polygons or edges than this are set up by one thread: waking the others would
+/// take longer.
+pub(crate) const FEW: usize = 512;
+
+/// The same for vertices, which take a few nanoseconds each.
+pub(crate) const FEW_VERTICES: usize = 8192;
+
+/// A piece of work.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Work<W> {
+    pub(crate) draw: usize,
+    pub(crate) what: W,
+    pub(crate) from: usize,
+    pub(crate) to: usize,
+    /// The number of pieces that were added before it.
+    pub(crate) place: usize,
+    /// The tile that contains its middle element, or is nearest to it.
+    home: usize,
+}
+
+/// The kind of a piece.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum What {
+    /// Setup of triangles.
+    Triangles,
+    /// The outlines of polygons that are one triangle each, in draw order.
+    Facing,
+    /// The outlines of polygons.
+    FacingOneByOne,
+    /// Setup of edges.
+    Edges,
+    /// Setup of the normals of polygons.
+    Normals,
+}
+
+/// Pieces of work on one picture, in the order of their homes.
+#[derive(Debug)]
+pub(crate) struct WorkList<W> {
+    pieces: Vec<Work<W>>,
+    /// The number of elements in all pieces.
+    count: usize,
+}
+
+impl<W> Default for WorkList<W> {
+    fn default() -> Self {
+        Self { pieces: Vec::new(), count: 0 }
+    }
+}
+
+impl<W: Copy> WorkList<W> {
+    /// Removes all pieces.
+    pub(crate) fn clear(&mut self) {
+        self.pieces.clear();
+        self.count = 0;
+    }
+
+    /// Adds `count` elements of a draw, whose positions in object space give their homes.
+    pub(crate) fn add(
+        &mut self,
+        (i, draw): (usize, &Draw),
+        (what, count): (W, usize),
+        size: Size,
+        position: impl Fn(usize) -> [f64; 3],
+    ) {
+        let screen = Screen::new(draw.clip_from_object, size);
+        self.count += count;
+        let piece = piece_of(count);
+        let places = self.pieces.len()..;
+        self.pieces.extend(places.zip((0..count).step_by(piece)).map(|(place, from)| {
+            let to = count.min(from + piece);
+            let home = home(&screen, size, position(from.midpoint(to)));
+            Work { draw: i, what, from, to, place, home }
+        }));
+    }
+
+    /// All pieces, in the order of their homes.
+    pub(crate) fn sorted(&mut self) -> &[Work<W>] {
+        self.pieces.sort_unstable_by_key(|work| work.home);
+        &self.pieces
+    }
+
+    /// The number of pieces.
+    pub(crate) fn len(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// The number of threads that are worth waking, if it is not for fewer than `few` elements.
+    pub(crate) fn threads(&self, few: usize) -> usize {
+        if self.count < few { 1 } else { rayon::current_num_threads() }
+    }
+
+    /// Distributes `tiles` tiles, starting each thread where its pieces are at home.
+    pub(crate) fn shares_of_tiles(&self, tiles: usize) -> WorkStealing {
+        let threads = rayon::current_num_threads();
+        if self.pieces.len() < 4 * threads {
+            return WorkStealing::new(tiles, threads);
+        }
+        WorkStealing::beginning_at(
+            tiles,
+            (0..threads).map(|i| self.pieces[i * self.pieces.len() / threads].home),
+        )
+    }
+}
+
+impl What {
+    /// The position of element `i` in object space; of normals, that of polygon `i`.
+    pub(crate) fn position(self, draw: &Draw, i: usize) -> [f64; 3] {
+        let mesh = &draw.model.mesh;
+        let order = mesh.draw_order();
+        match self {
+            Self::Triangles | Self::Facing => order.position(order.triangles[i].vertices[0]),
+            Self::FacingOneByOne | Self::Normals => {
+                let polygon = u32::try_from(i).unwrap_or(0);
+                let corner = mesh.corners()[mesh.corners_of(polygon).start];
+                mesh.positions()[corner.position as usize].map(f64::from)
+            }
+            Self::Edges => match mesh.edge_order().edges[i].vertices[0] {
+                NONE => [0.0; 3],
+                vertex => order.position(vertex),
+            },
+        }
+    }
+}
+
+/// The tile of the picture that contains a position, or is nearest to it.
+#[expect(clippy::cast_possible_truncation, reason = "held to the picture")]
+fn home(screen: &Screen, size: Size, place: [f64; 3]) -> usize {
+    let at = screen.pixels(screen.clip(place));
+    let tiles = tiles_of(size);
+    let [column, row] =
+        [0, 1].map(|axis| ((at[axis] as i32) / TILE).clamp(0, (tiles[axis] - 1).max(0)));
+    usize::try_from(row * tiles[0] + column).expect("not negative")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_are_whole_clusters_of_bounded_size() {
+        for count in [0, 1, 4096, 69_451, 1_000_000, 50_000_000] {
+            let piece = piece_of(count);
+            assert!(
+                piece.is_multiple_of(CLUSTER) && (LEAST..=MOST).contains(&piece),
+                "{count}: {piece}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_home_is_the_tile_of_a_place_or_the_nearest() {
+        let size = Size { width: 200, height: 100 };
+        let screen = Screen::new(glam::DMat4::IDENTITY, size);
+        let homes = [
+            ([-1.0, 1.0, 0.5], 0),
+            ([0.99, 0.9, 0.5], 3),
+            ([0.0, -0.9, 0.5], 5),
+            ([-9.0, -9.0, 0.5], 4),
+            ([1e300, 1e300, 0.5], 3),
+            ([f64::NAN; 3], 0),
+        ];
+        for (place, tile) in homes {
+            assert_eq!(home(&screen, size, place), tile, "{place:?}");
+        }
+    }
+}

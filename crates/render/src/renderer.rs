@@ -1,0 +1,402 @@
+//! Draws plans into a picture.
+//!
+//! A picture is drawn as a whole, or only the damaged tiles of the last one are drawn again, to the
+//! same bytes. No setting is read here: the plan holds every decision. What is asked of the last
+//! picture stands in [`picking`].
+
+mod picking;
+
+use std::sync::{Mutex, PoisonError};
+
+use fearless_simd::Level;
+
+use super::shading::context::ShadingContext;
+use super::shading::corner_light::VertexLight;
+use super::shading::face_colors::FaceColors;
+use super::shading::light::Lit;
+use super::shading::painter::{Band, Filled, Painter, TileSums, is_quick};
+use super::shading::shown_faces::have_colors;
+use crate::cancellation::Cancellation;
+use crate::damage::kept_shadows::KeptShadows;
+use crate::damage::{Damage, DamageCause};
+use crate::frame::{FramePlan, Rules};
+use crate::raster::geometry::ScreenGeometry;
+use crate::raster::hit_colors::CornerLight;
+use crate::screen::sample_positions::{SamplePositions, passes, shifts};
+use crate::screen::tiles::{TILE_SIDE, tiles_of};
+use crate::shading::interpolated::ShadingNumber;
+use crate::shading::light_terms::LightTerms;
+use crate::shading::tiny_blocks::Tiny;
+use crate::shadow::maps::ShadowMaps;
+use crate::shadow::rays::RayCount;
+use crate::shadow::tracer::Tracer;
+use crate::timings::{Laps, Timings};
+use crate::work_stealing::{own, together};
+use marraztu_core::accuracy::Arithmetic;
+use marraztu_core::base::image::{Picture, Size};
+
+pub use picking::Hit;
+
+/// Draws pictures, and keeps their memory from one frame to the next.
+#[derive(Debug)]
+pub struct Renderer {
+    level: Level,
+    picture: Picture,
+    frame: ScreenGeometry,
+    /// For each tile the blocks that are filled with one colour.
+    filled: Vec<Filled>,
+    caches: ShadingCaches,
+    /// The plan of the last finished picture.
+    plan: Option<FramePlan>,
+    /// Whether the picture is still that one: nothing has been painted over it.
+    finished: bool,
+    /// Whether the screen geometry is that of the last finished picture.
+    built: bool,
+    timings: Timings,
+    rays: RayCount,
+    maps: ShadowMaps,
+    shadows: KeptShadows,
+}
+
+/// The frame was cancelled by a newer request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cancelled;
+
+impl Default for Renderer {
+    fn default() -> Self {
+        Self::new(Level::new())
+    }
+}
+
+impl Renderer {
+    /// Makes a renderer for a SIMD level. Pictures are the same on every level.
+    #[must_use]
+    pub fn new(level: Level) -> Self {
+        Self {
+            level,
+            picture: Picture::default(),
+            frame: ScreenGeometry::default(),
+            filled: Vec::new(),
+            caches: ShadingCaches::default(),
+            plan: None,
+            finished: false,
+            built: false,
+            timings: Timings::default(),
+            rays: RayCount::default(),
+            maps: ShadowMaps::default(),
+            shadows: KeptShadows::default(),
+        }
+    }
+
+    /// Draws a plan from scratch, whatever was drawn before.
+    pub fn render(&mut self, plan: &FramePlan) -> &Picture {
+        self.render_watched(plan, &|_, _| {})
+    }
+
+    /// Draws a plan from scratch and reports progress between tiles: the number of painted tiles,
+    /// and of all. With several samples per pixel, each tile is painted in several passes and
+    /// counts in each.
+    pub fn render_watched(
+        &mut self,
+        plan: &FramePlan,
+        tell: &(dyn Fn(usize, usize) + Sync),
+    ) -> &Picture {
+        self.forget();
+        self.redraw_by(plan, &Cancellation::new(&|| true).telling(tell))
+            .expect("it is always wanted");
+        &self.picture
+    }
+
+    /// Draws a plan from scratch, as [`Self::render`] does.
+    ///
+    /// # Errors
+    /// As [`Self::redraw`].
+    pub fn render_while(
+        &mut self,
+        plan: &FramePlan,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Result<&Picture, Cancelled> {
+        self.forget();
+        self.redraw_by(plan, &Cancellation::new(wanted))?;
+        Ok(&self.picture)
+    }
+
+    /// Reuses nothing of the last picture for the next one.
+    fn forget(&mut self) {
+        self.finished = false;
+        self.frame.forget();
+        self.shadows.forget();
+    }
+
+    /// Draws again what another plan changes of the last picture, and returns the damage. The
+    /// picture is the one that [`Self::render`] draws.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `wanted`, which every thread calls between tiles, returns false. The
+    /// picture is then undefined until the next one is finished.
+    pub fn redraw(
+        &mut self,
+        plan: &FramePlan,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Damage, Cancelled> {
+        self.redraw_by(plan, &Cancellation::new(wanted))
+    }
+
+    fn redraw_by(
+        &mut self,
+        plan: &FramePlan,
+        watch: &Cancellation<'_>,
+    ) -> Result<Damage, Cancelled> {
+        let damage = self.damage(plan);
+        self.built &= !damage.geometry;
+        if plan.rules == Rules::Ignored || !damage.is_nothing() {
+            self.resize(plan.size);
+            self.finished = false;
+            // Runs on a drawing thread, so that the caller sleeps and wakes once per frame.
+            rayon::scope(|_| {
+                plan.prepare();
+                self.draw_damage(plan, &damage, watch);
+            });
+            if watch.is_given_up() {
+                return Err(Cancelled);
+            }
+            // If each sample was drawn by itself, the geometry is that of the last sample.
+            (self.finished, self.built) = (true, !plan.lit_by_sample);
+        }
+        self.plan = Some(plan.clone());
+        Ok(damage)
+    }
+
+    /// Resizes the picture if its size changed.
+    fn resize(&mut self, size: Size) {
+        if self.picture.size() != size {
+            self.picture.resize(size);
+            let [columns, rows] = [size.width, size.height].map(|n| n.div_ceil(TILE_SIDE));
+            self.filled.clear();
+            self.filled.resize(columns * rows, Filled::default());
+        }
+    }
+
+    fn draw_damage(&mut self, plan: &FramePlan, damage: &Damage, watch: &Cancellation<'_>) {
+        self.timings = Timings::default();
+        self.rays = RayCount::default();
+        self.shadows.update(plan);
+        let passes = passes(plan.samples);
+        let pictures = if plan.lit_by_sample { shifts(plan.samples).len() } else { passes.len() };
+        watch.expect_tiles(pictures * damage.tiles());
+        let mut sums = Vec::new();
+        if passes.len() > 1 || plan.lit_by_sample {
+            // If this is cancelled, the geometry belongs to no finished picture.
+            self.built = false;
+            let [columns, rows] = tiles_of(plan.size);
+            let tiles = usize::try_from(columns * rows).expect("not negative");
+            sums.resize_with(tiles, TileSums::default);
+        }
+        if plan.lit_by_sample {
+            return self.draw_each_sample(plan, damage, &sums, watch);
+        }
+        self.prepare(plan);
+        // The first pass comes last, so that picking reads its geometry.
+        for (i, sample_positions) in passes.iter().enumerate().rev() {
+            if self.built {
+                self.frame.forget_colors();
+            } else {
+                let ShadingCache { lit, terms, .. } = &self.caches.fast;
+                let one = passes.len() == 1 && !sample_positions.are_many();
+                // Hits are coloured wherever they are: not if few of them are painted.
+                let pays = one && 2 * damage.tiles() >= self.filled.len();
+                let light = pays.then(|| VertexLight::new(self.level, plan, lit, terms)).flatten();
+                let light = light.as_ref().map(|light| light as &dyn CornerLight);
+                self.timings +=
+                    self.frame.build(self.level, plan, (*sample_positions, light), watch);
+            }
+            if watch.is_given_up() {
+                return;
+            }
+            self.draw_pass(plan, damage, &Pass { sums: &sums, is_last: i == 0 }, watch);
+        }
+    }
+
+    /// Draws a picture for each sample, as if it were the centre of its pixel, and averages them.
+    fn draw_each_sample(
+        &mut self,
+        plan: &FramePlan,
+        damage: &Damage,
+        sums: &[TileSums],
+        watch: &Cancellation<'_>,
+    ) {
+        let shifts = shifts(plan.samples);
+        let last = shifts.len() - 1;
+        for (i, shift) in shifts.enumerate() {
+            let own = plan.seen_from(shift);
+            self.prepare(&own);
+            let one = (SamplePositions::default(), None);
+            self.timings += self.frame.build(self.level, &own, one, watch);
+            if watch.is_given_up() {
+                return;
+            }
+            self.draw_pass(&own, damage, &Pass { sums, is_last: i == last }, watch);
+        }
+    }
+
+    fn draw_pass(
+        &mut self,
+        plan: &FramePlan,
+        damage: &Damage,
+        pass: &Pass<'_>,
+        watch: &Cancellation<'_>,
+    ) {
+        match plan.arithmetic {
+            Arithmetic::F32 => self.draw::<f32>(plan, damage, pass, watch),
+            Arithmetic::F64 => self.draw::<f64>(plan, damage, pass, watch),
+        }
+    }
+
+    /// The damage that [`Self::redraw`] would repair.
+    #[must_use]
+    pub fn damage(&self, plan: &FramePlan) -> Damage {
+        match &self.plan {
+            Some(before) if self.finished => Damage::between(before, plan),
+            _ => Damage::all(DamageCause::First, plan.size),
+        }
+    }
+
+    /// The picture that was drawn last.
+    #[must_use]
+    pub const fn picture(&self) -> &Picture {
+        &self.picture
+    }
+
+    /// The time that each stage of the last picture took.
+    #[must_use]
+    pub const fn timings(&self) -> Timings {
+        self.timings
+    }
+
+    /// The rays of shadows that the last picture took.
+    #[must_use]
+    pub const fn rays(&self) -> RayCount {
+        self.rays
+    }
+
+    /// The number of triangles of the last picture.
+    #[must_use]
+    pub fn triangles_drawn(&self) -> usize {
+        self.frame.triangles()
+    }
+
+    /// Prepares the light of a plan.
+    fn prepare(&mut self, plan: &FramePlan) {
+        match plan.arithmetic {
+            Arithmetic::F32 => self.caches.fast.prepare(plan),
+            Arithmetic::F64 => self.caches.exact.prepare(plan),
+        }
+    }
+
+    /// Draws tiles in parallel: each thread has its own painter.
+    fn draw<T: Painted>(
+        &mut self,
+        plan: &FramePlan,
+        damage: &Damage,
+        pass: &Pass<'_>,
+        watch: &Cancellation<'_>,
+    ) {
+        let mut laps = Laps::start();
+        self.maps.update(self.level, plan, watch);
+        let ShadingCache { terms, lit, faces, painters } = T::cache(&mut self.caches);
+        let looks_up = have_colors(plan) && !self.frame.sample_positions().are_many();
+        if looks_up {
+            faces.begin(self.frame.triangle_numbers());
+        }
+        let (level, frame) = (self.level, &self.frame);
+        let tracer = Tracer::new(plan, &self.maps).map(|it| it.with_known(self.shadows.known()));
+        let tracer = tracer.as_ref();
+        let faces = looks_up.then_some(&*faces);
+        let quick = is_quick(plan);
+        let context = ShadingContext { level, plan, frame, lit, terms, faces, quick, tracer };
+        let Size { width, .. } = plan.size;
+        let columns = width.div_ceil(TILE_SIDE);
+        let bands: Vec<Mutex<Band<'_>>> = self
+            .picture
+            .pixels_mut()
+            .chunks_mut(width * TILE_SIDE)
+            .zip(self.filled.chunks_mut(columns))
+            .map(|(pixels, filled)| Mutex::new(Band { pixels, filled }))
+            .collect();
+        let tiles = bands.len() * columns;
+        let shares = frame.shares_of_tiles(tiles);
+        painters.resize_with(rayon::current_num_threads(), Painter::default);
+        // Also those of threads that come too late to paint.
+        painters.iter_mut().for_each(Painter::begin);
+        let painters: Vec<Mutex<&mut Painter<T>>> = painters.iter_mut().map(Mutex::new).collect();
+        together(painters.len(), || {
+            let painter = &mut own(&painters);
+            loop {
+                let Some(tile) = shares.next().filter(|_| watch.goes_on()) else { return };
+                let row = tile / columns;
+                if damage.tiles.contains(tile) {
+                    match pass.sums.get(tile) {
+                        None => painter.paint(&context, tile, &bands[row]),
+                        Some(sums) => painter.add(&context, tile, sums),
+                    }
+                    if let (true, Some(sums)) = (pass.is_last, pass.sums.get(tile)) {
+                        painter.put_means(&context, tile, sums, &bands[row]);
+                    }
+                    watch.tile_is_painted();
+                }
+            }
+        });
+        for painter in painters {
+            self.rays += painter.into_inner().unwrap_or_else(PoisonError::into_inner).ray_count();
+        }
+        self.timings.tiles += laps.lap();
+    }
+}
+
+/// One of the passes over a picture.
+#[derive(Debug)]
+struct Pass<'a> {
+    /// For each tile the colours of earlier passes, block by block; empty if there is one pass.
+    sums: &'a [TileSums],
+    is_last: bool,
+}
+
+/// What shading keeps from frame to frame, for one arithmetic.
+#[derive(Debug, Default)]
+struct ShadingCache<T> {
+    terms: LightTerms<T>,
+    lit: Lit<T>,
+    faces: FaceColors,
+    /// One for each thread.
+    painters: Vec<Painter<T>>,
+}
+
+impl<T: ShadingNumber> ShadingCache<T> {
+    fn prepare(&mut self, plan: &FramePlan) {
+        self.terms.prepare(plan);
+        self.lit.prepare(plan);
+    }
+}
+
+#[derive(Debug, Default)]
+struct ShadingCaches {
+    fast: ShadingCache<f32>,
+    exact: ShadingCache<f64>,
+}
+
+/// Numbers that pictures are painted in.
+trait Painted: ShadingNumber + Tiny {
+    fn cache(caches: &mut ShadingCaches) -> &mut ShadingCache<Self>;
+}
+
+impl Painted for f32 {
+    fn cache(caches: &mut ShadingCaches) -> &mut ShadingCache<Self> {
+        &mut caches.fast
+    }
+}
+
+impl Painted for f64 {
+    fn cache(caches: &mut ShadingCaches) -> &mut ShadingCache<Self> {
+        &mut caches.exact
+    }
+}

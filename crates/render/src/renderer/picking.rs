@@ -1,0 +1,241 @@
+//! What is asked of the last picture: what a pixel shows and why, and which pixels show an item.
+//!
+//! The last finished picture is asked, even after a frame was cancelled: its geometry is built
+//! again if need be.
+
+use std::collections::BTreeSet;
+use std::ops::ControlFlow;
+
+use super::Renderer;
+use crate::cancellation::Cancellation;
+use crate::frame::FramePlan;
+use crate::plan::uses::EffectUse;
+use crate::raster::visibility_buffer::Visible;
+use crate::raster::{depth_format, entries, visibility_buffer};
+use crate::screen::sample_positions::passes;
+use crate::screen::tiles::{BLOCK_PIXELS, TILE, block_at, tiles_of};
+use crate::shading::context::ShadingContext;
+use crate::shading::explain::{Asked, explain};
+use crate::shading::interpolated::ShadingNumber;
+use crate::shading::light::Lit;
+use crate::shading::light_terms::LightTerms;
+use crate::shading::painter::bounds_of;
+use crate::shading::pixel_color::PixelColor;
+use crate::shadow::tracer::Tracer;
+use crate::tile_layers::TileLayers;
+use marraztu_core::accuracy::{Arithmetic, Samples};
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::ItemId;
+
+/// The polygon that a pixel shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The object, the camera whose mark it is, or the bulb's light.
+    pub item: ItemId,
+    /// The polygon of its mesh.
+    pub polygon: u32,
+    /// The depth: 1 at the near plane, 0 at the far one.
+    pub depth: f32,
+}
+
+impl Renderer {
+    /// Builds the geometry of the last finished picture again, if another frame was begun since.
+    fn build_again(&mut self) {
+        if let (false, Some(plan)) = (self.built, &self.plan) {
+            let sample_positions = passes(plan.samples)[0];
+            let watch = Cancellation::new(&|| true);
+            self.frame.build(self.level, plan, (sample_positions, None), &watch);
+            self.maps.update(self.level, plan, &watch);
+            self.built = true;
+        }
+    }
+
+    /// What the last picture shows in column `x` of row `y`; `None` for the background. If the
+    /// pixel has several samples, it is what most of the four nearest to its centre show.
+    #[must_use]
+    pub fn hit(&mut self, x: usize, y: usize) -> Option<Hit> {
+        self.build_again();
+        let plan = self.plan.as_ref()?;
+        let Size { width, height } = plan.size;
+        if x >= width || y >= height {
+            return None;
+        }
+        let [x, y] = [x, y].map(|i| i32::try_from(i).expect("inside the picture"));
+        let [columns, _] = tiles_of(plan.size);
+        let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
+        let mut tile_seen = TileLayers::default();
+        tile_seen.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
+        let mut word = 0;
+        tile_seen.each(self.level, &self.frame, block_at(x % TILE, y % TILE), |at, nearest, _| {
+            if at == [x, y] {
+                word = nearest;
+            }
+        });
+        let (draw, polygon) = self.seen(plan, word)?;
+        let depth = depth_format::depth(plan.variants.depth, entries::key(word));
+        Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
+    }
+
+    /// What the last picture shows in column `x` of row `y`, and what its colour is made of. A
+    /// pixel of several samples is explained by the light at its centre.
+    #[must_use]
+    pub fn explain(&mut self, x: usize, y: usize) -> Option<PixelColor> {
+        self.build_again();
+        let plan = self.plan.as_ref()?;
+        let Size { width, height } = plan.size;
+        if x >= width || y >= height {
+            return None;
+        }
+        plan.prepare();
+        let at = [x, y].map(|i| i32::try_from(i).expect("inside the picture"));
+        Some(match plan.arithmetic {
+            Arithmetic::F32 => self.explain_in::<f32>(plan, at),
+            Arithmetic::F64 => self.explain_in::<f64>(plan, at),
+        })
+    }
+
+    fn explain_in<T: ShadingNumber>(&self, plan: &FramePlan, at: [i32; 2]) -> PixelColor {
+        let (mut terms, mut lit) = (LightTerms::<T>::default(), Lit::<T>::default());
+        terms.prepare(plan);
+        lit.prepare(plan);
+        let (level, frame) = (self.level, &self.frame);
+        let tracer = Tracer::new(plan, &self.maps);
+        let tracer = tracer.as_ref();
+        let (lit, terms) = (&lit, &terms);
+        let context =
+            ShadingContext { level, plan, frame, lit, terms, faces: None, quick: true, tracer };
+        let [x, y] = at;
+        let [columns, _] = tiles_of(plan.size);
+        let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
+        let bounds = bounds_of(tile, plan.size);
+        let mut tile_seen = TileLayers::default();
+        tile_seen.draw(level, plan, frame, (tile, bounds));
+        let depths = tile_seen.depths(level);
+        let mut shown = Vec::new();
+        tile_seen.each(level, frame, block_at(x % TILE, y % TILE), |place, nearest, words| {
+            if place == at {
+                // Of several samples, what most of them show.
+                let one = plan.samples == Samples::One;
+                shown = if one { words.to_vec() } else { vec![nearest] };
+            }
+        });
+        let [column, row] = at.map(|i| usize::try_from(i).expect("inside the picture"));
+        let [r, g, b, _] = self.picture.pixel(column, row);
+        explain(&context, &Asked { at, bounds, depths, words: &shown, bytes: [r, g, b] })
+    }
+
+    /// Marks the pixels at which the last picture shows an item, also through transparent ones: a
+    /// flag for each pixel, row by row from the top.
+    #[must_use]
+    pub fn pixels_of(&mut self, item: ItemId) -> Vec<bool> {
+        self.pixels_of_any(&[item])
+    }
+
+    /// Marks the pixels at which the last picture shows any of these items, as
+    /// [`Self::pixels_of`].
+    #[must_use]
+    pub fn pixels_of_any(&mut self, items: &[ItemId]) -> Vec<bool> {
+        let mut pixels = vec![false; self.seen_size().area()];
+        self.look(|renderer, plan, at, _, words| {
+            pixels[at] = words.iter().any(|word| {
+                let seen = renderer.seen(plan, *word);
+                seen.is_some_and(|(draw, _)| items.contains(&plan.draws[draw as usize].item))
+            });
+            ControlFlow::Continue(())
+        });
+        pixels
+    }
+
+    /// The item that the last picture shows at each pixel, row by row from the top; nothing if all
+    /// of these items are seen.
+    pub(crate) fn items_unless_all_seen(
+        &mut self,
+        mut items: BTreeSet<ItemId>,
+    ) -> Option<Vec<Option<ItemId>>> {
+        let mut pixels = vec![None; self.seen_size().area()];
+        let mut last = None;
+        self.look(|renderer, plan, at, nearest, words| {
+            let item = |word: u64| {
+                renderer.seen(plan, word).map(|(draw, _)| plan.draws[draw as usize].item)
+            };
+            pixels[at] = item(nearest);
+            if pixels[at] != last || words.len() > 1 {
+                last = pixels[at];
+                words.iter().filter_map(|word| item(*word)).for_each(|item| {
+                    items.remove(&item);
+                });
+            }
+            if items.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        (!items.is_empty()).then_some(pixels)
+    }
+
+    /// Counts the pixels that each effect of the last picture takes part in, and returns the
+    /// largest error of a channel in steps of a byte. Takes about as long as rasterizing the
+    /// picture.
+    pub fn count(&mut self, uses: &mut [EffectUse]) -> f64 {
+        self.build_again();
+        self.plan.as_ref().map_or(0.0, |plan| plan.count(self.level, &self.frame, uses))
+    }
+
+    /// The primitive that each pixel of the last picture shows, row by row from the top: 0 for the
+    /// background, else a number that is unique to each triangle and line of the scene.
+    #[must_use]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the lower half of a word names what is seen"
+    )]
+    pub fn primitives(&mut self) -> Vec<u32> {
+        let mut pixels = vec![0; self.seen_size().area()];
+        self.look(|_, _, at, word, _| {
+            pixels[at] = word as u32;
+            ControlFlow::Continue(())
+        });
+        pixels
+    }
+
+    /// The size of the last finished picture; 0 x 0 before the first.
+    fn seen_size(&self) -> Size {
+        self.plan.as_ref().map_or(Size::new(0, 0), |plan| plan.size)
+    }
+
+    /// Calls `each` with the index of each pixel of the last picture, its nearest word and all that
+    /// it shows, tile by tile, until it breaks. See [`TileLayers::each`].
+    fn look(
+        &mut self,
+        mut each: impl FnMut(&Self, &FramePlan, usize, u64, &[u64]) -> ControlFlow<()>,
+    ) {
+        self.build_again();
+        let Some(plan) = &self.plan else { return };
+        let [columns, rows] = tiles_of(plan.size);
+        let mut tile_seen = TileLayers::default();
+        for tile in 0..usize::try_from(columns * rows).expect("not negative") {
+            tile_seen.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
+            for block in 0..BLOCK_PIXELS {
+                let mut flow = ControlFlow::Continue(());
+                tile_seen.each(self.level, &self.frame, block, |at, nearest, words| {
+                    let [x, y] = at.map(|i| usize::try_from(i).expect("inside the picture"));
+                    if flow.is_continue() {
+                        flow = each(self, plan, y * plan.size.width + x, nearest, words);
+                    }
+                });
+                if flow.is_break() {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// The draw and the polygon that a sample of the visibility buffer names.
+    fn seen(&self, plan: &FramePlan, word: u64) -> Option<(u32, u32)> {
+        match visibility_buffer::seen(word) {
+            Visible::Background => None,
+            Visible::Triangle(number) => {
+                let (draw, start) = self.frame.draw_of(number);
+                let mesh = &plan.draws[draw as usize].model.mesh;
+                Some((draw, mesh.polygon_of(number - start.number)))
+            }
+            Visible::Line(line) => self.frame.line_seen(plan, line),
+        }
+    }
+}

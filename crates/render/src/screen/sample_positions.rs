@@ -1,0 +1,152 @@
+//! The positions of samples in a pixel.
+//!
+//! A sample is the centre of its pixel moved by whole subpixels, so it shows what the centre would
+//! show if all corners were moved the other way: everything that is exact with one sample is exact
+//! with many. Samples are drawn four at a time, each four around the centre; sixteen and sixty-four
+//! samples take four and sixteen passes, whose colours are added.
+//!
+//! Four and sixteen samples are at Vulkan's "Standard sample locations", multiples of 1/16 pixel;
+//! sixty-four are on a grid of 8 x 8.
+
+use marraztu_core::accuracy::Samples;
+
+/// The samples of a pass, if it has more than the centre.
+pub(crate) const FOUR: usize = 4;
+
+/// The share of a fragment that all samples of a pass show.
+pub(crate) const ALL: i32 = 4;
+
+/// The samples of one pass in every pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct SamplePositions {
+    /// Offsets from the centre, in subpixels; all 0 if the centre is the only sample.
+    shifts: [[i32; 2]; FOUR],
+    /// The least and the largest offset on each axis.
+    least: [i32; 2],
+    most: [i32; 2],
+    many: bool,
+}
+
+impl SamplePositions {
+    /// The centre alone.
+    const MIDDLE: Self = Self { shifts: [[0; 2]; FOUR], least: [0; 2], most: [0; 2], many: false };
+
+    /// Four samples, in sixteenths of a pixel from the upper left corner.
+    const fn new(sixteenths: [[i32; 2]; FOUR]) -> Self {
+        let mut positions = Self { least: [128; 2], most: [-128; 2], many: true, ..Self::MIDDLE };
+        let mut i = 0;
+        while i < 2 * FOUR {
+            let (sample, axis) = (i / 2, i % 2);
+            let shift = (sixteenths[sample][axis] - 8) * 16;
+            positions.shifts[sample][axis] = shift;
+            if shift < positions.least[axis] {
+                positions.least[axis] = shift;
+            }
+            if shift > positions.most[axis] {
+                positions.most[axis] = shift;
+            }
+            i += 1;
+        }
+        positions
+    }
+
+    /// The number of samples: [`FOUR`], or one.
+    pub(crate) const fn count(&self) -> usize {
+        if self.many { FOUR } else { 1 }
+    }
+
+    /// Whether there are four of them.
+    pub(crate) const fn are_many(&self) -> bool {
+        self.many
+    }
+
+    /// The offset of sample `i` of `N` from the centre, in subpixels.
+    #[inline(always)]
+    pub(crate) const fn shift<const N: usize>(&self, i: usize) -> [i32; 2] {
+        if N == 1 { [0; 2] } else { self.shifts[i % FOUR] }
+    }
+
+    /// The least and the largest offsets.
+    #[inline(always)]
+    pub(crate) const fn reach<const N: usize>(&self) -> [[i32; 2]; 2] {
+        if N == 1 { [[0; 2]; 2] } else { [self.least, self.most] }
+    }
+}
+
+/// The passes that draw this number of samples per pixel.
+pub(crate) const fn passes(samples: Samples) -> &'static [SamplePositions] {
+    match samples {
+        Samples::One => &[SamplePositions::MIDDLE],
+        Samples::Four => &QUARTERS,
+        Samples::Sixteen => &SIXTEEN,
+        Samples::SixtyFour => &SIXTY_FOUR,
+    }
+}
+
+/// The offset of each sample from the centre of its pixel, in subpixels.
+pub(crate) fn shifts(samples: Samples) -> impl ExactSizeIterator<Item = [i32; 2]> {
+    let passes = passes(samples);
+    let count = passes[0].count();
+    (0..passes.len() * count).map(move |i| passes[i / count].shifts[i % count])
+}
+
+const QUARTERS: [SamplePositions; 1] = [SamplePositions::new([[6, 2], [14, 6], [2, 10], [10, 14]])];
+
+/// Vulkan's sixteen, in an order in which each four lie around the centre, the nearest first.
+const SIXTEEN: [SamplePositions; 4] = [
+    SamplePositions::new([[9, 9], [7, 5], [5, 10], [12, 7]]),
+    SamplePositions::new([[3, 6], [10, 13], [2, 12], [11, 3]]),
+    SamplePositions::new([[6, 14], [8, 1], [4, 2], [13, 11]]),
+    SamplePositions::new([[0, 8], [15, 4], [14, 15], [1, 0]]),
+];
+
+/// Each position in the grid's upper left quarter and its rotations by quarter turns; the nearest
+/// first.
+const SIXTY_FOUR: [SamplePositions; 16] = {
+    let mut passes = [SamplePositions::MIDDLE; 16];
+    let mut i = 0;
+    while i < 16 {
+        let (x, y) = (7 - 2 * (i % 4), 7 - 2 * (i / 4));
+        passes[i as usize] =
+            SamplePositions::new([[x, y], [16 - y, x], [16 - x, 16 - y], [y, 16 - x]]);
+        i += 1;
+    }
+    passes
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(samples: Samples) -> Vec<[i32; 2]> {
+        passes(samples).iter().flat_map(|positions| positions.shifts).collect()
+    }
+
+    #[test]
+    fn each_four_lie_around_the_middle() {
+        for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
+            for SamplePositions { shifts, .. } in passes(samples) {
+                // In every direction, some lie on one side of a line through the centre, some on
+                // the other.
+                for line in shifts {
+                    let sides = shifts.map(|at| line[0] * at[1] - line[1] * at[0]);
+                    assert!(sides.iter().any(|side| *side > 0), "{shifts:?}");
+                    assert!(sides.iter().any(|side| *side < 0), "{shifts:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn sixteen_are_on_sixteen_rows_and_columns_and_sixty_four_on_a_grid() {
+        for axis in 0..2 {
+            let mut sixteen: Vec<i32> = all(Samples::Sixteen).iter().map(|at| at[axis]).collect();
+            sixteen.sort_unstable();
+            assert!(sixteen.iter().copied().eq((-8..8).map(|i| 16 * i)), "{sixteen:?}");
+        }
+        let mut grid = all(Samples::SixtyFour);
+        grid.sort_unstable();
+        let want = (0..64).map(|i| [i / 8, i % 8].map(|i| 32 * i - 112));
+        assert!(grid.iter().copied().eq(want), "{grid:?}");
+    }
+}

@@ -1,0 +1,53 @@
+//! The layout of tiles, blocks and the visibility buffer.
+//!
+//! A tile has 64 x 64 pixels, a block 8 x 8. The visibility buffer of a tile is stored block by
+//! block, each block sample by sample, and each sample row by row.
+
+use fearless_simd::{Simd, i32x16};
+
+use marraztu_core::base::image::Size;
+
+/// Pixels to a side of a tile.
+pub(crate) const TILE_SIDE: usize = 64;
+/// The same, in the type of coordinates.
+pub(crate) const TILE: i32 = 64;
+/// Pixels to a side of a block.
+pub(crate) const BLOCK: i32 = 8;
+/// Pixels of a block.
+pub(crate) const BLOCK_PIXELS: usize = 64;
+/// Blocks in a row of a tile.
+pub(crate) const BLOCKS: i32 = TILE / BLOCK;
+/// Pixels of a tile.
+pub(crate) const PIXELS: usize = TILE_SIDE * TILE_SIDE;
+
+/// The number of columns and rows of tiles.
+pub(crate) fn tiles_of(size: Size) -> [i32; 2] {
+    [size.width, size.height].map(|pixels| {
+        i32::try_from(pixels.div_ceil(TILE_SIDE)).expect("pictures have 32-bit sizes")
+    })
+}
+
+/// The block of a pixel, by column and row of the tile.
+#[inline(always)]
+pub(crate) const fn block_at(x: i32, y: i32) -> usize {
+    (y / BLOCK * BLOCKS + x / BLOCK) as usize
+}
+
+/// The index of a pixel in its block.
+#[inline(always)]
+pub(crate) const fn within(x: i32, y: i32) -> usize {
+    (y % BLOCK * BLOCK + x % BLOCK) as usize
+}
+
+/// The indices of sixteen pixels in the visibility buffer of a tile, for one of `N` samples.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
+pub(crate) fn lanes_place<S: Simd, const N: usize>(
+    x: i32x16<S>,
+    y: i32x16<S>,
+    sample: usize,
+) -> i32x16<S> {
+    let block = ((y >> 3) << 3) + (x >> 3);
+    let first = (block * (N * BLOCK_PIXELS) as i32) + (sample * BLOCK_PIXELS) as i32;
+    first + ((y & 7) << 3) + (x & 7)
+}

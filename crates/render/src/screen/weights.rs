@@ -1,0 +1,258 @@
+//! Perspective-correct weights of single pixels in one triangle, in f64: for the alpha test, and
+//! for clipped triangles.
+
+use fearless_simd::{Select as _, Simd, SimdBase as _, f64x8};
+use glam::DVec3;
+
+use super::clip::{Screen, ScreenVertex};
+use super::coverage::{Grid, SUBPIXELS, Snapped, Triangle};
+use super::spans::Row;
+use crate::frame::FramePlan;
+use crate::frame::draw::Draw;
+use marraztu_core::accuracy::Interpolation;
+use marraztu_core::base::math::each;
+
+/// The perspective-correct weights of a triangle's corners at pixels, in f64, `shift` subpixels
+/// from their centres.
+#[derive(Debug)]
+pub(crate) struct Weights {
+    method: Method,
+}
+
+/// The method that computes the weights.
+#[derive(Debug)]
+enum Method {
+    /// The triangle is clipped.
+    Cut(HomogeneousWeights),
+    /// In spans of sixteen pixels, from its corners and 1/w of each.
+    Spans([Snapped; 3], [f64; 3], Grid),
+    /// From edge functions, if it has an area, and w of each corner; 1 if there is no perspective.
+    Edges(Option<Triangle>, DVec3),
+}
+
+impl Weights {
+    pub(crate) fn new(
+        plan: &FramePlan,
+        draw: &Draw,
+        vertices: &[ScreenVertex],
+        number: u32,
+        shift: [i32; 2],
+    ) -> Self {
+        let order = draw.model.mesh.draw_order();
+        let ids = order.vertices_of(number);
+        let own = each(ids, |vertex| vertices[vertex as usize]);
+        let screen = Screen::new(draw.clip_from_object, plan.size);
+        let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
+        let method = if !own.iter().all(ScreenVertex::is_inside) {
+            Method::Cut(HomogeneousWeights::new(plan, draw, number, shift))
+        } else {
+            let grid = plan.variants.grid();
+            let corners = own.map(|vertex| vertex.at().seen_from(grid.offset(shift)));
+            match plan.variants.interpolation {
+                Interpolation::EverySixteen => Method::Spans(corners, w.map(|w| 1.0 / w), grid),
+                Interpolation::Affine => Method::Edges(Triangle::on(grid, corners), DVec3::ONE),
+                Interpolation::Perspective => {
+                    Method::Edges(Triangle::on(grid, corners), DVec3::from_array(w))
+                }
+            }
+        };
+        Self { method }
+    }
+
+    /// Whether they follow from edge functions alone.
+    pub(crate) const fn follow_from_edges(&self) -> bool {
+        matches!(self.method, Method::Edges(Some(_), _))
+    }
+
+    /// The weights at a pixel.
+    #[inline(always)]
+    pub(crate) fn at(&self, pixel: [i32; 2]) -> DVec3 {
+        match &self.method {
+            Method::Cut(weights) => {
+                let ([second, third], _) = weights.at(pixel);
+                DVec3::new(1.0 - second - third, second, third)
+            }
+            Method::Spans(corners, by_w, grid) => {
+                let [x, y] = pixel;
+                let row = Row::new(*corners, *by_w, y, *grid);
+                let [second, third] = row.at(x);
+                DVec3::new(1.0 - second - third, second, third)
+            }
+            Method::Edges(triangle, w) => {
+                let parts = triangle.as_ref().map(|triangle| barycentric(triangle, pixel));
+                let [second, third] = parts.unwrap_or_default();
+                let by_w = DVec3::new(1.0 - second - third, second, third) / *w;
+                by_w / by_w.element_sum()
+            }
+        }
+    }
+}
+
+impl Weights {
+    /// The weights at a pixel that need not be in the triangle: of the point of its plane that is
+    /// seen there. `None` if no such point is in front of the observer, or it is very far away.
+    ///
+    /// If there are weights at the corners of a rectangle, those in it lie between them, since a
+    /// projection keeps lines and what is between.
+    #[inline(always)]
+    pub(crate) fn projected(&self, pixel: [i32; 2]) -> Option<DVec3> {
+        match &self.method {
+            Method::Cut(weights) => weights.inside(pixel),
+            Method::Spans(..) => None,
+            Method::Edges(triangle, w) => {
+                let [second, third] = barycentric(triangle.as_ref()?, pixel);
+                let by_w = DVec3::new(1.0 - second - third, second, third) / *w;
+                let sum = by_w.element_sum();
+                (sum >= FAR / w.max_element()).then(|| by_w / sum)
+            }
+        }
+    }
+
+    /// The weights of the second and the third corner at eight pixels of a row, from its first on,
+    /// to a few last places; `edges` are the edge functions of both there. `None` for spans.
+    #[inline(always)]
+    #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
+    pub(crate) fn of_row<S: Simd>(
+        &self,
+        simd: S,
+        first: [i32; 2],
+        [second, third]: [f64x8<S>; 2],
+    ) -> Option<[f64x8<S>; 2]> {
+        match &self.method {
+            Method::Cut(weights) => Some(weights.of_row(simd, first).0),
+            Method::Spans(..) => None,
+            Method::Edges(triangle, w) => {
+                let area = triangle.as_ref()?.doubled_area() as f64;
+                let by_w = [1.0 / w.x, 1.0 / w.y, 1.0 / w.z];
+                let rest = f64x8::splat(simd, area) - second - third;
+                let (second, third) = (second * by_w[1], third * by_w[2]);
+                let per = f64x8::splat(simd, 1.0) / (rest * by_w[0] + second + third);
+                Some([second * per, third * per])
+            }
+        }
+    }
+}
+
+/// How much farther away than the farthest corner points are very far, inverted.
+const FAR: f64 = 1e-3;
+
+/// The second and third barycentric coordinate of a pixel, linear on the screen.
+#[inline(always)]
+#[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
+pub(crate) fn barycentric(triangle: &Triangle, [x, y]: [i32; 2]) -> [f64; 2] {
+    let [_, second, third] = triangle.edges_at(x, y);
+    let per_area = 1.0 / triangle.doubled_area() as f64;
+    [second as f64 * per_area, third as f64 * per_area]
+}
+
+/// The perspective-correct weights of a triangle's corners at any pixel, in f64 and from its
+/// corners in clip space: for clipped triangles, and wherever f32 is not enough.
+///
+///   N0 = (q x r) . s / (p . (q x r)), N1 and N2 alike, for corners p, q, r and the position s,
+///   each as (x, y, w)
+///
+/// Their sum is 1 / w of the position, and each divided by the sum is the weight of a corner.
+/// Weights are clamped to the triangle, and their sum is 1.
+///
+/// Olano and Greer, "Triangle Scan Conversion Using 2D Homogeneous Coordinates", 1997.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HomogeneousWeights {
+    /// For each corner a, b and c: N = a x + (b y + c) at the pixel (x, y).
+    planes: [[f64; 3]; 3],
+    /// w of each corner.
+    w: [f64; 3],
+}
+
+impl HomogeneousWeights {
+    /// Those of a triangle, `shift` subpixels from the centres of pixels.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    pub(crate) fn new(plan: &FramePlan, draw: &Draw, number: u32, shift: [i32; 2]) -> Self {
+        let screen = Screen::new(draw.clip_from_object, plan.size);
+        let order = draw.model.mesh.draw_order();
+        let vertices = order.vertices_of(number);
+        let [p, q, r] = each(vertices, |vertex| {
+            let [x, y, _, w] = screen.clip(order.position(vertex));
+            DVec3::new(x, y, w)
+        });
+        let normals = [q.cross(r), r.cross(p), p.cross(q)];
+        let volume = p.dot(normals[0]);
+        let scale = if volume == 0.0 { 1.0 } else { 1.0 / volume };
+        let (right, down) = (2.0 / plan.size.width as f64, -2.0 / plan.size.height as f64);
+        let centre =
+            |axis: usize| 0.5 + f64::from(shift[axis] + plan.shift[axis]) / f64::from(SUBPIXELS);
+        // The position of the first pixel, from -1 to 1.
+        let (x, y) = (centre(0) * right - 1.0, centre(1) * down + 1.0);
+        let planes = each(normals, |n| {
+            let n = n * scale;
+            [n.x * right, n.y * down, n.x * x + n.y * y + n.z]
+        });
+        Self { planes, w: [p.z, q.z, r.z] }
+    }
+
+    /// The steps of N0, N1 and N2 by a pixel to the right and by one down.
+    pub(crate) fn steps(&self) -> [[f64; 3]; 2] {
+        let [p, q, r] = self.planes;
+        [[p[0], q[0], r[0]], [p[1], q[1], r[1]]]
+    }
+
+    /// The weights of the second and the third corner at a pixel, and w.
+    #[inline(always)]
+    pub(crate) fn at(&self, [x, y]: [i32; 2]) -> ([f64; 2], f64) {
+        let (x, y) = (f64::from(x), f64::from(y));
+        let [m0, m1, m2] = each(self.planes, |[a, b, c]| {
+            let n = a * x + (b * y + c);
+            if n > 0.0 { n } else { 0.0 }
+        });
+        let sum = m0 + m1 + m2;
+        let ([m0, m1, m2], sum) = if sum > 0.0 { ([m0, m1, m2], sum) } else { ([1.0; 3], 3.0) };
+        let per = 1.0 / sum;
+        let [w0, w1, w2] = self.w;
+        ([m1 * per, m2 * per], (w0 * m0 + w1 * m1 + w2 * m2) * per)
+    }
+
+    /// The weights at a pixel, if it is in the triangle.
+    #[inline(always)]
+    fn inside(&self, [x, y]: [i32; 2]) -> Option<DVec3> {
+        let (x, y) = (f64::from(x), f64::from(y));
+        let parts = DVec3::from_array(each(self.planes, |[a, b, c]| a * x + (b * y + c)));
+        (parts.min_element() > 0.0).then(|| parts / parts.element_sum())
+    }
+
+    /// The same at eight pixels of a row, from its first on: the same bits.
+    #[inline(always)]
+    pub(crate) fn of_row<S: Simd>(&self, simd: S, [x, y]: [i32; 2]) -> ([f64x8<S>; 2], f64x8<S>) {
+        let x = f64x8::from_slice(simd, &COLUMNS) + f64::from(x);
+        let y = f64::from(y);
+        let (zero, one) = (f64x8::splat(simd, 0.0), f64x8::splat(simd, 1.0));
+        let [m0, m1, m2] = each(
+            self.planes,
+            #[inline(always)]
+            |[a, b, c]| {
+                let n = x * a + (b * y + c);
+                n.simd_gt(0.0).select(n, zero)
+            },
+        );
+        let sum = m0 + m1 + m2;
+        let inside = sum.simd_gt(0.0);
+        let (m0, m1, m2) = (inside.select(m0, one), inside.select(m1, one), inside.select(m2, one));
+        let per = one / inside.select(sum, one + one + one);
+        let [w0, w1, w2] = self.w;
+        ([m1 * per, m2 * per], (m0 * w0 + m1 * w1 + m2 * w2) * per)
+    }
+}
+
+/// Numbers of columns.
+const COLUMNS: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
+/// The screen position, in pixels, of a clipped triangle's point with these weights. Points in the
+/// observer's own plane have none: then the position is arbitrary.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+pub(crate) fn cut_place(plan: &FramePlan, draw: &Draw, number: u32, weights: DVec3) -> [f64; 2] {
+    let screen = Screen::new(draw.clip_from_object, plan.size);
+    let order = draw.model.mesh.draw_order();
+    let corners = order.vertices_of(number).map(|vertex| screen.clip(order.position(vertex)));
+    let [x, y, w] = [0, 1, 3].map(|i| weights.dot(DVec3::from_array(corners.map(|c| c[i]))));
+    let w = if w == 0.0 { 1.0 } else { w };
+    let half = [plan.size.width as f64 / 2.0, plan.size.height as f64 / 2.0];
+    [(x / w + 1.0) * half[0], (1.0 - y / w) * half[1]]
+}

@@ -1,0 +1,103 @@
+//! Barycentric coordinates of pixels in the triangles that they show.
+//!
+//! First linear on the screen, from integer edge functions; then perspective-correct.
+
+use glam::DVec3;
+
+use super::fragments::Fragments;
+use super::triangle_attributes::{TriangleAttributes, picked};
+use crate::screen::perspective::weighed;
+use crate::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
+use marraztu_core::accuracy::Interpolation;
+
+/// The barycentric coordinates of a list of fragments.
+#[derive(Debug)]
+#[repr(align(64))]
+pub(crate) struct Barycentrics<T> {
+    /// The second and third barycentric coordinate, linear on the screen.
+    pub(crate) linear: [[T; BATCH]; 2],
+    /// The same, perspective-correct.
+    pub(crate) weights: [[T; BATCH]; 2],
+    /// The distance along the observer's axis.
+    pub(crate) w: [T; BATCH],
+    /// The positions at which they are lit, in pixels; only set if they [share](Fragments::shared)
+    /// their pixels.
+    pub(crate) positions: [[T; BATCH]; 2],
+}
+
+impl<T: Number> Default for Barycentrics<T> {
+    fn default() -> Self {
+        let row = [T::default(); BATCH];
+        Self { linear: [row; 2], weights: [row; 2], w: row, positions: [row; 2] }
+    }
+}
+
+impl<T: Number> Barycentrics<T> {
+    /// The weights of the three corners in fragment `i`.
+    pub(crate) fn weights(&self, i: usize) -> DVec3 {
+        let (b, c): (f64, f64) = (self.weights[0][i].into(), self.weights[1][i].into());
+        DVec3::new(1.0 - b - c, b, c)
+    }
+}
+
+/// Clamps linear coordinates of pixels whose centres lie outside of their triangles: negative ones
+/// count as 0, and the sum stays 1.
+pub(super) struct Clamp<'a, T> {
+    pub(super) len: usize,
+    pub(super) linear: &'a mut [[T; BATCH]; 2],
+}
+
+impl<T: Number> Kernel<T> for Clamp<'_, T> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { len, linear: [second_row, third_row] } = self;
+        let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
+        for at in (0..len).step_by(M::LANES) {
+            let (second, third) = (lanes.load(second_row, at), lanes.load(third_row, at));
+            let first = Real::max(one - second - third, zero);
+            let (second, third) = (Real::max(second, zero), Real::max(third, zero));
+            let per = one / (first + second + third);
+            lanes.store(second * per, second_row, at);
+            lanes.store(third * per, third_row, at);
+        }
+    }
+}
+
+/// Makes linear coordinates the weights of corners.
+pub(super) struct Weigh<'a, T, const PAGES: usize> {
+    pub(super) interpolation: Interpolation,
+    pub(super) fragments: &'a Fragments,
+    pub(super) attributes: &'a TriangleAttributes<T>,
+    pub(super) to: &'a mut Barycentrics<T>,
+}
+
+impl<T: Number, const PAGES: usize> Kernel<T> for Weigh<'_, T, PAGES> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { interpolation, fragments, attributes, to } = self;
+        for at in (0..fragments.len).step_by(M::LANES) {
+            let slots = lanes.slots(&fragments.slots, at);
+            let linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
+            let by_w = picked::<M, PAGES>(lanes, &attributes.by_w, slots);
+            to.put(interpolation, lanes, at, linear, by_w);
+        }
+    }
+}
+
+impl<T: Number> Barycentrics<T> {
+    /// Stores the weights that belong to linear coordinates.
+    #[inline(always)]
+    pub(super) fn put<M: Lanes<Number = T>>(
+        &mut self,
+        interpolation: Interpolation,
+        lanes: M,
+        at: usize,
+        linear: [M::R; 2],
+        by_w: Vec3<M::R>,
+    ) {
+        let (weights, w) = weighed(interpolation, lanes, linear, by_w);
+        lanes.store(w, &mut self.w, at);
+        lanes.store(weights[0], &mut self.weights[0], at);
+        lanes.store(weights[1], &mut self.weights[1], at);
+    }
+}

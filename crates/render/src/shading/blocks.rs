@@ -1,0 +1,190 @@
+//! Chooses how blocks that one triangle covers fully are coloured.
+//!
+//! If only colours have to be interpolated, or only lit, that is one pass without a list of
+//! fragments; everything else is coloured like other blocks.
+
+use super::context::ShadingContext;
+use super::full_blocks::{BlockLight, Blocks, Canvas, Corners, ROW};
+use super::groups::{Group, group_of};
+use super::interpolated::ShadingNumber;
+use super::map_texels::{TexelSource, TexturePlacement};
+use super::shown_faces::is_uniform;
+use super::surface::{Out, Shader};
+use super::texels::PlacedTexture;
+use super::triangle_attributes::TriangleAttributes;
+use crate::frame::draw::{Back, Pipeline};
+use crate::screen::weights::HomogeneousWeights;
+use marraztu_core::accuracy::{Interpolation, LightAt};
+
+/// How the corners of a triangle are weighted in this frame.
+fn by<'a, T>(
+    context: &'a ShadingContext<'_, T>,
+    cut: Option<&'a HomogeneousWeights>,
+) -> Corners<'a> {
+    let interpolation = context.plan.variants.interpolation;
+    Corners { cut, interpolation, thresholds: context.terms.thresholds() }
+}
+
+impl<T: ShadingNumber> Shader<T> {
+    /// Colours the pixels of blocks that one triangle covers fully.
+    pub(crate) fn full_blocks(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        number: u32,
+        blocks: Blocks,
+        canvas: &mut Canvas<'_>,
+    ) {
+        let group = group_of(context, number);
+        let [x, y] = blocks.corner;
+        self.fragments.list_full_block(number, [x, y]);
+        if self.fill_blocks(context, &group, blocks, canvas)
+            || self.mix_blocks(context, &group, blocks, canvas)
+            || self.light_blocks(context, &group, blocks, canvas)
+        {
+            return;
+        }
+        blocks.each(|[column, row]| {
+            self.fragments.list_full_block(number, [x + column, y + row]);
+            let at = canvas.offset_of([column, row]);
+            self.color_group(context, &group, &mut Out::Tile(canvas, at));
+        });
+    }
+
+    /// The weights of the first triangle, if it is clipped.
+    fn cut_weights(
+        &self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+    ) -> Option<HomogeneousWeights> {
+        let TriangleAttributes { cut, numbers, .. } = &self.attributes;
+        let is_cut = cut & 1 == 1;
+        is_cut.then(|| HomogeneousWeights::new(context.plan, group.draw, numbers[0], [0; 2]))
+    }
+
+    /// Fills fully covered blocks, if all of their pixels have one colour. Returns whether that was
+    /// so.
+    fn fill_blocks(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        blocks: Blocks,
+        canvas: &mut Canvas<'_>,
+    ) -> bool {
+        let plan = context.plan;
+        let is_uniform = is_uniform(plan, &plan.pipelines[group.pipeline as usize]);
+        if is_uniform {
+            let color = self.first_color(context, group);
+            blocks.each(|[column, row]| {
+                let at = canvas.offset_of([column, row]);
+                for row in canvas.pixels[at..].chunks_mut(canvas.stride).take(ROW) {
+                    row[..ROW].fill(color);
+                }
+            });
+        }
+        is_uniform
+    }
+
+    /// Colours fully covered blocks in one pass, if only the colours of the corners have to be
+    /// interpolated. Returns whether that was so.
+    fn mix_blocks(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        blocks: Blocks,
+        canvas: &mut Canvas<'_>,
+    ) -> bool {
+        let ShadingContext { level, plan, lit, .. } = *context;
+        let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
+            return false;
+        };
+        let mixed = shaded.light.is_some()
+            && plan.light_at == LightAt::Vertex
+            && shaded.extras.is_empty()
+            && !plan.variants.are_linear();
+        let in_spans = plan.variants.interpolation == Interpolation::EverySixteen;
+        if !mixed || group.draw.back == Back::Red || in_spans {
+            return false;
+        }
+        let tables = lit.tables(group.draw_index, group.pipeline);
+        if !tables[0].is_colored() {
+            return false;
+        }
+        if self.take(context, group, true) {
+            self.carry_diffuse(context, group, shaded, tables);
+            self.attributes.spread(level);
+        }
+        let cut = self.cut_weights(context, group);
+        T::mix_blocks(level, &self.attributes, blocks, by(context, cut.as_ref()), canvas)
+    }
+
+    /// Colours fully covered blocks, a block at a time without a list of fragments, if they are lit
+    /// per pixel or not at all, with or without a texture and even light of their own, and nothing
+    /// else is done to them.
+    /// Returns whether that was so.
+    fn light_blocks(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        blocks: Blocks,
+        canvas: &mut Canvas<'_>,
+    ) -> bool {
+        let ShadingContext { level, plan, terms, .. } = *context;
+        let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
+            return false;
+        };
+        let is_lit = shaded.light.is_some();
+        let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
+        let Some(glow) = shaded.extras.even_glow() else { return false };
+        let otherwise = plan.variants.interpolation == Interpolation::EverySixteen
+            || (plan.variants.are_linear() && shaded.texture.is_some())
+            || plan.shadows.any_of(shaded.light.as_deref().unwrap_or_default());
+        if (is_lit && !pixels) || otherwise || group.draw.back == Back::Red {
+            return false;
+        }
+        let texture = shaded.texture.as_deref();
+        let source = shaded.texture.as_ref().map(|it| TexelSource::of_colors(context, it));
+        let sampler = source.and_then(|source| source.sampler());
+        if texture.is_some() && sampler.is_none() {
+            return false;
+        }
+        let new = self.take(context, group, true);
+        if let Some((texture, sampler)) = texture.zip(sampler.as_ref()) {
+            if new {
+                self.place_texture(context, group, texture, sampler);
+            }
+            if self.placed.placement.known & 1 == 0 {
+                // The other way fetches what it needs.
+                self.attributes.forget();
+                return false;
+            }
+        }
+        if new && shaded.vertex_colors {
+            self.take_vertex_colors(group, plan.variants.decoding());
+        }
+        let cut = self.cut_weights(context, group);
+        let look = self.look_of(plan, group);
+        let Self { tile, attributes, batch, placed, vertex_colors, .. } = self;
+        let TexturePlacement { placement, far, scratch } = placed;
+        let lights = is_lit.then(|| tile.light(plan, group.pipeline, shaded));
+        let needs_positions = lights.is_some_and(|lights| lights.needs_positions);
+        if !needs_positions {
+            attributes.forget();
+        } else if new {
+            attributes.carry_normals(group.draw);
+            attributes.spread(level);
+        }
+        let light = BlockLight {
+            by: by(context, cut.as_ref()),
+            look: needs_positions.then_some(look),
+            roots: plan.variants.root_variant(),
+            tint: shaded.tint.map(T::from_f64),
+            texture: sampler.as_ref().map(|sampler| PlacedTexture { placement, far, sampler }),
+            vertex_colors: shaded.vertex_colors.then_some(vertex_colors),
+            lights,
+            terms: terms.of(group.pipeline),
+            glow: shaded.extras.emission.is_some().then(|| glow.map(T::from_f64)),
+            encoding: terms.encoding(),
+        };
+        T::light_blocks(level, attributes, blocks, (light, batch, scratch), canvas)
+    }
+}

@@ -1,0 +1,227 @@
+//! Tilts the normals of pixels by maps of heights or normals.
+//!
+//! In tangent space, with T along u, B along v and N across the surface, the normal is that of the
+//! map, or (-g dh/du, -g dh/dv, 1) with the slopes of heights h per texel and their factor g: a
+//! white texel is g texels high. Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978.
+//!
+//! T and B come from one of two places:
+//!
+//! * vertices: T by MikkTSpace, and B = s N x T, both interpolated and not normalised, as normal
+//!   maps are made for;
+//! * the pixel: the gradients of u and v on the triangle, perpendicular to N, each of length 1:
+//!   T ~ (du1 e2 - du2 e1) x N with the sides e1 and e2 and the steps of u along them; B likewise
+//!   with v. Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU", JGT 2010; Schueler,
+//!   "Followup: Normal Mapping Without Precomputed Tangents", 2013.
+//!
+//! The back of a surface has the opposite of the normal on its front.
+
+use glam::{DMat3, DVec3};
+
+use super::barycentrics::Barycentrics;
+use super::context::ShadingContext;
+use super::fragments::Fragments;
+use super::groups::Group;
+use super::interpolated::ShadingNumber;
+use super::map_rows::{Map, MapRows, TangentRows};
+use super::map_texels::{Points, TexelSource, Texels};
+use super::triangle_attributes::{TriangleAttributes, picked};
+use crate::frame::draw::Draw;
+use crate::frame::extras::Bump;
+use crate::lights::{Batch, Rows, load, set, store};
+use crate::screen::perspective::between;
+use crate::simd::gather::paged;
+use crate::simd::{Kernel, Lanes, Number, Real, Vec3};
+use crate::texture::uv::uvs;
+use marraztu_core::accuracy::Tangents;
+
+impl<T: Number> TangentRows<T> {
+    fn set(&mut self, slot: usize, vectors: [DVec3; 3]) {
+        for (rows, vector) in self.vectors.iter_mut().zip(vectors) {
+            for (row, x) in rows.iter_mut().zip(vector.to_array()) {
+                row[slot] = T::from_f64(x);
+            }
+        }
+    }
+
+    /// The tangents at the vertices of the triangles of a list.
+    fn of_vertices(&mut self, draw: &Draw, attributes: &TriangleAttributes<T>) {
+        let all = draw.model.mesh.tangents(draw.normal_source);
+        for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
+            let turn = if attributes.back >> slot & 1 == 1 { -1.0 } else { 1.0 };
+            let mirror = if draw.mirrored { -1.0 } else { 1.0 };
+            let corners = all[*number as usize];
+            let [a, b, c] =
+                corners.map(|[x, y, z, _]| DVec3::from_array([x, y, z].map(f64::from)) * turn);
+            self.set(slot, [a, b - a, c - a]);
+            self.signs[slot] = T::from_f64(f64::from(corners[0][3]) * turn * mirror);
+        }
+    }
+
+    /// The gradients of the texture coordinates on the triangles of a list.
+    fn of_pixels(&mut self, draw: &Draw, attributes: &TriangleAttributes<T>) {
+        let mesh = &draw.model.mesh;
+        for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
+            let Some([a, b, c]) = uvs(draw, *number) else {
+                self.set(slot, [DVec3::ZERO; 3]);
+                continue;
+            };
+            let corners = mesh.triangle(*number as usize);
+            let [p, q, r] = corners.map(|corner| mesh.corner_position(corner));
+            let (e1, e2) = (q - p, r - p);
+            let turn = if attributes.back >> slot & 1 == 1 { -1.0 } else { 1.0 };
+            let normal = |corner: usize| {
+                let [x, y, z, _] = attributes.carried[corner][slot];
+                DVec3::new(x.into(), y.into(), z.into()) * turn
+            };
+            let sum = normal(0) + normal(1) + normal(2);
+            let inward = (e1.cross(e2).dot(sum) < 0.0) != draw.mirrored;
+            let sign = if inward { -1.0 } else { 1.0 };
+            let linear = DMat3::from_mat4(draw.view_from_object);
+            let across = |axis: usize| {
+                let along = e2 * (b[axis] - a[axis]) - e1 * (c[axis] - a[axis]);
+                (linear * along).normalize_or_zero() * sign
+            };
+            self.set(slot, [across(0), across(1), DVec3::ZERO]);
+        }
+    }
+}
+
+/// Tilts the normals of a batch, which were interpolated before. `new` says whether the triangles
+/// differ from those before.
+pub(super) fn bend<T: ShadingNumber>(
+    context: &ShadingContext<'_, T>,
+    group: &Group<'_>,
+    points: &Points<'_, T>,
+    (bump, new): (&Bump, bool),
+    (maps, batch): (&mut MapRows<T>, &mut Batch<T>),
+) {
+    let source = TexelSource::of_bumps(context, &bump.map);
+    let what = if bump.gain.is_some() { Texels::Slopes } else { Texels::Colors };
+    maps.read(context, group, points, (Map::Bump, source, what, new), [1.0; 3]);
+    let plan = context.plan;
+    let Points { fragments, attributes, barycentrics } = *points;
+    let at_vertices = plan.variants.tangents == Tangents::Vertex;
+    if new {
+        match plan.variants.tangents {
+            Tangents::Vertex => maps.tangents.of_vertices(group.draw, attributes),
+            Tangents::Pixel => maps.tangents.of_pixels(group.draw, attributes),
+        }
+    }
+    let directions = bump.map.scale.map(|scale| if scale < 0.0 { -1.0 } else { 1.0 });
+    let (texels, tangents) = (&maps.texels, &maps.tangents);
+    let spaces = Spaces::new(group.draw);
+    let variant = plan.variants.root_variant();
+    paged!(attributes.count, PAGES => T::run_variant(context.level, variant, Bend::<T, PAGES> {
+        points: (fragments, attributes, barycentrics),
+        texels,
+        tangents: (tangents, at_vertices),
+        gain: bump.gain,
+        directions,
+        spaces,
+        batch,
+    }));
+}
+
+/// The transforms of normals and tangents to view space, both without their scale.
+#[derive(Clone, Copy)]
+struct Spaces<T> {
+    normals: [[T; 3]; 3],
+    tangents: [[T; 3]; 3],
+}
+
+impl<T: Number> Spaces<T> {
+    fn new(draw: &Draw) -> Self {
+        let columns = |m: DMat3| {
+            let scale = libm::cbrt(m.determinant().abs());
+            let m = if scale > 0.0 { m * (1.0 / scale) } else { m };
+            [m.x_axis, m.y_axis, m.z_axis].map(|column| column.to_array().map(T::from_f64))
+        };
+        Self {
+            normals: columns(draw.view_from_normal),
+            tangents: columns(DMat3::from_mat4(draw.view_from_object)),
+        }
+    }
+}
+
+/// A vector times a matrix that is given by its columns.
+#[inline(always)]
+fn turned<M: Lanes>(
+    lanes: M,
+    [a, b, c]: [[M::Number; 3]; 3],
+    Vec3([x, y, z]): Vec3<M::R>,
+) -> Vec3<M::R> {
+    set(lanes, a).times(x).plus(set(lanes, b).times(y)).plus(set(lanes, c).times(z))
+}
+
+struct Bend<'a, T, const PAGES: usize> {
+    points: (&'a Fragments, &'a TriangleAttributes<T>, &'a Barycentrics<T>),
+    texels: &'a Rows<T>,
+    /// The tangents, and whether they are those of vertices.
+    tangents: (&'a TangentRows<T>, bool),
+    /// The factor of heights; `None` if texels are normals.
+    gain: Option<f64>,
+    /// Whether texels run along u and v, or against them.
+    directions: [f64; 2],
+    spaces: Spaces<T>,
+    batch: &'a mut Batch<T>,
+}
+
+impl<T: Number, const PAGES: usize> Kernel<T> for Bend<'_, T, PAGES> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { points, texels, tangents, gain, directions, spaces, batch } = self;
+        let (fragments, attributes, barycentrics) = points;
+        let (rows, at_vertices) = tangents;
+        for at in (0..fragments.len).step_by(M::LANES) {
+            let slots = lanes.slots(&fragments.slots, at);
+            let unbent = load(lanes, &batch.normal, at);
+            let [x, y, z] = load(lanes, texels, at).0;
+            let [x, y, z] = match gain {
+                Some(gain) => [x * lanes.lift(-gain), y * lanes.lift(-gain), lanes.lift(1.0)],
+                // Bytes less 128, over 127: 128 is exactly 0, and 255 is 1.
+                None => {
+                    let (scale, middle) = (lanes.lift(255.0 / 127.0), lanes.lift(128.0 / 127.0));
+                    [x * scale - middle, y * scale - middle, z * scale - middle]
+                }
+            };
+            let (x, y) = (x * lanes.lift(directions[0]), y * lanes.lift(directions[1]));
+            let [a, b, c] = [
+                picked::<M, PAGES>(lanes, &rows.vectors[0], slots),
+                picked::<M, PAGES>(lanes, &rows.vectors[1], slots),
+                picked::<M, PAGES>(lanes, &rows.vectors[2], slots),
+            ];
+            let (tangent, bitangent, normal) = if at_vertices {
+                let weights = [
+                    lanes.load(&barycentrics.weights[0], at),
+                    lanes.load(&barycentrics.weights[1], at),
+                ];
+                let corners = [
+                    picked::<M, PAGES>(lanes, &attributes.values[0], slots),
+                    picked::<M, PAGES>(lanes, &attributes.values[1], slots),
+                    picked::<M, PAGES>(lanes, &attributes.values[2], slots),
+                ];
+                let normal = turned(lanes, spaces.normals, between(corners, weights));
+                let tangent = turned(lanes, spaces.tangents, between([a, b, c], weights));
+                let sign = lanes.pick::<PAGES>(&rows.signs, slots);
+                (tangent, cross(normal, tangent).times(sign), normal)
+            } else {
+                (cross(a, unbent).unit(), cross(b, unbent).unit(), unbent)
+            };
+            let bent = tangent.times(x).plus(bitangent.times(y)).plus(normal.times(z)).unit();
+            // A flat texel changes no bit. Rounding of what is filtered counts as flat, too.
+            let slope = x * x + y * y;
+            let flat = lanes.lift(1e-12);
+            let select = |bent: M::R, unbent: M::R| slope.if_more(flat, bent, unbent);
+            let [p, q, r] = bent.0;
+            let [s, t, u] = unbent.0;
+            let normal = Vec3([select(p, s), select(q, t), select(r, u)]);
+            store(lanes, normal, &mut batch.normal, at);
+        }
+    }
+}
+
+/// The cross product.
+#[inline(always)]
+fn cross<R: Real>(Vec3([a, b, c]): Vec3<R>, Vec3([x, y, z]): Vec3<R>) -> Vec3<R> {
+    Vec3([b * z - c * y, c * x - a * z, a * y - b * x])
+}

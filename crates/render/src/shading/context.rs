@@ -1,0 +1,34 @@
+//! The inputs of shading.
+
+use fearless_simd::Level;
+
+use super::face_colors::FaceColors;
+use super::light::Lit;
+use super::light_terms::LightTerms;
+use crate::frame::FramePlan;
+use crate::raster::geometry::ScreenGeometry;
+use crate::shadow::tracer::Tracer;
+
+/// Everything that shading reads of a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShadingContext<'a, T> {
+    pub(crate) level: Level,
+    pub(crate) plan: &'a FramePlan,
+    pub(crate) frame: &'a ScreenGeometry,
+    pub(crate) lit: &'a Lit<T>,
+    pub(crate) terms: &'a LightTerms<T>,
+    /// The colours of triangles, if they are looked up.
+    pub(crate) faces: Option<&'a FaceColors>,
+    /// Whether little is computed for each pixel.
+    pub(crate) quick: bool,
+    /// What casts shadows, if any light does.
+    pub(crate) tracer: Option<&'a Tracer<'a>>,
+}
+
+impl<'a, T> ShadingContext<'a, T> {
+    /// What casts shadows on a draw, and the caster that it is itself; `None` if it takes none.
+    pub(crate) fn tracer_of(&self, draw: u32) -> Option<(&'a Tracer<'a>, u32)> {
+        let tracer = self.tracer?;
+        Some((tracer, tracer.caster_of(draw)?))
+    }
+}

@@ -1,0 +1,330 @@
+//! What one pixel shows, and the light that its colour is made of.
+//!
+//! The pixel is shaded again by the code that shaded the picture, one light at a time, in the
+//! picture's own arithmetic. So the terms are those of the picture bit for bit; what their sum
+//! loses by rounding is a term of its own, and with it they add up to the colour exactly.
+
+mod light_ray;
+
+use light_ray::{World, first, light_terms, plus, reflect, vec3};
+
+use super::context::ShadingContext;
+use super::groups::{Group, group_of};
+use super::interpolate::{Look, Mixed, mix, surface_samples};
+use super::interpolated::ShadingNumber;
+use super::light::run;
+use super::lit_points::place_fragments;
+use super::pixel_color::{Part, PixelColor, SurfacePoint, Term};
+use super::shadows::{BatchShadows, place_faces};
+use super::surface::Shader;
+use crate::frame::Eye;
+use crate::frame::draw::{Back, Pipeline, Shaded, Stage};
+use crate::lights::Batch;
+use crate::raster::visibility_buffer::{Visible, seen};
+use crate::screen::coverage::PixelBox;
+use crate::shadow::rays::{Origins, RayScratch};
+use marraztu_core::accuracy::LightAt;
+
+/// The pixel of a tile that is explained.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked<'a> {
+    /// Its column and row.
+    pub(crate) at: [i32; 2],
+    /// The pixels of its tile.
+    pub(crate) bounds: PixelBox,
+    /// The depths of all that the tile shows.
+    pub(crate) depths: Option<[f32; 2]>,
+    /// What the pixel shows: what is opaque, and the layers over it, the nearest last.
+    pub(crate) words: &'a [u64],
+    /// The bytes of the picture.
+    pub(crate) bytes: [u8; 3],
+}
+
+/// Explains a pixel.
+pub(crate) fn explain<T: ShadingNumber>(
+    context: &ShadingContext<'_, T>,
+    asked: &Asked<'_>,
+) -> PixelColor {
+    let behind = asked.words.first().copied().unwrap_or(0);
+    let (mut whole, _) = one(context, asked, behind);
+    if asked.words.len() < 2 {
+        return whole;
+    }
+    clamp(&mut whole);
+    for word in &asked.words[1..] {
+        let (mut layer, opacity) = one(context, asked, *word);
+        clamp(&mut layer);
+        let over = |front: [f64; 3], back: [f64; 3]| {
+            [0, 1, 2].map(|i| front[i] * opacity + back[i] * (1.0 - opacity))
+        };
+        layer.color = over(layer.color, whole.color);
+        layer.rounding = over(layer.rounding, whole.rounding);
+        for term in &mut layer.terms {
+            term.value = over(term.value, [0.0; 3]);
+        }
+        layer.terms.extend(whole.terms.drain(..).map(|term| Term {
+            value: over([0.0; 3], term.value),
+            layer: term.layer + 1,
+            ..term
+        }));
+        whole = layer;
+    }
+    // Layers that are not blended exactly one over another have another mean.
+    let other = [0, 1, 2].map(|i| f64::from(asked.bytes[i]) / 255.0 - whole.color[i]);
+    if other.iter().any(|x| x.abs() > 1.0 / 255.0) && !whole.linear {
+        whole.terms.push(Term::new(Part::Blending, other));
+        whole.color = plus(whole.color, other);
+    }
+    PixelColor { bytes: asked.bytes, ..whole }
+}
+
+/// Takes what is above 1 off a colour that is blended.
+fn clamp(of: &mut PixelColor) {
+    let cut = of.color.map(|x| x.clamp(0.0, 1.0) - x);
+    if cut != [0.0; 3] {
+        of.terms.push(Term::new(Part::Cut, cut));
+        of.color = plus(of.color, cut);
+    }
+}
+
+/// The colour of one of the primitives that a pixel shows, and its opacity.
+fn one<T: ShadingNumber>(
+    context: &ShadingContext<'_, T>,
+    asked: &Asked<'_>,
+    word: u64,
+) -> (PixelColor, f64) {
+    let [x, y] = asked.at;
+    let at = [x, y].map(|i| usize::try_from(i).unwrap_or(0));
+    let plain = |part, [r, g, b, _]: [u8; 4]| {
+        let color = [r, g, b].map(|byte| f64::from(byte) / 255.0);
+        let (rounding, terms) = ([0.0; 3], vec![Term::new(part, color)]);
+        let bytes = [r, g, b];
+        PixelColor { at, surface: None, terms, rounding, color, linear: false, bytes }
+    };
+    let ShadingContext { plan, frame, .. } = *context;
+    match seen(word) {
+        Visible::Background => (plain(Part::Background, plan.background.opaque()), 1.0),
+        Visible::Line(line) => (plain(Part::Line, frame.line_color(plan, line)), 1.0),
+        Visible::Triangle(number) => {
+            let mut shader = Shader::<T>::default();
+            shader.tile.begin(plan, asked.bounds, || asked.depths);
+            let place = usize::try_from((y & 7) * 8 + (x & 7)).unwrap_or(0);
+            shader.fragments.begin_shared(0);
+            shader.fragments.add(number, [x & !7, y & !7], place, 1);
+            shader.fragments.shared = false;
+            let group = group_of(context, number);
+            let mut point = Point { context, group, shader: &mut shader, number, at };
+            point.explained()
+        }
+    }
+}
+
+/// A pixel that shows a triangle.
+struct Point<'a, 'b, T> {
+    context: &'a ShadingContext<'b, T>,
+    group: Group<'b>,
+    shader: &'a mut Shader<T>,
+    number: u32,
+    at: [usize; 2],
+}
+
+impl<T: ShadingNumber> Point<'_, '_, T> {
+    fn explained(&mut self) -> (PixelColor, f64) {
+        let plan = self.context.plan;
+        let [r, g, b, _] = self.shader.first_color(self.context, &self.group);
+        let bytes = [r, g, b];
+        // What first_color left: the light of the pixel, and its texel.
+        let of_all = [first(&self.shader.batch.diffuse), first(&self.shader.batch.specular)];
+        let texel = first(&self.shader.texels);
+        let glow = first(&self.shader.maps.glow);
+        let drawn = self.shader.batch.clone();
+        let opacity = f64::from(self.shader.opacities(self.context, &self.group)[0]);
+        let mut surface = self.place();
+        let red = surface.back && self.group.draw.back == Back::Red;
+        let shaded = match &plan.pipelines[self.group.pipeline as usize] {
+            Pipeline::Shaded(shaded) if !red => shaded,
+            Pipeline::Shaded(_) | Pipeline::Flat(_) => {
+                let part = if red { Part::BackFace } else { Part::Unlit };
+                let value = bytes.map(|byte| f64::from(byte) / 255.0);
+                let terms = vec![Term::new(part, value)];
+                let (surface, at) = (Some(surface), self.at);
+                let (rounding, linear) = ([0.0; 3], false);
+                let color = value;
+                let plain = PixelColor { at, surface, terms, rounding, color, linear, bytes };
+                return (plain, opacity);
+            }
+        };
+        let extras = &shaded.extras;
+        let fades = shaded.opacity.is_some() && shaded.opacity_map.is_some();
+        let textured =
+            shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels() || fades;
+        let tint = shaded.tint.map(|x| T::from_f64(x).into());
+        surface.own = if textured { texel } else { tint };
+        surface.light_at = shaded.light.is_some().then_some(plan.light_at);
+        let (mut terms, mut color) = match (&shaded.light, plan.light_at) {
+            (None, _) => (vec![Term::new(Part::Unlit, surface.own)], surface.own),
+            (Some(_), LightAt::Vertex) => self.of_corners(&surface, textured, of_all),
+            (Some(stages), LightAt::Pixel | LightAt::Sample | LightAt::Face) => {
+                self.of_lights(&mut surface, (shaded, stages), &drawn)
+            }
+        };
+        if extras.glows().next().is_some() {
+            terms.push(Term::new(Part::Emission, glow));
+            color = plus(color, glow);
+        }
+        let sum = terms.iter().fold([0.0; 3], |sum, term| plus(sum, term.value));
+        let rounding = [0, 1, 2].map(|i| color[i] - sum[i]);
+        let linear = plan.variants.are_linear();
+        let (at, surface) = (self.at, Some(surface));
+        (PixelColor { at, surface, terms, rounding, color, linear, bytes }, opacity)
+    }
+
+    /// Where the point is. Afterwards the batch holds its position and its normal.
+    fn place(&mut self) -> SurfacePoint {
+        let Self { context, group, shader, number, .. } = self;
+        let ShadingContext { level, plan, .. } = **context;
+        shader.attributes.forget();
+        shader.take(context, group, true);
+        let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
+        barycentrics.find(level, fragments, attributes, (plan, group.draw));
+        attributes.carry_normals(group.draw);
+        attributes.spread(level);
+        batch.len = 1;
+        let (look, roots) = (Look::new(plan, group.draw), plan.variants.root_variant());
+        surface_samples((level, roots), look, fragments, attributes, barycentrics, batch);
+        let world = World::new(plan);
+        let w: f64 = barycentrics.w[0].into();
+        let position = vec3(&batch.position);
+        let distance = match plan.eye {
+            Eye::Point => w,
+            Eye::Parallel => -position.z,
+        };
+        let triangle = *number - group.base;
+        SurfacePoint {
+            item: group.draw.item,
+            polygon: group.draw.model.mesh.polygon_of(triangle),
+            triangle,
+            weights: barycentrics.weights(0),
+            distance: distance / world.unit,
+            position: world.point(position),
+            normal: world.direction(vec3(&batch.normal)),
+            to_eye: world.direction(vec3(&batch.to_eye)),
+            back: attributes.back & 1 == 1,
+            own: [1.0; 3],
+            light_at: None,
+        }
+    }
+
+    /// The terms of every light that is evaluated, and their sum.
+    fn of_lights(
+        &mut self,
+        surface: &mut SurfacePoint,
+        (shaded, stages): (&Shaded, &[Stage]),
+        drawn: &Batch<T>,
+    ) -> (Vec<Term>, [f64; 3]) {
+        let Self { context, group, shader, .. } = self;
+        let ShadingContext { level, plan, lit, terms: of, .. } = **context;
+        let kept = shader.tile.light(plan, group.pipeline, shaded).kept.map(<[u32]>::to_vec);
+        let by_face = plan.light_at == LightAt::Face;
+        if by_face {
+            let Shader { attributes, batch, .. } = &mut **shader;
+            batch.len = attributes.count;
+            lit.place_faces(level, (group.draw_index, group.draw), attributes, batch);
+            let world = World::new(plan);
+            surface.normal = world.direction(vec3(&batch.normal));
+            surface.to_eye = world.direction(vec3(&batch.to_eye));
+        }
+        let lit_places = shader.tile.light(plan, group.pipeline, shaded).needs_positions;
+        if !by_face && lit_places {
+            // With normals that bumps have bent, and exponents from a map.
+            shader.batch.clone_from(drawn);
+            surface.normal = World::new(plan).direction(vec3(&shader.batch.normal));
+        }
+        let lights = of.of(group.pipeline);
+        let mut terms = Vec::new();
+        let evaluated = |i: &usize| {
+            by_face || kept.as_ref().is_none_or(|kept| kept.iter().any(|at| *at as usize == *i))
+        };
+        let tracer = context.tracer_of(group.draw_index);
+        let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
+        let mut place = |origins: &mut Origins| {
+            if let Some(tracer) = tracer {
+                if by_face {
+                    place_faces(tracer, group.draw, attributes, origins);
+                } else {
+                    let on = (&*fragments, &*attributes);
+                    place_fragments(context, tracer, group, on, barycentrics, origins);
+                }
+            }
+        };
+        let mut scratch = RayScratch::default();
+        let shades = tracer.filter(|_| by_face || lit_places);
+        for i in (0..stages.len()).filter(evaluated) {
+            let of = (&stages[i..=i], &lights[i..=i]);
+            run(of.0, of.1, level, batch, None);
+            let bright = [first(&batch.diffuse), first(&batch.specular)];
+            let shadows =
+                shades.map(|(tracer, _)| BatchShadows::new(tracer, &mut scratch, &mut place));
+            run(of.0, of.1, level, batch, shadows);
+            let parts = [first(&batch.diffuse), first(&batch.specular)];
+            let mut own = light_terms(plan, &stages[i], batch, parts, surface.own);
+            if let Some(ray) = own.first_mut().and_then(|term| term.ray.as_mut()) {
+                ray.shadow = if parts == bright { 1.0 } else { 0.0 };
+            }
+            terms.extend(own);
+        }
+        // All together, in the order of the picture.
+        let all = (0..stages.len()).filter(evaluated);
+        let (stages, lights): (Vec<_>, Vec<_>) =
+            all.map(|i| (stages[i], lights[i].clone())).unzip();
+        let shadows = shades.map(|(tracer, _)| BatchShadows::new(tracer, &mut scratch, &mut place));
+        run(&stages, &lights, level, batch, shadows);
+        shader.batch.len = 1;
+        // A map of Ks multiplies all highlights together.
+        let (own, mapped) = (first(&shader.batch.specular), first(&drawn.specular));
+        for term in terms.iter_mut().filter(|term| term.part == Part::Specular) {
+            for i in (0..3).filter(|i| own[*i] != mapped[*i] && own[*i] != 0.0 && !by_face) {
+                term.value[i] *= mapped[i] / own[i];
+            }
+        }
+        if !by_face {
+            for (row, value) in shader.batch.specular.iter_mut().zip(mapped) {
+                row[0] = T::from_f64(value);
+            }
+        }
+        let color = reflect(context, &shader.batch, surface.own);
+        (terms, color)
+    }
+
+    /// The light of vertices, which was interpolated when its lights were added up already.
+    fn of_corners(
+        &mut self,
+        surface: &SurfacePoint,
+        textured: bool,
+        [diffuse, specular]: [[f64; 3]; 2],
+    ) -> (Vec<Term>, [f64; 3]) {
+        let Self { context, group, shader, .. } = self;
+        let term = |value| Term::new(Part::Corners, value);
+        if textured {
+            let mut sums = Batch::<T> { len: 1, ..Batch::default() };
+            for i in 0..3 {
+                sums.diffuse[i][0] = T::from_f64(diffuse[i]);
+                sums.specular[i][0] = T::from_f64(specular[i]);
+            }
+            let lit = [0, 1, 2].map(|i| surface.own[i] * diffuse[i]);
+            let shine = Term { part: Part::Specular, ..term(specular) };
+            return (vec![term(lit), shine], reflect(context, &sums, surface.own));
+        }
+        let ShadingContext { level, plan, .. } = **context;
+        let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
+            return (Vec::new(), [0.0; 3]);
+        };
+        let tables = context.lit.tables(group.draw_index, group.pipeline);
+        shader.carry_diffuse(context, group, shaded, tables);
+        shader.attributes.spread(level);
+        let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
+        mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.diffuse));
+        let color = first(&batch.diffuse);
+        (vec![term(color)], color)
+    }
+}

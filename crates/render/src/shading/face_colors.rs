@@ -1,0 +1,133 @@
+//! The colours of faces that were lit before in the same frame.
+//!
+//! With light per face, a triangle has the same colour wherever it shows. A table of the frame,
+//! which all threads share, holds the colours by the numbers of the triangles. Before a tile is
+//! coloured, the triangles that it shows and that are not in the table are lit, as many at a time
+//! as a batch holds; then its pixels are looked up. If two threads light the same triangle, both
+//! get the same colour.
+
+use std::hint::select_unpredictable;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use prefetch_index::prefetch_index;
+
+use super::full_blocks::ROW;
+use crate::screen::tiles::BLOCK_PIXELS;
+
+/// The lowest of the bits, those of alpha, that say which frame an entry belongs to.
+const MARK: u32 = 24;
+
+/// The table of a frame.
+#[derive(Debug)]
+pub(crate) struct FaceColors {
+    /// Red, green and blue, and in place of alpha the mark of the frame: an even number if the
+    /// colour is known, the odd one below it if some thread is about to light the triangle. The
+    /// last entry is no triangle's.
+    entries: Vec<AtomicU32>,
+    /// The mark of entries whose colour is known.
+    known: u32,
+}
+
+impl Default for FaceColors {
+    fn default() -> Self {
+        Self { entries: Vec::new(), known: 2 }
+    }
+}
+
+impl FaceColors {
+    /// Begins a frame of this many triangles: forgets all colours.
+    pub(crate) fn begin(&mut self, triangles: usize) {
+        self.known += 2;
+        if self.known > 0xff || self.entries.capacity() <= triangles {
+            *self = Self::default();
+        }
+        self.entries.resize_with(triangles + 1, AtomicU32::default);
+        *self.entries[triangles].get_mut() = self.known << MARK;
+    }
+
+    /// Asks the cache for a triangle's entry.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, number: u32) {
+        prefetch_index(&self.entries, number as usize);
+    }
+
+    /// Whether a triangle has to be lit; if so, no later call for this tile says so again.
+    ///
+    /// Without a branch: which triangles are new cannot be predicted.
+    #[inline(always)]
+    pub(crate) fn claim(&self, number: u32) -> bool {
+        let last = self.entries.len() - 1;
+        let place = (number as usize).min(last);
+        let is_new = self.entries[place].load(Ordering::Relaxed) >> MARK < self.known - 1;
+        let to = select_unpredictable(is_new, place, last);
+        self.entries[to].store((self.known - 1) << MARK, Ordering::Relaxed);
+        is_new
+    }
+
+    /// Sets the colour of a triangle.
+    #[inline(always)]
+    pub(crate) fn put(&self, number: u32, color: u32) {
+        let color = color & ((1 << MARK) - 1) | self.known << MARK;
+        self.entries[number as usize].store(color, Ordering::Relaxed);
+    }
+
+    /// Looks up the colours of a block's pixels, from their entries in the visibility buffer, once
+    /// for each run of pixels that show the same: a third of what looking up every pixel takes. No
+    /// run that begins at one of `starts` is longer than a row. Pixels that show nothing get
+    /// `background`; the last row of `colors` is room for a run. Returns whether all are known.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
+    pub(crate) fn of_block(
+        &self,
+        (visibility, mut starts): (&[u64; BLOCK_PIXELS], u64),
+        background: u32,
+        colors: &mut [u32; BLOCK_PIXELS + ROW],
+    ) -> bool {
+        let mut unknown = 0;
+        while starts != 0 {
+            let at = starts.trailing_zeros() as usize % BLOCK_PIXELS;
+            starts &= starts - 1;
+            let word = visibility[at];
+            let color = if word == 0 {
+                background
+            } else {
+                let entry = self.entries.get(!(word as u32) as usize);
+                let entry = entry.map_or(0, |entry| entry.load(Ordering::Relaxed));
+                unknown |= (entry >> MARK) ^ self.known;
+                entry | 0xff << MARK
+            };
+            colors[at..][..ROW].fill(color);
+        }
+        unknown == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn word(number: u32) -> u64 {
+        1 << 62 | u64::from(!number)
+    }
+
+    #[test]
+    fn colours_are_known_in_their_frame_alone_and_claimed_once() {
+        let mut faces = FaceColors::default();
+        let visibility = std::array::from_fn(|i| [0, word(7), word(8)][i % 3]);
+        let mut colors = [0; BLOCK_PIXELS + ROW];
+        for frame in 0..300 {
+            faces.begin(9);
+            assert!(!faces.of_block((&visibility, u64::MAX), 1, &mut colors), "frame {frame}");
+            assert!(faces.claim(7) && !faces.claim(7) && faces.claim(8));
+            assert!(!faces.claim(9), "there is no such triangle");
+            faces.put(7, 0xff00_0005 + frame);
+            assert!(!faces.of_block((&visibility, u64::MAX), 1, &mut colors), "one is not lit yet");
+            faces.put(8, 0xff01_0203);
+            assert!(!faces.claim(7) && !faces.claim(8));
+            assert!(faces.of_block((&visibility, u64::MAX), 1, &mut colors));
+            assert_eq!(colors[..4], [1, 0xff00_0005 + frame, 0xff01_0203, 1]);
+        }
+        faces.begin(20);
+        assert!(faces.claim(8) && faces.claim(19));
+    }
+}

@@ -1,0 +1,545 @@
+//! Blocks that one triangle covers fully.
+//!
+//! No list of fragments is made: barycentric coordinates, interpolation and bytes are one pass over
+//! the tile, two rows of a block at a time. The bits are the same as for listed fragments: the same
+//! integers and the same quotients, in the same order.
+
+use fearless_simd::{
+    Level, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, dispatch, f32x16, f64x8, i32x16,
+};
+
+use super::interpolate::{CornerValues, Look, depth_between};
+use super::quantize::reflected;
+use super::texels::{OfFirst, PlacedTexture, TexelScratch, product};
+use super::triangle_attributes::TriangleAttributes;
+use crate::lights::{Batch, LightTerm, load, set, store};
+use crate::plan::tile::TileLight;
+use crate::screen::coverage::Triangle;
+use crate::screen::perspective::{between, weighed};
+use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::screen::weights::HomogeneousWeights;
+use crate::simd::gather::SLOTS;
+use crate::simd::{Encoding, Lanes as _, Sixteen, VariantLanes, Vec3};
+use crate::texture::lanes::Stored;
+use marraztu_core::accuracy::{Interpolation, Normalising};
+use marraztu_core::base::color::Color;
+
+/// The pixels of a tile, in rows that begin `stride` pixels apart.
+#[derive(Debug)]
+pub(crate) struct Canvas<'a> {
+    pub(crate) pixels: &'a mut [[u8; 4]],
+    pub(crate) stride: usize,
+}
+
+impl Canvas<'_> {
+    /// Stores the pixels of a whole block, row by row; `at` is the index of the first.
+    #[inline(always)]
+    pub(crate) fn put(&mut self, at: usize, pixels: &[u32]) {
+        for (row, from) in pixels.as_chunks::<ROW>().0.iter().enumerate() {
+            let to = &mut self.pixels[at + row * self.stride..][..ROW];
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = from.to_le_bytes();
+            }
+        }
+    }
+
+    /// Fills a block; `at` is the index of its first pixel.
+    #[inline(always)]
+    pub(crate) fn fill(&mut self, at: usize, color: Color) {
+        for row in self.pixels[at..].chunks_mut(self.stride).take(ROW) {
+            row[..ROW].fill(color.opaque());
+        }
+    }
+
+    /// The index of the first pixel of a block, as [`Blocks::each`] gives it.
+    #[inline(always)]
+    pub(crate) fn offset_of(&self, first: [i32; 2]) -> usize {
+        self.offset(first.map(|i| usize::try_from(i).expect("in the tile")))
+    }
+
+    /// The index of a pixel of the tile, by its column and row.
+    #[inline(always)]
+    pub(crate) const fn offset(&self, [x, y]: [usize; 2]) -> usize {
+        y * self.stride + x
+    }
+}
+
+/// Blocks of a tile that one triangle covers fully.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Blocks {
+    /// A bit for each block.
+    pub(crate) which: u64,
+    /// The upper left pixel of the tile.
+    pub(crate) corner: [i32; 2],
+}
+
+impl Blocks {
+    /// Calls `each` with the column and the row of the first pixel of each block, in the tile.
+    #[inline(always)]
+    pub(crate) fn each(self, mut each: impl FnMut([i32; 2])) {
+        let mut left = self.which;
+        while left != 0 {
+            let block = left.trailing_zeros().cast_signed();
+            left &= left - 1;
+            each([block % BLOCK * BLOCK, block / BLOCK * BLOCK]);
+        }
+    }
+}
+
+/// Pixels to a side of a block.
+pub(crate) const ROW: usize = BLOCK as usize;
+/// Two rows of a block at a time.
+const PAIRS: usize = ROW / 2;
+const COLUMNS: [f64; ROW] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+/// Columns and rows of the pixels of two rows of a block.
+const ACROSS: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
+const DOWN: [i32; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
+
+/// Computes the second and third barycentric coordinate of pixels in one triangle, linear on the
+/// screen.
+pub(crate) trait Linear<S: Simd>: Copy {
+    /// The coordinates of a whole block, two rows at a time, from its first pixel.
+    fn block(&self, simd: S, first: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS];
+}
+
+/// A triangle whose edge functions fit 31 bits at its pixels.
+#[derive(Clone, Copy, Debug)]
+struct Narrow<S: Simd> {
+    /// The edge functions at the first pixel of the picture, and their steps by a pixel to the
+    /// right and by one down.
+    edges: [[i32; 3]; 2],
+    /// Their offsets within two rows.
+    gains: [i32x16<S>; 2],
+    per_area: f32,
+}
+
+impl<S: Simd> Narrow<S> {
+    #[inline(always)]
+    fn new(simd: S, attributes: &TriangleAttributes<f32>) -> Self {
+        let edges = attributes.edges.each_ref().map(|[a, b, c]| [c[0], a[0], b[0]]);
+        let across = i32x16::from_slice(simd, &ACROSS);
+        let down = i32x16::from_slice(simd, &DOWN);
+        let gains =
+            [across * edges[0][1] + down * edges[0][2], across * edges[1][1] + down * edges[1][2]];
+        Self { edges, gains, per_area: attributes.per_area[0] }
+    }
+
+    /// A coordinate of two rows of pixels, from their first.
+    #[inline(always)]
+    fn at(&self, i: usize, [x, y]: [i32; 2]) -> f32x16<S> {
+        // Modulo 2^32: products may wrap around, but the sum fits.
+        let [c, a, b] = self.edges[i];
+        let first = a.wrapping_mul(x).wrapping_add(b.wrapping_mul(y));
+        (self.gains[i] + first.wrapping_add(c)).to_float::<f32x16<S>>() * self.per_area
+    }
+}
+
+impl<S: Simd> Linear<S> for Narrow<S> {
+    #[inline(always)]
+    fn block(&self, _: S, [x, y]: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS] {
+        let pair = |pair| [x, y + 2 * pair];
+        [
+            [self.at(0, pair(0)), self.at(1, pair(0))],
+            [self.at(0, pair(1)), self.at(1, pair(1))],
+            [self.at(0, pair(2)), self.at(1, pair(2))],
+            [self.at(0, pair(3)), self.at(1, pair(3))],
+        ]
+    }
+}
+
+/// A triangle whose edge functions need more bits. They are integers below 2^53, which f64 holds
+/// exactly.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wide<'a, S: Simd> {
+    triangle: &'a Triangle,
+    per_area: f64,
+    /// The offsets of the edge functions in the first row of a block, and in the second.
+    gains: [[f64x8<S>; 2]; 2],
+    /// Their steps by two pixels down.
+    down: [f64x8<S>; 2],
+}
+
+impl<'a, S: Simd> Wide<'a, S> {
+    #[inline(always)]
+    #[expect(clippy::cast_precision_loss, reason = "they have fewer than 53 bits")]
+    pub(crate) fn new(simd: S, triangle: &'a Triangle) -> Self {
+        let [[_, er, fr], [_, ed, fd]] = triangle.steps();
+        let columns = f64x8::from_slice(simd, &COLUMNS);
+        let (e_columns, f_columns) = (columns * er as f64, columns * fr as f64);
+        Self {
+            triangle,
+            per_area: 1.0 / triangle.doubled_area() as f64,
+            gains: [[e_columns, e_columns + ed as f64], [f_columns, f_columns + fd as f64]],
+            down: [f64x8::splat(simd, 2.0 * ed as f64), f64x8::splat(simd, 2.0 * fd as f64)],
+        }
+    }
+
+    /// An edge function in the two rows below.
+    #[inline(always)]
+    fn below(&self, i: usize, [a, b]: [f64x8<S>; 2]) -> [f64x8<S>; 2] {
+        [a + self.down[i], b + self.down[i]]
+    }
+
+    /// A coordinate of two rows, from the edge function.
+    #[inline(always)]
+    fn linear(&self, [a, b]: [f64x8<S>; 2]) -> f32x16<S> {
+        (a * self.per_area).narrow(b * self.per_area)
+    }
+
+    /// The coordinates of sixteen arbitrary pixels.
+    #[inline(always)]
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        reason = "the nearest number is meant"
+    )]
+    pub(crate) fn scattered(&self, simd: S, x: &[i32], y: &[i32]) -> [f32x16<S>; 2] {
+        let mut linear = [[0.0; 16]; 2];
+        for (lane, (x, y)) in x.iter().zip(y).enumerate() {
+            let [_, e, f] = self.triangle.edges_at(*x, *y);
+            linear[0][lane] = (e as f64 * self.per_area) as f32;
+            linear[1][lane] = (f as f64 * self.per_area) as f32;
+        }
+        [f32x16::from_slice(simd, &linear[0]), f32x16::from_slice(simd, &linear[1])]
+    }
+}
+
+impl<S: Simd> Linear<S> for Wide<'_, S> {
+    #[inline(always)]
+    #[expect(clippy::cast_precision_loss, reason = "they have fewer than 53 bits")]
+    fn block(&self, _: S, [x, y]: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS] {
+        let [_, e, f] = self.triangle.edges_at(x, y);
+        let e0 = [self.gains[0][0] + e as f64, self.gains[0][1] + e as f64];
+        let f0 = [self.gains[1][0] + f as f64, self.gains[1][1] + f as f64];
+        let (e1, f1) = (self.below(0, e0), self.below(1, f0));
+        let (e2, f2) = (self.below(0, e1), self.below(1, f1));
+        let (e3, f3) = (self.below(0, e2), self.below(1, f2));
+        [
+            [self.linear(e0), self.linear(f0)],
+            [self.linear(e1), self.linear(f1)],
+            [self.linear(e2), self.linear(f2)],
+            [self.linear(e3), self.linear(f3)],
+        ]
+    }
+}
+
+/// The perspective-correct weights of the second and the third corner, and w.
+type Weighted<S> = ([f32x16<S>; 2], f32x16<S>);
+
+/// Computes the perspective-correct weights of pixels in one triangle.
+trait Points<S: Simd>: Copy {
+    /// Those of a whole block, two rows at a time, from its first pixel.
+    fn block(&self, simd: S, first: [i32; 2]) -> [Weighted<S>; PAIRS];
+}
+
+/// From linear coordinates and 1/w of each corner.
+#[derive(Clone, Copy)]
+struct Inside<S: Simd, L> {
+    interpolation: Interpolation,
+    linear: L,
+    by_w: Vec3<f32x16<S>>,
+}
+
+impl<S: Simd, L: Linear<S>> Points<S> for Inside<S, L> {
+    #[inline(always)]
+    fn block(&self, simd: S, first: [i32; 2]) -> [Weighted<S>; PAIRS] {
+        let [a, b, c, d] = self.linear.block(simd, first);
+        let lanes = Sixteen(simd);
+        [
+            weighed(self.interpolation, lanes, a, self.by_w),
+            weighed(self.interpolation, lanes, b, self.by_w),
+            weighed(self.interpolation, lanes, c, self.by_w),
+            weighed(self.interpolation, lanes, d, self.by_w),
+        ]
+    }
+}
+
+/// Those of a clipped triangle.
+impl<S: Simd> Points<S> for &HomogeneousWeights {
+    #[inline(always)]
+    fn block(&self, simd: S, [x, y]: [i32; 2]) -> [Weighted<S>; PAIRS] {
+        [
+            two_rows(simd, self, [x, y]),
+            two_rows(simd, self, [x, y + 2]),
+            two_rows(simd, self, [x, y + 4]),
+            two_rows(simd, self, [x, y + 6]),
+        ]
+    }
+}
+
+#[inline(always)]
+fn two_rows<S: Simd>(simd: S, of: &HomogeneousWeights, [x, y]: [i32; 2]) -> Weighted<S> {
+    let ([b, c], w) = of.of_row(simd, [x, y]);
+    let ([b_below, c_below], w_below) = of.of_row(simd, [x, y + 1]);
+    ([b.narrow(b_below), c.narrow(c_below)], w.narrow(w_below))
+}
+
+/// Evaluates an expression with the [`Points`] of the first triangle, and returns whether it has
+/// any: a triangle without area has not.
+macro_rules! with_points {
+    ($level:expr, $attributes:expr, $by:expr, $simd:ident, $points:ident => $what:expr) => {{
+        let attributes: &TriangleAttributes<f32> = $attributes;
+        if let Some($points) = $by.cut {
+            dispatch!($level, $simd => $what);
+            true
+        } else if attributes.wide & 1 == 0 {
+            dispatch!($level, $simd => {
+                let by_w = of_first(Sixteen($simd), &attributes.by_w);
+                let linear = Narrow::new($simd, attributes);
+                let $points = Inside { interpolation: $by.interpolation, linear, by_w };
+                $what
+            });
+            true
+        } else if let Some(triangle) = &Triangle::on(attributes.grid, attributes.corners(0)) {
+            dispatch!($level, $simd => {
+                let by_w = of_first(Sixteen($simd), &attributes.by_w);
+                let linear = Wide::new($simd, triangle);
+                let $points = Inside { interpolation: $by.interpolation, linear, by_w };
+                $what
+            });
+            true
+        } else {
+            false
+        }
+    }};
+}
+
+/// How the corners of a triangle are weighted.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corners<'a> {
+    /// Their weights, if it is clipped.
+    pub(crate) cut: Option<&'a HomogeneousWeights>,
+    /// By which interpolation, if not.
+    pub(crate) interpolation: Interpolation,
+    /// The rounding thresholds of a block's pixels.
+    pub(crate) thresholds: &'a [f32; BLOCK_PIXELS],
+}
+
+/// Interpolates the colours of the first triangle in blocks that it covers fully. Returns false,
+/// with nothing done, if it has no area.
+pub(crate) fn mix(
+    level: Level,
+    attributes: &TriangleAttributes<f32>,
+    blocks: Blocks,
+    by: Corners<'_>,
+    canvas: &mut Canvas<'_>,
+) -> bool {
+    with_points!(level, attributes, by, simd, points => {
+        mixed(simd, attributes, points, blocks, (by.thresholds, &mut *canvas));
+    })
+}
+
+/// The lights of fully covered blocks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BlockLight<'a, T> {
+    /// How the corners of the triangle are weighted.
+    pub(crate) by: Corners<'a>,
+    /// How pixels become positions and normals; `None` if no light reads them.
+    pub(crate) look: Option<Look<T>>,
+    /// The variant of roots, if it is not the default.
+    pub(crate) roots: Option<Normalising>,
+    /// The colour of the surface itself.
+    pub(crate) tint: [T; 3],
+    /// The texture by which it is multiplied.
+    pub(crate) texture: Option<PlacedTexture<'a>>,
+    /// The vertex colours by which it is multiplied.
+    pub(crate) vertex_colors: Option<&'a CornerValues<T>>,
+    /// The lights, if it is lit.
+    pub(crate) lights: Option<TileLight<'a>>,
+    /// The products of the lights and the material.
+    pub(crate) terms: &'a [LightTerm<T>],
+    /// What is added to every colour, if the surface has light of its own.
+    pub(crate) glow: Option<[T; 3]>,
+    /// How linear colours are encoded, if they are linear.
+    pub(crate) encoding: Option<&'a Encoding>,
+}
+
+/// Lights blocks that the first triangle, whose corners carry normals, covers fully. Returns false,
+/// with nothing done, if it has no area.
+pub(crate) fn light(
+    level: Level,
+    attributes: &TriangleAttributes<f32>,
+    blocks: Blocks,
+    (light, batch, scratch): (BlockLight<'_, f32>, &mut Batch<f32>, &mut TexelScratch),
+    canvas: &mut Canvas<'_>,
+) -> bool {
+    with_points!(level, attributes, light.by, simd, points => {
+        lit(simd, attributes, points, blocks, (light, &mut *batch, &mut *scratch), canvas);
+    })
+}
+
+#[inline(always)]
+fn lit<S: Simd>(
+    simd: S,
+    attributes: &TriangleAttributes<f32>,
+    points: impl Points<S>,
+    blocks: Blocks,
+    (light, batch, scratch): (BlockLight<'_, f32>, &mut Batch<f32>, &mut TexelScratch),
+    canvas: &mut Canvas<'_>,
+) {
+    let lanes = Sixteen(simd);
+    let BlockLight { by, look, roots, tint, texture, vertex_colors, lights, terms, .. } = light;
+    let BlockLight { glow, encoding, .. } = light;
+    let z = of_first(lanes, &attributes.z);
+    let corners = corners(lanes, &attributes.values);
+    let tint = set(lanes, tint);
+    let is_colored = texture.is_some() || vertex_colors.is_some();
+    let across = i32x16::from_slice(simd, &ACROSS);
+    let down = i32x16::from_slice(simd, &DOWN);
+    let [left, top] = blocks.corner;
+    batch.len = BLOCK_PIXELS;
+    let mut is_lit = false;
+    let TexelScratch { places, texels, colors } = scratch;
+    blocks.each(
+        #[inline(always)]
+        |[column, row]| {
+            let [x, y] = [left + column, top + row];
+            if look.is_some() || is_colored {
+                let pairs = points.block(simd, [x, y]);
+                for ((pair, point), y) in pairs.into_iter().enumerate().zip((y..).step_by(2)) {
+                    let (weights, w) = point;
+                    if let Some(look) = &look {
+                        let [x, y] = [across + x, down + y];
+                        let place =
+                            [x.to_float::<f32x16<S>>() + 0.5, y.to_float::<f32x16<S>>() + 0.5];
+                        let normal = between(corners, weights);
+                        let at = (normal, place, w);
+                        match roots {
+                            None => {
+                                let depth = || depth_between(z, weights);
+                                let (normal, place, w) = at;
+                                let sample = look.at(lanes, normal, place, w, depth);
+                                batch.put(lanes, sample, 16 * pair);
+                            }
+                            Some(variant) => {
+                                let lanes = VariantLanes { lanes, variant };
+                                let depth = depth_between(z, weights);
+                                put_sample(lanes, look, at, depth, batch, 16 * pair);
+                            }
+                        }
+                    }
+                    if let Some(texture) = &texture {
+                        let way = texture.way(simd, &OfFirst, weights);
+                        let position = match texture.far.first() {
+                            Some(far) => far.of_two_rows(simd, [x, y]),
+                            None => texture.position(simd, &OfFirst, way),
+                        };
+                        let to = (&mut *places, 16 * pair);
+                        texture.put(simd, &OfFirst, (way, w), position, to);
+                    }
+                    if let Some(values) = vertex_colors {
+                        let color = between(self::corners(lanes, values), weights);
+                        store(lanes, color, colors, 16 * pair);
+                    }
+                }
+            }
+            if let Some(texture) = &texture {
+                texture.sampler.sample::<S, Stored>(simd, places, BLOCK_PIXELS, texels);
+            }
+            if let Some(lights) = &lights
+                && (look.is_some() || !is_lit)
+            {
+                is_lit = true;
+                lights.light_batch(terms, simd.level(), batch, None);
+            }
+            let mut at = canvas.offset([column as usize, row as usize]);
+            for pair in 0..PAIRS {
+                let mut pixels = [0; 16];
+                let mut own = tint;
+                if texture.is_some() {
+                    own = product(own, load(lanes, texels, 16 * pair));
+                }
+                if vertex_colors.is_some() {
+                    own = product(own, load(lanes, colors, 16 * pair));
+                }
+                let mut color = match lights {
+                    Some(_) => reflected(lanes, own, batch, 16 * pair),
+                    None => own,
+                };
+                if glow.is_some() || encoding.is_some() {
+                    color = finished(lanes, color, glow, encoding);
+                }
+                let threshold = lanes.load(by.thresholds, 16 * pair);
+                lanes.store_pixels_by(color, threshold, &mut pixels, 0);
+                canvas.put(at, &pixels);
+                at += 2 * canvas.stride;
+            }
+        },
+    );
+}
+
+/// A colour with what is added to it, encoded if it is linear.
+#[inline(always)]
+fn finished<S: Simd>(
+    lanes: Sixteen<S>,
+    mut color: Vec3<f32x16<S>>,
+    glow: Option<[f32; 3]>,
+    encoding: Option<&Encoding>,
+) -> Vec3<f32x16<S>> {
+    // No closures here: they would not be compiled for the instruction set of their caller.
+    if let Some(glow) = glow {
+        color = color.plus(set(lanes, glow));
+    }
+    if let Some(encoding) = encoding {
+        let Vec3([r, g, b]) = color;
+        color = Vec3([encoding.of(r), encoding.of(g), encoding.of(b)]);
+    }
+    color
+}
+
+/// Stores the samples of sixteen pixels whose roots are computed by a variant.
+#[inline(always)]
+fn put_sample<S: Simd>(
+    lanes: VariantLanes<Sixteen<S>>,
+    look: &Look<f32>,
+    (normal, place, w): (Vec3<f32x16<S>>, [f32x16<S>; 2], f32x16<S>),
+    depth: f32x16<S>,
+    batch: &mut Batch<f32>,
+    at: usize,
+) {
+    let Vec3([x, y, z]) = normal;
+    let normal = Vec3([lanes.chosen(x), lanes.chosen(y), lanes.chosen(z)]);
+    let place = [lanes.chosen(place[0]), lanes.chosen(place[1])];
+    let sample = look.at(lanes, normal, place, lanes.chosen(w), || lanes.chosen(depth));
+    batch.put(lanes, sample, at);
+}
+
+/// Three numbers of the first triangle, the same for all lanes.
+#[inline(always)]
+fn of_first<S: Simd>(lanes: Sixteen<S>, rows: &[[f32; SLOTS]; 3]) -> Vec3<f32x16<S>> {
+    set(lanes, [rows[0][0], rows[1][0], rows[2][0]])
+}
+
+/// The values at the corners of the first triangle.
+#[inline(always)]
+fn corners<S: Simd>(lanes: Sixteen<S>, values: &CornerValues<f32>) -> [Vec3<f32x16<S>>; 3] {
+    let [a, b, c] = values;
+    [of_first(lanes, a), of_first(lanes, b), of_first(lanes, c)]
+}
+
+#[inline(always)]
+fn mixed<S: Simd>(
+    simd: S,
+    attributes: &TriangleAttributes<f32>,
+    points: impl Points<S>,
+    blocks: Blocks,
+    (thresholds, canvas): (&[f32; BLOCK_PIXELS], &mut Canvas<'_>),
+) {
+    let lanes = Sixteen(simd);
+    let corners = corners(lanes, &attributes.values);
+    let [left, top] = blocks.corner;
+    blocks.each(
+        #[inline(always)]
+        |[column, row]| {
+            let mut at = canvas.offset([column as usize, row as usize]);
+            let pairs = points.block(simd, [left + column, top + row]);
+            for (pair, (weights, _)) in pairs.into_iter().enumerate() {
+                let mut pixels = [0; 16];
+                let threshold = lanes.load(thresholds, 16 * pair);
+                lanes.store_pixels_by(between(corners, weights), threshold, &mut pixels, 0);
+                canvas.put(at, &pixels);
+                at += 2 * canvas.stride;
+            }
+        },
+    );
+}

@@ -1,0 +1,280 @@
+//! Interpolates attributes: from fragments and their triangles to positions, normals and light.
+//!
+//! Attributes at corners are weighted by the barycentric coordinates of each pixel
+//! ([`Barycentrics`]). A value that all corners share comes out unchanged, bit for bit, since only
+//! differences are weighted.
+//!
+//! The position of a pixel in space is the point of its ray at its depth, so the direction to the
+//! observer is exact for any triangle.
+
+use fearless_simd::Level;
+use glam::DMat3;
+
+use super::barycentrics::Barycentrics;
+use super::colors::Colors;
+use super::fragments::Fragments;
+use super::texels::product;
+use super::triangle_attributes::{TriangleAttributes, picked};
+use crate::frame::draw::Draw;
+use crate::frame::{Eye, FramePlan};
+use crate::lights::{Batch, Rows, Sample, load, set, store};
+use crate::screen::coverage::SUBPIXELS;
+use crate::screen::perspective::between;
+use crate::simd::gather::{SLOTS, paged};
+use crate::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
+use marraztu_core::accuracy::Normalising;
+
+/// Three numbers at the corners of some triangles: those of the first corner, and the differences
+/// of the second and the third from them.
+pub(crate) type CornerValues<T> = [[[T; SLOTS]; 3]; 3];
+
+/// Attributes at some pixels, interpolated between the corners.
+#[inline(always)]
+fn mixed<M: Lanes, const PAGES: usize>(
+    lanes: M,
+    rows: &CornerValues<M::Number>,
+    slots: M::Slots,
+    weights: [M::R; 2],
+) -> Vec3<M::R> {
+    let a = picked::<M, PAGES>(lanes, &rows[0], slots);
+    let b = picked::<M, PAGES>(lanes, &rows[1], slots);
+    let c = picked::<M, PAGES>(lanes, &rows[2], slots);
+    between([a, b, c], weights)
+}
+
+/// The destination of interpolated attributes.
+#[derive(Debug)]
+pub(crate) enum Mixed<'a, T> {
+    /// Light.
+    Rows(&'a mut Rows<T>),
+    /// Colours, with the thresholds of their rounding.
+    Colors(&'a mut Colors, &'a [T; BATCH]),
+}
+
+/// Interpolates attributes at every pixel.
+pub(crate) fn mix<T: Number>(
+    level: Level,
+    fragments: &Fragments,
+    attributes: &TriangleAttributes<T>,
+    barycentrics: &Barycentrics<T>,
+    to: Mixed<'_, T>,
+) {
+    paged!(attributes.count, PAGES => T::run(
+        level,
+        Mix::<T, PAGES> { fragments, attributes, barycentrics, to },
+    ));
+}
+
+struct Mix<'a, T, const PAGES: usize> {
+    fragments: &'a Fragments,
+    attributes: &'a TriangleAttributes<T>,
+    barycentrics: &'a Barycentrics<T>,
+    to: Mixed<'a, T>,
+}
+
+impl<T: Number, const PAGES: usize> Kernel<T> for Mix<'_, T, PAGES> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { fragments, attributes, barycentrics, mut to } = self;
+        for at in (0..fragments.len).step_by(M::LANES) {
+            let slots = lanes.slots(&fragments.slots, at);
+            let weights = [
+                lanes.load(&barycentrics.weights[0], at),
+                lanes.load(&barycentrics.weights[1], at),
+            ];
+            let value = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
+            match &mut to {
+                Mixed::Rows(rows) => store(lanes, value, rows, at),
+                Mixed::Colors(colors, thresholds) => {
+                    colors.store_by(lanes, value, lanes.load(*thresholds, at), at);
+                }
+            }
+        }
+    }
+}
+
+/// Multiplies colours by others that are interpolated between the corners.
+pub(crate) fn multiply<T: Number>(
+    (level, count): (Level, usize),
+    fragments: &Fragments,
+    values: &CornerValues<T>,
+    barycentrics: &Barycentrics<T>,
+    to: &mut Rows<T>,
+) {
+    paged!(count, PAGES => T::run(
+        level,
+        Multiply::<T, PAGES> { fragments, values, barycentrics, to },
+    ));
+}
+
+struct Multiply<'a, T, const PAGES: usize> {
+    fragments: &'a Fragments,
+    values: &'a CornerValues<T>,
+    barycentrics: &'a Barycentrics<T>,
+    to: &'a mut Rows<T>,
+}
+
+impl<T: Number, const PAGES: usize> Kernel<T> for Multiply<'_, T, PAGES> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { fragments, values, barycentrics, to } = self;
+        for at in (0..fragments.len).step_by(M::LANES) {
+            let slots = lanes.slots(&fragments.slots, at);
+            let weights = [
+                lanes.load(&barycentrics.weights[0], at),
+                lanes.load(&barycentrics.weights[1], at),
+            ];
+            let value = mixed::<M, PAGES>(lanes, values, slots, weights);
+            store(lanes, product(load(lanes, to, at), value), to, at);
+        }
+    }
+}
+
+/// Computes position, normal and direction to the observer of every pixel, from normals at the
+/// corners.
+pub(crate) fn surface_samples<T: Number>(
+    (level, variant): (Level, Option<Normalising>),
+    look: Look<T>,
+    fragments: &Fragments,
+    attributes: &TriangleAttributes<T>,
+    barycentrics: &Barycentrics<T>,
+    batch: &mut Batch<T>,
+) {
+    match (fragments.shared, variant) {
+        (true, Some(_)) => {
+            let kernel =
+                SurfaceSamples::<T, 4, true> { fragments, attributes, barycentrics, batch, look };
+            T::run_variant(level, variant, kernel);
+        }
+        (false, Some(_)) => {
+            let kernel =
+                SurfaceSamples::<T, 4, false> { fragments, attributes, barycentrics, batch, look };
+            T::run_variant(level, variant, kernel);
+        }
+        (true, None) => paged!(attributes.count, PAGES => T::run(
+            level,
+            SurfaceSamples::<T, PAGES, true> { fragments, attributes, barycentrics, batch, look },
+        )),
+        (false, None) => paged!(attributes.count, PAGES => T::run(
+            level,
+            SurfaceSamples::<T, PAGES, false> { fragments, attributes, barycentrics, batch, look },
+        )),
+    }
+}
+
+/// The columns of a matrix.
+fn matrix<T: Number>(m: DMat3) -> [[T; 3]; 3] {
+    [m.x_axis, m.y_axis, m.z_axis].map(|column| column.to_array().map(T::from_f64))
+}
+
+/// The rays of pixels: x = column a + b, y = row c + d, each times w in perspective, where z = -w.
+#[derive(Clone, Copy, Debug)]
+struct Rays<T> {
+    parallel: bool,
+    x: [T; 2],
+    y: [T; 2],
+}
+
+impl<T: Number> Rays<T> {
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    fn new(plan: &FramePlan) -> Self {
+        let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
+        let (width, height) = (plan.size.width as f64, plan.size.height as f64);
+        let mut x = [2.0 / width / px, -1.0 / px];
+        let mut y = [-2.0 / height / py, 1.0 / py];
+        // A sample lies beside the centre of its pixel.
+        for (ray, shift) in [&mut x, &mut y].into_iter().zip(plan.shift) {
+            if shift != 0 {
+                ray[1] += ray[0] * f64::from(shift) / f64::from(SUBPIXELS);
+            }
+        }
+        let parallel = plan.eye == Eye::Parallel;
+        Self { parallel, x: x.map(T::from_f64), y: y.map(T::from_f64) }
+    }
+}
+
+/// The rays of the observer, and the normal transform of a draw.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look<T> {
+    rays: Rays<T>,
+    /// The columns of the matrix that transforms normals to view space.
+    normals: [[T; 3]; 3],
+}
+
+impl<T: Number> Look<T> {
+    pub(crate) fn new(plan: &FramePlan, draw: &Draw) -> Self {
+        Self { rays: Rays::new(plan), normals: matrix(draw.view_from_normal) }
+    }
+
+    /// Position, normal and direction to the observer of some pixels, from their normals in object
+    /// space, their positions in the picture and their w; in orthographic projection `depth` gives
+    /// z.
+    #[inline(always)]
+    pub(crate) fn at<M: Lanes<Number = T>>(
+        &self,
+        lanes: M,
+        Vec3([x, y, z]): Vec3<M::R>,
+        [column, row]: [M::R; 2],
+        w: M::R,
+        depth: impl FnOnce() -> M::R,
+    ) -> Sample<M::R> {
+        let Self { rays, normals: [nx, ny, nz] } = *self;
+        let (nx, ny, nz) = (set(lanes, nx), set(lanes, ny), set(lanes, nz));
+        let normal = nx.times(x).plus(ny.times(y)).plus(nz.times(z)).unit();
+        let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
+        let x = column * lanes.set(rays.x[0]) + lanes.set(rays.x[1]);
+        let y = row * lanes.set(rays.y[0]) + lanes.set(rays.y[1]);
+        let (position, to_eye) = if rays.parallel {
+            (Vec3([x, y, depth()]), Vec3([zero, zero, one]))
+        } else {
+            (Vec3([x * w, y * w, -w]), Vec3([-x, -y, one]).unit())
+        };
+        Sample { position, normal, to_eye, exponent: one }
+    }
+}
+
+struct SurfaceSamples<'a, T, const PAGES: usize, const SHARED: bool> {
+    fragments: &'a Fragments,
+    attributes: &'a TriangleAttributes<T>,
+    barycentrics: &'a Barycentrics<T>,
+    batch: &'a mut Batch<T>,
+    look: Look<T>,
+}
+
+impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
+    for SurfaceSamples<'_, T, PAGES, SHARED>
+{
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { fragments, attributes, barycentrics, batch, look } = self;
+        for at in (0..fragments.len).step_by(M::LANES) {
+            let slots = lanes.slots(&fragments.slots, at);
+            let weights = [
+                lanes.load(&barycentrics.weights[0], at),
+                lanes.load(&barycentrics.weights[1], at),
+            ];
+            let normal = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
+            let half = lanes.lift(0.5);
+            let place = match SHARED {
+                true => [
+                    lanes.load(&barycentrics.positions[0], at),
+                    lanes.load(&barycentrics.positions[1], at),
+                ],
+                false => {
+                    [lanes.whole(&fragments.x, at) + half, lanes.whole(&fragments.y, at) + half]
+                }
+            };
+            let w = lanes.load(&barycentrics.w, at);
+            let sample = look.at(lanes, normal, place, w, || {
+                depth_between(picked::<M, PAGES>(lanes, &attributes.z, slots), weights)
+            });
+            batch.put(lanes, sample, at);
+        }
+    }
+}
+
+/// z interpolated between corners, in orthographic projection.
+#[inline(always)]
+pub(crate) fn depth_between<R: Real>(Vec3([z0, z1, z2]): Vec3<R>, weights: [R; 2]) -> R {
+    z0 + (z1 - z0) * weights[0] + (z2 - z0) * weights[1]
+}

@@ -1,0 +1,529 @@
+//! Computes barycentric coordinates of fragments, in each of the two precisions.
+
+use fearless_simd::{
+    Level, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, SimdNarrow as _,
+    dispatch, f32x16, f64x8, i32x16,
+};
+use glam::DVec3;
+
+use super::barycentrics::{Barycentrics, Clamp, Weigh};
+use super::fragments::Fragments;
+use super::full_blocks::{self, BlockLight, Blocks, Canvas, Corners, Linear as _, Wide};
+use super::spans::interpolate_spans;
+use super::texels::{TexelScratch, TextureSamples, lane_steps};
+use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
+use crate::frame::FramePlan;
+use crate::frame::draw::Draw;
+use crate::frame::variants::Decoding;
+use crate::lights::{Batch, Light, Rows, set};
+use crate::screen::coverage::Triangle;
+use crate::screen::weights::{HomogeneousWeights, barycentric, cut_place};
+use crate::simd::gather::{SLOTS, paged, pick};
+use crate::simd::{Lanes as _, Sixteen, in_f64};
+use crate::texture::lanes::{Linear, Stored};
+use crate::texture::placement::{Placement, UvRows};
+use marraztu_core::accuracy::{Coverage, Interpolation, Settings};
+use marraztu_core::scene::Texture;
+
+/// Numbers in which attributes are interpolated.
+pub(crate) trait Interpolated: AttributeNumber {
+    /// Computes all barycentric coordinates sixteen pixels at a time, if the triangles allow that.
+    /// Returns whether they do.
+    fn find(
+        interpolation: Interpolation,
+        level: Level,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<Self>,
+        to: &mut Barycentrics<Self>,
+    ) -> bool;
+    /// Computes the linear barycentric coordinates, except in wide triangles.
+    fn find_linear(
+        level: Level,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<Self>,
+        to: &mut Barycentrics<Self>,
+    );
+    /// Interpolates the colours of one triangle in blocks that it covers fully, if that can be done
+    /// in one pass. Returns whether it can.
+    fn mix_blocks(
+        level: Level,
+        attributes: &TriangleAttributes<Self>,
+        blocks: Blocks,
+        by: Corners<'_>,
+        to: &mut Canvas<'_>,
+    ) -> bool;
+    /// Lights blocks that one triangle covers fully, if that can be done in one pass per block.
+    /// Returns whether it can.
+    fn light_blocks(
+        level: Level,
+        attributes: &TriangleAttributes<Self>,
+        blocks: Blocks,
+        light: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
+        to: &mut Canvas<'_>,
+    ) -> bool;
+    /// Places a texture on triangles whose corners have these texture coordinates, sixteen at a
+    /// time; steps are only needed for mip maps. Returns the slots, a bit for each, of the
+    /// triangles that it was done for.
+    fn place_texture(
+        level: Level,
+        attributes: &TriangleAttributes<Self>,
+        texture: (&Texture, (&UvRows, bool)),
+        to: &mut Placement,
+    ) -> u64;
+    /// Multiplies the colours of fragments by those of a texture, if that can be done sixteen
+    /// pixels at a time. Returns the slots, a bit for each, of the triangles that it was done for.
+    fn multiply_texels(
+        level: Level,
+        count: usize,
+        samples: &TextureSamples<'_, Self>,
+        to: (&mut TexelScratch, &mut Rows<Self>),
+    ) -> u64;
+    /// The slopes of heights at fragments, as [`TextureSamples::slopes`], likewise.
+    fn find_slopes(
+        level: Level,
+        count: usize,
+        samples: &TextureSamples<'_, Self>,
+        to: (&mut TexelScratch, &mut Rows<Self>),
+    ) -> u64;
+}
+
+impl<T: Interpolated> Barycentrics<T> {
+    /// Computes the barycentric coordinates of every fragment.
+    pub(crate) fn find(
+        &mut self,
+        level: Level,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<T>,
+        (plan, draw): (&FramePlan, &Draw),
+    ) {
+        let Settings { coverage, interpolation, .. } = *plan.variants;
+        let outside = fragments.shared || coverage != Coverage::Exact;
+        if outside || !T::find(interpolation, level, fragments, attributes, self) {
+            self.find_step_by_step(level, fragments, attributes, (plan, draw));
+        }
+        if interpolation == Interpolation::EverySixteen {
+            interpolate_spans(fragments, attributes, self);
+        }
+    }
+
+    /// The same for all kinds of triangles, and for pixels whose centres lie outside.
+    fn find_step_by_step(
+        &mut self,
+        level: Level,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<T>,
+        (plan, draw): (&FramePlan, &Draw),
+    ) {
+        let interpolation = plan.variants.interpolation;
+        T::find_linear(level, fragments, attributes, self);
+        self.find_wide(fragments, attributes);
+        if fragments.shared {
+            self.clamp_to_triangle(level, fragments, attributes);
+        }
+        if plan.variants.coverage != Coverage::Exact {
+            T::run(level, Clamp { len: fragments.len, linear: &mut self.linear });
+        }
+        paged!(attributes.count, PAGES => T::run(
+            level,
+            Weigh::<T, PAGES> { interpolation, fragments, attributes, to: self },
+        ));
+        if attributes.cut != 0 {
+            self.find_cut(fragments, attributes, plan, draw);
+        }
+    }
+
+    /// Computes those in clipped triangles, one pixel at a time, in homogeneous coordinates.
+    #[cold]
+    fn find_cut(
+        &mut self,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<T>,
+        plan: &FramePlan,
+        draw: &Draw,
+    ) {
+        let mut slots = attributes.cut & (u64::MAX >> (SLOTS - attributes.count));
+        while slots != 0 {
+            let slot = slots.trailing_zeros();
+            slots &= slots - 1;
+            let number = attributes.numbers[slot as usize];
+            let of = HomogeneousWeights::new(plan, draw, number, [0; 2]);
+            for i in (0..fragments.len).filter(|i| fragments.slots[*i].cast_unsigned() == slot) {
+                let ([second, third], w) = of.at([fragments.x[i], fragments.y[i]]);
+                self.weights[0][i] = T::from_f64(second);
+                self.weights[1][i] = T::from_f64(third);
+                self.w[i] = T::from_f64(w);
+                if fragments.shared {
+                    let weights = DVec3::new(1.0 - second - third, second, third);
+                    let place = cut_place(plan, draw, number, weights);
+                    for (row, place) in self.positions.iter_mut().zip(place) {
+                        row[i] = T::from_f64(place);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Computes the linear coordinates in wide triangles, with 64-bit integers.
+    fn find_wide(&mut self, fragments: &Fragments, attributes: &TriangleAttributes<T>) {
+        let (mut last, mut triangle) = (usize::MAX, None);
+        for i in 0..fragments.len {
+            let slot = fragments.slots[i].cast_unsigned() as usize;
+            if attributes.wide >> slot & 1 == 0 {
+                continue;
+            }
+            if slot != last {
+                (last, triangle) = (slot, Triangle::on(attributes.grid, attributes.corners(slot)));
+            }
+            if let Some(triangle) = &triangle {
+                let [second, third] = barycentric(triangle, [fragments.x[i], fragments.y[i]]);
+                self.linear[0][i] = T::from_f64(second);
+                self.linear[1][i] = T::from_f64(third);
+            }
+        }
+    }
+}
+
+impl Interpolated for f64 {
+    fn find(
+        _: Interpolation,
+        _: Level,
+        _: &Fragments,
+        _: &TriangleAttributes<Self>,
+        _: &mut Barycentrics<Self>,
+    ) -> bool {
+        false
+    }
+
+    fn find_linear(
+        _: Level,
+        _: &Fragments,
+        _: &TriangleAttributes<Self>,
+        _: &mut Barycentrics<Self>,
+    ) {
+    }
+
+    fn mix_blocks(
+        _: Level,
+        _: &TriangleAttributes<Self>,
+        _: Blocks,
+        _: Corners<'_>,
+        _: &mut Canvas<'_>,
+    ) -> bool {
+        false
+    }
+
+    fn light_blocks(
+        _: Level,
+        _: &TriangleAttributes<Self>,
+        _: Blocks,
+        _: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
+        _: &mut Canvas<'_>,
+    ) -> bool {
+        false
+    }
+
+    fn place_texture(
+        _: Level,
+        _: &TriangleAttributes<Self>,
+        _: (&Texture, (&UvRows, bool)),
+        _: &mut Placement,
+    ) -> u64 {
+        0
+    }
+
+    fn multiply_texels(
+        _: Level,
+        _: usize,
+        _: &TextureSamples<'_, Self>,
+        _: (&mut TexelScratch, &mut Rows<Self>),
+    ) -> u64 {
+        0
+    }
+
+    fn find_slopes(
+        _: Level,
+        _: usize,
+        _: &TextureSamples<'_, Self>,
+        _: (&mut TexelScratch, &mut Rows<Self>),
+    ) -> u64 {
+        0
+    }
+}
+
+impl Interpolated for f32 {
+    fn find(
+        interpolation: Interpolation,
+        level: Level,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<Self>,
+        to: &mut Barycentrics<Self>,
+    ) -> bool {
+        let wide = attributes.count == 1 && attributes.wide == 1;
+        if wide && let Some(triangle) = Triangle::on(attributes.grid, attributes.corners(0)) {
+            dispatch!(level, simd => {
+                find_in_one(interpolation, simd, fragments, &triangle, attributes, to);
+            });
+            return true;
+        }
+        if attributes.cut != 0 {
+            return false;
+        }
+        paged!(attributes.count, PAGES => {
+            dispatch!(level, simd => {
+                find_narrow::<_, PAGES>(interpolation, simd, fragments, attributes, to);
+            });
+        });
+        let mut wide = attributes.wide;
+        while wide != 0 {
+            let slot = wide.trailing_zeros();
+            wide &= wide - 1;
+            let corners = attributes.corners(slot as usize);
+            let Some(triangle) = Triangle::on(attributes.grid, corners) else { continue };
+            paged!(attributes.count, PAGES => {
+                dispatch!(level, simd => {
+                    let of = (slot.cast_signed(), &triangle);
+                    find_among::<_, PAGES>(interpolation, simd, fragments, of, attributes, to);
+                });
+            });
+        }
+        true
+    }
+
+    fn find_linear(
+        level: Level,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<Self>,
+        to: &mut Barycentrics<Self>,
+    ) {
+        paged!(attributes.count, PAGES => {
+            let perspective = Interpolation::Perspective;
+            dispatch!(level, simd => {
+                find_narrow::<_, PAGES>(perspective, simd, fragments, attributes, to);
+            });
+        });
+    }
+
+    fn mix_blocks(
+        level: Level,
+        attributes: &TriangleAttributes<Self>,
+        blocks: Blocks,
+        by: Corners<'_>,
+        to: &mut Canvas<'_>,
+    ) -> bool {
+        full_blocks::mix(level, attributes, blocks, by, to)
+    }
+
+    fn light_blocks(
+        level: Level,
+        attributes: &TriangleAttributes<Self>,
+        blocks: Blocks,
+        light: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
+        to: &mut Canvas<'_>,
+    ) -> bool {
+        full_blocks::light(level, attributes, blocks, light, to)
+    }
+
+    fn place_texture(
+        level: Level,
+        attributes: &TriangleAttributes<Self>,
+        (texture, (uvs, reads_mips)): (&Texture, (&UvRows, bool)),
+        to: &mut Placement,
+    ) -> u64 {
+        let mut done = 0;
+        dispatch!(level, simd => for at in (0..attributes.count).step_by(16) {
+            let steps = reads_mips.then(|| lane_steps(simd, attributes, at));
+            let (steps, odd) = steps.map_or((None, 0), |(steps, odd)| (Some(steps), odd));
+            done |= (to.set_sixteen(simd, (uvs, at), texture, steps) & !odd) << at;
+        });
+        done
+    }
+
+    fn multiply_texels(
+        level: Level,
+        count: usize,
+        samples: &TextureSamples<'_, Self>,
+        (scratch, to): (&mut TexelScratch, &mut Rows<Self>),
+    ) -> u64 {
+        match samples.decoding {
+            Decoding::Stored => paged!(count, PAGES => {
+                dispatch!(level, simd => samples.multiply::<_, Stored, PAGES>(simd, scratch, to));
+            }),
+            Decoding::Linear => paged!(count, PAGES => {
+                dispatch!(level, simd => samples.multiply::<_, Linear, PAGES>(simd, scratch, to));
+            }),
+        }
+        samples.texture.placement.known
+    }
+
+    fn find_slopes(
+        level: Level,
+        count: usize,
+        samples: &TextureSamples<'_, Self>,
+        (scratch, to): (&mut TexelScratch, &mut Rows<Self>),
+    ) -> u64 {
+        paged!(count, PAGES => {
+            dispatch!(level, simd => samples.slopes::<_, PAGES>(simd, scratch, to));
+        });
+        samples.texture.placement.known
+    }
+}
+
+/// Computes the coordinates in narrow triangles.
+#[inline(always)]
+fn find_narrow<S: Simd, const PAGES: usize>(
+    interpolation: Interpolation,
+    simd: S,
+    fragments: &Fragments,
+    attributes: &TriangleAttributes<f32>,
+    to: &mut Barycentrics<f32>,
+) {
+    let lanes = Sixteen(simd);
+    for at in (0..fragments.len).step_by(16) {
+        let slots = lanes.slots(&fragments.slots, at);
+        let x = i32x16::from_slice(simd, &fragments.x[at..at + 16]);
+        let y = i32x16::from_slice(simd, &fragments.y[at..at + 16]);
+        let per_area = lanes.pick::<PAGES>(&attributes.per_area, slots);
+        let second = edge::<S, PAGES>(simd, &attributes.edges[0], slots, [x, y]) * per_area;
+        let third = edge::<S, PAGES>(simd, &attributes.edges[1], slots, [x, y]) * per_area;
+        lanes.store(second, &mut to.linear[0], at);
+        lanes.store(third, &mut to.linear[1], at);
+        let by_w = picked::<_, PAGES>(lanes, &attributes.by_w, slots);
+        to.put(interpolation, lanes, at, [second, third], by_w);
+    }
+}
+
+/// Computes the coordinates in one triangle, whose edge functions need more bits, of a list that
+/// shows others, too. Those in the others are known.
+#[inline(always)]
+#[expect(clippy::cast_precision_loss, reason = "they have fewer than 53 bits")]
+fn find_among<S: Simd, const PAGES: usize>(
+    interpolation: Interpolation,
+    simd: S,
+    fragments: &Fragments,
+    (slot, triangle): (i32, &Triangle),
+    attributes: &TriangleAttributes<f32>,
+    to: &mut Barycentrics<f32>,
+) {
+    let lanes = Sixteen(simd);
+    let [[_, er, fr], [_, ed, fd]] = triangle.steps();
+    let [left, top] = [fragments.x[0], fragments.y[0]];
+    let [_, e, f] = triangle.edges_at(left, top);
+    let per_area = 1.0 / triangle.doubled_area() as f64;
+    let second = [er as f64, ed as f64, e as f64, per_area];
+    let third = [fr as f64, fd as f64, f as f64, per_area];
+    for at in (0..fragments.len).step_by(16) {
+        let slots = lanes.slots(&fragments.slots, at);
+        let own = slots.simd_eq(slot);
+        if !own.any_true() {
+            continue;
+        }
+        let x = in_f64(i32x16::from_slice(simd, &fragments.x[at..at + 16]) - left);
+        let y = in_f64(i32x16::from_slice(simd, &fragments.y[at..at + 16]) - top);
+        let second = own.select(plane(second, x, y), lanes.load(&to.linear[0], at));
+        let third = own.select(plane(third, x, y), lanes.load(&to.linear[1], at));
+        lanes.store(second, &mut to.linear[0], at);
+        lanes.store(third, &mut to.linear[1], at);
+        let by_w = picked::<_, PAGES>(lanes, &attributes.by_w, slots);
+        to.put(interpolation, lanes, at, [second, third], by_w);
+    }
+}
+
+/// (a x + b y + c) d at sixteen places: the sum is of integers that f64 holds exactly.
+#[inline(always)]
+fn plane<S: Simd>([a, b, c, d]: [f64; 4], x: [f64x8<S>; 2], y: [f64x8<S>; 2]) -> f32x16<S> {
+    let low = (x[0] * a + y[0] * b + c) * d;
+    low.narrow((x[1] * a + y[1] * b + c) * d)
+}
+
+/// An edge function of narrow triangles. It is exact in 32 bits: products may wrap around, but the
+/// sum fits.
+#[inline(always)]
+fn edge<S: Simd, const PAGES: usize>(
+    simd: S,
+    [a, b, c]: &[[i32; SLOTS]; 3],
+    slots: i32x16<S>,
+    [x, y]: [i32x16<S>; 2],
+) -> f32x16<S> {
+    let a = pick::<S, PAGES>(simd, a, slots);
+    let b = pick::<S, PAGES>(simd, b, slots);
+    let c = pick::<S, PAGES>(simd, c, slots);
+    (a * x + b * y + c).to_float()
+}
+
+/// Computes the coordinates in one triangle whose edge functions need more bits.
+#[inline(always)]
+fn find_in_one<S: Simd>(
+    interpolation: Interpolation,
+    simd: S,
+    fragments: &Fragments,
+    triangle: &Triangle,
+    attributes: &TriangleAttributes<f32>,
+    to: &mut Barycentrics<f32>,
+) {
+    let lanes = Sixteen(simd);
+    let wide = Wide::new(simd, triangle);
+    let [w0, w1, w2] = attributes.by_w;
+    let by_w = set(lanes, [w0[0], w1[0], w2[0]]);
+    if fragments.is_whole() {
+        for (pair, linear) in
+            wide.block(simd, [fragments.x[0], fragments.y[0]]).into_iter().enumerate()
+        {
+            to.put(interpolation, lanes, 16 * pair, linear, by_w);
+        }
+        return;
+    }
+    for at in (0..fragments.len).step_by(16) {
+        let linear = wide.scattered(simd, &fragments.x[at..at + 16], &fragments.y[at..at + 16]);
+        to.put(interpolation, lanes, at, linear, by_w);
+    }
+}
+
+/// Numbers that fragments are shaded in.
+pub(crate) trait ShadingNumber: Light + Interpolated {}
+
+impl<T: Light + Interpolated> ShadingNumber for T {}
+
+#[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+mod tests {
+    use super::*;
+    use crate::screen::clip::ScreenVertex;
+    use crate::screen::coverage::Snapped;
+    use crate::simd::Kernel as _;
+
+    #[test]
+    fn wide_triangles_among_others_have_the_coordinates_that_they_have_alone() {
+        let level = Level::new();
+        let corner = |[x, y]: [i32; 2], inverse_w| {
+            ScreenVertex::placed(Snapped { x: x * 256, y: y * 256 }, 0.5, inverse_w)
+        };
+        let vertices = [
+            corner([0, 0], 0.5),
+            corner([64, 1], 0.25),
+            corner([3, 64], 0.125),
+            corner([-7, -1000], 0.75),
+            corner([1500, 700], 0.5),
+            corner([-2000, 900], 0.25),
+        ];
+        let attributes = TriangleAttributes::<f32>::of(level, &[[0, 1, 2], [3, 4, 5]], &vertices);
+        assert_eq!((attributes.cut, attributes.wide), (0, 0b10));
+        let wide = Triangle::on(attributes.grid, attributes.corners(1)).unwrap();
+        let word = |i: usize| 1 << 62 | u64::from(!u32::from(i % 5 > 2));
+        let mut fragments = Fragments::default();
+        fragments.list(level, &std::array::from_fn(word), [8, 16]);
+        let interpolation = Interpolation::Perspective;
+        let mut found = Barycentrics::default();
+        assert!(f32::find(interpolation, level, &fragments, &attributes, &mut found));
+        let mut linear = Barycentrics::default();
+        f32::find_linear(level, &fragments, &attributes, &mut linear);
+        for i in (0..fragments.len).filter(|i| fragments.slots[*i] == 1) {
+            let [second, third] = barycentric(&wide, [fragments.x[i], fragments.y[i]]);
+            (linear.linear[0][i], linear.linear[1][i]) = (second as f32, third as f32);
+        }
+        assert!(found.linear == linear.linear);
+        let (fragments, attributes) = (&fragments, &attributes);
+        let all = Weigh::<f32, 1> { interpolation, fragments, attributes, to: &mut linear };
+        dispatch!(level, simd => all.run(Sixteen(simd)));
+        assert!(found.weights == linear.weights && found.w == linear.w);
+    }
+}

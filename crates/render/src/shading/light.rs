@@ -1,0 +1,463 @@
+//! Lighting: per face (flat), per vertex (Gouraud), and of batches of pixels (Phong).
+//!
+//! Vertices are lit when the first pixel needs one of them, in batches of neighbours, so back
+//! faces, hidden parts and anything outside of the picture are never lit. The light is the same
+//! whichever thread needs it first.
+
+use std::collections::BTreeSet;
+use std::sync::OnceLock;
+
+use fearless_simd::Level;
+use glam::{DMat3, DVec3};
+
+use super::interpolated::ShadingNumber;
+use super::shadows::{BatchShadows, place_vertices};
+use super::triangle_attributes::TriangleAttributes;
+use crate::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
+use crate::frame::{Eye, FramePlan};
+use crate::lights::{Batch, LightTerm, Together, load, set, store};
+use crate::plan::tile::TileLight;
+use crate::shadow::rays::{Origins, RayScratch};
+use crate::shadow::tracer::Tracer;
+use crate::simd::{Kernel, Lanes, Number, Real, Vec3};
+use marraztu_core::accuracy::{LightAt, Normalising};
+use marraztu_core::base::math::each;
+use marraztu_core::scene::{Facet, Normals, dvec3};
+
+/// Light at the vertices of a frame, and the transforms that lighting faces needs.
+#[derive(Debug, Default)]
+pub(crate) struct Lit<T> {
+    tables: Vec<Table<T>>,
+    /// How many of the tables belong to this frame.
+    used: usize,
+    /// The transform of each draw to view space.
+    to_view: Vec<ToView<T>>,
+}
+
+/// The number of vertices that are lit together: few enough that most of them are needed.
+const CHUNK: usize = 64;
+
+/// The light of some vertices.
+type Lights<T> = [[T; 4]; CHUNK];
+
+/// The light on one side of one draw by one pipeline, at its points or, with face normals, at its
+/// corners.
+#[derive(Debug, Default)]
+pub(crate) struct Table<T> {
+    draw: u32,
+    pipeline: u32,
+    /// The transform to view space, with the normals of this side.
+    to_view: Option<ToView<T>>,
+    /// The tint t, if the table holds final colours t D + S instead of light.
+    tint: Option<[T; 3]>,
+    /// Diffuse light D; if `specular` is empty, final colours.
+    diffuse: Vec<OnceLock<Lights<T>>>,
+    /// Specular light S, set together with diffuse light.
+    specular: Vec<OnceLock<Lights<T>>>,
+}
+
+impl<T: ShadingNumber> Lit<T> {
+    /// Prepares tables for everything that the plan lights at vertices.
+    pub(crate) fn prepare(&mut self, plan: &FramePlan) {
+        self.to_view.clear();
+        self.to_view.extend(plan.draws.iter().map(|draw| ToView::new(plan, draw)));
+        self.used = 0;
+        if plan.light_at != LightAt::Vertex {
+            return;
+        }
+        for (i, draw) in (0_u32..).zip(&plan.draws) {
+            let own: BTreeSet<u32> = draw.part_pipelines.iter().flatten().copied().collect();
+            for pipeline in own {
+                let Pipeline::Shaded(shaded) = &plan.pipelines[pipeline as usize] else { continue };
+                if shaded.light.is_none() {
+                    continue;
+                }
+                for back in [false, true] {
+                    if back && draw.back != Back::Lit {
+                        continue;
+                    }
+                    if self.used == self.tables.len() {
+                        self.tables.push(Table::default());
+                    }
+                    let table = &mut self.tables[self.used];
+                    (table.draw, table.pipeline) = (i, pipeline);
+                    self.used += 1;
+                    table.to_view = Some(self.to_view[i as usize].seen_from(back));
+                    table.clear(draw, shaded);
+                }
+            }
+        }
+    }
+
+    /// The light of a draw by a pipeline, on the front and on the back; both are the same if only
+    /// one side is lit.
+    pub(crate) fn tables(&self, draw: u32, pipeline: u32) -> [&Table<T>; 2] {
+        // They were prepared in this order.
+        let of = |table: &Table<T>| (table.draw, table.pipeline);
+        let tables = &self.tables[..self.used];
+        let first = tables.partition_point(|table| of(table) < (draw, pipeline));
+        let mut own = tables[first..].iter().take_while(|table| of(table) == (draw, pipeline));
+        let front = own.next().expect("what is lit at vertices was made ready");
+        [front, own.next().unwrap_or(front)]
+    }
+
+    /// Fills a batch with the centres and the normals of some faces of a draw, in view space.
+    pub(crate) fn place_faces(
+        &self,
+        level: Level,
+        (index, draw): (u32, &Draw),
+        attributes: &TriangleAttributes<T>,
+        batch: &mut Batch<T>,
+    ) {
+        let mesh = &draw.model.mesh;
+        let facets = mesh.facets();
+        for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
+            let Facet { centre, normal } = facets[mesh.polygon_of(*number) as usize];
+            let turn =
+                if attributes.back >> slot & 1 == 1 && draw.back == Back::Lit { -1.0 } else { 1.0 };
+            put(batch, slot, centre, normal.map(|x| x * turn));
+        }
+        let to_view = self.to_view[index as usize];
+        T::run_variant(level, to_view.variant, Place { batch, to_view });
+    }
+}
+
+/// Writes a position and a normal of object space into a batch.
+#[inline(always)]
+fn put<T: Number>(batch: &mut Batch<T>, i: usize, position: [f32; 3], normal: [f32; 3]) {
+    for axis in 0..3 {
+        batch.position[axis][i] = T::from_f64(f64::from(position[axis]));
+        batch.normal[axis][i] = T::from_f64(f64::from(normal[axis]));
+    }
+}
+
+/// What lighting the vertices of a draw reads.
+#[derive(Debug)]
+pub(crate) struct Lighting<'a, T> {
+    pub(crate) level: Level,
+    pub(crate) draw: &'a Draw,
+    pub(crate) stages: &'a [Stage],
+    pub(crate) terms: &'a [LightTerm<T>],
+    /// What casts shadows on the draw, and the caster that it is itself.
+    pub(crate) tracer: Option<(&'a Tracer<'a>, u32)>,
+}
+
+impl<T: ShadingNumber> Table<T> {
+    /// Whether the table holds final colours instead of light.
+    pub(crate) const fn is_colored(&self) -> bool {
+        self.tint.is_some()
+    }
+
+    /// Clears the table for a draw.
+    fn clear(&mut self, draw: &Draw, shaded: &Shaded) {
+        let count = place_count(draw).div_ceil(CHUNK);
+        let colored =
+            shaded.texture.is_none() && !shaded.vertex_colors && !shaded.extras.reads_texels();
+        self.tint = colored.then(|| shaded.tint.map(T::from_f64));
+        self.diffuse.clear();
+        self.diffuse.resize_with(count, OnceLock::new);
+        self.specular.clear();
+        self.specular.resize_with(if colored { 0 } else { count }, OnceLock::new);
+    }
+
+    /// The diffuse light or final colour of a vertex, which is lit in `batch` if it was not yet.
+    #[inline(always)]
+    pub(crate) fn diffuse(
+        &self,
+        place: u32,
+        lighting: &Lighting<'_, T>,
+        (batch, scratch): (&mut Batch<T>, &mut RayScratch),
+    ) -> [T; 4] {
+        let (chunk, at) = (place as usize / CHUNK, place as usize % CHUNK);
+        match self.diffuse[chunk].get() {
+            Some(lights) => lights[at],
+            None => self.light(chunk, lighting, (batch, scratch))[at],
+        }
+    }
+
+    /// The specular light of a vertex whose diffuse light was read before.
+    #[inline(always)]
+    pub(crate) fn specular(&self, place: u32) -> [T; 4] {
+        let lights = self.specular[place as usize / CHUNK].get();
+        lights.expect("it comes with diffuse light")[place as usize % CHUNK]
+    }
+
+    /// Lights a batch of vertices, unless another thread does.
+    #[cold]
+    #[inline(never)]
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "what lights a batch has other threads do nothing"
+    )]
+    fn light(
+        &self,
+        chunk: usize,
+        lighting: &Lighting<'_, T>,
+        (batch, scratch): (&mut Batch<T>, &mut RayScratch),
+    ) -> &Lights<T> {
+        let Lighting { level, draw, stages, terms, tracer } = *lighting;
+        let to_view = self.to_view.expect("it was made ready");
+        self.diffuse[chunk].get_or_init(|| {
+            put_places(draw, chunk * CHUNK, batch);
+            let (positions, count) = (tracer.map(|_| batch.position), batch.len);
+            T::run_variant(level, to_view.variant, Place { batch, to_view });
+            let mut place = |origins: &mut Origins| {
+                if let (Some(tracer), Some(positions)) = (tracer, &positions) {
+                    place_vertices(tracer, positions, count, origins);
+                }
+            };
+            let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, scratch, &mut place));
+            run(stages, terms, level, batch, shadows);
+            let mut diffuse = [[T::default(); 4]; CHUNK];
+            let mut specular = [[T::default(); 4]; CHUNK];
+            let (tint, batch) = (self.tint, &*batch);
+            T::run(level, Keep { batch, tint, to: [&mut diffuse, &mut specular] });
+            if let Some(place) = self.specular.get(chunk) {
+                // The thread that initializes diffuse light is the only one here.
+                place.get_or_init(|| specular);
+            }
+            diffuse
+        })
+    }
+}
+
+/// The number of vertices of a draw that are lit: its points or, with face normals, its corners.
+fn place_count(draw: &Draw) -> usize {
+    let mesh = &draw.model.mesh;
+    match draw.normals {
+        Normals::Vertex => mesh.draw_order().points(draw.normal_source).normals.len(),
+        Normals::Face => mesh.corners().len(),
+    }
+}
+
+/// Fills a batch with vertices of a draw, from `first` on.
+fn put_places<T: Number>(draw: &Draw, first: usize, batch: &mut Batch<T>) {
+    let mesh = &draw.model.mesh;
+    batch.len = (place_count(draw) - first).min(CHUNK);
+    match draw.normals {
+        Normals::Vertex => {
+            let order = mesh.draw_order();
+            let points = order.points(draw.normal_source);
+            let own = first..first + batch.len;
+            let normals = &points.normals[own.clone()];
+            let number = |x: f32| T::from_f64(f64::from(x));
+            for (to, from) in batch.position.iter_mut().zip([&order.x, &order.y, &order.z]) {
+                if points.vertices.is_empty() {
+                    to.iter_mut().zip(&from[own.clone()]).for_each(|(to, x)| *to = number(*x));
+                } else {
+                    let vertices = &points.vertices[own.clone()];
+                    let places = to.iter_mut().zip(vertices);
+                    places.for_each(|(to, vertex)| *to = number(from[*vertex as usize]));
+                }
+            }
+            let [x, y, z] = &mut batch.normal;
+            for (((x, y), z), normal) in x.iter_mut().zip(y).zip(z).zip(normals) {
+                [*x, *y, *z] = each(*normal, |n| T::from_f64(f64::from(n)));
+            }
+        }
+        Normals::Face => {
+            let mut polygon = polygon_of_corner(draw, first);
+            for i in 0..batch.len {
+                while !mesh.corners_of(polygon).contains(&(first + i)) {
+                    polygon += 1;
+                }
+                let position = mesh.corners()[first + i].position as usize;
+                put(batch, i, mesh.positions()[position], mesh.polygon_normals()[polygon as usize]);
+            }
+        }
+    }
+}
+
+/// The polygon that a corner belongs to.
+fn polygon_of_corner(draw: &Draw, corner: usize) -> u32 {
+    let mesh = &draw.model.mesh;
+    let (mut low, mut high) =
+        (0, u32::try_from(mesh.polygon_count()).expect("polygons have 32-bit numbers"));
+    while high - low > 1 {
+        let middle = low.midpoint(high);
+        if mesh.corners_of(middle).start <= corner { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// Stores the light of a batch: D and S, or with a `tint` t the final colour t D + S in place of D.
+struct Keep<'a, T> {
+    batch: &'a Batch<T>,
+    tint: Option<[T; 3]>,
+    to: [&'a mut Lights<T>; 2],
+}
+
+impl<T: Number> Kernel<T> for Keep<'_, T> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { batch, tint, to: [diffuse, specular] } = self;
+        let zero = lanes.lift(0.0);
+        for at in (0..batch.len).step_by(M::LANES) {
+            let Vec3([r, g, b]) = load(lanes, &batch.diffuse, at);
+            let s = load(lanes, &batch.specular, at);
+            if let Some(tint) = tint {
+                let Vec3([tr, tg, tb]) = set(lanes, tint);
+                let Vec3([r, g, b]) = Vec3([tr * r, tg * g, tb * b]).plus(s);
+                lanes.store_four([r, g, b, zero], diffuse, at);
+            } else {
+                let Vec3([sr, sg, sb]) = s;
+                lanes.store_four([r, g, b, zero], diffuse, at);
+                lanes.store_four([sr, sg, sb, zero], specular, at);
+            }
+        }
+    }
+}
+
+/// The largest distance at which a vertex is lit, in units of view space.
+const FARTHEST: f64 = 1e15;
+
+/// The transform from object space to view space. Positions are first moved near the origin, so
+/// that f32 keeps their digits.
+#[derive(Clone, Copy, Debug)]
+struct ToView<T> {
+    middle: [T; 3],
+    middle_in_view: [T; 3],
+    linear: [[T; 3]; 3],
+    normals: [[T; 3]; 3],
+    eye: Eye,
+    /// The variant of roots, if it is not the default.
+    variant: Option<Normalising>,
+}
+
+impl<T: Number> ToView<T> {
+    fn new(plan: &FramePlan, draw: &Draw) -> Self {
+        let middle = near_observer(draw);
+        let numbers = |v: DVec3| v.to_array().map(T::from_f64);
+        let columns = |m: DMat3| [m.x_axis, m.y_axis, m.z_axis].map(numbers);
+        Self {
+            middle: numbers(middle),
+            middle_in_view: numbers(draw.view_from_object.transform_point3(middle)),
+            linear: columns(DMat3::from_mat4(draw.view_from_object)),
+            normals: columns(draw.view_from_normal),
+            eye: plan.eye,
+            variant: plan.variants.root_variant(),
+        }
+    }
+
+    /// The transform for one side of the surface.
+    fn seen_from(self, back: bool) -> Self {
+        let normals =
+            if back { self.normals.map(|column| column.map(|x| -x)) } else { self.normals };
+        Self { normals, ..self }
+    }
+}
+
+/// The point of a mesh's bounds that is nearest to the observer, in object space. Visible parts are
+/// near it, wherever the mesh has its origin and however large it is.
+///
+/// Its coordinates are f32 numbers, so that subtracting it is exact near to it.
+fn near_observer(draw: &Draw) -> DVec3 {
+    let Some(bounds) = draw.model.mesh.bounds() else { return DVec3::ZERO };
+    let observer = draw.view_from_object.inverse().w_axis.truncate();
+    let near = if observer.is_finite() { bounds.nearest_to(observer) } else { bounds.centre() };
+    dvec3(near.as_vec3().to_array())
+}
+
+/// Multiplies vectors by a matrix, which is given by its columns.
+#[inline(always)]
+fn turned<M: Lanes>(
+    lanes: M,
+    [a, b, c]: [[M::Number; 3]; 3],
+    Vec3([x, y, z]): Vec3<M::R>,
+) -> Vec3<M::R> {
+    let (a, b, c) = (set(lanes, a), set(lanes, b), set(lanes, c));
+    a.times(x).plus(b.times(y)).plus(c.times(z))
+}
+
+/// Transforms a batch from object space to view space.
+struct Place<'a, T> {
+    batch: &'a mut Batch<T>,
+    to_view: ToView<T>,
+}
+
+impl<T: Number> Kernel<T> for Place<'_, T> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { batch, to_view } = self;
+        let (middle, origin) = (set(lanes, to_view.middle), set(lanes, to_view.middle_in_view));
+        for at in (0..batch.len).step_by(M::LANES) {
+            let near = load(lanes, &batch.position, at).minus(middle);
+            // Positions far beyond the view are clamped, so that the square of their distance to a
+            // light is finite.
+            let (low, high) = (lanes.lift(-FARTHEST), lanes.lift(FARTHEST));
+            let clamped = |x: M::R| Real::min(Real::max(x, low), high);
+            let [x, y, z] = turned(lanes, to_view.linear, near).plus(origin).0;
+            let position = Vec3([clamped(x), clamped(y), clamped(z)]);
+            let normal = turned(lanes, to_view.normals, load(lanes, &batch.normal, at)).unit();
+            let zero = lanes.lift(0.0);
+            let to_eye = match to_view.eye {
+                Eye::Point => Vec3([zero, zero, zero]).minus(position).unit(),
+                Eye::Parallel => Vec3([zero, zero, lanes.lift(1.0)]),
+            };
+            store(lanes, position, &mut batch.position, at);
+            store(lanes, normal, &mut batch.normal, at);
+            store(lanes, to_eye, &mut batch.to_eye, at);
+        }
+    }
+}
+
+/// Sets the light at every position of a batch to that of the stages which it sees.
+pub(crate) fn run<T: ShadingNumber>(
+    stages: &[Stage],
+    terms: &[LightTerm<T>],
+    level: Level,
+    batch: &mut Batch<T>,
+    shadows: Option<BatchShadows<'_>>,
+) {
+    let Some(mut shadows) = shadows else {
+        return set_lights(stages.iter().zip(terms), level, batch);
+    };
+    batch.darken();
+    for (stage, term) in stages.iter().zip(terms) {
+        shadows.add_light(stage, term, level, batch);
+    }
+}
+
+impl TileLight<'_> {
+    /// Sets the light at every position of a batch to that which reaches the tile and is seen
+    /// there.
+    pub(crate) fn light_batch<T: ShadingNumber>(
+        &self,
+        terms: &[LightTerm<T>],
+        level: Level,
+        batch: &mut Batch<T>,
+        mut shadows: Option<BatchShadows<'_>>,
+    ) {
+        let Some(kept) = self.kept else {
+            return run(self.stages, terms, level, batch, shadows);
+        };
+        let kept =
+            kept.iter().map(|place| (&self.stages[*place as usize], &terms[*place as usize]));
+        match &mut shadows {
+            None => set_lights(kept, level, batch),
+            Some(shadows) => {
+                batch.darken();
+                kept.for_each(|(stage, term)| shadows.add_light(stage, term, level, batch));
+            }
+        }
+    }
+}
+
+/// Sets the light at every position of a batch to that of some stages.
+fn set_lights<'a, T: ShadingNumber>(
+    lights: impl Iterator<Item = (&'a Stage, &'a LightTerm<T>)> + Clone,
+    level: Level,
+    batch: &mut Batch<T>,
+) {
+    let is_usual = |(stage, term): (&Stage, &LightTerm<T>)| !stage.is_mapped && term.is_usual();
+    if lights.clone().all(is_usual) {
+        let lights = lights.map(
+            #[inline(always)]
+            |(stage, term)| (stage.effect.which, stage.highlight, term),
+        );
+        T::run(level, Together { batch, lights });
+    } else {
+        batch.darken();
+        lights.for_each(|(stage, term)| T::add_light(stage.variant(), level, batch, term));
+    }
+}

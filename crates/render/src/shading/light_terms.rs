@@ -1,0 +1,125 @@
+//! Prepares a plan for shading: light terms in the shading arithmetic, tables of powers, and mip
+//! maps. Those of the last picture are reused.
+
+use super::colors::prepare_linear;
+use super::rounding::block_thresholds;
+use crate::frame::FramePlan;
+use crate::frame::draw::{Pipeline, Shaded};
+use crate::frame::variants::Decoding;
+use crate::lights::{LightTerm, PhongMaterial};
+use crate::raster::hit_colors::Conversion;
+use crate::screen::tiles::BLOCK_PIXELS;
+use crate::simd::power::{Power, Tables};
+use crate::simd::{Encoding, Number};
+use crate::texture::lanes::prepare_decoding;
+use crate::texture::mips::Mips;
+use marraztu_core::accuracy::{Filter, Rounding};
+use marraztu_core::base::Shared;
+use marraztu_core::scene::Texture;
+
+/// The light terms of each pipeline, in the order of its stages.
+#[derive(Debug, Default)]
+pub(crate) struct LightTerms<T> {
+    terms: Vec<Vec<LightTerm<T>>>,
+    tables: Tables,
+    /// Mip maps, if the filter needs them.
+    mips: Vec<Mips>,
+    /// The rounding thresholds of a block's pixels.
+    thresholds: Option<(Rounding, [f32; BLOCK_PIXELS])>,
+    /// How colours are encoded, if they are linear.
+    encoding: Option<Encoding>,
+}
+
+impl<T> LightTerms<T> {
+    /// The rounding thresholds of a block's pixels; only after [`prepare`](Self::prepare).
+    pub(crate) fn thresholds(&self) -> &[f32; BLOCK_PIXELS] {
+        self.thresholds.as_ref().map_or(&[0.5; BLOCK_PIXELS], |(_, thresholds)| thresholds)
+    }
+}
+
+impl<T: Number> LightTerms<T> {
+    /// Prepares the light terms and mip maps of a plan.
+    pub(crate) fn prepare(&mut self, plan: &FramePlan) {
+        self.encoding = plan.variants.are_linear().then(Encoding::new);
+        if self.encoding.is_some() {
+            prepare_decoding();
+            prepare_linear();
+        }
+        self.prepare_mips(plan);
+        let rounding = plan.variants.rounding;
+        if self.thresholds.is_none_or(|(known, _)| known != rounding) {
+            self.thresholds = Some((rounding, block_thresholds(rounding)));
+        }
+        self.terms.resize_with(plan.pipelines.len(), Vec::new);
+        for (terms, pipeline) in self.terms.iter_mut().zip(&plan.pipelines) {
+            terms.clear();
+            if let Pipeline::Shaded(Shaded { light: Some(stages), material, .. }) = pipeline {
+                let PhongMaterial { exponent, floor, .. } = *material;
+                let highlight = Power::by(plan.variants.power, exponent, floor, &mut self.tables);
+                let lights = stages.iter().map(|stage| &plan.lights[stage.light as usize]);
+                let variant = plan.variants.light_variant::<T>();
+                terms.extend(
+                    lights.map(|light| LightTerm::by(variant, light, material, &highlight)),
+                );
+            }
+        }
+    }
+
+    /// Prepares mip maps, and reuses those of the last picture.
+    fn prepare_mips(&mut self, plan: &FramePlan) {
+        let before = std::mem::take(&mut self.mips);
+        let mut before: Vec<Option<Mips>> = before.into_iter().map(Some).collect();
+        for pipeline in &plan.pipelines {
+            let Pipeline::Shaded(shaded) = pipeline else { continue };
+            for (texture, decoding) in mipped(plan, shaded) {
+                if self.mips_of(texture, decoding).is_none() {
+                    let is_it = |mips: &&mut Option<Mips>| {
+                        mips.as_ref().is_some_and(|mips| mips.are_of(texture, decoding))
+                    };
+                    let known = before.iter_mut().find(is_it).and_then(Option::take);
+                    self.mips.push(known.unwrap_or_else(|| Mips::new(texture, decoding)));
+                }
+            }
+        }
+    }
+
+    /// The mip maps of a texture, if the filter needs them.
+    pub(crate) fn mips_of(&self, texture: &Shared<Texture>, decoding: Decoding) -> Option<&Mips> {
+        self.mips.iter().find(|mips| mips.are_of(texture, decoding))
+    }
+
+    /// How interpolated colours become bytes.
+    pub(crate) fn conversion(&self, plan: &FramePlan) -> Conversion<'_> {
+        Conversion {
+            interpolation: plan.variants.interpolation,
+            thresholds: self.thresholds(),
+            encoding: self.encoding(),
+        }
+    }
+
+    /// How colours are encoded, if they are linear.
+    pub(crate) const fn encoding(&self) -> Option<&Encoding> {
+        self.encoding.as_ref()
+    }
+
+    /// The light terms of a pipeline.
+    pub(crate) fn of(&self, pipeline: u32) -> &[LightTerm<T>] {
+        &self.terms[pipeline as usize]
+    }
+}
+
+/// The textures of a surface that are read from mip maps, and how these are averaged.
+fn mipped<'a>(
+    plan: &FramePlan,
+    shaded: &'a Shaded,
+) -> impl Iterator<Item = (&'a Shared<Texture>, Decoding)> {
+    let extras = &shaded.extras;
+    let decoding = plan.variants.decoding();
+    let colors = shaded.texture.iter().chain(extras.colors()).map(move |it| (it, decoding));
+    let numbers = extras.exponent.iter().map(|it| (it, Decoding::Stored));
+    let bumps = extras.bump.iter().map(|bump| (&bump.map, Decoding::Stored));
+    let filtered = plan.filter == Filter::Trilinear;
+    let bumps_filtered = plan.variants.bump_filter() == Filter::Trilinear;
+    let of_frame = colors.chain(numbers).filter(move |_| filtered);
+    of_frame.chain(bumps.filter(move |_| bumps_filtered))
+}

@@ -1,0 +1,143 @@
+//! The points of triangles at which fragments are lit, in world space: rays of shadows begin there.
+//!
+//! They are computed in f64 from whole edge functions, in either arithmetic, and lie inside their
+//! triangles: see [`INSIDE`]. On request they are lifted to the surface that vertex normals
+//! suggest: see [`lift`].
+
+use glam::{DMat3, DVec3};
+
+use super::barycentrics::Barycentrics;
+use super::context::ShadingContext;
+use super::fragments::Fragments;
+use super::groups::Group;
+use super::interpolated::ShadingNumber;
+use super::triangle_attributes::TriangleAttributes;
+use crate::frame::draw::Draw;
+use crate::screen::weights::Weights;
+use crate::shadow::rays::Origins;
+use crate::shadow::tracer::Tracer;
+use crate::shadow::triangle::Corners;
+use marraztu_core::accuracy::Terminator;
+use marraztu_core::base::math::{each, normal_matrix, unit};
+use marraztu_core::scene::{Normals, dvec3};
+
+/// Sets the points at which fragments are lit.
+pub(crate) fn place_fragments<T: ShadingNumber>(
+    context: &ShadingContext<'_, T>,
+    (tracer, caster): (&Tracer<'_>, u32),
+    group: &Group<'_>,
+    (fragments, attributes): (&Fragments, &TriangleAttributes<T>),
+    barycentrics: &Barycentrics<T>,
+    origins: &mut Origins,
+) {
+    let ShadingContext { plan, frame, .. } = *context;
+    origins.begin(Some(caster), true);
+    let vertices = frame.corners_of(group.draw_index);
+    let is_smooth = plan.variants.terminator == Terminator::Smooth;
+    let smooth = is_smooth && group.draw.normals == Normals::Vertex;
+    let (mut last, mut known) = (usize::MAX, None);
+    for i in 0..fragments.len {
+        let slot = fragments.slots[i].cast_unsigned() as usize;
+        let number = attributes.numbers[slot];
+        if slot != last {
+            last = slot;
+            let corners = tracer.corners_of(caster, number);
+            let reach = corners.iter().fold(0.0, |most: f64, c| most.max(c.abs().max_element()));
+            origins.reach = origins.reach.max(reach);
+            let normals = smooth.then(|| {
+                let turn = if attributes.back >> slot & 1 == 1 { -1.0 } else { 1.0 };
+                each(normals_of(group.draw, tracer, caster, number), |normal| normal * turn)
+            });
+            let weights = Weights::new(plan, group.draw, vertices, number, [0; 2]);
+            known = Some((corners, normals, weights));
+        }
+        let Some((corners, normals, weights)) = &known else { continue };
+        let at_centre = weights.at([fragments.x[i], fragments.y[i]]);
+        // Lit at the centre of its pixel, unless that is outside of the triangle.
+        let is_inside = at_centre.min_element() >= 0.0;
+        let weights =
+            if is_inside || !fragments.shared { at_centre } else { barycentrics.weights(i) };
+        let [y, z] = shares(weights);
+        let at = within(corners, [y, z]);
+        origins.set(i, at, [number, number + 1]);
+        if let Some(normals) = normals {
+            let lift = lift(corners, normals, [1.0 - y - z, y, z], at);
+            if lift != DVec3::ZERO {
+                origins.lift(i, at + lift);
+            }
+        }
+    }
+}
+
+/// The normals of a triangle's corners in world space, of length 1.
+fn normals_of(draw: &Draw, tracer: &Tracer<'_>, caster: u32, number: u32) -> [DVec3; 3] {
+    let order = draw.model.mesh.draw_order();
+    let points = order.points(draw.normal_source);
+    let to_world = normal_matrix(DMat3::from_mat4(tracer.placement(caster)));
+    each(points.of(order, number, order.vertices_of(number)), |point| {
+        unit(to_world * dvec3(points.normals[point as usize])).unwrap_or(DVec3::ZERO)
+    })
+}
+
+/// How far a point of a triangle is below the curved surface that the normals N of its corners V
+/// suggest: sum of w max(0, (V - P) . N) N, with the weights w. No point is moved inwards.
+///
+/// Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, chapter 4.
+fn lift(corners: &Corners, normals: &[DVec3; 3], weights: [f64; 3], p: DVec3) -> DVec3 {
+    let mut lift = DVec3::ZERO;
+    for ((corner, normal), weight) in corners.iter().zip(normals).zip(weights) {
+        lift += *normal * (weight * (*corner - p).dot(*normal).max(0.0));
+    }
+    lift
+}
+
+/// The least weight of a corner. A point on an edge may be rounded to either side of the face
+/// beyond it, which would then shade the point; a millionth of the triangle inwards, it is on the
+/// right side of all faces that share the edge.
+const INSIDE: f64 = 1e-6;
+
+/// The weights of the second and third corner, clamped with that of the first. NaN is clamped, too.
+fn shares(weights: DVec3) -> [f64; 2] {
+    let [x, y, z] = each(weights.to_array(), |weight| weight.max(INSIDE));
+    let sum = x + y + z;
+    if sum.is_finite() { [y / sum, z / sum] } else { [1.0 / 3.0; 2] }
+}
+
+/// The point of a triangle with these weights of its second and third corner.
+fn within([a, b, c]: &Corners, [y, z]: [f64; 2]) -> DVec3 {
+    *a + (*b - *a) * y + (*c - *a) * z
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_on_edges_and_beyond_them_are_moved_inwards_and_others_are_not() {
+        let corners = [DVec3::ZERO, DVec3::X * 3.0, DVec3::Y * 3.0];
+        let within = |weights| within(&corners, shares(weights));
+        let inner = DVec3::new(0.5, 0.25, 0.25);
+        assert_eq!(within(inner), DVec3::new(0.75, 0.75, 0.0));
+        for weights in [[0.5, 0.5, 0.0], [1.0, 0.0, 0.0], [-0.1, 0.6, 0.5], [f64::NAN, 0.5, 0.5]] {
+            let DVec3 { x, y, .. } = within(DVec3::from_array(weights));
+            assert!(x.min(y).min(3.0 - x - y) > 1e-6, "{weights:?}: {x}, {y}");
+        }
+        let far = DVec3::new(f64::INFINITY, 0.0, 0.0);
+        assert_eq!(within(far), DVec3::new(1.0, 1.0, 0.0));
+    }
+
+    #[test]
+    fn points_are_lifted_towards_the_surface_of_a_ball_and_never_into_a_bowl() {
+        let corners = [DVec3::X, DVec3::Y, DVec3::Z];
+        let middle = DVec3::splat(1.0 / 3.0);
+        let third = [1.0 / 3.0; 3];
+        let lifted = middle + lift(&corners, &corners, third, middle);
+        // One third of (1 - 1/3) along each normal.
+        assert!((lifted - DVec3::splat(1.0 / 3.0 + 2.0 / 9.0)).length() < 1e-15, "{lifted}");
+        assert!(middle.length() < lifted.length() && lifted.length() < 1.0);
+        let bowl = each(corners, |normal| -normal);
+        assert_eq!(lift(&corners, &bowl, third, middle), DVec3::ZERO);
+        let at_corner = lift(&corners, &corners, [1.0, 0.0, 0.0], DVec3::X);
+        assert_eq!(at_corner, DVec3::ZERO, "corners stay where they are");
+    }
+}

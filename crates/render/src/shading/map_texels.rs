@@ -1,0 +1,256 @@
+//! The texels of maps on fragments: sixteen pixels at a time, or one by one if that cannot be.
+
+use fearless_simd::dispatch;
+
+use super::barycentrics::Barycentrics;
+use super::context::ShadingContext;
+use super::far_texture::FarTexture;
+use super::fragments::Fragments;
+use super::groups::Group;
+use super::interpolated::ShadingNumber;
+use super::texels::{PlacedTexture, TexelScratch, TextureSamples, footprint, steps};
+use super::triangle_attributes::{TriangleAttributes, asks_ahead};
+use crate::frame::variants::Decoding;
+use crate::lights::Rows;
+use crate::screen::weights::HomogeneousWeights;
+use crate::simd::gather::SLOTS;
+use crate::simd::{Number, Vec3};
+use crate::texture::lanes::Sampler;
+use crate::texture::mips::Mips;
+use crate::texture::placement::{Placement, fits_f32, texels};
+use crate::texture::sample::{brightness, sample_as};
+use crate::texture::uv::{uv, uvs};
+use marraztu_core::accuracy::Filter;
+use marraztu_core::base::Shared;
+use marraztu_core::base::math::each;
+use marraztu_core::scene::Texture;
+
+/// A texture, and how its texels are read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TexelSource<'a> {
+    texture: &'a Texture,
+    mips: Option<&'a Mips>,
+    filter: Filter,
+    decoding: Decoding,
+}
+
+impl<'a> TexelSource<'a> {
+    /// A picture of colours, by the filter of the frame.
+    pub(super) fn of_colors<T: Number>(
+        context: &ShadingContext<'a, T>,
+        texture: &'a Shared<Texture>,
+    ) -> Self {
+        let decoding = context.plan.variants.decoding();
+        let mips = context.terms.mips_of(texture, decoding);
+        Self { texture, mips, filter: context.plan.filter, decoding }
+    }
+
+    /// A picture of numbers, which is never decoded, by the filter of the frame.
+    pub(super) fn of_numbers<T: Number>(
+        context: &ShadingContext<'a, T>,
+        texture: &'a Shared<Texture>,
+    ) -> Self {
+        let mips = context.terms.mips_of(texture, Decoding::Stored);
+        Self { texture, mips, filter: context.plan.filter, decoding: Decoding::Stored }
+    }
+
+    /// A picture of heights or normals, by the filter of bumps.
+    pub(super) fn of_bumps<T: Number>(
+        context: &ShadingContext<'a, T>,
+        texture: &'a Shared<Texture>,
+    ) -> Self {
+        let filter = context.plan.variants.bump_filter();
+        Self { filter, ..Self::of_numbers(context, texture) }
+    }
+
+    /// How lanes sample it; `None` if they cannot.
+    pub(super) fn sampler(&self) -> Option<Sampler<'a>> {
+        let levels = self.mips.map_or(std::slice::from_ref(self.texture), Mips::levels);
+        Sampler::new(levels, self.filter)
+    }
+
+    /// Its texel at `uv`, and `beside` texels from there.
+    fn texel<T: ShadingNumber>(
+        &self,
+        (uv, beside): ([f64; 2], [f64; 2]),
+        footprint: impl FnOnce() -> [[f64; 2]; 2],
+    ) -> [T; 4] {
+        match self.mips {
+            Some(mips) if self.filter == Filter::Trilinear => {
+                mips.sample_beside(uv, beside, footprint())
+            }
+            _ => sample_as(self.texture, (uv, beside), self.filter, self.decoding),
+        }
+    }
+}
+
+/// Where a texture lies on the triangles of a list.
+#[derive(Debug, Default)]
+pub(crate) struct TexturePlacement {
+    pub(super) placement: Placement,
+    /// The triangles that f32 is not enough for.
+    pub(super) far: Vec<FarTexture>,
+    /// For reading it.
+    pub(super) scratch: TexelScratch,
+}
+
+/// What is read from a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Texels {
+    /// Red, green and blue, by which rows are multiplied.
+    Colors,
+    /// The slopes of heights along u and v, per texel, which replace the first two rows.
+    Slopes,
+}
+
+/// The fragments whose texels are read.
+pub(super) struct Points<'a, T> {
+    pub(super) fragments: &'a Fragments,
+    pub(super) attributes: &'a TriangleAttributes<T>,
+    pub(super) barycentrics: &'a Barycentrics<T>,
+}
+
+impl<T: ShadingNumber> Points<'_, T> {
+    /// Reads a map at all fragments: sixteen pixels at a time, and one by one if that cannot be
+    /// done. `base` is what rows of colours held before.
+    pub(super) fn read(
+        &self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        (source, what, new): (TexelSource<'_>, Texels, bool),
+        placed: &mut TexturePlacement,
+        (base, to): ([f64; 3], &mut Rows<T>),
+    ) {
+        let Self { fragments, attributes, barycentrics } = *self;
+        let mut done = 0;
+        if let Some(sampler) = source.sampler() {
+            if new {
+                place(context, group, attributes, (source.texture, &sampler), placed);
+            }
+            let TexturePlacement { placement, far, scratch } = placed;
+            let texture = PlacedTexture { placement, far, sampler: &sampler };
+            let to = (scratch, &mut *to);
+            let decoding = source.decoding;
+            let samples = TextureSamples { fragments, barycentrics, texture, decoding };
+            done = match what {
+                Texels::Colors => T::multiply_texels(context.level, attributes.count, &samples, to),
+                Texels::Slopes => T::find_slopes(context.level, attributes.count, &samples, to),
+            };
+        }
+        let slots = u64::MAX >> (SLOTS - attributes.count);
+        if done & slots != slots {
+            self.read_one_by_one(context, group, (source, what, done), (base, to));
+        }
+    }
+
+    /// Reads a map pixel by pixel, except for the triangles of the slots that are `done`.
+    fn read_one_by_one(
+        &self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        (source, what, done): (TexelSource<'_>, Texels, u64),
+        (base, to): ([f64; 3], &mut Rows<T>),
+    ) {
+        let plan = context.plan;
+        let Self { fragments, attributes, barycentrics } = *self;
+        let (mut corners, mut all_steps) = ([None; SLOTS], [None; SLOTS]);
+        for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
+            corners[slot] = uvs(group.draw, *number);
+            if source.mips.is_some() && done >> slot & 1 == 0 {
+                all_steps[slot] = steps((plan, group.draw), attributes, slot);
+            }
+        }
+        // Dispatched so that rounding down uses the processor's instruction, if it has one.
+        dispatch!(context.level, _ => for i in 0..fragments.len {
+            let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
+            if done >> slot & 1 == 1 {
+                continue;
+            }
+            // A surface without texture coordinates has no slopes.
+            let colors = what == Texels::Colors;
+            for (row, base) in to.iter_mut().zip(base) {
+                row[i] = T::from_f64(if colors { base } else { 0.0 });
+            }
+            let Some(corners) = corners[slot] else { continue };
+            let weights = barycentrics.weights(i);
+            let uv = uv(corners, weights);
+            let texel = |beside: [f64; 2]| -> [T; 4] {
+                source.texel((uv, beside), || {
+                    let steps = all_steps[slot].unwrap_or_default();
+                    footprint(corners, weights, barycentrics.w[i].into(), steps)
+                })
+            };
+            match what {
+                Texels::Colors => {
+                    for (row, part) in to.iter_mut().zip(texel([0.0; 2])) {
+                        row[i] = row[i] * part;
+                    }
+                }
+                Texels::Slopes => {
+                    let height = |beside: [f64; 2]| {
+                        let [r, g, b, _] = texel(beside);
+                        brightness(Vec3([r, g, b]))
+                    };
+                    let half = T::from_f64(0.5);
+                    to[0][i] = (height([1.0, 0.0]) - height([-1.0, 0.0])) * half;
+                    to[1][i] = (height([0.0, 1.0]) - height([0.0, -1.0])) * half;
+                }
+            }
+        });
+    }
+}
+
+/// Finds where a texture lies on the triangles of a list.
+pub(super) fn place<T: ShadingNumber>(
+    context: &ShadingContext<'_, T>,
+    group: &Group<'_>,
+    attributes: &TriangleAttributes<T>,
+    (texture, sampler): (&Texture, &Sampler<'_>),
+    TexturePlacement { placement, far, .. }: &mut TexturePlacement,
+) {
+    placement.clear();
+    far.clear();
+    let mesh = &group.draw.model.mesh;
+    let mut rows = [[[0.0; SLOTS]; 2]; 3];
+    let mut uv_places = [None; SLOTS];
+    let ahead = asks_ahead(attributes.count);
+    for (places, number) in uv_places.iter_mut().zip(&attributes.numbers[..attributes.count]) {
+        *places = mesh.uv_places(*number);
+        if let Some(places) = places.filter(|_| ahead) {
+            mesh.prefetch_uvs(places);
+        }
+    }
+    for (slot, places) in uv_places[..attributes.count].iter().enumerate() {
+        let own = places.and_then(|places| mesh.uvs_at(places));
+        placement.known |= u64::from(own.is_some()) << slot;
+        for (rows, [u, v]) in rows.iter_mut().zip(own.unwrap_or_default()) {
+            (rows[0][slot], rows[1][slot]) = (u, v);
+        }
+    }
+    let reads_mips = sampler.reads_mips();
+    let uvs = (&rows, reads_mips);
+    let done = T::place_texture(context.level, attributes, (texture, uvs), placement);
+    let mut others = placement.known & !done;
+    // Dispatched so that rounding down uses the processor's instruction, if it has one.
+    dispatch!(context.level, _ => while others != 0 {
+        let slot = others.trailing_zeros() as usize;
+        others &= others - 1;
+        let uvs = each([0, 1, 2], |corner| rows[corner].map(|row| f64::from(row[slot])));
+        let texels = texels(uvs, texture);
+        if !fits_f32(&texels) {
+            let Some(own) = FarTexture::new(slot, uvs, texture, || {
+                let number = attributes.numbers[slot];
+                HomogeneousWeights::new(context.plan, group.draw, number, [0; 2])
+            }) else {
+                placement.known &= !(1 << slot);
+                continue;
+            };
+            far.push(own);
+        }
+        let steps = match reads_mips {
+            true => steps((context.plan, group.draw), attributes, slot),
+            false => None,
+        };
+        placement.set(slot, texels, steps);
+    });
+}

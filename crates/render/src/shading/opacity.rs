@@ -1,0 +1,61 @@
+//! The opacity of fragments: of the material, times the alpha of the texture, times the map of
+//! opacity.
+
+use fearless_simd::dispatch;
+
+use super::context::ShadingContext;
+use super::groups::Group;
+use super::interpolated::ShadingNumber;
+use super::surface::Shader;
+use crate::frame::draw::{Pipeline, Shaded};
+use crate::simd::gather::SLOTS;
+use crate::simd::{BATCH, Vec3};
+use crate::texture::sample::{brightness, sample};
+use crate::texture::uv::{uv, uvs};
+use marraztu_core::accuracy::Filter;
+use marraztu_core::scene::Texture;
+
+impl<T: ShadingNumber> Shader<T> {
+    /// The opacity of each fragment of a group that was coloured; 1 for what is opaque.
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+    pub(super) fn opacities(
+        &self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+    ) -> [f32; BATCH] {
+        let Pipeline::Shaded(Shaded { opacity: Some(opacity), texture, opacity_map, .. }) =
+            &context.plan.pipelines[group.pipeline as usize]
+        else {
+            return [1.0; BATCH];
+        };
+        let mut opacities = [*opacity as f32; BATCH];
+        let texture = texture.as_ref().filter(|it| it.picture.least_alpha() < 255);
+        if texture.is_none() && opacity_map.is_none() {
+            return opacities;
+        }
+        let Self { fragments, attributes, barycentrics, .. } = self;
+        let mut corners = [None; SLOTS];
+        for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count]) {
+            *corners = uvs(group.draw, *number);
+        }
+        let filter = context.plan.filter;
+        let own = &mut opacities[..fragments.len];
+        // Dispatched so that rounding down uses the processor's instruction, if it has one.
+        dispatch!(context.level, _ => for (i, own) in own.iter_mut().enumerate() {
+            let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
+            if let Some(corners) = corners[slot] {
+                let uv = uv(corners, barycentrics.weights(i));
+                let alpha = texture.map_or(1.0, |it| sample::<f64>(it, uv, filter)[3]);
+                let mapped = opacity_map.as_ref().map_or(1.0, |it| of_map(it, uv, filter));
+                *own = (alpha * mapped * opacity) as f32;
+            }
+        });
+        opacities
+    }
+}
+
+/// The opacity of a map: its alpha or, if all of it is opaque, its brightness.
+fn of_map(map: &Texture, uv: [f64; 2], filter: Filter) -> f64 {
+    let [r, g, b, alpha] = sample::<f64>(map, uv, filter);
+    if map.picture.least_alpha() < 255 { alpha } else { brightness(Vec3([r, g, b])) }
+}

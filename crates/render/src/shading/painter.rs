@@ -1,0 +1,458 @@
+//! Paints tiles: visibility, shading, and the copy into the picture.
+//!
+//! Each thread keeps its painter from frame to frame, so a frame allocates and clears nothing for
+//! its tiles. A block that showed only background and still does is not touched.
+//!
+//! Tiles are painted into a buffer and copied. Stores to the picture miss the nearest cache, and
+//! what is computed in between has to wait for them: wherever it stores numbers one by one and
+//! loads them sixteen at a time, it cannot get them before earlier stores are done. A whole tile
+//! for which little is left to compute, since it was coloured when it was drawn or since many of
+//! its blocks are filled, is painted straight into the picture if no other thread works in its
+//! rows.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use super::colors::Sums;
+use super::context::ShadingContext;
+use super::full_blocks::{Blocks, Canvas};
+use super::interpolated::ShadingNumber;
+use super::kept::Kept;
+use super::layers::Layered;
+use super::resolve::Samples;
+use super::surface::{Out, Shader};
+use super::tiny_blocks::Tiny;
+use crate::frame::FramePlan;
+use crate::frame::draw::Pipeline;
+use crate::raster::tile::Visibility;
+use crate::screen::coverage::PixelBox;
+use crate::screen::sample_positions::{ALL, FOUR};
+use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
+use crate::shadow::rays::RayCount;
+use marraztu_core::accuracy::LightAt;
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::Size;
+
+/// The pixels of a tile; tiles are counted along rows.
+pub(crate) fn bounds_of(tile: usize, size: Size) -> PixelBox {
+    let [columns, _] = tiles_of(size);
+    let tile = i32::try_from(tile).expect("pictures have 32-bit sizes");
+    let (left, top) = (tile % columns * TILE, tile / columns * TILE);
+    let [right, bottom] = [size.width, size.height]
+        .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
+    let picture = PixelBox { left: 0, top: 0, right, bottom };
+    PixelBox { left, top, right: left + TILE, bottom: top + TILE }.intersection(picture)
+}
+
+/// The rows of pixels of a row of tiles.
+#[derive(Debug)]
+pub(crate) struct Band<'a> {
+    pub(crate) pixels: &'a mut [[u8; 4]],
+    /// For each of its tiles the blocks that are filled with one colour.
+    pub(crate) filled: &'a mut [Filled],
+}
+
+/// Blocks of a tile that are known to be filled with a colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Filled {
+    color: Color,
+    /// A bit for each.
+    blocks: u64,
+}
+
+impl Filled {
+    /// Those that are filled with this colour.
+    const fn with(self, Color([r, g, b]): Color) -> u64 {
+        let Color([own_r, own_g, own_b]) = self.color;
+        if own_r == r && own_g == g && own_b == b { self.blocks } else { 0 }
+    }
+}
+
+/// Locks a band for this thread.
+fn locked<'a, 'b>(band: &'a Mutex<Band<'b>>) -> MutexGuard<'a, Band<'b>> {
+    band.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Pixels to a side of a block.
+const ROW: usize = BLOCK as usize;
+/// Blocks in a row of a tile.
+const BLOCKS: usize = TILE_SIDE / ROW;
+
+/// The colours of a tile, added up over several passes.
+#[derive(Debug, Default)]
+pub(crate) struct TileSums(Mutex<TilePasses>);
+
+#[derive(Debug, Default)]
+struct TilePasses {
+    /// The samples of every pixel in passes that showed nothing but the background.
+    background: i32,
+    /// Block by block; empty until the tile shows something.
+    blocks: Vec<BlockPasses>,
+}
+
+#[derive(Clone, Debug)]
+struct BlockPasses {
+    sums: Sums,
+    kept: Kept,
+    /// The samples of every pixel that show the background and are not in the sums.
+    background: i32,
+}
+
+impl TileSums {
+    fn lock(&self) -> MutexGuard<'_, TilePasses> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl TilePasses {
+    /// The blocks, made if there are none yet.
+    fn blocks(&mut self, plan: &FramePlan) -> &mut [BlockPasses] {
+        let sums = Sums::new(plan.variants.are_linear());
+        let nothing = BlockPasses { sums, kept: Kept::default(), background: 0 };
+        self.blocks.resize(BLOCK_PIXELS, nothing);
+        &mut self.blocks
+    }
+}
+
+/// The first pixel of a block, by column and row of the tile.
+const fn corner_in_tile(block: usize) -> [usize; 2] {
+    [block % BLOCKS * ROW, block / BLOCKS * ROW]
+}
+
+/// Whether little is computed for a pixel: light and textures are not looked up for each.
+pub(crate) fn is_quick(plan: &FramePlan) -> bool {
+    let is_plain = |pipeline: &Pipeline| match pipeline {
+        Pipeline::Flat(_) => true,
+        Pipeline::Shaded(shaded) => shaded.texture.is_none() && !shaded.extras.reads_texels(),
+    };
+    matches!(plan.light_at, LightAt::Face | LightAt::Vertex) && plan.pipelines.iter().all(is_plain)
+}
+
+/// Draws one tile after another. It is aligned, so that no two painters share a cache line.
+#[derive(Debug)]
+#[repr(align(128))]
+pub(crate) struct Painter<T> {
+    shader: Shader<T>,
+    visibility: Visibility,
+    layered: Layered,
+    samples: Samples,
+    /// A buffer for a tile that is not painted straight into the picture.
+    pixels: Vec<[u8; 4]>,
+}
+
+impl<T: ShadingNumber> Default for Painter<T> {
+    fn default() -> Self {
+        Self {
+            shader: Shader::default(),
+            visibility: Visibility::default(),
+            layered: Layered::default(),
+            samples: Samples::default(),
+            pixels: vec![[0; 4]; TILE_SIDE * TILE_SIDE],
+        }
+    }
+}
+
+impl<T: ShadingNumber + Tiny> Painter<T> {
+    /// Begins a frame.
+    pub(crate) fn begin(&mut self) {
+        self.shader.begin();
+    }
+
+    /// The rays of shadows since the frame began.
+    pub(crate) const fn ray_count(&self) -> RayCount {
+        self.shader.ray_count()
+    }
+
+    /// Paints a tile of the picture into its band.
+    pub(crate) fn paint(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        tile: usize,
+        band: &Mutex<Band<'_>>,
+    ) {
+        let ShadingContext { plan, .. } = *context;
+        let (size, background) = (plan.size, plan.background);
+        let bounds = bounds_of(tile, size);
+        if !self.see(context, tile, bounds) {
+            return Self::fill(tile, size, background, &mut locked(band));
+        }
+        let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
+        let (column, columns) = Self::columns(tile, size);
+        let full = self.visibility.full_blocks().count_ones() as usize;
+        let is_done = plan.light_at == LightAt::Vertex || full >= BLOCK_PIXELS / 4;
+        if whole
+            && context.quick
+            && is_done
+            && let Ok(mut band) = band.try_lock()
+        {
+            let Band { pixels, filled } = &mut *band;
+            let mut canvas = Canvas { pixels: &mut pixels[columns.start..], stride: size.width };
+            let blocks = std::mem::take(&mut filled[column]).with(background);
+            let blocks = self.blocks(context, bounds, &mut canvas, (blocks, true));
+            filled[column] = Filled { color: background, blocks };
+            return;
+        }
+        let before = locked(band).filled[column].with(background);
+        let mut pixels = std::mem::take(&mut self.pixels);
+        let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
+        let blocks = self.blocks(context, bounds, &mut canvas, (before, false));
+        self.pixels = pixels;
+        let mut band = locked(band);
+        self.copy(tile, size, !(before & blocks), &mut band);
+        band.filled[column] = Filled { color: background, blocks };
+    }
+
+    /// Finds what is visible in a tile. Returns whether it may be more than the background.
+    fn see(&mut self, context: &ShadingContext<'_, T>, tile: usize, bounds: PixelBox) -> bool {
+        let ShadingContext { level, plan, frame, .. } = *context;
+        if frame.is_empty(tile) {
+            return false;
+        }
+        let Self { shader, visibility, layered: Layered { layers, .. }, .. } = self;
+        let conversion = Some(context.terms.conversion(plan));
+        visibility.draw(level, plan, frame, (tile, bounds), conversion);
+        if frame.is_layered(tile) {
+            layers.begin(level, plan, frame, (tile, bounds));
+        } else {
+            layers.begin_none();
+        }
+        if visibility.is_empty() && layers.touched() == 0 {
+            return false;
+        }
+        shader.tile.begin(plan, bounds, || layers.depths_with(visibility.depths(level)));
+        true
+    }
+
+    /// Colours the blocks of a tile. Those in `filled` are filled with the background already: in
+    /// the picture, and so in the canvas if it is `straight` a part of that. Returns the blocks
+    /// that show nothing else.
+    fn blocks(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        bounds: PixelBox,
+        canvas: &mut Canvas<'_>,
+        (filled, straight): (u64, bool),
+    ) -> u64 {
+        let layered = self.layered.layers.touched();
+        let whole = self.visibility.full_blocks();
+        let background = u32::from_le_bytes(context.plan.background.opaque());
+        let mut colors = [0; BLOCK_PIXELS + ROW];
+        if let Some(faces) = context.faces {
+            self.shader.light_shown_faces(context, faces, &self.visibility);
+        }
+        self.fully_covered(context, bounds, canvas, layered);
+        let mut background_blocks = 0;
+        for block in 0..BLOCK_PIXELS {
+            let at = canvas.offset(corner_in_tile(block));
+            // What has to be filled in around what is shown.
+            let is_filled = filled >> block & 1 != 0;
+            let fill = (!(is_filled && straight)).then_some(context.plan.background);
+            let mut shows = true;
+            if layered >> block & 1 != 0 {
+                self.shader.finish_waiting(context, canvas);
+                let mut sums = Sums::new(context.plan.variants.are_linear());
+                let corner = self.visibility.corner(block);
+                let Self { shader, visibility, layered, .. } = self;
+                layered.add(context, (shader, visibility), (block, corner), &mut sums);
+                canvas.put(at, &sums.means(context.frame.sample_positions().count().ilog2()));
+            } else if whole >> block & 1 != 0 {
+                continue;
+            } else if let Some((colors, are_known)) = self.visibility.colors(block) {
+                canvas.put(at, colors);
+                if !are_known {
+                    let (others, corner) =
+                        (self.visibility.uncolored(block), self.visibility.corner(block));
+                    self.shader.block_later(context, &others, corner, (canvas, at), None);
+                }
+            } else if self.visibility.shows(block) {
+                let corner = self.visibility.corner(block);
+                shows = if context.frame.sample_positions().are_many() {
+                    self.block_of_samples(context, (block, corner), (canvas, at), fill)
+                } else {
+                    let visibility = self.visibility.block(block);
+                    let runs = (visibility, self.shader.runs[block]);
+                    let faces = context.faces;
+                    if faces.is_some_and(|all| all.of_block(runs, background, &mut colors)) {
+                        canvas.put(at, &colors[..BLOCK_PIXELS]);
+                        visibility.iter().any(|word| *word != 0)
+                    } else {
+                        self.shader.block_later(context, visibility, corner, (canvas, at), fill)
+                    }
+                };
+            } else {
+                if !is_filled {
+                    canvas.fill(at, context.plan.background);
+                }
+                shows = false;
+            }
+            background_blocks |= u64::from(!shows) << block;
+        }
+        self.shader.finish_waiting(context, canvas);
+        background_blocks
+    }
+
+    /// Colours the blocks of a tile that one triangle covers fully, without layers: for each
+    /// triangle all of them at once.
+    fn fully_covered(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        bounds: PixelBox,
+        canvas: &mut Canvas<'_>,
+        layered: u64,
+    ) {
+        let mut left = self.visibility.full_blocks() & !layered;
+        while left != 0 {
+            let first = left.trailing_zeros() as usize;
+            let Some(number) = self.visibility.whole(first) else { return };
+            let (mut others, mut which) = (left, 0);
+            while others != 0 {
+                let block = others.trailing_zeros() as usize;
+                others &= others - 1;
+                which |= u64::from(self.visibility.whole(block) == Some(number)) << block;
+            }
+            left &= !which;
+            let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
+            self.shader.full_blocks(context, number, blocks, canvas);
+        }
+    }
+
+    /// Colours a block whose pixels have four samples.
+    fn block_of_samples(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        (block, corner): (usize, [i32; 2]),
+        (canvas, at): (&mut Canvas<'_>, usize),
+        fill: Option<Color>,
+    ) -> bool {
+        let Self { shader, visibility, samples, .. } = self;
+        let planes = visibility.planes(block);
+        if samples.compare(context.level, planes) {
+            return shader.block_later(context, &planes[0], corner, (canvas, at), fill);
+        }
+        shader.finish_waiting(context, canvas);
+        let mut sums = Sums::new(context.plan.variants.are_linear());
+        let shows = shader.add_samples(context, (samples, planes), corner, &mut sums);
+        canvas.put(at, &sums.means(FOUR.ilog2()));
+        shows
+    }
+
+    /// Adds the colours of a tile, which shows something and is drawn for one sample of each pixel.
+    fn add_picture(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        bounds: PixelBox,
+        to: &mut [BlockPasses],
+    ) {
+        let mut pixels = std::mem::take(&mut self.pixels);
+        let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
+        self.blocks(context, bounds, &mut canvas, (0, false));
+        for (block, to) in to.iter_mut().enumerate() {
+            let rows = canvas.pixels[canvas.offset(corner_in_tile(block))..].chunks(TILE_SIDE);
+            let own = rows.take(ROW).flat_map(|row| &row[..ROW]);
+            own.enumerate().for_each(|(place, color)| to.sums.add(place, *color, 1));
+        }
+        self.pixels = pixels;
+    }
+
+    /// Adds the colours of a tile, of four samples or of one, to the sums.
+    pub(crate) fn add(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &TileSums) {
+        let ShadingContext { plan, frame, .. } = *context;
+        let mut to = to.lock();
+        let bounds = bounds_of(tile, plan.size);
+        let many = frame.sample_positions().are_many();
+        if !self.see(context, tile, bounds) {
+            to.background += if many { ALL } else { 1 };
+        } else if many {
+            let blocks = to.blocks(plan).iter_mut().enumerate();
+            blocks.for_each(|(block, to)| self.add_block(context, block, to));
+        } else {
+            self.add_picture(context, bounds, to.blocks(plan));
+        }
+    }
+
+    /// Adds the colours of a block of four samples.
+    fn add_block(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        block: usize,
+        BlockPasses { sums, kept, background }: &mut BlockPasses,
+    ) {
+        let Self { shader, visibility, samples, layered, .. } = self;
+        let corner = visibility.corner(block);
+        if layered.layers.touches(block) {
+            layered.add(context, (shader, visibility), (block, corner), sums);
+        } else if !visibility.shows(block) {
+            *background += ALL;
+        } else if let Some(number) = visibility.whole(block) {
+            if kept.are_all_of(number) {
+                sums.add_to_all(context.level, kept.parts(), &[ALL; BLOCK_PIXELS]);
+            } else {
+                let mut out = Out::Kept(sums, kept, BLOCK_PIXELS);
+                shader.full_block(context, number, corner, &mut out);
+            }
+        } else {
+            let planes = visibility.planes(block);
+            samples.compare(context.level, planes);
+            shader.add_pass(context, (samples, planes), corner, (sums, kept));
+        }
+    }
+
+    /// Stores the means of all samples of a tile in its band of the picture.
+    pub(crate) fn put_means(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        tile: usize,
+        of: &TileSums,
+        band: &Mutex<Band<'_>>,
+    ) {
+        let mut of = of.lock();
+        let FramePlan { size, samples, background, .. } = *context.plan;
+        let TilePasses { background: everywhere, blocks } = &mut *of;
+        if blocks.is_empty() {
+            return Self::fill(tile, size, background, &mut locked(band));
+        }
+        let mut canvas = Canvas { pixels: &mut self.pixels, stride: TILE_SIDE };
+        for (block, BlockPasses { sums, background: own, .. }) in blocks.iter_mut().enumerate() {
+            sums.add_everywhere(background.opaque(), *everywhere + *own);
+            let at = canvas.offset(corner_in_tile(block));
+            canvas.put(at, &sums.means(samples.count().ilog2()));
+        }
+        let mut band = locked(band);
+        self.copy(tile, size, u64::MAX, &mut band);
+        band.filled[tile % size.width.div_ceil(TILE_SIDE)] = Filled::default();
+    }
+
+    /// Copies those blocks of a tile's buffer that have a bit in `blocks` into its band.
+    fn copy(&self, tile: usize, size: Size, blocks: u64, band: &mut Band<'_>) {
+        let (_, columns) = Self::columns(tile, size);
+        let rows = self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width));
+        for (row, (from, to)) in rows.enumerate() {
+            let mut own = blocks >> (row / ROW * BLOCKS) & 0xff;
+            // Neighbouring blocks at once.
+            while own != 0 {
+                let first = own.trailing_zeros() as usize;
+                let end = first + (own >> first).trailing_ones() as usize;
+                own &= u64::MAX << end;
+                let [first, end] = [first, end].map(|block| columns.len().min(block * ROW));
+                to[columns.start..][first..end].copy_from_slice(&from[first..end]);
+            }
+        }
+    }
+
+    /// Fills a tile with a colour, unless it is filled with it already.
+    fn fill(tile: usize, size: Size, color: Color, band: &mut Band<'_>) {
+        let (column, columns) = Self::columns(tile, size);
+        if band.filled[column].with(color) != u64::MAX {
+            band.filled[column] = Filled { color, blocks: u64::MAX };
+            for row in band.pixels.chunks_mut(size.width) {
+                row[columns.clone()].fill(color.opaque());
+            }
+        }
+    }
+
+    /// The index of a tile in its band, and its columns of the picture.
+    fn columns(tile: usize, size: Size) -> (usize, std::ops::Range<usize>) {
+        let column = tile % size.width.div_ceil(TILE_SIDE);
+        let left = column * TILE_SIDE;
+        (column, left..size.width.min(left + TILE_SIDE))
+    }
+}

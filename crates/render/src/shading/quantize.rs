@@ -1,0 +1,103 @@
+//! Combines light with the colour of the surface, and converts colours to bytes.
+
+use super::colors::{Colors, Form};
+use crate::lights::{Batch, Rows, load, set};
+use crate::simd::{BATCH, Encoding, Kernel, Lanes, Number, Vec3};
+
+/// The colour t of the surface: one tint, or a texel for each pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum SurfaceColor<'a, T> {
+    Tint([T; 3]),
+    Texels(&'a Rows<T>),
+}
+
+impl<T: Number> SurfaceColor<'_, T> {
+    #[inline(always)]
+    pub(crate) fn at<M: Lanes<Number = T>>(self, lanes: M, at: usize) -> Vec3<M::R> {
+        match self {
+            Self::Tint(tint) => set(lanes, tint),
+            Self::Texels(texels) => load(lanes, texels, at),
+        }
+    }
+}
+
+/// Converts colours to bytes: t D + S if the surface is lit, with D and S the diffuse and the
+/// specular light, else t.
+pub(crate) struct Quantize<'a, T> {
+    pub(crate) batch: &'a Batch<T>,
+    pub(crate) lit: bool,
+    pub(crate) own: SurfaceColor<'a, T>,
+    pub(crate) colors: &'a mut Colors,
+}
+
+impl<T: Number> Kernel<T> for Quantize<'_, T> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { batch, lit, own, colors } = self;
+        for at in (0..batch.len).step_by(M::LANES) {
+            let mut color = own.at(lanes, at);
+            if lit {
+                color = reflected(lanes, color, batch, at);
+            }
+            colors.store(lanes, color, at);
+        }
+    }
+}
+
+/// Converts colours to bytes, like [`Quantize`], for surfaces that glow and for light in linear
+/// sRGB: t D + S + e, encoded.
+pub(crate) struct Finish<'a, T> {
+    pub(crate) batch: &'a Batch<T>,
+    pub(crate) lit: bool,
+    pub(crate) own: SurfaceColor<'a, T>,
+    /// e: what is added to the colour.
+    pub(crate) glow: Option<&'a Rows<T>>,
+    /// The rounding threshold of each pixel, if it is not one half.
+    pub(crate) thresholds: Option<&'a [T; BATCH]>,
+    /// How linear colours are encoded, if they are linear.
+    pub(crate) encoding: Option<&'a Encoding>,
+    pub(crate) colors: &'a mut Colors,
+}
+
+impl<T: Number> Kernel<T> for Finish<'_, T> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { batch, lit, own, glow, thresholds, encoding, colors } = self;
+        for at in (0..batch.len).step_by(M::LANES) {
+            let mut color = own.at(lanes, at);
+            if lit {
+                color = reflected(lanes, color, batch, at);
+            }
+            if let Some(glow) = glow {
+                color = color.plus(load(lanes, glow, at));
+            }
+            if let Some(encoding) = encoding
+                && colors.form == Form::Pixels
+            {
+                let Vec3([r, g, b]) = color;
+                color = Vec3([encoding.of(r), encoding.of(g), encoding.of(b)]);
+            }
+            // Linear values are rounded when they are added up and encoded.
+            let added_up = encoding.is_some() && colors.form == Form::Parts;
+            match thresholds.filter(|_| !added_up) {
+                None => colors.store(lanes, color, at),
+                Some(thresholds) => {
+                    colors.store_by(lanes, color, lanes.load(thresholds, at), at);
+                }
+            }
+        }
+    }
+}
+
+/// t D + S at some pixels.
+#[inline(always)]
+pub(crate) fn reflected<M: Lanes>(
+    lanes: M,
+    Vec3([tr, tg, tb]): Vec3<M::R>,
+    batch: &Batch<M::Number>,
+    at: usize,
+) -> Vec3<M::R> {
+    let Vec3([r, g, b]) = load(lanes, &batch.diffuse, at);
+    let specular = load(lanes, &batch.specular, at);
+    Vec3([tr * r, tg * g, tb * b]).plus(specular)
+}

@@ -1,0 +1,292 @@
+//! Resolves samples: from four samples of a block's pixels to the mean of their colours.
+//!
+//! Most blocks show the same triangle in all samples of each pixel, and cost no more than with one
+//! sample. In other blocks a pixel is lit once for each triangle that any of its samples shows:
+//! first the triangles of the first samples, all pixels together, and beside them all others, as
+//! far as they have room in a batch.
+
+use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16};
+
+use super::colors::Sums;
+use super::context::ShadingContext;
+use super::groups::one_group;
+use super::interpolated::ShadingNumber;
+use super::kept::Kept;
+use super::runs::Shown;
+use super::surface::{Out, Shader};
+use crate::raster::visibility_buffer::{BACKGROUND, Planes, Visible, seen_number};
+use crate::screen::sample_positions::FOUR;
+use crate::screen::tiles::BLOCK_PIXELS;
+use crate::simd::BATCH;
+
+/// What the samples of a block's pixels show.
+#[derive(Debug)]
+pub(crate) struct Samples {
+    /// The numbers of the primitives that they show.
+    numbers: [[u32; BLOCK_PIXELS]; FOUR],
+    /// For each sample, how many from it on show the same primitive; only valid for those in `new`.
+    shares: [[i32; BLOCK_PIXELS]; FOUR],
+    /// The pixels in which a sample shows a primitive that no earlier sample shows.
+    new: [u64; FOUR],
+}
+
+impl Default for Samples {
+    fn default() -> Self {
+        let numbers = [[BACKGROUND; BLOCK_PIXELS]; FOUR];
+        Self { numbers, shares: [[0; BLOCK_PIXELS]; FOUR], new: [0; FOUR] }
+    }
+}
+
+impl Samples {
+    /// Compares the samples of each pixel. Returns whether each pixel shows a single primitive.
+    pub(crate) fn compare(&mut self, level: Level, planes: &Planes) -> bool {
+        dispatch!(level, simd => self.compare_in(simd, planes));
+        self.new[1..] == [0; FOUR - 1]
+    }
+
+    /// Adds the colours that are kept from earlier passes. Returns, for each sample, the pixels in
+    /// which it shows a primitive that neither an earlier sample shows nor an earlier pass has lit.
+    fn add_kept(&self, level: Level, kept: &Kept, sums: &mut Sums) -> [u64; FOUR] {
+        let mut left = self.new;
+        for (sample, left) in left.iter_mut().enumerate() {
+            if *left == 0 {
+                continue;
+            }
+            let known = *left & kept.known(level, &self.numbers[sample]);
+            if known != 0 {
+                let bit = |place: usize| i32::from(known >> place & 1 == 1);
+                let shares = &self.shares[sample];
+                let shares = std::array::from_fn(|place| shares[place] * bit(place));
+                sums.add_to_all(level, kept.parts(), &shares);
+                *left &= !known;
+            }
+        }
+        left
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
+    fn compare_in<S: Simd>(&mut self, simd: S, planes: &Planes) {
+        for (numbers, visibility) in self.numbers.iter_mut().zip(planes) {
+            for (number, word) in numbers.iter_mut().zip(visibility) {
+                *number = !(*word as u32);
+            }
+        }
+        self.new = [u64::MAX, 0, 0, 0];
+        let (none, one) = (i32x16::splat(simd, 0), i32x16::splat(simd, 1));
+        for at in (0..BLOCK_PIXELS).step_by(16) {
+            let of = |sample: usize| {
+                let numbers: &[i32; BLOCK_PIXELS] = bytemuck::cast_ref(&self.numbers[sample]);
+                i32x16::from_slice(simd, &numbers[at..at + 16])
+            };
+            let (a, b, c, d) = (of(0), of(1), of(2), of(3));
+            let (ab, ac, ad) = (a.simd_eq(b), a.simd_eq(c), a.simd_eq(d));
+            let (bc, bd, cd) = (b.simd_eq(c), b.simd_eq(d), c.simd_eq(d));
+            let count = |alike: fearless_simd::mask32x16<S>| alike.select(one, none);
+            let shares = [
+                one + count(ab) + count(ac) + count(ad),
+                one + count(bc) + count(bd),
+                one + count(cd),
+                one,
+            ];
+            for (row, shares) in self.shares.iter_mut().zip(shares) {
+                shares.store_slice(&mut row[at..at + 16]);
+            }
+            self.new[1] |= (!ab).to_bitmask() << at;
+            self.new[2] |= (!(ac | bc)).to_bitmask() << at;
+            self.new[3] |= (!(ad | bd | cd)).to_bitmask() << at;
+        }
+    }
+}
+
+/// What is still to be lit of a block.
+#[derive(Debug)]
+struct Unlit<'a> {
+    /// The entries of the first sample; 0 for pixels that are lit.
+    entries: &'a [u64; BLOCK_PIXELS],
+    /// For each sample, the pixels in which it shows a primitive that no earlier sample shows and
+    /// that is not lit.
+    pixels: &'a [u64; FOUR],
+}
+
+impl<T: ShadingNumber> Shader<T> {
+    /// Adds the colours of a block, whose upper left pixel is `corner` and whose samples were
+    /// compared. Returns whether any of them shows more than the background.
+    pub(crate) fn add_samples(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        (samples, planes): (&Samples, &Planes),
+        corner: [i32; 2],
+        sums: &mut Sums,
+    ) -> bool {
+        let all = Unlit { entries: &planes[0], pixels: &samples.new };
+        self.add_unlit(context, (samples, &all), corner, (sums, None))
+    }
+
+    /// Adds the colours of a block in one of several passes: those that are kept from earlier
+    /// passes, and then the others, which it lights.
+    pub(crate) fn add_pass(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        (samples, planes): (&Samples, &Planes),
+        corner: [i32; 2],
+        (sums, kept): (&mut Sums, &mut Kept),
+    ) {
+        let pixels = samples.add_kept(context.level, kept, sums);
+        if pixels != [0; FOUR] {
+            let entry = |place: usize| planes[0][place] & (pixels[0] >> place & 1).wrapping_neg();
+            let unlit = Unlit { entries: &std::array::from_fn(entry), pixels: &pixels };
+            self.add_unlit(context, (samples, &unlit), corner, (sums, Some(kept)));
+        }
+    }
+
+    /// As [`Self::add_samples`], for some of the pixels.
+    fn add_unlit(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        (samples, unlit): (&Samples, &Unlit<'_>),
+        corner: [i32; 2],
+        (sums, mut kept): (&mut Sums, Option<&mut Kept>),
+    ) -> bool {
+        let mut shown = self.list_first(context, unlit.entries, corner);
+        if shown.triangles == 0 {
+            self.fragments.begin_shared(0);
+        } else {
+            self.fragments.share(&samples.shares[0]);
+        }
+        let mut others = unlit.pixels[0] & !shown.triangles;
+        while others != 0 {
+            let place = others.trailing_zeros() as usize;
+            others &= others - 1;
+            let (number, share) = (samples.numbers[0][place], samples.shares[0][place]);
+            add_other(context, number, place, share, sums);
+        }
+        let mut first = self.fragments.len;
+        let mut color = |shader: &mut Self, sums: &mut Sums| {
+            let mut out = match kept.as_deref_mut() {
+                Some(kept) => Out::Kept(sums, kept, std::mem::take(&mut first)),
+                None => Out::Sums(sums),
+            };
+            shader.color_list(context, corner, &mut out);
+        };
+        // Shadows are traced for as many points at once as a mask has bits.
+        let are_cast = context.plan.shadows.are_cast();
+        let most = if are_cast { BLOCK_PIXELS } else { BATCH };
+        if are_cast {
+            color(self, sums);
+        }
+        for sample in 1..FOUR {
+            let mut pixels = unlit.pixels[sample];
+            while pixels != 0 {
+                let place = pixels.trailing_zeros() as usize;
+                pixels &= pixels - 1;
+                let number = samples.numbers[sample][place];
+                let share = samples.shares[sample][place];
+                if !matches!(seen_number(number), Visible::Triangle(_)) {
+                    shown.lines |= u64::from(number != BACKGROUND) << place;
+                    add_other(context, number, place, share, sums);
+                    continue;
+                }
+                shown.triangles |= 1 << place;
+                if self.fragments.is_full(most) {
+                    color(self, sums);
+                }
+                self.fragments.add(number, corner, place, share);
+            }
+        }
+        color(self, sums);
+        (shown.triangles | shown.lines) != 0
+    }
+
+    /// Lists the pixels of a block that show triangles in their first sample. Triangles of the list
+    /// before keep their slots, if that pays.
+    fn list_first(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        entries: &[u64; BLOCK_PIXELS],
+        corner: [i32; 2],
+    ) -> Shown {
+        let most = self.most_slots(context);
+        let shown = self.fragments.list_on(context.level, entries, corner, most);
+        if most > 0 && shown.triangles != 0 && one_group(context, &self.fragments).is_none() {
+            // Some slots are of a draw that the block may not show.
+            return self.fragments.list(context.level, entries, corner);
+        }
+        shown
+    }
+
+    /// Colours the fragments that are listed, and begins another list.
+    fn color_list(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        corner: [i32; 2],
+        out: &mut Out<'_, '_>,
+    ) {
+        let mut most = 0;
+        if self.fragments.len > 0 {
+            if let Some(group) = one_group(context, &self.fragments) {
+                self.color_group(context, &group, out);
+                most = self.most_slots(context);
+            } else {
+                self.color_groups(context, corner, out);
+            }
+        }
+        self.fragments.begin_shared(most);
+    }
+}
+
+/// Adds the colour of a line or of the background.
+pub(super) fn add_other<T>(
+    context: &ShadingContext<'_, T>,
+    number: u32,
+    place: usize,
+    share: i32,
+    sums: &mut Sums,
+) {
+    let color = match seen_number(number) {
+        Visible::Line(line) => context.frame.line_color(context.plan, line),
+        Visible::Background | Visible::Triangle(_) => context.plan.background.opaque(),
+    };
+    sums.add(place, color, share);
+}
+
+#[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_sample_counts_once_with_the_first_that_shows_the_same() {
+        let mut state = 1_u64;
+        for _ in 0..500 {
+            let planes: Planes = std::array::from_fn(|_| {
+                std::array::from_fn(|_| {
+                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                    match state >> 62 {
+                        0 => 0,
+                        number => (state >> 20) << 32 | u64::from(!u32::try_from(number).unwrap()),
+                    }
+                })
+            });
+            let number = |sample: usize, place: usize| !(planes[sample][place] as u32);
+            let mut samples = Samples::default();
+            let alike = samples.compare(Level::new(), &planes);
+            for place in 0..BLOCK_PIXELS {
+                for sample in 0..FOUR {
+                    let own = number(sample, place);
+                    assert_eq!(samples.numbers[sample][place], own);
+                    let new = (0..sample).all(|earlier| number(earlier, place) != own);
+                    assert_eq!(samples.new[sample] >> place & 1 == 1, new);
+                    let share = (sample..FOUR).filter(|later| number(*later, place) == own).count();
+                    assert!(!new || samples.shares[sample][place] == share as i32);
+                }
+            }
+            assert_eq!(
+                alike,
+                planes.iter().all(|plane| {
+                    (0..BLOCK_PIXELS).all(|place| plane[place] as u32 == planes[0][place] as u32)
+                })
+            );
+        }
+    }
+}

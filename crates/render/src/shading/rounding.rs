@@ -1,0 +1,134 @@
+//! Variants of rounding colours to bytes: truncate, to the nearest, or dither.
+//!
+//! A byte is the integer part of 255 c + t, with a threshold t from 0 to 1: one half rounds to the
+//! nearest, and 0 truncates. A threshold that varies from pixel to pixel dithers: the fraction
+//! decides how many pixels are rounded up, so a smooth gradient stays smooth on average.
+//!
+//! The pattern: Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC
+//! 1973, of order 8.
+
+use super::colors::Colors;
+use super::fragments::Fragments;
+use super::quantize::SurfaceColor;
+use crate::lights::{Batch, load};
+use crate::screen::tiles::BLOCK_PIXELS;
+use crate::simd::{BATCH, Kernel, Lanes, Number, Vec3};
+use marraztu_core::accuracy::Rounding;
+
+/// The threshold that is added to 255 c at a pixel before it is truncated.
+fn threshold(rounding: Rounding, x: i32, y: i32) -> f64 {
+    match rounding {
+        Rounding::Truncated => 0.0,
+        Rounding::Nearest => 0.5,
+        Rounding::Dithered => (f64::from(bayer(x & 7, y & 7)) + 0.5) / 64.0,
+    }
+}
+
+/// The Bayer matrix at a pixel, from 0 to 63: the bits of x xor y and of y interleaved, the lowest
+/// first.
+#[expect(clippy::cast_possible_truncation, reason = "the last bits are meant")]
+const fn bayer(x: i32, y: i32) -> u8 {
+    let (x, y) = ((x ^ y) as u8, y as u8);
+    let mut number = 0;
+    let mut bit = 0;
+    while bit < 3 {
+        number = number << 2 | (x >> bit & 1) << 1 | (y >> bit & 1);
+        bit += 1;
+    }
+    number
+}
+
+/// The thresholds of a list of fragments. Those that are the same for every list are kept.
+#[derive(Debug)]
+pub(crate) struct Thresholds<T> {
+    rounding: Option<Rounding>,
+    all: [T; BATCH],
+}
+
+impl<T: Number> Default for Thresholds<T> {
+    fn default() -> Self {
+        Self { rounding: None, all: [T::default(); BATCH] }
+    }
+}
+
+impl<T: Number> Thresholds<T> {
+    /// Those of a list.
+    pub(crate) fn of(&mut self, rounding: Rounding, fragments: &Fragments) -> &[T; BATCH] {
+        if rounding == Rounding::Dithered {
+            let pixels = fragments.x.iter().zip(&fragments.y);
+            for (to, (x, y)) in self.all.iter_mut().zip(pixels) {
+                *to = T::from_f64(threshold(rounding, *x, *y));
+            }
+        } else if self.rounding != Some(rounding) {
+            self.all = [T::from_f64(threshold(rounding, 0, 0)); BATCH];
+        }
+        self.rounding = Some(rounding);
+        &self.all
+    }
+}
+
+/// The thresholds of all pixels of a block, which are the same for every block.
+pub(crate) fn block_thresholds(rounding: Rounding) -> [f32; BLOCK_PIXELS] {
+    let mut fragments = Fragments::default();
+    fragments.list_full_block(0, [0; 2]);
+    let mut thresholds = Thresholds::default();
+    let all = thresholds.of(rounding, &fragments);
+    std::array::from_fn(|i| all[i])
+}
+
+/// Converts colours to bytes, like [`Quantize`](super::quantize::Quantize), with a threshold per
+/// pixel.
+pub(crate) struct QuantizeWithThresholds<'a, T> {
+    pub(crate) batch: &'a Batch<T>,
+    pub(crate) lit: bool,
+    pub(crate) own: SurfaceColor<'a, T>,
+    pub(crate) thresholds: &'a [T; BATCH],
+    pub(crate) colors: &'a mut Colors,
+}
+
+impl<T: Number> Kernel<T> for QuantizeWithThresholds<'_, T> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { batch, lit, own, thresholds, colors } = self;
+        for at in (0..batch.len).step_by(M::LANES) {
+            let mut color = own.at(lanes, at);
+            if lit {
+                let (Vec3([r, g, b]), Vec3([tr, tg, tb])) =
+                    (load(lanes, &batch.diffuse, at), color);
+                let specular = load(lanes, &batch.specular, at);
+                color = Vec3([tr * r, tg * g, tb * b]).plus(specular);
+            }
+            colors.store_by(lanes, color, lanes.load(thresholds, at), at);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pattern_begins_as_bayer_has_it_and_holds_every_number_once() {
+        let row = |y: i32| std::array::from_fn(|x| bayer(i32::try_from(x).unwrap(), y));
+        assert_eq!(row(0), [0, 32, 8, 40, 2, 34, 10, 42]);
+        assert_eq!(row(1), [48, 16, 56, 24, 50, 18, 58, 26]);
+        let mut all: Vec<u8> = (0..8).flat_map(row).collect();
+        all.sort_unstable();
+        assert!(all.into_iter().eq(0..64));
+    }
+
+    #[test]
+    fn on_average_a_pattern_gives_the_colour_and_cutting_off_gives_half_a_step_less() {
+        let mean = |rounding: Rounding| {
+            let bytes = (0..64 * 257).map(|i: i32| {
+                let (pixel, color) = (i % 64, f64::from(i / 64) / 257.0);
+                let t = threshold(rounding, pixel % 8, pixel / 8);
+                (255.0 * color + t).floor() - 255.0 * color
+            });
+            bytes.sum::<f64>() / f64::from(64 * 257)
+        };
+        assert!(mean(Rounding::Dithered).abs() < 0.01, "{}", mean(Rounding::Dithered));
+        assert!(mean(Rounding::Nearest).abs() < 0.01, "{}", mean(Rounding::Nearest));
+        assert!((mean(Rounding::Truncated) + 0.5).abs() < 0.01, "{}", mean(Rounding::Truncated));
+    }
+}

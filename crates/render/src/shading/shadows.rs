@@ -1,0 +1,211 @@
+//! Shades batches: light reaches a position only if nothing stands between.
+//!
+//! A light with shadows is added like any other. Then rays run to it from the positions at which
+//! it added something, and those whose ray is stopped get back what they had before, bit for bit.
+//! So the shaders of lights know nothing of shadows, and a position that no light reaches costs no
+//! ray. If a light's shadow on a pixel is known from an earlier frame, no ray is traced either.
+//!
+//! Rays begin where light is evaluated: at the point of the triangle that a pixel shows (with
+//! several samples, at the point at which they are lit), at a vertex, or at the centre of a face.
+//! That point is computed in f64 in either arithmetic, so both have the same shadows.
+
+use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, u32x16};
+use glam::DVec3;
+
+use super::fragments::Fragments;
+use super::interpolated::ShadingNumber;
+use super::triangle_attributes::TriangleAttributes;
+use crate::frame::draw::{Draw, Stage};
+use crate::lights::{Batch, LightTerm, Rows};
+use crate::shadow::known::{BatchPixels, KnownPixels};
+use crate::shadow::map_face::TAPS;
+use crate::shadow::packet::POINTS;
+use crate::shadow::patches::bits;
+use crate::shadow::rays::{Origins, RayScratch};
+use crate::shadow::tracer::Tracer;
+use crate::simd::{BATCH, Number};
+use marraztu_core::scene::dvec3;
+
+/// The shadows on a batch.
+pub(crate) struct BatchShadows<'a> {
+    pub(crate) tracer: &'a Tracer<'a>,
+    pub(crate) scratch: &'a mut RayScratch,
+    /// Sets the points at which the batch is lit; called if a ray is needed.
+    pub(crate) place: &'a mut dyn FnMut(&mut Origins),
+    /// Whether they are set.
+    pub(crate) is_placed: bool,
+    /// The pixels of the batch, if what is known of them may be used.
+    pixels: Option<BatchPixels<'a>>,
+}
+
+impl std::fmt::Debug for BatchShadows<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("BatchShadows").field("is_placed", &self.is_placed).finish_non_exhaustive()
+    }
+}
+
+impl<'a> BatchShadows<'a> {
+    pub(crate) fn new(
+        tracer: &'a Tracer<'a>,
+        scratch: &'a mut RayScratch,
+        place: &'a mut dyn FnMut(&mut Origins),
+    ) -> Self {
+        Self { tracer, scratch, place, is_placed: false, pixels: None }
+    }
+
+    /// The same for a batch of these fragments. Each is all that its pixel shows, unless layers are
+    /// painted.
+    pub(crate) fn of_pixels(self, fragments: &'a Fragments) -> Self {
+        let Fragments { len, pixels, x, y, .. } = fragments;
+        let of_batch = BatchPixels { first: [x[0], y[0]], places: &pixels[..*len] };
+        Self { pixels: (!self.scratch.paints_layers).then_some(of_batch), ..self }
+    }
+
+    /// Sets the points at which the batch is lit.
+    fn place(&mut self) {
+        if !self.is_placed {
+            (self.place)(&mut self.scratch.origins);
+            self.is_placed = true;
+        }
+    }
+
+    /// The positions of a mask at which a light is hidden: those that are not known are traced.
+    fn traced(&mut self, level: Level, (number, light): (u32, DVec3), mask: u64) -> u64 {
+        let known = self.pixels.zip(self.tracer.known(number));
+        let before = known.map_or(KnownPixels::default(), |(pixels, known)| {
+            let KnownPixels { traced, shaded } = known.at(pixels.first);
+            KnownPixels { traced: pixels.in_batch(traced), shaded: pixels.in_batch(shaded) }
+        });
+        let unknown = mask & !before.traced;
+        if unknown == 0 {
+            return before.shaded & mask;
+        }
+        self.place();
+        let shaded = self.tracer.shaded(level, light, self.scratch, unknown);
+        if let Some((pixels, known)) = known {
+            let [traced, shaded] = [unknown, shaded].map(|mask| pixels.in_block(mask));
+            known.note(pixels.first, KnownPixels { traced, shaded });
+        }
+        before.shaded & mask | shaded
+    }
+
+    /// Adds the light of a stage at every position of a batch that sees it.
+    pub(crate) fn add_light<T: ShadingNumber>(
+        &mut self,
+        stage: &Stage,
+        term: &LightTerm<T>,
+        level: Level,
+        batch: &mut Batch<T>,
+    ) {
+        let Some(light) = self.tracer.light(stage.light) else {
+            return T::add_light(stage.variant(), level, batch, term);
+        };
+        let before = (first(&batch.diffuse), first(&batch.specular));
+        T::add_light(stage.variant(), level, batch, term);
+        let lit = lit(level, batch, &before);
+        if lit == 0 {
+            return;
+        }
+        let (shaded, partly) = match self.tracer.map(stage.light) {
+            None => (self.traced(level, (stage.light, light), lit), None),
+            Some(map) => {
+                self.place();
+                let at = &self.scratch.origins.at;
+                let reading = dispatch!(level, _ => map.read(at, lit));
+                (reading.occluded, Some(reading))
+            }
+        };
+        if shaded == lit {
+            // What is not lit has not changed.
+            let rows = batch.diffuse.iter_mut().chain(&mut batch.specular);
+            for (row, before) in rows.zip(before.0.iter().chain(&before.1)) {
+                row[..POINTS].copy_from_slice(before);
+            }
+            return;
+        }
+        for i in bits(shaded) {
+            for axis in 0..3 {
+                batch.diffuse[axis][i] = before.0[axis][i];
+                batch.specular[axis][i] = before.1[axis][i];
+            }
+        }
+        for i in bits(partly.map_or(0, |reading| reading.partly)) {
+            let open = partly.map_or(0, |reading| reading.open[i]);
+            let share = T::from_f64(f64::from(open) / f64::from(TAPS));
+            for axis in 0..3 {
+                let (diffuse, specular) = (before.0[axis][i], before.1[axis][i]);
+                batch.diffuse[axis][i] = diffuse + (batch.diffuse[axis][i] - diffuse) * share;
+                batch.specular[axis][i] = specular + (batch.specular[axis][i] - specular) * share;
+            }
+        }
+    }
+}
+
+/// The first numbers of three rows: a batch that shadows fall on has no more.
+type Firsts<T> = [[T; POINTS]; 3];
+
+fn first<T: Number>(rows: &Rows<T>) -> Firsts<T> {
+    std::array::from_fn(|i| *rows[i].first_chunk().expect("a batch has room for more"))
+}
+
+/// The positions of a batch, of [`POINTS`] at most, whose light has changed, a bit for each.
+fn lit<T: Number>(level: Level, batch: &Batch<T>, before: &(Firsts<T>, Firsts<T>)) -> u64 {
+    let mut changed = [0_u32; POINTS];
+    let rows = batch.diffuse.iter().chain(&batch.specular);
+    for (row, before) in rows.zip(before.0.iter().chain(&before.1)) {
+        for ((changed, now), before) in changed.iter_mut().zip(row).zip(before) {
+            *changed |= u32::from(now != before);
+        }
+    }
+    let lit = dispatch!(level, simd => bit_of_each(simd, &changed));
+    lit & u64::MAX >> (POINTS - batch.len)
+}
+
+/// A bit for each number that is not 0.
+#[inline(always)]
+fn bit_of_each<S: Simd>(simd: S, numbers: &[u32; POINTS]) -> u64 {
+    let zero = u32x16::splat(simd, 0);
+    let mut bits = 0;
+    for at in (0..POINTS).step_by(16) {
+        let some = u32x16::from_slice(simd, &numbers[at..at + 16]);
+        bits |= some.simd_gt(zero).to_bitmask() << at;
+    }
+    bits
+}
+
+/// Sets the points at which vertices are lit, from their positions in object space.
+pub(crate) fn place_vertices<T: Number>(
+    (tracer, caster): (&Tracer<'_>, u32),
+    positions: &[[T; BATCH]; 3],
+    count: usize,
+    origins: &mut Origins,
+) {
+    origins.begin(Some(caster), false);
+    let world_from_object = tracer.placement(caster);
+    let [x, y, z] = positions;
+    for (i, ((x, y), z)) in x.iter().zip(y).zip(z).take(count).enumerate() {
+        let [x, y, z]: [f64; 3] = [*x, *y, *z].map(Into::into);
+        let at = world_from_object.transform_point3(DVec3::new(x + 0.0, y + 0.0, z + 0.0));
+        origins.set(i, at, [0; 2]);
+    }
+}
+
+/// Sets the points at which faces are lit: the centres of their polygons, none of whose triangles
+/// shades them.
+pub(crate) fn place_faces<T: Number>(
+    (tracer, caster): (&Tracer<'_>, u32),
+    draw: &Draw,
+    attributes: &TriangleAttributes<T>,
+    origins: &mut Origins,
+) {
+    origins.begin(Some(caster), false);
+    let mesh = &draw.model.mesh;
+    let world_from_object = tracer.placement(caster);
+    for (i, number) in attributes.numbers[..attributes.count].iter().enumerate() {
+        let polygon = mesh.polygon_of(*number);
+        let centre = dvec3(mesh.facets()[polygon as usize].centre);
+        let own = mesh.triangles_of(polygon);
+        let ends = [own.start, own.end].map(|i| u32::try_from(i).unwrap_or(u32::MAX));
+        origins.set(i, world_from_object.transform_point3(centre), ends);
+    }
+}

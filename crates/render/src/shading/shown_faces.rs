@@ -1,0 +1,149 @@
+//! Lights the faces that a tile shows, if each of them has one colour.
+
+use fearless_simd::{Level, Simd, dispatch};
+use prefetch_index::prefetch_index;
+
+use super::colors::Form;
+use super::context::ShadingContext;
+use super::face_colors::FaceColors;
+use super::groups::{Group, group_of};
+use super::interpolated::ShadingNumber;
+use super::runs::Runs;
+use super::surface::Shader;
+use crate::frame::FramePlan;
+use crate::frame::draw::Pipeline;
+use crate::raster::tile::Visibility;
+use crate::screen::tiles::{BLOCK_PIXELS, PIXELS};
+use crate::simd::gather::SLOTS;
+use marraztu_core::accuracy::{LightAt, Rounding};
+
+/// Whether all pixels of a triangle have one colour.
+pub(crate) fn is_uniform(plan: &FramePlan, pipeline: &Pipeline) -> bool {
+    match pipeline {
+        Pipeline::Flat(_) => true,
+        Pipeline::Shaded(shaded) => {
+            shaded.texture.is_none()
+                && !shaded.vertex_colors
+                && !shaded.extras.reads_texels()
+                && plan.variants.rounding != Rounding::Dithered
+                && (shaded.light.is_none() || plan.light_at == LightAt::Face)
+        }
+    }
+}
+
+/// Whether looking up the colours of triangles pays in a frame: if those of most pixels are
+/// uniform.
+pub(crate) fn have_colors(plan: &FramePlan) -> bool {
+    let mut pipelines = plan.pipelines.iter();
+    match plan.light_at {
+        LightAt::Face => pipelines.any(|pipeline| is_uniform(plan, pipeline)),
+        LightAt::Vertex | LightAt::Pixel | LightAt::Sample => {
+            pipelines.all(|pipeline| is_uniform(plan, pipeline))
+        }
+    }
+}
+
+impl<T: ShadingNumber> Shader<T> {
+    /// Lights the triangles that show in blocks which none of them covers fully, with one sample
+    /// per pixel, and whose colour is not known.
+    pub(crate) fn light_shown_faces(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        faces: &FaceColors,
+        visibility: &Visibility,
+    ) {
+        let mut new = std::mem::take(&mut self.new_faces);
+        let count = list(context.level, faces, visibility, (&mut new, &mut self.runs));
+        let mut left = &new[..count];
+        while let Some(first) = left.first() {
+            let group = group_of(context, *first);
+            let is_alike = |number: &u32| {
+                (group.base..group.end).contains(number)
+                    && (group.draw.uniform.is_some()
+                        || group.draw.pipeline_of(number - group.base) == group.pipeline)
+            };
+            let count = left.iter().take(SLOTS).take_while(|number| is_alike(number)).count();
+            let (own, others) = left.split_at(count);
+            left = others;
+            let pipeline = &context.plan.pipelines[group.pipeline as usize];
+            if !is_uniform(context.plan, pipeline) {
+                continue;
+            }
+            if is_lit(pipeline) {
+                prefetch_facets(&group, &left[..left.len().min(SLOTS)]);
+            }
+            self.fragments.list_faces(own);
+            self.colors.form = Form::Pixels;
+            self.group(context, &group);
+            for (number, color) in own.iter().zip(&self.colors.pixels) {
+                faces.put(*number, *color);
+            }
+        }
+        self.new_faces = new;
+    }
+}
+
+/// Whether a surface whose triangles have one colour each is lit.
+fn is_lit(pipeline: &Pipeline) -> bool {
+    matches!(pipeline, Pipeline::Shaded(shaded) if shaded.light.is_some())
+}
+
+/// Asks the cache for what lighting some faces reads, if they are of a group.
+fn prefetch_facets(group: &Group<'_>, numbers: &[u32]) {
+    let mesh = &group.draw.model.mesh;
+    let facets = mesh.facets();
+    let own = numbers.iter().filter(|number| (group.base..group.end).contains(number));
+    for number in own {
+        prefetch_index(facets, mesh.polygon_of(number - group.base) as usize);
+    }
+}
+
+/// Lists the triangles of a tile that have to be lit, and finds where runs of pixels begin that
+/// show the same, a bit for each pixel of each block. Returns the number of those triangles.
+fn list(
+    level: Level,
+    faces: &FaceColors,
+    visibility: &Visibility,
+    to: (&mut Vec<u32>, &mut [u64; BLOCK_PIXELS]),
+) -> usize {
+    dispatch!(level, simd => list_in(simd, faces, visibility, to))
+}
+
+#[inline(always)]
+fn list_in<S: Simd>(
+    simd: S,
+    faces: &FaceColors,
+    visibility: &Visibility,
+    (to, all_runs): (&mut Vec<u32>, &mut [u64; BLOCK_PIXELS]),
+) -> usize {
+    // Each triangle is written, and the next one over it unless it is new.
+    to.resize(PIXELS, 0);
+    let mut count = 0;
+    let mut claim = |runs: &Runs| {
+        runs.each_new(
+            #[inline(always)]
+            |number| {
+                to[count % PIXELS] = number;
+                count += usize::from(faces.claim(number));
+            },
+        );
+    };
+    let shown = |block: &usize| visibility.shows(*block) && visibility.whole(*block).is_none();
+    // A block behind, so that the entries have arrived.
+    let mut before: Option<Runs> = None;
+    for block in (0..BLOCK_PIXELS).filter(shown) {
+        let runs = Runs::find(simd, visibility.block(block));
+        all_runs[block] = runs.starts_in_rows();
+        runs.each_new(
+            #[inline(always)]
+            |number| faces.prefetch(number),
+        );
+        if let Some(before) = before.replace(runs) {
+            claim(&before);
+        }
+    }
+    if let Some(last) = before {
+        claim(&last);
+    }
+    count
+}

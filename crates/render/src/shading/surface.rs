@@ -1,0 +1,553 @@
+//! Shades blocks: from visibility to colours.
+//!
+//! A block's pixels are listed with the triangles that they show ([`Fragments`]). Attributes are
+//! fetched once per triangle ([`TriangleAttributes`]), interpolated ([`Barycentrics`]), lit
+//! ([`Batch`]), and converted to bytes. With flat shading, light is evaluated once for each face of
+//! the block, and no barycentric coordinates are computed.
+
+use super::barycentrics::Barycentrics;
+use super::blend::Blend;
+use super::bumps::bend;
+use super::colors::{Colors, Form, Sums};
+use super::context::ShadingContext;
+use super::fragments::Fragments;
+use super::full_blocks::Canvas;
+use super::groups::{Group, group_of, one_group};
+use super::interpolate::{CornerValues, Look, Mixed, mix, surface_samples};
+use super::interpolated::ShadingNumber;
+use super::kept::Kept;
+use super::light::{Lighting, Table, run};
+use super::lit_points::place_fragments;
+use super::map_rows::MapRows;
+use super::map_texels::{Points, TexturePlacement};
+use super::quantize::{Finish, Quantize, SurfaceColor};
+use super::rounding::{QuantizeWithThresholds, Thresholds};
+use super::shadows::{BatchShadows, place_faces};
+use super::tiny::{CornerRows, TinyTriangles};
+use super::triangle_attributes::{TriangleAttributes, asks_ahead};
+use crate::frame::FramePlan;
+use crate::frame::draw::{Back, Pipeline, Shaded, Stage};
+use crate::lights::{Batch, Rows};
+use crate::plan::tile::TilePlan;
+use crate::screen::sample_positions::ALL;
+use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::shadow::rays::{Origins, RayCount, RayScratch};
+use crate::simd::BATCH;
+use crate::simd::gather::{SLOTS, most_gathered};
+use marraztu_core::accuracy::{LightAt, Rounding};
+use marraztu_core::base::color::Color;
+
+/// Shades blocks. Each thread has its own.
+#[derive(Debug)]
+pub(crate) struct Shader<T> {
+    /// The lights of the tile that is coloured.
+    pub(crate) tile: TilePlan,
+    pub(crate) fragments: Fragments,
+    pub(crate) attributes: TriangleAttributes<T>,
+    pub(crate) barycentrics: Barycentrics<T>,
+    pub(crate) batch: Batch<T>,
+    /// For rays of shadows.
+    pub(super) rays: RayScratch,
+    /// The positions of the triangles on their texture.
+    pub(super) placed: TexturePlacement,
+    pub(crate) texels: Rows<T>,
+    /// The vertex colours of the triangles.
+    pub(super) vertex_colors: CornerValues<T>,
+    /// For surfaces with further maps, or light of their own.
+    pub(super) maps: Box<MapRows<T>>,
+    pub(super) colors: Colors,
+    pub(super) thresholds: Thresholds<T>,
+    /// The triangles of a list in which each pixel has its own.
+    pub(super) tiny: TinyTriangles,
+    /// The colours of their corners, with light at vertices.
+    pub(super) corner_colors: Box<CornerRows<T>>,
+    /// How pixels of a draw become positions and normals.
+    look: Option<(u32, Look<T>)>,
+    /// Whether nothing but corners, normals and light is prepared for the triangles of the list.
+    prepares_little: bool,
+    /// The triangles of a tile that have to be lit.
+    pub(super) new_faces: Vec<u32>,
+    /// The blocks whose pixels are listed and wait to be coloured.
+    pub(super) waiting: Vec<Waiting>,
+    /// Where runs of pixels that show the same begin in each block of a tile, if colours of
+    /// triangles are looked up.
+    pub(super) runs: [u64; BLOCK_PIXELS],
+}
+
+/// A block whose pixels are listed: from a fragment on, for a place in the tile.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Waiting {
+    pub(super) from: usize,
+    pub(super) at: usize,
+}
+
+/// The destination of a block's colours.
+#[derive(Debug)]
+pub(crate) enum Out<'a, 'b> {
+    /// A tile, from an index on.
+    Tile(&'a mut Canvas<'b>, usize),
+    /// The blocks of a tile that wait.
+    Waiting(&'a mut Canvas<'b>),
+    /// The sums over several samples.
+    Sums(&'a mut Sums),
+    /// The same, and what later passes need not light again: this number of fragments, the first.
+    Kept(&'a mut Sums, &'a mut Kept, usize),
+    /// What is behind a layer.
+    Layer(&'a mut Blend),
+}
+
+/// The result of interpolating the light of vertices.
+#[derive(Clone, Copy, Debug)]
+enum Mixture {
+    /// The bytes of the pixels.
+    Bytes,
+    /// Their colours, as diffuse light: they are encoded after this.
+    Colors,
+    /// Diffuse and specular light.
+    Light,
+}
+
+impl<T: ShadingNumber> Default for Shader<T> {
+    fn default() -> Self {
+        Self {
+            tile: TilePlan::default(),
+            fragments: Fragments::default(),
+            attributes: TriangleAttributes::default(),
+            barycentrics: Barycentrics::default(),
+            batch: Batch::default(),
+            rays: RayScratch::default(),
+            placed: TexturePlacement::default(),
+            texels: [[T::default(); BATCH]; 3],
+            vertex_colors: [[[T::default(); SLOTS]; 3]; 3],
+            maps: Box::default(),
+            colors: Colors::default(),
+            thresholds: Thresholds::default(),
+            tiny: TinyTriangles::default(),
+            corner_colors: Box::new([[[T::default(); 4]; BATCH]; 3]),
+            look: None,
+            prepares_little: false,
+            new_faces: Vec::new(),
+            waiting: Vec::new(),
+            runs: [0; BLOCK_PIXELS],
+        }
+    }
+}
+
+impl<T: ShadingNumber> Shader<T> {
+    /// Begins a frame.
+    pub(crate) fn begin(&mut self) {
+        self.attributes.forget();
+        self.look = None;
+        self.rays.count = RayCount::default();
+    }
+
+    /// The rays of shadows since the frame began.
+    pub(crate) const fn ray_count(&self) -> RayCount {
+        self.rays.count
+    }
+
+    /// The number of slots up to which triangles of a list keep theirs for the next one, so that
+    /// those which reach into several blocks are prepared once; 0 if that does not pay: with light
+    /// per face, all slots are lit for each list.
+    pub(super) fn most_slots(&self, context: &ShadingContext<'_, T>) -> usize {
+        let is_lit_once = context.plan.light_at == LightAt::Face;
+        let pays = !is_lit_once && self.prepares_little && self.attributes.may_go_on();
+        if pays { most_gathered(context.level) } else { 0 }
+    }
+
+    /// Colours the fragments of the list.
+    pub(crate) fn color_fragments(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        corner: [i32; 2],
+        out: &mut Out<'_, '_>,
+    ) {
+        if let Some(group) = one_group(context, &self.fragments) {
+            self.color_group(context, &group, out);
+        } else {
+            self.color_groups(context, corner, out);
+        }
+    }
+
+    /// Colours a block that one triangle covers fully.
+    pub(crate) fn full_block(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        number: u32,
+        corner: [i32; 2],
+        out: &mut Out<'_, '_>,
+    ) {
+        self.fragments.list_full_block(number, corner);
+        self.fragments.shares = [ALL; BATCH];
+        self.color_group(context, &group_of(context, number), out);
+    }
+
+    /// Colours the fragments of a group.
+    pub(crate) fn color_group(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        out: &mut Out<'_, '_>,
+    ) {
+        self.colors.form = match out {
+            Out::Tile(..) | Out::Waiting(_) => Form::Pixels,
+            Out::Sums(_) | Out::Kept(..) | Out::Layer(_) => Form::Parts,
+        };
+        self.colors.linear = context.plan.variants.are_linear();
+        self.group(context, group);
+        match out {
+            Out::Tile(canvas, at) => self.copy(canvas, *at),
+            Out::Waiting(canvas) => self.copy_waiting(canvas),
+            Out::Sums(sums) => {
+                let Fragments { len, pixels, shares, .. } = &self.fragments;
+                sums.add_all(&self.colors, &pixels[..*len], &shares[..*len]);
+            }
+            Out::Kept(sums, kept, first) => {
+                let Fragments { len, pixels, shares, slots, numbers, .. } = &self.fragments;
+                let pixels = &pixels[..*len];
+                sums.add_all(&self.colors, pixels, &shares[..*len]);
+                kept.keep(&self.colors, &pixels[..*len.min(first)], slots, numbers);
+            }
+            Out::Layer(blend) => {
+                let opacities = self.opacities(context, group);
+                let pixels = &self.fragments.pixels[..self.fragments.len];
+                for (i, (place, opacity)) in pixels.iter().zip(opacities).enumerate() {
+                    blend.put(usize::from(*place), self.colors.part(i), opacity);
+                }
+            }
+        }
+    }
+
+    /// The colour of the first fragment of a group.
+    pub(crate) fn first_color(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+    ) -> [u8; 4] {
+        self.colors.form = Form::Pixels;
+        self.group(context, group);
+        self.colors.pixels[0].to_le_bytes()
+    }
+
+    /// Colours a block that shows several draws or pipelines, group by group.
+    pub(super) fn color_groups(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        corner: [i32; 2],
+        out: &mut Out<'_, '_>,
+    ) {
+        let mut done = [false; SLOTS];
+        let all = std::mem::take(&mut self.fragments);
+        for slot in 0..all.count {
+            if done[slot] {
+                continue;
+            }
+            let group = group_of(context, all.numbers[slot]);
+            let mut keep = [false; SLOTS];
+            for (other, number) in all.numbers[..all.count].iter().enumerate().skip(slot) {
+                keep[other] = (group.base..group.end).contains(number)
+                    && group.draw.pipeline_of(number - group.base) == group.pipeline;
+                done[other] |= keep[other];
+            }
+            self.fragments.take_from(&all, &keep, corner);
+            // Triangles of the list before, which keep their slots, may show nowhere.
+            if self.fragments.len > 0 {
+                self.color_group(context, &group, out);
+            }
+        }
+        self.fragments = all;
+    }
+
+    /// Copies the colours into the tile.
+    fn copy(&self, canvas: &mut Canvas<'_>, at: usize) {
+        if self.fragments.is_whole() {
+            canvas.put(at, &self.colors.pixels[..BLOCK_PIXELS]);
+        } else {
+            let pixels = &self.fragments.pixels[..self.fragments.len];
+            for (i, color) in pixels.iter().zip(&self.colors.pixels) {
+                let offset = canvas.offset(in_block(usize::from(*i)));
+                canvas.pixels[at + offset] = color.to_le_bytes();
+            }
+        }
+    }
+
+    pub(super) fn group(&mut self, context: &ShadingContext<'_, T>, group: &Group<'_>) {
+        match &context.plan.pipelines[group.pipeline as usize] {
+            Pipeline::Flat(color) => self.colors.fill(color.opaque()),
+            Pipeline::Shaded(shaded) => {
+                self.shaded(context, group, shaded);
+                if group.draw.back == Back::Red {
+                    self.redden();
+                }
+            }
+        }
+    }
+
+    /// Colours back faces red.
+    fn redden(&mut self) {
+        for (i, slot) in self.fragments.slots[..self.fragments.len].iter().enumerate() {
+            if self.attributes.back >> slot & 1 == 1 {
+                self.colors.set(i, Color::BACK_FACE.opaque());
+            }
+        }
+    }
+
+    fn shaded(&mut self, context: &ShadingContext<'_, T>, group: &Group<'_>, shaded: &Shaded) {
+        let ShadingContext { level, plan, .. } = *context;
+        let draw = group.draw;
+        let extras = &shaded.extras;
+        // A map of opacity is read where the fragments are.
+        let fades = shaded.opacity.is_some() && shaded.opacity_map.is_some();
+        let textured =
+            shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels() || fades;
+        // Every pixel has its own colour.
+        let each = textured || plan.variants.rounding == Rounding::Dithered;
+        let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
+        let located = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
+        if shaded.texture.is_some() && asks_ahead(self.fragments.count) {
+            let mesh = &group.draw.model.mesh;
+            let numbers = &self.fragments.numbers[..self.fragments.count];
+            numbers.iter().for_each(|number| mesh.prefetch_uv_places(number - group.base));
+        }
+        let new = self.take(context, group, located);
+        self.prepares_little = !textured && extras.is_empty();
+        if located {
+            self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
+        }
+        let is_by_slot = !(located || each);
+        self.batch.len = if is_by_slot { self.fragments.count } else { self.fragments.len };
+        let mut tint = shaded.tint;
+        match light {
+            None => {}
+            Some((LightAt::Pixel | LightAt::Sample, _)) => {
+                self.light_pixels(context, group, shaded, new);
+            }
+            Some((LightAt::Vertex, _)) => match self.mix_light(context, group, shaded, new) {
+                Mixture::Bytes => return,
+                Mixture::Colors => tint = [1.0; 3],
+                Mixture::Light => {}
+            },
+            Some((LightAt::Face, stages)) => self.light_faces(context, group, stages, each),
+        }
+        if textured {
+            self.texels(context, group, shaded, new);
+        }
+        let glows = extras.glows().next().is_some();
+        if !extras.is_empty() {
+            self.map_highlights(context, group, shaded, new);
+            if glows {
+                self.find_glow(context, group, shaded, new);
+            }
+        }
+        let lit = light.is_some();
+        self.quantize(context, if textured { None } else { Some(tint) }, (lit, glows));
+        if is_by_slot {
+            self.colors.hand_out(&self.fragments.slots[..self.fragments.len]);
+        }
+    }
+
+    /// Converts the light of the list, times a tint or the texels, and with what glows, to colours.
+    pub(super) fn quantize(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        tint: Option<[f64; 3]>,
+        (lit, glows): (bool, bool),
+    ) {
+        let ShadingContext { level, plan, terms, .. } = *context;
+        let (rounding, encoding) = (plan.variants.rounding, terms.encoding());
+        let Self { batch, texels, colors, maps, thresholds, .. } = self;
+        let own = match tint {
+            None => SurfaceColor::Texels(texels),
+            Some(tint) => SurfaceColor::Tint(tint.map(T::from_f64)),
+        };
+        if glows || encoding.is_some() {
+            let thresholds =
+                (rounding != Rounding::Nearest).then(|| thresholds.of(rounding, &self.fragments));
+            let glow = glows.then_some(&maps.glow);
+            T::run(level, Finish { batch, lit, own, glow, thresholds, encoding, colors });
+        } else if rounding == Rounding::Nearest {
+            T::run(level, Quantize { batch, lit, own, colors });
+        } else {
+            let thresholds = thresholds.of(rounding, &self.fragments);
+            T::run(level, QuantizeWithThresholds { batch, lit, own, thresholds, colors });
+        }
+    }
+
+    /// Fetches the triangles of the list, with their screen positions if they are to be `located`.
+    /// Returns whether they differ from those before.
+    pub(crate) fn take(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        located: bool,
+    ) -> bool {
+        let ShadingContext { level, plan, frame, .. } = *context;
+        let Group { draw, draw_index, base, .. } = *group;
+        let corners = located || draw.back != Back::Culled;
+        let order = corners.then(|| draw.model.mesh.draw_order());
+        let new = self.attributes.take(&self.fragments, order, draw_index, base);
+        if new {
+            let vertices = frame.corners_of(draw_index);
+            if located && plan.light_at == LightAt::Pixel && asks_ahead(self.fragments.count) {
+                self.attributes.prefetch_normals(draw);
+            }
+            self.attributes.find_sides(level, draw, plan, vertices);
+            if located {
+                self.attributes.locate(level, draw, plan, vertices);
+            }
+        }
+        new
+    }
+
+    /// How pixels of a group become positions and normals; computed once for each draw in turn.
+    pub(super) fn look_of(&mut self, plan: &FramePlan, group: &Group<'_>) -> Look<T> {
+        match self.look {
+            Some((draw, look)) if draw == group.draw_index => look,
+            _ => {
+                let look = Look::new(plan, group.draw);
+                self.look = Some((group.draw_index, look));
+                look
+            }
+        }
+    }
+
+    /// Phong shading: lights every pixel.
+    fn light_pixels(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+        new: bool,
+    ) {
+        let ShadingContext { level, plan, terms, .. } = *context;
+        if shaded.extras.exponent.is_some() {
+            self.map_exponents(context, group, shaded, new);
+        }
+        let look = self.look_of(plan, group);
+        let Self { tile, fragments, attributes, barycentrics, batch, maps, rays, .. } = self;
+        let light = tile.light(plan, group.pipeline, shaded);
+        if light.needs_positions {
+            if new {
+                attributes.carry_normals(group.draw);
+                attributes.spread(level);
+            }
+            let roots = plan.variants.root_variant();
+            surface_samples((level, roots), look, fragments, attributes, barycentrics, batch);
+            if let Some(bump) = &shaded.extras.bump {
+                let points = Points { fragments, attributes, barycentrics };
+                bend(context, group, &points, (bump, new), (maps, batch));
+            }
+        } else {
+            // The attributes were not fetched, so the next block must not reuse them.
+            attributes.forget();
+        }
+        let tracer = context.tracer_of(group.draw_index).filter(|_| light.needs_positions);
+        let mut place = |origins: &mut Origins| {
+            if let Some(tracer) = tracer {
+                let on = (&*fragments, &*attributes);
+                place_fragments(context, tracer, group, on, barycentrics, origins);
+            }
+        };
+        let shadows = tracer
+            .map(|(tracer, _)| BatchShadows::new(tracer, rays, &mut place).of_pixels(fragments));
+        light.light_batch(terms.of(group.pipeline), level, batch, shadows);
+    }
+
+    /// Gouraud shading: interpolates the light of vertices at every pixel.
+    fn mix_light(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+        new: bool,
+    ) -> Mixture {
+        let ShadingContext { level, plan, .. } = *context;
+        let tables = context.lit.tables(group.draw_index, group.pipeline);
+        if !tables[0].is_colored() {
+            // The attributes are those of specular light.
+            self.attributes.keep_none();
+        }
+        if new || !tables[0].is_colored() {
+            self.carry_diffuse(context, group, shaded, tables);
+            self.attributes.spread(level);
+        }
+        let Self { fragments, attributes, barycentrics, batch, colors, thresholds, .. } = self;
+        let colored = tables[0].is_colored();
+        if colored && !plan.variants.are_linear() && shaded.extras.is_empty() {
+            let thresholds = thresholds.of(plan.variants.rounding, fragments);
+            mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors, thresholds));
+            return Mixture::Bytes;
+        }
+        mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.diffuse));
+        batch.len = fragments.len;
+        if colored {
+            batch.specular = [[T::default(); BATCH]; 3];
+            return Mixture::Colors;
+        }
+        attributes.carry_light(
+            group.draw,
+            #[inline(always)]
+            |place, back| tables[usize::from(back)].specular(place),
+        );
+        attributes.spread(level);
+        mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.specular));
+        Mixture::Light
+    }
+
+    /// Sets the attributes of corners to their diffuse light, or to their final colours.
+    pub(crate) fn carry_diffuse(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+        tables: [&Table<T>; 2],
+    ) {
+        let Self { attributes, batch, rays, .. } = self;
+        let stages = shaded.light.as_deref().unwrap_or_default();
+        let terms = context.terms.of(group.pipeline);
+        let tracer =
+            context.tracer_of(group.draw_index).filter(|_| context.plan.shadows.any_of(stages));
+        let lighting = Lighting { level: context.level, draw: group.draw, stages, terms, tracer };
+        attributes.carry_light(
+            group.draw,
+            #[inline(always)]
+            |place, back| tables[usize::from(back)].diffuse(place, &lighting, (batch, rays)),
+        );
+    }
+
+    /// Flat shading: lights each face, and spreads the light to its pixels if they are `located`.
+    fn light_faces(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        stages: &[Stage],
+        located: bool,
+    ) {
+        let ShadingContext { level, lit, terms, .. } = *context;
+        let Self { fragments, attributes, batch, rays, .. } = self;
+        batch.len = attributes.count;
+        lit.place_faces(level, (group.draw_index, group.draw), attributes, batch);
+        let tracer = context.tracer_of(group.draw_index);
+        let mut place = |origins: &mut Origins| {
+            if let Some(tracer) = tracer {
+                place_faces(tracer, group.draw, attributes, origins);
+            }
+        };
+        let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, rays, &mut place));
+        run(stages, terms.of(group.pipeline), level, batch, shadows);
+        if located {
+            for row in batch.diffuse.iter_mut().chain(&mut batch.specular) {
+                let of_faces = *row;
+                for (own, slot) in row.iter_mut().zip(&fragments.slots[..fragments.len]) {
+                    *own = of_faces[slot.cast_unsigned() as usize];
+                }
+            }
+            batch.len = fragments.len;
+        }
+    }
+}
+
+/// Column and row of pixel `i` of a block.
+pub(super) const fn in_block(i: usize) -> [usize; 2] {
+    [i % BLOCK as usize, i / BLOCK as usize]
+}

@@ -1,0 +1,356 @@
+//! Texels of fragments, sixteen at a time; the footprint of a pixel on its texture.
+
+use fearless_simd::{Simd, SimdBase as _, SimdMask as _, SimdWiden as _, f32x16, f64x8, i32x16};
+use glam::DVec3;
+
+use super::barycentrics::Barycentrics;
+use super::far_texture::FarTexture;
+use super::fragments::Fragments;
+use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
+use crate::frame::FramePlan;
+use crate::frame::draw::Draw;
+use crate::frame::variants::Decoding;
+use crate::lights::{Rows, load, store};
+use crate::screen::coverage::doubled_area;
+use crate::screen::weights::HomogeneousWeights;
+use crate::simd::gather::SLOTS;
+use crate::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3, in_f64};
+use crate::texture::lanes::{Decode, Sampler, Stored, TexelPlaces};
+use crate::texture::placement::{Doubles, LaneSteps, Placement, Steps, less};
+use crate::texture::sample::brightness;
+use crate::texture::uv::Uvs;
+
+/// A texture on the triangles of a list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedTexture<'a> {
+    pub(crate) placement: &'a Placement,
+    /// The triangles that f32 is not enough for.
+    pub(crate) far: &'a [FarTexture],
+    pub(crate) sampler: &'a Sampler<'a>,
+}
+
+/// What the texels of some fragments are sampled from.
+#[derive(Debug)]
+pub(crate) struct TextureSamples<'a, T> {
+    pub(crate) fragments: &'a Fragments,
+    pub(crate) barycentrics: &'a Barycentrics<T>,
+    pub(crate) texture: PlacedTexture<'a>,
+    pub(crate) decoding: Decoding,
+}
+
+/// What sampling writes. It is kept from list to list, so that none of it has to be cleared.
+#[derive(Debug)]
+pub(crate) struct TexelScratch {
+    pub(crate) places: TexelPlaces,
+    pub(crate) texels: Rows<f32>,
+    /// The vertex colours of a full block.
+    pub(crate) colors: Rows<f32>,
+}
+
+impl Default for TexelScratch {
+    fn default() -> Self {
+        let rows = [[0.0; BATCH]; 3];
+        Self { places: TexelPlaces::default(), texels: rows, colors: rows }
+    }
+}
+
+impl TextureSamples<'_, f32> {
+    /// Multiplies colours by the texels of all fragments; those of triangles whose placement is not
+    /// known get arbitrary factors.
+    #[inline(always)]
+    pub(crate) fn multiply<S: Simd, D: Decode, const PAGES: usize>(
+        &self,
+        simd: S,
+        TexelScratch { places, texels, .. }: &mut TexelScratch,
+        to: &mut Rows<f32>,
+    ) {
+        let Self { fragments, texture, .. } = *self;
+        let lanes = Sixteen(simd);
+        self.place::<S, PAGES>(simd, places);
+        texture.sampler.sample::<S, D>(simd, places, fragments.len, texels);
+        for at in (0..fragments.len).step_by(16) {
+            let texel = load(lanes, texels, at);
+            store(lanes, product(load(lanes, to, at), texel), to, at);
+        }
+    }
+
+    /// Finds the places of all fragments.
+    #[inline(always)]
+    fn place<S: Simd, const PAGES: usize>(&self, simd: S, to: &mut TexelPlaces) {
+        let Self { fragments, barycentrics, texture, .. } = *self;
+        let lanes = Sixteen(simd);
+        for at in (0..fragments.len).step_by(16) {
+            let slots = OfSlots::<S, PAGES>(lanes.slots(&fragments.slots, at));
+            let second = lanes.load(&barycentrics.weights[0], at);
+            let third = lanes.load(&barycentrics.weights[1], at);
+            let w = lanes.load(&barycentrics.w, at);
+            let way = texture.way(simd, &slots, [second, third]);
+            let mut position = texture.position(simd, &slots, way);
+            if !texture.far.is_empty() {
+                position = self.far_positions(simd, at, position);
+            }
+            texture.put(simd, &slots, (way, w), position, (to, at));
+        }
+    }
+
+    /// The slopes of heights at all fragments, per texel along u and v, in the first two rows.
+    #[inline(always)]
+    pub(crate) fn slopes<S: Simd, const PAGES: usize>(
+        &self,
+        simd: S,
+        TexelScratch { places, texels, .. }: &mut TexelScratch,
+        to: &mut Rows<f32>,
+    ) {
+        let Self { fragments, texture, .. } = *self;
+        let lanes = Sixteen(simd);
+        self.place::<S, PAGES>(simd, places);
+        let own = places.position;
+        let mut heights = [[0.0; BATCH]; 4];
+        let beside = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+        for (heights, beside) in heights.iter_mut().zip(beside) {
+            for axis in 0..2 {
+                for at in (0..fragments.len).step_by(16) {
+                    let position = lanes.load(&own[axis], at) + beside[axis];
+                    lanes.store(position, &mut places.position[axis], at);
+                }
+            }
+            texture.sampler.sample::<S, Stored>(simd, places, fragments.len, texels);
+            for at in (0..fragments.len).step_by(16) {
+                lanes.store(brightness(load(lanes, texels, at)), heights, at);
+            }
+        }
+        let [right, left, above, below] = &heights;
+        for at in (0..fragments.len).step_by(16) {
+            let across = (lanes.load(right, at) - lanes.load(left, at)) * 0.5;
+            let up = (lanes.load(above, at) - lanes.load(below, at)) * 0.5;
+            lanes.store(across, &mut to[0], at);
+            lanes.store(up, &mut to[1], at);
+        }
+    }
+}
+
+impl<T> TextureSamples<'_, T> {
+    /// Replaces the positions of sixteen fragments in triangles that f32 is not enough for.
+    #[cold]
+    fn far_positions<S: Simd>(
+        &self,
+        simd: S,
+        at: usize,
+        positions: [f32x16<S>; 2],
+    ) -> [f32x16<S>; 2] {
+        let mut rows = [<[f32; 16]>::from(positions[0]), <[f32; 16]>::from(positions[1])];
+        for lane in 0..16.min(self.fragments.len - at) {
+            let Fragments { x, y, slots, .. } = self.fragments;
+            let slot = slots[at + lane].cast_unsigned() as usize;
+            if let Some(far) = self.texture.far.iter().find(|far| far.slot == slot) {
+                let [u, v] = far.at([x[at + lane], y[at + lane]]);
+                (rows[0][lane], rows[1][lane]) = (u, v);
+            }
+        }
+        [f32x16::from_slice(simd, &rows[0]), f32x16::from_slice(simd, &rows[1])]
+    }
+}
+
+/// The product of two colours.
+#[inline(always)]
+pub(crate) fn product<R: Real>(Vec3([r, g, b]): Vec3<R>, Vec3([x, y, z]): Vec3<R>) -> Vec3<R> {
+    Vec3([r * x, g * y, b * z])
+}
+
+/// The triangles of sixteen pixels.
+pub(crate) trait Triangles<S: Simd> {
+    /// The numbers of the triangles in a row.
+    fn pick(&self, simd: S, row: &[f32; SLOTS]) -> f32x16<S>;
+}
+
+/// Those of some slots, all below `PAGES` times sixteen.
+struct OfSlots<S: Simd, const PAGES: usize>(i32x16<S>);
+
+impl<S: Simd, const PAGES: usize> Triangles<S> for OfSlots<S, PAGES> {
+    #[inline(always)]
+    fn pick(&self, simd: S, row: &[f32; SLOTS]) -> f32x16<S> {
+        Sixteen(simd).pick::<PAGES>(row, self.0)
+    }
+}
+
+/// The first triangle of the list.
+pub(crate) struct OfFirst;
+
+impl<S: Simd> Triangles<S> for OfFirst {
+    #[inline(always)]
+    fn pick(&self, simd: S, row: &[f32; SLOTS]) -> f32x16<S> {
+        f32x16::splat(simd, row[0])
+    }
+}
+
+impl PlacedTexture<'_> {
+    /// Puts sixteen places on the texture into a row, at some positions, with the way to them in
+    /// texels from the first corner and with their w.
+    #[inline(always)]
+    pub(crate) fn put<S: Simd>(
+        &self,
+        simd: S,
+        of: &impl Triangles<S>,
+        way: ([f32x16<S>; 2], f32x16<S>),
+        position: [f32x16<S>; 2],
+        (to, at): (&mut TexelPlaces, usize),
+    ) {
+        let lanes = Sixteen(simd);
+        lanes.store(position[0], &mut to.position[0], at);
+        lanes.store(position[1], &mut to.position[1], at);
+        if self.sampler.reads_mips() {
+            let (right, below) =
+                (self.squared_step(simd, of, way, 0), self.squared_step(simd, of, way, 1));
+            lanes.store(Real::max(right, below), &mut to.footprint, at);
+        }
+    }
+
+    /// The texels from the first corner to the point with these weights of the second and third.
+    #[inline(always)]
+    pub(crate) fn way<S: Simd>(
+        &self,
+        simd: S,
+        of: &impl Triangles<S>,
+        [b, c]: [f32x16<S>; 2],
+    ) -> [f32x16<S>; 2] {
+        let Placement { second, third, .. } = self.placement;
+        [
+            of.pick(simd, &second[0]) * b + of.pick(simd, &third[0]) * c,
+            of.pick(simd, &second[1]) * b + of.pick(simd, &third[1]) * c,
+        ]
+    }
+
+    /// The position in texels, for this way in texels from the first corner.
+    #[inline(always)]
+    pub(crate) fn position<S: Simd>(
+        &self,
+        simd: S,
+        of: &impl Triangles<S>,
+        [u, v]: [f32x16<S>; 2],
+    ) -> [f32x16<S>; 2] {
+        [self.clamped(simd, of, u, 0), self.clamped(simd, of, v, 1)]
+    }
+
+    #[inline(always)]
+    fn clamped<S: Simd>(
+        &self,
+        simd: S,
+        of: &impl Triangles<S>,
+        way: f32x16<S>,
+        axis: usize,
+    ) -> f32x16<S> {
+        let texels = of.pick(simd, &self.placement.first[axis]) + way;
+        let texels = Real::max(texels, of.pick(simd, &self.placement.low[axis]));
+        Real::min(texels, of.pick(simd, &self.placement.high[axis]))
+    }
+
+    /// The square of the distance in texels to the next pixel on the right (0) or below (1). With
+    /// u = U w, where U and 1/w change by dU and d to that pixel:
+    ///
+    ///   (U + dU) / (1/w + d) - U w = (dU - u d) w / (1 + w d)
+    #[inline(always)]
+    fn squared_step<S: Simd>(
+        &self,
+        simd: S,
+        of: &impl Triangles<S>,
+        ([u, v], w): ([f32x16<S>; 2], f32x16<S>),
+        which: usize,
+    ) -> f32x16<S> {
+        let Placement { steps, by_w_steps, .. } = self.placement;
+        let by_w = of.pick(simd, &by_w_steps[which]);
+        let per = w / (by_w * w + 1.0);
+        let u = (of.pick(simd, &steps[which][0]) - u * by_w) * per;
+        let v = (of.pick(simd, &steps[which][1]) - v * by_w) * per;
+        u * u + v * v
+    }
+}
+
+/// The [`Steps`] of a triangle; `None` if it has no area.
+pub(crate) fn steps<T: AttributeNumber>(
+    (plan, draw): (&FramePlan, &Draw),
+    attributes: &TriangleAttributes<T>,
+    slot: usize,
+) -> Option<Steps> {
+    if attributes.cut >> slot & 1 == 1 {
+        let number = attributes.numbers[slot];
+        return Some(HomogeneousWeights::new(plan, draw, number, [0; 2]).steps());
+    }
+    let corners = attributes.corners(slot);
+    let [a, b, c] = corners.map(|corner| [corner.x, corner.y].map(f64::from));
+    #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
+    let area = doubled_area(corners) as f64;
+    if area == 0.0 {
+        return None;
+    }
+    let by_w: [f64; 3] = [0, 1, 2].map(|corner| attributes.by_w[corner][slot].into());
+    let per_pixel = f64::from(attributes.grid.parts()) / area;
+    // Of the barycentric coordinates of the second and the third corner.
+    let right = [c[1] - a[1], a[1] - b[1]].map(|step| step * per_pixel);
+    let down = [a[0] - c[0], b[0] - a[0]].map(|step| step * per_pixel);
+    Some(
+        [right, down].map(|[second, third]| {
+            [-(second + third) * by_w[0], second * by_w[1], third * by_w[2]]
+        }),
+    )
+}
+
+/// The [`Steps`] of sixteen triangles, from slot `at` on, with the bits of [`steps`]; and a bit for
+/// each of them whose steps are meaningless: it is clipped, wide, or has no area.
+#[inline(always)]
+pub(super) fn lane_steps<S: Simd>(
+    simd: S,
+    attributes: &TriangleAttributes<f32>,
+    at: usize,
+) -> (LaneSteps<S>, u64) {
+    let [ax, ay] = places(simd, &attributes.corners[0], at);
+    let [bx, by] = places(simd, &attributes.corners[1], at);
+    let [cx, cy] = places(simd, &attributes.corners[2], at);
+    let [w0, w1, w2] = &attributes.by_w;
+    let by_w = [wide(simd, w0, at), wide(simd, w1, at), wide(simd, w2, at)];
+    let (b, c) = ([less(bx, ax), less(by, ay)], [less(cx, ax), less(cy, ay)]);
+    let parts = f64::from(attributes.grid.parts());
+    let zero = f64x8::splat(simd, 0.0);
+    let (mut steps, mut flat) = ([[[zero; 2]; 3]; 2], 0);
+    for half in 0..2 {
+        // Sides of triangles that are not wide have 20 bits, so that this is exact.
+        let area = b[0][half] * c[1][half] - b[1][half] * c[0][half];
+        flat |= area.simd_eq(0.0).to_bitmask() << (8 * half);
+        let per_pixel = f64x8::splat(simd, parts) / area;
+        let right = [(cy[half] - ay[half]) * per_pixel, (ay[half] - by[half]) * per_pixel];
+        let down = [(ax[half] - cx[half]) * per_pixel, (bx[half] - ax[half]) * per_pixel];
+        for (steps, [second, third]) in steps.iter_mut().zip([right, down]) {
+            steps[0][half] = -(second + third) * by_w[0][half];
+            steps[1][half] = second * by_w[1][half];
+            steps[2][half] = third * by_w[2][half];
+        }
+    }
+    (steps, flat | (attributes.cut | attributes.wide) >> at & 0xffff)
+}
+
+/// x and y of one corner of sixteen triangles.
+#[inline(always)]
+fn places<S: Simd>(simd: S, [x, y]: &[[i32; SLOTS]; 2], at: usize) -> [Doubles<S>; 2] {
+    let (x, y) = (&x[at..at + 16], &y[at..at + 16]);
+    [in_f64(i32x16::from_slice(simd, x)), in_f64(i32x16::from_slice(simd, y))]
+}
+
+/// Sixteen numbers of a row.
+#[inline(always)]
+fn wide<S: Simd>(simd: S, row: &[f32; SLOTS], at: usize) -> Doubles<S> {
+    let (low, high) = Sixteen(simd).load(row, at).widen();
+    [low, high]
+}
+
+/// The footprint of a pixel with these perspective-correct weights and this w: the differences of
+/// uv to its neighbours on the right and below. See [`PlacedTexture::squared_step`].
+pub(crate) fn footprint([a, b, c]: Uvs, weights: DVec3, w: f64, steps: Steps) -> [[f64; 2]; 2] {
+    steps.map(|[first, second, third]| {
+        let by_w = first + second + third;
+        let per = w / (1.0 + w * by_w);
+        [0, 1].map(|axis| {
+            let (b, c) = (b[axis] - a[axis], c[axis] - a[axis]);
+            let way = b * weights.y + c * weights.z;
+            (b * second + c * third - way * by_w) * per
+        })
+    })
+}

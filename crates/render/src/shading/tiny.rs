@@ -1,0 +1,231 @@
+//! Colours lists in which nearly each pixel shows a triangle of its own.
+//!
+//! Triangles of about a pixel gain nothing from slots: each would be looked up, prepared, stored,
+//! and gathered again for one pixel. Here, lane i of sixteen holds the triangle of pixel i, from
+//! its vertices to its normals. Lists reach over several blocks, and what is read for them is asked
+//! for before, since most of it is in no near cache. The bits are those of triangles with slots.
+//!
+//! Clipped triangles, and those whose edge functions need more than 32 bits, are not tiny.
+
+use fearless_simd::{
+    Bytes as _, Level, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch,
+    f32x16, i32x16, mask32x16,
+};
+use prefetch_index::prefetch_index;
+
+use super::barycentrics::Barycentrics;
+use super::colors::Colors;
+use super::fragments::Fragments;
+use super::interpolate::Look;
+use super::triangle_attributes::{Edges, corners};
+use crate::lights::Batch;
+use crate::raster::vertices::fetch;
+use crate::screen::clip::ScreenVertex;
+use crate::screen::coverage::Grid;
+use crate::screen::perspective::between;
+use crate::simd::{BATCH, Lanes as _, Sixteen, Vec3};
+use marraztu_core::accuracy::Interpolation;
+use marraztu_core::scene::DrawOrder;
+
+/// The triangles of a list of pixels, one for each pixel.
+#[derive(Debug)]
+#[repr(align(64))]
+pub(crate) struct TinyTriangles {
+    /// Their vertices in the mesh's draw order.
+    ids: [[u32; 3]; BATCH],
+    /// The places of their corners in the list of normals, or of light.
+    pub(super) places: [[u32; 3]; BATCH],
+    /// Which of them are back faces, sixteen at a time.
+    pub(super) back: [u64; BATCH / 16],
+}
+
+impl Default for TinyTriangles {
+    fn default() -> Self {
+        Self { ids: [[0; 3]; BATCH], places: [[0; 3]; BATCH], back: [0; BATCH / 16] }
+    }
+}
+
+impl TinyTriangles {
+    /// Sets the triangles to those of a list, all of one draw whose numbers begin at `base`, and
+    /// asks the cache for their vertices and for what is at their corners. `corners` gives the
+    /// places of a triangle's corners, by its number in the mesh and its vertices; `prefetch` asks
+    /// for what is at one.
+    #[inline(always)]
+    pub(super) fn take(
+        &mut self,
+        (order, vertices): (&DrawOrder, &[ScreenVertex]),
+        (numbers, base): (&[u32], u32),
+        corners: impl Fn(u32, [u32; 3]) -> [u32; 3],
+        prefetch: impl Fn(u32),
+    ) {
+        for (ids, number) in self.ids.iter_mut().zip(numbers) {
+            *ids = order.vertices_of(number - base);
+            ids.iter().for_each(|id| prefetch_index(vertices, *id as usize));
+        }
+        let own = self.places.iter_mut().zip(&self.ids).zip(numbers);
+        for ((places, ids), number) in own {
+            *places = corners(number - base, *ids);
+            places.iter().for_each(|place| prefetch(*place));
+        }
+    }
+}
+
+/// The colours of the corners of some triangles, corner by corner: red, green, blue, and a number
+/// of no meaning.
+pub(crate) type CornerRows<T> = [[[T; 4]; BATCH]; 3];
+
+/// What the barycentric coordinates of tiny triangles are computed from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Weighing<'a> {
+    pub(super) interpolation: Interpolation,
+    pub(super) grid: Grid,
+    /// Whether fronts and backs are mirrored.
+    pub(super) mirrored: bool,
+    pub(super) vertices: &'a [ScreenVertex],
+}
+
+/// Computes the barycentric coordinates of a list, and which triangles are back faces. Returns
+/// false if one is clipped or wide: then they are meaningless.
+pub(super) fn weigh(
+    level: Level,
+    by: Weighing<'_>,
+    fragments: &Fragments,
+    triangles: &mut TinyTriangles,
+    to: &mut Barycentrics<f32>,
+) -> bool {
+    dispatch!(level, simd => weigh_in(simd, by, fragments, triangles, to))
+}
+
+/// Computes position, normal and direction to the observer of every pixel, from the normals at
+/// corners, which are reversed on back faces if those are lit.
+pub(super) fn sample(
+    level: Level,
+    look: &Look<f32>,
+    of: (&Fragments, &TinyTriangles),
+    normals: (&[[f32; 3]], bool),
+    weights: &Barycentrics<f32>,
+    to: &mut Batch<f32>,
+) {
+    dispatch!(level, simd => sample_in(simd, look, of, normals, weights, to));
+}
+
+/// Interpolates the colours at the corners of a number of pixels.
+pub(super) fn mix(
+    level: Level,
+    of: (&CornerRows<f32>, usize),
+    weights: &Barycentrics<f32>,
+    to: (&mut Colors, &[f32; BATCH]),
+) {
+    dispatch!(level, simd => mix_in(simd, of, weights, to));
+}
+
+#[inline(always)]
+fn weigh_in<S: Simd>(
+    simd: S,
+    by: Weighing<'_>,
+    fragments: &Fragments,
+    triangles: &mut TinyTriangles,
+    to: &mut Barycentrics<f32>,
+) -> bool {
+    let mut odd = 0;
+    for at in (0..fragments.len).step_by(16) {
+        let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =
+            corners(simd, &triangles.ids[at..], by.vertices);
+        let edges = Edges::new(by.grid, [[x0, y0], [x1, y1], [x2, y2]]);
+        let own = u64::MAX >> (64 - (fragments.len - at).min(16));
+        odd |= (edges.cut | edges.wide).to_bitmask() & own;
+        let front = edges.area.simd_lt(0).to_bitmask();
+        triangles.back[at / 16] = if by.mirrored { front } else { !front };
+        let x = i32x16::from_slice(simd, &fragments.x[at..at + 16]);
+        let y = i32x16::from_slice(simd, &fragments.y[at..at + 16]);
+        let per_area = edges.per_area();
+        let [[a1, b1, c1], [a2, b2, c2]] = edges.functions;
+        let second = (a1 * x + b1 * y + c1).to_float::<f32x16<S>>() * per_area;
+        let third = (a2 * x + b2 * y + c2).to_float::<f32x16<S>>() * per_area;
+        let by_w = Vec3([w0.bitcast(), w1.bitcast(), w2.bitcast()]);
+        to.put(by.interpolation, Sixteen(simd), at, [second, third], by_w);
+    }
+    odd == 0
+}
+
+#[inline(always)]
+fn sample_in<S: Simd>(
+    simd: S,
+    look: &Look<f32>,
+    (fragments, triangles): (&Fragments, &TinyTriangles),
+    (normals, turns): (&[[f32; 3]], bool),
+    weights: &Barycentrics<f32>,
+    to: &mut Batch<f32>,
+) {
+    let lanes = Sixteen(simd);
+    for at in (0..fragments.len).step_by(16) {
+        let places = &triangles.places[at..at + 16];
+        let [mut a, mut b, mut c] = [
+            normals_at(simd, normals, places, 0),
+            normals_at(simd, normals, places, 1),
+            normals_at(simd, normals, places, 2),
+        ];
+        if turns {
+            let back = mask32x16::from_bitmask(simd, triangles.back[at / 16] & 0xffff);
+            (a, b, c) = (turned(a, back), turned(b, back), turned(c, back));
+        }
+        let by = [lanes.load(&weights.weights[0], at), lanes.load(&weights.weights[1], at)];
+        let normal = between([a, b.minus(a), c.minus(a)], by);
+        let half = f32x16::splat(simd, 0.5);
+        let place = [lanes.whole(&fragments.x, at) + half, lanes.whole(&fragments.y, at) + half];
+        // Depths are for orthographic projection, in which no triangle is drawn as tiny.
+        let depth = || f32x16::splat(simd, 0.0);
+        let sample = look.at(lanes, normal, place, lanes.load(&weights.w, at), depth);
+        to.put(lanes, sample, at);
+    }
+}
+
+/// The normals at one corner of sixteen triangles.
+#[inline(always)]
+fn normals_at<S: Simd>(
+    simd: S,
+    normals: &[[f32; 3]],
+    places: &[[u32; 3]],
+    corner: usize,
+) -> Vec3<f32x16<S>> {
+    // Unused lanes may have places of other draws.
+    let last = normals.len().saturating_sub(1);
+    let [x, y, z, _] = fetch(
+        simd,
+        #[inline(always)]
+        |lane| {
+            let [x, y, z] = normals[(places[lane][corner] as usize).min(last)];
+            let [x, y, z] = [x, y, z].map(|x| x.to_bits().cast_signed());
+            // The fourth is not read.
+            [x, y, z, z]
+        },
+    );
+    Vec3([x.bitcast(), y.bitcast(), z.bitcast()])
+}
+
+/// Reverses the normals in some lanes.
+#[inline(always)]
+fn turned<S: Simd>(Vec3([x, y, z]): Vec3<f32x16<S>>, some: mask32x16<S>) -> Vec3<f32x16<S>> {
+    Vec3([some.select(-x, x), some.select(-y, y), some.select(-z, z)])
+}
+
+#[inline(always)]
+fn mix_in<S: Simd>(
+    simd: S,
+    (rows, len): (&CornerRows<f32>, usize),
+    weights: &Barycentrics<f32>,
+    (colors, thresholds): (&mut Colors, &[f32; BATCH]),
+) {
+    let lanes = Sixteen(simd);
+    for at in (0..len).step_by(16) {
+        let [r, g, b, _] = lanes.load_four(&rows[0], at);
+        let first = Vec3([r, g, b]);
+        let [r, g, b, _] = lanes.load_four(&rows[1], at);
+        let second = Vec3([r, g, b]).minus(first);
+        let [r, g, b, _] = lanes.load_four(&rows[2], at);
+        let third = Vec3([r, g, b]).minus(first);
+        let by = [lanes.load(&weights.weights[0], at), lanes.load(&weights.weights[1], at)];
+        let color = between([first, second, third], by);
+        colors.store_by(lanes, color, lanes.load(thresholds, at), at);
+    }
+}

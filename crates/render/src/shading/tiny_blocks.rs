@@ -1,0 +1,262 @@
+//! Colours blocks of [tiny] triangles.
+//!
+//! They wait until their pixels fill a list, like other blocks that show one surface. If a triangle
+//! of the list is clipped or wide, its blocks are coloured one by one instead, with slots.
+
+use prefetch_index::prefetch_index;
+
+use super::colors::Form;
+use super::context::ShadingContext;
+use super::full_blocks::Canvas;
+use super::groups::{Group, are_of, group_of};
+use super::light::Lighting;
+use super::runs::Runs;
+use super::surface::{Out, Shader, Waiting};
+use super::tiny::{self, Weighing};
+use crate::frame::draw::{Back, Pipeline, Shaded};
+use crate::frame::{Eye, FramePlan};
+use crate::raster::entries::word;
+use crate::screen::tiles::BLOCK_PIXELS;
+use marraztu_core::accuracy::{Coverage, Interpolation, LightAt};
+use marraztu_core::scene::Normals;
+
+/// The distinct triangles of a block, about, from which on they are drawn as tiny ones.
+const MANY: u32 = 32;
+
+/// Whether triangles of a group may be drawn as tiny ones: their light is looked up for pixels, or
+/// is the colour of vertices, and nothing else is computed from slots.
+fn may_be_tiny(context: &ShadingContext<'_, f32>, group: &Group<'_>) -> bool {
+    let plan = context.plan;
+    let Some(shaded) = lit(plan, group) else { return false };
+    let light = match plan.light_at {
+        LightAt::Pixel => true,
+        LightAt::Vertex => !plan.variants.are_linear(),
+        LightAt::Face | LightAt::Sample => false,
+    };
+    light
+        && plan.eye == Eye::Point
+        && plan.variants.coverage == Coverage::Exact
+        && plan.variants.interpolation != Interpolation::EverySixteen
+        && plan.variants.root_variant().is_none()
+        && shaded.texture.is_none()
+        && shaded.opacity.is_none()
+        && !shaded.vertex_colors
+        && shaded.extras.is_empty()
+        && group.draw.back != Back::Red
+        && context.tracer_of(group.draw_index).is_none()
+}
+
+/// How the surface of a group is shaded, if it is lit.
+fn lit<'a>(plan: &'a FramePlan, group: &Group<'_>) -> Option<&'a Shaded> {
+    match &plan.pipelines[group.pipeline as usize] {
+        Pipeline::Shaded(shaded) => shaded.light.is_some().then_some(shaded),
+        Pipeline::Flat(_) => None,
+    }
+}
+
+/// Numbers that triangles are shaded in. Tiny ones are shaded in f32.
+pub(crate) trait Tiny: Sized {
+    /// The same shader and context, if their numbers are f32.
+    fn single<'s, 'c, 'a>(
+        shader: &'s mut Shader<Self>,
+        context: &'c ShadingContext<'a, Self>,
+    ) -> Option<(&'s mut Shader<f32>, &'c ShadingContext<'a, f32>)>;
+}
+
+impl Tiny for f32 {
+    fn single<'s, 'c, 'a>(
+        shader: &'s mut Shader<Self>,
+        context: &'c ShadingContext<'a, Self>,
+    ) -> Option<(&'s mut Shader<Self>, &'c ShadingContext<'a, Self>)> {
+        Some((shader, context))
+    }
+}
+
+impl Tiny for f64 {
+    fn single<'s, 'c, 'a>(
+        _: &'s mut Shader<Self>,
+        _: &'c ShadingContext<'a, Self>,
+    ) -> Option<(&'s mut Shader<f32>, &'c ShadingContext<'a, f32>)> {
+        None
+    }
+}
+
+impl Shader<f32> {
+    /// Lists a block of tiny triangles, to be coloured when [`Shader::finish_waiting`] is called.
+    /// Returns whether it has listed it: it does not if they are not tiny, or of several groups.
+    pub(super) fn wait_tiny(
+        &mut self,
+        context: &ShadingContext<'_, f32>,
+        runs: &Runs,
+        corner: [i32; 2],
+        (canvas, at): (&mut Canvas<'_>, usize),
+    ) -> bool {
+        if runs.new_starts().count_ones() < MANY {
+            return false;
+        }
+        if !self.fragments.have_room_for_tiny(runs) || self.waiting.is_empty() {
+            self.finish_waiting(context, canvas);
+            if !may_be_tiny(context, &group_of(context, runs.first_triangle())) {
+                return false;
+            }
+            self.fragments.begin_tiny();
+        }
+        let from = self.fragments.len;
+        self.fragments.list_tiny(context.level, runs, corner);
+        let each = self.fragments.each();
+        let group = group_of(context, each[0]);
+        if !are_of(context, &group, &each[from..]) {
+            self.fragments.shorten(from);
+            return false;
+        }
+        let order = group.draw.model.mesh.draw_order();
+        each[from..].iter().for_each(|number| order.prefetch(number - group.base));
+        self.waiting.push(Waiting { from, at });
+        true
+    }
+
+    /// Colours the blocks of tiny triangles that wait.
+    pub(super) fn finish_tiny(
+        &mut self,
+        context: &ShadingContext<'_, f32>,
+        canvas: &mut Canvas<'_>,
+    ) {
+        let group = group_of(context, self.fragments.each()[0]);
+        self.colors.form = Form::Pixels;
+        self.colors.linear = context.plan.variants.are_linear();
+        let Some(shaded) = lit(context.plan, &group) else { return };
+        let is_done = match context.plan.light_at {
+            LightAt::Vertex => self.mix_tiny(context, &group, shaded),
+            LightAt::Pixel | LightAt::Sample | LightAt::Face => {
+                self.light_tiny(context, &group, shaded)
+            }
+        };
+        if is_done {
+            self.copy_waiting(canvas);
+        } else {
+            self.color_one_by_one(context, canvas);
+        }
+    }
+
+    /// Colours the blocks that wait one after the other, with slots.
+    #[cold]
+    fn color_one_by_one(&mut self, context: &ShadingContext<'_, f32>, canvas: &mut Canvas<'_>) {
+        let all = std::mem::take(&mut self.fragments);
+        for block in 0..self.waiting.len() {
+            let Waiting { from, at } = self.waiting[block];
+            let end = self.waiting.get(block + 1).map_or(all.len, |next| next.from);
+            let mut visibility = [0; BLOCK_PIXELS];
+            for (place, number) in all.pixels[from..end].iter().zip(&all.each()[from..end]) {
+                visibility[usize::from(*place) % BLOCK_PIXELS] = word(1, *number);
+            }
+            let corner = [all.x[from], all.y[from]].map(|at| at & !7);
+            self.fragments.list(context.level, &visibility, corner);
+            self.color_fragments(context, corner, &mut Out::Tile(canvas, at));
+        }
+    }
+
+    /// Computes the barycentric coordinates of the list. Returns whether all triangles are tiny.
+    fn weigh_tiny(&mut self, context: &ShadingContext<'_, f32>, group: &Group<'_>) -> bool {
+        let ShadingContext { level, plan, frame, .. } = *context;
+        let by = Weighing {
+            interpolation: plan.variants.interpolation,
+            grid: plan.variants.grid(),
+            mirrored: group.draw.mirrored,
+            vertices: frame.corners_of(group.draw_index),
+        };
+        tiny::weigh(level, by, &self.fragments, &mut self.tiny, &mut self.barycentrics)
+    }
+
+    /// Phong shading, as [`Shader::light_pixels`].
+    fn light_tiny(
+        &mut self,
+        context: &ShadingContext<'_, f32>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+    ) -> bool {
+        let ShadingContext { level, plan, frame, terms, .. } = *context;
+        self.batch.len = self.fragments.len;
+        if self.tile.light(plan, group.pipeline, shaded).needs_positions {
+            let look = self.look_of(plan, group);
+            let mesh = &group.draw.model.mesh;
+            let order = mesh.draw_order();
+            let points = order.points(group.draw.normal_source);
+            let by_vertex = group.draw.normals == Normals::Vertex;
+            let normals = if by_vertex { &points.normals } else { mesh.polygon_normals() };
+            let list = (self.fragments.each(), group.base);
+            let from = (order, frame.corners_of(group.draw_index));
+            let prefetch = |place: u32| prefetch_index(normals, place as usize);
+            if by_vertex {
+                let corners = |number, ids| points.of(order, number, ids);
+                self.tiny.take(from, list, corners, prefetch);
+            } else {
+                self.tiny.take(from, list, |number, _| [mesh.polygon_of(number); 3], prefetch);
+            }
+            if !self.weigh_tiny(context, group) {
+                return false;
+            }
+            let Self { fragments, tiny, barycentrics, batch, .. } = self;
+            let normals = (normals, group.draw.back == Back::Lit);
+            tiny::sample(level, &look, (fragments, tiny), normals, barycentrics, batch);
+        }
+        let light = self.tile.light(plan, group.pipeline, shaded);
+        light.light_batch(terms.of(group.pipeline), level, &mut self.batch, None);
+        self.quantize(context, Some(shaded.tint), (true, false));
+        true
+    }
+
+    /// Gouraud shading, as [`Shader::mix_light`].
+    fn mix_tiny(
+        &mut self,
+        context: &ShadingContext<'_, f32>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+    ) -> bool {
+        let ShadingContext { level, plan, frame, lit, terms, .. } = *context;
+        let mesh = &group.draw.model.mesh;
+        let order = mesh.draw_order();
+        let points = order.points(group.draw.normal_source);
+        let tables = lit.tables(group.draw_index, group.pipeline);
+        let list = (self.fragments.each(), group.base);
+        let from = (order, frame.corners_of(group.draw_index));
+        match group.draw.normals {
+            Normals::Face => {
+                let triangles = mesh.triangles();
+                let corners = |number: u32, _: [u32; 3]| triangles[number as usize].corners;
+                self.tiny.take(from, list, corners, |_| {});
+            }
+            Normals::Vertex => {
+                let corners = |number, ids| points.of(order, number, ids);
+                self.tiny.take(from, list, corners, |_| {});
+            }
+        }
+        if !self.weigh_tiny(context, group) {
+            return false;
+        }
+        let stages = shaded.light.as_deref().unwrap_or_default();
+        let terms = terms.of(group.pipeline);
+        let lighting = Lighting { level, draw: group.draw, stages, terms, tracer: None };
+        let Self {
+            fragments,
+            tiny,
+            corner_colors,
+            barycentrics,
+            batch,
+            rays,
+            colors,
+            thresholds,
+            ..
+        } = self;
+        for (i, places) in tiny.places[..fragments.len].iter().enumerate() {
+            let back = tiny.back[i / 16] >> (i % 16) & 1 != 0;
+            let table = tables[usize::from(back)];
+            for (rows, place) in corner_colors.iter_mut().zip(places) {
+                rows[i] = table.diffuse(*place, &lighting, (&mut *batch, &mut *rays));
+            }
+        }
+        let thresholds = thresholds.of(plan.variants.rounding, fragments);
+        let of = (&**corner_colors, fragments.len);
+        tiny::mix(level, of, barycentrics, (colors, thresholds));
+        true
+    }
+}

@@ -1,0 +1,511 @@
+//! Attributes of the triangles that a block shows, and their edge functions.
+//!
+//! Each triangle has a slot. Its corners on the screen and its attributes at them (normals, or
+//! light of vertices) are fetched once, row after row, so that the fetches overlap. Then sixteen
+//! triangles at a time are prepared for the pixels that gather from them.
+
+use fearless_simd::{
+    Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, f32x16, i32x16,
+    mask32x16,
+};
+use glam::DVec3;
+
+use super::fragments::Fragments;
+use crate::frame::draw::{Back, Draw};
+use crate::frame::{Eye, FramePlan};
+use crate::raster::vertices::fetch_vertices;
+use crate::screen::clip::{Screen, ScreenVertex, faces_observer};
+use crate::screen::coverage::{Grid, NARROW_AREA, NARROW_SIDE, Snapped, doubled_area};
+use crate::simd::gather::SLOTS;
+use crate::simd::{Kernel, Lanes, Number, Vec3};
+use marraztu_core::base::math::each;
+use marraztu_core::scene::{DrawOrder, Normals};
+
+/// The attributes of some triangles of one draw. See the [module](self).
+#[derive(Debug)]
+#[repr(align(64))]
+pub(crate) struct TriangleAttributes<T> {
+    pub(crate) count: usize,
+    /// The first slots hold triangles of the list before, which are prepared already.
+    kept: usize,
+    /// Their numbers in the mesh.
+    pub(crate) numbers: [u32; SLOTS],
+    /// Whether their corners were fetched.
+    has_corners: bool,
+    /// Their vertices in the mesh's draw order.
+    ids: [[u32; 3]; SLOTS],
+    /// x and y of each corner on the screen, in subpixels.
+    pub(crate) corners: [[[i32; SLOTS]; 2]; 3],
+    /// The attributes of each corner.
+    pub(crate) carried: [[[T; 4]; SLOTS]; 3],
+    /// a, b and c of the edge functions of the second and the third corner, at pixels: e = a x + b
+    /// y + c, modulo 2^32.
+    pub(crate) edges: [[[i32; SLOTS]; 3]; 2],
+    /// 1 / the doubled area.
+    pub(crate) per_area: [f32; SLOTS],
+    /// 1/w of each corner.
+    pub(crate) by_w: [[T; SLOTS]; 3],
+    /// The attributes of the first corner, and the differences of the second and third from it.
+    pub(crate) values: [[[T; SLOTS]; 3]; 3],
+    /// z of each corner in view space; in orthographic projection only.
+    pub(crate) z: [[T; SLOTS]; 3],
+    /// Bit i: the triangle is clipped.
+    pub(crate) cut: u64,
+    /// Bit i: its edge functions do not fit 31 bits.
+    pub(crate) wide: u64,
+    /// Bit i: it is a back face.
+    pub(crate) back: u64,
+    /// The index of their draw in the plan.
+    draw: Option<u32>,
+    /// The grid of their corners.
+    pub(crate) grid: Grid,
+}
+
+impl<T: Number> Default for TriangleAttributes<T> {
+    fn default() -> Self {
+        let row = [T::default(); SLOTS];
+        Self {
+            count: 0,
+            kept: 0,
+            numbers: [0; SLOTS],
+            has_corners: false,
+            ids: [[0; 3]; SLOTS],
+            corners: [[[0; SLOTS]; 2]; 3],
+            carried: [[[T::default(); 4]; SLOTS]; 3],
+            edges: [[[0; SLOTS]; 3]; 2],
+            per_area: [0.0; SLOTS],
+            by_w: [row; 3],
+            values: [[row; 3]; 3],
+            z: [row; 3],
+            cut: 0,
+            wide: 0,
+            back: 0,
+            draw: None,
+            grid: Grid::Usual,
+        }
+    }
+}
+
+impl<T> TriangleAttributes<T> {
+    /// The slots of new triangles.
+    fn new_slots(&self) -> std::ops::Range<usize> {
+        self.kept..self.count
+    }
+
+    /// A bit for each slot that is not new.
+    const fn kept_bits(&self) -> u64 {
+        (1 << self.kept) - 1
+    }
+}
+
+/// Whether the cache is asked for what is read of a list of triangles before it is read: large
+/// models show many in a block, and are in no near cache. Of fewer, most is there, and asking costs
+/// 2 to 5% of a frame.
+pub(super) const fn asks_ahead(count: usize) -> bool {
+    count > SLOTS / 2
+}
+
+/// Numbers in which attributes are stored.
+pub(crate) trait AttributeNumber: Number {
+    /// Whether barycentric coordinates are computed from integers in f64, one by one.
+    const EXACT: bool;
+    /// Fetches the corners, and computes edge functions and 1/w.
+    fn prepare(level: Level, attributes: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]);
+}
+
+impl<T: AttributeNumber> TriangleAttributes<T> {
+    /// Triangles with these corners, for tests.
+    #[cfg(test)]
+    pub(crate) fn of(level: Level, ids: &[[u32; 3]], vertices: &[ScreenVertex]) -> Self {
+        let mut attributes = Self { count: ids.len(), ..Self::default() };
+        attributes.ids[..ids.len()].copy_from_slice(ids);
+        T::prepare(level, &mut attributes, vertices);
+        attributes
+    }
+
+    /// Forgets the triangles of the last block.
+    pub(crate) const fn forget(&mut self) {
+        self.draw = None;
+    }
+
+    /// Prepares the triangles of the list before again, too.
+    pub(crate) const fn keep_none(&mut self) {
+        self.kept = 0;
+    }
+
+    /// Whether more triangles may be added to these: with clipped ones, all are interpolated more
+    /// slowly.
+    pub(crate) const fn may_go_on(&self) -> bool {
+        self.draw.is_some() && self.cut == 0
+    }
+
+    /// Sets the triangles to those of a list, all of one draw whose numbers begin at `base`, with
+    /// their corners if an order is given. Returns whether there are others than before.
+    pub(crate) fn take(
+        &mut self,
+        fragments: &Fragments,
+        order: Option<&DrawOrder>,
+        draw: u32,
+        base: u32,
+    ) -> bool {
+        let count = fragments.count;
+        // Without a branch for each, so that several are compared at once.
+        let differ = |(own, number): (&u32, &u32)| own ^ number.wrapping_sub(base);
+        let before = self.numbers[..self.count].iter().zip(&fragments.numbers);
+        let goes_on = self.draw == Some(draw)
+            && (self.has_corners || order.is_none())
+            && self.count <= count
+            && before.fold(0, |all, pair| all | differ(pair)) == 0;
+        self.kept = if goes_on { self.count } else { 0 };
+        if self.kept == count {
+            return false;
+        }
+        (self.draw, self.count, self.has_corners) = (Some(draw), count, order.is_some());
+        let new = self.kept..count;
+        let numbers = &fragments.numbers[new.clone()];
+        for (own, number) in self.numbers[new.clone()].iter_mut().zip(numbers) {
+            *own = number - base;
+        }
+        if let Some(order) = order {
+            for (ids, number) in self.ids[new.clone()].iter_mut().zip(&self.numbers[new]) {
+                *ids = order.vertices_of(*number);
+            }
+        }
+        true
+    }
+
+    /// Finds which triangles are back faces, if that matters.
+    pub(crate) fn find_sides(
+        &mut self,
+        level: Level,
+        draw: &Draw,
+        plan: &FramePlan,
+        vertices: &[ScreenVertex],
+    ) {
+        let kept = self.kept_bits();
+        self.back &= kept;
+        if draw.back == Back::Culled {
+            return;
+        }
+        let (ids, new) = (&self.ids, self.new_slots());
+        let (front, odd) = dispatch!(level, simd => fronts(simd, ids, new, vertices));
+        let back = if draw.mirrored { front } else { !front };
+        self.back |= back & !kept;
+        let mut odd = odd & (u64::MAX >> (SLOTS - self.count.max(1))) & !kept;
+        while odd != 0 {
+            let slot = odd.trailing_zeros();
+            odd &= odd - 1;
+            let front = is_front(self.ids[slot as usize], draw, plan, vertices);
+            let back = u64::from(front == draw.mirrored) << slot;
+            self.back = self.back & !(1 << slot) | back;
+        }
+    }
+
+    /// Fetches the corners and prepares them for interpolation.
+    pub(crate) fn locate(
+        &mut self,
+        level: Level,
+        draw: &Draw,
+        plan: &FramePlan,
+        vertices: &[ScreenVertex],
+    ) {
+        self.grid = plan.variants.grid();
+        T::prepare(level, self, vertices);
+        if !T::EXACT && plan.eye == Eye::Point {
+            return;
+        }
+        let order = draw.model.mesh.draw_order();
+        let screen = Screen::new(draw.clip_from_object, plan.size);
+        for (slot, ids) in self.ids[..self.count].iter().enumerate().skip(self.kept) {
+            for (corner, vertex) in ids.iter().copied().enumerate() {
+                let place = order.position(vertex);
+                if T::EXACT {
+                    self.by_w[corner][slot] = T::from_f64(1.0 / screen.clip(place)[3]);
+                }
+                if plan.eye == Eye::Parallel {
+                    let place = draw.view_from_object.transform_point3(DVec3::from_array(place));
+                    self.z[corner][slot] = T::from_f64(place.z);
+                }
+            }
+        }
+    }
+
+    /// Asks the cache for what [`Self::carry_normals`] reads, if vertices have normals.
+    pub(crate) fn prefetch_normals(&self, draw: &Draw) {
+        if draw.normals == Normals::Vertex {
+            let points = draw.model.mesh.draw_order().points(draw.normal_source);
+            self.ids[self.new_slots()].iter().for_each(|ids| points.prefetch(*ids));
+        }
+    }
+
+    /// Sets the attributes of corners to their normals, reversed on back faces that are lit.
+    pub(crate) fn carry_normals(&mut self, draw: &Draw) {
+        let mesh = &draw.model.mesh;
+        let order = mesh.draw_order();
+        let points = order.points(draw.normal_source);
+        for (slot, number) in self.numbers[..self.count].iter().enumerate().skip(self.kept) {
+            let normals = match draw.normals {
+                Normals::Face => {
+                    let polygon = mesh.polygon_of(*number);
+                    [mesh.polygon_normals()[polygon as usize]; 3]
+                }
+                Normals::Vertex => {
+                    let of = points.of(order, *number, self.ids[slot]);
+                    each(of, |point| points.normals[point as usize])
+                }
+            };
+            let turn = if self.back >> slot & 1 == 1 { -1.0 } else { 1.0 };
+            for (carried, normal) in self.carried.iter_mut().zip(normals) {
+                let [x, y, z] = each(normal, |x| T::from_f64(f64::from(x * turn)));
+                carried[slot] = [x, y, z, T::default()];
+            }
+        }
+    }
+
+    /// Sets the attributes of corners to the light of their vertices: `light` gives it by vertex,
+    /// for the front or the back.
+    #[inline(always)]
+    pub(crate) fn carry_light(&mut self, draw: &Draw, mut light: impl FnMut(u32, bool) -> [T; 4]) {
+        let mesh = &draw.model.mesh;
+        let order = mesh.draw_order();
+        let points = order.points(draw.normal_source);
+        for (slot, number) in self.numbers[..self.count].iter().enumerate().skip(self.kept) {
+            let places = match draw.normals {
+                Normals::Face => mesh.triangles()[*number as usize].corners,
+                Normals::Vertex => points.of(order, *number, self.ids[slot]),
+            };
+            let back = self.back >> slot & 1 == 1;
+            for (carried, place) in self.carried.iter_mut().zip(places) {
+                carried[slot] = light(place, back);
+            }
+        }
+    }
+
+    /// Prepares the attributes of corners for interpolation.
+    pub(crate) fn spread(&mut self, level: Level) {
+        T::run(level, Spread(self));
+    }
+
+    /// The corners of a triangle among the vertices of its draw.
+    fn corners_among(&self, slot: usize, all: &[ScreenVertex]) -> [ScreenVertex; 3] {
+        self.ids[slot].map(|id| all[id as usize])
+    }
+
+    /// The corners of a triangle on the screen.
+    pub(crate) fn corners(&self, slot: usize) -> [Snapped; 3] {
+        self.corners.map(|[x, y]| Snapped { x: x[slot], y: y[slot] })
+    }
+}
+
+/// Computes the first corner's attributes and the differences of the others.
+struct Spread<'a, T>(&'a mut TriangleAttributes<T>);
+
+impl<T: Number> Kernel<T> for Spread<'_, T> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self(attributes) = self;
+        for at in attributes.new_slots().step_by(M::LANES) {
+            let at = at.min(SLOTS - M::LANES);
+            let a = carried(lanes, &attributes.carried[0], at);
+            let b = carried(lanes, &attributes.carried[1], at);
+            let c = carried(lanes, &attributes.carried[2], at);
+            for (rows, value) in attributes.values.iter_mut().zip([a, b.minus(a), c.minus(a)]) {
+                lanes.store(value.0[0], &mut rows[0], at);
+                lanes.store(value.0[1], &mut rows[1], at);
+                lanes.store(value.0[2], &mut rows[2], at);
+            }
+        }
+    }
+}
+
+/// The attributes of one corner of some triangles.
+#[inline(always)]
+fn carried<M: Lanes>(lanes: M, rows: &[[M::Number; 4]; SLOTS], at: usize) -> Vec3<M::R> {
+    let [x, y, z, _] = lanes.load_four(rows, at);
+    Vec3([x, y, z])
+}
+
+/// Gathers three numbers of the triangles that some pixels show.
+#[inline(always)]
+pub(crate) fn picked<M: Lanes, const PAGES: usize>(
+    lanes: M,
+    [x, y, z]: &[[M::Number; SLOTS]; 3],
+    slots: M::Slots,
+) -> Vec3<M::R> {
+    Vec3([
+        lanes.pick::<PAGES>(x, slots),
+        lanes.pick::<PAGES>(y, slots),
+        lanes.pick::<PAGES>(z, slots),
+    ])
+}
+
+impl AttributeNumber for f64 {
+    const EXACT: bool = true;
+
+    fn prepare(_: Level, attributes: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]) {
+        attributes.cut &= attributes.kept_bits();
+        for slot in attributes.new_slots() {
+            let own = attributes.corners_among(slot, vertices);
+            let inside = own.iter().all(ScreenVertex::is_inside);
+            attributes.cut |= u64::from(!inside) << slot;
+            for ([x, y], own) in attributes.corners.iter_mut().zip(own) {
+                (x[slot], y[slot]) = (own.at().x, own.at().y);
+            }
+        }
+        attributes.wide = !attributes.cut;
+    }
+}
+
+impl AttributeNumber for f32 {
+    const EXACT: bool = false;
+
+    fn prepare(level: Level, attributes: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]) {
+        let kept = attributes.kept_bits();
+        (attributes.cut, attributes.wide) = (attributes.cut & kept, attributes.wide & kept);
+        dispatch!(level, simd => prepare(simd, attributes, vertices));
+        let used = u64::MAX >> (SLOTS - attributes.count.max(1));
+        (attributes.cut, attributes.wide) = (attributes.cut & used, attributes.wide & used);
+    }
+}
+
+/// The largest sides of a bounding box, in subpixels, whose doubled area fits 31 bits.
+const NARROW_BOX: i32 = 1 << 14;
+
+/// Which of the triangles in some slots turn their fronts to the observer if nothing is mirrored, a
+/// bit for each; and for which that has to be found out one by one.
+#[inline(always)]
+fn fronts<S: Simd>(
+    simd: S,
+    ids: &[[u32; 3]; SLOTS],
+    slots: std::ops::Range<usize>,
+    vertices: &[ScreenVertex],
+) -> (u64, u64) {
+    let (mut front, mut odd) = (0, 0);
+    for at in slots.step_by(16) {
+        let at = at.min(SLOTS - 16);
+        let [[x0, y0, ..], [x1, y1, ..], [x2, y2, ..]] = corners(simd, &ids[at..], vertices);
+        let low = [x0.min(x1).min(x2), y0.min(y1).min(y2)];
+        let high = [x0.max(x1).max(x2), y0.max(y1).max(y2)];
+        // Corners that are beyond the clipping planes have the least of all numbers as x.
+        let beyond = low[0].simd_eq(ScreenVertex::BEYOND);
+        let wide = (high[0] - low[0]).simd_gt(NARROW_BOX) | (high[1] - low[1]).simd_gt(NARROW_BOX);
+        let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
+        front |= area.simd_lt(0).to_bitmask() << at;
+        odd |= (beyond | wide).to_bitmask() << at;
+    }
+    (front, odd)
+}
+
+/// Whether a triangle with these vertices turns its front to the observer if nothing is mirrored.
+fn is_front(ids: [u32; 3], draw: &Draw, plan: &FramePlan, vertices: &[ScreenVertex]) -> bool {
+    let own = each(ids, |vertex| vertices[vertex as usize]);
+    if own.iter().all(ScreenVertex::is_inside) {
+        return doubled_area(own.map(|vertex| vertex.at())) < 0;
+    }
+    let order = draw.model.mesh.draw_order();
+    let screen = Screen::new(draw.clip_from_object, plan.size);
+    faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
+}
+
+/// The edge functions of sixteen triangles at a time.
+#[inline(always)]
+fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices: &[ScreenVertex]) {
+    for at in attributes.new_slots().step_by(16) {
+        let at = at.min(SLOTS - 16);
+        let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =
+            corners(simd, &attributes.ids[at..], vertices);
+        for ([own_x, own_y], (x, y)) in
+            attributes.corners.iter_mut().zip([(x0, y0), (x1, y1), (x2, y2)])
+        {
+            x.store_slice(&mut own_x[at..at + 16]);
+            y.store_slice(&mut own_y[at..at + 16]);
+        }
+        for (row, w) in attributes.by_w.iter_mut().zip([w0, w1, w2]) {
+            w.bitcast::<f32x16<S>>().store_slice(&mut row[at..at + 16]);
+        }
+        let edges = Edges::new(attributes.grid, [[x0, y0], [x1, y1], [x2, y2]]);
+        attributes.cut |= edges.cut.to_bitmask() << at;
+        attributes.wide |= (edges.wide.to_bitmask() & !edges.cut.to_bitmask()) << at;
+        edges.per_area().store_slice(&mut attributes.per_area[at..at + 16]);
+        for (rows, functions) in attributes.edges.iter_mut().zip(edges.functions) {
+            for (row, numbers) in rows.iter_mut().zip(functions) {
+                numbers.store_slice(&mut row[at..at + 16]);
+            }
+        }
+    }
+}
+
+/// The edge functions of sixteen triangles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edges<S: Simd> {
+    /// a, b and c of those of the second and the third corner, as [`TriangleAttributes::edges`].
+    pub(super) functions: [[i32x16<S>; 3]; 2],
+    /// The doubled area: negative if they run clockwise on the screen. It is meaningless if they
+    /// are clipped or wide.
+    pub(super) area: i32x16<S>,
+    /// Which of them are clipped.
+    pub(super) cut: mask32x16<S>,
+    /// Which of the others have edge functions that do not fit 31 bits.
+    pub(super) wide: mask32x16<S>,
+}
+
+impl<S: Simd> Edges<S> {
+    /// Of triangles with these corners, on a grid.
+    #[inline(always)]
+    pub(super) fn new(grid: Grid, [[x0, y0], [x1, y1], [x2, y2]]: [[i32x16<S>; 2]; 3]) -> Self {
+        let beyond = x0.simd_eq(ScreenVertex::BEYOND)
+            | x1.simd_eq(ScreenVertex::BEYOND)
+            | x2.simd_eq(ScreenVertex::BEYOND);
+        let (ux, uy, vx, vy) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
+        let rough = ux.to_float::<f32x16<S>>() * vy.to_float::<f32x16<S>>()
+            - uy.to_float::<f32x16<S>>() * vx.to_float::<f32x16<S>>();
+        let large = rough.simd_gt(NARROW_AREA) | rough.simd_lt(-NARROW_AREA);
+        let (low, high) = (ux.min(uy).min(vx).min(vy), ux.max(uy).max(vx).max(vy));
+        let wide = large | low.simd_lt(-NARROW_SIDE) | high.simd_gt(NARROW_SIDE);
+        // a (x - p.x) + b (y - p.y) with x and y at the centre of a pixel.
+        let parts = grid.parts();
+        let (half, log2) = (parts / 2, parts.trailing_zeros());
+        let (a, b) = (vy, x0 - x2);
+        let second = [a << log2, b << log2, a * (half - x2) + b * (half - y2)];
+        let (a, b) = (y0 - y1, ux);
+        let third = [a << log2, b << log2, a * (half - x0) + b * (half - y0)];
+        Self { functions: [second, third], area: ux * vy - uy * vx, cut: beyond, wide }
+    }
+
+    /// 1 / the doubled area.
+    #[inline(always)]
+    pub(super) fn per_area(&self) -> f32x16<S> {
+        f32x16::splat(self.area.simd, 1.0) / self.area.to_float::<f32x16<S>>()
+    }
+}
+
+/// x, y, depth and 1/w of the corners of sixteen triangles, the first of some. Unused slots name
+/// vertices of other draws, so what is fetched for them is meaningless.
+#[inline(always)]
+pub(super) fn corners<S: Simd>(
+    simd: S,
+    ids: &[[u32; 3]],
+    vertices: &[ScreenVertex],
+) -> [[i32x16<S>; 4]; 3] {
+    let ids = &ids[..16];
+    [
+        fetch_vertices(
+            simd,
+            vertices,
+            #[inline(always)]
+            |lane| ids[lane][0],
+        ),
+        fetch_vertices(
+            simd,
+            vertices,
+            #[inline(always)]
+            |lane| ids[lane][1],
+        ),
+        fetch_vertices(
+            simd,
+            vertices,
+            #[inline(always)]
+            |lane| ids[lane][2],
+        ),
+    ]
+}

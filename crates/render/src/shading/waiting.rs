@@ -1,0 +1,178 @@
+//! Colours several blocks at once.
+//!
+//! A block of one surface has up to 64 pixels, at its border few, so that calls and lanes that are
+//! not filled take a part of its time. Blocks of a tile that show the same draw and pipeline
+//! therefore wait until their pixels fill a batch; a triangle that shows in several of them is
+//! prepared once. Light per pixel takes 0.8 to 0.95 of the time. The bits are the same: no pixel
+//! depends on others of its list.
+
+use super::context::ShadingContext;
+use super::full_blocks::Canvas;
+use super::groups::{Group, are_of, group_of, one_group};
+use super::interpolated::ShadingNumber;
+use super::runs::{Runs, Shown};
+use super::surface::{Out, Shader, Waiting, in_block};
+use super::tiny_blocks::Tiny;
+use crate::frame::draw::{Back, Pipeline};
+use crate::raster::visibility_buffer::{Visible, seen};
+use crate::screen::tiles::BLOCK_PIXELS;
+use crate::simd::gather::most_gathered;
+use marraztu_core::accuracy::{Interpolation, LightAt};
+use marraztu_core::base::color::Color;
+
+/// A block that shows more triangles than this is coloured by itself.
+const MANY_TRIANGLES: usize = 24;
+
+impl<T: ShadingNumber + Tiny> Shader<T> {
+    /// Colours a block, whose upper left pixel is `corner`, into a tile from index `at` on: at the
+    /// latest when [`Shader::finish_waiting`] is called. Pixels that show the background get the
+    /// colour `fill`; without one, they are left as they are. Returns whether any pixel shows
+    /// something else.
+    pub(crate) fn block_later(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        visibility: &[u64; BLOCK_PIXELS],
+        corner: [i32; 2],
+        (canvas, at): (&mut Canvas<'_>, usize),
+        fill: Option<Color>,
+    ) -> bool {
+        let runs = Runs::of(context.level, visibility);
+        if let Some((shader, context)) = T::single(self, context)
+            && shader.wait_tiny(context, &runs, corner, (canvas, at))
+        {
+            put_others(context, visibility, runs.shown(), (canvas, at), fill);
+            return true;
+        }
+        if !self.waiting.is_empty() {
+            if let Some(shown) = self.join(context, &runs, corner, at) {
+                put_others(context, visibility, shown, (canvas, at), fill);
+                return shown.triangles | shown.lines != 0;
+            }
+            self.finish_waiting(context, canvas);
+        }
+        let most = self.most_slots(context);
+        let shown = self.fragments.list_runs(context.level, &runs, corner, most);
+        put_others(context, visibility, shown, (canvas, at), fill);
+        if shown.triangles == 0 {
+            return shown.lines != 0;
+        }
+        match one_group(context, &self.fragments) {
+            Some(group) if self.has_room() && may_wait(context, &group) => {
+                self.waiting.push(Waiting { from: 0, at });
+            }
+            Some(group) => self.color_group(context, &group, &mut Out::Tile(canvas, at)),
+            None => {
+                if most > 0 {
+                    // Some slots are of a draw that the block may not show.
+                    self.fragments.list(context.level, visibility, corner);
+                }
+                self.color_fragments(context, corner, &mut Out::Tile(canvas, at));
+            }
+        }
+        true
+    }
+
+    /// Colours the blocks that wait.
+    pub(crate) fn finish_waiting(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        canvas: &mut Canvas<'_>,
+    ) {
+        if !self.waiting.is_empty() {
+            if self.fragments.are_tiny()
+                && let Some((shader, context)) = T::single(self, context)
+            {
+                shader.finish_tiny(context, canvas);
+            } else {
+                let group = group_of(context, self.fragments.numbers[0]);
+                self.color_group(context, &group, &mut Out::Waiting(canvas));
+            }
+            self.waiting.clear();
+        }
+    }
+}
+
+impl<T: ShadingNumber> Shader<T> {
+    /// Lists a block beside those that wait, if it shows the same surface and has room.
+    fn join(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        runs: &Runs,
+        corner: [i32; 2],
+        at: usize,
+    ) -> Option<Shown> {
+        if !self.fragments.have_room(runs, most_gathered(context.level)) {
+            return None;
+        }
+        let (len, count) = (self.fragments.len, self.fragments.count);
+        let shown = self.fragments.list_more(context.level, runs, corner);
+        let group = group_of(context, self.fragments.numbers[0]);
+        if !are_of(context, &group, &self.fragments.numbers[count..self.fragments.count]) {
+            self.fragments.take_back(len, count);
+            return None;
+        }
+        if shown.triangles != 0 {
+            self.waiting.push(Waiting { from: len, at });
+        }
+        Some(shown)
+    }
+
+    /// Whether another block may find room in the list: not beside many triangles.
+    const fn has_room(&self) -> bool {
+        self.fragments.count <= MANY_TRIANGLES
+    }
+
+    /// Copies the colours into the blocks that waited for them.
+    pub(super) fn copy_waiting(&self, canvas: &mut Canvas<'_>) {
+        let ends = self.waiting.iter().skip(1).map(|next| next.from).chain([self.fragments.len]);
+        for (Waiting { from, at }, end) in self.waiting.iter().copied().zip(ends) {
+            let colors = &self.colors.pixels[from..end];
+            if let Some(all) = colors.first_chunk::<BLOCK_PIXELS>() {
+                canvas.put(at, all);
+                continue;
+            }
+            for (i, color) in self.fragments.pixels[from..end].iter().zip(colors) {
+                let offset = canvas.offset(in_block(usize::from(*i)));
+                canvas.pixels[at + offset] = color.to_le_bytes();
+            }
+        }
+    }
+}
+
+/// Whether blocks of a group may be coloured together: nothing reads the block of a pixel, and no
+/// shadow is traced for it.
+fn may_wait<T: ShadingNumber>(context: &ShadingContext<'_, T>, group: &Group<'_>) -> bool {
+    let plan = context.plan;
+    let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else { return false };
+    !T::EXACT
+        && plan.light_at != LightAt::Face
+        && plan.variants.interpolation != Interpolation::EverySixteen
+        && shaded.extras.is_empty()
+        && group.draw.back != Back::Red
+        && context.tracer_of(group.draw_index).is_none()
+}
+
+/// Colours the pixels of a block that show no triangles, as [`Shader::block_later`].
+#[inline(always)]
+fn put_others<T>(
+    context: &ShadingContext<'_, T>,
+    visibility: &[u64; BLOCK_PIXELS],
+    shown: Shown,
+    (canvas, at): (&mut Canvas<'_>, usize),
+    fill: Option<Color>,
+) {
+    if let Some(color) = fill
+        && (shown.triangles | shown.lines) != u64::MAX
+    {
+        canvas.fill(at, color);
+    }
+    let mut lines = shown.lines;
+    while lines != 0 {
+        let i = lines.trailing_zeros() as usize;
+        lines &= lines - 1;
+        if let Visible::Line(line) = seen(visibility[i]) {
+            canvas.pixels[at + canvas.offset(in_block(i))] =
+                context.frame.line_color(context.plan, line);
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Finds the rays that meet a box, in f32.
+//!
+//! A box is padded so that no ray misses it by rounding: positions, the parameters where a ray
+//! enters and leaves, and the transform to object space.
+//!
+//! Kay and Kajiya, "Ray Tracing Complex Scenes", 1986; Ize, "Robust BVH Ray Traversal", 2013.
+
+use fearless_simd::{Simd, SimdBase as _, SimdMask as _, f32x16};
+use glam::{DMat4, DVec3};
+
+use super::packet::POINTS;
+use super::rays::LocalRays;
+use marraztu_core::scene::Bounds;
+
+/// The error of a position and of a parameter in f32, relative to the largest coordinate: four
+/// roundings, twice.
+const SINGLE: f64 = 1.0 / (1 << 21) as f64;
+
+/// The error of a position that was transformed in f64, relative to the sum of what was added.
+const DOUBLE: f64 = 1.0 / (1_u64 << 47) as f64;
+
+/// The least component of a direction whose largest is 1. What a smaller one adds over the length
+/// of a scene is below every pad.
+const LEAST: f64 = 1e-30;
+
+impl LocalRays {
+    /// Transforms rays to the space of an object, whose bounds are given there; `reach` is the
+    /// largest coordinate of both in world space.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant; pads hold it")]
+    pub(super) fn set(
+        &mut self,
+        object_from_world: &DMat4,
+        (at, light): (&[[f64; POINTS]; 3], DVec3),
+        (bounds, reach): (Bounds, f64),
+    ) {
+        let m = object_from_world;
+        let end = m.transform_point3(light);
+        let (mut ways, mut length, mut largest) = ([[0.0; POINTS]; 3], [0.0; POINTS], DVec3::ZERO);
+        for axis in 0..3 {
+            let [a, b, c, d] = [m.x_axis[axis], m.y_axis[axis], m.z_axis[axis], m.w_axis[axis]];
+            let mut most = [0.0; 8];
+            for first in (0..POINTS).step_by(8) {
+                for i in first..first + 8 {
+                    let from = at[0][i] * a + at[1][i] * b + at[2][i] * c + d;
+                    let way = end[axis] - from;
+                    self.origin[axis][i] = from as f32;
+                    ways[axis][i] = way;
+                    length[i] = larger(length[i], way.abs());
+                    most[i - first] = larger(most[i - first], from.abs());
+                }
+            }
+            largest[axis] = most.into_iter().fold(0.0, larger);
+        }
+        for (end, length) in self.end.iter_mut().zip(&length) {
+            *end = above((length * (1.0 + SINGLE)) as f32);
+        }
+        for (row, ways) in self.inverse.iter_mut().zip(&ways) {
+            for ((inverse, way), length) in row.iter_mut().zip(ways).zip(&length) {
+                let part = way / length;
+                let part = if part.abs() < LEAST { LEAST.copysign(part) } else { part };
+                *inverse = (1.0 / part) as f32;
+            }
+        }
+        let columns =
+            m.x_axis.truncate().abs() + m.y_axis.abs().truncate() + m.z_axis.abs().truncate();
+        let exact = (columns * reach + m.w_axis.truncate().abs()) * DOUBLE;
+        let far = bounds.min.abs().max(bounds.max.abs()) + largest;
+        let pad = far * SINGLE + exact;
+        self.pad = pad.to_array().map(|pad| (pad as f32).next_up());
+        self.far = far.max_element();
+    }
+
+    /// The rays of a mask that meet a box.
+    #[inline(always)]
+    pub(super) fn meeting<S: Simd>(
+        &self,
+        simd: S,
+        low: &[f32; 3],
+        high: &[f32; 3],
+        mask: u64,
+    ) -> u64 {
+        let mut met = 0;
+        for at in (0..POINTS).step_by(16) {
+            if mask >> at & 0xffff == 0 {
+                continue;
+            }
+            let mut near = f32x16::splat(simd, 0.0);
+            let mut far = f32x16::from_slice(simd, &self.end[at..at + 16]);
+            for axis in 0..3 {
+                let origin = f32x16::from_slice(simd, &self.origin[axis][at..at + 16]);
+                let inverse = f32x16::from_slice(simd, &self.inverse[axis][at..at + 16]);
+                let low = f32x16::splat(simd, low[axis] - self.pad[axis]);
+                let high = f32x16::splat(simd, high[axis] + self.pad[axis]);
+                let (a, b) = ((low - origin) * inverse, (high - origin) * inverse);
+                near = near.max(a.min(b));
+                far = far.min(a.max(b));
+            }
+            met |= far.simd_ge(near).to_bitmask() << at;
+        }
+        met & mask
+    }
+}
+
+/// The larger of two numbers, none of them NaN; a comparison and a choice, for lanes.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
+/// A number above a positive one, by two steps of f32 or a little more.
+#[inline(always)]
+fn above(x: f32) -> f32 {
+    x * (1.0 + 4.0 * f32::EPSILON) + f32::MIN_POSITIVE
+}

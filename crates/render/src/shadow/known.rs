@@ -1,0 +1,217 @@
+//! Keeps which pixels a light is seen from, so that only what changed is traced again.
+//!
+//! A pixel's shadow depends on the point that it shows, on what casts shadows and on where the
+//! light is: not on the light's colour, nor on other lights, nor on materials. So for each light
+//! with shadows and each pixel two bits are kept: whether a ray was traced, and whether it was
+//! stopped. That is a quarter of a byte for each light and pixel.
+//!
+//! A block of pixels is painted by one thread at a time, so no thread waits for another.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::frame::shadows::ShadowSource;
+use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE_SIDE};
+use marraztu_core::base::image::Size;
+
+/// For each light of a plan what is known of its shadows, if it casts any.
+#[derive(Debug, Default)]
+pub(crate) struct KnownShadows {
+    lights: Vec<Option<KnownLight>>,
+}
+
+/// What is known of the shadows of one light.
+#[derive(Debug)]
+pub(crate) struct KnownLight {
+    source: ShadowSource,
+    /// Blocks in a row of the picture.
+    columns: usize,
+    blocks: Vec<KnownBlock>,
+}
+
+/// The pixels of a block, a bit for each.
+#[derive(Debug, Default)]
+struct KnownBlock {
+    /// Those whose rays were traced.
+    traced: AtomicU64,
+    /// Those of them whose rays are stopped.
+    shaded: AtomicU64,
+}
+
+/// Some of the pixels of a block, a bit for each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct KnownPixels {
+    /// Those whose rays were traced.
+    pub(crate) traced: u64,
+    /// Those of them whose rays are stopped.
+    pub(crate) shaded: u64,
+}
+
+/// Blocks in a row of a tile.
+const TILE_BLOCKS: usize = TILE_SIDE / BLOCK as usize;
+
+impl KnownShadows {
+    /// Forgets everything.
+    pub(crate) fn forget(&mut self) {
+        self.lights.clear();
+    }
+
+    /// Keeps what is known of the lights that are where they were, and nothing of others. The
+    /// picture has the same size as before.
+    pub(crate) fn keep(&mut self, size: Size, sources: &[Option<ShadowSource>]) {
+        let mut before = std::mem::take(&mut self.lights);
+        let mut kept = |source: &ShadowSource| {
+            let is_it = |known: &&mut Option<KnownLight>| {
+                known.as_ref().is_some_and(|known| known.source.is_same(source))
+            };
+            let known = before.iter_mut().find(is_it).and_then(Option::take);
+            known.unwrap_or_else(|| KnownLight::new(*source, size))
+        };
+        self.lights = sources.iter().map(|source| source.as_ref().map(&mut kept)).collect();
+    }
+
+    /// The lights that cast shadows, with where they are.
+    pub(crate) fn lights(&mut self) -> impl Iterator<Item = (ShadowSource, &mut KnownLight)> {
+        self.lights.iter_mut().flatten().map(|known| (known.source, known))
+    }
+
+    /// What is known of a light; `None` if nothing is kept of it.
+    pub(crate) fn of(&self, light: u32) -> Option<&KnownLight> {
+        self.lights.get(light as usize)?.as_ref()
+    }
+}
+
+impl KnownLight {
+    fn new(source: ShadowSource, size: Size) -> Self {
+        let [columns, rows] =
+            [size.width, size.height].map(|pixels| pixels.div_ceil(TILE_SIDE) * TILE_BLOCKS);
+        let mut blocks = Vec::new();
+        blocks.resize_with(columns * rows, KnownBlock::default);
+        Self { source, columns, blocks }
+    }
+
+    /// Forgets the tiles that are stale.
+    pub(crate) fn forget(&mut self, is_stale: impl Fn(usize) -> bool) {
+        let columns = self.columns / TILE_BLOCKS;
+        for (row, blocks) in self.blocks.chunks_mut(self.columns).enumerate() {
+            for (column, blocks) in blocks.chunks_mut(TILE_BLOCKS).enumerate() {
+                if is_stale(row / TILE_BLOCKS * columns + column) {
+                    blocks.fill_with(KnownBlock::default);
+                }
+            }
+        }
+    }
+
+    /// What is known of the block that holds a pixel.
+    #[inline(always)]
+    pub(crate) fn at(&self, pixel: [i32; 2]) -> KnownPixels {
+        self.block(pixel).map_or_else(KnownPixels::default, |block| KnownPixels {
+            traced: block.traced.load(Ordering::Relaxed),
+            shaded: block.shaded.load(Ordering::Relaxed),
+        })
+    }
+
+    /// Notes pixels of the block that holds a pixel.
+    #[inline(always)]
+    pub(crate) fn note(&self, pixel: [i32; 2], new: KnownPixels) {
+        let KnownPixels { traced, shaded } = self.at(pixel);
+        if let Some(block) = self.block(pixel) {
+            block.traced.store(traced | new.traced, Ordering::Relaxed);
+            block.shaded.store(shaded & !new.traced | new.shaded, Ordering::Relaxed);
+        }
+    }
+
+    #[inline(always)]
+    fn block(&self, pixel: [i32; 2]) -> Option<&KnownBlock> {
+        let [column, row] = pixel.map(|i| usize::try_from(i / BLOCK).unwrap_or(usize::MAX));
+        self.blocks.get(row.checked_mul(self.columns)?.checked_add(column)?)
+    }
+}
+
+/// The pixels of a batch: all in one block.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BatchPixels<'a> {
+    /// Column and row of one of them.
+    pub(crate) first: [i32; 2],
+    /// Their places in the block.
+    pub(crate) places: &'a [u8],
+}
+
+impl BatchPixels<'_> {
+    /// Positions of the batch as pixels of the block.
+    #[inline(always)]
+    pub(crate) fn in_block(self, positions: u64) -> u64 {
+        if self.places.len() == BLOCK_PIXELS {
+            return positions;
+        }
+        let bit = |(i, place): (usize, &u8)| (positions >> i & 1) << place;
+        self.places.iter().enumerate().map(bit).fold(0, |bits, bit| bits | bit)
+    }
+
+    /// Pixels of the block as positions of the batch.
+    #[inline(always)]
+    pub(crate) fn in_batch(self, pixels: u64) -> u64 {
+        if self.places.len() == BLOCK_PIXELS {
+            return pixels;
+        }
+        let bit = |(i, place): (usize, &u8)| (pixels >> place & 1) << i;
+        self.places.iter().enumerate().map(bit).fold(0, |bits, bit| bits | bit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    const SIZE: Size = Size::new(150, 70);
+
+    fn point(x: f64) -> ShadowSource {
+        ShadowSource::Point(DVec3::new(x, 0.0, 0.0))
+    }
+
+    #[test]
+    fn lights_that_stay_keep_their_pixels_whatever_their_numbers_and_others_begin_anew() {
+        let mut known = KnownShadows::default();
+        known.keep(SIZE, &[Some(point(1.0)), None, Some(point(2.0))]);
+        let pixels = KnownPixels { traced: 0b11, shaded: 0b10 };
+        known.of(0).unwrap().note([149, 69], pixels);
+        known.of(2).unwrap().note([3, 9], pixels);
+        known.keep(SIZE, &[None, Some(point(2.0)), Some(point(3.0)), Some(point(1.0))]);
+        assert!(known.of(0).is_none() && known.of(9).is_none());
+        assert_eq!(known.of(1).unwrap().at([7, 15]), pixels);
+        assert_eq!(known.of(2).unwrap().at([7, 15]), KnownPixels::default());
+        assert_eq!(known.of(3).unwrap().at([144, 64]), pixels);
+        // Two bits for each pixel of whole tiles: a quarter of a byte.
+        let light = known.of(1).unwrap();
+        assert_eq!(light.blocks.len() * size_of::<KnownBlock>(), 192 * 128 / 4);
+    }
+
+    #[test]
+    fn stale_tiles_are_forgotten_and_no_others() {
+        let mut known = KnownShadows::default();
+        known.keep(SIZE, &[Some(point(1.0))]);
+        let pixels = KnownPixels { traced: 1, shaded: 1 };
+        for at in [[63, 0], [64, 0], [127, 63], [64, 64]] {
+            known.of(0).unwrap().note(at, pixels);
+        }
+        known.lights().for_each(|(_, light)| light.forget(|tile| tile == 1));
+        let at = |pixel| known.of(0).unwrap().at(pixel).traced;
+        assert_eq!([at([63, 0]), at([64, 0]), at([127, 63]), at([64, 64])], [1, 0, 0, 1]);
+    }
+
+    #[test]
+    fn what_is_traced_again_counts_as_it_is_by_then() {
+        let light = KnownLight::new(point(1.0), SIZE);
+        light.note([0, 0], KnownPixels { traced: 0b011, shaded: 0b011 });
+        light.note([0, 0], KnownPixels { traced: 0b110, shaded: 0b100 });
+        assert_eq!(light.at([7, 7]), KnownPixels { traced: 0b111, shaded: 0b101 });
+    }
+
+    #[test]
+    fn positions_of_a_batch_are_pixels_of_its_block() {
+        let some = BatchPixels { first: [0, 0], places: &[3, 5, 63] };
+        assert_eq!(some.in_block(0b101), 1 << 3 | 1 << 63);
+        assert_eq!(some.in_batch(1 << 63 | 1 << 5 | 1 << 4), 0b110);
+    }
+}

@@ -1,0 +1,276 @@
+//! Draws the pictures of shadow maps.
+
+use fearless_simd::Level;
+use glam::{DMat3, DMat4, DVec3};
+use rayon::prelude::*;
+
+use super::map_bias::{Bordered, Limit, Picture};
+use super::map_face::Face;
+use crate::cancellation::Cancellation;
+use crate::frame::FramePlan;
+use crate::frame::draw::{Back, Draw, Lines, Pipeline, Shaded};
+use crate::frame::shadows::{Caster, CasterPart, Shadows};
+use crate::frame::variants::Variants;
+use crate::lights::PhongMaterial;
+use crate::raster::entries::key;
+use crate::raster::geometry::ScreenGeometry;
+use crate::raster::tile::Visibility;
+use crate::raster::visibility_buffer::{Visible, seen};
+use crate::screen::clip::Screen;
+use crate::screen::coverage::PixelBox;
+use crate::screen::sample_positions::SamplePositions;
+use crate::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE, tiles_of};
+use marraztu_core::accuracy::{Samples, ShadowMapForm, Transparency};
+use marraztu_core::base::color::Color;
+use marraztu_core::base::image::Size;
+use marraztu_core::base::math::each;
+use marraztu_core::scene::{NormalSource, Normals};
+
+/// More than half of a texel, for corners that are snapped to 1/256 of it.
+const HALF: f64 = 0.51;
+
+/// The largest slope that a bias takes into account, relative to 45 degrees.
+const STEEPEST: f64 = 16.0;
+
+/// A picture that a light takes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MapView {
+    pub(super) view_from_world: DMat4,
+    pub(super) clip_from_view: DMat4,
+    /// The slope of a surface at 45 degrees, times the texels of a row: a depth or, in perspective,
+    /// a part of the depth.
+    pub(super) slope: f64,
+    pub(super) is_perspective: bool,
+}
+
+/// Draws the pictures of a frame's shadow maps.
+#[derive(Debug)]
+pub(super) struct MapDraws {
+    plan: FramePlan,
+    casters: Vec<Caster>,
+    geometry: ScreenGeometry,
+    form: ShadowMapForm,
+    shown: Shown,
+}
+
+/// What the light sees in the picture that is drawn, kept for the next one.
+#[derive(Debug, Default)]
+struct Shown {
+    /// For each texel a depth, 0 where nothing is, and the slope of its triangle: tile by tile,
+    /// block by block.
+    depths: Vec<f32>,
+    slopes: Vec<f32>,
+    /// The tiles that have any.
+    drawn: Vec<bool>,
+}
+
+impl MapDraws {
+    /// Makes the draws of a plan's casters; those of a map differ only by its view.
+    pub(super) fn new(plan: &FramePlan, form: ShadowMapForm) -> Self {
+        let casters = plan.shadows.casters.clone();
+        let mut pipelines = vec![Pipeline::Flat(Color::WHITE)];
+        let draws = casters.iter().map(|caster| draw(caster, &mut pipelines)).collect();
+        let plan = FramePlan {
+            size: Size::new(form.side, form.side),
+            samples: Samples::One,
+            lit_by_sample: false,
+            shift: [0; 2],
+            transparency: Transparency::Threshold,
+            variants: Variants::default(),
+            line_width: 1,
+            lights: Vec::new(),
+            light_ids: Vec::new(),
+            shadows: Shadows::default(),
+            draws,
+            pipelines,
+            ..plan.clone()
+        };
+        plan.prepare();
+        let geometry = ScreenGeometry::default();
+        Self { plan, casters, geometry, form, shown: Shown::default() }
+    }
+
+    /// Draws a picture; `None` if it shows nothing.
+    pub(super) fn face(&mut self, level: Level, view: &MapView) -> Option<Face> {
+        let Self { plan, casters, geometry, form, shown } = self;
+        (plan.view_from_world, plan.clip_from_view) = (view.view_from_world, view.clip_from_view);
+        for (draw, caster) in plan.draws.iter_mut().zip(casters) {
+            draw.view_from_object = view.view_from_world * caster.world_from_object;
+            draw.clip_from_object = view.clip_from_view * draw.view_from_object;
+            draw.mirrored = DMat3::from_mat4(draw.view_from_object).determinant() < 0.0;
+        }
+        geometry.build(
+            level,
+            plan,
+            (SamplePositions::default(), None),
+            &Cancellation::new(&|| true),
+        );
+        let (plan, geometry) = (&*plan, &*geometry);
+        let [columns, rows] = tiles_of(plan.size);
+        let count = usize::try_from(columns * rows).expect("not negative");
+        if (0..count).all(|tile| geometry.is_empty(tile)) {
+            return None;
+        }
+        let screens: Vec<Screen> =
+            plan.draws.iter().map(|draw| Screen::new(draw.clip_from_object, plan.size)).collect();
+        Tile { level, plan, geometry, screens: &screens }.draw_all(count, shown);
+        let picture = Picture { side: form.side, depths: &shown.depths, slopes: &shown.slopes };
+        let limit = limit(view, *form);
+        let mut texels = vec![0.0; count * PIXELS];
+        let tiles = texels.par_chunks_mut(PIXELS).enumerate();
+        tiles.for_each_init(Bordered::default, |bordered, (tile, texels)| {
+            if shown.drawn[tile] {
+                bordered.biased(level, picture, (tile, &limit), texels);
+            }
+        });
+        let clip_from_world = view.clip_from_view * view.view_from_world;
+        Some(Face::new(clip_from_world, form.side, texels))
+    }
+}
+
+/// How far the depths of a picture may be moved.
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    reason = "maps are small, and the nearest f32 is meant"
+)]
+fn limit(view: &MapView, form: ShadowMapForm) -> Limit {
+    let reach = HALF + if form.is_filtered { 1.0 } else { 0.0 };
+    let steepest = STEEPEST * view.slope / form.side as f64;
+    Limit { reach: reach as f32, steepest: steepest as f32, is_perspective: view.is_perspective }
+}
+
+/// What drawing the tiles of a map reads.
+struct Tile<'a> {
+    level: Level,
+    plan: &'a FramePlan,
+    geometry: &'a ScreenGeometry,
+    screens: &'a [Screen],
+}
+
+impl Tile<'_> {
+    /// Draws all tiles.
+    fn draw_all(&self, count: usize, shown: &mut Shown) {
+        let Shown { depths, slopes, drawn } = shown;
+        for row in [&mut *depths, &mut *slopes] {
+            row.resize(count * PIXELS, 0.0);
+        }
+        drawn.resize(count, false);
+        let tiles = depths.par_chunks_mut(PIXELS).zip(slopes.par_chunks_mut(PIXELS));
+        let tiles = tiles.zip(drawn.par_iter_mut()).enumerate();
+        tiles.for_each_init(
+            Visibility::default,
+            |visibility, (tile, ((depths, slopes), drawn))| {
+                if *drawn {
+                    depths.fill(0.0);
+                    slopes.fill(0.0);
+                }
+                *drawn = !self.geometry.is_empty(tile);
+                if *drawn {
+                    self.draw(visibility, tile, depths, slopes);
+                }
+            },
+        );
+    }
+
+    /// Draws a tile: the depths and slopes of its texels, block by block.
+    fn draw(
+        &self,
+        visibility: &mut Visibility,
+        tile: usize,
+        depths: &mut [f32],
+        slopes: &mut [f32],
+    ) {
+        let Self { level, plan, geometry, .. } = *self;
+        let [columns, _] = tiles_of(plan.size);
+        let at = i32::try_from(tile).expect("a map has few tiles");
+        let (left, top) = (at % columns * TILE, at / columns * TILE);
+        let bounds = PixelBox { left, top, right: left + TILE, bottom: top + TILE };
+        visibility.draw(level, plan, geometry, (tile, bounds), None);
+        let blocks = depths.chunks_mut(BLOCK_PIXELS).zip(slopes.chunks_mut(BLOCK_PIXELS));
+        for (block, (depths, slopes)) in blocks.enumerate() {
+            if !visibility.shows(block) {
+                continue;
+            }
+            let words = visibility.entries(level, block, 0);
+            // The triangles of the texels to the left and above, with their slopes.
+            let (mut last, mut above) = ((u32::MAX, 0.0), [(u32::MAX, 0.0); 8]);
+            for (i, ((depth, slope), word)) in depths.iter_mut().zip(slopes).zip(words).enumerate()
+            {
+                let Visible::Triangle(number) = seen(word) else { continue };
+                let around = [last, above[i % 8], above[(i % 8 + 1) % 8]];
+                let known = around.into_iter().find(|(other, _)| *other == number);
+                last = known.unwrap_or_else(|| (number, self.slope(number)));
+                above[i % 8] = last;
+                (*depth, *slope) = (f32::from_bits(key(word)), last.1);
+            }
+        }
+    }
+
+    /// How much the depth of a triangle changes from texel to texel, at most.
+    ///
+    /// With the corners p, q, r in homogeneous pixels (x, y, w) and their z, the plane of depths is
+    /// (zp (q x r) + zq (r x p) + zr (p x q)) / (p . (q x r)), also if a corner is behind the
+    /// light.
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+    fn slope(&self, number: u32) -> f32 {
+        let (draw, start) = self.geometry.draw_of(number);
+        let screen = &self.screens[draw as usize];
+        let order = self.plan.draws[draw as usize].model.mesh.draw_order();
+        let clip = each(order.vertices_of(number - start.number), |vertex| {
+            screen.clip(order.position(vertex))
+        });
+        let [p, q, r] = clip
+            .map(|[x, y, _, w]| DVec3::new((x + w) * screen.half[0], (w - y) * screen.half[1], w));
+        let [zp, zq, zr] = clip.map(|[_, _, z, _]| z);
+        let plane = q.cross(r) * zp + r.cross(p) * zq + p.cross(q) * zr;
+        let slope = (plane.x.abs() + plane.y.abs()) / p.dot(q.cross(r)).abs();
+        if slope.is_finite() { slope as f32 } else { 0.0 }
+    }
+}
+
+/// The draw of a caster, for a view that is set later.
+fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
+    let mut pipeline = |part: &CasterPart| {
+        let Some(pipeline) = pipeline_of(part) else { return 0 };
+        pipelines.push(pipeline);
+        u32::try_from(pipelines.len() - 1).expect("a scene has fewer parts")
+    };
+    let part_pipelines: Vec<Option<u32>> =
+        caster.parts.iter().map(|part| part.as_ref().map(&mut pipeline)).collect();
+    let first = part_pipelines.first().copied().flatten();
+    let alike = part_pipelines.iter().all(|pipeline| *pipeline == first);
+    Draw {
+        item: caster.item,
+        model: caster.model.clone(),
+        clip_from_object: DMat4::IDENTITY,
+        view_from_object: DMat4::IDENTITY,
+        view_from_normal: DMat3::IDENTITY,
+        mirrored: false,
+        back: Back::Lit,
+        culls_opaque: false,
+        normals: Normals::Vertex,
+        normal_source: NormalSource::Computed,
+        part_pipelines,
+        uniform: first.filter(|_| alike),
+        polygons: caster.polygons.clone(),
+        filled: true,
+        lines: Lines {
+            edges: false,
+            face_normals: None,
+            vertex_normals: None,
+            color: Color::WHITE,
+        },
+    }
+}
+
+/// The alpha test of a part, if it has holes.
+fn pipeline_of(part: &CasterPart) -> Option<Pipeline> {
+    let holes = part.holes.as_ref()?;
+    Some(Pipeline::Shaded(Shaded {
+        texture: holes.texture.clone(),
+        cutout: Some(holes.opacity),
+        opacity_map: holes.map.clone(),
+        ..Shaded::unlit(PhongMaterial::default())
+    }))
+}

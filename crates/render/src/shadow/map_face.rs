@@ -1,0 +1,124 @@
+//! One picture of a shadow map, and what it says of points.
+
+use glam::DMat4;
+
+use super::packet::POINTS;
+use crate::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE_SIDE};
+
+/// A picture of depths; 0 where nothing is.
+#[derive(Debug)]
+pub(super) struct Face {
+    /// The rows of the transform from the world to (x, y, z, w), x and y in texels times w.
+    rows: [[f64; 4]; 4],
+    side: usize,
+    /// Tile by tile, block by block, row by row.
+    texels: Vec<f32>,
+}
+
+/// The index of a texel of a picture with this many texels a side.
+#[inline(always)]
+pub(super) const fn place(side: usize, x: usize, y: usize) -> usize {
+    let tile = y / TILE_SIDE * (side / TILE_SIDE) + x / TILE_SIDE;
+    let (x, y) = (x % TILE_SIDE, y % TILE_SIDE);
+    tile * PIXELS + (y / 8 * 8 + x / 8) * BLOCK_PIXELS + y % 8 * 8 + x % 8
+}
+
+/// The texels that are compared if nine are.
+pub(crate) const TAPS: u32 = 9;
+
+/// What one light sees.
+#[derive(Debug)]
+pub(crate) struct LightMap {
+    pub(super) faces: Vec<Face>,
+    pub(super) is_filtered: bool,
+}
+
+/// What a map says of a batch of points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reading {
+    /// The points that no texel lets the light through to.
+    pub(crate) occluded: u64,
+    /// Those that some texels do, and others do not.
+    pub(crate) partly: u64,
+    /// For those the number of texels that do.
+    pub(crate) open: [u8; POINTS],
+}
+
+impl Face {
+    #[expect(clippy::cast_precision_loss, reason = "maps are small")]
+    pub(super) fn new(clip_from_world: DMat4, side: usize, texels: Vec<f32>) -> Self {
+        let half = side as f64 / 2.0;
+        let [x, y, z, w] = clip_from_world.transpose().to_cols_array_2d();
+        let right = std::array::from_fn(|i| (x[i] + w[i]) * half);
+        let down = std::array::from_fn(|i| (w[i] - y[i]) * half);
+        Self { rows: [right, down, z, w], side, texels }
+    }
+
+    /// Whether a texel lets light through to a depth.
+    #[inline(always)]
+    fn is_open(&self, x: usize, y: usize, depth: f32) -> bool {
+        depth >= self.texels[place(self.side, x, y)]
+    }
+
+    /// The texels of nine that let light through to a depth; at the border, its own count again.
+    #[inline(always)]
+    fn open_taps(&self, x: usize, y: usize, depth: f32) -> u32 {
+        let around = |x: usize| [x.saturating_sub(1), x, (x + 1).min(self.side - 1)];
+        let columns = around(x);
+        let row = |y| columns.map(|x| u32::from(self.is_open(x, y, depth))).iter().sum::<u32>();
+        around(y).into_iter().map(row).sum()
+    }
+}
+
+impl LightMap {
+    /// Reads the map at the points of a mask. Points beside its pictures are lit.
+    #[inline(always)]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "inside of a map"
+    )]
+    pub(crate) fn read(&self, at: &[[f64; POINTS]; 3], mask: u64) -> Reading {
+        let mut reading = Reading { occluded: 0, partly: 0, open: [0; POINTS] };
+        let [mut x, mut y, mut z] = [[0.0_f64; POINTS]; 3];
+        let mut left = mask;
+        for face in &self.faces {
+            let side = face.side as f64;
+            let mut is_inside = [0_u8; POINTS];
+            let row = |row: &[f64; 4], i: usize| {
+                row[0] * at[0][i] + row[1] * at[1][i] + row[2] * at[2][i] + row[3]
+            };
+            for i in 0..POINTS {
+                let w = row(&face.rows[3], i);
+                let by = 1.0 / w;
+                (x[i], y[i]) = (row(&face.rows[0], i) * by, row(&face.rows[1], i) * by);
+                z[i] = row(&face.rows[2], i) * by;
+                let within = (w > 0.0) & (x[i] >= 0.0) & (x[i] < side) & (y[i] >= 0.0);
+                is_inside[i] = u8::from(within & (y[i] < side));
+            }
+            let mut rest = left;
+            while rest != 0 {
+                let i = rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                if is_inside[i] == 0 {
+                    continue;
+                }
+                left &= !(1 << i);
+                let (column, line, depth) = (x[i] as usize, y[i] as usize, z[i] as f32);
+                if self.is_filtered {
+                    let open = face.open_taps(column, line, depth);
+                    reading.occluded |= u64::from(open == 0) << i;
+                    reading.partly |= u64::from(open != 0 && open != TAPS) << i;
+                    reading.open[i] = open as u8;
+                } else {
+                    reading.occluded |= u64::from(!face.is_open(column, line, depth)) << i;
+                }
+            }
+            if left == 0 {
+                break;
+            }
+        }
+        reading
+    }
+}

@@ -1,0 +1,188 @@
+//! The points of a packet by where they lie.
+//!
+//! The pixels of a block may show surfaces far apart, one in front of another. A box around all of
+//! them would be large, and rays from it pass much of a scene; so points are divided wherever there
+//! is a wide gap between them, and each patch of a surface gets a box of its own.
+
+use glam::DVec3;
+
+use super::packet::POINTS;
+use super::shaft::Around;
+use marraztu_core::base::math::each;
+
+/// Points that lie close to each other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Patch {
+    /// The points, a bit for each.
+    pub(super) points: u64,
+    /// A box that holds them.
+    pub(super) around: Around,
+}
+
+/// The most patches of a packet.
+const MOST: usize = 8;
+
+/// A box is divided if this many neighbouring sixteenths of its length are empty.
+const EMPTY: u32 = 4;
+
+/// Divides the first `len` points of a list into patches; the rest repeats the first. `normal`
+/// tells the normal of the triangle that a point lies in, if it lies in one.
+#[inline(always)]
+pub(super) fn find_patches(
+    at: &[[f64; POINTS]; 3],
+    len: usize,
+    normal: impl Fn(usize) -> Option<DVec3>,
+    patches: &mut Vec<Patch>,
+) {
+    let mut open = vec![u64::MAX >> (POINTS - len)];
+    while let Some(points) = open.pop() {
+        let around = if points.count_ones() as usize == len {
+            around(at, points, &normal)
+        } else {
+            around(&only(at, points), points, &normal)
+        };
+        let may_be_divided = patches.len() + open.len() + 1 < MOST;
+        match may_be_divided.then(|| divided(at, points, &around)).flatten() {
+            Some(parts) => open.extend(parts),
+            None => patches.push(Patch { points, around }),
+        }
+    }
+}
+
+/// The points of a mask; in place of all others, the first of them.
+fn only(at: &[[f64; POINTS]; 3], points: u64) -> [[f64; POINTS]; 3] {
+    let first = nth(points, 0);
+    let mut some = each([0, 1, 2], |axis: usize| [at[axis][first]; POINTS]);
+    for i in bits(points) {
+        for (to, from) in some.iter_mut().zip(at) {
+            to[i] = from[i];
+        }
+    }
+    some
+}
+
+/// The box of some points, which are all that a list has: along the triangle of one in their middle
+/// or, if that is unknown, along three of the points.
+#[inline(always)]
+fn around(at: &[[f64; POINTS]; 3], points: u64, normal: impl Fn(usize) -> Option<DVec3>) -> Around {
+    let count = points.count_ones() as usize;
+    let point = |n: usize| {
+        let i = nth(points, n);
+        DVec3::new(at[0][i], at[1][i], at[2][i])
+    };
+    let [a, b, c] = [point(0), point(count.min(8) - 1), point(count - 1)];
+    let normal = normal(nth(points, count / 2)).unwrap_or_else(|| (b - a).cross(c - a));
+    Around::new(at, normal, b - a)
+}
+
+/// The points on both sides of the first wide gap along their box, if there is one.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 16")]
+fn divided(at: &[[f64; POINTS]; 3], points: u64, around: &Around) -> Option<[u64; 2]> {
+    let [a, b, c] = around.halves.map(DVec3::length_squared);
+    let longest = around.halves[if a >= b && a >= c { 0 } else { usize::from(c > b) + 1 }];
+    // Along the longest edge, from -1 to 1.
+    let along = longest / longest.length_squared();
+    let offset = 1.0 - around.centre.dot(along);
+    let mut places = [0; POINTS];
+    for (i, place) in places.iter_mut().enumerate() {
+        let x = at[0][i] * along.x + at[1][i] * along.y + at[2][i] * along.z;
+        *place = ((x + offset) * 8.0) as u32;
+    }
+    let taken = bits(points).fold(0_u32, |taken, i| taken | 1 << places[i].min(15));
+    // The sixteenths at which a gap begins, between the first and the last that are taken.
+    let empty = !taken & 0xffff;
+    let gaps = (1..EMPTY).fold(empty, |gaps, i| gaps & empty >> i);
+    let below = |bit: u32| (1_u32 << bit) - 1;
+    let between = below(taken.checked_ilog2()?) & !below(taken.trailing_zeros());
+    let gap = gaps & between;
+    if gap == 0 {
+        return None;
+    }
+    let near = bits(points).filter(|i| places[*i] < gap.trailing_zeros());
+    let near = near.fold(0, |near, i| near | 1 << i);
+    Some([near, points & !near])
+}
+
+/// The numbers of the bits of a mask.
+pub(crate) fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        (mask != 0).then(|| {
+            let i = mask.trailing_zeros() as usize;
+            mask &= mask - 1;
+            i
+        })
+    })
+}
+
+/// The number of one of the set bits of a mask that has enough.
+fn nth(mask: u64, n: usize) -> usize {
+    bits(mask).nth(n).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shadow::rays::Origins;
+    use marraztu_core::base::rng::Rng;
+
+    /// Points on squares of a plane, some columns of each.
+    fn origins(squares: &[(DVec3, usize)]) -> Origins {
+        let mut origins = Origins::default();
+        origins.begin(None, false);
+        let points = squares.iter().flat_map(|(at, columns)| {
+            (0..8 * columns).map(move |i| at + DVec3::new((i / 8) as f64, (i % 8) as f64, 0.0))
+        });
+        points.enumerate().for_each(|(i, point)| origins.set(i, point, [0; 2]));
+        origins
+    }
+
+    fn patches(mut origins: Origins) -> Vec<Patch> {
+        origins.find_patches(|_, _| Some(DVec3::Z));
+        origins.patches
+    }
+
+    #[test]
+    fn a_surface_is_one_patch_and_surfaces_with_a_gap_between_them_are_two() {
+        assert_eq!(patches(origins(&[(DVec3::ZERO, 8)])).len(), 1);
+        let far = DVec3::new(40.0, 0.0, -9.0);
+        let two = patches(origins(&[(DVec3::ZERO, 5), (far, 3)]));
+        let mut points: Vec<u64> = two.iter().map(|patch| patch.points).collect();
+        points.sort_unstable();
+        assert_eq!(points, [(1 << 40) - 1, u64::MAX << 40]);
+        // Neither box is longer than its own points.
+        assert!(two.iter().all(|patch| patch.around.extent().max_element() < 4.0));
+    }
+
+    #[test]
+    fn every_point_is_in_one_patch_and_inside_its_box() {
+        let mut rng = Rng::new(11);
+        for round in 0..500 {
+            let mut origins = Origins::default();
+            origins.begin(None, false);
+            let len = 1 + rng.index(64);
+            let mut number = |range: usize| rng.index(2 * range + 1) as f64 - range as f64;
+            for i in 0..len {
+                // In clusters, so that gaps of every width come up.
+                let cluster = DVec3::new(number(1), number(1), number(1)) * (round % 50) as f64;
+                origins.set(i, cluster + DVec3::new(number(9), number(9), number(9)), [0; 2]);
+            }
+            origins.find_patches(|_, _| None);
+            assert!(origins.patches.len() <= MOST);
+            let mut all = 0;
+            for Patch { points, around } in &origins.patches {
+                assert!(all & points == 0 && *points != 0, "a point is in two patches");
+                all |= points;
+                for i in bits(*points) {
+                    let from = origins.point(i) - around.centre;
+                    let inside = around
+                        .halves
+                        .iter()
+                        .all(|half| from.dot(*half).abs() <= half.length_squared() * (1.0 + 1e-12));
+                    assert!(inside, "a point is outside of its box");
+                }
+            }
+            assert_eq!(all, u64::MAX >> (64 - len));
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! Prepares eight triangles at a time for the rays to one light, and finds those of them that may
+//! stand between it and any point of a packet.
+//!
+//! Each function of [`super::triangle`] is linear in the point, so over the box of all points, with
+//! its centre C and half edges H, it is at most n . (C - A) + sum |n . H|. A triangle for which
+//! that is negative by more than its error is left out.
+
+use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, f64x8};
+use glam::{DMat4, DVec3};
+
+use super::shaft::Around;
+use super::triangle::{Corners, Decided, ERROR, OFF_PLANE, Prepared, side};
+use marraztu_core::base::math::each;
+use marraztu_core::scene::{TREE_BLOCK, TreeBlock};
+
+/// Eight triangles, prepared. A row is a line of the cache.
+#[derive(Debug, Default)]
+#[repr(align(64))]
+pub(crate) struct PreparedBlock {
+    /// For each corner and axis the coordinates in world space.
+    corners: [[[f64; TREE_BLOCK]; 3]; 3],
+    /// The normals of the planes through the light and each edge, and of the triangle's plane: see
+    /// [`Prepared`].
+    normals: [[[f64; TREE_BLOCK]; 3]; 4],
+    /// The errors of the edge functions, and of the plane's with that of the points.
+    errors: [[f64; TREE_BLOCK]; 4],
+}
+
+/// A vector of each of eight triangles.
+type Eight<S> = [f64x8<S>; 3];
+
+#[inline(always)]
+fn minus<S: Simd>(a: Eight<S>, b: Eight<S>) -> Eight<S> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn cross<S: Simd>(a: Eight<S>, b: Eight<S>) -> Eight<S> {
+    [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]]
+}
+
+#[inline(always)]
+fn dot<S: Simd>(a: Eight<S>, b: Eight<S>) -> f64x8<S> {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn largest<S: Simd>(v: Eight<S>) -> f64x8<S> {
+    v[0].abs().max(v[1].abs()).max(v[2].abs())
+}
+
+/// The largest component of vectors whose components may be larger by an extent.
+#[inline(always)]
+fn farthest<S: Simd>([x, y, z]: Eight<S>, extent: DVec3) -> f64x8<S> {
+    (x.abs() + extent.x).max(y.abs() + extent.y).max(z.abs() + extent.z)
+}
+
+#[inline(always)]
+fn times<S: Simd>([x, y, z]: Eight<S>, by: f64x8<S>) -> Eight<S> {
+    [x * by, y * by, z * by]
+}
+
+/// One vector for all.
+#[inline(always)]
+fn all<S: Simd>(simd: S, v: DVec3) -> Eight<S> {
+    [f64x8::splat(simd, v.x), f64x8::splat(simd, v.y), f64x8::splat(simd, v.z)]
+}
+
+/// Corners in world space: the arithmetic of [`DMat4::transform_point3`], so that all parts of the
+/// renderer see the same bits.
+#[inline(always)]
+fn placed<S: Simd>(
+    simd: S,
+    world_from_object: &DMat4,
+    corner: &[[f32; TREE_BLOCK]; 3],
+) -> Eight<S> {
+    let m = world_from_object;
+    let mut wide = [[0.0; TREE_BLOCK]; 3];
+    for (wide, row) in wide.iter_mut().zip(corner) {
+        for (wide, x) in wide.iter_mut().zip(row) {
+            *wide = f64::from(*x);
+        }
+    }
+    let [x, y, z] = [
+        f64x8::from_slice(simd, &wide[0]),
+        f64x8::from_slice(simd, &wide[1]),
+        f64x8::from_slice(simd, &wide[2]),
+    ];
+    each(
+        [0, 1, 2],
+        #[inline(always)]
+        |axis: usize| {
+            let [a, b, c] = [m.x_axis[axis], m.y_axis[axis], m.z_axis[axis]];
+            z * c + (y * b + x * a) + m.w_axis[axis]
+        },
+    )
+}
+
+impl PreparedBlock {
+    /// Prepares the triangles of a block for points in a box; `reach` is the largest coordinate of
+    /// the points' own triangles. Returns those that may stand between, a bit for each.
+    #[inline(always)]
+    pub(super) fn set<S: Simd>(
+        &mut self,
+        simd: S,
+        (block, world_from_object): (&TreeBlock, &DMat4),
+        (around, light): (&Around, DVec3),
+        reach: f64,
+    ) -> u64 {
+        let [a, b, c] = [
+            placed(simd, world_from_object, &block.corners[0]),
+            placed(simd, world_from_object, &block.corners[1]),
+            placed(simd, world_from_object, &block.corners[2]),
+        ];
+        store(&mut self.corners, [a, b, c]);
+        let to = all(simd, light);
+        let (ab, bc, ca) = (minus(b, a), minus(c, b), minus(a, c));
+        let plane = cross(ab, minus(c, a));
+        let size = largest(ab) * largest(ca);
+        let to_light = minus(to, a);
+        let (sign, sided) = self.sign(simd, dot(plane, to_light), size * largest(to_light), light);
+        let (from_a, from_b, from_c) = (minus(a, to), minus(b, to), minus(c, to));
+        let normals = [
+            times(cross(from_a, ab), sign),
+            times(cross(from_b, bc), sign),
+            times(cross(from_c, ca), sign),
+            times(plane, sign),
+        ];
+        store(&mut self.normals, normals);
+        let (centre, extent) = (all(simd, around.centre), around.extent());
+        let middle = [minus(centre, a), minus(centre, b), minus(centre, c)];
+        let far =
+            [farthest(middle[0], extent), farthest(middle[1], extent), farthest(middle[2], extent)];
+        let errors = [
+            largest(from_a) * largest(ab) * ERROR * far[0],
+            largest(from_b) * largest(bc) * ERROR * far[1],
+            largest(from_c) * largest(ca) * ERROR * far[2],
+            size * (far[0] * ERROR + 6.0 * OFF_PLANE * reach),
+        ];
+        let halves =
+            [all(simd, around.halves[0]), all(simd, around.halves[1]), all(simd, around.halves[2])];
+        let mut possible = sided;
+        for i in 0..4 {
+            errors[i].store_slice(&mut self.errors[i]);
+            let spread = dot(normals[i], halves[0]).abs()
+                + dot(normals[i], halves[1]).abs()
+                + dot(normals[i], halves[2]).abs();
+            let most = dot(normals[i], middle[i % 3]) + spread;
+            // Neither NaN nor infinity leaves a triangle out.
+            possible &= !most.simd_lt(errors[i] * -4.0).to_bitmask();
+        }
+        possible
+    }
+
+    /// The sign of the functions of each triangle, and the triangles that have one: the light is
+    /// not in their plane.
+    #[inline(always)]
+    fn sign<S: Simd>(
+        &self,
+        simd: S,
+        of_light: f64x8<S>,
+        size: f64x8<S>,
+        light: DVec3,
+    ) -> (f64x8<S>, u64) {
+        let (one, zero) = (f64x8::splat(simd, 1.0), f64x8::splat(simd, 0.0));
+        let sign = of_light.simd_gt(zero).select(-one, one);
+        let sure = of_light.abs().simd_gt(size * ERROR).to_bitmask();
+        if sure == (1 << TREE_BLOCK) - 1 {
+            return (sign, sure);
+        }
+        let mut signs = [0.0; TREE_BLOCK];
+        sign.store_slice(&mut signs);
+        let sided = sure | self.settle(light, sure, &mut signs);
+        (f64x8::from_slice(simd, &signs), sided)
+    }
+
+    /// Decides by exact arithmetic on which side of the planes of triangles the light is, but of
+    /// those that are `sure`. Returns those for which it is on one.
+    #[inline(never)]
+    fn settle(&self, light: DVec3, sure: u64, signs: &mut [f64; TREE_BLOCK]) -> u64 {
+        let mut sided = 0;
+        for i in (0..TREE_BLOCK).filter(|i| sure >> i & 1 == 0) {
+            let of_light = side(&self.corners_of(i), light);
+            signs[i] = if of_light > 0.0 { -1.0 } else { 1.0 };
+            sided |= u64::from(of_light != 0.0) << i;
+        }
+        sided
+    }
+
+    /// The corners of a triangle in world space.
+    fn corners_of(&self, i: usize) -> Corners {
+        self.corners.map(|rows| DVec3::from_array(rows.map(|row| row[i])))
+    }
+
+    /// Decides for a point which triangles of a mask stand between it and the light.
+    #[inline(always)]
+    pub(super) fn decide<S: Simd>(&self, simd: S, p: DVec3, of: u64) -> Decided {
+        let p = all(simd, p);
+        let (mut between, mut possible) = (of, of);
+        // Most points are on the light's side of a plane: that is the first question.
+        for i in [3, 0, 1, 2] {
+            if possible == 0 {
+                break;
+            }
+            let (corner, normal) = (&self.corners[i % 3], &self.normals[i]);
+            let from = minus(p, rows(simd, corner));
+            let error = f64x8::from_slice(simd, &self.errors[i]);
+            let value = dot(from, rows(simd, normal));
+            between &= value.simd_gt(error).to_bitmask();
+            possible &= value.simd_ge(-error).to_bitmask();
+        }
+        between &= possible;
+        Decided { between, open: possible & !between }
+    }
+
+    /// One of the triangles.
+    pub(super) fn triangle(&self, i: usize) -> Prepared {
+        let vector = |rows: &[[f64; TREE_BLOCK]; 3]| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
+        let [a, b, c] = &self.corners;
+        let [d, e, f, _] = &self.normals;
+        Prepared { corners: each([a, b, c], vector), normals: each([d, e, f], vector) }
+    }
+}
+
+#[inline(always)]
+fn rows<S: Simd>(simd: S, [x, y, z]: &[[f64; TREE_BLOCK]; 3]) -> Eight<S> {
+    [f64x8::from_slice(simd, x), f64x8::from_slice(simd, y), f64x8::from_slice(simd, z)]
+}
+
+#[inline(always)]
+fn store<S: Simd, const N: usize>(to: &mut [[[f64; TREE_BLOCK]; 3]; N], vectors: [Eight<S>; N]) {
+    // By index: moving vectors through iterators takes them through memory.
+    for i in 0..N {
+        for axis in 0..3 {
+            vectors[i][axis].store_slice(&mut to[i][axis]);
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! The points of a packet of rays, and the triangles that they lie on.
+
+use glam::DVec3;
+
+use super::packet::POINTS;
+use super::patches::{Patch, find_patches};
+use super::prepared_block::PreparedBlock;
+use super::shaft::Shaft;
+use marraztu_core::scene::TreeChild;
+
+/// The origins of up to [`POINTS`] rays, in world space, all on one object.
+#[derive(Debug)]
+pub(crate) struct Origins {
+    pub(crate) at: [[f64; POINTS]; 3],
+    /// The caster that they lie on, if it casts shadows itself.
+    pub(crate) caster: Option<u32>,
+    /// The triangles of that caster that each lies on: from the first to the one before `end`.
+    pub(crate) first: [u32; POINTS],
+    pub(crate) end: [u32; POINTS],
+    /// Whether each point lies in the one triangle that `first` names. Otherwise it is exact.
+    pub(crate) in_triangle: bool,
+    /// The largest coordinate of the triangles that they lie in.
+    pub(crate) reach: f64,
+    /// The points that were lifted off their triangles, a bit for each: they are exact.
+    pub(super) lifted: u64,
+    len: usize,
+    /// The points by where they lie; empty if that is not known yet.
+    pub(super) patches: Vec<Patch>,
+}
+
+impl Default for Origins {
+    fn default() -> Self {
+        Self {
+            at: [[0.0; POINTS]; 3],
+            caster: None,
+            first: [0; POINTS],
+            end: [0; POINTS],
+            in_triangle: false,
+            reach: 0.0,
+            lifted: 0,
+            len: 0,
+            patches: Vec::new(),
+        }
+    }
+}
+
+impl Origins {
+    /// Begins a list of points on a caster.
+    pub(crate) fn begin(&mut self, caster: Option<u32>, in_triangle: bool) {
+        (self.caster, self.in_triangle, self.reach) = (caster, in_triangle, 0.0);
+        (self.lifted, self.len) = (0, 0);
+        self.patches.clear();
+    }
+
+    /// Sets a point and the triangles that it lies on; points are set in order.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, i: usize, at: DVec3, triangles: [u32; 2]) {
+        for (row, x) in self.at.iter_mut().zip(at.to_array()) {
+            row[i] = x;
+        }
+        [self.first[i], self.end[i]] = triangles;
+        self.len = i + 1;
+    }
+
+    /// Moves a point off its triangle, which still does not shade it.
+    pub(crate) fn lift(&mut self, i: usize, at: DVec3) {
+        let triangles = [self.first[i], self.end[i]];
+        self.set(i, at, triangles);
+        self.lifted |= 1 << i;
+    }
+
+    /// One of the points.
+    #[inline(always)]
+    pub(crate) fn point(&self, i: usize) -> DVec3 {
+        DVec3::new(self.at[0][i], self.at[1][i], self.at[2][i])
+    }
+
+    /// Divides the points into patches. `normal` tells the normal of the triangle that a point lies
+    /// in, if it lies in one.
+    #[inline(always)]
+    pub(super) fn find_patches(&mut self, normal: impl Fn(&Self, usize) -> Option<DVec3>) {
+        let len = self.len.clamp(1, POINTS);
+        // What is left of the lists repeats the first point.
+        for row in &mut self.at {
+            let first = row[0];
+            row[len..].fill(first);
+        }
+        let mut patches = std::mem::take(&mut self.patches);
+        find_patches(&self.at, len, |i| normal(self, i), &mut patches);
+        self.patches = patches;
+    }
+}
+
+/// The rays of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RayCount {
+    /// The rays that were traced.
+    pub traced: u64,
+    /// Those that something stands in the way of.
+    pub occluded: u64,
+}
+
+impl std::ops::AddAssign for RayCount {
+    fn add_assign(&mut self, other: Self) {
+        self.traced += other.traced;
+        self.occluded += other.occluded;
+    }
+}
+
+/// What a thread keeps from packet to packet.
+#[derive(Debug, Default)]
+pub(crate) struct RayScratch {
+    /// The rays since the frame began.
+    pub(crate) count: RayCount,
+    /// Whether the layers of a block are painted: a pixel then shows several surfaces.
+    pub(crate) paints_layers: bool,
+    pub(crate) origins: Origins,
+    pub(super) local: LocalRays,
+    pub(super) shaft: Shaft,
+    pub(super) prepared: PreparedBlock,
+    /// Nodes and leaves that are still to be visited, with the rays that reach them.
+    pub(super) stack: Vec<(TreeChild, u64)>,
+}
+
+/// The rays of a packet in the space of one caster, for its boxes.
+#[derive(Debug)]
+pub(super) struct LocalRays {
+    /// The origins in the space of the caster.
+    pub(super) origin: [[f32; POINTS]; 3],
+    /// 1 / direction, which is scaled so that its largest component is 1.
+    pub(super) inverse: [[f32; POINTS]; 3],
+    /// The parameter of the light.
+    pub(super) end: [f32; POINTS],
+    /// How far boxes are padded, for all errors of f32.
+    pub(super) pad: [f32; 3],
+    /// The largest coordinate of the origins and of the caster's bounds.
+    pub(super) far: f64,
+}
+
+impl Default for LocalRays {
+    fn default() -> Self {
+        let rows = [[0.0; POINTS]; 3];
+        Self { origin: rows, inverse: rows, end: [0.0; POINTS], pad: [0.0; 3], far: 0.0 }
+    }
+}

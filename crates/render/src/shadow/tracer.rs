@@ -1,0 +1,436 @@
+//! Traces packets of rays through all casters of a frame.
+
+use fearless_simd::{Level, Simd, dispatch};
+use glam::{DMat4, DVec3};
+
+use super::known::{KnownLight, KnownShadows};
+use super::map_face::LightMap;
+use super::maps::ShadowMaps;
+use super::patches::{Patch, bits};
+use super::prepared_block::PreparedBlock;
+use super::rays::{Origins, RayCount, RayScratch};
+use super::shaft::Around;
+use super::triangle::{Corners, Prepared, is_between, reaches_behind};
+use crate::frame::FramePlan;
+use crate::frame::shadows::{Caster, CasterPart, Holes, ShadowSource, Shadows};
+use crate::simd::Vec3;
+use crate::texture::sample::{brightness, sample};
+use crate::texture::uv::uv;
+use marraztu_core::accuracy::{Filter, ShadowMethod};
+use marraztu_core::base::math::each;
+use marraztu_core::scene::{Bounds, RayTree, TREE_BLOCK, TreeBlock, TreeChild, TreeNode, dvec3};
+
+/// How much farther a sun is than the largest coordinate of the scene.
+const SUN: f64 = (1_u64 << 60) as f64;
+
+/// What casts shadows in a frame, ready to be met by rays.
+#[derive(Debug)]
+pub(crate) struct Tracer<'a> {
+    casters: Vec<InPlace<'a>>,
+    /// For each draw, the caster that it draws.
+    of_draws: Vec<Option<u32>>,
+    /// For each light, the end of the rays to it, if it casts shadows.
+    lights: Vec<Option<DVec3>>,
+    /// For each light its shadow map, if the settings want one.
+    maps: Vec<Option<&'a LightMap>>,
+    /// What is known of shadows, if it is kept.
+    known: Option<&'a KnownShadows>,
+    filter: Filter,
+}
+
+/// A caster in its place.
+#[derive(Debug)]
+struct InPlace<'a> {
+    caster: &'a Caster,
+    /// `None` with shadow maps.
+    tree: Option<&'a RayTree>,
+    object_from_world: DMat4,
+    /// Its bounds in object space.
+    own: Bounds,
+    /// Its box in world space.
+    low: DVec3,
+    high: DVec3,
+    is_solid: bool,
+}
+
+/// The corners of a triangle in world space. Every part of the renderer that needs them exactly
+/// uses this function.
+#[inline(always)]
+fn placed(world_from_object: &DMat4, corners: [[f32; 3]; 3]) -> Corners {
+    each(corners, |corner| world_from_object.transform_point3(dvec3(corner)))
+}
+
+impl<'a> Tracer<'a> {
+    /// Makes the casters of a plan ready; `None` if no light casts shadows.
+    pub(crate) fn new(plan: &'a FramePlan, maps: &'a ShadowMaps) -> Option<Self> {
+        if !plan.shadows.are_cast() {
+            return None;
+        }
+        let mut tracer = Self::of(&plan.shadows, plan.filter, plan.variants.shadow_method);
+        let map = |source: &Option<ShadowSource>| source.as_ref().and_then(|own| maps.of(own));
+        tracer.maps = plan.shadows.sources.iter().map(map).collect();
+        let of_draw = |item| tracer.casters.iter().position(|placed| placed.caster.item == item);
+        let index = |at: usize| u32::try_from(at).expect("fewer than 2^32 objects");
+        let of_draws = plan.draws.iter().map(|draw| of_draw(draw.item).map(index)).collect();
+        Some(Self { of_draws, ..tracer })
+    }
+
+    /// How far away the suns of a frame are.
+    pub(crate) fn sun_distance(shadows: &Shadows) -> f64 {
+        let in_place = |caster| InPlace::new(caster, ShadowMethod::Map512);
+        sun_distance(&shadows.casters.iter().filter_map(in_place).collect::<Vec<_>>())
+    }
+
+    /// Makes casters ready.
+    fn of(shadows: &'a Shadows, filter: Filter, method: ShadowMethod) -> Self {
+        let in_place = |caster| InPlace::new(caster, method);
+        let casters: Vec<InPlace<'a>> = shadows.casters.iter().filter_map(in_place).collect();
+        let far = sun_distance(&casters);
+        let end = |source: &ShadowSource| match source {
+            ShadowSource::Direction(towards) => *towards * far,
+            // A light that is farther than a sun is one.
+            ShadowSource::Point(at) | ShadowSource::Cone { at, .. } => {
+                *at * (far / at.abs().max_element()).min(1.0)
+            }
+        };
+        let lights = shadows.sources.iter().map(|source| source.as_ref().map(end)).collect();
+        Self { casters, of_draws: Vec::new(), lights, maps: Vec::new(), known: None, filter }
+    }
+
+    /// The end of the rays to a light, if it casts shadows.
+    #[inline(always)]
+    pub(crate) fn light(&self, light: u32) -> Option<DVec3> {
+        self.lights[light as usize]
+    }
+
+    /// The caster that a draw draws.
+    pub(crate) fn caster_of(&self, draw: u32) -> Option<u32> {
+        self.of_draws[draw as usize]
+    }
+
+    /// `world_from_object` of a caster.
+    pub(crate) fn placement(&self, caster: u32) -> DMat4 {
+        self.casters[caster as usize].caster.world_from_object
+    }
+
+    /// The same, with what is known of shadows and is added to.
+    pub(crate) fn with_known(self, known: Option<&'a KnownShadows>) -> Self {
+        Self { known, ..self }
+    }
+
+    /// The map of a light, if the settings want one.
+    pub(crate) fn map(&self, light: u32) -> Option<&'a LightMap> {
+        self.maps.get(light as usize).copied().flatten()
+    }
+
+    /// What is known of the shadows of a light, if it is kept.
+    #[inline(always)]
+    pub(crate) fn known(&self, light: u32) -> Option<&'a KnownLight> {
+        self.known?.of(light)
+    }
+
+    /// The rays of a mask that something stands between and the light, a bit for each.
+    pub(crate) fn shaded(
+        &self,
+        level: Level,
+        light: DVec3,
+        scratch: &mut RayScratch,
+        mask: u64,
+    ) -> u64 {
+        if mask == 0 {
+            return 0;
+        }
+        let shaded = dispatch!(level, simd => self.trace(simd, light, scratch, mask));
+        let [traced, occluded] = [mask, shaded].map(|rays| u64::from(rays.count_ones()));
+        scratch.count += RayCount { traced, occluded };
+        shaded
+    }
+
+    #[inline(always)]
+    fn trace<S: Simd>(&self, simd: S, light: DVec3, scratch: &mut RayScratch, mask: u64) -> u64 {
+        if scratch.origins.patches.is_empty() {
+            scratch.origins.find_patches(|origins, i| self.normal_at(origins, i));
+        }
+        let mut alive = mask;
+        for (index, placed) in (0_u32..).zip(&self.casters) {
+            alive &= !self.behind(simd, (index, placed), light, scratch, alive);
+            if alive == 0 {
+                break;
+            }
+        }
+        mask & !alive
+    }
+
+    /// The normal of the triangle that a point lies in, if it lies in one.
+    fn normal_at(&self, origins: &Origins, i: usize) -> Option<DVec3> {
+        let caster = origins.caster.filter(|_| origins.in_triangle)?;
+        let [a, b, c] = self.corners_of(caster, origins.first[i]);
+        Some((b - a).cross(c - a))
+    }
+
+    /// The rays of a mask that a caster stands in the way of.
+    #[inline(always)]
+    fn behind<S: Simd>(
+        &self,
+        simd: S,
+        (index, placed): (u32, &InPlace<'_>),
+        light: DVec3,
+        scratch: &mut RayScratch,
+        mask: u64,
+    ) -> u64 {
+        let Some(tree) = placed.tree else { return 0 };
+        let mut behind = 0;
+        let mut is_set = false;
+        for i in 0..scratch.origins.patches.len() {
+            let Patch { points, around } = scratch.origins.patches[i];
+            let extent = around.extent();
+            let (from, to) = (around.centre - extent, around.centre + extent);
+            let (low, high) = (from.min(light), to.max(light));
+            let is_beside = placed.low.cmpgt(high).any() || placed.high.cmplt(low).any();
+            if is_beside || points & mask == 0 {
+                continue;
+            }
+            let RayScratch { origins, local, shaft, stack, .. } = &mut *scratch;
+            if !is_set {
+                let all = origins.patches.iter().map(|patch| patch.around.farthest());
+                let reach = all.fold(placed.reach(), f64::max);
+                local.set(&placed.object_from_world, (&origins.at, light), (placed.own, reach));
+                is_set = true;
+            }
+            shaft.set(&placed.object_from_world, (&around, light), (local.far, local.pad));
+            let packet = Packet { light, around, is_own: origins.caster == Some(index) };
+            stack.clear();
+            stack.push((tree.root, points & mask));
+            behind |= self.behind_tree(simd, (placed, tree), &packet, scratch, points & mask);
+        }
+        behind
+    }
+
+    /// The rays of a mask that a tree stands in the way of, from what is on the stack.
+    #[inline(always)]
+    fn behind_tree<S: Simd>(
+        &self,
+        simd: S,
+        (placed, tree): (&InPlace<'_>, &RayTree),
+        packet: &Packet,
+        scratch: &mut RayScratch,
+        mask: u64,
+    ) -> u64 {
+        let mut alive = mask;
+        while let Some((child, reached)) = scratch.stack.pop() {
+            let reached = reached & alive;
+            if reached == 0 {
+                continue;
+            }
+            if child.count == 0 {
+                let Some(node) = tree.nodes.get(child.first as usize) else { continue };
+                scratch.visit(simd, node, reached);
+                continue;
+            }
+            alive &= !self.behind_leaf(simd, (placed, tree, child), packet, scratch, reached);
+            if alive == 0 {
+                break;
+            }
+        }
+        mask & !alive
+    }
+
+    /// The rays of a mask that a triangle of a leaf stands between and the light.
+    #[inline(always)]
+    fn behind_leaf<S: Simd>(
+        &self,
+        simd: S,
+        (placed, tree, leaf): (&InPlace<'_>, &RayTree, TreeChild),
+        packet: &Packet,
+        scratch: &mut RayScratch,
+        reached: u64,
+    ) -> u64 {
+        let RayScratch { origins, prepared, .. } = scratch;
+        let mut behind = 0;
+        let mut left = leaf.count as usize;
+        for block in &tree.blocks[leaf.blocks()] {
+            let own = (block, &placed.caster.world_from_object);
+            let possible = prepared.set(simd, own, (&packet.around, packet.light), origins.reach);
+            let possible = possible & ((1 << left.min(TREE_BLOCK)) - 1);
+            if possible != 0 {
+                let block = (placed, block, &*prepared);
+                let rays = reached & !behind;
+                behind |= self.behind_block(simd, block, possible, (packet, origins), rays);
+            }
+            left = left.saturating_sub(TREE_BLOCK);
+        }
+        behind
+    }
+
+    /// The rays of a mask that some triangles of a block stand between and the light: all of the
+    /// triangles at once, ray by ray, since few rays reach a leaf.
+    #[inline(always)]
+    fn behind_block<S: Simd>(
+        &self,
+        simd: S,
+        (placed, block, prepared): (&InPlace<'_>, &TreeBlock, &PreparedBlock),
+        possible: u64,
+        (packet, origins): (&Packet, &Origins),
+        rays: u64,
+    ) -> u64 {
+        let mut behind = 0;
+        for ray in bits(rays) {
+            let others = if packet.is_own {
+                possible & !block.among(simd, [origins.first[ray], origins.end[ray]])
+            } else {
+                possible
+            };
+            let decided = prepared.decide(simd, origins.point(ray), others);
+            let is_own = |i: usize| decided.between >> i & 1 == 1;
+            let mut met = bits(decided.between | decided.open);
+            if met.any(|i| {
+                let triangle = (placed, block.numbers[i], &prepared.triangle(i));
+                self.stands_between(triangle, (packet, origins), (ray, is_own(i)))
+            }) {
+                behind |= 1 << ray;
+            }
+        }
+        behind
+    }
+
+    /// Whether a triangle stands between a point and the light: decides what f64 cannot, unless it
+    /// is `sure`, and lets rays through holes.
+    #[inline(never)]
+    fn stands_between(
+        &self,
+        (placed, number, triangle): (&InPlace<'_>, u32, &Prepared),
+        (packet, origins): (&Packet, &Origins),
+        (ray, sure): (usize, bool),
+    ) -> bool {
+        let corners = &triangle.corners;
+        let is_between = sure
+            || (self.own_reaches_behind(origins, ray, corners, packet.light)
+                && is_between(corners, packet.light, origins.point(ray)));
+        if placed.is_solid || !is_between {
+            return is_between;
+        }
+        let part = placed.caster.part_of(number);
+        self.is_solid_at(placed, part, number, triangle.parts(origins.point(ray)))
+    }
+
+    /// Whether a point's own triangle reaches behind the plane of another. A point that lies in no
+    /// triangle is exact.
+    fn own_reaches_behind(
+        &self,
+        origins: &Origins,
+        i: usize,
+        triangle: &Corners,
+        light: DVec3,
+    ) -> bool {
+        let is_exact = !origins.in_triangle || origins.lifted >> i & 1 == 1;
+        let Some(caster) = origins.caster.filter(|_| !is_exact) else { return true };
+        let own = self.corners_of(caster, origins.first[i]);
+        reaches_behind(&own, triangle, light)
+    }
+
+    /// The corners of a triangle of a caster, in world space.
+    pub(crate) fn corners_of(&self, caster: u32, triangle: u32) -> Corners {
+        let InPlace { caster, .. } = &self.casters[caster as usize];
+        let order = caster.model.mesh.draw_order();
+        let corners = each(order.vertices_of(triangle), |vertex| {
+            let i = vertex as usize;
+            [order.x[i] + 0.0, order.y[i] + 0.0, order.z[i] + 0.0]
+        });
+        placed(&caster.world_from_object, corners)
+    }
+
+    /// Whether a part of a caster stops light where these parts of a triangle's corners meet.
+    fn is_solid_at(
+        &self,
+        placed: &InPlace<'_>,
+        part: Option<&CasterPart>,
+        triangle: u32,
+        parts: DVec3,
+    ) -> bool {
+        let Some(part) = part else { return false };
+        let Some(Holes { texture, map, opacity }) = &part.holes else { return true };
+        let Some(uvs) = placed.caster.model.mesh.triangle_uvs(triangle) else { return true };
+        let uvs = each(uvs, |[u, v]| [f64::from(u), f64::from(v)]);
+        let at = uv(uvs, parts);
+        let texture = texture.as_ref().map_or(1.0, |it| sample::<f64>(it, at, self.filter)[3]);
+        let map = map.as_ref().map_or(1.0, |it| {
+            let [r, g, b, alpha] = sample::<f64>(it, at, self.filter);
+            // Its brightness counts if it has no alpha.
+            if it.picture.least_alpha() == 255 { brightness(Vec3([r, g, b])) } else { alpha }
+        });
+        texture * map * opacity >= 0.5
+    }
+}
+
+impl RayScratch {
+    /// Adds the children of a node that rays meet to those that are still to be visited. A leaf is
+    /// tested ray by ray.
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, simd: S, node: &TreeNode, reached: u64) {
+        for (child, [low, high]) in node.children() {
+            if self.shaft.misses(simd, low, high) {
+                continue;
+            }
+            let met = match child.count {
+                0 => reached,
+                _ => self.local.meeting(simd, low, high, reached),
+            };
+            if met != 0 {
+                self.stack.push((*child, met));
+            }
+        }
+    }
+}
+
+/// The rays that are traced.
+struct Packet {
+    light: DVec3,
+    /// The box of their origins.
+    around: Around,
+    /// Whether they begin on the caster that is traced.
+    is_own: bool,
+}
+
+impl<'a> InPlace<'a> {
+    fn new(caster: &'a Caster, method: ShadowMethod) -> Option<Self> {
+        let mesh = &caster.model.mesh;
+        let own = mesh.bounds()?;
+        let m = caster.world_from_object;
+        let corners = own.corners().map(|corner| m.transform_point3(corner));
+        let low = corners.iter().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
+        let high = corners.iter().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
+        // Its corners are rounded.
+        let error = low.abs().max(high.abs()).max_element() * 1e-14;
+        let object_from_world = m.inverse();
+        let (low, high) = (low - error, high + error);
+        let is_finite = low.is_finite() && high.is_finite() && object_from_world.is_finite();
+        is_finite.then(|| Self {
+            caster,
+            tree: method.map().is_none().then(|| mesh.ray_tree()),
+            object_from_world,
+            own,
+            low,
+            high,
+            is_solid: caster.is_solid(),
+        })
+    }
+
+    /// The largest coordinate of its box.
+    fn reach(&self) -> f64 {
+        self.low.abs().max(self.high.abs()).max_element()
+    }
+}
+
+/// How far away suns are, with these casters.
+fn sun_distance(casters: &[InPlace<'_>]) -> f64 {
+    let reach = casters.iter().map(InPlace::reach).fold(f64::MIN_POSITIVE, f64::max);
+    power_of_two_above(reach) * SUN
+}
+
+/// The least power of two above a number.
+fn power_of_two_above(x: f64) -> f64 {
+    libm::ldexp(1.0, libm::frexp(x).1)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,26 @@
+//! The curve of sRGB over [`Real`]: from linear values to those that pictures are stored in.
+
+use super::power::Power;
+use super::real::Real;
+
+/// Encodes linear colours as sRGB: see [`encoded`](marraztu_core::base::color::encoded). In f32 the error
+/// is below 1e-6.
+#[derive(Clone, Debug)]
+pub(crate) struct Encoding(Power);
+
+impl Encoding {
+    /// Prepares the power of the curve.
+    pub(crate) fn new() -> Self {
+        // 1/2.4 of the logarithm of the least number that the power is used for is above -4.
+        Self(Power::new(1.0 / 2.4, -4.0))
+    }
+
+    /// The encoded value of a number, clamped to 0 to 1; NaN gives 0.
+    #[inline(always)]
+    pub(crate) fn of<R: Real>(&self, linear: R) -> R {
+        let (zero, one) = (linear.lift(0.0), linear.lift(1.0));
+        let x = Real::min(Real::max(linear, zero), one);
+        let curve = x.power_times(&self.0, one) * x.lift(1.055) - x.lift(0.055);
+        x.if_more(x.lift(0.003_130_8), curve, x * x.lift(12.92))
+    }
+}

@@ -1,0 +1,92 @@
+//! Positions on a texture in f64, reduced to one repetition before they are rounded to f32: for
+//! triangles over more texels than f32 can tell apart, and for the alpha test.
+
+use fearless_simd::{Select as _, Simd, SimdBase as _, SimdFloat as _, f64x8};
+
+use super::uv::Uvs;
+use marraztu_core::base::math::each;
+use marraztu_core::scene::{Texture, Wrap};
+
+/// The coordinates in repetitions beyond which positions are arbitrary even in f64.
+const FARTHEST: f64 = 1e12;
+
+/// A texture on one triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ExactPlacement {
+    along: [Along; 2],
+    wrap: Wrap,
+}
+
+/// The coordinates along one axis.
+#[derive(Clone, Copy, Debug)]
+struct Along {
+    /// Those of the first corner in repetitions, and the differences of the others from it.
+    first: f64,
+    second: f64,
+    third: f64,
+    /// The least and the largest.
+    low: f64,
+    high: f64,
+    /// Texels of one repetition.
+    side: f64,
+}
+
+impl ExactPlacement {
+    /// Sets up a triangle; `None` if its coordinates are too large.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    pub(crate) fn new(uvs: Uvs, texture: &Texture) -> Option<Self> {
+        let size = texture.picture.size();
+        let sides = [size.width as f64, size.height as f64];
+        let along = [0, 1].map(|axis: usize| {
+            let [a, b, c] = each(uvs, |uv| uv[axis] * texture.scale[axis] + texture.offset[axis]);
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            Along { first: a, second: b - a, third: c - a, low, high, side: sides[axis] }
+        });
+        let near = along.iter().all(|it| it.low >= -FARTHEST && it.high <= FARTHEST);
+        near.then_some(Self { along, wrap: texture.wrap })
+    }
+
+    /// The position with these weights of the second and third corner, in texels.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+    pub(crate) fn at(&self, [second, third]: [f64; 2]) -> [f32; 2] {
+        self.along.map(|it| {
+            let u = it.first + it.second * second + it.third * third;
+            let u = if u > it.low { u } else { it.low };
+            let u = if u < it.high { u } else { it.high };
+            let own = match self.wrap {
+                Wrap::Repeat => u - u.floor(),
+                Wrap::Clamp => u.clamp(0.0, 1.0),
+            };
+            (own * it.side) as f32
+        })
+    }
+
+    /// The same for eight pixels: the same bits, before they are rounded to f32.
+    #[inline(always)]
+    pub(crate) fn of_row<S: Simd>(&self, weights: [f64x8<S>; 2]) -> [f64x8<S>; 2] {
+        let [u, v] = self.along;
+        [u.of_row(weights, self.wrap), v.of_row(weights, self.wrap)]
+    }
+}
+
+impl Along {
+    /// The texels at eight pixels.
+    #[inline(always)]
+    fn of_row<S: Simd>(self, [second, third]: [f64x8<S>; 2], wrap: Wrap) -> f64x8<S> {
+        let simd = second.simd;
+        let (low, high) = (f64x8::splat(simd, self.low), f64x8::splat(simd, self.high));
+        let u = second * self.second + self.first + third * self.third;
+        let u = u.simd_gt(low).select(u, low);
+        let u = u.simd_lt(high).select(u, high);
+        let own = match wrap {
+            Wrap::Repeat => u - u.floor(),
+            Wrap::Clamp => {
+                let (zero, one) = (f64x8::splat(simd, 0.0), f64x8::splat(simd, 1.0));
+                let u = u.simd_gt(zero).select(u, zero);
+                u.simd_lt(one).select(u, one)
+            }
+        };
+        own * self.side
+    }
+}

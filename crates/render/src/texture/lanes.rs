@@ -1,0 +1,372 @@
+//! Samples textures sixteen pixels at a time.
+//!
+//! Positions, texels and weights are those of [`sample`](super::sample) and
+//! [`mips`](super::mips), in f32; only the texels themselves are fetched one by one.
+
+use std::sync::OnceLock;
+
+use fearless_simd::{
+    Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _, f32x16, i32x16,
+};
+
+use self::mip_level::{Footprint, ManyAround, MipLevel};
+use super::sample::{brightness, linear_factors};
+use crate::lights::{Rows, store};
+use crate::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3, log2};
+use marraztu_core::accuracy::Filter;
+use marraztu_core::base::once::get_or_compute;
+use marraztu_core::scene::{Texture, Wrap};
+
+/// Mip levels, at most: textures have at most 32,768 texels a side.
+const LEVELS: usize = 16;
+
+/// A texture, and the mip maps that its filter reads.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sampler<'a> {
+    levels: &'a [Texture],
+    filter: Filter,
+    /// Width and height of each level.
+    sizes: [[f32; LEVELS]; 2],
+    /// The same over those of the first level.
+    scales: [[f32; LEVELS]; 2],
+}
+
+/// Sixteen positions on the texture in texels of its own size, reduced to one repetition.
+type Positions<S> = [f32x16<S>; 2];
+
+impl<'a> Sampler<'a> {
+    /// Samples the first of these levels, or between them if the filter is trilinear. `None` if the
+    /// texture has no texels.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
+    pub(crate) fn new(levels: &'a [Texture], filter: Filter) -> Option<Self> {
+        let levels = &levels[..levels.len().min(LEVELS)];
+        let mut sizes = [[1.0; LEVELS]; 2];
+        for (i, level) in levels.iter().enumerate() {
+            let size = level.picture.size();
+            (sizes[0][i], sizes[1][i]) = (size.width as f32, size.height as f32);
+        }
+        let has_texels = levels.first()?.picture.size().area() > 0;
+        let mut scales = sizes;
+        for (scales, sides) in scales.iter_mut().zip(&sizes) {
+            scales.iter_mut().for_each(|side| *side /= sides[0]);
+        }
+        has_texels.then_some(Self { levels, filter, sizes, scales })
+    }
+
+    /// Whether the filter reads mip maps.
+    pub(crate) fn reads_mips(&self) -> bool {
+        self.filter == Filter::Trilinear
+    }
+
+    /// Red, green and blue, as factors, at the first `len` places.
+    ///
+    /// Each step is done for all places before the next one: how soon a step ends depends on the
+    /// one before, and processors overlap only what is near.
+    ///
+    /// Compiled as a function of its own, since many kernels sample.
+    #[inline(always)]
+    pub(crate) fn sample<S: Simd, D: Decode>(
+        &self,
+        simd: S,
+        places: &mut TexelPlaces,
+        len: usize,
+        to: &mut Rows<f32>,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.sample_in::<S, D>(simd, places, len, to),
+        );
+    }
+
+    #[inline(always)]
+    fn sample_in<S: Simd, D: Decode>(
+        &self,
+        simd: S,
+        places: &mut TexelPlaces,
+        len: usize,
+        to: &mut Rows<f32>,
+    ) {
+        let lanes = Sixteen(simd);
+        for axis in 0..2 {
+            let row = &mut places.position[axis];
+            for at in (0..len).step_by(16) {
+                lanes.store(self.reduced(lanes.load(row, at), axis), row, at);
+            }
+        }
+        let first = MipLevel::first(self, simd);
+        match self.filter {
+            Filter::Nearest => {
+                for at in (0..len).step_by(16) {
+                    let texels = first.nearest(simd, self, places.at(lanes, at));
+                    let Vec3([r, g, b]) = D::channels(texels);
+                    store(lanes, Vec3([r / 255.0, g / 255.0, b / 255.0]), to, at);
+                }
+            }
+            Filter::Bilinear => {
+                for at in (0..len).step_by(16) {
+                    let around = first.around(simd, places.at(lanes, at));
+                    places.finer.store(at, &around);
+                }
+                for at in (0..len).step_by(16) {
+                    let around = places.finer.load(simd, at);
+                    let color = first.texels(simd, self, &around).color::<D>();
+                    store(lanes, color.times(lanes.set(1.0 / 255.0)), to, at);
+                }
+            }
+            Filter::Trilinear => self.trilinear::<S, D>(simd, places, len, to),
+        }
+    }
+
+    /// Alpha at sixteen positions in texels, from 0 to 1, of the texture's own size.
+    #[inline(always)]
+    pub(crate) fn alpha<S: Simd>(&self, simd: S, position: [f32x16<S>; 2]) -> f32x16<S> {
+        self.scalar::<S, Alpha>(simd, position)
+    }
+
+    /// The brightness at sixteen positions in texels, from 0 to 1, of the texture's own size.
+    #[inline(always)]
+    pub(crate) fn brightness<S: Simd>(&self, simd: S, position: [f32x16<S>; 2]) -> f32x16<S> {
+        self.scalar::<S, Brightness>(simd, position)
+    }
+
+    #[inline(always)]
+    fn scalar<S: Simd, N: OneNumber>(&self, simd: S, position: [f32x16<S>; 2]) -> f32x16<S> {
+        let position = [self.reduced(position[0], 0), self.reduced(position[1], 1)];
+        let level = MipLevel::first(self, simd);
+        let number = match self.filter {
+            Filter::Nearest => N::of(level.nearest(simd, self, position)),
+            Filter::Bilinear | Filter::Trilinear => {
+                let Footprint { texels, s, t } = level.footprint(simd, self, position);
+                let [[a, b], [c, d]] = texels;
+                let (a, b, c, d) = (N::of(a), N::of(b), N::of(c), N::of(d));
+                let (below, above) = (a + (b - a) * s, c + (d - c) * s);
+                below + (above - below) * t
+            }
+        };
+        number * (1.0 / 255.0)
+    }
+
+    /// The pixels of a level; none if there is no such level.
+    #[inline(always)]
+    fn pixels_of(&self, level: i32) -> &[[u8; 4]] {
+        let level = level.cast_unsigned() as usize % LEVELS;
+        self.levels.get(level).map_or(&[], |level| level.picture.pixels())
+    }
+
+    /// Whether the filter shows texels as they are.
+    pub(crate) fn shows_texels(&self) -> bool {
+        self.filter == Filter::Nearest
+    }
+
+    /// Brings a coordinate in texels into the picture: from 0 to its side.
+    #[inline(always)]
+    fn reduced<S: Simd>(&self, x: f32x16<S>, axis: usize) -> f32x16<S> {
+        let side = self.sizes[axis][0];
+        let zero = x.lift(0.0);
+        match self.levels[0].wrap {
+            Wrap::Clamp => Real::min(Real::max(x, zero), f32x16::splat(x.simd, side)),
+            Wrap::Repeat => {
+                // Off by one repetition at most, which the last two lines mend.
+                let x = x - (x * (1.0 / side)).floor() * side;
+                let x = x.simd_lt(0.0).select(x + side, x);
+                x.simd_ge(side).select(x - side, x)
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn trilinear<S: Simd, D: Decode>(
+        &self,
+        simd: S,
+        places: &mut TexelPlaces,
+        len: usize,
+        to: &mut Rows<f32>,
+    ) {
+        let lanes = Sixteen(simd);
+        #[expect(clippy::cast_precision_loss, reason = "at most 16")]
+        let last = lanes.set((self.levels.len() - 1) as f32);
+        let (zero, one) = (lanes.set(0.0), lanes.set(1.0));
+        // Of each sixteen places, the level, if it is the same.
+        let mut same = [None; BATCH / 16];
+        for (at, same) in (0..len).step_by(16).zip(&mut same) {
+            let level = log2(Real::max(lanes.load(&places.footprint, at), one)) * 0.5;
+            let level = Real::max(Real::min(level, last), zero);
+            let own = level.floor();
+            lanes.store(own, &mut places.levels[0], at);
+            lanes.store(level - own, &mut places.levels[1], at);
+            let number: i32x16<S> = own.to_int();
+            let first = number[0];
+            *same = number.simd_eq(first).all_true().then_some(first.cast_unsigned() as usize);
+        }
+        for (at, same) in (0..len).step_by(16).zip(same) {
+            let position = places.at(lanes, at);
+            let around = self.level::<S, 0>(simd, places, at, same).around(simd, position);
+            places.finer.store(at, &around);
+            if lanes.load(&places.levels[1], at).simd_gt(0.0).any_true() {
+                let around = self.level::<S, 1>(simd, places, at, same).around(simd, position);
+                places.coarser.store(at, &around);
+            }
+        }
+        for (at, same) in (0..len).step_by(16).zip(same) {
+            let around = places.finer.load(simd, at);
+            let mut color =
+                self.level::<S, 0>(simd, places, at, same).texels(simd, self, &around).color::<D>();
+            let part = lanes.load(&places.levels[1], at);
+            if part.simd_gt(0.0).any_true() {
+                let around = places.coarser.load(simd, at);
+                let far = self
+                    .level::<S, 1>(simd, places, at, same)
+                    .texels(simd, self, &around)
+                    .color::<D>();
+                color = between(color, far, part);
+            }
+            store(lanes, color.times(lanes.set(1.0 / 255.0)), to, at);
+        }
+    }
+
+    /// The finer of the levels of sixteen places, or the coarser if `UP` is 1: the next, if there
+    /// is one. `same` is the number of the finer, if all have the same.
+    #[inline(always)]
+    #[expect(clippy::cast_precision_loss, reason = "at most 16")]
+    fn level<S: Simd, const UP: usize>(
+        &self,
+        simd: S,
+        places: &TexelPlaces,
+        at: usize,
+        same: Option<usize>,
+    ) -> MipLevel<S> {
+        let lanes = Sixteen(simd);
+        let end = self.levels.len() - 1;
+        let finer = lanes.load(&places.levels[0], at);
+        let numbers = if UP == 0 { finer } else { Real::min(finer + 1.0, lanes.set(end as f32)) };
+        MipLevel::of(self, simd, numbers, same.map(|level| (level + UP).min(end)))
+    }
+}
+
+/// Places on a texture.
+#[derive(Debug)]
+pub(crate) struct TexelPlaces {
+    /// In texels of its own size.
+    pub(crate) position: [[f32; BATCH]; 2],
+    /// The square of the texels that a pixel covers, if the filter reads mip maps.
+    pub(crate) footprint: [f32; BATCH],
+    /// The finer of the levels that trilinear filtering mixes, and the part of the coarser.
+    levels: [[f32; BATCH]; 2],
+    /// The texels around the positions, on the finer level and on the coarser.
+    finer: ManyAround,
+    coarser: ManyAround,
+}
+
+impl Default for TexelPlaces {
+    fn default() -> Self {
+        let row = [0.0; BATCH];
+        Self {
+            position: [row; 2],
+            footprint: row,
+            levels: [row; 2],
+            finer: ManyAround::default(),
+            coarser: ManyAround::default(),
+        }
+    }
+}
+
+impl TexelPlaces {
+    #[inline(always)]
+    fn at<S: Simd>(&self, lanes: Sixteen<S>, at: usize) -> Positions<S> {
+        [lanes.load(&self.position[0], at), lanes.load(&self.position[1], at)]
+    }
+}
+
+/// a + (b - a) part.
+#[inline(always)]
+fn between<R: Real>(a: Vec3<R>, b: Vec3<R>, part: R) -> Vec3<R> {
+    a.plus(b.minus(a).times(part))
+}
+
+/// Red, green and blue of texels, from 0 to 255.
+#[inline(always)]
+fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>> {
+    Vec3([
+        (texels & 255).to_float(),
+        ((texels >> 8) & 255).to_float(),
+        ((texels >> 16) & 255).to_float(),
+    ])
+}
+
+/// How bytes of texels become numbers.
+pub(crate) trait Decode {
+    /// Red, green and blue of texels, from 0 to 255.
+    fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>>;
+}
+
+/// As they are stored.
+pub(crate) struct Stored;
+/// Decoded from sRGB.
+pub(crate) struct Linear;
+
+impl Decode for Stored {
+    #[inline(always)]
+    fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>> {
+        channels(texels)
+    }
+}
+
+impl Decode for Linear {
+    #[inline(always)]
+    fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>> {
+        let simd = texels.simd;
+        let table = decoded_bytes();
+        let texels = <[i32; 16]>::from(texels);
+        let mut rows = [[0.0; 16]; 3];
+        for (lane, texel) in texels.into_iter().enumerate() {
+            let [r, g, b, _] = texel.to_le_bytes();
+            rows[0][lane] = table[usize::from(r)];
+            rows[1][lane] = table[usize::from(g)];
+            rows[2][lane] = table[usize::from(b)];
+        }
+        Vec3([
+            f32x16::from_slice(simd, &rows[0]),
+            f32x16::from_slice(simd, &rows[1]),
+            f32x16::from_slice(simd, &rows[2]),
+        ])
+    }
+}
+
+/// 255 times the linear value of each byte.
+fn decoded_bytes() -> &'static [f32; 256] {
+    static TABLE: OnceLock<[f32; 256]> = OnceLock::new();
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+    get_or_compute(&TABLE, || linear_factors().map(|linear| (255.0 * linear) as f32))
+}
+
+/// Computes the tables that decoding reads, so that threads compute none while they draw.
+pub(crate) fn prepare_decoding() {
+    decoded_bytes();
+}
+
+/// What texels become if one number of each is read.
+trait OneNumber {
+    /// The numbers, from 0 to 255.
+    fn of<S: Simd>(texels: i32x16<S>) -> f32x16<S>;
+}
+
+/// Alpha.
+struct Alpha;
+/// The brightness, by the weights of ITU-R BT.709; that of a grey is its byte, exactly.
+struct Brightness;
+
+impl OneNumber for Alpha {
+    #[inline(always)]
+    fn of<S: Simd>(texels: i32x16<S>) -> f32x16<S> {
+        ((texels >> 24) & 255).to_float()
+    }
+}
+
+impl OneNumber for Brightness {
+    #[inline(always)]
+    fn of<S: Simd>(texels: i32x16<S>) -> f32x16<S> {
+        brightness(channels(texels))
+    }
+}
+
+mod mip_level;

@@ -1,0 +1,177 @@
+//! Mip maps: the mean of the texels that a pixel covers, from copies of the texture at half, a
+//! quarter, an eighth of its size.
+//!
+//! The footprint of a pixel is the longer of the distances on the texture to its neighbours on the
+//! right and below; its logarithm gives the two levels to interpolate between.
+//!
+//! Williams, "Pyramidal Parametrics", SIGGRAPH 1983; the longer distance as in the specification of
+//! OpenGL 4.6, 8.14.1.
+
+use super::sample::{linear_factors, sample_as};
+use crate::frame::variants::Decoding;
+use crate::simd::Number;
+use marraztu_core::accuracy::Filter;
+use marraztu_core::base::Shared;
+use marraztu_core::base::color::{byte, encoded};
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::Texture;
+
+/// A texture at its own size, at half of that, and so on down to one texel.
+#[derive(Debug)]
+pub(crate) struct Mips {
+    of: Shared<Texture>,
+    /// Whether they hold means of linear values.
+    decoding: Decoding,
+    levels: Vec<Texture>,
+}
+
+impl Mips {
+    pub(crate) fn new(of: &Shared<Texture>, decoding: Decoding) -> Self {
+        let mut levels = vec![Texture::clone(of)];
+        while let Some(last) = levels.last()
+            && last.picture.size().area() > 1
+        {
+            levels
+                .push(Texture { picture: halved(&last.picture, decoding).into(), ..last.clone() });
+        }
+        Self { of: of.clone(), decoding, levels }
+    }
+
+    /// Whether they belong to this texture.
+    pub(crate) fn are_of(&self, texture: &Shared<Texture>, decoding: Decoding) -> bool {
+        Shared::same(&self.of, texture) && self.decoding == decoding
+    }
+
+    /// The texture and its copies, the largest first.
+    pub(crate) fn levels(&self) -> &[Texture] {
+        &self.levels
+    }
+
+    /// Samples red, green, blue and alpha `beside` texels of the texture's own size from `uv`, with
+    /// the differences `ways` to the neighbours on the screen.
+    pub(crate) fn sample_beside<T: Number>(
+        &self,
+        uv: [f64; 2],
+        beside: [f64; 2],
+        ways: [[f64; 2]; 2],
+    ) -> [T; 4] {
+        let of = |level: usize| {
+            let sides = |level: &Texture| {
+                let Size { width, height } = level.picture.size();
+                [width, height]
+            };
+            let (whole, own) = (sides(&self.levels[0]), sides(&self.levels[level]));
+            #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 pixels a side")]
+            let beside = [0, 1].map(|axis| beside[axis] * own[axis] as f64 / whole[axis] as f64);
+            sample_as::<T>(&self.levels[level], (uv, beside), Filter::Bilinear, self.decoding)
+        };
+        let level = self.level(ways);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 32")]
+        let below = level as usize;
+        let near = of(below);
+        #[expect(clippy::cast_precision_loss, reason = "below 32")]
+        let part = T::from_f64(level - below as f64);
+        match self.levels.get(below + 1) {
+            Some(_) if level > 0.0 => {
+                let far = of(below + 1);
+                std::array::from_fn(|i| near[i] + (far[i] - near[i]) * part)
+            }
+            _ => near,
+        }
+    }
+
+    /// The mip level: log2 of the texels that a pixel covers, clamped to the existing levels.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    fn level(&self, ways: [[f64; 2]; 2]) -> f64 {
+        let Texture { picture, scale, .. } = &self.levels[0];
+        let Size { width, height } = picture.size();
+        let texels = ways
+            .map(|[u, v]| libm::hypot(u * scale[0] * width as f64, v * scale[1] * height as f64));
+        let most = texels[0].max(texels[1]);
+        if most > 1.0 { libm::log2(most).min((self.levels.len() - 1) as f64) } else { 0.0 }
+    }
+}
+
+/// Halves a picture: each pixel is the mean of four, rounded to the nearest byte; of linear values,
+/// if they are decoded.
+fn halved(picture: &Picture, decoding: Decoding) -> Picture {
+    let from = picture.size();
+    let half = |side: usize| (side / 2).max(1);
+    let size = Size::new(half(from.width), half(from.height));
+    let pixels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
+    let mean = |(x, y): (usize, usize)| {
+        let beside = |i: usize, side: usize| [2 * i, (2 * i + 1).min(side - 1)];
+        let (columns, rows) = (beside(x, from.width), beside(y, from.height));
+        std::array::from_fn(|channel| {
+            let at = |i: usize, j: usize| u16::from(picture.pixel(columns[i], rows[j])[channel]);
+            if decoding == Decoding::Linear && channel < 3 {
+                let of = |i, j| linear_factors()[usize::from(at(i, j))];
+                return byte(encoded((of(0, 0) + of(1, 0) + of(0, 1) + of(1, 1)) / 4.0));
+            }
+            let sum = at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1);
+            u8::try_from((sum + 2) / 4).unwrap_or(u8::MAX)
+        })
+    };
+    Picture::from_pixels(size, pixels.map(mean).collect()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+    use marraztu_core::scene::Wrap;
+
+    fn chequered(side: usize) -> Shared<Texture> {
+        let at = |i: usize| {
+            if (i % side + i / side).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] }
+        };
+        let picture =
+            Picture::from_pixels(Size::new(side, side), (0..side * side).map(at).collect());
+        let (wrap, offset, scale) = (Wrap::Repeat, [0.0; 2], [1.0; 2]);
+        let source = PathBuf::new();
+        Shared::new(Texture { source, picture: picture.unwrap().into(), wrap, offset, scale })
+    }
+
+    #[test]
+    fn seen_from_afar_a_chequered_texture_is_grey_and_from_near_it_is_not() {
+        let mips = Mips::new(&chequered(16), Decoding::Stored);
+        assert_eq!(mips.levels.len(), 5);
+        for i in 0..40 {
+            let uv = [f64::from(i) * 0.137, f64::from(i) * 0.071];
+            let afar: [f64; 4] = mips.sample_beside(uv, [0.0; 2], [[2.0 / 16.0, 0.0], [0.0, 0.01]]);
+            assert!((afar[0] - 0.5).abs() < 0.003, "{afar:?}");
+        }
+        let near: [f64; 4] =
+            mips.sample_beside([0.5 / 16.0; 2], [0.0; 2], [[0.01, 0.0], [0.0, 0.01]]);
+        // The picture's rows run down, so (0, 0) is its lower left texel.
+        assert!(near[0] == 0.0 || near[0] == 1.0, "{near:?}");
+    }
+
+    #[test]
+    fn between_two_sizes_both_are_mixed() {
+        let mips = Mips::new(&chequered(2), Decoding::Stored);
+        let at = |texels: f64| -> [f64; 4] {
+            mips.sample_beside([0.25; 2], [0.0; 2], [[texels / 2.0, 0.0], [0.0, 0.0]])
+        };
+        let (near, half, far) = (at(1.0)[0], at(2.0_f64.sqrt())[0], at(2.0)[0]);
+        assert!((far - 128.0 / 255.0).abs() < 1e-9 && (near == 0.0 || near == 1.0));
+        assert!((half - (near + far) / 2.0).abs() < 1e-9, "{near} {half} {far}");
+    }
+
+    #[test]
+    fn sides_that_are_no_power_of_two_and_one_texel_have_a_chain_too() {
+        for (width, height, levels) in [(1, 1, 1), (5, 3, 3), (1, 8, 4)] {
+            let size = Size::new(width, height);
+            let texture = Texture {
+                picture: Picture::filled(size, [9; 4]).into(),
+                ..Texture::clone(&chequered(1))
+            };
+            let mips = Mips::new(&Shared::new(texture), Decoding::Stored);
+            assert_eq!(mips.levels.len(), levels);
+            let color: [f64; 4] =
+                mips.sample_beside([0.3, 0.7], [0.0; 2], [[9.0, 0.0], [0.0, 9.0]]);
+            assert!((color[0] - 9.0 / 255.0).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! What the pixels of a tile show, from what is opaque to the nearest transparent triangle: for
+//! questions about a picture, not for drawing it.
+
+use fearless_simd::Level;
+
+use super::frame::FramePlan;
+use super::raster::geometry::ScreenGeometry;
+use super::raster::layers::Layers;
+use super::raster::tile::Visibility;
+use super::raster::visibility_buffer::seen;
+use super::screen::coverage::PixelBox;
+use super::screen::sample_positions::FOUR;
+use super::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use marraztu_core::accuracy::Transparency;
+
+/// The tile that is looked at.
+#[derive(Debug, Default)]
+pub(crate) struct TileLayers {
+    pub(crate) visibility: Visibility,
+    layers: Layers,
+    bounds: Option<PixelBox>,
+    /// For each pixel of a block the words of all samples: what is opaque, and each layer.
+    words: Vec<Vec<u64>>,
+}
+
+impl TileLayers {
+    /// Draws the visibility of a tile.
+    pub(crate) fn draw(
+        &mut self,
+        level: Level,
+        plan: &FramePlan,
+        frame: &ScreenGeometry,
+        (tile, bounds): (usize, PixelBox),
+    ) {
+        self.visibility.draw(level, plan, frame, (tile, bounds), None);
+        if frame.is_layered(tile) {
+            self.layers.begin(level, plan, frame, (tile, bounds));
+        } else {
+            self.layers.begin_none();
+        }
+        self.bounds = Some(bounds);
+        self.words.resize_with(BLOCK_PIXELS, Vec::new);
+    }
+
+    /// The depths of all that the tile shows.
+    pub(crate) fn depths(&self, level: Level) -> Option<[f32; 2]> {
+        self.layers.depths_with(self.visibility.depths(level))
+    }
+
+    /// Calls `take` with each pixel of a block that is in the picture: its column and row, its
+    /// nearest word (of several samples, what most of them show), and all that it shows, the
+    /// nearest among them.
+    pub(crate) fn each(
+        &mut self,
+        level: Level,
+        frame: &ScreenGeometry,
+        block: usize,
+        mut take: impl FnMut([i32; 2], u64, &[u64]),
+    ) {
+        let Some(bounds) = self.bounds else { return };
+        let [left, top] = self.visibility.corner(block);
+        let is_layered = self.layers.touches(block);
+        let mut tops = [[0; BLOCK_PIXELS]; FOUR];
+        if is_layered {
+            self.find_layers(level, frame, block, &mut tops);
+        }
+        let samples = frame.sample_positions().count();
+        for place in 0..BLOCK_PIXELS {
+            let at = i32::try_from(place).expect("a block has few pixels");
+            let [x, y] = [left + at % BLOCK, top + at / BLOCK];
+            if x >= bounds.right || y >= bounds.bottom {
+                continue;
+            }
+            if is_layered {
+                let own = tops.map(|sample| sample[place]);
+                take([x, y], most(&own[..samples]), &self.words[place]);
+            } else {
+                let word = self.visibility.word(level, x, y);
+                take([x, y], word, &[word]);
+            }
+        }
+    }
+
+    /// Finds the words of all samples of a block, and the nearest of each.
+    fn find_layers(
+        &mut self,
+        level: Level,
+        frame: &ScreenGeometry,
+        block: usize,
+        tops: &mut [[u64; BLOCK_PIXELS]; FOUR],
+    ) {
+        let Self { visibility, layers, words, .. } = self;
+        words.iter_mut().for_each(Vec::clear);
+        let samples = frame.sample_positions().count();
+        for (sample, top) in tops.iter_mut().enumerate().take(samples) {
+            let opaque = visibility.entries(level, block, sample);
+            *top = opaque;
+            for (words, word) in words.iter_mut().zip(&opaque) {
+                words.push(*word);
+            }
+            layers.open();
+            let order = Transparency::Exact;
+            while layers.take(level, (frame, order), (block, sample), &opaque) {
+                for i in 0..layers.len() {
+                    let row = layers.row(order, i);
+                    for (place, word) in row.into_iter().enumerate().filter(|(_, word)| *word != 0)
+                    {
+                        top[place] = word;
+                        words[place].push(word);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The word whose primitive most samples show, the first of equals.
+fn most(samples: &[u64]) -> u64 {
+    let alike = |word: &u64| samples.iter().filter(|other| seen(**other) == seen(*word)).count();
+    samples.iter().rev().max_by_key(|word| alike(word)).copied().unwrap_or(0)
+}
