@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::{
-    Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt,
-    LightValues, NormalMatrix, Normalising, Rounding, Samples, Settings, ShadowMethod,
-    SpecularForm, SpecularPower, Subpixels, Tangents, Terminator, Transparency, VertexArithmetic,
+    Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, FormerAxis, Interpolation, LightAt,
+    LightValues, NormalMatrix, Rounding, Samples, Settings, ShadowMethod, SpecularForm,
+    SpecularPower, Subpixels, Tangents, Terminator, Transparency, VertexArithmetic,
 };
 use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
@@ -162,12 +162,10 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         samples: Samples::Sixteen,
         filter: Filter::Nearest,
         specular: SpecularForm::HalfVector,
-        leave_out: LeaveOut::HalfStep,
-        power: SpecularPower::Table256,
-        normalising: Normalising::Newton,
+        power: SpecularPower::Schlick,
         rounding: Rounding::Dithered,
         stretched: NormalMatrix::AsItIs,
-        vertices: VertexArithmetic::F32ComposedInF64,
+        vertices: VertexArithmetic::F32,
         subpixels: Subpixels::Bits4,
         coverage: Coverage::ScanLines,
         depth: DepthFormat::Bits24,
@@ -178,6 +176,8 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         transparency: Transparency::Objects,
         shadow_method: ShadowMethod::Map2048Pcf,
         terminator: Terminator::Smooth,
+        former_normalising: FormerAxis,
+        former_faint: FormerAxis,
     };
     (scene, view, settings)
 }
@@ -258,6 +258,22 @@ fn the_first_scene_opens_as_it_was() {
     let (scene, view) = default_scene();
     assert_eq!((opened.scene, opened.view), (scene, view));
     assert_eq!(opened.findings, []);
+}
+
+#[test]
+fn axes_and_choices_of_older_scene_files_still_open() {
+    for (from, to) in [
+        ("power: Polynomial", "power: Table256, normalising: Newton, faint: LeftOut"),
+        ("power: Polynomial", "power: Squaring"),
+        ("vertices: F64", "vertices: F32ComposedInF64"),
+    ] {
+        let opened = changed(from, to).unwrap();
+        assert_eq!((opened.settings, opened.findings), (Settings::default(), Vec::new()), "{to}");
+    }
+    assert!(changed("power: Polynomial", "norm: Newton").is_err());
+    let (scene, view) = default_scene();
+    let text = to_text(Path::new("/a"), &scene, &view, &Settings::default()).unwrap();
+    assert!(!text.contains("normalising") && !text.contains("faint"), "{text}");
 }
 
 #[test]

@@ -149,7 +149,7 @@ fn every_choice_of_every_axis_changes_its_lesson_or_says_why_not() {
         let coarse = &axis.choices[0];
         assert!(
             picture(&coarse.of(&usual)) != picture(&axis.most_exact(&usual).of(&usual))
-                || ["arithmetic", "faint"].contains(&axis.key)
+                || axis.key == "arithmetic"
                 || axis.default_choice().word == coarse.word,
             "{} {} is not seen in {}",
             axis.key,
@@ -174,29 +174,10 @@ fn highlights_are_as_wrong_as_their_powers() {
         draw(&scene, &opened.view, &settings, 400)
     };
     let exact = picture(SpecularPower::Library);
-    for (power, steps) in [
-        (SpecularPower::Schlick, 30..=52),
-        (SpecularPower::Table256, 20..=36),
-        (SpecularPower::Table1024, 0..=1),
-        (SpecularPower::Polynomial, 0..=1),
-        (SpecularPower::Squaring, 0..=1),
-    ] {
+    for (power, steps) in [(SpecularPower::Schlick, 30..=52), (SpecularPower::Polynomial, 0..=1)] {
         let apart = steps_apart(&picture(power), &exact);
         assert!(steps.contains(&apart), "{power:?}: {apart}");
     }
-}
-
-#[test]
-fn rsqrt_makes_highlights_grainy_and_a_newton_step_repairs_them() {
-    use marraztu_core::accuracy::Normalising;
-    let opened = lesson_scene("ball").unwrap();
-    let picture = |normalising| {
-        let settings = Settings { normalising, ..Settings::default() };
-        draw(&opened.scene, &opened.view, &settings, 400)
-    };
-    let exact = picture(Normalising::Root);
-    assert!((1..=16).contains(&steps_apart(&picture(Normalising::Rsqrt), &exact)));
-    assert!(steps_apart(&picture(Normalising::Newton), &exact) <= 1);
 }
 
 /// A floor that leans by 45 degrees, pressed to a tenth: it nearly lies, and the sun is overhead.
@@ -296,9 +277,7 @@ fn far_from_the_origin_32_bits_lose_the_shape_of_things() {
         primitives(&opened.scene, &opened.view, &settings, 400)
     };
     let exact = seen(VertexArithmetic::F64);
-    let composed = differing(&seen(VertexArithmetic::F32ComposedInF64), &exact);
     let throughout = differing(&seen(VertexArithmetic::F32), &exact);
-    assert!(composed < 0.001, "{composed}");
     assert!(throughout > 0.02, "{throughout}");
 }
 

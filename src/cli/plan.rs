@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use marraztu_lab::cost::{self, Costs, Explained, Group};
-use marraztu_render::{Class, EffectState, EffectUse};
+use marraztu_render::EffectUse;
+use serde::Serialize;
 
 use super::arguments::PictureArguments;
 use super::bar::Bar;
@@ -22,7 +23,7 @@ the reason. Effects that are on are counted in pixels and, with --measure, in mi
 Examples:
   marraztu plan
   marraztu plan teapot.obj --lights 0,1 --measure
-  marraztu plan room.marraztu --faint left-out --format csv")]
+  marraztu plan room.marraztu --shading vertex --format csv")]
 pub(crate) struct Plan {
     #[command(flatten)]
     picture: PictureArguments,
@@ -86,15 +87,13 @@ fn table(explained: &Explained, costs: Option<&Costs>) -> String {
         }
     }
     let mut text = columns(&rows);
-    let off_by = explained.off_by;
     let size = explained.size;
-    let bound = if off_by == 0.0 {
-        "changes no bit".to_owned()
-    } else {
-        format!("changes a channel by {off_by:.3} of a byte's step at most")
-    };
     // Writing to a text cannot fail.
-    let _ = writeln!(text, "\n{} x {} pixels. What is left out {bound}.", size.width, size.height);
+    let _ = writeln!(
+        text,
+        "\n{} x {} pixels. Leaving effects out changes no bit.",
+        size.width, size.height
+    );
     if let Some(costs) = costs {
         let (frame, noise) = (costs.frame, costs.noise);
         let _ = writeln!(text, "A frame takes {frame:.3} ms; less than {noise:.3} ms is noise.");
@@ -128,106 +127,67 @@ fn columns(rows: &[[String; 6]]) -> String {
     text
 }
 
-/// The cells of one effect on one item, as CSV and JSON have them.
-fn cells(one: &EffectUse, costs: Option<&Costs>) -> [(&'static str, Cell); 9] {
-    let bound = match one.state {
-        EffectState::LeftOut { class: Class::Bounded(steps), .. } => steps,
-        _ => 0.0,
-    };
-    let cost = costs.and_then(|costs| costs.of(one.effect));
-    let text = |text: &str| Cell::Text(text.to_owned());
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels")]
-    let pixels = one.pixels.map(|pixels| pixels as f64);
-    [
-        ("effect", text(one.effect.label())),
-        ("name", text(&one.name)),
-        ("on", text(one.on.as_ref().map_or("", |thing| &thing.name))),
-        ("state", text(if one.state.is_on() { "on" } else { "left out" })),
-        ("why", text(one.state.why())),
-        ("steps", Cell::Number(Some(bound))),
-        ("pixels", Cell::Number(pixels)),
-        ("milliseconds", Cell::Number(cost.map(|cost| cost.milliseconds))),
-        ("spread", Cell::Number(cost.map(|cost| cost.spread))),
-    ]
+/// One effect on one item, as a row of CSV and an object of JSON.
+#[derive(Serialize)]
+struct Row<'a> {
+    effect: &'static str,
+    name: &'a str,
+    on: &'a str,
+    state: &'static str,
+    why: &'a str,
+    pixels: Option<u64>,
+    milliseconds: Option<f64>,
+    spread: Option<f64>,
 }
 
-/// The content of a cell.
-enum Cell {
-    Text(String),
-    Number(Option<f64>),
+impl<'a> Row<'a> {
+    fn new(one: &'a EffectUse, costs: Option<&Costs>) -> Self {
+        let cost = costs.and_then(|costs| costs.of(one.effect));
+        Self {
+            effect: one.effect.label(),
+            name: &one.name,
+            on: one.on.as_ref().map_or("", |thing| &thing.name),
+            state: if one.state.is_on() { "on" } else { "left out" },
+            why: one.state.why(),
+            pixels: one.pixels,
+            milliseconds: cost.map(|cost| cost.milliseconds),
+            spread: cost.map(|cost| cost.spread),
+        }
+    }
 }
 
 fn csv(explained: &Explained, costs: Option<&Costs>) -> String {
-    let mut text = String::new();
-    for (i, one) in explained.uses.iter().enumerate() {
-        let cells = cells(one, costs);
-        if i == 0 {
-            let names: Vec<&str> = cells.iter().map(|(name, _)| *name).collect();
-            let _ = writeln!(text, "{}", names.join(","));
-        }
-        let line: Vec<String> = cells
-            .iter()
-            .map(|(_, cell)| match cell {
-                Cell::Text(text) if text.contains(['"', ',', '\n']) => {
-                    format!("\"{}\"", text.replace('"', "\"\""))
-                }
-                Cell::Text(text) => text.clone(),
-                Cell::Number(number) => number.map_or_else(String::new, |x| x.to_string()),
-            })
-            .collect();
-        let _ = writeln!(text, "{}", line.join(","));
+    let mut text = "effect,name,on,state,why,pixels,milliseconds,spread\n".to_owned();
+    for one in &explained.uses {
+        let Row { effect, name, on, state, why, pixels, milliseconds, spread } =
+            Row::new(one, costs);
+        let words = [effect, name, on, state, why].map(cell);
+        let numbers = [pixels.map(|x| x.to_string()), milliseconds.map(|x| x.to_string())];
+        let [pixels, milliseconds] = numbers.map(Option::unwrap_or_default);
+        let spread = spread.map_or_else(String::new, |x| x.to_string());
+        // Writing to a text cannot fail.
+        let _ = writeln!(text, "{},{pixels},{milliseconds},{spread}", words.join(","));
     }
     text
 }
 
+/// A text as a cell of CSV (RFC 4180).
+fn cell(text: &str) -> String {
+    if text.contains(['"', ',', '\n']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
 fn json(explained: &Explained, costs: Option<&Costs>) -> String {
-    let object = |one: &EffectUse| {
-        let members: Vec<String> = cells(one, costs)
-            .into_iter()
-            .map(|(name, cell)| match cell {
-                Cell::Text(text) => format!("{}: {}", quoted(name), quoted(&text)),
-                Cell::Number(Some(number)) => format!("{}: {number}", quoted(name)),
-                Cell::Number(None) => format!("{}: null", quoted(name)),
-            })
-            .collect();
-        format!("    {{{}}}", members.join(", "))
-    };
-    let effects: Vec<String> = explained.uses.iter().map(object).collect();
-    let number = |number: Option<f64>| number.map_or_else(|| "null".to_owned(), |x| x.to_string());
-    format!(
-        "{{\n  \"width\": {}, \"height\": {}, \"off_by_steps\": {}, \"frame_milliseconds\": {}, \
-        \"noise_milliseconds\": {},\n  \"effects\": [\n{}\n  ]\n}}\n",
-        explained.size.width,
-        explained.size.height,
-        explained.off_by,
-        number(costs.map(|costs| costs.frame)),
-        number(costs.map(|costs| costs.noise)),
-        effects.join(",\n"),
-    )
-}
-
-/// A text as JSON has it (RFC 8259, section 7).
-fn quoted(text: &str) -> String {
-    let mut quoted = String::from("\"");
-    for letter in text.chars() {
-        match letter {
-            '"' | '\\' => quoted.extend(['\\', letter]),
-            letter if u32::from(letter) < 0x20 => {
-                let _ = write!(quoted, "\\u{:04x}", u32::from(letter));
-            }
-            letter => quoted.push(letter),
-        }
-    }
-    quoted.push('"');
-    quoted
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn json_and_csv_hold_any_name() {
-        assert_eq!(quoted("a\"b\\c\nd"), "\"a\\\"b\\\\c\\u000ad\"");
-    }
+    let effects: Vec<Row<'_>> = explained.uses.iter().map(|one| Row::new(one, costs)).collect();
+    let value = serde_json::json!({
+        "width": explained.size.width,
+        "height": explained.size.height,
+        "frame_milliseconds": costs.map(|costs| costs.frame),
+        "noise_milliseconds": costs.map(|costs| costs.noise),
+        "effects": effects,
+    });
+    format!("{value:#}\n")
 }

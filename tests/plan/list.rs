@@ -1,8 +1,8 @@
 //! The list of a frame's effects is what the frame does.
 
 use glam::{DMat4, DQuat, DVec3};
+use marraztu_core::accuracy::Settings;
 use marraztu_core::accuracy::Shot;
-use marraztu_core::accuracy::{LeaveOut, Settings};
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::items;
 use marraztu_core::scene::{Command, Fill, Item, ItemId, LightKind, Scene, Tracked, View};
@@ -10,7 +10,7 @@ use marraztu_io as io;
 use marraztu_lab::cost;
 use marraztu_render::explain_frame;
 use marraztu_render::plan_frame;
-use marraztu_render::{Class, Effect, EffectState, Renderer};
+use marraztu_render::{Effect, Renderer};
 
 use crate::random_scenes::random_scene;
 
@@ -123,32 +123,6 @@ fn a_light_that_reaches_one_object_of_three_is_on_there_and_nowhere_else() {
     let reasons: Vec<&str> =
         of_spot.iter().filter(|one| !one.state.is_on()).map(|one| one.state.why()).collect();
     assert!(reasons.contains(&"nothing is within its cone"), "{of_spot:?}");
-}
-
-#[test]
-fn light_that_is_left_out_as_too_faint_is_listed_with_its_bound() {
-    let (mut scene, view) = first();
-    for (id, light) in scene.clone().lights.iter() {
-        if let LightKind::Bulb { .. } = light.kind {
-            let mut faint = light.clone();
-            faint.attenuation.quadratic = 100.0;
-            let item = Item::Light(id, Box::new(faint));
-            Command::Replace(item).apply(&mut scene).unwrap();
-        }
-    }
-    let settings = Settings { leave_out: LeaveOut::HalfStep, ..Settings::default() };
-    let explained = cost::explain(&Shot::new(&scene, &view, &settings, SIZE));
-    let bulbs = explained.uses.iter().filter(|one| one.name == "bulb");
-    for one in bulbs {
-        let EffectState::LeftOut { reason, class: Class::Bounded(steps) } = &one.state else {
-            panic!("{one:?}");
-        };
-        assert_eq!(reason, "too faint");
-        assert!(*steps > 0.0 && *steps < 0.25);
-    }
-    assert!(explained.off_by > 0.0 && explained.off_by < 0.5);
-    let exact = cost::explain(&Shot::new(&scene, &view, &Settings::default(), SIZE));
-    assert_eq!(exact.off_by, 0.0);
 }
 
 #[test]

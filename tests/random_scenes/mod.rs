@@ -12,8 +12,8 @@ use glam::{DMat3, DMat4, DVec3};
 
 use marraztu_core::accuracy::Shot;
 use marraztu_core::accuracy::{
-    Arithmetic, BumpFilter, Filter, LeaveOut, LightAt, LightValues, Samples, Settings,
-    ShadowMethod, SpecularForm, Tangents, Terminator,
+    Arithmetic, BumpFilter, Filter, LightAt, LightValues, Samples, Settings, ShadowMethod,
+    SpecularForm, Tangents, Terminator,
 };
 use marraztu_core::base::image::Size;
 use marraztu_core::base::rng::Rng;
@@ -302,7 +302,6 @@ fn settings(rng: &mut Rng) -> Settings {
         samples: samples(rng),
         filter: rng.one_of(&[Filter::Nearest, Filter::Bilinear]),
         specular: rng.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
-        leave_out: LeaveOut::Unseen,
         tangents: rng.one_of(&[Tangents::Vertex, Tangents::Pixel]),
         bump_filter: rng.one_of(&[BumpFilter::Nearest, BumpFilter::Trilinear]),
         light_values: rng.one_of(&[

@@ -6,13 +6,11 @@
 use egui::accesskit::Role;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::Lower;
-use marraztu::app::actions::Request;
 use marraztu::app::panels::Panel;
-use marraztu_core::accuracy::{LeaveOut, Settings};
 use marraztu_render::Effect;
 
 use crate::editor::Editor;
-use crate::panels::{click, control};
+use crate::panels::control;
 
 fn effects(editor: &Editor) -> Vec<Effect> {
     let explained = editor.state().plan.explained.clone().expect("the panel is shown");
@@ -93,16 +91,6 @@ fn measuring_can_be_given_up() {
         editor.harness.step();
     }
     assert!(!editor.state().plan.measuring && editor.state().plan.costs.is_none());
-}
-
-#[test]
-fn faint_light_is_left_out_by_the_switch_and_by_the_setting_alike() {
-    let mut editor = Editor::tall();
-    click(&mut editor, Role::CheckBox, "Leave out faint light");
-    assert_eq!(editor.state().settings.leave_out, LeaveOut::HalfStep);
-    assert_eq!(Action::ToggleLeaveOut.is_on(editor.state()), Some(true));
-    editor.ask(Request::Settings(Settings::default()));
-    assert_eq!(Action::ToggleLeaveOut.is_on(editor.state()), Some(false));
 }
 
 #[test]

@@ -12,7 +12,6 @@ const LESSONS: &[(&str, &str)] = &[
     ("ball", include_str!("../../../assets/lessons/ball.marraztu")),
     ("dimples", include_str!("../../../assets/lessons/dimples.marraztu")),
     ("dusk", include_str!("../../../assets/lessons/dusk.marraztu")),
-    ("faint", include_str!("../../../assets/lessons/faint.marraztu")),
     ("far", include_str!("../../../assets/lessons/far.marraztu")),
     ("fence", include_str!("../../../assets/lessons/fence.marraztu")),
     ("floor", include_str!("../../../assets/lessons/floor.marraztu")),
@@ -23,7 +22,6 @@ const LESSONS: &[(&str, &str)] = &[
     ("plate", include_str!("../../../assets/lessons/plate.marraztu")),
     ("pressed", include_str!("../../../assets/lessons/pressed.marraztu")),
     ("shadow", include_str!("../../../assets/lessons/shadow.marraztu")),
-    ("shiny", include_str!("../../../assets/lessons/shiny.marraztu")),
     ("telescope", include_str!("../../../assets/lessons/telescope.marraztu")),
     ("wheel", include_str!("../../../assets/lessons/wheel.marraztu")),
 ];

@@ -287,8 +287,6 @@ mod tests {
             "shading",
             "arithmetic",
             "power",
-            "normalising",
-            "faint",
             "vertices",
             "subpixels",
             "coverage",

@@ -26,8 +26,6 @@ const MOST_PAIRS: usize = 31;
 pub struct Explained {
     /// The effects that are used and those that are left out, sorted by effect.
     pub uses: Vec<EffectUse>,
-    /// The largest error of a channel before rounding, in byte steps, that leaving out causes.
-    pub off_by: f64,
     /// The picture's.
     pub size: Size,
 }
@@ -130,8 +128,8 @@ pub fn explain(shot: &Shot) -> Explained {
 #[must_use]
 pub fn explain_with(renderer: &mut Renderer, shot: &Shot) -> Explained {
     let (_, mut uses) = explain_frame(shot);
-    let off_by = renderer.count(&mut uses);
-    Explained { uses, off_by, size: shot.size }
+    renderer.count(&mut uses);
+    Explained { uses, size: shot.size }
 }
 
 /// Measures what the effects of a picture cost, within about `budget` of time. When `stopped`

@@ -35,34 +35,26 @@ fn triangle(word: u64) -> Option<u32> {
     }
 }
 
-/// The pixels of each effect on each item, and the largest error of any of them.
+/// The pixels of each effect on each item.
 #[derive(Debug, Default)]
-struct Counts {
-    pixels: BTreeMap<(Effect, ItemId), u64>,
-    off_by: f64,
-}
+struct Counts(BTreeMap<(Effect, ItemId), u64>);
 
 impl Counts {
     fn add(&mut self, effect: Effect, item: ItemId, pixels: u64) {
-        *self.pixels.entry((effect, item)).or_default() += pixels;
+        *self.0.entry((effect, item)).or_default() += pixels;
     }
 
     fn with(mut self, other: Self) -> Self {
-        for ((effect, item), pixels) in other.pixels {
+        for ((effect, item), pixels) in other.0 {
             self.add(effect, item, pixels);
         }
-        Self { off_by: self.off_by.max(other.off_by), ..self }
+        self
     }
 }
 
 impl FramePlan {
     /// See [`Renderer::count`](crate::Renderer::count).
-    pub(crate) fn count(
-        &self,
-        level: Level,
-        frame: &ScreenGeometry,
-        uses: &mut [EffectUse],
-    ) -> f64 {
+    pub(crate) fn count(&self, level: Level, frame: &ScreenGeometry, uses: &mut [EffectUse]) {
         let [columns, rows] = tiles_of(self.size);
         let tiles = usize::try_from(columns * rows).expect("not negative");
         let counts = (0..tiles)
@@ -79,9 +71,8 @@ impl FramePlan {
             .reduce(Counts::default, Counts::with);
         for one in uses.iter_mut().filter(|one| one.state.is_on()) {
             let Some(thing) = &one.on else { continue };
-            one.pixels = Some(counts.pixels.get(&(one.effect, thing.item)).copied().unwrap_or(0));
+            one.pixels = Some(counts.0.get(&(one.effect, thing.item)).copied().unwrap_or(0));
         }
-        counts.off_by
     }
 
     fn count_tile(
@@ -218,6 +209,5 @@ impl FramePlan {
         for effect in of_light.chain(of_surface(shaded)) {
             counts.add(effect, item, pixels);
         }
-        counts.off_by = counts.off_by.max(light.dropped + shaded.cut_off);
     }
 }

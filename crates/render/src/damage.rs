@@ -175,7 +175,6 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         shadows,
         draws: _,
         pipelines: _,
-        leave_out,
         rules,
         light_ids: _,
     } = after;
@@ -190,7 +189,6 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         || *transparency != before.transparency
         || *variants != before.variants
         || *line_width != before.line_width
-        || *leave_out != before.leave_out
         || *rules != before.rules;
     match () {
         () if *size != before.size => Some(DamageCause::Size),

@@ -95,7 +95,7 @@ fn left_out(shot: &Shot) -> BTreeMap<ItemId, Cow<'static, str>> {
         plan.draws.iter().filter(is_drawn).map(|draw| draw.item).collect();
     uses.into_iter()
         .filter_map(|one| match (one.effect, one.on, one.state) {
-            (Effect::Surfaces, Some(thing), EffectState::LeftOut { reason, .. }) => {
+            (Effect::Surfaces, Some(thing), EffectState::LeftOut(reason)) => {
                 Some((thing.item, reason))
             }
             _ => None,

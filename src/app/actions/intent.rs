@@ -6,7 +6,6 @@ use crate::app::panels::OpenPanels;
 use crate::app::state::DrawingChoices;
 use crate::app::state::layout::Layout;
 use crate::app::widgets::regions::Way;
-use marraztu_core::accuracy::Settings;
 use marraztu_core::edit::selection::Selection;
 use marraztu_core::edit::several::Others;
 use marraztu_core::scene::{Command, ItemId, ObjectId, Subject, View};
@@ -25,8 +24,6 @@ pub(crate) enum Intent {
     View(Box<View>),
     /// Another selection.
     Select(Box<Selection>),
-    /// Other settings of accuracy.
-    Settings(Settings),
     /// The window draws in another way beyond the settings.
     Drawing(DrawingChoices),
     /// Other panels are shown.

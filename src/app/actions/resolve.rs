@@ -12,7 +12,6 @@ use crate::app::panels::Panel;
 use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, State};
 use crate::app::widgets::regions::Way;
-use marraztu_core::accuracy::{LeaveOut, Settings};
 use marraztu_core::base::math::Axis;
 use marraztu_core::edit::framing::Side as LookSide;
 use marraztu_core::edit::lights::{APERTURE_STEP, Channel};
@@ -178,10 +177,6 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
             view.normal_length =
                 other(view.normal_length, NormalLength::Units, NormalLength::BySize);
         }),
-        Action::ToggleLeaveOut => {
-            let leave_out = other(state.settings.leave_out, LeaveOut::Unseen, LeaveOut::HalfStep);
-            Ok(Intent::Settings(Settings { leave_out, ..state.settings }))
-        }
         Action::ToggleMarks => viewed(state, |view| view.marks ^= true),
         Action::ToggleOverlays => Ok(Intent::Overlays),
         Action::ToggleGizmo => Ok(Intent::Gizmo),

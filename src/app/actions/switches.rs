@@ -4,7 +4,6 @@ use egui::ThemePreference;
 
 use super::table::Action;
 use crate::app::state::State;
-use marraztu_core::accuracy::LeaveOut;
 use marraztu_core::edit::lights;
 use marraztu_core::scene::{
     CameraMode, Fill, Frame, ItemId, NormalLength, Normals, Observer, Projection, Subject,
@@ -95,7 +94,6 @@ impl Action {
                 None => state.panels.has(panel),
             },
             Self::MeasurePlan => state.plan.measuring,
-            Self::ToggleLeaveOut => state.settings.leave_out == LeaveOut::HalfStep,
             Self::ThemeSystem => state.theme == ThemePreference::System,
             Self::ThemeLight => state.theme == ThemePreference::Light,
             Self::ThemeDark => state.theme == ThemePreference::Dark,

@@ -261,9 +261,6 @@ actions! {
     ToggleNormalLength Show ONCE []
         "Normals by size" "Draws normals in proportion to the object instead of 5 units long."
         "long short arrows scale";
-    ToggleLeaveOut Show ONCE []
-        "Leave out faint light" "Skips lights that together add less than half a step of a byte."
-        "skip optimise faster performance";
     ToggleMarks Show ONCE []
         "Camera and light models" "Draws the models of the other cameras and of bulbs."
         "icons gizmo markers pyramids diamond";

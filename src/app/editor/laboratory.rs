@@ -373,7 +373,7 @@ impl App {
 /// How the scene of a lesson is compared: an error of one step is seen only if it is amplified.
 fn compare_of(axis: &Axis) -> Compare {
     match axis.key {
-        "faint" | "rounding" => Compare::Error(256),
+        "rounding" => Compare::Error(256),
         _ => Compare::Split(0.5),
     }
 }

@@ -167,7 +167,6 @@ impl App {
             Ok(Intent::Navigate(command)) => self.navigate(command, gesture),
             Ok(Intent::View(view)) => self.show_view(*view),
             Ok(Intent::Select(selection)) => self.select(*selection, gesture),
-            Ok(Intent::Settings(settings)) => self.state.settings = settings,
             Ok(Intent::Drawing(choices)) => self.state.drawing = choices,
             Ok(Intent::Panels(panels)) => self.state.panels = panels,
             Ok(Intent::Layout(layout)) => self.state.layout = layout,

@@ -32,7 +32,7 @@ const HELP: [Action; 4] = [
 const PREFERENCES: [Action; 1] = [Action::Panel(Panel::Preferences)];
 
 /// Actions that begin another part of a menu: a line stands before them.
-const PARTS: [Action; 23] = [
+const PARTS: [Action; 22] = [
     Action::Load,
     Action::Save,
     Action::SavePicture,
@@ -49,7 +49,6 @@ const PARTS: [Action; 23] = [
     Action::AddCamera,
     Action::AddSun,
     Action::ToggleBackFaces,
-    Action::ToggleLeaveOut,
     Action::ExplainPixel,
     Action::LookFront,
     Action::WhyUnseen,

@@ -50,10 +50,7 @@ fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained:
         // In a narrow window the summary gives way to the button.
         let room = ui.available_width() - BUTTON - 2.0 * f32::from(theme::MARGIN);
         let label = if text.size().x <= room { ui.label(summary) } else { title };
-        label.on_hover_text(
-            "Effects left out by class E change no bit of the picture. Those left out by class B, \
-            which \"Leave out faint light\" allows, change a byte by at most one step.",
-        );
+        label.on_hover_text("Leaving effects out changes no bit of the picture.");
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.add_space(f32::from(theme::MARGIN));
             let label = if state.plan.measuring { "Stop" } else { "Measure" };
@@ -87,12 +84,7 @@ fn times_ui(ui: &mut Ui, measured: &Measured, now: bool) {
 fn summary(explained: &Explained) -> String {
     let on = explained.uses.iter().filter(|one| one.state.is_on()).count();
     let left_out = explained.uses.len() - on;
-    let changes = if explained.off_by > 0.0 {
-        format!("changes a channel by at most {:.2} of a step", explained.off_by)
-    } else {
-        "changes no bit".to_owned()
-    };
-    format!("{on} on; {left_out} left out, which {changes}")
+    format!("{on} on; {left_out} left out, which changes no bit")
 }
 
 /// Whether the measurement is of the picture in the viewport.

@@ -7,9 +7,7 @@
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use super::Tally;
-use marraztu_core::accuracy::{
-    Arithmetic, Filter, LeaveOut, LightAt, Samples, Settings, SpecularForm,
-};
+use marraztu_core::accuracy::{Arithmetic, Filter, LightAt, Samples, Settings, SpecularForm};
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
@@ -360,7 +358,6 @@ impl Hostile {
             samples,
             filter: self.rng.one_of(&[Filter::Nearest, Filter::Bilinear]),
             specular: self.rng.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
-            leave_out: self.rng.one_of(&[LeaveOut::Unseen, LeaveOut::HalfStep]),
             ..Settings::default()
         }
     }

@@ -60,7 +60,6 @@ pub(crate) static PROOFS: &[Proof] = &[
     undo::PROOF,
     sizes::PROOF,
     plan::PLAN,
-    plan::FAINT,
     absent::PROOF,
 ];
 

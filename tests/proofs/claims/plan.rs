@@ -5,7 +5,6 @@ use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::Picture;
 use marraztu_render::plan_everything;
 
-use marraztu_core::accuracy::{LeaveOut, Settings};
 use marraztu_render::{FramePlan, Renderer};
 
 use super::random_scenes::{RandomScene, random_scene};
@@ -24,18 +23,6 @@ pub(crate) const PLAN: Proof = Proof {
     shows: &[("pixels that show something", 200_000)],
     regressions: &[4569],
     check: is_complete,
-};
-
-pub(crate) const FAINT: Proof = Proof {
-    name: "faint",
-    claim: "light that is left out as too faint changes a byte by one step at most",
-    unit: "scenes",
-    batch: SCENES,
-    quick: 5000,
-    whole: 100_000,
-    shows: &[("bytes a step off", 1)],
-    regressions: &[],
-    check: is_within_a_step,
 };
 
 /// The seeds of a batch.
@@ -60,28 +47,6 @@ fn is_complete(batch: u64) -> Result<Tally, String> {
         drawn.map_err(|_cancelled| "the frame was cancelled".to_owned())?;
         same(seed, renderer.picture(), expected)?;
         count(&mut tally, &it, expected);
-    }
-    Ok(tally)
-}
-
-/// Draws the scenes of a batch without what is too faint, and expects bytes within a step of those
-/// with nothing visible left out.
-fn is_within_a_step(batch: u64) -> Result<Tally, String> {
-    let (mut thinned, mut exact) = (Renderer::default(), Renderer::default());
-    let mut tally = Tally::default();
-    for it in seeds(batch).map(random_scene) {
-        let expected = exact.render(&it.plan());
-        let settings = Settings { leave_out: LeaveOut::HalfStep, ..it.settings };
-        let got = thinned.render(&RandomScene { settings, ..it.clone() }.plan());
-        let pairs = got.pixels().as_flattened().iter().zip(expected.pixels().as_flattened());
-        let apart = pairs.map(|(a, b)| a.abs_diff(*b));
-        let (worst, steps) =
-            apart.fold((0, 0), |(worst, steps), by| (by.max(worst), steps + u64::from(by > 0)));
-        if worst > 1 {
-            return Err(format!("scene {}: a byte is {worst} steps off", it.seed));
-        }
-        count(&mut tally, &it, expected);
-        tally.count("bytes a step off", steps);
     }
     Ok(tally)
 }

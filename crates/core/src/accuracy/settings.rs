@@ -19,13 +19,8 @@ pub struct Settings {
     pub filter: Filter,
     /// Which form the highlight has.
     pub specular: SpecularForm,
-    /// What may be left out of a picture.
-    #[serde(rename = "faint")]
-    pub leave_out: LeaveOut,
     /// How the power of a highlight is computed.
     pub power: SpecularPower,
-    /// How vectors are normalised.
-    pub normalising: Normalising,
     /// How colours become bytes.
     pub rounding: Rounding,
     /// How normals are transformed.
@@ -55,13 +50,25 @@ pub struct Settings {
     /// In which values light is computed.
     #[serde(rename = "values")]
     pub light_values: LightValues,
+    /// An axis of older scene files.
+    #[doc(hidden)]
+    #[serde(skip_serializing, rename = "normalising")]
+    pub former_normalising: FormerAxis,
+    /// An axis of older scene files.
+    #[doc(hidden)]
+    #[serde(skip_serializing, rename = "faint")]
+    pub former_faint: FormerAxis,
 }
 
-impl Settings {
-    /// Whether pictures are the same on every processor, bit for bit.
-    #[must_use]
-    pub fn is_alike_everywhere(&self) -> bool {
-        self.normalising == Normalising::Root
+/// An axis that older scene files may hold, whose choices saved nothing. Any choice is accepted and
+/// ignored.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct FormerAxis;
+
+impl<'de> Deserialize<'de> for FormerAxis {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        serde::de::IgnoredAny::deserialize(deserializer).map(|_| Self)
     }
 }
 
@@ -162,47 +169,18 @@ pub enum SpecularForm {
     HalfVector,
 }
 
-/// What may be left out of a picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum LeaveOut {
-    /// Only what changes no bit of it.
-    #[default]
-    #[serde(rename = "Kept")]
-    Unseen,
-    /// Lights, too, that together add less than half a step of a byte: a byte is at most one step
-    /// off.
-    #[serde(rename = "LeftOut")]
-    HalfStep,
-}
-
 /// How the power of a highlight is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum SpecularPower {
     /// Schlick's approximation.
     Schlick,
-    /// The nearest of 256 powers in a table.
-    Table256,
-    /// Linear interpolation in a table of 1024 powers.
-    Table1024,
-    /// Whole exponents up to 64 by squaring, others by a polynomial: sixteen at once.
+    /// Whole exponents up to 64 by squaring, others by a polynomial: sixteen at once. Older scene
+    /// files may name tables and repeated squaring, which took longer.
     #[default]
+    #[serde(alias = "Table256", alias = "Table1024", alias = "Squaring")]
     Polynomial,
-    /// Exponents that are a power of two by squaring alone, others as [`Self::Polynomial`].
-    Squaring,
     /// The power function of libm, one at a time.
     Library,
-}
-
-/// How vectors are normalised.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Normalising {
-    /// By the processor's estimate of 1/sqrt. Pictures differ between processors.
-    Rsqrt,
-    /// By the estimate and one Newton step. Pictures differ between processors.
-    Newton,
-    /// By a root and a division, as exact as the arithmetic of light.
-    #[default]
-    Root,
 }
 
 /// How colours become bytes.
@@ -232,10 +210,10 @@ pub enum NormalMatrix {
 pub enum VertexArithmetic {
     /// 32 bits for matrices and vertices.
     F32,
-    /// 64 bits to multiply matrices, 32 bits to transform vertices.
-    F32ComposedInF64,
-    /// 64 bits for both.
+    /// 64 bits for both. Older scene files may ask for 64-bit matrices and 32-bit vertices, which
+    /// saved no time.
     #[default]
+    #[serde(alias = "F32ComposedInF64")]
     F64,
 }
 

@@ -42,7 +42,7 @@ pub const SUITE: &[SuiteScene] = &[
     SuiteScene {
         word: "pixels",
         what: "one lit triangle over the whole picture",
-        axes: &["arithmetic", "normalising", "faint", "rounding", "values"],
+        axes: &["arithmetic", "rounding", "values"],
         make: scenes::pixels,
     },
     SuiteScene {

@@ -117,8 +117,6 @@ impl Compared<'_> {
             light,
             needs_positions: _,
             tiled,
-            dropped,
-            cut_off: _,
             vertex_colors,
             tint,
             texture,
@@ -149,7 +147,7 @@ impl Compared<'_> {
         };
         textures
             && stages
-            && (*tiled, dropped.to_bits()) == (before.tiled, before.dropped.to_bits())
+            && *tiled == before.tiled
             && alike_material(material, &before.material)
             && *vertex_colors == before.vertex_colors
             && alike(tint, &before.tint)

@@ -197,10 +197,6 @@ pub(crate) struct Shaded {
     /// Whether lights may be culled tile by tile: nothing of the surface is clipped, so each
     /// pixel's depth tells its position.
     pub(crate) tiled: bool,
-    /// An upper bound of what the lights that were left out add, in steps of a byte.
-    pub(crate) dropped: f64,
-    /// An upper bound of what the tails of highlights that were cut off add, in steps of a byte.
-    pub(crate) cut_off: f64,
     /// Whether vertex colours are multiplied in.
     pub(crate) vertex_colors: bool,
     /// The tint as factors.
@@ -226,8 +222,6 @@ impl Shaded {
             light: None,
             needs_positions: false,
             tiled: false,
-            dropped: 0.0,
-            cut_off: 0.0,
             vertex_colors: false,
             tint: [1.0; 3],
             texture: None,
@@ -245,8 +239,6 @@ impl Shaded {
             light,
             needs_positions,
             tiled,
-            dropped,
-            cut_off,
             vertex_colors,
             tint,
             texture,
@@ -259,7 +251,7 @@ impl Shaded {
         for color in [ambient, diffuse, specular, tint] {
             color.map(bits).hash(hasher);
         }
-        [*exponent, *floor, *least_cosine, *dropped, *cut_off].map(bits).hash(hasher);
+        [*exponent, *floor, *least_cosine].map(bits).hash(hasher);
         (*needs_positions, *tiled, *vertex_colors).hash(hasher);
         (cutout.map(bits), opacity.map(bits)).hash(hasher);
         for stage in light.iter().flatten() {
@@ -317,7 +309,7 @@ mod tests {
     #[test]
     fn equal_pipelines_share_a_fingerprint_and_others_are_told_apart() {
         let plain = shaded(|_| {});
-        assert_eq!(shaded(|shaded| shaded.dropped = -0.0), plain, "0 and -0 are equal");
+        assert_eq!(shaded(|shaded| shaded.tint[0] = -0.0), plain, "0 and -0 are equal");
         let others = [
             shaded(|shaded| shaded.material.diffuse[1] = 0.5),
             shaded(|shaded| shaded.material.exponent = 9.0),

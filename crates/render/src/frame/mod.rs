@@ -11,7 +11,7 @@ use self::draw::{Draw, Pipeline};
 use self::shadows::Shadows;
 use self::variants::Variants;
 use super::lights::ViewLight;
-use marraztu_core::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples, Transparency};
+use marraztu_core::accuracy::{Arithmetic, Filter, LightAt, Samples, Transparency};
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::LightId;
@@ -58,8 +58,6 @@ pub struct FramePlan {
     pub(crate) draws: Vec<Draw>,
     /// The distinct pipelines of all draws.
     pub(crate) pipelines: Vec<Pipeline>,
-    /// Which light may be left out as too faint.
-    pub(crate) leave_out: LeaveOut,
     /// Whether rules leave out what no pixel shows.
     pub(crate) rules: Rules,
 }

@@ -6,9 +6,8 @@
 
 use std::ops::Deref;
 
-use crate::simd::Number;
 use marraztu_core::accuracy::{
-    BumpFilter, Coverage, Filter, LightValues, Normalising, Settings, Subpixels, VertexArithmetic,
+    BumpFilter, Coverage, Filter, LightValues, Settings, Subpixels, VertexArithmetic,
 };
 
 /// How bytes of texels become numbers.
@@ -67,9 +66,9 @@ impl Variants {
     pub(crate) fn of(settings: &Settings) -> Self {
         // What is decided for each draw, or stands elsewhere in the plan, is left at its default.
         let Settings { arithmetic, light, samples, filter, .. } = Settings::default();
-        let Settings { specular, leave_out, stretched, transparency, .. } = Settings::default();
+        let Settings { specular, stretched, transparency, .. } = Settings::default();
         let settings = Settings { arithmetic, light, samples, filter, ..*settings };
-        Self(Settings { specular, leave_out, stretched, transparency, ..settings })
+        Self(Settings { specular, stretched, transparency, ..settings })
     }
 
     /// The same with light computed in the values that colours are stored in.
@@ -96,18 +95,6 @@ impl Variants {
             BumpFilter::Nearest => Filter::Nearest,
             BumpFilter::Trilinear => Filter::Trilinear,
         }
-    }
-
-    /// The variant of reciprocal roots, if it is not the default.
-    pub(crate) fn root_variant(&self) -> Option<Normalising> {
-        (self.normalising != Normalising::Root).then_some(self.normalising)
-    }
-
-    /// The variant of roots for lighting. It is set too if only powers differ from the arithmetic's
-    /// own.
-    pub(crate) fn light_variant<T: Number>(&self) -> Option<Normalising> {
-        let plain = self.normalising == Normalising::Root && self.power == T::POWER;
-        (!plain).then_some(self.normalising)
     }
 
     /// The grid that corners of triangles are snapped to.

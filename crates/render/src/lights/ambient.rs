@@ -1,8 +1,7 @@
 //! Ambient light.
 
 use super::batch::{Reflected, Sample, set};
-use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight, max_channel};
-use super::region::Region;
+use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight};
 use super::shader::{LightShader, Which};
 use crate::simd::Lanes;
 
@@ -23,15 +22,6 @@ impl LightShader for Ambient {
         } else {
             None
         }
-    }
-
-    fn max_contribution(
-        light: &ViewLight,
-        material: &PhongMaterial,
-        _: bool,
-        _: Option<&Region>,
-    ) -> f64 {
-        max_channel(light.color, material.ambient)
     }
 
     #[inline(always)]

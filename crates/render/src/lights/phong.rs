@@ -6,7 +6,7 @@ use super::batch::{Reflected, Sample, set};
 use super::region::Region;
 use crate::simd::power::least_cosine;
 use crate::simd::{Lanes, Number, Power, Real, Vec3};
-use marraztu_core::accuracy::{Normalising, SpecularPower};
+use marraztu_core::accuracy::SpecularPower;
 
 /// A light of a frame, in view space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -84,8 +84,6 @@ pub struct LightTerm<T> {
     pub highlight: Power,
     /// See [`PhongMaterial::least_cosine`].
     pub least_cosine: T,
-    /// The variant of roots, if it is not the default.
-    pub(super) variant: Option<Normalising>,
 }
 
 impl<T: Number> LightTerm<T> {
@@ -106,27 +104,17 @@ impl<T: Number> LightTerm<T> {
             gathered: Power::new(light.exponent, GATHERED_FLOOR),
             highlight: Power::new(material.exponent, material.floor),
             least_cosine: T::from_f64(material.least_cosine),
-            variant: None,
         }
     }
 
-    /// Whether roots are computed by the default.
-    pub(crate) const fn is_usual(&self) -> bool {
-        self.variant.is_none()
-    }
-
-    /// The same by a variant, if there is one, with the power of the material's highlight.
+    /// The same, with a prepared power of the material's highlight.
     #[must_use]
-    pub(crate) fn by(
-        variant: Option<Normalising>,
+    pub(crate) fn with_highlight(
         light: &ViewLight,
         material: &PhongMaterial,
-        highlight: &Power,
+        highlight: Power,
     ) -> Self {
-        match variant {
-            None => Self::new(light, material),
-            variant => Self { highlight: highlight.clone(), variant, ..Self::new(light, material) },
-        }
+        Self { highlight, ..Self::new(light, material) }
     }
 }
 
@@ -251,11 +239,6 @@ pub(super) fn phong<M: Lanes, H: Highlight>(
         }
     }
     Some(Reflected { diffuse, specular })
-}
-
-/// The largest of a surface's three channels in a light.
-pub(super) fn max_channel(color: [f64; 3], sent_back: [f64; 3]) -> f64 {
-    color.iter().zip(sent_back).map(|(color, part)| color * part).fold(0.0, f64::max)
 }
 
 /// The largest attenuation factor of a light over a region.

@@ -7,7 +7,6 @@ use fearless_simd::Level;
 use super::batch::{Batch, Reflected, Sample, add, load};
 use super::phong::{
     HalfVector, Highlight, LightTerm, Mapped, Nothing, PhongMaterial, Reflection, ViewLight,
-    max_channel,
 };
 use super::region::Region;
 use super::turning::Turning;
@@ -44,22 +43,6 @@ pub trait LightShader {
     /// for explanations.
     fn fraction_at(_: &ViewLight, _cosine: f64) -> f64 {
         1.0
-    }
-    /// The most that it adds to a channel at any position of a region, with its highlight or
-    /// without, as a factor. A texture can only reduce that.
-    fn max_contribution(
-        light: &ViewLight,
-        material: &PhongMaterial,
-        highlight: bool,
-        region: Option<&Region>,
-    ) -> f64 {
-        let mut sent_back = material.diffuse;
-        if highlight {
-            for (kd, ks) in sent_back.iter_mut().zip(material.specular) {
-                *kd += ks;
-            }
-        }
-        max_channel(light.color, sent_back) * Self::max_falloff(light, region)
     }
     /// Shades some positions; `None` if it adds nothing at any of them.
     fn shade<M: Lanes, H: Highlight>(
@@ -113,8 +96,6 @@ pub struct LightRow {
     pub max_falloff: fn(&ViewLight, Option<&Region>) -> f64,
     /// See [`LightShader::fraction_at`].
     pub fraction_at: fn(&ViewLight, f64) -> f64,
-    /// See [`LightShader::max_contribution`].
-    pub max_contribution: fn(&ViewLight, &PhongMaterial, bool, Option<&Region>) -> f64,
     /// Without a highlight.
     pub plain: Variant,
     /// With [`Reflection`].
@@ -141,7 +122,6 @@ impl LightRow {
             is_behind: E::is_behind,
             max_falloff: E::max_falloff,
             fraction_at: E::fraction_at,
-            max_contribution: E::max_contribution,
             plain: variant::<E, Nothing>(),
             reflection: variant::<E, Reflection>(),
             half_vector: variant::<E, HalfVector>(),
@@ -161,7 +141,7 @@ fn shade<T: Number, E: LightShader, H: Highlight>(
     batch: &mut Batch<T>,
     term: &LightTerm<T>,
 ) {
-    T::run_variant(level, term.variant, Shade::<T, E, H> { batch, term, of: PhantomData });
+    T::run(level, Shade::<T, E, H> { batch, term, of: PhantomData });
 }
 
 struct Shade<'a, T, E, H> {

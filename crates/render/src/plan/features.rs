@@ -165,14 +165,14 @@ impl FramePlan {
 }
 
 fn switched(on: bool) -> EffectState {
-    if on { EffectState::ON } else { EffectState::exact("switched off") }
+    if on { EffectState::ON } else { EffectState::left_out("switched off") }
 }
 
 fn surfaces(it: &Facts<'_>) -> EffectState {
     if !it.draw.filled {
-        EffectState::exact("edges only")
+        EffectState::left_out("edges only")
     } else if it.draw.part_pipelines.iter().all(Option::is_none) {
-        EffectState::exact("every part is hidden, or its opacity is too low")
+        EffectState::left_out("every part is hidden, or its opacity is too low")
     } else {
         EffectState::ON
     }
@@ -200,7 +200,7 @@ fn normals(it: &Facts<'_>) -> EffectState {
     };
     let per_pixel = it.settings.light == LightAt::Pixel;
     any(it, |shaded| per_pixel && shaded.needs_positions, whose.into())
-        .unwrap_or(EffectState::exact(left_out))
+        .unwrap_or(EffectState::left_out(left_out))
 }
 
 fn texture(it: &Facts<'_>) -> EffectState {
@@ -219,7 +219,7 @@ fn texture(it: &Facts<'_>) -> EffectState {
         "there is none"
     };
     any(it, |shaded| shaded.texture.is_some(), filter.into())
-        .unwrap_or(EffectState::exact(left_out))
+        .unwrap_or(EffectState::left_out(left_out))
 }
 
 fn holes(it: &Facts<'_>) -> EffectState {
@@ -229,7 +229,7 @@ fn holes(it: &Facts<'_>) -> EffectState {
     if let Some(on) = any(it, mapped, "with map_d".into()) {
         return on;
     }
-    any(it, |shaded| shaded.cutout.is_some(), "".into()).unwrap_or(EffectState::exact(left_out))
+    any(it, |shaded| shaded.cutout.is_some(), "".into()).unwrap_or(EffectState::left_out(left_out))
 }
 
 fn transparency(it: &Facts<'_>) -> EffectState {
@@ -237,10 +237,10 @@ fn transparency(it: &Facts<'_>) -> EffectState {
         Transparency::Exact => "pixel by pixel, the farthest first",
         Transparency::Objects => "object by object, the farthest first",
         Transparency::Weighted => "a weighted mean",
-        Transparency::Threshold => return EffectState::exact("a threshold of one half"),
+        Transparency::Threshold => return EffectState::left_out("a threshold of one half"),
     };
     any(it, |shaded| shaded.opacity.is_some(), how.into())
-        .unwrap_or(EffectState::exact("it is opaque"))
+        .unwrap_or(EffectState::left_out("it is opaque"))
 }
 
 /// Whether a part of the object names a map of one of these kinds.
@@ -262,7 +262,7 @@ fn emission(it: &Facts<'_>) -> EffectState {
         Surface::Texture => "the texture is shown, not lit",
         Surface::Material | Surface::TextureAndLight => "Ke is 0",
     };
-    mapped.or(plain).unwrap_or(EffectState::exact(left_out))
+    mapped.or(plain).unwrap_or(EffectState::left_out(left_out))
 }
 
 fn maps(it: &Facts<'_>) -> EffectState {
@@ -278,7 +278,7 @@ fn maps(it: &Facts<'_>) -> EffectState {
         return EffectState::On(on.join(", ").into());
     }
     let named = names(it, &[MapKind::Ambient, MapKind::Specular, MapKind::Exponent]);
-    EffectState::exact(match it.settings.light {
+    EffectState::left_out(match it.settings.light {
         _ if !it.draw.filled => "edges only",
         _ if !named => "the file has none",
         _ if it.object.model.mesh.uvs().is_empty() => "the file places none",
@@ -304,7 +304,7 @@ fn bumps(it: &Facts<'_>) -> EffectState {
         LightAt::Vertex => "light is evaluated at vertices",
         LightAt::Pixel | LightAt::Sample => "no light reads them, or their -bm is 0",
     };
-    heights.or(normals).unwrap_or(EffectState::exact(left_out))
+    heights.or(normals).unwrap_or(EffectState::left_out(left_out))
 }
 
 fn vertex_colors(it: &Facts<'_>) -> EffectState {
@@ -315,15 +315,15 @@ fn vertex_colors(it: &Facts<'_>) -> EffectState {
     } else {
         "the file has none"
     };
-    any(it, |shaded| shaded.vertex_colors, "".into()).unwrap_or(EffectState::exact(left_out))
+    any(it, |shaded| shaded.vertex_colors, "".into()).unwrap_or(EffectState::left_out(left_out))
 }
 
 fn back_faces(it: &Facts<'_>) -> EffectState {
     match it.draw.back {
         Back::Culled if it.object.sides == Sides::Auto => {
-            EffectState::exact("the surface is closed")
+            EffectState::left_out("the surface is closed")
         }
-        Back::Culled => EffectState::exact("one side is drawn"),
+        Back::Culled => EffectState::left_out("one side is drawn"),
         Back::Red => EffectState::On("red, not lit".into()),
         Back::Lit if it.draw.culls_opaque => {
             EffectState::On("lit: they show through the front".into())

@@ -4,7 +4,6 @@
 //! What the scene does not need is left out of it; [`explain_frame`] says what, and why. Light that
 //! only some tiles need is culled tile by tile, when their depths are known (`TilePlan`).
 
-mod bounded;
 mod cover;
 pub(crate) mod features;
 mod ground;
@@ -25,14 +24,12 @@ mod view_lights;
 use self::observer::ObserverSpace;
 use self::planning::{Planner, Planning};
 use self::uses::Notes;
-pub use self::uses::{Class, Effect, EffectState, EffectUse, Thing};
+pub use self::uses::{Effect, EffectState, EffectUse, Thing};
 use self::view_lights::view_lights;
 use crate::frame::shadows::Shadows;
 use crate::frame::variants::Variants;
 use crate::frame::{Eye, FramePlan, Rules};
-use marraztu_core::accuracy::{
-    Arithmetic, LeaveOut, LightAt, LightValues, Samples, Settings, Shot,
-};
+use marraztu_core::accuracy::{Arithmetic, LightAt, LightValues, Samples, Settings, Shot};
 use marraztu_core::scene::Projection;
 
 /// Plans the picture of a shot.
@@ -95,11 +92,6 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         shadows: Shadows::default(),
         draws: Vec::new(),
         pipelines: Vec::new(),
-        // How faint light shows in linear values depends on what else is there.
-        leave_out: match settings.light_values {
-            LightValues::Stored => settings.leave_out,
-            LightValues::Linear => LeaveOut::Unseen,
-        },
         rules,
     };
     let mut into = Planning::new(plan, notes);
@@ -109,7 +101,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         on: None,
         state: match settings.light_values {
             LightValues::Linear => EffectState::On("colours decoded, pictures encoded".into()),
-            LightValues::Stored => EffectState::exact("colours are used as they are stored"),
+            LightValues::Stored => EffectState::left_out("colours are used as they are stored"),
         },
         pixels: None,
     });
@@ -124,7 +116,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
             effect: Effect::Marks,
             name: Effect::Marks.label().to_owned(),
             on: None,
-            state: EffectState::exact("switched off"),
+            state: EffectState::left_out("switched off"),
             pixels: None,
         });
     }

@@ -299,7 +299,7 @@ fn left_out(into: &mut Planning, item: ItemId, name: &str, reason: &'static str)
         effect: presence(item),
         name: presence(item).label().to_owned(),
         on: Some(uses::Thing { item, name: name.to_owned() }),
-        state: EffectState::exact(reason),
+        state: EffectState::left_out(reason),
         pixels: None,
     });
 }

@@ -45,7 +45,7 @@ impl Planner<'_> {
                 effect: Effect::Shadows(shining.id),
                 name: name(shining),
                 on: None,
-                state: EffectState::exact(reason),
+                state: EffectState::left_out(reason),
                 pixels: None,
             });
         }
@@ -96,7 +96,7 @@ impl Planner<'_> {
             effect: Effect::Shadows(shining.id),
             name: name(shining),
             on: ground.thing(),
-            state: reason.map_or(EffectState::On(method.into()), EffectState::exact),
+            state: reason.map_or(EffectState::On(method.into()), EffectState::left_out),
             pixels: None,
         });
     }

@@ -3,17 +3,16 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use super::bounded;
 use super::cover::Cover;
 use super::ground::{Ground, LARGEST};
 use super::maps::{decoded, emission, holds_same_alpha, mapped, mapped_ambient};
 use super::planning::{Planner, Planning, Shining};
 use super::rules::{LitSurface, Reading, TexturedSurface};
-use super::uses::{Class, Effect, EffectState, EffectUse};
+use super::uses::{Effect, EffectState, EffectUse};
 use crate::frame::draw::{Pipeline, Shaded, Stage};
 use crate::lights::region::Region;
 use crate::lights::{Form, PhongMaterial};
-use marraztu_core::accuracy::{Arithmetic, LeaveOut, LightAt, SpecularForm};
+use marraztu_core::accuracy::{Arithmetic, LightAt, SpecularForm};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::base::{
@@ -119,7 +118,7 @@ impl Planner<'_> {
     ) -> Shaded {
         let material = coefficients(look);
         let floor = self.floor(into, ground.region.as_ref(), &material);
-        let mut material = material.with_floor(floor, self.shot.settings.power);
+        let material = material.with_floor(floor, self.shot.settings.power);
         let mut shaded = Shaded::unlit(material);
         if ground.object.surface == Surface::Texture {
             return shaded;
@@ -133,19 +132,12 @@ impl Planner<'_> {
         let mut stages = self.stages(into, (ground, bump.is_some()), &material);
         shaded.extras.ambient =
             mapped_ambient(into, ground, (look, texture), &material, &mut stages);
-        if into.plan.leave_out == LeaveOut::HalfStep {
-            shaded.dropped = self.thin(into, ground, &material, &mut stages);
-            (material, shaded.cut_off) = self.cut(into, ground, material, &mut stages);
-        }
         shaded.material = material;
         self.map_highlights(ground, look, &mut shaded.extras, &mut stages);
         shaded.needs_positions = into.plan.rules.positions(&Reading::of(stages.iter())).is_none();
         shaded.extras.bump = bump.filter(|_| shaded.needs_positions);
-        // Light is culled tile by tile if some light has a limited reach, or may be too faint in
-        // some tiles.
-        shaded.tiled = ground.tiled
-            && (into.plan.leave_out == LeaveOut::HalfStep
-                || stages.iter().any(|stage| stage.effect.has_reach));
+        // Light is culled tile by tile if some light has a limited reach.
+        shaded.tiled = ground.tiled && stages.iter().any(|stage| stage.effect.has_reach);
         shaded.light = Some(stages);
         shaded
     }
@@ -210,7 +202,7 @@ impl Planner<'_> {
                 effect: Effect::Light(*id),
                 name: name.clone(),
                 on: ground.thing(),
-                state: reason.map_or(EffectState::ON, EffectState::exact),
+                state: reason.map_or(EffectState::ON, EffectState::left_out),
                 pixels: None,
             });
             Self::note_shadows(into, ground, shining, reason);
@@ -228,7 +220,7 @@ impl Planner<'_> {
             };
             stages.push(Stage { effect, light: *light, highlight, is_mapped: false });
         }
-        into.notes.add(|| self.note_highlights(ground, no_highlight.map(EffectState::exact)));
+        into.notes.add(|| self.note_highlights(ground, no_highlight.map(EffectState::left_out)));
         stages
     }
 
@@ -244,65 +236,6 @@ impl Planner<'_> {
             state: left_out.unwrap_or(EffectState::On(form.into())),
             pixels: None,
         }
-    }
-
-    /// Removes lights that are too faint. Returns what they add, in steps of a byte.
-    fn thin(
-        &self,
-        into: &mut Planning,
-        ground: &Ground<'_>,
-        material: &PhongMaterial,
-        stages: &mut Vec<Stage>,
-    ) -> f64 {
-        let Planning { plan, notes, .. } = into;
-        let tell = |stage: &Stage, bound: f64| {
-            let shining = self.shining.iter().find(|shining| shining.light == stage.light);
-            let Some(Shining { id, name, .. }) = shining else { return };
-            notes.replace(|| EffectUse {
-                effect: Effect::Light(*id),
-                name: name.clone(),
-                on: ground.thing(),
-                state: EffectState::LeftOut {
-                    reason: "too faint".into(),
-                    class: Class::Bounded(bound),
-                },
-                pixels: None,
-            });
-        };
-        let region = ground.region.as_ref();
-        let most = |stage: &Stage| {
-            bounded::most(stage, &plan.lights[stage.light as usize], material, region)
-        };
-        bounded::thin(stages, most, bounded::LIGHTS, tell)
-    }
-
-    /// Raises the floor of highlights to cut off their tails. Returns what they lose, in steps of a
-    /// byte.
-    fn cut(
-        &self,
-        into: &mut Planning,
-        ground: &Ground<'_>,
-        material: PhongMaterial,
-        stages: &mut [Stage],
-    ) -> (PhongMaterial, f64) {
-        let lit = (&into.plan.lights[..], &material);
-        let region = ground.region.as_ref();
-        let Some(power) = bounded::least_power(stages, lit, region) else { return (material, 0.0) };
-        let floor = libm::log2(power);
-        if floor <= material.floor {
-            return (material, 0.0);
-        }
-        let cut_off = bounded::cut_off(stages, lit, region, power.min(1.0));
-        if power < 1.0 {
-            return (material.with_floor(floor, self.shot.settings.power), cut_off);
-        }
-        for stage in stages {
-            stage.highlight = Form::Plain;
-        }
-        let class = Class::Bounded(cut_off);
-        let faint = EffectState::LeftOut { reason: "too faint".into(), class };
-        into.notes.replace(|| self.note_highlights(ground, Some(faint)));
-        (material, cut_off)
     }
 }
 

@@ -6,13 +6,12 @@
 
 use glam::DVec3;
 
-use super::bounded;
 use super::rules::{LitSurface, Reading};
 use crate::frame::draw::{Pipeline, Shaded, Stage};
 use crate::frame::{Eye, FramePlan};
 use crate::lights::region::Region;
 use crate::screen::coverage::PixelBox;
-use marraztu_core::accuracy::{LeaveOut, Samples};
+use marraztu_core::accuracy::Samples;
 
 /// The error of interpolating a depth or 1/w in f32, relative to the largest value.
 const ROUNDING: f64 = 2e-6;
@@ -38,7 +37,6 @@ struct Decided {
     from: usize,
     to: usize,
     needs_positions: bool,
-    dropped: f64,
 }
 
 /// The lights that a tile is coloured by, with one pipeline.
@@ -50,8 +48,6 @@ pub(crate) struct TileLight<'a> {
     pub(crate) kept: Option<&'a [u32]>,
     /// Whether any of them reads positions and normals.
     pub(crate) needs_positions: bool,
-    /// The most that the lights that were left out add, in steps of a byte.
-    pub(crate) dropped: f64,
 }
 
 impl TilePlan {
@@ -84,8 +80,8 @@ impl TilePlan {
         shaded: &'a Shaded,
     ) -> TileLight<'a> {
         let stages = shaded.light.as_deref().unwrap_or_default();
-        let Shaded { needs_positions, dropped, .. } = *shaded;
-        let whole = TileLight { stages, kept: None, needs_positions, dropped };
+        let needs_positions = shaded.needs_positions;
+        let whole = TileLight { stages, kept: None, needs_positions };
         let Some(region) = self.region.filter(|_| shaded.tiled) else { return whole };
         let at = pipeline as usize;
         let decided = match self.decided[at] {
@@ -95,8 +91,8 @@ impl TilePlan {
         if self.decided[at].replace(decided).is_none() {
             self.seen.push(at);
         }
-        let Decided { from, to, needs_positions, dropped } = decided;
-        TileLight { stages, kept: Some(&self.kept[from..to]), needs_positions, dropped }
+        let Decided { from, to, needs_positions } = decided;
+        TileLight { stages, kept: Some(&self.kept[from..to]), needs_positions }
     }
 
     fn decide(
@@ -116,19 +112,11 @@ impl TilePlan {
         self.own.clear();
         let count = u32::try_from(stages.len()).expect("fewer than 2^32 lights");
         self.own.extend((0..count).filter(reaches));
-        let mut dropped = shaded.dropped;
-        if plan.leave_out == LeaveOut::HalfStep {
-            let budget = bounded::LIGHTS - dropped;
-            let most = |place: &u32| {
-                bounded::most(&stages[*place as usize], light(*place), material, Some(region))
-            };
-            dropped += bounded::thin(&mut self.own, most, budget, |_, _| {});
-        }
         let kept = self.own.iter().map(|place| &stages[*place as usize]);
         let needs_positions = plan.rules.positions(&Reading::of(kept)).is_none();
         let from = self.kept.len();
         self.kept.extend_from_slice(&self.own);
-        Decided { from, to: self.kept.len(), needs_positions, dropped }
+        Decided { from, to: self.kept.len(), needs_positions }
     }
 }
 

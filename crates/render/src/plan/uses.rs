@@ -107,30 +107,16 @@ pub enum EffectState {
     /// It is computed; with a remark, or an empty text.
     On(Cow<'static, str>),
     /// It is left out, for this reason.
-    LeftOut {
-        /// The reason, in plain words.
-        reason: Cow<'static, str>,
-        /// How the picture changes by it.
-        class: Class,
-    },
-}
-
-/// How the picture changes if something is left out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Class {
-    /// No bit changes.
-    Exact,
-    /// Each channel changes by this many steps of a byte at most, before rounding.
-    Bounded(f64),
+    LeftOut(Cow<'static, str>),
 }
 
 impl EffectState {
     /// It is computed, without a remark.
     pub const ON: Self = Self::On(Cow::Borrowed(""));
 
-    /// It is left out without any change of the picture.
-    pub(super) fn exact(reason: impl Into<Cow<'static, str>>) -> Self {
-        Self::LeftOut { reason: reason.into(), class: Class::Exact }
+    /// It is left out. No bit of the picture changes by that.
+    pub(super) fn left_out(reason: impl Into<Cow<'static, str>>) -> Self {
+        Self::LeftOut(reason.into())
     }
 
     /// Whether it is computed.
@@ -143,22 +129,15 @@ impl EffectState {
     #[must_use]
     pub fn why(&self) -> &str {
         match self {
-            Self::On(word) => word,
-            Self::LeftOut { reason, .. } => reason,
+            Self::On(text) | Self::LeftOut(text) => text,
         }
     }
 }
 
-/// The reason, with its bound if there is one, or the remark.
+/// The reason, or the remark.
 impl fmt::Display for EffectState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.why())?;
-        match self {
-            Self::LeftOut { class: Class::Bounded(steps), .. } => {
-                write!(f, ": at most {steps:.4} of a step")
-            }
-            Self::On(_) | Self::LeftOut { class: Class::Exact, .. } => Ok(()),
-        }
+        f.write_str(self.why())
     }
 }
 
@@ -190,15 +169,6 @@ impl Notes {
         let before = self.uses.entry(key).or_insert_with(|| new.clone());
         if new.state.is_on() && !before.state.is_on() {
             *before = new;
-        }
-    }
-
-    /// Notes that what was on for a part is left out after all.
-    pub(super) fn replace(&mut self, make: impl FnOnce() -> EffectUse) {
-        if self.wanted {
-            let new = make();
-            let key = (new.effect, new.on.as_ref().map(|thing| thing.item));
-            self.uses.insert(key, new);
         }
     }
 

@@ -36,7 +36,7 @@ pub(super) fn view_lights(
                 effect: Effect::Light(id),
                 name: light.name.clone(),
                 on: None,
-                state: EffectState::exact(reason),
+                state: EffectState::left_out(reason),
                 pixels: None,
             });
             continue;
@@ -81,7 +81,7 @@ fn exposure(into: &mut Planning, view: &View) -> f64 {
         name: Effect::Exposure.label().to_owned(),
         on: None,
         state: match view.exposure {
-            0.0 => EffectState::exact("it is 0"),
+            0.0 => EffectState::left_out("it is 0"),
             _ => EffectState::On(format!("all light times {factor:.3}").into()),
         },
         pixels: None,

@@ -170,12 +170,13 @@ impl Renderer {
         (!items.is_empty()).then_some(pixels)
     }
 
-    /// Counts the pixels that each effect of the last picture takes part in, and returns the
-    /// largest error of a channel in steps of a byte. Takes about as long as rasterizing the
-    /// picture.
-    pub fn count(&mut self, uses: &mut [EffectUse]) -> f64 {
+    /// Counts the pixels that each effect of the last picture takes part in. Takes about as long as
+    /// rasterizing the picture.
+    pub fn count(&mut self, uses: &mut [EffectUse]) {
         self.build_again();
-        self.plan.as_ref().map_or(0.0, |plan| plan.count(self.level, &self.frame, uses))
+        if let Some(plan) = &self.plan {
+            plan.count(self.level, &self.frame, uses);
+        }
     }
 
     /// The primitive that each pixel of the last picture shows, row by row from the top: 0 for the

@@ -176,7 +176,6 @@ impl<T: ShadingNumber> Shader<T> {
         let light = BlockLight {
             by: by(context, cut.as_ref()),
             look: needs_positions.then_some(look),
-            roots: plan.variants.root_variant(),
             tint: shaded.tint.map(T::from_f64),
             texture: sampler.as_ref().map(|sampler| PlacedTexture { placement, far, sampler }),
             vertex_colors: shaded.vertex_colors.then_some(vertex_colors),

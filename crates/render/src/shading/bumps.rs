@@ -110,8 +110,7 @@ pub(super) fn bend<T: ShadingNumber>(
     let directions = bump.map.scale.map(|scale| if scale < 0.0 { -1.0 } else { 1.0 });
     let (texels, tangents) = (&maps.texels, &maps.tangents);
     let spaces = Spaces::new(group.draw);
-    let variant = plan.variants.root_variant();
-    paged!(attributes.count, PAGES => T::run_variant(context.level, variant, Bend::<T, PAGES> {
+    paged!(attributes.count, PAGES => T::run(context.level, Bend::<T, PAGES> {
         points: (fragments, attributes, barycentrics),
         texels,
         tangents: (tangents, at_vertices),

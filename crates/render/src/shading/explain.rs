@@ -190,8 +190,8 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         attributes.carry_normals(group.draw);
         attributes.spread(level);
         batch.len = 1;
-        let (look, roots) = (Look::new(plan, group.draw), plan.variants.root_variant());
-        surface_samples((level, roots), look, fragments, attributes, barycentrics, batch);
+        let look = Look::new(plan, group.draw);
+        surface_samples(level, look, fragments, attributes, barycentrics, batch);
         let world = World::new(plan);
         let w: f64 = barycentrics.w[0].into();
         let position = vec3(&batch.position);

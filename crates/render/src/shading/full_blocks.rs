@@ -19,9 +19,9 @@ use crate::screen::perspective::{between, weighed};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::screen::weights::HomogeneousWeights;
 use crate::simd::gather::SLOTS;
-use crate::simd::{Encoding, Lanes as _, Sixteen, VariantLanes, Vec3};
+use crate::simd::{Encoding, Lanes as _, Sixteen, Vec3};
 use crate::texture::lanes::Stored;
-use marraztu_core::accuracy::{Interpolation, Normalising};
+use marraztu_core::accuracy::Interpolation;
 use marraztu_core::base::color::Color;
 
 /// The pixels of a tile, in rows that begin `stride` pixels apart.
@@ -336,8 +336,6 @@ pub(crate) struct BlockLight<'a, T> {
     pub(crate) by: Corners<'a>,
     /// How pixels become positions and normals; `None` if no light reads them.
     pub(crate) look: Option<Look<T>>,
-    /// The variant of roots, if it is not the default.
-    pub(crate) roots: Option<Normalising>,
     /// The colour of the surface itself.
     pub(crate) tint: [T; 3],
     /// The texture by which it is multiplied.
@@ -378,7 +376,7 @@ fn lit<S: Simd>(
     canvas: &mut Canvas<'_>,
 ) {
     let lanes = Sixteen(simd);
-    let BlockLight { by, look, roots, tint, texture, vertex_colors, lights, terms, .. } = light;
+    let BlockLight { by, look, tint, texture, vertex_colors, lights, terms, .. } = light;
     let BlockLight { glow, encoding, .. } = light;
     let z = of_first(lanes, &attributes.z);
     let corners = corners(lanes, &attributes.values);
@@ -403,20 +401,9 @@ fn lit<S: Simd>(
                         let place =
                             [x.to_float::<f32x16<S>>() + 0.5, y.to_float::<f32x16<S>>() + 0.5];
                         let normal = between(corners, weights);
-                        let at = (normal, place, w);
-                        match roots {
-                            None => {
-                                let depth = || depth_between(z, weights);
-                                let (normal, place, w) = at;
-                                let sample = look.at(lanes, normal, place, w, depth);
-                                batch.put(lanes, sample, 16 * pair);
-                            }
-                            Some(variant) => {
-                                let lanes = VariantLanes { lanes, variant };
-                                let depth = depth_between(z, weights);
-                                put_sample(lanes, look, at, depth, batch, 16 * pair);
-                            }
-                        }
+                        let depth = || depth_between(z, weights);
+                        let sample = look.at(lanes, normal, place, w, depth);
+                        batch.put(lanes, sample, 16 * pair);
                     }
                     if let Some(texture) = &texture {
                         let way = texture.way(simd, &OfFirst, weights);
@@ -485,23 +472,6 @@ fn finished<S: Simd>(
         color = Vec3([encoding.of(r), encoding.of(g), encoding.of(b)]);
     }
     color
-}
-
-/// Stores the samples of sixteen pixels whose roots are computed by a variant.
-#[inline(always)]
-fn put_sample<S: Simd>(
-    lanes: VariantLanes<Sixteen<S>>,
-    look: &Look<f32>,
-    (normal, place, w): (Vec3<f32x16<S>>, [f32x16<S>; 2], f32x16<S>),
-    depth: f32x16<S>,
-    batch: &mut Batch<f32>,
-    at: usize,
-) {
-    let Vec3([x, y, z]) = normal;
-    let normal = Vec3([lanes.chosen(x), lanes.chosen(y), lanes.chosen(z)]);
-    let place = [lanes.chosen(place[0]), lanes.chosen(place[1])];
-    let sample = look.at(lanes, normal, place, lanes.chosen(w), || lanes.chosen(depth));
-    batch.put(lanes, sample, at);
 }
 
 /// Three numbers of the first triangle, the same for all lanes.

@@ -22,7 +22,6 @@ use crate::screen::coverage::SUBPIXELS;
 use crate::screen::perspective::between;
 use crate::simd::gather::{SLOTS, paged};
 use crate::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
-use marraztu_core::accuracy::Normalising;
 
 /// Three numbers at the corners of some triangles: those of the first corner, and the differences
 /// of the second and the third from them.
@@ -133,29 +132,19 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Multiply<'_, T, PAGES> {
 /// Computes position, normal and direction to the observer of every pixel, from normals at the
 /// corners.
 pub(crate) fn surface_samples<T: Number>(
-    (level, variant): (Level, Option<Normalising>),
+    level: Level,
     look: Look<T>,
     fragments: &Fragments,
     attributes: &TriangleAttributes<T>,
     barycentrics: &Barycentrics<T>,
     batch: &mut Batch<T>,
 ) {
-    match (fragments.shared, variant) {
-        (true, Some(_)) => {
-            let kernel =
-                SurfaceSamples::<T, 4, true> { fragments, attributes, barycentrics, batch, look };
-            T::run_variant(level, variant, kernel);
-        }
-        (false, Some(_)) => {
-            let kernel =
-                SurfaceSamples::<T, 4, false> { fragments, attributes, barycentrics, batch, look };
-            T::run_variant(level, variant, kernel);
-        }
-        (true, None) => paged!(attributes.count, PAGES => T::run(
+    match fragments.shared {
+        true => paged!(attributes.count, PAGES => T::run(
             level,
             SurfaceSamples::<T, PAGES, true> { fragments, attributes, barycentrics, batch, look },
         )),
-        (false, None) => paged!(attributes.count, PAGES => T::run(
+        false => paged!(attributes.count, PAGES => T::run(
             level,
             SurfaceSamples::<T, PAGES, false> { fragments, attributes, barycentrics, batch, look },
         )),

@@ -20,7 +20,7 @@ use crate::plan::tile::TileLight;
 use crate::shadow::rays::{Origins, RayScratch};
 use crate::shadow::tracer::Tracer;
 use crate::simd::{Kernel, Lanes, Number, Real, Vec3};
-use marraztu_core::accuracy::{LightAt, Normalising};
+use marraztu_core::accuracy::LightAt;
 use marraztu_core::base::math::each;
 use marraztu_core::scene::{Facet, Normals, dvec3};
 
@@ -118,7 +118,7 @@ impl<T: ShadingNumber> Lit<T> {
             put(batch, slot, centre, normal.map(|x| x * turn));
         }
         let to_view = self.to_view[index as usize];
-        T::run_variant(level, to_view.variant, Place { batch, to_view });
+        T::run(level, Place { batch, to_view });
     }
 }
 
@@ -200,7 +200,7 @@ impl<T: ShadingNumber> Table<T> {
         self.diffuse[chunk].get_or_init(|| {
             put_places(draw, chunk * CHUNK, batch);
             let (positions, count) = (tracer.map(|_| batch.position), batch.len);
-            T::run_variant(level, to_view.variant, Place { batch, to_view });
+            T::run(level, Place { batch, to_view });
             let mut place = |origins: &mut Origins| {
                 if let (Some(tracer), Some(positions)) = (tracer, &positions) {
                     place_vertices(tracer, positions, count, origins);
@@ -320,8 +320,6 @@ struct ToView<T> {
     linear: [[T; 3]; 3],
     normals: [[T; 3]; 3],
     eye: Eye,
-    /// The variant of roots, if it is not the default.
-    variant: Option<Normalising>,
 }
 
 impl<T: Number> ToView<T> {
@@ -335,7 +333,6 @@ impl<T: Number> ToView<T> {
             linear: columns(DMat3::from_mat4(draw.view_from_object)),
             normals: columns(draw.view_from_normal),
             eye: plan.eye,
-            variant: plan.variants.root_variant(),
         }
     }
 
@@ -449,8 +446,7 @@ fn set_lights<'a, T: ShadingNumber>(
     level: Level,
     batch: &mut Batch<T>,
 ) {
-    let is_usual = |(stage, term): (&Stage, &LightTerm<T>)| !stage.is_mapped && term.is_usual();
-    if lights.clone().all(is_usual) {
+    if lights.clone().all(|(stage, _)| !stage.is_mapped) {
         let lights = lights.map(
             #[inline(always)]
             |(stage, term)| (stage.effect.which, stage.highlight, term),

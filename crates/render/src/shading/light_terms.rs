@@ -1,5 +1,4 @@
-//! Prepares a plan for shading: light terms in the shading arithmetic, tables of powers, and mip
-//! maps. Those of the last picture are reused.
+//! Prepares a plan for shading: light terms in the shading arithmetic, and mipmaps. Those of the last picture are reused.
 
 use super::colors::prepare_linear;
 use super::rounding::block_thresholds;
@@ -9,7 +8,7 @@ use crate::frame::variants::Decoding;
 use crate::lights::{LightTerm, PhongMaterial};
 use crate::raster::hit_colors::Conversion;
 use crate::screen::tiles::BLOCK_PIXELS;
-use crate::simd::power::{Power, Tables};
+use crate::simd::power::Power;
 use crate::simd::{Encoding, Number};
 use crate::texture::lanes::prepare_decoding;
 use crate::texture::mips::Mips;
@@ -21,7 +20,6 @@ use marraztu_core::scene::Texture;
 #[derive(Debug, Default)]
 pub(crate) struct LightTerms<T> {
     terms: Vec<Vec<LightTerm<T>>>,
-    tables: Tables,
     /// Mip maps, if the filter needs them.
     mips: Vec<Mips>,
     /// The rounding thresholds of a block's pixels.
@@ -55,12 +53,10 @@ impl<T: Number> LightTerms<T> {
             terms.clear();
             if let Pipeline::Shaded(Shaded { light: Some(stages), material, .. }) = pipeline {
                 let PhongMaterial { exponent, floor, .. } = *material;
-                let highlight = Power::by(plan.variants.power, exponent, floor, &mut self.tables);
+                let highlight = Power::by(plan.variants.power, exponent, floor);
                 let lights = stages.iter().map(|stage| &plan.lights[stage.light as usize]);
-                let variant = plan.variants.light_variant::<T>();
-                terms.extend(
-                    lights.map(|light| LightTerm::by(variant, light, material, &highlight)),
-                );
+                let term = |light| LightTerm::with_highlight(light, material, highlight);
+                terms.extend(lights.map(term));
             }
         }
     }

@@ -431,8 +431,7 @@ impl<T: ShadingNumber> Shader<T> {
                 attributes.carry_normals(group.draw);
                 attributes.spread(level);
             }
-            let roots = plan.variants.root_variant();
-            surface_samples((level, roots), look, fragments, attributes, barycentrics, batch);
+            surface_samples(level, look, fragments, attributes, barycentrics, batch);
             if let Some(bump) = &shaded.extras.bump {
                 let points = Points { fragments, attributes, barycentrics };
                 bend(context, group, &points, (bump, new), (maps, batch));

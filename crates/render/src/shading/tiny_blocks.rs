@@ -37,7 +37,6 @@ fn may_be_tiny(context: &ShadingContext<'_, f32>, group: &Group<'_>) -> bool {
         && plan.eye == Eye::Point
         && plan.variants.coverage == Coverage::Exact
         && plan.variants.interpolation != Interpolation::EverySixteen
-        && plan.variants.root_variant().is_none()
         && shaded.texture.is_none()
         && shaded.opacity.is_none()
         && !shaded.vertex_colors

@@ -7,13 +7,11 @@ use fearless_simd::{
 
 use super::gather::SLOTS;
 use super::lanes::{BATCH, Lanes, PARTS};
-use super::power::{Power, PowerVariant};
+use super::power::Power;
 use super::real::Real;
 use super::single::has_own_maximum;
-use super::variant_real::VariantReal;
 use super::vec3::Vec3;
-use super::{power_variants, reciprocal_root};
-use marraztu_core::accuracy::Normalising;
+use marraztu_core::accuracy::SpecularPower;
 
 /// Computes in f64, eight numbers at a time, with the instruction set `S`.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +37,11 @@ impl<S: Simd> Real for f64x8<S> {
 
     #[inline(always)]
     fn power(self, power: &Power) -> Self {
+        if power.variant == Some(SpecularPower::Polynomial) {
+            let (result, zero) = (self.narrow(self).power(power).widen().0, self.lift(0.0));
+            let above = result.if_more(self.lift(power.least), result, zero);
+            return self.if_more(zero, above, zero);
+        }
         let mut lanes: [f64; 8] = *self;
         for lane in &mut lanes {
             *lane = lane.power(power);
@@ -69,51 +72,6 @@ impl<S: Simd> Real for f64x8<S> {
             return <Self as SimdBase<S>>::min(self, other);
         }
         other.if_more(self, self, other)
-    }
-}
-
-impl<S: Simd> VariantReal for f64x8<S> {
-    #[inline(always)]
-    fn reciprocal_root_by(self, variant: Normalising) -> Self {
-        if variant == Normalising::Root {
-            return self.reciprocal_root();
-        }
-        let mut lanes: [f64; 8] = *self;
-        for lane in &mut lanes {
-            *lane = reciprocal_root::one(*lane, variant);
-        }
-        Self::from_slice(self.simd, &lanes)
-    }
-
-    #[inline(always)]
-    fn power_by(self, power: &Power) -> Self {
-        let result = match &power.variant {
-            PowerVariant::Polynomial => self.narrow(self).power(power).widen().0,
-            PowerVariant::Squarings(times) => {
-                let mut square = self;
-                for _ in 0..*times {
-                    square = square * square;
-                }
-                square
-            }
-            PowerVariant::Schlick => {
-                let n = self.lift(power.exponent);
-                self / (n - n * self + self)
-            }
-            PowerVariant::Default
-            | PowerVariant::Library
-            | PowerVariant::Nearest(_)
-            | PowerVariant::Linear(_) => {
-                let mut lanes: [f64; 8] = *self;
-                for lane in &mut lanes {
-                    *lane = power_variants::power(power, *lane);
-                }
-                return Self::from_slice(self.simd, &lanes);
-            }
-        };
-        let zero = self.lift(0.0);
-        let above = result.if_more(self.lift(power.least), result, zero);
-        self.if_more(zero, above, zero)
     }
 }
 
@@ -255,9 +213,7 @@ mod tests {
     use fearless_simd::{Level, dispatch};
 
     use super::*;
-    use crate::simd::power::Tables;
-    use crate::simd::{Exact, Kernel, VariantLanes};
-    use marraztu_core::accuracy::SpecularPower;
+    use crate::simd::{Exact, Kernel};
 
     /// What a kernel made of numbers, slots and whole numbers.
     #[derive(Debug, PartialEq)]
@@ -331,7 +287,6 @@ mod tests {
         #[cfg(not(target_arch = "x86_64"))]
         let older = [None; 2];
         let levels: Vec<Level> = older.into_iter().flatten().chain([best]).collect();
-        let mut tables = Tables::default();
         for (round, exponent) in (0_u32..).zip([0.5, 1.0, 27.9, 32.0, 1000.0]) {
             let row: &[f64; SLOTS] = &std::array::from_fn(|i| match odd.get(i) {
                 Some(odd) if round > 0 => *odd,
@@ -339,32 +294,15 @@ mod tests {
             });
             let slots: &[i32; SLOTS] =
                 &std::array::from_fn(|i| ((i * 29 + 5) % SLOTS).try_into().unwrap());
-            for power in [
-                SpecularPower::Library,
-                SpecularPower::Polynomial,
-                SpecularPower::Squaring,
-                SpecularPower::Table1024,
-                SpecularPower::Table256,
-                SpecularPower::Schlick,
-            ] {
-                let power = &Power::by(power, exponent, -24.0, &mut tables);
+            for power in [SpecularPower::Library, SpecularPower::Polynomial, SpecularPower::Schlick]
+            {
+                let power = &Power::by(power, exponent, -24.0);
                 let one = made(|made| All { row, slots, power, made }.run(Exact));
                 for level in &levels {
                     let eight = made(|made| {
                         dispatch!(*level, simd => All { row, slots, power, made }.run(Eight(simd)));
                     });
                     assert_eq!(eight, one, "{exponent} {power:?} {level:?}");
-                    for variant in [Normalising::Root, Normalising::Newton, Normalising::Rsqrt] {
-                        let lanes = VariantLanes { lanes: Exact, variant };
-                        let one = made(|made| All { row, slots, power, made }.run(lanes));
-                        let eight = made(|made| {
-                            dispatch!(*level, simd => {
-                                let lanes = VariantLanes { lanes: Eight(simd), variant };
-                                All { row, slots, power, made }.run(lanes);
-                            });
-                        });
-                        assert_eq!(eight, one, "{exponent} {power:?} {variant:?} {level:?}");
-                    }
                 }
             }
         }

@@ -2,23 +2,9 @@
 
 use super::gather::SLOTS;
 use super::lanes::{BATCH, Lanes, PARTS};
-use super::power::Power;
 use super::real::Real;
-use super::variant_real::VariantReal;
 use super::vec3::Vec3;
-use super::{power_variants, reciprocal_root};
-use marraztu_core::accuracy::Normalising;
 use marraztu_core::base::color::byte;
-
-impl VariantReal for f64 {
-    fn reciprocal_root_by(self, variant: Normalising) -> Self {
-        reciprocal_root::one(self, variant)
-    }
-
-    fn power_by(self, power: &Power) -> Self {
-        power_variants::power(power, self)
-    }
-}
 
 /// Computes in f64, one number at a time.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! Lanes: load numbers from rows in memory, some at a time, and store them.
 
 use super::gather::SLOTS;
-use super::variant_real::VariantReal;
+use super::real::Real;
 use super::vec3::Vec3;
 
 /// The number of positions that are lit together at most: those of some blocks of 8 x 8 pixels. It
@@ -17,7 +17,7 @@ pub trait Lanes: Copy {
     /// The numbers in memory.
     type Number: Copy;
     /// The vector of [`Self::LANES`] numbers that equations compute with.
-    type R: VariantReal;
+    type R: Real;
     /// A vector of [`Self::LANES`] slots.
     type Slots: Copy;
     /// How many numbers are loaded at a time.

@@ -4,9 +4,7 @@
 //! * [`Lanes`]: loads numbers from memory and stores them; [`Eight`] eight f64 at a time,
 //!   [`Sixteen`] sixteen f32. A [`Kernel`] is work that is compiled for both.
 //! * `gather`: gathers numbers from short tables.
-//! * [`Power`], `power_variants`, `reciprocal_root`: powers of cosines and reciprocal roots by each
-//!   variant that the settings choose; `variant_real` and `variant_lanes` bring them into
-//!   equations.
+//! * [`Power`], `power_variants`: powers of cosines by each variant that the settings choose.
 
 mod doubles;
 mod eight;
@@ -19,11 +17,8 @@ mod number;
 pub(crate) mod power;
 mod power_variants;
 mod real;
-mod reciprocal_root;
 mod single;
 mod sixteen;
-mod variant_lanes;
-mod variant_real;
 mod vec3;
 
 pub(crate) use doubles::in_f64;
@@ -37,7 +32,6 @@ pub use power::Power;
 pub use real::Real;
 pub(crate) use single::log2;
 pub use sixteen::Sixteen;
-pub(crate) use variant_lanes::VariantLanes;
 pub use vec3::Vec3;
 
 /// The numbers of sixteen lanes.

@@ -12,6 +12,7 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::power::Power;
+use super::power_variants;
 
 /// A real number, or several of them side by side.
 pub trait Real:
@@ -71,11 +72,7 @@ impl Real for f64 {
 
     #[inline(always)]
     fn power(self, power: &Power) -> Self {
-        if self.is_nan() || self <= 0.0 {
-            return 0.0;
-        }
-        let result = libm::pow(self, power.exponent);
-        if result > power.least { result } else { 0.0 }
+        power_variants::power(power, self)
     }
 
     #[inline(always)]

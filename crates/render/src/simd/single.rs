@@ -10,6 +10,7 @@ use fearless_simd::{
 };
 
 use super::power::Power;
+use super::power_variants;
 use super::real::Real;
 
 /// Numbers in f32 that can be split into exponent and mantissa.
@@ -253,7 +254,13 @@ impl<S: Simd> Real for f32x16<S> {
 
     #[inline(always)]
     fn power(self, power: &Power) -> Self {
-        single_power(self, power)
+        // All sixteen have one variant, so it is matched once for them.
+        if power.is_default() {
+            return single_power(self, power);
+        }
+        let mut lanes: [f32; 16] = *self;
+        power_variants::power_of_sixteen(power, &mut lanes);
+        Self::from_slice(self.simd, &lanes)
     }
 
     #[inline(always)]

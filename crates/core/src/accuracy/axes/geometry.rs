@@ -20,10 +20,6 @@ pub(super) const VERTICES: Axis = Axis {
         choice!("f32" "32 bits" vertices = VertexArithmetic::F32,
             "32-bit numbers for matrices and vertices.",
             "up to 2.5 pixels if the camera is 100,000 from the origin"),
-        choice!("f32-composed-in-f64" "32 bits, 64-bit matrices"
-            vertices = VertexArithmetic::F32ComposedInF64,
-            "64-bit numbers to multiply matrices, 32-bit numbers to transform vertices.",
-            "0.00014 pixel, so one corner of fifty snaps elsewhere"),
         choice!("f64" "64 bits" vertices = VertexArithmetic::F64,
             "64-bit numbers for matrices and vertices.",
             "none"),

@@ -1,10 +1,8 @@
-//! The axes of light: shading, arithmetic, powers, normalisation, faint light, highlights.
+//! The axes of light: shading, arithmetic, powers, highlights.
 
-use super::sense::{has_even_power, has_several_samples, if_any, is_lit, is_mirroring, is_there};
+use super::sense::{has_several_samples, if_any, is_lit, is_mirroring, is_there};
 use super::{Axis, AxisKind, Choice, Lesson};
-use crate::accuracy::{
-    Arithmetic, LeaveOut, LightAt, LightValues, Normalising, SpecularForm, SpecularPower,
-};
+use crate::accuracy::{Arithmetic, LightAt, LightValues, SpecularForm, SpecularPower};
 
 pub(super) const SHADING: Axis = Axis {
     key: "shading",
@@ -81,102 +79,23 @@ pub(super) const POWER: Axis = Axis {
             "Schlick's approximation x / (n - n x + x), which needs no power.",
             "51 byte steps at Ns 76.8: the curve has another shape")
         .slower_because("its curve falls so slowly that more pixels have a highlight"),
-        choice!("table-256" "Table 256" power = SpecularPower::Table256,
-            "The nearest of 256 powers in a table.",
-            "35 byte steps at Ns 76.8")
-        .slower_because(
-            "its entries are loaded one by one, and a polynomial gives sixteen powers at once",
-        ),
-        choice!("table-1024" "Table 1024" power = SpecularPower::Table1024,
-            "Linear interpolation in a table of 1024 powers.",
-            "0.17 of a byte step at Ns 76.8")
-        .slower_because(
-            "its entries are loaded one by one, and a polynomial gives sixteen powers at once",
-        ),
         choice!("polynomial" "Polynomial" power = SpecularPower::Polynomial,
             "Squares for whole exponents up to 64, and uses a polynomial for others: sixteen at \
                 once.",
             "0.001 of a byte step"),
-        choice!("squaring" "Squaring 2^k" power = SpecularPower::Squaring,
-            "Only squares if the exponent is a power of two.",
-            "rounding alone; other exponents as Polynomial",
-            |scene, view| if_any(scene, view, has_even_power,
-                "no material that is shown has a power of two as its exponent")),
         choice!("library" "libm" power = SpecularPower::Library,
             "The power function of libm, one at a time: the reference.",
             "none"),
     ],
     sense: |scene, view| if_any(scene, view, is_mirroring, "nothing that is shown has a highlight"),
     lesson: Lesson {
-        title: "Why quick powers leave rings",
+        title: "Why quick powers widen a highlight",
         what: "A highlight is a cosine raised to a power. No processor has an instruction for \
-            that, so it is computed or looked up in a table.",
-        coarse: "A table of 256 has steps where the power is steep, and they show as rings. \
-            Schlick's approximation gives a highlight that fades out more slowly.",
-        shows: "On the bright spot of the ball: compare Table 256 with Polynomial, then with \
-            Schlick.",
+            that, so it is computed by a formula.",
+        coarse: "Schlick's approximation needs one division, but gives a highlight that fades out \
+            more slowly.",
+        shows: "On the bright spot of the ball: compare Schlick with Polynomial.",
         scene: "ball",
-        choice: None,
-    },
-};
-
-pub(super) const NORMALISING: Axis = Axis {
-    key: "normalising",
-    label: "Normalisation",
-    phrase: "normalisation by {}",
-    what: "How vectors are normalised",
-    kind: AxisKind::Scored,
-    choices: &[
-        choice!("rsqrt" "rsqrt" normalising = Normalising::Rsqrt,
-            "The processor's estimate of 1/sqrt. Differs between CPUs.",
-            "8 byte steps at Ns 76.8 with AVX2; differs between CPUs"),
-        choice!("newton" "rsqrt + Newton step" normalising = Normalising::Newton,
-            "The estimate, refined by one Newton step. Differs between CPUs.",
-            "0.01 of a byte step at Ns 76.8"),
-        choice!("root" "1/sqrt" normalising = Normalising::Root,
-            "A root and a division, as exact as the arithmetic of light.",
-            "none"),
-    ],
-    sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
-    lesson: Lesson {
-        title: "Why quick roots make highlights grainy",
-        what: "A direction is normalised by 1/sqrt of its squared length. Processors have a quick \
-            instruction that knows 11 or 14 binary digits of that.",
-        coarse: "With the instruction alone, vectors are a little too long or too short, and the \
-            power of a highlight magnifies that: highlights become grainy, differently on each \
-            kind of CPU.",
-        shows: "On the bright spot of the polished ball, whose exponent is 500.",
-        scene: "shiny",
-        choice: None,
-    },
-};
-
-pub(super) const FAINT: Axis = Axis {
-    key: "faint",
-    label: "Faint light",
-    phrase: "faint light {}",
-    what: "What happens to light that is too faint to see",
-    kind: AxisKind::Scored,
-    choices: &[
-        choice!("left-out" "Left out" leave_out = LeaveOut::HalfStep,
-            "Skips lights that together add less than half a step of a byte.",
-            "at most one byte step")
-        .slower_because(
-            "light that can be left out has to be looked for, and here there is little",
-        ),
-        choice!("kept" "Kept" leave_out = LeaveOut::Unseen,
-            "Skips only what changes no bit of the picture.",
-            "none"),
-    ],
-    sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
-    lesson: Lesson {
-        title: "What happens to light that is too faint to see",
-        what: "A distant light, or the rim of a highlight, may add less than a byte can hold.",
-        coarse: "Everything that is left out adds less than half a step together, so a byte may be \
-            rounded the other way: it is at most one step off.",
-        shows: "Only in the picture of the error, amplified 256 times: a faint second lamp over \
-            the plate is left out.",
-        scene: "faint",
         choice: None,
     },
 };

@@ -123,8 +123,6 @@ pub const AXES: &[Axis] = &[
     light::SHADING,
     light::ARITHMETIC,
     light::POWER,
-    light::NORMALISING,
-    light::FAINT,
     geometry::VERTICES,
     geometry::SUBPIXELS,
     geometry::COVERAGE,

@@ -3,7 +3,6 @@
 use glam::{DMat3, DVec3};
 
 use crate::accuracy::{Samples, Settings};
-use crate::base::math::power_of_two_near;
 use crate::scene::{MapKind, Object, ObjectId, Scene, Surface, View};
 
 /// The objects that are shown.
@@ -61,12 +60,6 @@ pub(super) fn has_bumps(object: &Object, part: u32) -> bool {
 
 pub(super) fn is_mirroring(object: &Object, part: u32) -> bool {
     is_lit(object, part) && object.part_look(part).material.specular.iter().any(|ks| *ks > 0.0)
-}
-
-/// Whether the exponent of its highlight is a power of two.
-pub(super) fn has_even_power(object: &Object, part: u32) -> bool {
-    let exponent = object.part_look(part).material.exponent;
-    is_mirroring(object, part) && exponent >= 1.0 && power_of_two_near(exponent) == exponent
 }
 
 /// Whether one of the objects that are shown has a property; else the given reason.

@@ -1,8 +1,6 @@
 use super::*;
 use crate::accuracy::AccuracyPreset;
-use crate::accuracy::{
-    Arithmetic, Filter, LeaveOut, LightAt, Samples, SpecularForm, SpecularPower,
-};
+use crate::accuracy::{Arithmetic, Filter, LightAt, Samples, SpecularForm, SpecularPower};
 
 #[test]
 fn each_choice_is_read_back_as_set_and_changes_no_other_axis() {
@@ -31,7 +29,6 @@ fn the_reference_has_every_axis_at_its_most_exact_and_keeps_the_models() {
     assert_eq!(reference.light, LightAt::Pixel);
     assert_eq!(reference.filter, Filter::Trilinear);
     assert_eq!(reference.power, SpecularPower::Library);
-    assert_eq!(reference.leave_out, LeaveOut::Unseen);
     assert_eq!(reference.specular, SpecularForm::HalfVector);
 }
 
