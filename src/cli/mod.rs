@@ -38,6 +38,10 @@ pub(crate) fn run() -> ExitCode {
         Ok(arguments) => arguments,
         Err(wrong) => return usage(&open::misspelt().unwrap_or(wrong)),
     };
+    if marraztu_render::simd::levels().is_empty() {
+        say("error", &"drawing needs a processor with SSE4.2, as all have since 2009");
+        return ExitCode::FAILURE;
+    }
     let done = match arguments.command {
         Some(Headless::Render(arguments)) => render::render(&arguments),
         Some(Headless::Turntable(arguments)) => turntable::turntable(&arguments),

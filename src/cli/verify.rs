@@ -27,7 +27,7 @@ Examples:
 
 Exit status 1: a picture differs.")]
 pub(crate) struct Verify {
-    /// The set of instructions: best, avx512, avx2, sse4.2, plain [default: all of this processor]
+    /// The set of instructions: best, avx512, avx2, sse4.2, plain (the least) [default: all of this processor]
     #[arg(long, value_name = "SET", value_parser = level)]
     instructions: Option<Level>,
     /// Threads that draw [default: one for each core]

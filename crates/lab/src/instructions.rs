@@ -1,34 +1,20 @@
 //! The sets of vector instructions that this processor has.
 
 use fearless_simd::Level;
+pub use marraztu_render::simd::levels;
 
-/// The sets that this processor has, the oldest first and the best last.
-#[must_use]
-pub fn levels() -> Vec<Level> {
-    let mut levels: Vec<Level> = Vec::new();
-    for level in ["plain", "sse4.2", "avx2", "best"].into_iter().filter_map(named) {
-        if levels.iter().all(|other| name_of(*other) != name_of(level)) {
-            levels.push(level);
-        }
-    }
-    levels
-}
-
-/// The set with a name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, which every processor of
-/// this kind has. `None` if this processor lacks it, or if the name is unknown.
+/// The set with a name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, the least that pictures are
+/// drawn with. `None` if this processor lacks it, or if the name is unknown.
 #[must_use]
 pub fn named(name: &str) -> Option<Level> {
-    let best = Level::new();
+    let levels = levels();
     match name {
-        "best" => Some(best),
-        "plain" => Some(Level::baseline()),
-        #[cfg(target_arch = "x86_64")]
-        "avx512" => best.as_avx512().map(Level::Avx512),
-        #[cfg(target_arch = "x86_64")]
-        "avx2" => best.as_avx2().map(Level::Avx2),
-        #[cfg(target_arch = "x86_64")]
-        "sse4.2" => best.as_sse4_2().map(Level::Sse4_2),
-        _ => None,
+        "best" => levels.last().copied(),
+        "plain" => levels.first().copied(),
+        _ => {
+            let name = name.replace('.', "_");
+            levels.into_iter().find(|level| name_of(*level).eq_ignore_ascii_case(&name))
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 
 mod picking;
 
+use std::mem::discriminant;
 use std::sync::{Mutex, PoisonError};
 
 use fearless_simd::Level;
@@ -30,6 +31,7 @@ use crate::shading::tiny_blocks::Tiny;
 use crate::shadow::maps::ShadowMaps;
 use crate::shadow::rays::RayCount;
 use crate::shadow::tracer::Tracer;
+use crate::simd::levels;
 use crate::timings::{Laps, Timings};
 use crate::work_stealing::{own, together};
 use marraztu_core::accuracy::Arithmetic;
@@ -63,15 +65,24 @@ pub struct Renderer {
 pub struct Cancelled;
 
 impl Default for Renderer {
+    /// A renderer with the best instruction set of the processor.
+    ///
+    /// # Panics
+    /// See [`Self::new`].
     fn default() -> Self {
         Self::new(Level::new())
     }
 }
 
 impl Renderer {
-    /// Makes a renderer for a SIMD level. Pictures are the same on every level.
+    /// Makes a renderer for an instruction set. Pictures are the same with each.
+    ///
+    /// # Panics
+    /// On x86-64 without SSE4.2: see [`levels`].
     #[must_use]
     pub fn new(level: Level) -> Self {
+        let is_compiled = |other: &Level| discriminant(other) == discriminant(&level);
+        assert!(levels().iter().any(is_compiled), "drawing needs a processor with SSE4.2");
         Self {
             level,
             picture: Picture::default(),

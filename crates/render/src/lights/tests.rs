@@ -117,7 +117,7 @@ fn a_spot_gives_the_fifth_power_of_the_cosine_inside_its_cone_and_nothing_outsid
 
 #[test]
 fn fast_light_is_near_the_reference_and_the_same_on_every_level() {
-    let levels = levels();
+    let levels = crate::simd::levels();
     for entry in LIGHT_SHADERS {
         for variant in [&entry.plain, &entry.reflection, &entry.half_vector] {
             let (mut exact, light) =
@@ -140,20 +140,6 @@ fn fast_light_is_near_the_reference_and_the_same_on_every_level() {
 
 fn flat<T>(rows: &[[[T; BATCH]; 3]; 2]) -> impl Iterator<Item = &T> {
     rows.as_flattened().as_flattened().iter()
-}
-
-/// The levels that this processor has, the oldest first.
-fn levels() -> Vec<Level> {
-    let best = Level::new();
-    let mut levels = vec![Level::baseline()];
-    #[cfg(target_arch = "x86_64")]
-    levels.extend(
-        [best.as_sse4_2().map(Level::Sse4_2), best.as_avx2().map(Level::Avx2)]
-            .into_iter()
-            .flatten(),
-    );
-    levels.push(best);
-    levels
 }
 
 /// Scattered positions and normals, none of them at the border of a cone.

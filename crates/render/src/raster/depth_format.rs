@@ -182,7 +182,8 @@ pub(crate) fn depths_between(format: DepthFormat, [low, high]: [u32; 2]) -> [f32
 #[cfg(test)]
 #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 mod tests {
-    use fearless_simd::{Level, SimdBase as _, dispatch};
+    use crate::simd::dispatch;
+    use fearless_simd::{Level, SimdBase as _};
 
     use super::*;
 

@@ -5,9 +5,8 @@
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use fearless_simd::{
-    Bytes as _, Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16,
-};
+use crate::simd::dispatch;
+use fearless_simd::{Bytes as _, Level, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16};
 use glam::{DMat3, DVec3};
 
 use super::bins::Bins;

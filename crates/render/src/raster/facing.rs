@@ -6,7 +6,8 @@
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x16};
 
 use super::hits::PACK;
 use super::setup::NARROW;

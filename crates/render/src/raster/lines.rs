@@ -372,7 +372,8 @@ fn bounds_of<S: Simd>(
 #[cfg(test)]
 #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 mod tests {
-    use fearless_simd::{Level, dispatch};
+    use crate::simd::dispatch;
+    use fearless_simd::Level;
 
     use super::super::depth_format::Reversed;
     use super::*;

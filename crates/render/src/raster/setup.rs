@@ -5,7 +5,8 @@
 //! beyond the clipping planes are clipped, and those whose area needs 64 bits are set up one by
 //! one.
 
-use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16};
 
 use super::beyond;
 use super::bins::{Bins, LargeTriangle};

@@ -19,7 +19,8 @@
 //! primitive covers a sample if it covers the centre of the pixel once it is moved by the sample's
 //! offset.
 
-use fearless_simd::{Level, Simd, dispatch};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd};
 
 use self::cutouts::Cutouts;
 use self::hits::HitColors;

@@ -248,7 +248,8 @@ impl TileQueues {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::{Level, dispatch};
+    use crate::simd::dispatch;
+    use fearless_simd::Level;
 
     use super::*;
 

@@ -3,7 +3,8 @@
 //! Like the default, each is a loop of plain arithmetic over rows of coordinates, compiled for each
 //! instruction set. Coarser subpixels are multiples of the default's, so only positions change.
 
-use fearless_simd::{Level, Simd, dispatch};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd};
 
 use super::vertices;
 use crate::frame::variants::Variants;

@@ -3,7 +3,8 @@
 //! The loop is plain arithmetic over rows of coordinates, compiled for each instruction set: it
 //! does to eight vertices at once what [`Screen::vertex`] does to one, with the same bits.
 
-use fearless_simd::{Level, Simd, SimdBase as _, SimdCombine as _, dispatch, i32x4, i32x16};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd, SimdBase as _, SimdCombine as _, i32x4, i32x16};
 
 use crate::screen::clip::{Screen, ScreenVertex};
 use marraztu_core::scene::DrawOrder;

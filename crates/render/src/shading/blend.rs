@@ -12,7 +12,8 @@
 //! Order-Independent Transparency", JCGT 2(2), 2013, with z in units of view space, whose far plane
 //! is between 1024 and 2048 units away.
 
-use fearless_simd::{Level, dispatch};
+use crate::simd::dispatch;
+use fearless_simd::Level;
 
 use crate::screen::tiles::BLOCK_PIXELS;
 

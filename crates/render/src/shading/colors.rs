@@ -7,7 +7,8 @@
 
 use std::sync::OnceLock;
 
-use fearless_simd::{Level, dispatch};
+use crate::simd::dispatch;
+use fearless_simd::Level;
 
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::gather::SLOTS;

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Level, Simd, SimdBase as _, dispatch};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd, SimdBase as _};
 
 use super::light::{Lighting, Lit, Table};
 use super::light_terms::LightTerms;

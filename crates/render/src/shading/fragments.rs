@@ -8,9 +8,8 @@
 
 use std::hint::select_unpredictable;
 
-use fearless_simd::{
-    Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16, u32x16,
-};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16, u32x16};
 
 use super::runs::{MARGIN, Runs, Shown};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};

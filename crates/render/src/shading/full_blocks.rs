@@ -4,8 +4,9 @@
 //! the tile, two rows of a block at a time. The bits are the same as for listed fragments: the same
 //! integers and the same quotients, in the same order.
 
+use crate::simd::dispatch;
 use fearless_simd::{
-    Level, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, dispatch, f32x16, f64x8, i32x16,
+    Level, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, f32x16, f64x8, i32x16,
 };
 
 use super::interpolate::{CornerValues, Look, depth_between};

@@ -1,8 +1,9 @@
 //! Computes barycentric coordinates of fragments, in each of the two precisions.
 
+use crate::simd::dispatch;
 use fearless_simd::{
-    Level, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, SimdNarrow as _,
-    dispatch, f32x16, f64x8, i32x16,
+    Level, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, SimdNarrow as _, f32x16,
+    f64x8, i32x16,
 };
 use glam::DVec3;
 

@@ -5,7 +5,8 @@
 //! would compute the same colour of a triangle in a pixel. It is kept, and only what earlier passes
 //! did not show is lit.
 
-use fearless_simd::{Level, SimdBase as _, SimdMask as _, dispatch, u32x16};
+use crate::simd::dispatch;
+use fearless_simd::{Level, SimdBase as _, SimdMask as _, u32x16};
 
 use super::colors::Colors;
 use crate::screen::tiles::BLOCK_PIXELS;

@@ -5,7 +5,8 @@
 //! ones. With four samples per pixel, each sample has layers of its own; samples that show the same
 //! triangles in the same order throughout a block are coloured once.
 
-use fearless_simd::{Level, dispatch};
+use crate::simd::dispatch;
+use fearless_simd::Level;
 
 use super::blend::{Blend, Way};
 use super::colors::Sums;

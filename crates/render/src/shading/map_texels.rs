@@ -1,6 +1,6 @@
 //! The texels of maps on fragments: sixteen pixels at a time, or one by one if that cannot be.
 
-use fearless_simd::dispatch;
+use crate::simd::dispatch;
 
 use super::barycentrics::Barycentrics;
 use super::context::ShadingContext;

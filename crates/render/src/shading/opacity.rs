@@ -1,7 +1,7 @@
 //! The opacity of fragments: of the material, times the alpha of the texture, times the map of
 //! opacity.
 
-use fearless_simd::dispatch;
+use crate::simd::dispatch;
 
 use super::context::ShadingContext;
 use super::groups::Group;

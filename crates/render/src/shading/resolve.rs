@@ -5,7 +5,8 @@
 //! first the triangles of the first samples, all pixels together, and beside them all others, as
 //! far as they have room in a batch.
 
-use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x16};
 
 use super::colors::Sums;
 use super::context::ShadingContext;

@@ -1,8 +1,7 @@
 //! What the pixels of a block show, and where that changes from pixel to pixel.
 
-use fearless_simd::{
-    Level, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, dispatch, u32x16, u64x8,
-};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, u32x16, u64x8};
 
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
 

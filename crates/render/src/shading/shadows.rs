@@ -9,7 +9,8 @@
 //! several samples, at the point at which they are lit), at a vertex, or at the centre of a face.
 //! That point is computed in f64 in either arithmetic, so both have the same shadows.
 
-use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, u32x16};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, u32x16};
 use glam::DVec3;
 
 use super::fragments::Fragments;

@@ -1,6 +1,7 @@
 //! Lights the faces that a tile shows, if each of them has one colour.
 
-use fearless_simd::{Level, Simd, dispatch};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd};
 use prefetch_index::prefetch_index;
 
 use super::colors::Form;

@@ -7,9 +7,10 @@
 //!
 //! Clipped triangles, and those whose edge functions need more than 32 bits, are not tiny.
 
+use crate::simd::dispatch;
 use fearless_simd::{
-    Bytes as _, Level, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch,
-    f32x16, i32x16, mask32x16,
+    Bytes as _, Level, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, f32x16,
+    i32x16, mask32x16,
 };
 use prefetch_index::prefetch_index;
 

@@ -4,9 +4,9 @@
 //! light of vertices) are fetched once, row after row, so that the fetches overlap. Then sixteen
 //! triangles at a time are prepared for the pixels that gather from them.
 
+use crate::simd::dispatch;
 use fearless_simd::{
-    Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, f32x16, i32x16,
-    mask32x16,
+    Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, f32x16, i32x16, mask32x16,
 };
 use glam::DVec3;
 

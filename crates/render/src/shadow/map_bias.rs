@@ -3,7 +3,8 @@
 //! Each tile is copied with a border of one texel, so that sixteen texels of a row and their
 //! neighbours are loaded at once.
 
-use fearless_simd::{Level, Select as _, Simd, SimdBase as _, dispatch, f32x16};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Select as _, Simd, SimdBase as _, f32x16};
 
 use super::map_face::place;
 use crate::screen::tiles::{BLOCK_PIXELS, TILE_SIDE};

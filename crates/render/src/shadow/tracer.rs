@@ -1,6 +1,7 @@
 //! Traces packets of rays through all casters of a frame.
 
-use fearless_simd::{Level, Simd, dispatch};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd};
 use glam::{DMat4, DVec3};
 
 use super::known::{KnownLight, KnownShadows};

@@ -210,7 +210,7 @@ fn store_whole<S: Simd>(numbers: f64x8<S>, to: &mut [u32]) {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::{Level, dispatch};
+    use crate::simd::dispatch;
 
     use super::*;
     use crate::simd::{Exact, Kernel};
@@ -281,12 +281,7 @@ mod tests {
     #[test]
     fn eight_numbers_have_the_bits_of_one_at_a_time_by_every_variant() {
         let odd = [0.0, -0.0, 1.0, -1.0, f64::NAN, f64::INFINITY, -f64::INFINITY, 1e-320, 1e300];
-        let best = Level::new();
-        #[cfg(target_arch = "x86_64")]
-        let older = [best.as_sse2().map(Level::Sse2), best.as_avx2().map(Level::Avx2)];
-        #[cfg(not(target_arch = "x86_64"))]
-        let older = [None; 2];
-        let levels: Vec<Level> = older.into_iter().flatten().chain([best]).collect();
+        let levels = crate::simd::levels();
         for (round, exponent) in (0_u32..).zip([0.5, 1.0, 27.9, 32.0, 1000.0]) {
             let row: &[f64; SLOTS] = &std::array::from_fn(|i| match odd.get(i) {
                 Some(odd) if round > 0 => *odd,

@@ -174,7 +174,8 @@ mod x86 {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::{Level, dispatch};
+    use crate::simd::dispatch;
+    use fearless_simd::Level;
 
     use super::*;
 
@@ -200,10 +201,7 @@ mod tests {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
                 u32::try_from(state >> 58).unwrap()
             });
-            let new = Level::new();
-            let levels =
-                [Some(new), new.as_avx2().map(Level::Avx2), new.as_sse2().map(Level::Sse2)];
-            for level in levels.into_iter().flatten() {
+            for level in crate::simd::levels() {
                 let want = |below: u32| slots.map(|slot| row[(slot % below) as usize]);
                 let of = |below: u32| slots.map(|slot| (slot % below).cast_signed());
                 assert_eq!(picked::<1>(level, &row, &of(16)), want(16));

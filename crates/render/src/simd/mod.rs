@@ -13,6 +13,7 @@ mod encoding;
 mod exact;
 pub(crate) mod gather;
 mod lanes;
+pub(crate) mod level;
 mod number;
 pub(crate) mod power;
 mod power_variants;
@@ -27,6 +28,8 @@ pub(crate) use encoding::Encoding;
 #[cfg(test)]
 pub(crate) use exact::Exact;
 pub use lanes::{BATCH, Kernel, Lanes};
+pub(crate) use level::dispatch;
+pub use level::levels;
 pub use number::Number;
 pub use power::Power;
 pub use real::Real;

@@ -1,6 +1,7 @@
 //! The numbers that pictures can be computed in.
 
-use fearless_simd::{Level, dispatch};
+use crate::simd::dispatch;
+use fearless_simd::Level;
 
 use super::eight::Eight;
 use super::lanes::Kernel;

@@ -316,7 +316,8 @@ impl<S: Simd> Single for f32x16<S> {
 #[cfg(test)]
 #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 mod tests {
-    use fearless_simd::{Level, dispatch};
+    use crate::simd::dispatch;
+    use fearless_simd::Level;
 
     use super::super::vec3::Vec3;
     use super::*;

@@ -1,6 +1,7 @@
 //! Draws the triangles of a tile that are not small and have no holes: medium and large ones.
 
-use fearless_simd::{Level, Simd, dispatch};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd};
 
 use super::{Shown, Visibility};
 use crate::raster::bins::LargeTriangle;

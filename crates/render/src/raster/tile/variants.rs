@@ -1,6 +1,7 @@
 //! Draws the triangles of a tile by the variants of coverage.
 
-use fearless_simd::{Level, Simd, dispatch};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd};
 
 use super::{Shown, Visibility};
 use crate::frame::FramePlan;
