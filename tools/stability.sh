@@ -98,7 +98,7 @@ alone was done in the test, not a picture drawn by it.
 | a million key presses: 1e-9 radians | $(counted presses) | none states one |
 | 100,000 commands undone and redone, bit for bit | $(counted undo): **0 bits differ**, in the files saved on the way neither | none states one |
 | no panic, no NaN in hostile scenes | $(number scenes scenes) scenes, $(number scenes pictures) pictures, $(number scenes refusals) refusals: **0 panics, 0 pixels lost to a NaN** ($(number scenes "pixels on a border of light") stood on a border of light, and went dark in 64 bits too when lamps and objects moved by 2^-20; $(number scenes "scenes too bright") scenes with light beyond ten thousand times white were not judged) | D3D discards NaN only |
-| what a plan leaves out changes no bit | $(number plan scenes) scenes drawn by a plan that leaves out nothing: **the same**; of what is too faint a byte is one step off at most in $(number faint scenes) scenes; $(rules) rules made wrong: **all caught** ([mutation tests](breakages.md)) | none found |
+| what a plan leaves out changes no bit | $(number plan scenes) scenes drawn by a plan that leaves out nothing: **the same**; $(rules) rules made wrong: **all caught** ([mutation tests](breakages.md)) | none found |
 | one picture on every processor | the list \`tests/pictures.sums\`, on every level of instructions of this processor, 1 to 16 threads: **the same** | FLIP's and egui's tests allow differences |
 
 What stands in the way of more: hostile **files** are the business of \`fuzz/\`; one processor has seen
