@@ -19,6 +19,7 @@ use marraztu_core::scene::{
     Projection, Scene, Sides, View,
 };
 use marraztu_lab::instructions::levels;
+use marraztu_render::accel::Accelerated as _;
 use marraztu_render::explain_frame;
 use marraztu_render::plan_frame;
 use marraztu_render::{EffectUse, Renderer};

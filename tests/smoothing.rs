@@ -10,6 +10,7 @@ use std::fmt::Write as _;
 use glam::DVec3;
 use marraztu_core::scene::{Crease, LoadOptions, Mesh, Smoothing, Winding, dvec3, newell};
 use marraztu_io::{FindingKind, Loaded, Progress, describe, parse};
+use marraztu_render::accel::Accelerated as _;
 use proptest::prelude::*;
 
 fn read_with(text: &str, options: &LoadOptions) -> Loaded {

@@ -7,6 +7,7 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::edit::{framing, items, lighting};
 use marraztu_core::scene::{CameraId, Command, Fill, ItemId, Object};
 use marraztu_io::{self as io, Progress};
+use marraztu_render::accel::Accelerated as _;
 use marraztu_render::{Renderer, Unseen, fitted_exposure, plan_frame, unseen, without_ground};
 
 use super::accuracy::Accuracy;

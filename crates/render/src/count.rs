@@ -5,6 +5,7 @@
 //! The count is made afterwards from the visibility of each pixel, so drawing itself pays nothing
 //! for it.
 
+use crate::accel::Accelerated as _;
 use std::collections::BTreeMap;
 
 use fearless_simd::Level;

@@ -58,6 +58,7 @@
 //! * `renderer`, `damage`, `count`, `unseen`, `exposure`, `without_ground`: draw plans, and answer
 //!   questions about what was drawn.
 
+pub mod accel;
 mod cancellation;
 mod count;
 mod damage;

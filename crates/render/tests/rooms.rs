@@ -6,6 +6,7 @@ const ROOMS: &[&str] = &[
     "cancellation",
     "work_stealing",
     "timings",
+    "accel",
     "simd",
     "lights",
     "frame",

@@ -33,13 +33,10 @@ pub use light_kind::{
 };
 pub use list::List;
 pub use material::{Material, MaterialChoice, PRESETS, Preset, PresetId};
-pub use mesh::cache::{Derived, Facet};
-pub use mesh::clusters::{CLUSTER, Cluster, DrawTriangle};
-pub use mesh::draw_order::{DrawOrder, NormalSource, Points};
-pub use mesh::edge_order::{DrawEdge, EdgeOrder};
+pub use mesh::accelerator::{Accelerator, AcceleratorPlace};
+pub use mesh::cache::{Derived, Facet, NormalSource};
 pub use mesh::edges::Edge;
 pub use mesh::outlines::CornerLists;
-pub use mesh::ray_tree::{RayTree, TREE_BLOCK, TreeBlock, TreeChild, TreeNode, TreeTriangle};
 pub use mesh::{
     ClosedBodies, Corner, Mesh, MeshError, MeshSource, NONE, Part, PartNames, Point, SourceCorner,
     Triangle, dvec3, newell, split_positions,

@@ -1,5 +1,6 @@
 //! Draws of a frame, and the pipelines that colour them.
 
+use crate::accel::{Accelerated as _, DrawOrder, EdgeOrder};
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -78,10 +79,9 @@ impl Draw {
         let at_vertices = is_bumpy && plan.variants.tangents == Tangents::Vertex;
         let Lines { edges, face_normals, .. } = self.lines;
         for (what, needed) in [
-            (Derived::DrawOrder, true),
             (Derived::Tangents(self.normal_source), at_vertices),
             (Derived::PolygonOf, true),
-            (Derived::EdgeOrder, edges),
+            (Derived::Edges, edges),
             (Derived::Facets, flat),
             (Derived::PolygonNormals, by_face || face_normals.is_some()),
             (Derived::Triangles, by_face),
@@ -90,6 +90,10 @@ impl Draw {
             if needed {
                 self.model.mesh.prepare(what);
             }
+        }
+        let _order: &DrawOrder = self.model.mesh.draw_order();
+        if edges {
+            let _order: &EdgeOrder = self.model.mesh.edge_order();
         }
     }
 

@@ -1,5 +1,6 @@
 //! Which lights of a frame cast shadows, and what casts them.
 
+use crate::accel::Accelerated as _;
 use std::collections::BTreeSet;
 
 use glam::{DMat4, DVec3};
@@ -165,8 +166,8 @@ impl Shadows {
         for caster in &self.casters {
             let mesh = &caster.model.mesh;
             match method.map() {
-                None => mesh.prepare(Derived::RayTree),
-                Some(_) => mesh.prepare(Derived::DrawOrder),
+                None => _ = mesh.bvh(),
+                Some(_) => _ = mesh.draw_order(),
             }
             mesh.prepare(Derived::PolygonOf);
         }

@@ -1,6 +1,7 @@
 //! Finds small meshes whose faces are all turned away from the observer or from a light: a wall, a
 //! floor, a leaf. A closed shape never is, so larger meshes are not examined.
 
+use crate::accel::Accelerated as _;
 use glam::DVec3;
 
 use crate::frame::draw::{Back, Draw};

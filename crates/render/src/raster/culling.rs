@@ -6,10 +6,10 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::accel::{CLUSTER, Cluster, DrawTriangle};
 use crate::frame::draw::{Back, Draw};
 use crate::screen::clip::{Clip, Screen};
 use crate::screen::coverage::SUBPIXELS;
-use marraztu_core::scene::{CLUSTER, Cluster, DrawTriangle};
 
 /// How thin triangles may be on the screen, as height in pixels over their longest side, and how
 /// small, as doubled area in square pixels, so that snapping reverses none of them.
@@ -150,6 +150,7 @@ mod tests {
     use glam::{DMat4, DQuat};
 
     use super::*;
+    use crate::accel::Accelerated as _;
     use crate::screen::clip::ScreenVertex;
     use crate::screen::coverage::doubled_area;
     use marraztu_core::base::image::Size;

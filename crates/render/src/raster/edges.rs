@@ -14,10 +14,11 @@ use super::facing::Outline;
 use super::hits::PACK;
 use super::lines::{self, Ends, LineNumber, SHORT, ScreenLine, Short};
 use super::vertices::fetch_vertices;
+use crate::accel::DrawEdge;
 use crate::frame::draw::{Draw, Lines};
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::sample_positions::FOUR;
-use marraztu_core::scene::{Corner, DrawEdge, NONE, NormalSource, dvec3};
+use marraztu_core::scene::{Corner, NONE, NormalSource, dvec3};
 
 /// The depth bias: how many steps of depth lines are nearer than the surfaces that they lie on.
 const NEARER: u32 = 2;

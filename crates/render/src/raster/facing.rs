@@ -4,6 +4,7 @@
 //! If all polygons are triangles, they are computed sixteen at a time in draw order; others one by
 //! one.
 
+use crate::accel::Accelerated as _;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use crate::simd::dispatch;
@@ -12,11 +13,12 @@ use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x
 use super::hits::PACK;
 use super::setup::NARROW;
 use super::vertices::fetch_vertices;
+use crate::accel::DrawTriangle;
 use crate::frame::draw::{Back, Draw};
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::coverage::doubled_area;
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{DrawTriangle, Mesh};
+use marraztu_core::scene::Mesh;
 
 /// The colour of an outline. An edge has the largest of its polygons'.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

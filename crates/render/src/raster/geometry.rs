@@ -1,5 +1,6 @@
 //! The geometry of a frame on the screen: vertices, and triangles and lines in bins.
 
+use crate::accel::Accelerated as _;
 use std::ops::Range;
 use std::sync::atomic::AtomicU8;
 use std::sync::{Mutex, PoisonError};

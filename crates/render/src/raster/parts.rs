@@ -1,5 +1,6 @@
 //! Parallel setup of a frame: all threads put triangles and lines into bins, each into its own.
 
+use crate::accel::Accelerated as _;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicU8;
 
@@ -16,12 +17,12 @@ use super::setup::{self, Setup};
 use super::starts::{DrawCorners, Start, number};
 use super::vertices::Vertices;
 use super::work::{What, Work};
+use crate::accel::CLUSTER;
 use crate::cancellation::Cancellation;
 use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::work_stealing::{WorkStealing, own, together};
-use marraztu_core::scene::CLUSTER;
 
 /// Runs the work on all threads, each with its own bins, unless it is cancelled.
 pub(crate) fn share_out(

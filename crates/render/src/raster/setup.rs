@@ -5,6 +5,7 @@
 //! beyond the clipping planes are clipped, and those whose area needs 64 bits are set up one by
 //! one.
 
+use crate::accel::Accelerated as _;
 use crate::simd::dispatch;
 use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16};
 
@@ -17,6 +18,7 @@ use super::rule::Rule;
 use super::small;
 use super::tile_queues::FIRST_SIZE;
 use super::vertices::{fetch, fetch_vertices};
+use crate::accel::{DrawOrder, DrawTriangle};
 use crate::frame::draw::{Back, Draw, Pipeline, Shaded};
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::coverage::{Grid, PixelBox, doubled_area};
@@ -25,7 +27,6 @@ use crate::texture::opacity::Holes;
 use marraztu_core::accuracy::Coverage;
 use marraztu_core::base::image::Size;
 use marraztu_core::base::math::each;
-use marraztu_core::scene::{DrawOrder, DrawTriangle};
 
 /// The largest bounding box, in subpixels, whose doubled area fits 31 bits.
 pub(crate) const NARROW: i32 = 1 << 14;

@@ -7,11 +7,11 @@ use crate::simd::dispatch;
 use fearless_simd::{Level, Simd};
 
 use super::vertices;
+use crate::accel::DrawOrder;
 use crate::frame::variants::Variants;
 use crate::screen::clip::{Screen, ScreenVertex, snapped};
 use crate::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu_core::accuracy::{Subpixels, VertexArithmetic};
-use marraztu_core::scene::DrawOrder;
 
 /// Transforms vertices of a mesh to the screen, from number `first` on.
 pub(crate) fn transform(

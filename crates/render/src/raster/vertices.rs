@@ -6,8 +6,8 @@
 use crate::simd::dispatch;
 use fearless_simd::{Level, Simd, SimdBase as _, SimdCombine as _, i32x4, i32x16};
 
+use crate::accel::DrawOrder;
 use crate::screen::clip::{Screen, ScreenVertex};
-use marraztu_core::scene::DrawOrder;
 
 /// The vertices of a frame on the screen.
 #[derive(Debug, Default)]

@@ -5,12 +5,14 @@
 //! in the order of their homes, and tiles in the same order, so that each thread mostly draws what
 //! it has set up itself.
 
+use crate::accel::Accelerated as _;
+use crate::accel::CLUSTER;
 use crate::frame::draw::Draw;
 use crate::screen::clip::Screen;
 use crate::screen::tiles::{TILE, tiles_of};
 use crate::work_stealing::WorkStealing;
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{CLUSTER, NONE};
+use marraztu_core::scene::NONE;
 
 /// The number of pieces that many vertices, triangles, polygons or edges are divided into: the
 /// smaller they are, the more of them are drawn near their home.

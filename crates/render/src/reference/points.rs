@@ -8,6 +8,7 @@
 //! Beyond the distance at which a pixel gets [`MOST`] points to a side, the step grows with the
 //! distance; A kept the step and took minutes.
 
+use crate::accel::Accelerated as _;
 use glam::{DVec3, DVec4};
 
 use crate::frame::draw::Draw;

@@ -1,6 +1,7 @@
 //! Perspective-correct weights of single pixels in one triangle, in f64: for the alpha test, and
 //! for clipped triangles.
 
+use crate::accel::Accelerated as _;
 use fearless_simd::{Select as _, Simd, SimdBase as _, f64x8};
 use glam::DVec3;
 

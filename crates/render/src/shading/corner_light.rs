@@ -1,5 +1,6 @@
 //! The light at vertices for pixels that are coloured when their triangles are set up or drawn.
 
+use crate::accel::Accelerated as _;
 use std::ops::Range;
 
 use crate::simd::dispatch;
@@ -7,6 +8,7 @@ use fearless_simd::{Level, Simd, SimdBase as _};
 
 use super::light::{Lighting, Lit, Table};
 use super::light_terms::LightTerms;
+use crate::accel::{DrawOrder, Points};
 use crate::frame::FramePlan;
 use crate::frame::draw::{Back, Draw, Pipeline};
 use crate::lights::Batch;
@@ -20,7 +22,7 @@ use crate::shadow::rays::RayScratch;
 use crate::simd::{Lanes as _, Sixteen};
 use marraztu_core::accuracy::{Arithmetic, Coverage, Interpolation, LightAt};
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{DrawOrder, Normals, Points};
+use marraztu_core::scene::Normals;
 
 /// The light at the vertices of a frame. See [`CornerLight`].
 #[derive(Debug)]

@@ -4,6 +4,7 @@
 //! faces, hidden parts and anything outside of the picture are never lit. The light is the same
 //! whichever thread needs it first.
 
+use crate::accel::Accelerated as _;
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 

@@ -4,6 +4,7 @@
 //! triangles: see [`INSIDE`]. On request they are lifted to the surface that vertex normals
 //! suggest: see [`lift`].
 
+use crate::accel::Accelerated as _;
 use glam::{DMat3, DVec3};
 
 use super::barycentrics::Barycentrics;

@@ -25,6 +25,7 @@ use super::rounding::{QuantizeWithThresholds, Thresholds};
 use super::shadows::{BatchShadows, place_faces};
 use super::tiny::{CornerRows, TinyTriangles};
 use super::triangle_attributes::{TriangleAttributes, asks_ahead};
+use crate::accel::Accelerated as _;
 use crate::frame::FramePlan;
 use crate::frame::draw::{Back, Pipeline, Shaded, Stage};
 use crate::lights::{Batch, Rows};

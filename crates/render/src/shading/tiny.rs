@@ -19,6 +19,7 @@ use super::colors::Colors;
 use super::fragments::Fragments;
 use super::interpolate::Look;
 use super::triangle_attributes::{Edges, corners};
+use crate::accel::DrawOrder;
 use crate::lights::Batch;
 use crate::raster::vertices::fetch;
 use crate::screen::clip::ScreenVertex;
@@ -26,7 +27,6 @@ use crate::screen::coverage::Grid;
 use crate::screen::perspective::between;
 use crate::simd::{BATCH, Lanes as _, Sixteen, Vec3};
 use marraztu_core::accuracy::Interpolation;
-use marraztu_core::scene::DrawOrder;
 
 /// The triangles of a list of pixels, one for each pixel.
 #[derive(Debug)]

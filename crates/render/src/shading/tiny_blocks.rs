@@ -3,6 +3,7 @@
 //! They wait until their pixels fill a list, like other blocks that show one surface. If a triangle
 //! of the list is clipped or wide, its blocks are coloured one by one instead, with slots.
 
+use crate::accel::Accelerated as _;
 use prefetch_index::prefetch_index;
 
 use super::colors::Form;

@@ -4,6 +4,7 @@
 //! light of vertices) are fetched once, row after row, so that the fetches overlap. Then sixteen
 //! triangles at a time are prepared for the pixels that gather from them.
 
+use crate::accel::Accelerated as _;
 use crate::simd::dispatch;
 use fearless_simd::{
     Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, f32x16, i32x16, mask32x16,
@@ -11,6 +12,7 @@ use fearless_simd::{
 use glam::DVec3;
 
 use super::fragments::Fragments;
+use crate::accel::DrawOrder;
 use crate::frame::draw::{Back, Draw};
 use crate::frame::{Eye, FramePlan};
 use crate::raster::vertices::fetch_vertices;
@@ -19,7 +21,7 @@ use crate::screen::coverage::{Grid, NARROW_AREA, NARROW_SIDE, Snapped, doubled_a
 use crate::simd::gather::SLOTS;
 use crate::simd::{Kernel, Lanes, Number, Vec3};
 use marraztu_core::base::math::each;
-use marraztu_core::scene::{DrawOrder, Normals};
+use marraztu_core::scene::Normals;
 
 /// The attributes of some triangles of one draw. See the [module](self).
 #[derive(Debug)]

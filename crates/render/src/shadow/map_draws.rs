@@ -1,5 +1,6 @@
 //! Draws the pictures of shadow maps.
 
+use crate::accel::Accelerated as _;
 use fearless_simd::Level;
 use glam::{DMat3, DMat4, DVec3};
 use rayon::prelude::*;

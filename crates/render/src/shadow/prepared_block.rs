@@ -10,20 +10,20 @@ use glam::{DMat4, DVec3};
 
 use super::shaft::Around;
 use super::triangle::{Corners, Decided, ERROR, OFF_PLANE, Prepared, side};
+use crate::accel::{BVH_BLOCK, BvhBlock};
 use marraztu_core::base::math::each;
-use marraztu_core::scene::{TREE_BLOCK, TreeBlock};
 
 /// Eight triangles, prepared. A row is a line of the cache.
 #[derive(Debug, Default)]
 #[repr(align(64))]
 pub(crate) struct PreparedBlock {
     /// For each corner and axis the coordinates in world space.
-    corners: [[[f64; TREE_BLOCK]; 3]; 3],
+    corners: [[[f64; BVH_BLOCK]; 3]; 3],
     /// The normals of the planes through the light and each edge, and of the triangle's plane: see
     /// [`Prepared`].
-    normals: [[[f64; TREE_BLOCK]; 3]; 4],
+    normals: [[[f64; BVH_BLOCK]; 3]; 4],
     /// The errors of the edge functions, and of the plane's with that of the points.
-    errors: [[f64; TREE_BLOCK]; 4],
+    errors: [[f64; BVH_BLOCK]; 4],
 }
 
 /// A vector of each of eight triangles.
@@ -69,13 +69,9 @@ fn all<S: Simd>(simd: S, v: DVec3) -> Eight<S> {
 /// Corners in world space: the arithmetic of [`DMat4::transform_point3`], so that all parts of the
 /// renderer see the same bits.
 #[inline(always)]
-fn placed<S: Simd>(
-    simd: S,
-    world_from_object: &DMat4,
-    corner: &[[f32; TREE_BLOCK]; 3],
-) -> Eight<S> {
+fn placed<S: Simd>(simd: S, world_from_object: &DMat4, corner: &[[f32; BVH_BLOCK]; 3]) -> Eight<S> {
     let m = world_from_object;
-    let mut wide = [[0.0; TREE_BLOCK]; 3];
+    let mut wide = [[0.0; BVH_BLOCK]; 3];
     for (wide, row) in wide.iter_mut().zip(corner) {
         for (wide, x) in wide.iter_mut().zip(row) {
             *wide = f64::from(*x);
@@ -103,7 +99,7 @@ impl PreparedBlock {
     pub(super) fn set<S: Simd>(
         &mut self,
         simd: S,
-        (block, world_from_object): (&TreeBlock, &DMat4),
+        (block, world_from_object): (&BvhBlock, &DMat4),
         (around, light): (&Around, DVec3),
         reach: f64,
     ) -> u64 {
@@ -165,10 +161,10 @@ impl PreparedBlock {
         let (one, zero) = (f64x8::splat(simd, 1.0), f64x8::splat(simd, 0.0));
         let sign = of_light.simd_gt(zero).select(-one, one);
         let sure = of_light.abs().simd_gt(size * ERROR).to_bitmask();
-        if sure == (1 << TREE_BLOCK) - 1 {
+        if sure == (1 << BVH_BLOCK) - 1 {
             return (sign, sure);
         }
-        let mut signs = [0.0; TREE_BLOCK];
+        let mut signs = [0.0; BVH_BLOCK];
         sign.store_slice(&mut signs);
         let sided = sure | self.settle(light, sure, &mut signs);
         (f64x8::from_slice(simd, &signs), sided)
@@ -177,9 +173,9 @@ impl PreparedBlock {
     /// Decides by exact arithmetic on which side of the planes of triangles the light is, but of
     /// those that are `sure`. Returns those for which it is on one.
     #[inline(never)]
-    fn settle(&self, light: DVec3, sure: u64, signs: &mut [f64; TREE_BLOCK]) -> u64 {
+    fn settle(&self, light: DVec3, sure: u64, signs: &mut [f64; BVH_BLOCK]) -> u64 {
         let mut sided = 0;
-        for i in (0..TREE_BLOCK).filter(|i| sure >> i & 1 == 0) {
+        for i in (0..BVH_BLOCK).filter(|i| sure >> i & 1 == 0) {
             let of_light = side(&self.corners_of(i), light);
             signs[i] = if of_light > 0.0 { -1.0 } else { 1.0 };
             sided |= u64::from(of_light != 0.0) << i;
@@ -215,7 +211,7 @@ impl PreparedBlock {
 
     /// One of the triangles.
     pub(super) fn triangle(&self, i: usize) -> Prepared {
-        let vector = |rows: &[[f64; TREE_BLOCK]; 3]| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
+        let vector = |rows: &[[f64; BVH_BLOCK]; 3]| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
         let [a, b, c] = &self.corners;
         let [d, e, f, _] = &self.normals;
         Prepared { corners: each([a, b, c], vector), normals: each([d, e, f], vector) }
@@ -223,12 +219,12 @@ impl PreparedBlock {
 }
 
 #[inline(always)]
-fn rows<S: Simd>(simd: S, [x, y, z]: &[[f64; TREE_BLOCK]; 3]) -> Eight<S> {
+fn rows<S: Simd>(simd: S, [x, y, z]: &[[f64; BVH_BLOCK]; 3]) -> Eight<S> {
     [f64x8::from_slice(simd, x), f64x8::from_slice(simd, y), f64x8::from_slice(simd, z)]
 }
 
 #[inline(always)]
-fn store<S: Simd, const N: usize>(to: &mut [[[f64; TREE_BLOCK]; 3]; N], vectors: [Eight<S>; N]) {
+fn store<S: Simd, const N: usize>(to: &mut [[[f64; BVH_BLOCK]; 3]; N], vectors: [Eight<S>; N]) {
     // By index: moving vectors through iterators takes them through memory.
     for i in 0..N {
         for axis in 0..3 {

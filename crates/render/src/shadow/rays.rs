@@ -6,7 +6,7 @@ use super::packet::POINTS;
 use super::patches::{Patch, find_patches};
 use super::prepared_block::PreparedBlock;
 use super::shaft::Shaft;
-use marraztu_core::scene::TreeChild;
+use crate::accel::BvhChild;
 
 /// The origins of up to [`POINTS`] rays, in world space, all on one object.
 #[derive(Debug)]
@@ -119,7 +119,7 @@ pub(crate) struct RayScratch {
     pub(super) shaft: Shaft,
     pub(super) prepared: PreparedBlock,
     /// Nodes and leaves that are still to be visited, with the rays that reach them.
-    pub(super) stack: Vec<(TreeChild, u64)>,
+    pub(super) stack: Vec<(BvhChild, u64)>,
 }
 
 /// The rays of a packet in the space of one caster, for its boxes.

@@ -1,5 +1,6 @@
 //! Traces packets of rays through all casters of a frame.
 
+use crate::accel::Accelerated as _;
 use crate::simd::dispatch;
 use fearless_simd::{Level, Simd};
 use glam::{DMat4, DVec3};
@@ -12,6 +13,7 @@ use super::prepared_block::PreparedBlock;
 use super::rays::{Origins, RayCount, RayScratch};
 use super::shaft::Around;
 use super::triangle::{Corners, Prepared, is_between, reaches_behind};
+use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
 use crate::frame::FramePlan;
 use crate::frame::shadows::{Caster, CasterPart, Holes, ShadowSource, Shadows};
 use crate::simd::Vec3;
@@ -19,7 +21,7 @@ use crate::texture::sample::{brightness, sample};
 use crate::texture::uv::uv;
 use marraztu_core::accuracy::{Filter, ShadowMethod};
 use marraztu_core::base::math::each;
-use marraztu_core::scene::{Bounds, RayTree, TREE_BLOCK, TreeBlock, TreeChild, TreeNode, dvec3};
+use marraztu_core::scene::{Bounds, dvec3};
 
 /// How much farther a sun is than the largest coordinate of the scene.
 const SUN: f64 = (1_u64 << 60) as f64;
@@ -44,7 +46,7 @@ pub(crate) struct Tracer<'a> {
 struct InPlace<'a> {
     caster: &'a Caster,
     /// `None` with shadow maps.
-    tree: Option<&'a RayTree>,
+    tree: Option<&'a Bvh>,
     object_from_world: DMat4,
     /// Its bounds in object space.
     own: Bounds,
@@ -212,7 +214,7 @@ impl<'a> Tracer<'a> {
     fn behind_tree<S: Simd>(
         &self,
         simd: S,
-        (placed, tree): (&InPlace<'_>, &RayTree),
+        (placed, tree): (&InPlace<'_>, &Bvh),
         packet: &Packet,
         scratch: &mut RayScratch,
         mask: u64,
@@ -241,7 +243,7 @@ impl<'a> Tracer<'a> {
     fn behind_leaf<S: Simd>(
         &self,
         simd: S,
-        (placed, tree, leaf): (&InPlace<'_>, &RayTree, TreeChild),
+        (placed, tree, leaf): (&InPlace<'_>, &Bvh, BvhChild),
         packet: &Packet,
         scratch: &mut RayScratch,
         reached: u64,
@@ -252,13 +254,13 @@ impl<'a> Tracer<'a> {
         for block in &tree.blocks[leaf.blocks()] {
             let own = (block, &placed.caster.world_from_object);
             let possible = prepared.set(simd, own, (&packet.around, packet.light), origins.reach);
-            let possible = possible & ((1 << left.min(TREE_BLOCK)) - 1);
+            let possible = possible & ((1 << left.min(BVH_BLOCK)) - 1);
             if possible != 0 {
                 let block = (placed, block, &*prepared);
                 let rays = reached & !behind;
                 behind |= self.behind_block(simd, block, possible, (packet, origins), rays);
             }
-            left = left.saturating_sub(TREE_BLOCK);
+            left = left.saturating_sub(BVH_BLOCK);
         }
         behind
     }
@@ -269,7 +271,7 @@ impl<'a> Tracer<'a> {
     fn behind_block<S: Simd>(
         &self,
         simd: S,
-        (placed, block, prepared): (&InPlace<'_>, &TreeBlock, &PreparedBlock),
+        (placed, block, prepared): (&InPlace<'_>, &BvhBlock, &PreparedBlock),
         possible: u64,
         (packet, origins): (&Packet, &Origins),
         rays: u64,
@@ -367,7 +369,7 @@ impl RayScratch {
     /// Adds the children of a node that rays meet to those that are still to be visited. A leaf is
     /// tested ray by ray.
     #[inline(always)]
-    fn visit<S: Simd>(&mut self, simd: S, node: &TreeNode, reached: u64) {
+    fn visit<S: Simd>(&mut self, simd: S, node: &BvhNode, reached: u64) {
         for (child, [low, high]) in node.children() {
             if self.shaft.misses(simd, low, high) {
                 continue;
@@ -407,7 +409,7 @@ impl<'a> InPlace<'a> {
         let is_finite = low.is_finite() && high.is_finite() && object_from_world.is_finite();
         is_finite.then(|| Self {
             caster,
-            tree: method.map().is_none().then(|| mesh.ray_tree()),
+            tree: method.map().is_none().then(|| mesh.bvh()),
             object_from_world,
             own,
             low,

@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 use prefetch_index::prefetch_index;
 use rayon::prelude::*;
 
+use super::accelerator::AnyAccelerator;
 use super::closed::is_closed;
 use super::tangents::CornerTangents;
 use crate::base::math::each;
@@ -16,7 +17,7 @@ use crate::scene::mesh::edges::{Edge, Edges};
 use crate::scene::mesh::normals::shown_normal;
 use crate::scene::mesh::outlines::{Outlines, triangles};
 use crate::scene::mesh::{Shape, index};
-use crate::scene::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, NormalSource, RayTree, Triangle};
+use crate::scene::{Corner, Mesh, NONE, Triangle};
 
 /// The data for flat shading of a polygon, in one cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +27,15 @@ pub struct Facet {
     pub centre: [f32; 3],
     /// See [`Mesh::polygon_normals`].
     pub normal: [f32; 3],
+}
+
+/// The normals of vertices that light uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NormalSource {
+    /// The means of the normals of the faces around each vertex.
+    Computed,
+    /// The file's normals, for polygons that have them.
+    File,
 }
 
 /// A kind of data that is derived from a mesh when it is first needed.
@@ -41,21 +51,17 @@ pub enum Derived {
     PolygonNormals,
     /// [`Mesh::facets`].
     Facets,
-    /// [`Mesh::draw_order`].
-    DrawOrder,
     /// The tangents of corners, beside one kind of normals.
     Tangents(NormalSource),
-    /// [`Mesh::edge_order`], [`Mesh::edges`] and [`Mesh::edge_polygons`].
-    EdgeOrder,
-    /// [`Mesh::ray_tree`].
-    RayTree,
+    /// [`Mesh::edges`] and [`Mesh::edge_polygons`].
+    Edges,
 }
 
 /// The data that has been computed.
 #[derive(Default)]
 pub(crate) struct Found {
     corners: OnceLock<Vec<Corner>>,
-    order: OnceLock<DrawOrder>,
+    pub(super) draw_order: AnyAccelerator,
     /// With computed normals, and with those of the file.
     pub(super) tangents: [OnceLock<Vec<CornerTangents>>; 2],
 }
@@ -67,9 +73,9 @@ pub(crate) struct FoundOfShape {
     normals: OnceLock<Vec<[f32; 3]>>,
     facets: OnceLock<Vec<Facet>>,
     edges: OnceLock<Edges>,
-    edge_order: OnceLock<EdgeOrder>,
+    pub(super) edge_order: AnyAccelerator,
     closed: OnceLock<bool>,
-    ray_tree: OnceLock<RayTree>,
+    pub(super) bvh: AnyAccelerator,
 }
 
 impl Mesh {
@@ -114,10 +120,8 @@ impl Mesh {
             Derived::PolygonOf => _ = self.triangles(),
             Derived::PolygonNormals => _ = self.polygon_normals(),
             Derived::Facets => _ = self.facets(),
-            Derived::DrawOrder => _ = self.draw_order(),
             Derived::Tangents(source) => _ = self.tangents(source),
-            Derived::EdgeOrder => _ = self.edge_order(),
-            Derived::RayTree => _ = self.ray_tree(),
+            Derived::Edges => _ = self.edge_table(),
         }
     }
 
@@ -147,10 +151,27 @@ impl Mesh {
         each(self.triangles()[number].corners, |corner| corner as usize)
     }
 
-    /// The vertex of a corner.
+    /// The vertex of a corner, as an index into [`Self::positions`].
     #[inline(always)]
-    pub(super) fn vertex_of(&self, corner: usize) -> usize {
-        self.shape.corners[corner] as usize
+    #[must_use]
+    pub fn vertex_of(&self, corner: usize) -> u32 {
+        self.shape.corners[corner]
+    }
+
+    /// The point of a corner, as an index into [`Self::points`]; with a normal of the file if
+    /// `source` asks for it and the polygon has one.
+    #[must_use]
+    pub fn point_of(&self, corner: usize, source: NormalSource) -> u32 {
+        match source {
+            NormalSource::Computed => self.corners.smooth(&self.shape.corners, corner),
+            NormalSource::File => self.corners.filed(&self.shape.corners, corner),
+        }
+    }
+
+    /// Whether each vertex has one computed normal, so points are numbered as vertices.
+    #[must_use]
+    pub const fn has_smooth_vertices(&self) -> bool {
+        self.corners.are_vertices()
     }
 
     /// The uv coordinates of a triangle's corners; `None` if one has none.
@@ -227,24 +248,6 @@ impl Mesh {
         *get_or_compute(&self.shape.found.closed, || is_closed(&self.outlines()))
     }
 
-    /// The triangles and vertices in the order in which they are drawn fastest.
-    #[must_use]
-    pub fn draw_order(&self) -> &DrawOrder {
-        get_or_compute(&self.found.order, || DrawOrder::along_curve(self))
-    }
-
-    /// Draws the mesh in the order of its file, unless a better one has been computed: for a
-    /// program that draws one picture and ends, that is not worth its time.
-    pub fn draw_as_filed(&self) {
-        get_or_compute(&self.found.order, || DrawOrder::as_filed(self));
-    }
-
-    /// The edges in the order in which they are drawn fastest.
-    #[must_use]
-    pub fn edge_order(&self) -> &EdgeOrder {
-        get_or_compute(&self.shape.found.edge_order, || EdgeOrder::new(self))
-    }
-
     /// The sides of all polygons, each once.
     #[must_use]
     pub fn edges(&self) -> &[Edge] {
@@ -259,12 +262,6 @@ impl Mesh {
 
     fn edge_table(&self) -> &Edges {
         get_or_compute(&self.shape.found.edges, || Edges::of(self))
-    }
-
-    /// The triangles in a tree of boxes, in which rays find those that they may meet.
-    #[must_use]
-    pub fn ray_tree(&self) -> &RayTree {
-        get_or_compute(&self.shape.found.ray_tree, || RayTree::new(self))
     }
 
     /// The outlines of all polygons.

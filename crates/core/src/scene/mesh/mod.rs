@@ -9,14 +9,12 @@
 //!
 //! The fields are private and the constructor checks them, so no index is ever out of range.
 
+pub(super) mod accelerator;
 mod around;
 mod bodies;
 mod build;
 pub(super) mod cache;
 mod closed;
-pub(super) mod clusters;
-pub(super) mod draw_order;
-pub(super) mod edge_order;
 pub(super) mod edges;
 mod fans;
 mod normals;
@@ -24,7 +22,6 @@ mod offset;
 pub(super) mod outlines;
 mod placeholder;
 mod points;
-pub(super) mod ray_tree;
 mod splits;
 mod tangents;
 

@@ -1,12 +1,13 @@
 //! Rays against an oracle that shares no code: determinants of whole numbers in 128 bits.
 
+use crate::accel::Accelerated as _;
 use glam::DMat4;
 
 use super::*;
 use marraztu_core::base::Shared;
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    Derived, ItemId, LoadOptions, Mesh, MeshSource, Model, NONE, ObjectId, Part, SourceCorner,
+    ItemId, LoadOptions, Mesh, MeshSource, Model, NONE, ObjectId, Part, SourceCorner,
 };
 
 type Point = [i128; 3];
@@ -40,7 +41,7 @@ fn mesh_of(triangles: &[[Point; 3]]) -> Shared<Model> {
         ..MeshSource::default()
     };
     let mesh = Mesh::new(source).expect("a good mesh");
-    rayon::scope(|_| mesh.prepare(Derived::RayTree));
+    rayon::scope(|_| _ = mesh.bvh());
     Shared::new(Model {
         name: "mesh".to_owned(),
         source: None,
@@ -177,7 +178,7 @@ fn twenty_thousand_triangles_in_one_place_are_one_and_take_no_longer() {
     let mut triangles = vec![[[0, 0, 0], [4, 0, 0], [0, 4, 0]]; 20_000];
     triangles.push([[9, 9, 9], [9, 9, 8], [9, 8, 9]]);
     let model = mesh_of(&triangles);
-    let tree = model.mesh.ray_tree();
+    let tree = model.mesh.bvh();
     assert_eq!(tree.leaf(tree.root).count(), 2);
     let shadows = shadows_of(&[(triangles, [0; 3])], [1, 1, 5]);
     assert_eq!(traced(&shadows, &[[1, 1, -1], [5, 5, -1], [1, 1, 0]]), 0b001);
@@ -194,7 +195,7 @@ fn a_tree_holds_every_triangle_once_inside_its_boxes() {
         .filter(|[a, b, c]| a != b && b != c && c != a)
         .collect();
     let model = mesh_of(&triangles);
-    let tree = model.mesh.ray_tree();
+    let tree = model.mesh.bvh();
     let mut seen = vec![0; triangles.len()];
     let mut open = vec![(tree.root, [[f32::NEG_INFINITY; 3], [f32::INFINITY; 3]])];
     while let Some((child, [low, high])) = open.pop() {

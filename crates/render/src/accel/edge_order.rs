@@ -1,16 +1,18 @@
 //! The edges of a mesh in the order in which they are drawn fastest.
 //!
-//! Edges follow the vertices as [`DrawOrder`](crate::scene::DrawOrder) numbers them, so that
+//! Edges follow the vertices as [`DrawOrder`](crate::accel::DrawOrder) numbers them, so that
 //! neighbours in space are neighbours in memory. Each edge keeps its number among the mesh's edges,
 //! which decides between equal depths; the order is therefore invisible.
 
-use crate::scene::mesh::index;
-use crate::scene::{Mesh, NONE};
+use marraztu_core::scene::{Accelerator, AcceleratorPlace, Mesh, NONE};
+
+use super::Accelerated as _;
+use super::draw_order::index;
 
 /// An edge as it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawEdge {
-    /// The vertices at its ends, as indices into [`DrawOrder::x`](crate::scene::DrawOrder::x);
+    /// The vertices at its ends, as indices into [`DrawOrder::x`](crate::accel::DrawOrder::x);
     /// [`NONE`] if no triangle uses them.
     pub vertices: [u32; 2],
     /// Its two polygons, or its only one twice; the second is [`NONE`] if it has more.
@@ -28,14 +30,15 @@ pub struct EdgeOrder {
     pub triangles: bool,
 }
 
-impl EdgeOrder {
-    /// The order for a mesh.
-    pub(crate) fn new(mesh: &Mesh) -> Self {
+impl Accelerator for EdgeOrder {
+    const PLACE: AcceleratorPlace = AcceleratorPlace::EdgeOrder;
+
+    fn build(mesh: &Mesh) -> Self {
         let mut vertices = vec![NONE; mesh.positions().len()];
         for triangle in &mesh.draw_order().triangles {
             let corners = mesh.triangle(triangle.number as usize);
             for (corner, vertex) in corners.into_iter().zip(triangle.vertices) {
-                vertices[mesh.shape.corners[corner] as usize] = vertex;
+                vertices[mesh.vertex_of(corner) as usize] = vertex;
             }
         }
         let edges = mesh.edges().iter().enumerate().map(|(number, edge)| DrawEdge {
@@ -61,7 +64,7 @@ impl EdgeOrder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{MeshSource, Part, SourceCorner};
+    use marraztu_core::scene::{MeshSource, Part, SourceCorner};
 
     /// A roof of two triangles over a square.
     #[test]

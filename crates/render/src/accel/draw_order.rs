@@ -10,8 +10,10 @@ use prefetch_index::prefetch_index;
 use rayon::prelude::*;
 
 use super::clusters::{Cluster, DrawTriangle, clusters};
-use crate::base::lists::sorted_by_keys;
-use crate::scene::{Bounds, Mesh, NONE, dvec3};
+use marraztu_core::base::lists::sorted_by_keys;
+use marraztu_core::scene::{
+    Accelerator, AcceleratorPlace, Bounds, Mesh, NONE, NormalSource, dvec3,
+};
 
 /// The triangles and vertices of a mesh in the order in which they are drawn fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -48,15 +50,6 @@ pub struct Points {
     pub vertices: Vec<u32>,
 }
 
-/// The normals of vertices that light uses.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NormalSource {
-    /// The means of the normals of the faces around each vertex.
-    Computed,
-    /// The file's normals, for polygons that have them.
-    File,
-}
-
 impl Points {
     /// The points of a triangle with these vertices, in the draw order `order`.
     #[inline(always)]
@@ -74,9 +67,17 @@ impl Points {
     }
 }
 
+impl Accelerator for DrawOrder {
+    const PLACE: AcceleratorPlace = AcceleratorPlace::DrawOrder;
+
+    fn build(mesh: &Mesh) -> Self {
+        Self::along_curve(mesh)
+    }
+}
+
 impl DrawOrder {
     /// Along a Morton curve.
-    pub(crate) fn along_curve(mesh: &Mesh) -> Self {
+    fn along_curve(mesh: &Mesh) -> Self {
         let Some(bounds) = mesh.bounds() else { return Self::default() };
         let count = mesh.triangle_count();
         let key = |number: usize| morton(mesh, bounds, vertices(mesh, number));
@@ -95,7 +96,7 @@ impl DrawOrder {
     }
 
     /// In the order of the file.
-    pub(crate) fn as_filed(mesh: &Mesh) -> Self {
+    pub(super) fn as_filed(mesh: &Mesh) -> Self {
         let triangle = |number| DrawTriangle { vertices: vertices(mesh, number as usize), number };
         let numbers = (0..index(mesh.triangle_count())).into_par_iter();
         Self::of(mesh, numbers.map(triangle).collect())
@@ -120,8 +121,7 @@ impl DrawOrder {
         };
         let [x, y, z] = [0, 1, 2].map(coordinate);
         let mut order = Self { x, y, z, triangles, ..Self::default() };
-        let vertices = &mesh.shape.corners;
-        order.smooth = if mesh.corners.are_vertices() {
+        order.smooth = if mesh.has_smooth_vertices() {
             let normal = |vertex: &u32| mesh.points()[*vertex as usize].normal;
             Points {
                 of: Vec::new(),
@@ -129,10 +129,10 @@ impl DrawOrder {
                 vertices: Vec::new(),
             }
         } else {
-            order.points_of(mesh, |corner| mesh.corners.smooth(vertices, corner))
+            order.points_of(mesh, NormalSource::Computed)
         };
         if mesh.has_file_normals() {
-            order.filed = order.points_of(mesh, |corner| mesh.corners.filed(vertices, corner));
+            order.filed = order.points_of(mesh, NormalSource::File);
         }
         order
     }
@@ -168,13 +168,13 @@ impl DrawOrder {
         }
     }
 
-    fn points_of(&self, mesh: &Mesh, pick: impl Fn(usize) -> u32) -> Points {
+    fn points_of(&self, mesh: &Mesh, source: NormalSource) -> Points {
         let mut points = Points::default();
         let mut places = vec![NONE; mesh.points().len()];
         for triangle in &self.triangles {
             let corners = mesh.triangle(triangle.number as usize);
             let of = std::array::from_fn(|i| {
-                let point = pick(corners[i]) as usize;
+                let point = mesh.point_of(corners[i], source) as usize;
                 if places[point] == NONE {
                     places[point] = index(points.normals.len());
                     points.normals.push(mesh.points()[point].normal);
@@ -203,7 +203,7 @@ impl DrawOrder {
 
 /// The vertices of a triangle, as the mesh numbers them.
 fn vertices(mesh: &Mesh, number: usize) -> [u32; 3] {
-    mesh.triangle(number).map(|corner| mesh.shape.corners[corner])
+    mesh.triangle(number).map(|corner| mesh.vertex_of(corner))
 }
 
 /// The position of a triangle's centre on the curve, with ten bits for each axis.
@@ -228,7 +228,7 @@ const fn spread(bits: u32) -> u32 {
     (bits | bits << 2) & 0x0924_9249
 }
 
-fn index(i: usize) -> u32 {
+pub(super) fn index(i: usize) -> u32 {
     u32::try_from(i).expect("the mesh has checked that everything can be numbered")
 }
 

@@ -1,4 +1,5 @@
-//! The triangles of a mesh in a tree of boxes, in which rays find the few that they may meet.
+//! A bounding volume hierarchy (BVH) of a mesh's triangles, in which rays find the few that they may
+//! meet.
 //!
 //! `obvhs` builds the tree from boxes that are brought to the unit cube, so that it meets no
 //! infinity. It needs quadratic time for boxes that coincide, so equal boxes become one leaf first.
@@ -19,39 +20,40 @@ use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
 
-use super::index;
-use crate::base::math::each;
-use crate::scene::Mesh;
+use marraztu_core::base::math::each;
+use marraztu_core::scene::{Accelerator, AcceleratorPlace, Mesh};
+
+use super::draw_order::index;
 
 /// The triangles of a mesh in a tree of boxes.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct RayTree {
+pub struct Bvh {
     /// The root; it has no triangles and no node if the mesh has no triangle with an area.
-    pub root: TreeChild,
+    pub root: BvhChild,
     /// The inner nodes.
-    pub nodes: Vec<TreeNode>,
+    pub nodes: Vec<BvhNode>,
     /// The triangles, leaf by leaf, eight at a time.
-    pub blocks: Vec<TreeBlock>,
+    pub blocks: Vec<BvhBlock>,
 }
 
 /// The triangles of a block.
-pub const TREE_BLOCK: usize = 8;
+pub const BVH_BLOCK: usize = 8;
 
 /// Up to eight triangles of a leaf. The last is repeated in what is left of its block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(64))]
-pub struct TreeBlock {
+pub struct BvhBlock {
     /// For each corner and axis the coordinates in object space.
-    pub corners: [[[f32; TREE_BLOCK]; 3]; 3],
+    pub corners: [[[f32; BVH_BLOCK]; 3]; 3],
     /// Their indices in [`Mesh::triangles`].
-    pub numbers: [u32; TREE_BLOCK],
+    pub numbers: [u32; BVH_BLOCK],
 }
 
-impl TreeBlock {
+impl BvhBlock {
     /// The block of some triangles, at least one.
-    fn of(triangles: &[TreeTriangle]) -> Self {
+    fn of(triangles: &[BvhTriangle]) -> Self {
         let mut block = Self::default();
-        for i in 0..TREE_BLOCK {
+        for i in 0..BVH_BLOCK {
             let triangle = &triangles[i.min(triangles.len() - 1)];
             block.numbers[i] = triangle.number;
             for (rows, corner) in block.corners.iter_mut().zip(triangle.corners) {
@@ -70,8 +72,8 @@ impl TreeBlock {
 
     /// One of its triangles.
     #[must_use]
-    pub fn triangle(&self, i: usize) -> TreeTriangle {
-        TreeTriangle {
+    pub fn triangle(&self, i: usize) -> BvhTriangle {
+        BvhTriangle {
             corners: self.corners.map(|rows| rows.map(|row| row[i])),
             number: self.numbers[i],
         }
@@ -85,36 +87,36 @@ const WIDTH: usize = 8;
 /// bound by the latency of memory, and so have few levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
-pub struct TreeNode {
+pub struct BvhNode {
     boxes: [Box3; WIDTH],
-    children: [TreeChild; WIDTH],
+    children: [BvhChild; WIDTH],
 }
 
-impl Default for TreeNode {
+impl Default for BvhNode {
     fn default() -> Self {
-        Self { boxes: [EMPTY; WIDTH], children: [TreeChild::NONE; WIDTH] }
+        Self { boxes: [EMPTY; WIDTH], children: [BvhChild::NONE; WIDTH] }
     }
 }
 
-impl TreeNode {
+impl BvhNode {
     /// The children, each with the least and the largest coordinates of its box.
     #[inline(always)]
-    pub fn children(&self) -> impl Iterator<Item = (&TreeChild, &[[f32; 3]; 2])> {
-        let children = self.children.iter().take_while(|child| **child != TreeChild::NONE);
+    pub fn children(&self) -> impl Iterator<Item = (&BvhChild, &[[f32; 3]; 2])> {
+        let children = self.children.iter().take_while(|child| **child != BvhChild::NONE);
         children.zip(&self.boxes)
     }
 }
 
 /// A child of a node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TreeChild {
-    /// The index of its node in [`RayTree::nodes`], or of its first block in [`RayTree::blocks`].
+pub struct BvhChild {
+    /// The index of its node in [`Bvh::nodes`], or of its first block in [`Bvh::blocks`].
     pub first: u32,
     /// The number of its triangles if it is a leaf, else 0.
     pub count: u32,
 }
 
-impl TreeChild {
+impl BvhChild {
     /// No child.
     const NONE: Self = Self { first: u32::MAX, count: 0 };
 
@@ -122,13 +124,13 @@ impl TreeChild {
     #[must_use]
     pub const fn blocks(self) -> Range<usize> {
         let first = self.first as usize;
-        first..first + (self.count as usize).div_ceil(TREE_BLOCK)
+        first..first + (self.count as usize).div_ceil(BVH_BLOCK)
     }
 }
 
 /// A triangle of the tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TreeTriangle {
+pub struct BvhTriangle {
     /// Its corners in object space.
     pub corners: [[f32; 3]; 3],
     /// Its index in [`Mesh::triangles`].
@@ -148,12 +150,14 @@ const NODE_COST: f32 = 4.0;
 /// The number of boxes up to which a tree is one leaf.
 const FEW: usize = 2;
 
-impl RayTree {
+impl Accelerator for Bvh {
+    const PLACE: AcceleratorPlace = AcceleratorPlace::Bvh;
+
     /// Builds the tree of a mesh. A million triangles take a second, so drawing threads do it.
     ///
     /// # Panics
     /// In builds with debug assertions, on a thread that does not draw, such as the window's.
-    pub(crate) fn new(mesh: &Mesh) -> Self {
+    fn build(mesh: &Mesh) -> Self {
         debug_assert!(
             rayon::current_thread_index().is_some(),
             "a tree of boxes is built on a thread that does not draw: prepare it before"
@@ -181,17 +185,19 @@ impl RayTree {
         collapse(&mut tree, LEAF, NODE_COST);
         Self::flattened(&tree, &groups)
     }
+}
 
+impl Bvh {
     /// Adds the triangles of a leaf.
-    fn add_leaf(&mut self, triangles: &[TreeTriangle]) -> TreeChild {
-        let child = TreeChild { first: index(self.blocks.len()), count: index(triangles.len()) };
-        self.blocks.extend(triangles.chunks(TREE_BLOCK).map(TreeBlock::of));
+    fn add_leaf(&mut self, triangles: &[BvhTriangle]) -> BvhChild {
+        let child = BvhChild { first: index(self.blocks.len()), count: index(triangles.len()) };
+        self.blocks.extend(triangles.chunks(BVH_BLOCK).map(BvhBlock::of));
         child
     }
 
     /// The triangles of a leaf.
-    pub fn leaf(&self, child: TreeChild) -> impl Iterator<Item = TreeTriangle> + '_ {
-        let place = move |i: usize| (child.first as usize + i / TREE_BLOCK, i % TREE_BLOCK);
+    pub fn leaf(&self, child: BvhChild) -> impl Iterator<Item = BvhTriangle> + '_ {
+        let place = move |i: usize| (child.first as usize + i / BVH_BLOCK, i % BVH_BLOCK);
         (0..child.count as usize).map(place).map(|(block, i)| self.blocks[block].triangle(i))
     }
 
@@ -206,10 +212,10 @@ impl RayTree {
             let node = &tree.nodes[place];
             let own = if node.prim_count == 0 {
                 let at = flat.nodes.len();
-                flat.nodes.push(TreeNode::default());
+                flat.nodes.push(BvhNode::default());
                 let children = children_of(tree, place).into_iter().enumerate();
                 open.extend(children.map(|(i, child)| (child, Some((at, i)))).rev());
-                TreeChild { first: index(at), count: 0 }
+                BvhChild { first: index(at), count: 0 }
             } else {
                 let leaf = node.first_index as usize..(node.first_index + node.prim_count) as usize;
                 triangles.clear();
@@ -233,8 +239,8 @@ impl RayTree {
         // Children have larger numbers than their parents.
         for at in (0..flat.nodes.len()).rev() {
             for child in 0..WIDTH {
-                let TreeChild { first, count } = flat.nodes[at].children[child];
-                if count == 0 && first != TreeChild::NONE.first {
+                let BvhChild { first, count } = flat.nodes[at].children[child];
+                if count == 0 && first != BvhChild::NONE.first {
                     let around = flat.nodes[first as usize].boxes.into_iter().fold(EMPTY, union);
                     flat.nodes[at].boxes[child] = around;
                 }
@@ -269,7 +275,7 @@ fn children_of(tree: &Bvh2, node: usize) -> Vec<usize> {
 #[derive(Debug, Default)]
 struct Groups {
     boxes: Vec<Box3>,
-    triangles: Vec<TreeTriangle>,
+    triangles: Vec<BvhTriangle>,
     /// The first triangle of each group, and the end of the last.
     starts: Vec<usize>,
 }
@@ -281,19 +287,20 @@ impl Groups {
         let positions = mesh.positions();
         let corners = |number: u32| {
             // 0 and -0 are one place.
-            let place = |corner: usize| each(positions[mesh.vertex_of(corner)], |x| x + 0.0);
+            let place =
+                |corner: usize| each(positions[mesh.vertex_of(corner) as usize], |x| x + 0.0);
             each(mesh.triangle(number as usize), place)
         };
-        let mut all: Vec<TreeTriangle> = (0..index(mesh.triangle_count()))
+        let mut all: Vec<BvhTriangle> = (0..index(mesh.triangle_count()))
             .into_par_iter()
-            .map(|number| TreeTriangle { corners: corners(number), number })
+            .map(|number| BvhTriangle { corners: corners(number), number })
             .filter(|it| {
                 let [a, b, c] = it.corners;
                 a != b && b != c && c != a
             })
             .collect();
-        let part = |it: &TreeTriangle| mesh.polygon_parts()[mesh.polygon_of(it.number) as usize];
-        let key = |it: &TreeTriangle| (bits(&box_of(&it.corners)), part(it), sorted(&it.corners));
+        let part = |it: &BvhTriangle| mesh.polygon_parts()[mesh.polygon_of(it.number) as usize];
+        let key = |it: &BvhTriangle| (bits(&box_of(&it.corners)), part(it), sorted(&it.corners));
         all.par_sort_unstable_by_key(|it| (bits(&box_of(&it.corners)), it.number));
         let mut groups = Self::default();
         for own in all.chunk_by_mut(|a, b| box_of(&a.corners) == box_of(&b.corners)) {
@@ -354,12 +361,12 @@ fn in_unit_cube(boxes: &[Box3]) -> Vec<Aabb> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::MeshSource;
+    use marraztu_core::scene::MeshSource;
 
     #[test]
     #[should_panic(expected = "built on a thread that does not draw")]
     fn no_thread_but_those_that_draw_builds_a_tree() {
         let mesh = Mesh::new(MeshSource::default()).expect("an empty mesh");
-        RayTree::new(&mesh);
+        Bvh::build(&mesh);
     }
 }
