@@ -43,6 +43,7 @@
 //! Modules use those before them in this list (`tests/rooms.rs`):
 //!
 //! * `cancellation`, `work_stealing`: parallel work that can be given up.
+//! * [`accel`]: structures built once for each mesh: draw order, clusters, BVH, edge order.
 //! * [`simd`]: the numbers that light is computed in, eight or sixteen at a time.
 //! * `texture`: colours of textures at a position, and their mip maps.
 //! * [`lights`]: one file and one table row for each kind of light; the Phong terms.
