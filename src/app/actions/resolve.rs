@@ -1,8 +1,8 @@
-//! Resolves an action to what it means for the scene as it is now.
+//! Resolves an action to its effect on the current scene.
 //!
-//! Whether an action is available is decided here as well, by resolving it: a disabled button, a
-//! refusal in the status line and the action's effect can never disagree. The matches are
-//! exhaustive, so that a new action does not compile until it has a meaning.
+//! This also decides whether an action is available. A disabled button, a refusal in the status
+//! line and the effect of the action therefore always agree. The matches are exhaustive, so a new
+//! action does not compile until it has an effect.
 
 use egui::ThemePreference;
 
@@ -30,13 +30,13 @@ use marraztu_io::Helpers;
 
 type Resolved = Result<Intent, Refusal>;
 
-/// The actions that add a light with a position or direction of its own, in the order of menus.
+/// The actions that add a light with a separate position or direction, in the order of menus.
 pub(crate) const ADD_LIGHTS: [Action; 3] = [Action::AddSun, Action::AddBulb, Action::AddSpot];
 
-/// What `action` means in this phase of a gesture.
+/// Returns the effect of `action` in this phase of a gesture.
 ///
 /// # Errors
-/// Why it is not available.
+/// The reason why the action is not available.
 pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Resolved {
     let (scene, view) = (&state.scene, &state.view);
     let others = state.others();
@@ -267,7 +267,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
     }
 }
 
-/// The interface in another size, within half and three times.
+/// Scales the interface, from half to three times its size.
 fn zoom(state: &State, by: f32) -> Resolved {
     let to = ((state.zoom + by) * 10.0).round() / 10.0;
     if !(0.5..=3.0).contains(&to) {
@@ -309,7 +309,7 @@ fn add_light(state: &State, kind: LightKind) -> Resolved {
     Ok(Intent::Add(command, Subject::Light))
 }
 
-/// Whether the keys act on objects.
+/// Fails unless the keys act on objects.
 fn object_subject(view: &View) -> Result<(), Refusal> {
     if view.subject == Subject::Object { Ok(()) } else { Err(Refusal::OnlyObjects) }
 }
@@ -326,14 +326,14 @@ fn helpers(state: &State, change: impl FnOnce(&mut Helpers)) -> Resolved {
     Ok(Intent::Helpers(helpers))
 }
 
-/// A change of the view that may be refused.
+/// Changes the view in a way that may be refused.
 fn seen(state: &State, change: impl FnOnce(&mut View) -> Result<(), Refusal>) -> Resolved {
     let mut view = state.view.clone();
     change(&mut view)?;
     Ok(Intent::View(Box::new(view)))
 }
 
-/// A change of the view that is always possible.
+/// Changes the view in a way that is always possible.
 fn viewed(state: &State, change: impl FnOnce(&mut View)) -> Resolved {
     let mut view = state.view.clone();
     change(&mut view);
@@ -348,7 +348,8 @@ fn transformation(state: &State, transformation: Transformation) -> Resolved {
     seen(state, |view| selection::set_transformation(view, transformation))
 }
 
-/// Shows or hides a panel; in a narrow window, unfolds or folds one that stands beside the picture.
+/// Shows or hides a panel. In a narrow window, panels at the sides of the picture are unfolded or
+/// folded instead.
 fn toggle(state: &State, panel: Panel) -> Resolved {
     match panel.info().dock.side().filter(|_| state.narrow) {
         Some(side) => {
@@ -359,13 +360,13 @@ fn toggle(state: &State, panel: Panel) -> Resolved {
     }
 }
 
-/// The one of two that `now` is not.
+/// Returns the one of two values that differs from `now`.
 fn other<T: Copy + PartialEq>(now: T, first: T, second: T) -> T {
     if now == first { second } else { first }
 }
 
 impl Action {
-    /// Whether the action is available; if not, the reason, as the end of "Not now: ...".
+    /// Checks whether the action is available. The reason, if not, completes "Not now: ...".
     ///
     /// # Errors
     /// The reason, in words.

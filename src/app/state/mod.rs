@@ -339,8 +339,8 @@ impl State {
         }
     }
 
-    /// Returns the phase of the next change in `gesture`. The first change of a gesture begins a
-    /// step of the history.
+    /// Returns the phase of the next change in `gesture`. The first change pushes the old
+    /// transform.
     #[must_use]
     pub fn phase(&self, gesture: Gesture) -> GesturePhase {
         if gesture != Gesture::Whole && gesture == self.gesture {

@@ -202,8 +202,7 @@ impl Grab {
             Handle::Axis(axis) | Handle::Ring(axis) => Some(axis),
             Handle::Plane(_) | Handle::Outer | Handle::Middle => None,
         });
-        // Without an axis, a plane moves along both of its axes, and all other handles along all
-        // three.
+        // A plane applies the number to both of its axes, a handle without an axis to all three.
         let all = match self.handle {
             Handle::Plane(across) => DVec3::ONE - across.unit(),
             Handle::Axis(_) | Handle::Ring(_) | Handle::Outer | Handle::Middle => DVec3::ONE,
