@@ -1,8 +1,8 @@
 //! Finds the missing files of a scene.
 //!
-//! The scene is open already, with a placeholder for each. Once the user has found one, it takes
-//! the place of its placeholder in one step, and others that are found in the same folder are
-//! offered.
+//! The scene is already open, with a placeholder for each missing file. When the user has found
+//! one, it replaces its placeholder in one step of undo. Other missing files in the same folder are
+//! then offered.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,8 @@ impl App {
         }
     }
 
-    /// Asks where a missing file is. If none is named and several are missing, lists them first.
+    /// Asks for the location of a missing file. If none is named and several are missing, lists
+    /// them first.
     pub(crate) fn find_missing(&mut self, ctx: &Context, file: Option<PathBuf>) {
         let missing = self.state.scene.missing_files();
         let only = missing.first().filter(|_| missing.len() == 1);
@@ -87,7 +88,7 @@ impl App {
         });
     }
 
-    /// Puts files that were found into the place of their placeholders, in one step.
+    /// Replaces placeholders by the files found, in one step of undo.
     pub(crate) fn take_found(&mut self, all: Vec<Found>) {
         let mut content = Content::default();
         let (mut pairs, mut details) = (Vec::new(), Vec::new());
@@ -132,17 +133,17 @@ impl App {
     }
 }
 
-/// What takes the place of placeholders.
+/// The replacements of placeholders.
 #[derive(Default)]
 struct Content {
-    /// The models before and after.
+    /// The placeholders, and the models that replace them.
     models: Vec<(Shared<Model>, Shared<Model>)>,
-    /// The paths that the textures had, and the textures.
+    /// The paths of missing textures, and the textures found.
     textures: Vec<(PathBuf, Shared<Texture>)>,
 }
 
 impl Content {
-    /// The commands that replace the placeholders of a scene.
+    /// Creates the commands that replace the placeholders of a scene.
     fn commands(&self, scene: &Scene) -> Vec<Command> {
         let objects = scene.objects.iter().filter_map(|(id, object)| {
             let object = self.object(object)?;
@@ -156,7 +157,7 @@ impl Content {
         objects.chain(cameras).collect()
     }
 
-    /// An object with what was found; `None` if nothing of it was.
+    /// Returns an object with the files found; `None` if it has none of them.
     fn object(&self, object: &Object) -> Option<Object> {
         let model = self.model(&object.model);
         let texture = object.texture.as_ref().and_then(|texture| self.texture(texture));
@@ -178,7 +179,7 @@ impl Content {
         found.map(|(_, model)| model.clone())
     }
 
-    /// The texture in the place of a placeholder, laid over the surface as that was.
+    /// Returns the replacement of a placeholder texture, with its mapping.
     fn texture(&self, before: &Texture) -> Option<Shared<Texture>> {
         let is_it = |(old, _): &&(PathBuf, _)| before.is_placeholder() && before.source == *old;
         let (_, found) = self.textures.iter().find(is_it)?;
@@ -187,7 +188,7 @@ impl Content {
     }
 }
 
-/// The placeholders of a model's file, each once.
+/// Lists the placeholder models of a file, each once.
 fn models_of(scene: &Scene, file: &Path) -> Vec<Shared<Model>> {
     let of_objects = scene.objects.iter().map(|(_, object)| &object.model);
     let of_cameras = scene.cameras.iter().map(|(_, camera)| &camera.model);
@@ -201,14 +202,14 @@ fn models_of(scene: &Scene, file: &Path) -> Vec<Shared<Model>> {
     models
 }
 
-/// Whether an object has a placeholder of this texture.
+/// Returns whether an object has a placeholder of this texture.
 fn textures_of(scene: &Scene, file: &Path) -> bool {
     let mut textures = scene.objects.iter().filter_map(|(_, object)| object.texture.as_ref());
     textures.any(|texture| texture.is_placeholder() && texture.source == file)
 }
 
-/// The old and the new paths of missing files that are in the folder of a found one, or at the same
-/// place in a folder that was moved as a whole.
+/// Pairs the old paths of missing files with new ones: in the folder of a found file, or at the
+/// same relative path in a folder that was moved as a whole.
 fn nearby(missing: &BTreeSet<&Path>, found: &[[PathBuf; 2]]) -> Vec<[PathBuf; 2]> {
     let place = |file: &Path| {
         found.iter().find_map(|[old, new]| {
@@ -219,8 +220,8 @@ fn nearby(missing: &BTreeSet<&Path>, found: &[[PathBuf; 2]]) -> Vec<[PathBuf; 2]
     missing.iter().filter_map(|file| Some([file.to_path_buf(), place(file)?])).collect()
 }
 
-/// The new path of a file if the folder that holds it and `old` was moved, so that `old` is `new`
-/// now.
+/// Returns the new path of a file, assuming that a common parent folder of it and `old` was moved,
+/// which made `old` into `new`.
 fn moved(file: &Path, old: &Path, new: &Path) -> Option<PathBuf> {
     let (mut from, mut to) = (old, new);
     while from.file_name().is_some() && from.file_name() == to.file_name() {

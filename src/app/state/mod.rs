@@ -79,7 +79,7 @@ pub struct State {
     pub aiming: bool,
     /// The title of the system dialog that is open.
     pub asking: Option<&'static str>,
-    /// Whether the greeting of the first start is shown.
+    /// Whether the greeting over the first picture is shown.
     pub greeting: bool,
     /// Whether the next click into the picture explains a pixel.
     pub explaining: bool,
