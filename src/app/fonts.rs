@@ -61,7 +61,7 @@ const MOST_NAMED: usize = 4;
 struct Letters {
     /// The letters that the thread has to look for.
     wanted: BTreeSet<char>,
-    /// The font of each letter; `None` if the system has none.
+    /// The font of each letter; `None` if no font of the system has the letter.
     found: BTreeMap<char, Option<Font>>,
     /// Letters that no font has and that have not been reported.
     missing: BTreeSet<char>,

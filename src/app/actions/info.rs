@@ -24,7 +24,7 @@ pub struct ActionInfo {
     pub step: StepName,
 }
 
-/// The way in which the history names the steps of an action.
+/// How the history names the steps of an action.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepName {
     /// The action's label, with "Add" in front for new items.
@@ -126,7 +126,7 @@ macro_rules! actions {
         }
 
         impl Action {
-            /// All actions except those of panels.
+            /// All actions except the panels' actions.
             pub(super) const ROWS: &'static [Self] = &[$(Self::$name),+];
 
             /// Returns the appearance of the action.

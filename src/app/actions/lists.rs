@@ -1,4 +1,4 @@
-//! Lists of actions: all of them, those of a group, and their names in preferences.
+//! Lists of actions: all actions, the actions of a group, and their names in preferences.
 
 use super::info::Group;
 use super::table::Action;

@@ -36,7 +36,7 @@ impl std::fmt::Debug for Search {
     }
 }
 
-/// The scores of exact matches exceed those of any fuzzy match.
+/// An exact match scores higher than any fuzzy match.
 const LABEL: u32 = 3000;
 const WORD: u32 = 2500;
 const BEGINS_WORD: u32 = 2000;
@@ -59,7 +59,7 @@ impl Search {
         Self { words, matcher: Matcher::new(Config::DEFAULT), letters: Vec::new() }
     }
 
-    /// Returns whether the query is empty, so that everything matches.
+    /// Returns whether the query is empty. An empty query matches everything.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.words.is_empty()

@@ -29,7 +29,7 @@ const AT_ONCE: Duration = Duration::from_millis(400);
 pub(crate) struct Dialogs {
     /// Whether to use the system's file dialogs.
     pub(crate) native: bool,
-    /// The folders in which dialogs begin.
+    /// The start folders of dialogs.
     pub(crate) folders: Folders,
     /// The display of lists of files.
     look: Look,
@@ -133,7 +133,7 @@ impl Dialogs {
         })
     }
 
-    /// Sets the texture of the model whose material is being chosen.
+    /// Sets the texture of the model in the material dialog.
     pub(crate) fn set_texture(&mut self, path: PathBuf) {
         for dialog in self.open.iter_mut().rev() {
             if let Dialog::Material(material) = dialog {

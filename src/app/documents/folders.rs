@@ -1,4 +1,4 @@
-//! The folders in which file dialogs begin.
+//! The start folders of file dialogs.
 //!
 //! Textures are looked for in the folder of their model, and files are saved in the folder of the
 //! scene or its model. If the user chooses another folder, the next dialog of that kind begins
@@ -33,7 +33,7 @@ pub(crate) struct Folders {
 }
 
 impl Folders {
-    /// Returns the folder in which a dialog begins.
+    /// Returns the start folder of a dialog.
     pub(crate) fn start(&self, kind: Kind) -> PathBuf {
         let chosen = self.chosen.get(&kind);
         let start = match (chosen, &self.home) {

@@ -1,9 +1,9 @@
-//! The reductions of quality by which a picture is drawn sooner.
+//! Reductions of quality, which make a picture quicker to draw.
 
 use marraztu_core::accuracy::{Filter, LightAt, Samples, Settings};
 use marraztu_core::base::image::Size;
 
-/// The factor by which the sides of a picture are divided.
+/// The divisor of the sides of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shrink {
     /// Full size.
@@ -30,7 +30,7 @@ impl Shrink {
     }
 }
 
-/// The ways in which the quality of a picture is reduced to draw it sooner.
+/// A reduction of quality, which makes a picture quicker to draw.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reduction {
     /// One sample per pixel rather than several.

@@ -423,7 +423,7 @@ impl App {
     }
 }
 
-/// Replaces the file's material by silver if the file has none.
+/// Replaces the file's material by silver if the file does not contain materials.
 fn settled(material: MaterialChoice, loaded: &Loaded) -> MaterialChoice {
     if material == MaterialChoice::File { own_or_silver(loaded) } else { material }
 }

@@ -244,7 +244,7 @@ impl App {
         (self.state.path, self.state.content) = (file, content);
         self.state.history.mark_unsaved();
         self.state.tell(Some(format!("Recovered unsaved changes of {name}")));
-        // The user does not know the name of the file in which the work was kept.
+        // The user does not know the name of the journal's file.
         let own_name = file_name(opened);
         for notice in &mut self.state.notices {
             if let Some(rest) = notice.text.strip_prefix(&own_name) {

@@ -68,7 +68,7 @@ impl Work {
         self.watch.touch()
     }
 
-    /// Returns the watch, by which other threads report that they have drawn.
+    /// Returns the watch. Other threads report to it when they have drawn.
     pub(crate) fn watch(&self) -> Watch {
         self.watch.clone()
     }

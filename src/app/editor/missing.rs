@@ -157,7 +157,7 @@ impl Content {
         objects.chain(cameras).collect()
     }
 
-    /// Returns an object with the files found; `None` if it has none of them.
+    /// Returns an object with the files found; `None` if the object needs none of these files.
     fn object(&self, object: &Object) -> Option<Object> {
         let model = self.model(&object.model);
         let texture = object.texture.as_ref().and_then(|texture| self.texture(texture));

@@ -82,7 +82,7 @@ pub struct App {
     leaving: bool,
     /// Whether the picture is changing.
     motion: Motion,
-    /// The time of the last frame in which the scene was animated.
+    /// The time of the last frame with an animated scene.
     moved_at: Option<f64>,
     /// The times of the pictures of the last second.
     shown_at: VecDeque<f64>,

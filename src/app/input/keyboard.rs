@@ -1,9 +1,9 @@
 //! The keyboard: decides which keys belong to the viewport, and which actions they trigger.
 //!
 //! Keys are read before egui sees them. Keys of the viewport (Tab, Enter, Esc, arrows) therefore
-//! never move the focus or click a button, not even in the frame in which the viewport gets the
-//! focus. While text is edited, a menu is open, or a control of a panel has the focus, these keys
-//! are left to egui.
+//! never move the focus or click a button, even if the viewport gets the focus in the same frame.
+//! While text is edited, a menu is open, or a control of a panel has the focus, these keys are left
+//! to egui.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -128,7 +128,7 @@ impl WindowPainter {
         }
         self.layer(frame.primitives, frame.scale, canvas.size);
         self.list();
-        // Each band compares its new items with those of the last frame.
+        // Each band compares its new items with its old ones.
         let is_new = |band: &Band| band.changes.is_empty();
         let changed = |band: &Band| if is_new(band) { 0..size[0] } else { band.changed() };
         let changes: Vec<_> = self.bands.iter().map(changed).collect();
@@ -214,7 +214,7 @@ impl Layer {
 }
 
 impl Band {
-    /// Returns the columns in which the items differ from those of the last frame.
+    /// Returns the columns that have to be repainted since the last frame.
     fn changed(&self) -> Range<i32> {
         let (last, now) = (&self.last[..], &self.now[..]);
         let alike = |(a, b): &(&Listed, &Listed)| a.key == b.key;

@@ -177,7 +177,7 @@ fn within_window(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// Shows a submenu. Its name is aligned with those of actions, after the column of ticks.
+/// Shows a submenu. Its name is aligned with the names of actions, after the column of ticks.
 fn submenu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     let ticks = Atom::custom(IdSalt::new("tick"), vec2(12.0, 12.0));
     let shown = ui.menu_button((ticks, name), |ui| within_window(ui, add));

@@ -202,7 +202,7 @@ impl OpenPanels {
         self.with(panel, !self.has(panel))
     }
 
-    /// Returns these panels without those that Esc closes.
+    /// Returns these panels without the ones that Esc closes.
     #[must_use]
     pub const fn lasting(self) -> Self {
         let [a, b, c] = Panel::MOMENTARY;

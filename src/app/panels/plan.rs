@@ -1,7 +1,7 @@
 //! The plan panel: each effect of the picture, whether it is on, why, and its cost.
 //!
 //! Each effect has a line, with lines for its items below it if they differ. Effects that are on
-//! have a full disk and strong text. Costs are numbers with bars, which make the largest stand out.
+//! have a full disk and strong text. Costs are numbers with bars, so the largest is easy to see.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

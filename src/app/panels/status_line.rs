@@ -244,7 +244,7 @@ fn selected(state: &State) -> String {
     }
 }
 
-/// Returns the effect of x, y and z on the selection, or the reason why there is none.
+/// Returns the effect of x, y and z on the selection, or why they have no effect.
 fn transformation(state: &State) -> Result<Transformation, &'static str> {
     let (scene, view) = (&state.scene, &state.view);
     if state.selected().is_some_and(|id| scene.locked.contains(&id)) {

@@ -112,7 +112,7 @@ fn transformation_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     actions_ui(ui, state, requests, "Transformation", &all);
 }
 
-/// Shows the mode of cameras, or the frame in which objects are transformed.
+/// Shows the mode of cameras, or the frame of an object's transformation.
 pub(crate) fn frame_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let view = &state.view;
     let (of, [first, second], is_second) = match view.subject {

@@ -135,7 +135,7 @@ fn has_card() -> bool {
 /// Checks that there is a display.
 ///
 /// # Errors
-/// If there is none.
+/// If there is no display.
 pub(crate) fn find_display() -> Result<(), StartError> {
     match cfg!(target_os = "linux") && !has_display() {
         true => Err(StartError::NoDisplay),

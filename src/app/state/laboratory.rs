@@ -27,7 +27,7 @@ pub struct Laboratory {
     pub measure: Measure,
     /// The pixels over which the metric is computed.
     pub region: Region,
-    /// The axis whose plot is shown, by its key; `None` for the overview.
+    /// The axis of the plot on show, by its key; `None` for the overview.
     pub panel: Option<&'static str>,
     /// The budgets of time and error.
     pub budgets: Budgets,
@@ -41,7 +41,7 @@ pub struct Laboratory {
     pub picking: bool,
     /// The last attribution, in lines.
     pub attribution: Option<Vec<String>>,
-    /// The axis whose lesson is shown.
+    /// The axis of the lesson on show.
     pub lesson: &'static Axis,
     /// Whether the scene is that of a lesson, with the user's scene to return to.
     pub away: bool,

@@ -286,8 +286,7 @@ impl Places {
             .flatten()
     }
 
-    /// Returns the area in which a splitter can be grabbed, `thick` points wide, if the splitter is
-    /// shown.
+    /// Returns the area for grabbing a splitter, `thick` points wide, if the splitter is shown.
     #[must_use]
     pub fn grip(&self, splitter: Splitter, thick: f32) -> Option<Rect> {
         let upright = |rect: Rect, x: f32| {

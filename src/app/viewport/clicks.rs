@@ -49,7 +49,7 @@ impl Viewport {
                 }
                 _ => Request::Refuse("nothing is here to aim at: click on an object".to_owned()),
             }),
-            // A light's mark does not stand in the way of the object under it.
+            // A light's mark is skipped in favour of the object under it.
             Purpose::Frame => match self.framed(state, pick.at, item) {
                 Some(item) => {
                     requests.extend([Request::Select(item), Request::Do(Action::FrameSelection)]);

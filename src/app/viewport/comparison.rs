@@ -172,7 +172,7 @@ fn dim(ui: &Ui, rect: Rect) {
 /// The size of the slider's handle.
 const HANDLE: egui::Vec2 = vec2(12.0, 34.0);
 
-/// Returns the area in which the slider can be grabbed; a press there does not reach the picture.
+/// Returns the area for grabbing the slider; a press there does not reach the picture.
 pub(crate) fn grip(state: &State, rect: Rect) -> Option<Rect> {
     match state.lab.compare {
         Compare::Split(part) => Some(grip_at(rect, part)),

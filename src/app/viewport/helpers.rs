@@ -150,7 +150,7 @@ pub(super) fn dimensions_ui(ui: &Ui, state: &State, onto: &Projection) {
 fn box_ui(ui: &Ui, painter: &Painter, onto: &Projection, bounds: &Bounds, stroke: Stroke) {
     let corners = bounds.corners();
     let size = bounds.extent();
-    // Each axis has four parallel edges, of which the outermost on the screen is labelled.
+    // Each axis has four parallel edges. The outermost on the screen is labelled.
     for axis in Axis::ALL {
         let bit = 1 << axis.index();
         let edges = (0..8).filter(|corner| corner & bit == 0);

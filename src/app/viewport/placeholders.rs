@@ -1,4 +1,4 @@
-//! Labels the boxes that stand in for missing files.
+//! Labels the placeholders of missing files.
 
 use egui::{Ui, vec2};
 

@@ -1,7 +1,7 @@
 //! Assigns changes to gestures: one drag is one step of undo.
 //!
 //! A gesture of the mouse lasts from the press of a button to its release. It includes the frame of
-//! the release, in which a slider's value can change once more.
+//! the release, since a slider's value may change once more there.
 
 use std::hash::{DefaultHasher, Hash, Hasher as _};
 

@@ -8,7 +8,7 @@ use std::hash::Hash;
 
 use egui::{Context, FocusDirection, Id, Key, Rect, Sense, Ui};
 
-/// A registered region. Regions are kept in the order in which they are shown.
+/// A registered region. The list has the order of display.
 #[derive(Clone, Copy, Debug)]
 struct Region {
     id: Id,
@@ -135,8 +135,8 @@ pub(crate) fn go_further(ctx: &Context, viewport: Id) {
 }
 
 impl Regions {
-    /// Finds the index of the region at a place of the window; if there is none, of the last region
-    /// that got the focus.
+    /// Finds the index of the region at a place of the window, else of the region that last got the
+    /// focus.
     fn holding(&self, place: Option<Rect>) -> Option<usize> {
         let at = place.map(|place| place.center());
         let holds = |region: &Region| {

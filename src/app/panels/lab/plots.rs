@@ -171,7 +171,7 @@ fn plot_ui(ui: &mut Ui, panels: &Panels) -> PlotTransform {
         .allow_boxed_zoom(false)
         .allow_double_click_reset(false)
         .show_crosshair(false)
-        // The grid is hidden to make the data stand out.
+        // Without a grid, the data are the strongest lines.
         .show_grid(false)
         .sense(Sense::hover())
         .default_x_bounds(left, right)

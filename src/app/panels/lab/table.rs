@@ -108,7 +108,7 @@ fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Vec<Reque
     });
 }
 
-/// The ids by which the keyboard reaches a row.
+/// The keyboard stop of a row.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     id: Id,

@@ -61,7 +61,8 @@ pub(crate) fn choice_ui(
     chosen
 }
 
-/// Returns the coefficients of a choice; for the file's material, those of its first part.
+/// Returns the coefficients of a choice; for the file's material, the coefficients of its first
+/// part.
 fn coefficients(choice: &MaterialChoice, object: Option<&Object>) -> Material {
     match choice {
         MaterialChoice::Preset(id) => id.get().material,

@@ -80,7 +80,7 @@ fn placement_ui(
     up_axis_ui(ui, requests, id, object);
 }
 
-/// Shows the up axis of the model's file; the program's own models have none.
+/// Shows the up axis of the model's file. The program's own models do not show it.
 fn up_axis_ui(ui: &mut Ui, requests: &mut Vec<Request>, id: ObjectId, object: &Object) {
     let is_own = object.model.source.as_deref().is_none_or(is_example);
     if is_own {

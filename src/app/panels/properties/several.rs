@@ -140,7 +140,7 @@ impl Fields {
     }
 }
 
-/// Names the properties in which items differ from the first, as in the panel.
+/// Names the properties that differ between the first item and others, as in the panel.
 fn mixed(scene: &Scene, first: ItemId, others: &[ItemId]) -> Vec<&'static str> {
     let mut names: Vec<&'static str> = Vec::new();
     for other in others {
@@ -153,7 +153,7 @@ fn mixed(scene: &Scene, first: ItemId, others: &[ItemId]) -> Vec<&'static str> {
     names
 }
 
-/// Names the properties in which two items of a kind differ.
+/// Names the properties that differ between two items of a kind.
 fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
     let rows: Vec<(bool, &'static str)> = match (first, other) {
         (ItemId::Object(a), ItemId::Object(b)) => {
