@@ -30,6 +30,7 @@ pub fn run(
         shell,
         window,
         Box::new(move |ctx| -> Box<dyn Editor> {
+            // The theme and the fonts are needed for the first frame.
             theme::install(ctx);
             fonts::install(ctx);
             let (scene, view) = io::default_scene();
@@ -49,6 +50,7 @@ pub fn run(
         }),
     );
     match opened {
+        // A graphics card without usable OpenGL is noticed only here.
         Err(StartError::NoGl) if shell == Shell::Automatic => again_without_gl(files, preset),
         opened => opened,
     }

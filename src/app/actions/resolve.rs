@@ -40,6 +40,7 @@ pub(crate) const ADD_LIGHTS: [Action; 3] = [Action::AddSun, Action::AddBulb, Act
 pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Resolved {
     let (scene, view) = (&state.scene, &state.view);
     let others = state.others();
+    // Steps apply to all selected items, as one command.
     let each = |act: &dyn Fn(&Scene, &View) -> Result<Command, Refusal>| {
         several::each(scene, view, &others, act).map(Intent::Change)
     };
@@ -49,6 +50,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
     let look_from = |side| framing::side(scene, view, side).map(Intent::Navigate);
     let file = |intent| Ok(Intent::File(intent));
     match action {
+        // Files. Actions without anything to work on are refused here.
         Action::New => file(FileIntent::New),
         Action::Open => file(FileIntent::Open),
         Action::Load => file(FileIntent::Load),
@@ -74,6 +76,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::NewAncestor => file(FileIntent::NewAncestor),
         Action::Quit => file(FileIntent::Quit),
 
+        // Edits of the history and of the selected items.
         Action::Undo if state.history.position() == 0 => Err(Refusal::NothingDone),
         Action::Undo => Ok(Intent::Undo),
         Action::Redo if state.history.position() == state.history.steps().len() => {
@@ -111,6 +114,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::SelectNone if others.is_empty() => Err(Refusal::OneSelected),
         Action::SelectNone => Ok(Intent::Others(Others::default())),
 
+        // New items.
         Action::AddGround => add_shape(state, Shape::Ground),
         Action::AddPlane => add_shape(state, Shape::Plane),
         Action::AddCube => add_shape(state, Shape::Cube),
@@ -124,6 +128,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::AddObjectSpot => add_light(state, lights::spot(SpotOwner::Object(object(state)?))),
         Action::AddCameraSpot => add_light(state, lights::spot(SpotOwner::Camera(view.camera))),
 
+        // The selection.
         Action::NextItem => {
             selection::next(scene, view, phase).map(|next| Intent::Select(Box::new(next)))
         }
@@ -133,6 +138,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::SubjectObject => subject(state, Subject::Object),
         Action::SubjectLight => subject(state, Subject::Light),
 
+        // Transformations of the subject.
         Action::Translate => transformation(state, Transformation::Translation),
         Action::Rotate => transformation(state, Transformation::Rotation),
         Action::Scale => transformation(state, Transformation::Scaling),
@@ -162,6 +168,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::StepZUp => step(Axis::Z, Sign::Positive),
         Action::StepZDown => step(Axis::Z, Sign::Negative),
 
+        // Display modes.
         Action::ToggleEdges => {
             viewed(state, |view| view.fill = other(view.fill, Fill::Filled, Fill::Edges))
         }
@@ -197,6 +204,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
             viewed(state, |view| view.normals = other(view.normals, Normals::Vertex, Normals::Face))
         }
 
+        // The camera.
         Action::ToggleProjection => viewed(state, |view| {
             view.projection =
                 other(view.projection, Projection::Perspective, Projection::Orthographic);
@@ -226,6 +234,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::LookLeft => look_from(LookSide::Left),
         Action::LookBottom => look_from(LookSide::Bottom),
 
+        // Lights.
         Action::Light0
         | Action::Light1
         | Action::Light2
@@ -253,6 +262,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::BlueUp => color(Channel::Blue, 1),
         Action::BlueDown => color(Channel::Blue, -1),
 
+        // The window.
         Action::ToPanels => Ok(Intent::ChangeKeyboardOwner(Way::On)),
         Action::ToPanelsBack => Ok(Intent::ChangeKeyboardOwner(Way::Back)),
         Action::Palette => Ok(Intent::Palette),

@@ -71,6 +71,8 @@ impl Search {
         let hint = texts.hint.to_lowercase();
         let mut sum = 0;
         for (word, atom) in &self.words {
+            // Scattered letters match almost anything, so a fuzzy match needs a minimum score per
+            // letter.
             let haystack = Utf32Str::new(texts.label, &mut self.letters);
             let fuzzy = atom.score(haystack, &mut self.matcher).map(u32::from);
             let letters = u32::try_from(word.chars().count()).unwrap_or(u32::MAX);

@@ -99,6 +99,7 @@ impl Action {
             Self::ThemeSystem => state.theme == ThemePreference::System,
             Self::ThemeLight => state.theme == ThemePreference::Light,
             Self::ThemeDark => state.theme == ThemePreference::Dark,
+            // The match is exhaustive, so a new action has to state that it is not a switch.
             Self::New | Self::Open | Self::Load | Self::Save | Self::SaveAs | Self::SavePicture => {
                 return None;
             }

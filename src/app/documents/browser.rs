@@ -103,6 +103,7 @@ impl Browser {
         heading(ui, self.title);
         let label = ui.label("Path");
         let id = ui.scope_id().with("path");
+        // The arrow keys are handled before the field, which would use them too.
         let moved = self.arrows(ui, id);
         let output = egui::TextEdit::singleline(&mut self.path)
             .id(id)
@@ -117,6 +118,7 @@ impl Browser {
             editing.store(ui.ctx(), field.id);
             self.shown_once = true;
         }
+        // Enter confirms the path, or enters the folder and keeps the focus.
         let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         if field.changed() && !moved {
             self.follow();
@@ -193,6 +195,7 @@ impl Browser {
         if down + up == 0 {
             return false;
         }
+        // The arrow keys move from the row of the typed path.
         let rows: Vec<PathBuf> = self.rows().into_iter().map(|(path, _)| path).collect();
         let typed = self.typed();
         let last = rows.len().saturating_sub(1);

@@ -192,6 +192,7 @@ impl Dialogs {
             Mode::Open => dialog.pick_files(),
             Mode::Save => dialog.save_file().map(|path| vec![path]),
         });
+        // Without a thread, the built-in browser is the alternative.
         match task {
             Ok(task) => {
                 let begun = Instant::now();
@@ -265,6 +266,7 @@ impl Dialogs {
                 return self.unless_replaced(dialog, answer, &path);
             }
             (End::Answer(answer), _) => answer,
+            // The browser's display of lists is kept for the next one.
             (End::File(path), Dialog::Browser(wanted, browser)) => {
                 self.look = browser.look;
                 let path = wanted.named(path);
@@ -292,6 +294,7 @@ impl Dialogs {
             Outcome::Lost => None,
         };
         let SystemDialog { wanted, name, begun, .. } = self.system.take()?;
+        // A dialog that ended too early was never shown.
         match outcome {
             Some(Some(paths)) if !paths.is_empty() => self.chosen_by_system(wanted, paths),
             Some(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile),

@@ -66,6 +66,7 @@ impl Folders {
     pub(crate) fn places(&self) -> Vec<(String, PathBuf)> {
         let user = std::env::home_dir().map(|folder| ("Home".to_owned(), folder));
         let mut places: Vec<(String, PathBuf)> = user.into_iter().collect();
+        // Each folder is listed once, the most relevant first.
         let chosen = self.chosen.values().map(|(_, folder)| folder);
         for folder in self.home.iter().chain(chosen).chain(&self.recent) {
             if places.len() > MOST {

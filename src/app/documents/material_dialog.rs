@@ -129,6 +129,7 @@ impl MaterialDialog {
                 }
             }
         });
+        // The user's material survives a change to a preset and back.
         let mut own = matches!(now, MaterialChoice::Own(_));
         if ui.toggle_value(&mut own, "My own").clicked() {
             *now = MaterialChoice::Own(self.own);
@@ -140,6 +141,7 @@ impl MaterialDialog {
     }
 
     fn options_ui(&mut self, ui: &mut Ui) -> Option<End> {
+        // The crease angle has no effect on some models, such as those with normals in their files.
         let idle = self.loaded.as_ref().and_then(|(_, loaded)| {
             let why = items::why_no_crease(&loaded.model, true)?;
             Some(format!("Off: {why}"))

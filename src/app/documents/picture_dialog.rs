@@ -155,6 +155,7 @@ impl PictureDialog {
         ui.add_space(6.0);
         let mut end = None;
         ui.horizontal(|ui| {
+            // The button announces that it would replace a file.
             let path = self.path();
             let replaces = path.is_file();
             let save = ui.button(if replaces { "Replace..." } else { "Save" });

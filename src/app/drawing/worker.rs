@@ -312,6 +312,7 @@ fn draw<P: Copy + Send>(
     wanted: &Snapshot,
     outlined: &mut Vec<ItemId>,
 ) -> bool {
+    // The renderer asks between tiles, without a lock.
     let asked = || match shared.over.load(Ordering::Relaxed) {
         true => Asked::Nothing,
         false if shared.newer.load(Ordering::Relaxed) => Asked::Newer,

@@ -98,6 +98,7 @@ impl App {
             [name] => name.clone(),
             _ => format!("{} items", names.len()),
         };
+        // The kind of the first pasted items becomes the subject.
         let subject = match (objects.is_empty(), lights.is_empty()) {
             (false, _) => Subject::Object,
             (true, false) => Subject::Light,

@@ -133,6 +133,7 @@ impl App {
     }
 
     pub(crate) fn load_model(&mut self, ctx: &Context, path: PathBuf, wish: Wish) {
+        // Without a material, a dialog asks for it when the file has been read.
         let label = format!("Loading {}", file_name(&path));
         let asks = wish.material.is_none();
         // A user who has chosen a material in the dialog has chosen the up axis there too.
@@ -199,6 +200,7 @@ impl App {
                 Outcome::Done(fetched) => Some(fetched),
                 Outcome::Lost => None,
             };
+            // A place is free again for a queued file.
             let Loading { task, .. } = self.loading.remove(0);
             self.begin_queued(ctx);
             ctx.request_repaint();
@@ -219,6 +221,7 @@ impl App {
                 match (result, material) {
                     (Err(error), _) => self.tell_load_error(&error),
                     (Ok((loaded, texture)), Some(material)) => {
+                        // Models of the command line do not make the scene unsaved.
                         let keeps_saved = keeps_saved && self.state.history.is_saved();
                         self.insert(ctx, loaded, material, texture);
                         if keeps_saved {
@@ -396,6 +399,7 @@ impl App {
         let recoverable = std::mem::take(&mut self.state.recoverable);
         let discarded = std::mem::take(&mut self.state.discarded);
         let generation = self.state.generation + 1;
+        // Background work for the old scene is of no use for the new one.
         self.end_measuring();
         self.comparison.forget();
         self.first_steps = None;

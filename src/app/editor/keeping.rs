@@ -58,9 +58,11 @@ impl App {
             let text = "Some of the keys that you have chosen are not as they were.".to_owned();
             self.state.notices.push(Notice { text, details: changed_keys, offer: None });
         }
+        // Work of programs that ended without saving is offered, not opened.
         let offered = Abandoned::all(&folders);
         let now = SystemTime::now();
         self.state.recoverable = offered.iter().map(|work| described(work, now)).collect();
+        // Without a journal the program works, but a crash loses unsaved work.
         let journal = match Journal::begin(&folders) {
             Ok(journal) => Some(journal),
             Err(why) => {
@@ -91,6 +93,7 @@ impl App {
         // During a lesson, the user's scene is the one to protect.
         let own = waiting_scene.as_deref().unwrap_or(state);
         let State { scene, view, settings, history, path, content, .. } = own;
+        // The journal gets the scene only when it has changed, or learns that all is saved.
         if let Some(journal) = &keeping.journal {
             if history.is_saved() {
                 if keeping.kept.take().is_some() {
@@ -114,6 +117,7 @@ impl App {
             keeping.changed = None;
             return;
         }
+        // Preferences are written once, after a drag or a series of changes has ended.
         match &keeping.changed {
             Some((before, since)) if *before == now => {
                 if time - since >= QUIET {

@@ -161,6 +161,7 @@ impl App {
         let Some(size) = self.viewport.size().filter(|_| !self.lab.is_measuring()) else { return };
         let State { scene, view, settings, .. } = &self.state;
         let shot = Shot::new(scene, view, settings, size);
+        // The scene is kept to detect later that the results are out of date.
         let measured = Some((scene.clone(), view.clone(), size));
         let only = (axes.len() == 1).then(|| axes[0].key);
         let question = Question { current: *settings, axes, thoroughness };
@@ -168,6 +169,7 @@ impl App {
         self.lab.so_far = Arc::default();
         let (watch, so_far) = (self.lab.watch(), Arc::clone(&self.lab.so_far));
         let mut studio = Studio::new(shot);
+        // Intermediate findings are shown while the sweep continues.
         let work = move |progress: &io::Progress| {
             let watch = watch.with(progress);
             let mut tell = |findings: &Findings| {
@@ -257,6 +259,7 @@ impl App {
         let State { scene, view, settings, .. } = &self.state;
         let (mut studio, settings) =
             (Studio::new(Shot::new(scene, view, settings, size)), *settings);
+        // The renderer draws the picture again to name the item at the pixel.
         let work = move |_: &io::Progress| {
             let blame = attribute(&mut studio, &settings, at)?;
             studio.draw(&settings);
@@ -352,6 +355,7 @@ impl App {
                 state.lab.away = true;
                 state.lab.costs.clone_from(&self.state.lab.costs);
                 state.tell(Some(format!("Lesson: {}", axis.lesson.title)));
+                // A lesson opened from a lesson keeps the user's scene, not the lesson's.
                 let own = self.swap(state);
                 if !own.lab.away {
                     self.waiting_scene = Some(Box::new(own));

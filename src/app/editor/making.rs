@@ -85,6 +85,7 @@ impl App {
         if let Err(error) = may_save {
             return self.dialogs.tell_fault(format!("{error}."));
         }
+        // Overlays exist only in the window, so a picture of the window is saved.
         if choices.overlays {
             let image = Arc::default();
             self.making.screenshot = Some(Screenshot { path, asked: false, image });

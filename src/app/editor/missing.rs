@@ -65,6 +65,7 @@ impl App {
             [[_, new]] => format!("Loading {}", file_name(new)),
             all => format!("Loading {} files", all.len()),
         };
+        // The thread gets only the placeholders to replace, not the scene.
         let work: Vec<_> = pairs
             .into_iter()
             .map(|[old, new]| {
@@ -115,6 +116,7 @@ impl App {
                 pairs.push([old, new]);
             }
         }
+        // All replacements are one step of undo.
         let commands = content.commands(&self.state.scene);
         let label = match &pairs[..] {
             [[_, new]] => format!("Find {}", file_name(new)),
@@ -128,6 +130,7 @@ impl App {
             let text = format!("{label}: {} findings", details.len());
             self.state.notices.push(Notice { text, details, offer: None });
         }
+        // Files that are still missing may lie near the found ones.
         let nearby = nearby(&self.state.scene.missing_files(), &pairs);
         self.state.missing = MissingFiles { dismissed: false, nearby };
     }
@@ -166,6 +169,7 @@ impl Content {
         }
         let mut object = object.clone();
         if let Some(model) = model {
+            // The found model may have fewer parts than the placeholder's object has hidden.
             let parts = u32::try_from(model.mesh.parts().len()).unwrap_or(u32::MAX);
             object.hidden_parts.retain(|part| *part < parts);
             object.model = model;

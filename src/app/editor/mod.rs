@@ -181,6 +181,7 @@ impl App {
         arrangement.over_picture_ui(ui, &self.state, &mut requests);
         notices::show((&ctx, place), &self.state, &self.loading, &self.making.tasks, &mut requests);
         pixel::show(&ctx, &self.state, place, &mut requests);
+        // The dialogs come last, over everything else.
         let answer = self.dialogs.ui(&ctx);
         let pressed = Action::pressed(&ctx);
 
@@ -265,6 +266,7 @@ impl App {
         }
         if let Some(worker) = &self.worker {
             let news = worker.news();
+            // The rate counts the pictures of the last second.
             if let Some(drawn) = &news.drawn {
                 let now = ctx.input(|input| input.time);
                 self.shown_at.push_back(now);
@@ -324,6 +326,7 @@ impl App {
             explain,
             outlined,
         };
+        // Input interrupts the refinement, even if the picture does not change.
         let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
         if held || ctx.input(|input| !input.events.is_empty()) {
             worker.stir();
@@ -337,6 +340,7 @@ impl App {
         if let Some(rest) = self.motion.rest(now) {
             ctx.request_repaint_after(Duration::from_secs_f64(rest));
         }
+        // If drawing takes long, a repaint shows that in the status line.
         worker.draw(wanted);
         if worker.is_drawing() {
             let rest = LATE.saturating_sub(worker.drawing_for().unwrap_or_default());

@@ -27,6 +27,7 @@ impl App {
     /// Reads the models of the scene again: all of them, or those of these files.
     pub(crate) fn reload_models(&mut self, ctx: &Context, only: Option<&BTreeSet<PathBuf>>) {
         let mut wanted: Vec<(PathBuf, Shared<Model>)> = Vec::new();
+        // Objects that share a model have it read once.
         for (_, object) in self.state.scene.objects.iter() {
             let Some(path) = file_of(&object.model) else { continue };
             let is_known = wanted.iter().any(|(_, model)| Shared::same(model, &object.model));
@@ -155,6 +156,7 @@ impl Watch {
         let paths: BTreeSet<&PathBuf> =
             scene.objects.iter().filter_map(|(_, object)| file_of(&object.model)).collect();
         let mut files = lock(&self.files);
+        // Known files keep their stamps, so a change between two scenes is not missed.
         files.seen.retain(|path, _| paths.contains(path));
         for path in paths {
             files.seen.entry(path.clone()).or_insert_with(|| [stamp(path); 2]);

@@ -74,6 +74,7 @@ impl App {
     pub fn answer(&mut self, ctx: &Context, request: Request) {
         let state = &mut self.state;
         match request {
+            // Changes of the scene and of the view.
             Request::Do(action) => self.perform(ctx, action, Gesture::Whole),
             Request::Change { command, gesture, label } => self.change(command, gesture, &label),
             Request::Navigate { command, gesture } => self.navigate(command, gesture),
@@ -81,6 +82,7 @@ impl App {
             Request::Settings(settings) => state.settings = settings,
             Request::Drawing(choices) => state.drawing = choices,
             Request::Lab(request) => self.answer_lab(ctx, request),
+            // The selection.
             Request::Select(id) => match selection::pick(&state.scene, &state.view, id) {
                 Ok(selection) => self.select(selection, Gesture::Whole),
                 Err(refusal) => self.refuse(refusal.to_string()),
@@ -100,14 +102,17 @@ impl App {
                 }
             }
             Request::Filter(filter) => state.filter = filter,
+            // The history.
             Request::GoTo(position) => self.go_to(position),
             Request::Abandon(gesture) => self.abandon(gesture),
             Request::BeginRename(id) => state.renaming = Some(id),
             Request::EndRename(name) => self.end_rename(name),
+            // Files.
             Request::ChooseTexture(id) => self.ask_file(ctx, Wanted::Texture(id), ""),
             Request::LoadFiles(paths) => self.load_files(ctx, paths),
             Request::OpenFiles(paths) => self.open_files(ctx, paths),
             Request::AskModels => self.ask_file(ctx, Wanted::Dropped, ""),
+            // Notices. An earlier request of the frame may have removed some, so indices are checked.
             Request::Details(at) => {
                 if let Some(notice) = state.notices.get(at) {
                     self.dialogs.tell_details(notice.text.clone(), notice.details.clone());
@@ -127,6 +132,7 @@ impl App {
             }
             Request::ClearNotices => state.past_notices.clear(),
             Request::TurnUp(id, up) => self.turn_up(ctx, id, up),
+            // Background work.
             Request::CancelLoading(at) => {
                 if let Some(loading) = self.loading.get(at) {
                     loading.task.progress.cancel();
@@ -156,6 +162,8 @@ impl App {
             let framed = self.state.view.object.map(Offer::Frame);
             self.state.notices.retain(|notice| notice.offer.is_none() || notice.offer != framed);
         }
+        // The action is resolved against the scene as it is now, which also decides its
+        // availability.
         let resolved = resolve(action, &self.state, self.state.phase(gesture));
         // The lights that are on are remembered, to restore them when the user ends the solo.
         if action == Action::SoloLight && action.is_on(&self.state) == Some(false) {
@@ -348,6 +356,7 @@ impl App {
         let selected = Selected::of(&state.view, &state.several);
         let repeats = state.next_repeat(gesture);
         match state.history.perform(&mut state.scene, command, gesture, label) {
+            // The selection before and after the step is recorded, so undo and redo restore it.
             Ok(()) => {
                 (state.gesture, state.repeats) = (gesture, repeats);
                 state.message = None;

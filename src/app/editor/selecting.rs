@@ -38,6 +38,7 @@ impl App {
                 }
             }
         }
+        // The keys act on the item added last, or on the first one that is left.
         let current = current.filter(|current| all.contains(current)).or(all.first().copied());
         let Some(current) = current else { return };
         if state.selected() != Some(current) {

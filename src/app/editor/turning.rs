@@ -74,6 +74,7 @@ impl App {
             object.model = model;
             object.hidden_parts.retain(|part| *part < parts);
         })?;
+        // Framing belongs to the same step of undo, since turning may move the model out of view.
         let mut commands = vec![command.clone()];
         let mut after = scene.clone();
         command.apply(&mut after)?;

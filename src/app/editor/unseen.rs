@@ -125,6 +125,7 @@ pub(crate) fn out_of_sight(state: &State, object: &Object, size: Size) -> bool {
         }
         Projection::Orthographic => (lens.parallel_near, lens.parallel_far, lens.half_size),
     };
+    // The bounding sphere is compared with the sides of the frustum and with four pixels.
     let aside = centre.x.abs() - radius > half * width / shorter
         || centre.y.abs() - radius > half * height / shorter;
     let pixels = radius / half * shorter / 2.0;

@@ -9,6 +9,7 @@ use egui::Color32;
 
 /// Blends one colour over all pixels of a row.
 pub(super) fn lay(row: &mut [u32], source: [f32; 4]) {
+    // Whole, premultiplied values allow integer arithmetic with the same result.
     let whole = source.map(f32::round);
     if is_opaque(source) {
         let [r, g, b, _] = whole.map(byte);

@@ -77,6 +77,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> A
     }
     let renames = state.renaming.is_some();
     let panels = state.panels.with(Panel::Outline, state.panels.has(Panel::Outline) || renames);
+    // Docked panels are laid out first, and the picture gets the rest.
     let places = layout.divide(area, panels);
     if let Some(rect) = places.strip {
         ui.painter().rect_filled(rect, 0.0, fill);

@@ -103,6 +103,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             ui.separator();
             submenu(ui, "Over the picture", |ui| items(ui, state, requests, Group::OVER_PICTURE));
             submenu(ui, "Camera", |ui| group_ui(ui, state, requests, Group::Camera));
+            // The ten lights with keys would fill the menu, so they have a submenu.
             let has_slot = |action: &Action| action.slot().is_some();
             let (slots, rest): (Vec<Action>, Vec<Action>) =
                 Group::Light.actions().partition(has_slot);
@@ -110,6 +111,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             submenu(ui, "Lights on and off", |ui| items(ui, state, requests, slots));
         });
         menu(ui, "Window", |ui| {
+            // The Window menu has the actions of its group that no other menu shows.
             let elsewhere = [&THEMES[..], &HELP, &PREFERENCES, &SIZES].concat();
             let own = Group::Window.actions().filter(|action| !elsewhere.contains(action));
             items(ui, state, requests, own);

@@ -53,6 +53,7 @@ pub(crate) fn show<T>(
         let column = Rect::from_min_size(ui.cursor().min, ui.available_size());
         let seen: Option<Rect> = ui.data(|data| data.get_temp(seen_id()));
         regions::begin_in(ui, "notices", seen.unwrap_or(column));
+        // Tasks in progress come first, then offers, then findings.
         for (at, loading) in loading.iter().enumerate() {
             let cancel = Request::CancelLoading(at);
             Frame::popup(ui.style()).show(ui, |ui| task_ui(ui, &loading.task, cancel, requests));

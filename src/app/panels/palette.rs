@@ -262,6 +262,7 @@ fn colors(
         Some(ItemId::Object(id)) => {
             let what = format!("Colour of {name}");
             let request = of_objects(state, id, what.clone(), |object| {
+                // Highlights stay as they are; ambient light follows the new colour.
                 let Material { specular, exponent, .. } = object.part_look(0).material;
                 let diffuse = color.factors();
                 let ambient = diffuse.map(|part| 0.2 * part);
@@ -343,6 +344,7 @@ impl Entry {
         } else if response.hovered() {
             ui.painter().rect_filled(rect, 4.0, visuals.widgets.inactive.bg_fill);
         }
+        // From the right: the key, the kind, and the hint if there is space.
         let mut right = rect.right() - 6.0;
         if !self.key.is_empty() {
             let at = egui::pos2(right, rect.center().y);

@@ -136,6 +136,7 @@ impl Columns {
 fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
     let (head, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
     let columns = Columns::of(head.with_max_x(head.right() - f32::from(theme::MARGIN)));
+    // Headings of text columns are left-aligned, of numbers right-aligned.
     let titles = [
         (columns.name, "Effect"),
         (columns.on, "Of"),
@@ -269,6 +270,7 @@ impl Row<'_> {
                 Rect::from_center_size(pos2(columns.name.left() + 4.0, middle), vec2(8.0, 8.0));
             icon.paint(ui.painter(), at, 8.0, color);
         }
+        // The disk is next to the effect's name, or next to the item's name in the lines below.
         let disk = if self.name.is_empty() { columns.on.left() + 5.0 } else { mark + 6.0 };
         disk_ui(ui, pos2(disk, middle), self.on);
         let put = |rect: Rect, left: f32, text: &str, color: Color32| {

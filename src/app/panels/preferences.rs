@@ -273,6 +273,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
     now.window =
         now.window.filter(|size| size.map(f32::to_bits) != Preferences::WINDOW.map(f32::to_bits));
     let before = now.clone();
+    // `Preferences::default` does not name panels, so the ones of the first start are added.
     let panels = OpenPanels::DEFAULT.kept();
     let first = Preferences { panels, ..Preferences::default() };
     let list = ui.available_height() - 2.0 * theme::ROW;

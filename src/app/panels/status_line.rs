@@ -35,6 +35,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
                 past_ui(ui, state, requests);
                 ui.add_space(theme::GAP);
             }
+            // An open system dialog comes first, since it may be hidden behind the window.
             if let Some(title) = state.asking {
                 let text = format!("the dialog \"{title}\" is open");
                 let message = Message { text, tone: Tone::Done };
@@ -177,6 +178,7 @@ fn parts(state: &State) -> Vec<String> {
         let lost = lost.unwrap_or_default();
         parts.push(format!("while moving: {}{lost}", statistics.reduction.words()));
     }
+    // The time of the last picture would be misleading while a slow one is drawn.
     if statistics.late {
         parts.push("drawing".to_owned());
         return parts;

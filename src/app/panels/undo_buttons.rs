@@ -62,6 +62,7 @@ fn button_ui(
     let pulls = pulled || is_pulled(ui, &response);
     let let_go = pulls && !ui.input(|input| input.pointer.primary_down());
     let opens = response.secondary_clicked() || (pulls && !pulled);
+    // A right click or a pull opens the list.
     let popup = Popup::from_response(&response)
         .open_memory(opens.then_some(SetOpenCommand::Bool(true)))
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside);

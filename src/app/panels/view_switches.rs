@@ -210,6 +210,7 @@ fn slot_ui(
     let light = state.scene.lights.iter().find(|(_, light)| light.slot == slot);
     let on = light.is_some_and(|(_, light)| light.on);
     let enabled = light.is_some();
+    // A key without a light keeps the focus, so screen readers can report it.
     let sense = if enabled { Sense::click() } else { Sense::focusable_noninteractive() };
     let (rect, _) = ui.allocate_exact_size(vec2(place.width, theme::ROW), Sense::hover());
     let response = ui.interact(rect, place.id, regions::sense(sense, place.is_stop));
@@ -320,6 +321,7 @@ pub(crate) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, requests: &mut Ve
     let own = |choice: &marraztu_core::accuracy::Choice| {
         choice.is_of_its_own(&state.scene, &state.view, &now)
     };
+    // The tooltip states the error of a choice, or why the choice has no effect now.
     let hints: Vec<String> = axis
         .choices
         .iter()

@@ -110,6 +110,7 @@ impl Window {
             input.pixels_per_point = pixels_per_point;
         });
         let handle = event_loop.display_handle().ok().map(|handle| handle.as_raw());
+        // X11 does not say when frames are shown.
         let is_paced =
             !matches!(handle, Some(RawDisplayHandle::Xlib(_) | RawDisplayHandle::Xcb(_)));
         let surface = Surface::new(&window)?;
@@ -234,6 +235,8 @@ impl Window {
         if self.next().is_none_or(|next| next > now) {
             return Ok(Flow::On);
         }
+        // A display that paces frames is asked first; without an answer in time, the editor runs
+        // anyway.
         let is_late = self.asked_at.take().is_some();
         if self.is_paced && self.is_seen() && !is_late && self.last.is_some() {
             self.asked_at = Some(now);

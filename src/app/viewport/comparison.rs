@@ -148,6 +148,7 @@ impl Comparison {
             dim(ui, rect);
             return plate_ui(ui, rect, Align2::LEFT_TOP, format!("Error x {factor}: drawing"));
         };
+        // The amplified picture is computed once per pair and factor.
         if self.error.as_ref().is_none_or(|(last, _)| *last != factor) {
             let mut texture = self.error.take().map(|(_, texture)| texture);
             let picture = amplified(&drawn.ours, &drawn.exact, factor);

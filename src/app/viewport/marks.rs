@@ -151,6 +151,7 @@ pub(super) fn lights_at(marks: &[Mark], at: Pos2) -> [Vec<ItemId>; 2] {
 pub(super) fn show(ui: &Ui, state: &State, projection: &Projection, marks: &[Mark]) {
     let painter = ui.painter().with_clip_rect(projection.rect);
     let accent = theme::accent_on_dark();
+    // Cones lie below all marks.
     if state.helpers.directions && state.shows_overlays() {
         for id in state.scene.lights.ids().filter(|id| !state.is_selected(ItemId::Light(*id))) {
             let light = state.scene.lights.get(id).filter(|light| light.on);
@@ -163,6 +164,7 @@ pub(super) fn show(ui: &Ui, state: &State, projection: &Projection, marks: &[Mar
     if let Some(ItemId::Light(id)) = state.selected().filter(|_| state.shows_overlays()) {
         cone_ui(&painter, state, projection, id, Stroke::new(1.5, accent));
     }
+    // Marks are sorted by distance: the nearest is drawn last.
     for mark in marks.iter().rev() {
         let Some(light) = state.scene.lights.get(mark.id) else { continue };
         let selected = state.is_selected(ItemId::Light(mark.id));

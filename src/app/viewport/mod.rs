@@ -245,6 +245,7 @@ impl Viewport {
         // A picture of the viewport's size is shown unfiltered; a coarser one is interpolated.
         let fits = self.place.is_none_or(|(_, size)| [size.width, size.height] == image.size);
         let filter = if fits { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
+        // Reusing a texture of the same size avoids an allocation per picture.
         match &mut self.texture {
             Some(texture) if texture.size() == image.size => {
                 texture.set_partial([0, 0], Arc::clone(&image), filter);

@@ -135,6 +135,7 @@ impl Viewport {
         if !again {
             return first;
         }
+        // Free lights come first, then objects from front to back, then attached lights.
         let [mut all, following] = marks::lights_at(&over.marks, at);
         let pixel = self.pixel(at);
         let objects = self.size().map(|size| picking::objects_at(state, pixel, size));
@@ -158,6 +159,7 @@ impl Viewport {
         helpers::grid_ui(ui, state, projection, self.image.as_deref());
         helpers::dimensions_ui(ui, state, projection);
         placeholders::show(ui, state, projection);
+        // Overlays are drawn from back to front: grid, boxes, outlines, marks, gizmo, axes.
         let first = state.outlined().first().copied();
         let [own, others] = &self.outline;
         let accent = theme::accent_on_dark();

@@ -70,6 +70,7 @@ pub(crate) fn objects_within(state: &State, onto: &Projection, area: Rect) -> Ve
 /// skipped.
 fn nearest_depth(onto: &Onto, object: &Object, at: DVec2) -> Option<f64> {
     let mesh = &object.model.mesh;
+    // Each vertex is projected once; triangles share the results.
     let points: Vec<Option<DVec3>> = mesh
         .positions()
         .iter()

@@ -285,6 +285,7 @@ fn choice_ui(ui: &Ui, rect: Rect, choice: &Choice<'_>, is_stop: bool) -> Respons
     } else if enabled && response.hovered() {
         painter.rect_filled(rect, 4.0, visuals.widgets.hovered.bg_fill);
     }
+    // The label and the key are centred together.
     let key_font = TextStyle::Monospace.resolve(ui.style());
     let key = choice.key.clone().filter(|_| !choice.on).unwrap_or_default();
     let key = painter.layout_no_wrap(key, key_font, color);

@@ -110,6 +110,7 @@ impl<'a> Number<'a> {
             (false, true) => "mixed".to_owned(),
             (false, false) => short_in(number, room),
         };
+        // The range clamps only new input: values from files are shown as they are.
         let mut field = DragValue::new(&mut to)
             .speed(self.speed)
             .range(self.range)

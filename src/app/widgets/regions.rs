@@ -94,6 +94,7 @@ pub(crate) fn go(ctx: &Context, viewport: Id, way: Way) {
                 here.and_then(|before| regions.shown.get(before))
             }
         };
+        // The focus moves when the target is shown, in the next frame.
         regions.target = next.map(|region| region.id);
         let place = next.and_then(|next| regions.shown.iter().position(|it| it.id == next.id));
         regions.back = focused.zip(place).filter(|_| way == Way::Back);

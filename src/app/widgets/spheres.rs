@@ -99,6 +99,7 @@ impl Spheres {
         {
             return drawn.texture.id();
         }
+        // The studio is created with the first sphere and used for all.
         let (scene, renderer) = self.studio.get_or_insert_with(studio);
         let image = image(scene, renderer, material, side);
         let texture =
@@ -140,6 +141,7 @@ fn image(
     material: Material,
     side: usize,
 ) -> ColorImage {
+    // The object in the scene gets the material, and the scene is drawn again.
     if let Some(object) = scene.objects.get(ObjectId(1)) {
         let object = Object { material: MaterialChoice::Own(material), ..object.clone() };
         let item = Item::Object(ObjectId(1), Box::new(object));
@@ -182,6 +184,7 @@ fn ball() -> Shared<Model> {
         parts: vec![Part { name: String::new(), material: None }],
         ..MeshSource::default()
     };
+    // Vertices in rings from pole to pole. The poles are rings of equal points.
     for ring in 0..=RINGS {
         let polar = std::f64::consts::PI * f64::from(ring) / f64::from(RINGS);
         for sector in 0..SECTORS {
@@ -192,6 +195,7 @@ fn ball() -> Shared<Model> {
         }
     }
     source.normals.clone_from(&source.positions);
+    // Positions of a unit sphere are also its normals.
     let corner = |ring: u32, sector: u32| {
         let position = ring * SECTORS + sector % SECTORS;
         SourceCorner { position, uv: NONE, normal: position }

@@ -82,6 +82,7 @@ impl Browser {
     /// selection has `moved`, its line is scrolled into view.
     pub(super) fn list_ui(&mut self, ui: &mut Ui, moved: bool) -> Option<PathBuf> {
         ui.spacing_mut().item_spacing.y = 0.0;
+        // A second click on a column reverses its order.
         if let Some(column) = self.header_ui(ui) {
             self.look.reversed = self.look.by == column && !self.look.reversed;
             self.look.by = column;

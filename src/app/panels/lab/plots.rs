@@ -217,6 +217,7 @@ fn names_ui(ui: &Ui, panel: &Panel, at: &[Pos2], frame: &Rect) {
         })
         .collect();
     let marks: Vec<[f32; 2]> = at.iter().map(|at| [at.x, at.y]).collect();
+    // Placement is independent of egui: it gets marks, sizes and a frame.
     let sizes: Vec<[f32; 2]> =
         galleys.iter().map(|galley| [galley.size().x + 2.0, galley.size().y]).collect();
     let frame = TextBox { min: [frame.left(), frame.top()], max: [frame.right(), frame.bottom()] };

@@ -91,6 +91,7 @@ fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Vec<Reque
         let front = report.front();
         let rows: Vec<&Row> = report.rows();
         let ids: Vec<Id> = (0..rows.len()).map(|i| ui.scope_id().with(("row", i))).collect();
+        // The rows are one stop of Tab: the arrow keys move between them.
         let is_now = |row: &&Row| report.findings.points[row.point].settings == state.settings;
         let stop = regions::stop(ui, &ids, rows.iter().position(is_now), 1);
         for (i, row) in rows.into_iter().enumerate() {
@@ -168,6 +169,7 @@ fn row_ui(
     let label = text(ui, format!("{}{star}", row.name), TextStyle::Body, left.width());
     put_text(ui, left, label, ink);
     for (i, column) in COLUMNS.iter().enumerate() {
+        // Times within the noise are shown weakly.
         let noise = i < 3 && point.verdict == Verdict::Alike && row.point != 0 && !now;
         let ink = if noise { ui.visuals().weak_text_color() } else { ink };
         right_text(ui, cell(rect, i), &(column.value)(point, error, report.region), ink);

@@ -57,6 +57,7 @@ pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, r
     let color = ground_color(ui, is_subject, shown);
     let icon = Rect::from_min_size(rect.min + vec2(INDENT, 0.0), vec2(16.0, rect.height()));
     Icon::of(&state.scene, item).paint(ui.painter(), icon, 13.0, color);
+    // Buttons are placed from the right, and the name takes the rest.
     let mut right = shown_ui(ui, state, requests, row, shown);
     right = lock_ui(ui, state, requests, row, (right, response.hovered()));
     if let ItemId::Light(id) = item
@@ -247,6 +248,7 @@ fn rename_ui(ui: &mut Ui, requests: &mut Vec<Request>, rect: Rect, name: &str) {
         .align(egui::Align2::LEFT_CENTER)
         .margin(vec2(3.0, 1.0));
     let response = ui.put(rect.shrink2(vec2(0.0, 1.0)), field).accessible_name("New name");
+    // At first the whole name is selected, so typing replaces it.
     if begun.is_none() {
         response.request_focus();
         let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
@@ -282,6 +284,7 @@ fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &R
     if response.double_clicked() {
         requests.push(Request::BeginRename(item));
     } else if response.clicked() {
+        // As in file managers, Ctrl toggles an item and Shift selects a range.
         let (also, range) =
             response.ctx.input(|input| (input.modifiers.command, input.modifiers.shift));
         requests.push(match (also, range) {

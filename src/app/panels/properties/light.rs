@@ -31,6 +31,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
     if light.kind.numbers().next().is_some() {
         section(ui, "Cone", true, |ui| shown.numbers_ui(ui, requests));
     }
+    // The sections depend on how the light is placed.
     match light.kind.anchor() {
         Anchor::Everywhere => {}
         Anchor::Direction(direction) => {

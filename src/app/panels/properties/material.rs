@@ -27,6 +27,7 @@ pub(crate) fn choice_ui(
     let mut cells: Vec<(MaterialChoice, Sphere, String)> = PresetId::all()
         .map(|id| (MaterialChoice::Preset(id), Sphere::Preset(id), id.get().name.to_owned()))
         .collect();
+    // The last two cells show the file's material and the user's own.
     let file = coefficients(&MaterialChoice::File, object);
     cells.push((MaterialChoice::File, Sphere::File(file), "the file's own".to_owned()));
     cells.push((MaterialChoice::Own(own), Sphere::Own(own), "your own".to_owned()));

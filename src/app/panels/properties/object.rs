@@ -56,6 +56,7 @@ fn placement_ui(
         change(requests, format!("Move {}", object.name), gesture, command);
     }
     let hint = "Degrees about X, then Y, then Z of the object";
+    // Angles are not unique: those shown stay close to the user's input.
     let canonical = placement::turn_degrees(placement);
     let given = shown_angles(ui, "rotation", canonical, object_turn);
     let field = Number::new("Rotation", hint).speed(0.5);
@@ -111,6 +112,7 @@ fn size(ui: &Ui, id: ObjectId, object: &Object) -> Option<DVec3> {
     type Measured = (ObjectId, DMat4, Shared<Model>, Option<DVec3>);
     let key = Id::unique("size of an object");
     let (now, model) = (*object.placement.now(), &object.model);
+    // The size is cached, since it visits every vertex.
     let known: Option<Measured> = ui.data(|data| data.get_temp(key));
     if let Some((of, placement, mesh, size)) = known {
         let many = model.mesh.positions().len() > MOST_WHILE_DRAGGED;

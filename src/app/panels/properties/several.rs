@@ -161,6 +161,7 @@ fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
                 return Vec::new();
             };
             let (m, n) = (a.placement.now(), b.placement.now());
+            // Rounding errors of decomposed matrices do not count as differences.
             let near = |a: glam::DVec3, b: glam::DVec3| a.distance(b) <= 1e-9 * a.length().max(1.0);
             let turns = (placement::turn_degrees(m), placement::turn_degrees(n));
             vec![

@@ -235,6 +235,7 @@ impl Grab {
         let growth = libm::exp2(f64::from(by.x - by.y) / DOUBLE);
         match (self.handle, pivot.kind) {
             (Handle::Axis(axis), kind) => {
+                // Positions along the axis: their ratio scales, their difference moves.
                 let (from, to) = (self.along(axis, self.from)?, self.along(axis, to)?);
                 Some(match kind {
                     Transformation::Scaling => {
@@ -250,6 +251,7 @@ impl Grab {
             }
             (Handle::Middle, Transformation::Scaling) => Some(Amount::Scale(DVec3::splat(growth))),
             (Handle::Plane(across), _) => {
+                // A plane handle moves on the plane through the middle; only its two axes count.
                 let [a, b] = others(across);
                 let normal = self.gizmo.axis(a)?.cross(self.gizmo.axis(b)?).try_normalize()?;
                 let moved = self.moved_on(middle, normal, to)?;
@@ -316,6 +318,7 @@ impl Grab {
             return Some(f64::from((at - self.from).dot(way) / super::LENGTH));
         }
         let hit = sight.ray(at).on_plane(middle, about)? - middle;
+        // Any direction in the ring's plane serves as zero, since only differences count.
         let side = about.any_orthonormal_vector();
         Some(libm::atan2(hit.dot(about.cross(side)), hit.dot(side)))
     }

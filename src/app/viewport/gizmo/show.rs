@@ -31,6 +31,7 @@ impl Gizmo {
     }
 
     fn part_ui(&self, ui: &Ui, painter: &Painter, part: &Part, bright: bool) {
+        // Each axis has its colour; a handle under the pointer is white.
         let own = match part.handle {
             Handle::Axis(axis) | Handle::Plane(axis) | Handle::Ring(axis) => {
                 theme::axis_on_dark(axis)
@@ -48,6 +49,7 @@ impl Gizmo {
         };
         match (&part.shape, part.handle) {
             (Shape::Line([from, to]), Handle::Axis(axis)) => {
+                // The line starts outside of the disk in the middle.
                 let way = (*to - *from).normalized();
                 line(painter, &[*from + way * MIDDLE, *to], stroke);
                 let beyond = *to + way * (LETTER + 7.0);
@@ -60,6 +62,7 @@ impl Gizmo {
                 painter.add(Paint::convex_polygon(corners.to_vec(), fill, edge));
             }
             (Shape::Ring { near, far }, Handle::Ring(axis)) => {
+                // The far half of a ring is thin, to tell it from the near half.
                 if far.len() > 1 {
                     painter
                         .add(Paint::line(far.clone(), Stroke::new(1.0, own.gamma_multiply(0.5))));
