@@ -7,7 +7,7 @@
 //! Panels and the viewport read the [`State`](state::State) and return requests; they change
 //! nothing. [`App`] answers the requests at the end of the frame.
 //!
-//! The rooms of this floor, lowest first; a room uses only those below it (`tests/floors`):
+//! The rooms of this floor, lowest first. A room uses only the rooms below it:
 //!
 //! ```text
 //! theme      colours, sizes, spacing
@@ -17,7 +17,7 @@
 //! shell      the window of the editor, painted with OpenGL or without
 //! widgets    controls, independent of scenes: numbers, switches, colours, icons
 //! drawing    the thread that draws the viewport's pictures, with adaptive quality
-//! chord      keys that are pressed together
+//! chord      key chords
 //! panels/mod the table of panels: names, keys, places
 //! state      all input of the panels
 //! actions    the table of actions, their keys, their effects; requests

@@ -4,7 +4,6 @@
 //! label that begins with the word, a synonym, a label that contains the letters of the word in
 //! order (`nucleo-matcher`, as in the picker of the Helix editor), and a hint that contains the
 //! word.
-//! their order (`nucleo-matcher`, as the Helix editor's picker), and last a hint that contains it.
 
 use nucleo_matcher::pattern::{Atom, AtomKind, CaseMatching, Normalization};
 use nucleo_matcher::{Config, Matcher, Utf32Str};

@@ -220,8 +220,7 @@ mod tests {
         Duration::from_millis(time)
     }
 
-    /// The reductions of the chain as limited by [`all`], without the one with one sample per
-    /// pixel.
+    /// Returns the chain as limited by [`all`], without the one with one sample per pixel.
     fn chain() -> [Reduction; 5] {
         let [_, vertex, nearest, half, all_half, quarter] = Reduction::CHAIN;
         [vertex, nearest, half, all_half, quarter].map(|one| all().limited(one))

@@ -108,8 +108,7 @@ impl ViewportRenderer {
         asked: &(dyn Fn() -> Asked + Sync),
     ) -> Option<Drawn> {
         let begun = (self.clock)();
-        // The plan at full quality tells how much has to be redrawn, on which the reduction
-        // depends.
+        // The reduction depends on the share of the picture to redraw at full quality.
         let mut plan = planned(wanted, Reduction::NONE);
         let mut changes = self.renderer.damage(&plan);
         let share = share(&changes);
@@ -295,7 +294,7 @@ mod tests {
         Snapshot { scene, view, settings, size, moving, coarse, budget, refined, explain, outlined }
     }
 
-    /// The same snapshot with another background colour, which requires a full redraw.
+    /// Changes the background colour of a snapshot, which requires a full redraw.
     fn recolored(snapshot: &Snapshot, gray: u8) -> Snapshot {
         let mut other = snapshot.clone();
         Command::Background(Color([gray; 3])).apply(&mut other.scene).unwrap();
@@ -306,7 +305,7 @@ mod tests {
         static NOW: Cell<Duration> = const { Cell::new(Duration::ZERO) };
     }
 
-    /// A clock that advances by 40 ms each time it is read, so every frame takes 40 ms.
+    /// Advances a clock by 40 ms each time it is read, so every frame takes 40 ms.
     fn slow() -> Instant {
         static BEGINNING: OnceLock<Instant> = OnceLock::new();
         let now = NOW.get() + Duration::from_millis(40);

@@ -214,7 +214,7 @@ impl App {
         Some(keeping.offered.remove(at))
     }
 
-    /// If the opened scene is offered or discarded work, marks it as unsaved and assigns it to the
+    /// Marks the opened scene as unsaved if it is offered or discarded work, and assigns it to the
     /// file that it was once saved to. Returns whether it is such work.
     pub(crate) fn settle_recovered(&mut self, opened: &Path) -> bool {
         let Some(keeping) = &self.keeping else { return false };

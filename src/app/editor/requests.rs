@@ -112,7 +112,7 @@ impl App {
             Request::LoadFiles(paths) => self.load_files(ctx, paths),
             Request::OpenFiles(paths) => self.open_files(ctx, paths),
             Request::AskModels => self.ask_file(ctx, Wanted::Dropped, ""),
-            // Notices. An earlier request of the frame may have removed some, so indices are checked.
+            // Notices. An earlier request of the frame may have removed some: indices are checked.
             Request::Details(at) => {
                 if let Some(notice) = state.notices.get(at) {
                     self.dialogs.tell_details(notice.text.clone(), notice.details.clone());

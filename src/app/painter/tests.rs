@@ -42,7 +42,7 @@ fn everywhere() -> Rect {
     Rect::from_min_max(Pos2::ZERO, pos2(WIDTH as f32, HEIGHT as f32))
 }
 
-/// A white texel in the corner, as in egui's atlas, and noise in the others.
+/// Creates an atlas with a white texel in the corner, as in egui's, and noise in the others.
 fn atlas() -> ColorImage {
     let mut rng = Rng::new(5);
     let mut image = noise([16, 8], &mut rng);
@@ -55,7 +55,7 @@ fn noise(size: [usize; 2], rng: &mut Rng) -> ColorImage {
     ColorImage::new(size, (0..count).map(|_| color(rng)).collect())
 }
 
-/// A random colour: half of them are opaque, some transparent.
+/// Draws a random colour: half of them are opaque, some transparent.
 fn color(rng: &mut Rng) -> Color32 {
     let byte = |rng: &mut Rng| u8::try_from(rng.below(256)).unwrap();
     let alpha = if rng.percent(50) { 255 } else { byte(rng) & 0xf0 };
@@ -90,7 +90,7 @@ fn place(rng: &mut Rng, most: usize) -> f32 {
     if rng.percent(50) { at } else { at + rng.below(1000) as f32 / 1000.0 }
 }
 
-/// A random shape; most are of a kind that egui makes.
+/// Draws a random shape; most are of a kind that egui makes.
 fn shape(rng: &mut Rng) -> Mesh {
     let (x, y) = (place(rng, WIDTH), place(rng, HEIGHT));
     let to = pos2(x + rng.below(600) as f32 / 7.0, y + rng.below(400) as f32 / 8.0);

@@ -97,7 +97,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// The id of a flag that the switch was clicked in this frame.
+/// Returns the id of the flag for a click on the switch in this frame.
 fn switched_id() -> Id {
     Id::unique("changing keys was switched")
 }

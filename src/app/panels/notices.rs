@@ -82,7 +82,7 @@ pub(crate) fn show<T>(
     });
 }
 
-/// The id of the area of the notices in the previous frame.
+/// Returns the id of the notices' area in the previous frame.
 fn seen_id() -> Id {
     Id::unique("place of the notices")
 }

@@ -36,8 +36,9 @@ pub(crate) trait Editor {
     /// Shows a frame and handles the user's input.
     fn frame(&mut self, ui: &mut Ui, parent: &dyn Parent);
 
-    /// Called when the user has left: the window was asked to close, and the editor did not object.
-    /// Not called if the window is lost with its display or by a fault.
+    /// Handles the end of the window after the user has left, which means that the window was asked
+    /// to close and the editor did not object. Not called if the window is lost with its display or
+    /// by a fault.
     fn left(&mut self);
 }
 

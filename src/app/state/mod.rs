@@ -126,7 +126,7 @@ pub struct DrawingChoices {
 }
 
 impl Default for DrawingChoices {
-    /// Refinement is off here; the program's window takes it from the preferences.
+    /// Returns choices without refinement; the program's window takes it from the preferences.
     fn default() -> Self {
         Self { refines: false, refined: Settings::REFINED, budget_ms: 33 }
     }

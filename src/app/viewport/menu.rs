@@ -37,7 +37,7 @@ impl Viewport {
 /// The menu of the background; the lights to add follow it.
 const ON_NOTHING: &[Action] = &[Action::FrameAll, Action::Load, Action::AddCamera];
 
-/// The menu of an item.
+/// Returns the menu of an item.
 const fn actions_on(item: ItemId) -> &'static [Action] {
     match item {
         ItemId::Object(_) => &[

@@ -24,7 +24,7 @@ const VERDICT: f32 = 84.0;
 /// The radius of a mark.
 const MARK: f32 = 5.0;
 
-/// The colour of the default in every plot.
+/// Returns the colour of the default in every plot.
 const fn default_color(visuals: &Visuals) -> Color32 {
     if visuals.dark_mode { Color32::from_rgb(230, 159, 0) } else { Color32::from_rgb(213, 94, 0) }
 }

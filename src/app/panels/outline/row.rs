@@ -228,7 +228,7 @@ fn light_ui(ui: &Ui, color: [u8; 4], slot: u32, at: Pos2) -> f32 {
     rect.left()
 }
 
-/// The id of the name being typed.
+/// Returns the id of the name being typed.
 fn new_name() -> Id {
     Id::unique("new name")
 }

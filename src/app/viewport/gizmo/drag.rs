@@ -87,7 +87,7 @@ impl Grab {
         Some(grab)
     }
 
-    /// The handle.
+    /// Returns the handle.
     pub(crate) const fn handle(&self) -> Handle {
         self.handle
     }
