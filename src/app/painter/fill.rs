@@ -252,7 +252,7 @@ fn paint_triangle(
     let places =
         corners.map(|corner| [f64::from(corner.uv[0]) * width, f64::from(corner.uv[1]) * height]);
     let ([step, _], whole) = (triangle.steps(), triangle.doubled_area());
-    // The largest step of a pixel in texels selects the filter, as for pictures.
+    // The larger of the steps in texels per pixel selects the filter, as for pictures.
     let [across, down] = at_edges(step, whole, &places).map(f64::abs);
     let filter = texture.filter(across.max(down));
     let texel = texture.at(filter, single(places[0][0]), single(places[0][1]));

@@ -254,8 +254,7 @@ impl Window {
     fn frame(&mut self, event_loop: &ActiveEventLoop, show: bool) -> Result<Flow, StartError> {
         let now = Instant::now();
         (self.last, self.due, self.asked_at) = (Some(now), None, None);
-        // Reading the window's information costs round trips to the display, so it is reused for a
-        // while.
+        // Information about the window comes from the display, so it is reused for a while.
         if self.told_at.is_none_or(|then| now - then > BELIEVED) {
             egui_winit::update_viewport_info(&mut self.info, &self.ctx, &self.window, false);
             self.told_at = Some(now);
