@@ -1,11 +1,11 @@
-//! Key chords: how an action is pressed on the keyboard.
+//! Key chords: the ways to trigger an action from the keyboard.
 //!
-//! Letters and digits go by the key, with Shift for the upper case, so that Caps Lock has no say.
-//! Signs go by the text typed, since every layout has them elsewhere.
+//! Letters and digits are matched by key, with Shift for upper case, so Caps Lock is ignored. Signs
+//! are matched by the typed text, since their keys depend on the layout.
 
 use egui::{Key, Modifiers};
 
-/// One way of pressing an action.
+/// One way to trigger an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Chord {
     /// A letter without Shift, or a digit.
@@ -14,11 +14,11 @@ pub enum Chord {
     Upper(Key),
     /// A letter with or without Shift.
     Either(Key),
-    /// A key that types nothing.
+    /// A key that types no text.
     Named(Key),
-    /// A key that types nothing, with Shift.
+    /// A key that types no text, with Shift.
     Shifted(Key),
-    /// A sign, by the text typed.
+    /// A sign, matched by the typed text.
     Text(&'static str),
     /// With Ctrl (Cmd on a Mac).
     Command(Key),
@@ -27,14 +27,14 @@ pub enum Chord {
 }
 
 impl Chord {
-    /// Whether pressing `key` under `modifiers` presses this.
+    /// Returns whether pressing `key` under `modifiers` triggers it.
     #[must_use]
     pub fn is_pressed_by(self, key: Key, modifiers: Modifiers) -> bool {
         let Modifiers { alt, shift, command, ctrl, mac_cmd } = modifiers;
         let plain = !alt && !command && !ctrl && !mac_cmd;
         match self {
             Self::Lower(wanted) => {
-                // Some layouts have digits only with Shift.
+                // On some layouts, digits require Shift.
                 wanted == key && plain && (!shift || is_digit(key))
             }
             Self::Upper(wanted) => wanted == key && plain && shift,
@@ -43,14 +43,14 @@ impl Chord {
             Self::Shifted(wanted) => wanted == key && plain && shift,
             Self::Text(_) => false,
             Self::Command(wanted) => {
-                // Most layouts have the plus only with Shift.
+                // On most layouts, plus requires Shift.
                 wanted == key && command && !alt && (!shift || wanted == Key::Plus)
             }
             Self::CommandShift(wanted) => wanted == key && command && !alt && shift,
         }
     }
 
-    /// Whether it acts although the viewport has not got the keyboard.
+    /// Returns whether it works without keyboard focus on the viewport.
     #[must_use]
     pub const fn is_global(self) -> bool {
         match self {
@@ -60,7 +60,7 @@ impl Chord {
         }
     }
 
-    /// Whether one press could mean both.
+    /// Returns whether one press could mean both.
     #[must_use]
     pub fn clashes_with(self, other: Self) -> bool {
         use Chord::{Either, Lower, Upper};
@@ -71,7 +71,7 @@ impl Chord {
         }
     }
 
-    /// As it is written: a letter in its own case.
+    /// Returns its name; letters have their typed case.
     #[must_use]
     pub fn name(self) -> String {
         let letter = |key: Key| key.symbol_or_name().to_owned();
@@ -87,7 +87,7 @@ impl Chord {
         }
     }
 
-    /// Everything that can be pressed for it.
+    /// Returns the names of all chords that trigger it.
     #[must_use]
     pub fn names(self) -> Vec<String> {
         if let Self::Either(key) = self {

@@ -1,10 +1,10 @@
-//! Fonts of the system, for names whose letters the built-in fonts do not have. Those have Latin,
-//! Greek, Cyrillic and most emoji, in one colour.
+//! System fonts for letters that the built-in fonts lack. The built-in fonts have Latin, Greek,
+//! Cyrillic and most emoji, in one colour.
 //!
-//! Nothing is read before such a letter is to be shown. Then a thread looks through the fonts of
-//! the system, while a box stands for the letter; the font that it finds is used from the next
-//! frame on. So neither the first frame nor any other waits for a disk. Letters that no font of the
-//! system has stay boxes, and [`take_missing`] says so once.
+//! Nothing is read until such a letter is shown. Then a thread searches the fonts of the system
+//! while a box stands in for the letter. The font that it finds is used from the next frame on, so
+//! no frame ever waits for a disk. Letters that no font of the system has remain boxes, and
+//! [`take_missing`] reports them once.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -16,7 +16,7 @@ use egui::{Context, Id};
 use egui::{FontData, FontFamily};
 use fontdb::{Database, FaceInfo, Style};
 
-/// Asks the system for fonts when letters are missing.
+/// Installs the search for missing letters in the system's fonts.
 pub(crate) fn install(ctx: &Context) {
     install_from(ctx, || {
         let mut fonts = Database::new();
@@ -35,7 +35,7 @@ fn id() -> Id {
     Id::unique("fonts of the system")
 }
 
-/// Says which letters no font has, if any were looked for in vain since this was last asked.
+/// Reports the letters that no font has, if any were found missing since the last call.
 pub(crate) fn take_missing(ctx: &Context) -> Option<String> {
     let search: Arc<Search> = ctx.data(|data| data.get_temp(id()))?;
     let missing = std::mem::take(&mut search.lock().missing);
@@ -53,22 +53,22 @@ pub(crate) fn take_missing(ctx: &Context) -> Option<String> {
     ))
 }
 
-/// How many letters are named.
+/// The maximum number of letters to name.
 const MOST_NAMED: usize = 4;
 
-/// What is looked for, and what was found.
+/// The letters to look for, and the fonts found.
 #[derive(Default)]
 struct Letters {
-    /// The letters that the thread is to look for.
+    /// The letters that the thread has to look for.
     wanted: BTreeSet<char>,
-    /// The font of each letter; `None` if the system has none.
+    /// The font of each letter; `None` if no font of the system has the letter.
     found: BTreeMap<char, Option<Font>>,
-    /// Letters that no font has, until that was said.
+    /// Letters that no font has and that have not been reported.
     missing: BTreeSet<char>,
     is_searching: bool,
 }
 
-/// A face of a font's file.
+/// A face in a font file.
 #[derive(Clone, Debug, PartialEq)]
 struct Font {
     name: String,
@@ -113,14 +113,16 @@ fn begin(search: &Arc<Search>, state: &mut Letters) {
     let (theirs, load) = (Arc::downgrade(search), search.load);
     let work = move || look(&theirs, &load());
     let thread = std::thread::Builder::new().name("fonts".to_owned()).spawn(work);
-    // Without a thread, boxes stay.
+    // Without a thread, the boxes remain.
     state.is_searching = thread.is_ok();
 }
 
-/// Looks for letters among the fonts until no letter is wanted any more.
+/// Searches the fonts until no more letters are wanted.
 fn look(search: &Weak<Search>, fonts: &Database) {
     loop {
         let Some(search) = search.upgrade() else { return };
+        // Taking the letters and clearing the flag is one step: a letter added later starts a new
+        // thread.
         let wanted = {
             let mut state = search.lock();
             let wanted = std::mem::take(&mut state.wanted);
@@ -131,6 +133,7 @@ fn look(search: &Weak<Search>, fonts: &Database) {
             return;
         }
         let mut found = BTreeMap::new();
+        // A font found for one letter often has the others too.
         for letter in wanted {
             let known = found.values().flatten().find(|font: &&Font| font.has(letter)).cloned();
             found.insert(letter, known.or_else(|| font_with(fonts, letter)));
@@ -142,14 +145,14 @@ fn look(search: &Weak<Search>, fonts: &Database) {
         state.found.extend(found);
         drop(state);
         if is_any {
-            // The letters are asked for again, and now there is an answer.
+            // New providers make egui ask again, this time with an answer.
             search.ctx.set_font_providers(vec![Arc::new(SystemFonts(Arc::clone(&search)))]);
         }
         search.ctx.request_repaint();
     }
 }
 
-/// The most suitable font that has a letter: upright, of usual weight, without serifs.
+/// Finds the most suitable font with a letter: upright, of normal weight, without serifs.
 fn font_with(fonts: &Database, letter: char) -> Option<Font> {
     let mut faces: Vec<&FaceInfo> = fonts.faces().collect();
     faces.sort_by_key(|face| {
@@ -169,7 +172,7 @@ fn font_with(fonts: &Database, letter: char) -> Option<Font> {
     })
 }
 
-/// Whether a face has an outline for a letter.
+/// Returns whether a face has an outline for a letter.
 fn has(data: &[u8], face: u32, letter: char) -> bool {
     ttf_parser::Face::parse(data, face).is_ok_and(|face| {
         let glyph = face.glyph_index(letter);
@@ -220,7 +223,7 @@ mod tests {
     fn a_missing_letter_is_looked_for_once_and_answered_when_it_was_found() {
         let (ctx, load) = (Context::default(), Database::new as fn() -> Database);
         let search = Arc::new(Search { ctx, load, state: Mutex::default() });
-        // As if the thread were looking already.
+        // Pretends that the thread is running already.
         search.lock().is_searching = true;
         let provider = SystemFonts(Arc::clone(&search));
         let family = FontFamily::Proportional;
@@ -233,15 +236,15 @@ mod tests {
         assert_eq!(ask().unwrap().name, "font");
     }
 
-    /// A font of one letter, which `tests/fonts/make.py` makes.
+    /// Loads a font with a single letter, made by `tests/fonts/make.py`.
     fn mountain() -> Database {
         let mut fonts = Database::new();
         fonts.load_font_data(include_bytes!("../../tests/fonts/mountain.ttf").to_vec());
         fonts
     }
 
-    /// Shows a name until the fonts for it were looked for. Gives whether each letter has a glyph,
-    /// and what is said of those that have none.
+    /// Shows a name until the search for its fonts has ended. Returns whether each letter has a
+    /// glyph, and the report about missing letters.
     fn shown(name: &str, load: fn() -> Database) -> (Vec<bool>, Option<String>) {
         let ctx = Context::default();
         install_from(&ctx, load);

@@ -12,9 +12,8 @@ use crate::app::theme;
 use marraztu_core::accuracy::AccuracyPreset;
 use marraztu_io::{self as io, OwnFolders, Preferences};
 
-/// Opens the editor with these files, and comes back when it is left: models are shown
-/// alone, framed and lit; a scene is opened in place of the first one. A preset sets the accuracy
-/// of the first scene.
+/// Opens the editor with these files and returns when the user leaves it. Models are shown alone,
+/// framed and lit; a scene replaces the first one. A preset sets the accuracy of the first scene.
 ///
 /// # Errors
 /// If no window can be opened, or if it is lost.
@@ -31,6 +30,7 @@ pub fn run(
         shell,
         window,
         Box::new(move |ctx| -> Box<dyn Editor> {
+            // The theme and the fonts are needed for the first frame.
             theme::install(ctx);
             fonts::install(ctx);
             let (scene, view) = io::default_scene();
@@ -50,12 +50,13 @@ pub fn run(
         }),
     );
     match opened {
+        // A graphics card without usable OpenGL is noticed only here.
         Err(StartError::NoGl) if shell == Shell::Automatic => again_without_gl(files, preset),
         opened => opened,
     }
 }
 
-/// Runs the program again, without OpenGL: a process can enter the loop of its window only once.
+/// Restarts the program without OpenGL: a process can enter the event loop of its window only once.
 fn again_without_gl(files: &[PathBuf], preset: Option<&AccuracyPreset>) -> Result<(), StartError> {
     let failed = |error: std::io::Error| StartError::Other(error.to_string());
     let mut program = Command::new(std::env::current_exe().map_err(failed)?);
@@ -67,7 +68,7 @@ fn again_without_gl(files: &[PathBuf], preset: Option<&AccuracyPreset>) -> Resul
     become_it(program).map_err(failed)
 }
 
-/// The window, as large as it was last time.
+/// Describes the window, with the size of the last session.
 fn window(preferences: Option<&Preferences>) -> ViewportBuilder {
     let size = preferences.and_then(|preferences| preferences.window);
     ViewportBuilder::default()
@@ -79,14 +80,14 @@ fn window(preferences: Option<&Preferences>) -> ViewportBuilder {
         .with_drag_and_drop(true)
 }
 
-/// Goes on as another program. Comes back only if that cannot be started.
+/// Replaces this process by another program. Returns only if that fails.
 #[cfg(unix)]
 fn become_it(mut program: Command) -> std::io::Result<()> {
     use std::os::unix::process::CommandExt;
     Err(program.exec())
 }
 
-/// Runs another program in place of this one.
+/// Runs another program and exits with its status.
 #[cfg(not(unix))]
 fn become_it(mut program: Command) -> std::io::Result<()> {
     std::process::exit(program.status()?.code().unwrap_or(1))

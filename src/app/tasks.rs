@@ -1,4 +1,4 @@
-//! Background tasks on threads of their own, such as loading and the system's dialogs.
+//! Background tasks on separate threads, such as loading and the system's dialogs.
 
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 
@@ -6,7 +6,7 @@ use egui::Context;
 
 use marraztu_io::Progress;
 
-/// Work that goes on while the window answers.
+/// Work on a thread while the window stays responsive.
 #[derive(Debug)]
 pub(crate) struct Task<T> {
     /// "Loading teapot.obj".
@@ -15,17 +15,17 @@ pub(crate) struct Task<T> {
     receiver: Receiver<T>,
 }
 
-/// How far a task is.
+/// The state of a task.
 #[derive(Debug)]
 pub(crate) enum Outcome<T> {
     Running,
     Done(T),
-    /// The thread ended without a word: a fault of the program's own.
+    /// The thread ended without a result, which is a fault of the program.
     Lost,
 }
 
 impl<T: Send + 'static> Task<T> {
-    /// Begins `work` on a thread, and wakes the window when it is done.
+    /// Starts `work` on a thread and wakes the window when it is done.
     ///
     /// # Errors
     /// If the system provides no thread.
@@ -38,16 +38,16 @@ impl<T: Send + 'static> Task<T> {
         let progress = Progress::new();
         let (theirs, ctx) = (progress.clone(), ctx.clone());
         std::thread::Builder::new().name(label.clone()).spawn(move || {
-            // Dropped last, so that the window is woken when everything has been told.
+            // Dropped last, so the window wakes after the result was sent.
             let _wake = Wake(ctx);
             let sender = sender;
-            // The receiver may be gone.
+            // The receiver may have been dropped.
             let _ = sender.send(work(&theirs));
         })?;
         Ok(Self { label, progress, receiver })
     }
 
-    /// What has become of it. Once it is done it has nothing more to tell.
+    /// Takes the result, if there is one. It can be taken only once.
     pub(crate) fn outcome(&self) -> Outcome<T> {
         match self.receiver.try_recv() {
             Ok(result) => Outcome::Done(result),
@@ -57,7 +57,7 @@ impl<T: Send + 'static> Task<T> {
     }
 }
 
-/// Wakes the window when its thread ends, whatever way.
+/// Wakes the window when its thread ends, even by a panic.
 struct Wake(Context);
 
 impl Drop for Wake {

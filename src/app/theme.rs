@@ -1,8 +1,8 @@
 //! The theme of the window: colours, sizes, spacing.
 //!
-//! The picture is the star, so that everything about it is grey; one accent says what is selected
-//! and what has the keyboard. A light and a dark palette hold the same places, and every text keeps
-//! a contrast of at least 4.5 to 1 on whatever it stands on (WCAG 2.1, success criterion 1.4.3).
+//! The interface is grey so the picture stands out; one accent colour marks the selection and the
+//! focus. The light and the dark palette have the same entries. All text has a contrast of at least
+//! 4.5 to 1 on its background (WCAG 2.1, success criterion 1.4.3).
 
 use egui::style::{HandleShape, ScrollStyle, WidgetVisuals, Widgets};
 use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style};
@@ -10,21 +10,21 @@ use egui::{TextStyle, Theme, Visuals, vec2};
 
 use marraztu_core::base::math::Axis;
 
-/// The height of a row, of a button, of a field, in points.
+/// The height of rows, buttons and fields, in points.
 pub const ROW: f32 = 22.0;
-/// Between things that belong together.
+/// The space between related controls.
 pub const GAP: f32 = 4.0;
-/// From the border of a panel to what stands in it.
+/// The distance from the border of a panel to its contents.
 pub const MARGIN: i8 = 10;
-/// To the right of what can be scrolled: the bar stands in it.
+/// The margin at the right of scrollable contents, for the scroll bar.
 pub const SCROLL_MARGIN: Margin = Margin { left: 0, right: MARGIN, top: 0, bottom: 0 };
 /// The width of the labels in the rows of a panel.
 pub const LABEL: f32 = 72.0;
-/// Small text: keys, units, what can be missed.
+/// The size of small text: keys, units, details.
 pub const SMALL: f32 = 11.0;
-/// Text.
+/// The size of body text.
 pub const BODY: f32 = 12.5;
-/// Names of panels.
+/// The size of panel names.
 pub const HEADING: f32 = 15.0;
 
 /// The colours of one theme.
@@ -98,33 +98,33 @@ pub fn install(ctx: &Context) {
     ctx.set_style_of(Theme::Light, style(Visuals::light(), &LIGHT));
 }
 
-/// What marks the selected and the focused.
+/// Returns the colour of the selection and of the focus.
 pub(crate) fn accent(visuals: &Visuals) -> Color32 {
     palette(visuals).accent
 }
 
-/// What marks the selected over the picture, on a dark edge: the same in both themes, since the
-/// picture is.
+/// Returns the colour of the selection over the picture, on a dark edge. It is the same in both
+/// themes, since the picture is too.
 pub(crate) const fn accent_on_dark() -> Color32 {
     DARK.accent
 }
 
-/// What says that something is wrong, over the picture.
+/// Returns the colour of warnings over the picture.
 pub(crate) const fn warning_on_dark() -> Color32 {
     DARK.error
 }
 
-/// What says that something was not done.
+/// Returns the colour of errors.
 pub(crate) fn error(visuals: &Visuals) -> Color32 {
     palette(visuals).error
 }
 
-/// The colour of an axis' letter.
+/// Returns the colour of an axis's letter.
 pub(crate) fn axis(visuals: &Visuals, axis: Axis) -> Color32 {
     palette(visuals).axes[axis.index()]
 }
 
-/// The colour of an axis over the picture, on a dark ground.
+/// Returns the colour of an axis over the picture, on a dark background.
 pub(crate) const fn axis_on_dark(axis: Axis) -> Color32 {
     match axis {
         Axis::X => DARK.axes[0],
@@ -133,12 +133,12 @@ pub(crate) const fn axis_on_dark(axis: Axis) -> Color32 {
     }
 }
 
-/// The line between panels and about fields.
+/// Returns the colour of lines between panels and around fields.
 pub(crate) fn line(visuals: &Visuals) -> Color32 {
     palette(visuals).line
 }
 
-/// The ring about what has the keyboard.
+/// Returns the ring around the control with keyboard focus.
 pub(crate) fn ring(visuals: &Visuals) -> Stroke {
     Stroke::new(2.0, palette(visuals).accent)
 }
@@ -206,7 +206,7 @@ fn colors(base: Visuals, palette: &Palette) -> Visuals {
         panel_fill: palette.panel,
         slider_trailing_fill: true,
         handle_shape: HandleShape::Circle,
-        // What cannot be used now can still be read.
+        // Disabled controls remain readable.
         disabled_alpha: 0.6,
         ..base
     }
@@ -226,7 +226,7 @@ fn widgets(palette: &Palette) -> Widgets {
         noninteractive: visuals(panel, Stroke::new(1.0, line)),
         inactive: visuals(control, Stroke::NONE),
         hovered: visuals(hovered, Stroke::NONE),
-        // egui draws what has the keyboard with these: the ring is the accent.
+        // egui uses these for the focused control: the stroke is the focus ring.
         active: visuals(pressed, Stroke::new(2.0, palette.accent)),
         open: visuals(hovered, Stroke::NONE),
     }
@@ -236,7 +236,8 @@ fn widgets(palette: &Palette) -> Widgets {
 mod tests {
     use super::*;
 
-    /// The contrast ratio of WCAG 2.1: (L1 + 0.05) / (L2 + 0.05), L the relative luminance.
+    /// Computes the contrast ratio of WCAG 2.1: (L1 + 0.05) / (L2 + 0.05), L the relative
+    /// luminance.
     fn contrast(a: Color32, b: Color32) -> f64 {
         let luminance = |color: Color32| {
             let linear = |byte: u8| {

@@ -1,48 +1,48 @@
-//! How actions appear, and the groups in which menus and the cheat sheet show them.
+//! The appearance of actions, and their groups in menus and in the cheat sheet.
 
 use crate::app::chord::Chord;
 use crate::app::panels::PanelInfo;
 use marraztu_core::base::math::Axis;
 use marraztu_core::edit::transform::Sign;
 
-/// How an action appears.
+/// The appearance of an action.
 #[derive(Clone, Copy, Debug)]
 pub struct ActionInfo {
-    /// On menus and buttons.
+    /// The text on menu entries and buttons.
     pub label: &'static str,
-    /// Over them: one sentence.
+    /// The tooltip: one sentence.
     pub hint: &'static str,
-    /// Other words that people use for it, for searches.
+    /// Synonyms to search for.
     pub words: &'static str,
-    /// Every way to press it; the first is the one that is shown.
+    /// All chords that trigger it; the first one is shown.
     pub keys: &'static [Chord],
     /// Its group in menus and in the cheat sheet.
     pub group: Group,
-    /// Whether a held key asks for it again and again.
+    /// Whether holding the key repeats it.
     pub repeats: bool,
-    /// How the history names it.
+    /// The naming of its steps in the history.
     pub step: StepName,
 }
 
-/// How the history names what an action did.
+/// How the history names the steps of an action.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepName {
-    /// By the action's label, with "Add" before those of new things.
+    /// The action's label, with "Add" in front for new items.
     Label,
-    /// By words before and after the name of the item: "Drop", "to the ground".
+    /// Words before and after the name of the item: "Drop", "to the ground".
     Around(&'static str, &'static str),
-    /// By one of two words before the name of the item; the first if the switch was on.
+    /// One of two words before the name of the item; the first if the switch was on.
     Switched(&'static str, &'static str),
-    /// By how far the item goes: "Move ship 10 along x".
+    /// The distance of the step: "Move ship 10 along x".
     Amount(Axis, Sign),
 }
 
-/// What a held key does: it asks once, or again and again.
+/// Whether holding the key of an action repeats it.
 pub(super) const ONCE: bool = false;
 pub(super) const REPEATS: bool = true;
 
 impl ActionInfo {
-    /// How the action that shows and hides a panel appears.
+    /// Describes the action that shows and hides a panel.
     pub(super) const fn of_panel(panel: PanelInfo) -> Self {
         let PanelInfo { label, hint, words, keys, .. } = panel;
         Self {
@@ -57,22 +57,22 @@ impl ActionInfo {
     }
 }
 
-/// Actions that stand together.
+/// A group of actions in menus and in the cheat sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Group {
     /// Files and the program itself.
     File,
     /// Changes to the selection, undo and redo.
     Edit,
-    /// New things.
+    /// New items.
     Add,
-    /// What the keys act on.
+    /// The selection and the subject.
     Select,
-    /// Moving, turning, scaling.
+    /// Moving, rotating, scaling.
     Transform,
-    /// What is shown, and how.
+    /// Visibility and display.
     Show,
-    /// Who looks, and from where.
+    /// The observer and the direction of view.
     Camera,
     /// Lights on and off, colours, apertures.
     Light,
@@ -81,7 +81,7 @@ pub enum Group {
 }
 
 impl Group {
-    /// All of them, in the order of menus and cheat sheet.
+    /// All groups, in the order of menus and of the cheat sheet.
     pub const ALL: [Self; 9] = [
         Self::File,
         Self::Edit,
@@ -94,7 +94,7 @@ impl Group {
         Self::Window,
     ];
 
-    /// Its heading.
+    /// Returns its heading.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -111,13 +111,13 @@ impl Group {
     }
 }
 
-/// Makes the actions of the rows.
+/// Defines the actions from the rows of the table.
 macro_rules! actions {
     ($(
         $name:ident $group:ident $repeats:ident [$($key:expr),*]
             $label:literal $hint:literal $words:literal $(=> $step:expr)?;
     )+) => {
-        /// Something a user can ask for that needs no further words.
+        /// An action of the user that needs no arguments.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Action {
             $(#[doc = $hint] $name,)+
@@ -126,10 +126,10 @@ macro_rules! actions {
         }
 
         impl Action {
-            /// Every action but those of panels.
+            /// All actions except the panels' actions.
             pub(super) const ROWS: &'static [Self] = &[$(Self::$name),+];
 
-            /// How the action appears.
+            /// Returns the appearance of the action.
             #[must_use]
             pub const fn info(self) -> ActionInfo {
                 match self {

@@ -1,4 +1,4 @@
-//! What an action can mean.
+//! The effects that actions can have.
 
 use egui::ThemePreference;
 
@@ -11,87 +11,87 @@ use marraztu_core::edit::several::Others;
 use marraztu_core::scene::{Command, ItemId, ObjectId, Subject, View};
 use marraztu_io::Helpers;
 
-/// What an action means.
+/// The effect of an action.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Intent {
-    /// A change of the scene.
+    /// Change the scene.
     Change(Command),
-    /// A change of the scene whose new item becomes the subject.
+    /// Change the scene; the kind of the new item becomes the subject.
     Add(Command, Subject),
-    /// A movement of the view.
+    /// Move the view.
     Navigate(Command),
-    /// A change of the view.
+    /// Change the view.
     View(Box<View>),
-    /// Another selection.
+    /// Change the selection.
     Select(Box<Selection>),
-    /// The window draws in another way beyond the settings.
+    /// Change the preferences for drawing in the window.
     Drawing(DrawingChoices),
-    /// Other panels are shown.
+    /// Show other panels.
     Panels(OpenPanels),
-    /// The window is divided differently among its panels.
+    /// Divide the window differently among its panels.
     Layout(Layout),
-    /// The window becomes light or dark.
+    /// Make the window light or dark.
     Theme(ThemePreference),
-    /// Asks for a new name.
+    /// Ask for a new name.
     Rename(ItemId),
-    /// One step back in the history.
+    /// Go back one step in the history.
     Undo,
-    /// One step forward in the history.
+    /// Go forward one step in the history.
     Redo,
-    /// Something with files.
+    /// Use files.
     File(FileIntent),
-    /// A camera is added once its material is chosen.
+    /// Add a camera after asking for its material.
     AskCamera,
-    /// The effects of the picture are measured, or no longer.
+    /// Start or stop measuring the effects of the picture.
     Measure,
-    /// A picture is chosen as the texture of an object.
+    /// Choose a picture as the texture of an object.
     ChooseTexture(ObjectId),
-    /// The reason why nothing of an object is seen is looked for.
+    /// Find out why an object cannot be seen.
     WhyUnseen(ObjectId),
-    /// The list of everything that can be asked for opens or closes.
+    /// Open or close the command palette.
     Palette,
-    /// The interface becomes this large.
+    /// Scale the interface.
     Zoom(f32),
-    /// What is drawn over the picture is shown or hidden.
+    /// Show or hide everything drawn over the picture.
     Overlays,
-    /// Handles over the picture are shown or hidden.
+    /// Show or hide the gizmo.
     Gizmo,
-    /// Pictures may be coarser while something moves, or not.
+    /// Allow or forbid reduced quality while something moves.
     Coarse,
-    /// Files are looked at, or no longer.
+    /// Start or stop watching files.
     Watch,
-    /// The exposure follows the picture.
+    /// Fit the exposure to the picture.
     FitExposure,
-    /// Other helpers are shown.
+    /// Show other helpers.
     Helpers(Helpers),
-    /// An axis and a number are taken from the keyboard.
+    /// Take an axis and a number from the keyboard.
     TypeAmount,
-    /// These are selected beside the selected item.
+    /// Select these items in addition to the one that the keys act on.
     Others(Others),
-    /// Something with the clipboard.
+    /// Use the clipboard.
     Clipboard(ClipboardIntent),
-    /// The next click into the picture explains a pixel.
+    /// Explain the pixel of the next click into the picture.
     Explain,
-    /// The next click into the picture aims the selected light.
+    /// Aim the selected light at the next click into the picture.
     AimByClick,
-    /// The keyboard goes to the panels, or back to the viewport.
+    /// Move the keyboard focus to the panels or back to the viewport.
     ChangeKeyboardOwner(Way),
 }
 
 /// The use of the clipboard by an action.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ClipboardIntent {
-    /// The selected items are copied.
+    /// Copy the selected items.
     Copy,
-    /// The same, and this command deletes them.
+    /// Copy the selected items, then delete them with this command.
     Cut(Command),
-    /// Adds the content of the clipboard to the scene.
+    /// Add the content of the clipboard to the scene.
     Paste,
-    /// The material of an object is copied.
+    /// Copy the material of an object.
     CopyMaterial(ObjectId),
 }
 
-/// What an action does with files, most of it by asking for one.
+/// The use of files by an action. Most uses begin with a file dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FileIntent {
     New,

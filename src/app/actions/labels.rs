@@ -1,4 +1,4 @@
-//! Names what an action does now, as the history shows it.
+//! Names the steps of the history.
 
 use super::info::{Group, StepName};
 use super::table::Action;
@@ -8,7 +8,7 @@ use marraztu_core::base::math::Axis;
 use marraztu_core::edit::transform::{self, distance};
 use marraztu_core::scene::{CameraMode, Subject, Transformation};
 
-/// What a step of x, y or z does to the selected item.
+/// The effect of a step of x, y or z on the selected item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Deed {
     Move,
@@ -18,8 +18,8 @@ enum Deed {
 }
 
 impl Action {
-    /// The name of what the action does now when it is asked for `times` times in one gesture, as
-    /// the history shows it: "Move teapot 10 along x".
+    /// Names the effect of the action, repeated `times` times in one gesture, for the history:
+    /// "Move teapot 10 along x".
     #[must_use]
     pub fn step_label(self, state: &State, times: u32) -> String {
         let name = &state.acted_on_name();
@@ -41,7 +41,7 @@ impl Action {
     }
 }
 
-/// How far `count` steps along an axis, or about it, bring the selected item.
+/// Names the effect of `count` steps along or about an axis.
 fn amount(state: &State, name: &str, axis: Axis, count: f64) -> String {
     let letter = ["x", "y", "z"][axis.index()];
     let steps = &state.view.steps;

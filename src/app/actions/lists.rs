@@ -1,11 +1,11 @@
-//! Lists of actions: all of them, those of a group, and the names that preferences know.
+//! Lists of actions: all actions, the actions of a group, and their names in preferences.
 
 use super::info::Group;
 use super::table::Action;
 use crate::app::panels::Panel;
 
 impl Action {
-    /// Every action, in the order in which menus and cheat sheet show them: those of panels stand
+    /// Every action, in the order of menus and of the cheat sheet. The actions of panels come
     /// before [`Self::MeasurePlan`].
     pub const ALL: &'static [Self] = &{
         let mut all = [Self::New; Self::ROWS.len() + Panel::ALL.len()];
@@ -24,7 +24,7 @@ impl Action {
         all
     };
 
-    /// Its name in preferences.
+    /// Returns its name in preferences.
     #[must_use]
     pub fn name(self) -> String {
         match self {
@@ -33,8 +33,8 @@ impl Action {
         }
     }
 
-    /// The action with this name in preferences. The actions of panels had names of their own once:
-    /// `TogglePlan`, `ToggleViewPanel`.
+    /// Finds the action with this name in preferences. Older versions called the actions of panels
+    /// `TogglePlan` or `ToggleViewPanel`.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let panel = name.strip_prefix("Toggle").map(|name| name.trim_end_matches("Panel"));
@@ -44,7 +44,7 @@ impl Action {
 }
 
 impl Group {
-    /// Those of [`Self::Show`] that are drawn over the picture, not in it.
+    /// The actions of [`Self::Show`] for things drawn over the picture, not in it.
     pub const OVER_PICTURE: [Action; 6] = [
         Action::ToggleOverlays,
         Action::ToggleMarks,
@@ -54,7 +54,7 @@ impl Group {
         Action::ToggleDirections,
     ];
 
-    /// Its actions, in order.
+    /// Lists its actions in order.
     pub fn actions(self) -> impl Iterator<Item = Action> {
         Action::ALL.iter().copied().filter(move |action| action.info().group == self)
     }

@@ -1,4 +1,4 @@
-//! Actions: everything a user can ask for by a key, a menu or a button.
+//! Actions: everything that a key, a menu or a button can do.
 
 mod info;
 mod intent;

@@ -1,16 +1,16 @@
-//! What the mouse does over the picture, in words: for the cheat sheet, the status line and the
-//! list of keys. `app/viewport/mouse` does it.
+//! Descriptions of mouse input over the picture, for the cheat sheet, the status line and the list
+//! of keys. `app/viewport/mouse` implements it.
 
-/// Something that the mouse does over the picture.
+/// A description of one kind of mouse input over the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct MouseInfo {
-    /// Every way to ask for it; the first is the one that is shown.
+    /// All inputs for it; the first one is shown.
     pub inputs: &'static [&'static str],
-    /// One to three words.
+    /// The name: one to three words.
     pub label: &'static str,
-    /// One sentence.
+    /// The description: one sentence.
     pub hint: &'static str,
-    /// Other words that people use for it, for searches.
+    /// Synonyms to search for.
     pub words: &'static str,
 }
 
@@ -18,7 +18,7 @@ impl MouseInfo {
     /// The heading of the list.
     pub const HEADING: &'static str = "Mouse over the picture";
 
-    /// Everything that the mouse does, from what is needed first.
+    /// All kinds of mouse input, the most important first.
     pub const ALL: [Self; 12] = [
         Self {
             inputs: &["Click"],

@@ -1,4 +1,4 @@
-//! Requests: what panels, menus, keys and the viewport return. Only the app answers them.
+//! Requests: the return values of panels, menus, keys and the viewport. Only the app answers them.
 
 use std::path::PathBuf;
 
@@ -22,37 +22,37 @@ use marraztu_lab::suite::SuiteDetail;
 /// A request to the app.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
-    /// What stands in the table of actions.
+    /// Performs an action of the table.
     Do(Action),
-    /// A change of the scene.
+    /// Changes the scene.
     Change {
         /// The change.
         command: Command,
-        /// What it is part of.
+        /// The gesture that it is part of.
         gesture: Gesture,
-        /// As the history calls it: "Move teapot".
+        /// The label in the history: "Move teapot".
         label: String,
     },
-    /// A movement of the view: it is no step of the history.
+    /// Moves the view, which is not a step of the history.
     Navigate {
         /// The change of the camera.
         command: Command,
-        /// What it is part of.
+        /// The gesture that it is part of.
         gesture: Gesture,
     },
-    /// A change of the view that selects nothing else.
+    /// Changes the view but not the selection.
     View(Box<View>),
-    /// A change of how exactly pictures are drawn.
+    /// Changes the settings of accuracy.
     Settings(Settings),
-    /// A change of how the window draws beyond that.
+    /// Changes the preferences for drawing in the window.
     Drawing(DrawingChoices),
-    /// Something of the laboratory.
+    /// A request to the laboratory.
     Lab(LabRequest),
     /// Selects an item, and makes its kind the subject.
     Select(ItemId),
-    /// Selects these items too, or no longer; the last of them becomes the one that keys act on.
+    /// Adds these items to the selection or removes them. The keys then act on the last one.
     SelectAlso(Vec<ItemId>, Also),
-    /// Selects these items beside the one that the keys act on.
+    /// Selects these items in addition to the one that the keys act on.
     Others(Others),
     /// Explains this pixel of the picture.
     Explain([usize; 2]),
@@ -60,67 +60,67 @@ pub enum Request {
     EndExplaining,
     /// Aims the selected light at a point of the world.
     AimAt(DVec3),
-    /// Selects a polygon of the selected object while polygons are shown one at a time.
+    /// Selects a polygon of the selected object, in polygon mode.
     SelectPolygon(u32),
-    /// The outline lists only items with this in their names.
+    /// Sets the filter of the outline, a part of the names.
     Filter(String),
-    /// Goes to the point in the history after this number of steps.
+    /// Goes to the state after this number of steps of the history.
     GoTo(usize),
-    /// Asks for a name of this item.
+    /// Begins to rename this item.
     BeginRename(ItemId),
-    /// Ends that: with a name, or without.
+    /// Ends renaming, with a new name or without.
     EndRename(Option<String>),
-    /// Asks for a picture file to lay over this object.
+    /// Asks for a picture file as the texture of this object.
     ChooseTexture(ObjectId),
     /// Loads these files, or opens the scene among them.
     LoadFiles(Vec<PathBuf>),
-    /// Opens these files as if they were dropped: on the untouched first scene, models take its
-    /// place.
+    /// Opens these files as if they were dropped on the window: if the first scene is untouched,
+    /// models replace it.
     OpenFiles(Vec<PathBuf>),
     /// Asks for models, and opens them as if they were dropped.
     AskModels,
-    /// Lists all that the notice at this place has to say.
+    /// Lists all details of the notice at this index.
     Details(usize),
-    /// Gives up loading the file that stands at this place.
+    /// Cancels loading the file at this index.
     CancelLoading(usize),
-    /// Gives up making the file that stands at this place.
+    /// Cancels making the file at this index.
     CancelMaking(usize),
-    /// Puts away the notice that stands at this place.
+    /// Dismisses the notice at this index.
     PutAway(usize),
-    /// Moves the notice at this place to the status line.
+    /// Moves the notice at this index to the status line.
     Settle(usize),
-    /// Forgets the notices of the status line.
+    /// Removes all notices from the status line.
     ClearNotices,
-    /// Reads the model of an object again, with this axis of its file pointing up.
+    /// Reads the model of an object again, with this axis of its file as the up axis.
     TurnUp(ObjectId, UpAxis),
-    /// Shows the unsaved work that is offered at this place.
+    /// Shows the unsaved work at this index.
     Recover(usize),
-    /// Moves the unsaved work that is offered at this place aside.
+    /// Discards the unsaved work at this index.
     DiscardWork(usize),
-    /// Takes a gesture back while it lasts, as if it had never begun.
+    /// Undoes a gesture in progress, as if it had never begun.
     Abandon(Gesture),
     /// Divides the window differently among its panels.
     Layout(Layout),
-    /// Something about missing files.
+    /// A request about missing files.
     Missing(MissingRequest),
-    /// Something about the keys of actions.
+    /// A request about the keys of actions.
     Keys(KeyRequest),
-    /// The strip of the first minute is put away.
+    /// Dismisses the greeting.
     EndGreeting,
-    /// Other preferences.
+    /// Changes the preferences.
     Preferences(Box<Preferences>),
-    /// Says in the status line why a request was refused.
+    /// Shows in the status line why a request was refused.
     Refuse(String),
 }
 
 /// How items are added to the selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Also {
-    /// One that is selected is selected no longer.
+    /// Toggle the selection of these items.
     Toggle,
-    /// They alone are selected.
+    /// Select only these items.
     Only,
-    /// They are selected too.
+    /// Add these items to the selection.
     Add,
 }
 
@@ -133,28 +133,28 @@ impl From<Action> for Request {
 /// A request about missing files of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MissingRequest {
-    /// Asks where this file is, or which of the missing files to find.
+    /// Asks for the location of this file, or which of the missing files to find.
     Find(Option<PathBuf>),
-    /// Puts the notice about them away.
+    /// Dismisses the notice about missing files.
     Dismiss,
     /// Uses the missing files in the folder of a found one.
     UseNearby,
-    /// Does not use them.
+    /// Ignores the missing files in the folder of a found one.
     DismissNearby,
 }
 
 /// A request about the keys of actions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyRequest {
-    /// The next key is chosen for this action.
+    /// Waits for a key for this action.
     Choose(Action),
-    /// The key that was pressed becomes this action's, and is taken from any other.
+    /// Gives the key that was pressed to this action and takes it from any other.
     Take(Action, Chord),
-    /// No key is chosen.
+    /// Stops waiting for a key.
     Cancel,
-    /// The action has the keys of the table again.
+    /// Restores the keys of this action from the table.
     Reset(Action),
-    /// All actions have.
+    /// Restores the keys of all actions.
     ResetAll,
 }
 
@@ -163,41 +163,41 @@ pub enum KeyRequest {
 pub enum LabRequest {
     /// Measure the picture in the viewport.
     Measure(Thoroughness),
-    /// Measure this axis alone, by its key.
+    /// Measure only this axis, given by its key.
     MeasureAxis(&'static str),
     /// Measure the suite.
     Suite(SuiteDetail),
-    /// Show this report of the suite; `None` for that of the scene on screen.
+    /// Show this report of the suite; `None` shows the report of the scene on screen.
     ShowSuite(Option<usize>),
     /// Cancel measuring.
     Cancel,
     /// Use this error metric.
     Judge(Measure),
-    /// Take it over these pixels.
+    /// Compute the metric over these pixels.
     Over(Region),
-    /// Show the plot of this axis, by its key; `None` for the overview.
+    /// Show the plot of this axis, given by its key; `None` shows the overview.
     Panel(Option<&'static str>),
-    /// Keep to these budgets.
+    /// Use these budgets.
     Budgets(Budgets),
     /// Compare the picture with the exact one in this way.
     Compare(Compare),
     /// Compare with 256 samples per pixel, or with one.
     Sampled(bool),
-    /// The next click picks a pixel, or does not.
+    /// Start or stop picking a pixel with the next click.
     Pick(bool),
     /// Attribute the error of this pixel.
     Attribute([usize; 2]),
-    /// Show this beside the plots.
+    /// Show this panel next to the plots.
     Side(Side),
-    /// Show the lesson of this axis, by its key; opens the laboratory if needed.
+    /// Show the lesson of this axis, given by its key; opens the laboratory if needed.
     Lesson(&'static str),
     /// Open the scene of this lesson.
     ShowLesson(&'static str),
-    /// Go back from the scene of a lesson to the user's own.
+    /// Return from the scene of a lesson to the user's scene.
     Back,
 }
 
-/// Asks for a change of the scene, or says why it is refused.
+/// Requests a change of the scene, or reports why it is refused.
 pub(crate) fn change(
     requests: &mut Vec<Request>,
     label: impl Into<String>,
@@ -210,7 +210,7 @@ pub(crate) fn change(
     });
 }
 
-/// Asks for a change of the view.
+/// Requests a change of the view.
 pub(crate) fn change_view(
     requests: &mut Vec<Request>,
     state: &State,

@@ -1,8 +1,8 @@
-//! Resolves an action to what it means for the scene as it is now.
+//! Resolves an action to its effect on the current scene.
 //!
-//! Whether an action is available is decided here as well, by resolving it: a disabled button, a
-//! refusal in the status line and the action's effect can never disagree. The matches are
-//! exhaustive, so that a new action does not compile until it has a meaning.
+//! This also decides whether an action is available. A disabled button, a refusal in the status
+//! line and the effect of the action therefore always agree. The matches are exhaustive, so a new
+//! action does not compile until it has an effect.
 
 use egui::ThemePreference;
 
@@ -29,16 +29,17 @@ use marraztu_io::Helpers;
 
 type Resolved = Result<Intent, Refusal>;
 
-/// The actions that add a light with a position or direction of its own, in the order of menus.
+/// The actions that add a light with a separate position or direction, in the order of menus.
 pub(crate) const ADD_LIGHTS: [Action; 3] = [Action::AddSun, Action::AddBulb, Action::AddSpot];
 
-/// What `action` means in this phase of a gesture.
+/// Returns the effect of `action` in this phase of a gesture.
 ///
 /// # Errors
-/// Why it is not available.
+/// The reason why the action is not available.
 pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Resolved {
     let (scene, view) = (&state.scene, &state.view);
     let others = state.others();
+    // Steps apply to all selected items, as one command.
     let each = |act: &dyn Fn(&Scene, &View) -> Result<Command, Refusal>| {
         several::each(scene, view, &others, act).map(Intent::Change)
     };
@@ -48,6 +49,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
     let look_from = |side| framing::side(scene, view, side).map(Intent::Navigate);
     let file = |intent| Ok(Intent::File(intent));
     match action {
+        // Files. Actions without anything to work on are refused here.
         Action::New => file(FileIntent::New),
         Action::Open => file(FileIntent::Open),
         Action::Load => file(FileIntent::Load),
@@ -73,6 +75,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::NewAncestor => file(FileIntent::NewAncestor),
         Action::Quit => file(FileIntent::Quit),
 
+        // Edits of the history and of the selected items.
         Action::Undo if state.history.position() == 0 => Err(Refusal::NothingDone),
         Action::Undo => Ok(Intent::Undo),
         Action::Redo if state.history.position() == state.history.steps().len() => {
@@ -110,6 +113,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::SelectNone if others.is_empty() => Err(Refusal::OneSelected),
         Action::SelectNone => Ok(Intent::Others(Others::default())),
 
+        // New items.
         Action::AddGround => add_shape(state, Shape::Ground),
         Action::AddPlane => add_shape(state, Shape::Plane),
         Action::AddCube => add_shape(state, Shape::Cube),
@@ -123,6 +127,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::AddObjectSpot => add_light(state, lights::spot(SpotOwner::Object(object(state)?))),
         Action::AddCameraSpot => add_light(state, lights::spot(SpotOwner::Camera(view.camera))),
 
+        // The selection.
         Action::NextItem => {
             selection::next(scene, view, phase).map(|next| Intent::Select(Box::new(next)))
         }
@@ -132,6 +137,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::SubjectObject => subject(state, Subject::Object),
         Action::SubjectLight => subject(state, Subject::Light),
 
+        // Transformations of the subject.
         Action::Translate => transformation(state, Transformation::Translation),
         Action::Rotate => transformation(state, Transformation::Rotation),
         Action::Scale => transformation(state, Transformation::Scaling),
@@ -161,6 +167,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::StepZUp => step(Axis::Z, Sign::Positive),
         Action::StepZDown => step(Axis::Z, Sign::Negative),
 
+        // Display modes.
         Action::ToggleEdges => {
             viewed(state, |view| view.fill = other(view.fill, Fill::Filled, Fill::Edges))
         }
@@ -192,6 +199,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
             viewed(state, |view| view.normals = other(view.normals, Normals::Vertex, Normals::Face))
         }
 
+        // The camera.
         Action::ToggleProjection => viewed(state, |view| {
             view.projection =
                 other(view.projection, Projection::Perspective, Projection::Orthographic);
@@ -221,6 +229,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::LookLeft => look_from(LookSide::Left),
         Action::LookBottom => look_from(LookSide::Bottom),
 
+        // Lights.
         Action::Light0
         | Action::Light1
         | Action::Light2
@@ -248,6 +257,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::BlueUp => color(Channel::Blue, 1),
         Action::BlueDown => color(Channel::Blue, -1),
 
+        // The window.
         Action::ToPanels => Ok(Intent::ChangeKeyboardOwner(Way::On)),
         Action::ToPanelsBack => Ok(Intent::ChangeKeyboardOwner(Way::Back)),
         Action::Palette => Ok(Intent::Palette),
@@ -262,7 +272,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
     }
 }
 
-/// The interface in another size, within half and three times.
+/// Scales the interface, from half to three times its size.
 fn zoom(state: &State, by: f32) -> Resolved {
     let to = ((state.zoom + by) * 10.0).round() / 10.0;
     if !(0.5..=3.0).contains(&to) {
@@ -304,7 +314,7 @@ fn add_light(state: &State, kind: LightKind) -> Resolved {
     Ok(Intent::Add(command, Subject::Light))
 }
 
-/// Whether the keys act on objects.
+/// Fails unless the keys act on objects.
 fn object_subject(view: &View) -> Result<(), Refusal> {
     if view.subject == Subject::Object { Ok(()) } else { Err(Refusal::OnlyObjects) }
 }
@@ -321,14 +331,14 @@ fn helpers(state: &State, change: impl FnOnce(&mut Helpers)) -> Resolved {
     Ok(Intent::Helpers(helpers))
 }
 
-/// A change of the view that may be refused.
+/// Changes the view in a way that may be refused.
 fn seen(state: &State, change: impl FnOnce(&mut View) -> Result<(), Refusal>) -> Resolved {
     let mut view = state.view.clone();
     change(&mut view)?;
     Ok(Intent::View(Box::new(view)))
 }
 
-/// A change of the view that is always possible.
+/// Changes the view in a way that is always possible.
 fn viewed(state: &State, change: impl FnOnce(&mut View)) -> Resolved {
     let mut view = state.view.clone();
     change(&mut view);
@@ -343,7 +353,8 @@ fn transformation(state: &State, transformation: Transformation) -> Resolved {
     seen(state, |view| selection::set_transformation(view, transformation))
 }
 
-/// Shows or hides a panel; in a narrow window, unfolds or folds one that stands beside the picture.
+/// Shows or hides a panel. In a narrow window, panels at the sides of the picture are unfolded or
+/// folded instead.
 fn toggle(state: &State, panel: Panel) -> Resolved {
     match panel.info().dock.side().filter(|_| state.narrow) {
         Some(side) => {
@@ -354,13 +365,13 @@ fn toggle(state: &State, panel: Panel) -> Resolved {
     }
 }
 
-/// The one of two that `now` is not.
+/// Returns the one of two values that differs from `now`.
 fn other<T: Copy + PartialEq>(now: T, first: T, second: T) -> T {
     if now == first { second } else { first }
 }
 
 impl Action {
-    /// Whether the action is available; if not, the reason, as the end of "Not now: ...".
+    /// Checks whether the action is available. The reason, if not, completes "Not now: ...".
     ///
     /// # Errors
     /// The reason, in words.

@@ -1,8 +1,9 @@
-//! Finds actions, items and settings by what people type.
+//! Finds actions, items and settings by typed words.
 //!
-//! Every word of a query has to match one of a thing's texts. The best match counts: a label that
-//! begins with the word, one of the other words for it, a label that contains the word's letters in
-//! their order (`nucleo-matcher`, as the Helix editor's picker), and last a hint that contains it.
+//! Every word of a query has to match one of the texts of an entry. Matches rank in this order: a
+//! label that begins with the word, a synonym, a label that contains the letters of the word in
+//! order (`nucleo-matcher`, as in the picker of the Helix editor), and a hint that contains the
+//! word.
 
 use nucleo_matcher::pattern::{Atom, AtomKind, CaseMatching, Normalization};
 use nucleo_matcher::{Config, Matcher, Utf32Str};
@@ -10,18 +11,18 @@ use nucleo_matcher::{Config, Matcher, Utf32Str};
 use super::table::Action;
 use crate::app::chord::Chord;
 
-/// The texts by which something is found.
+/// The texts of an entry that can be found.
 #[derive(Clone, Copy, Debug)]
 pub struct Texts<'a> {
-    /// As it is called.
+    /// The label.
     pub label: &'a str,
-    /// Other words for it, with blanks between them.
+    /// Synonyms, separated by spaces.
     pub words: &'a str,
-    /// What it does, in a sentence.
+    /// The description, one sentence.
     pub hint: &'a str,
 }
 
-/// A query, and the memory that matching takes.
+/// A query, and buffers for matching.
 pub struct Search {
     words: Vec<(String, Atom)>,
     matcher: Matcher,
@@ -34,18 +35,18 @@ impl std::fmt::Debug for Search {
     }
 }
 
-/// Better than any number of letters in their order.
+/// An exact match scores higher than any fuzzy match.
 const LABEL: u32 = 3000;
 const WORD: u32 = 2500;
 const BEGINS_WORD: u32 = 2000;
 const FUZZY: u32 = 1000;
 const HINT: u32 = 500;
 
-/// A match by scattered letters alone has at least this score a letter.
+/// The minimum score per letter of a match by scattered letters.
 const CLOSE: u32 = 18;
 
 impl Search {
-    /// A search for `query`.
+    /// Creates a search for `query`.
     #[must_use]
     pub fn new(query: &str) -> Self {
         let atom = |word: &str| {
@@ -57,25 +58,27 @@ impl Search {
         Self { words, matcher: Matcher::new(Config::DEFAULT), letters: Vec::new() }
     }
 
-    /// Whether nothing is asked for: everything matches.
+    /// Returns whether the query is empty. An empty query matches everything.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.words.is_empty()
     }
 
-    /// How well something matches; `None` if it does not.
+    /// Returns the score of an entry; `None` if it does not match.
     pub fn score(&mut self, texts: Texts<'_>) -> Option<u32> {
         let label = texts.label.to_lowercase();
         let hint = texts.hint.to_lowercase();
         let mut sum = 0;
         for (word, atom) in &self.words {
+            // Scattered letters match almost anything, so a fuzzy match needs a minimum score per
+            // letter.
             let haystack = Utf32Str::new(texts.label, &mut self.letters);
             let fuzzy = atom.score(haystack, &mut self.matcher).map(u32::from);
             let letters = u32::try_from(word.chars().count()).unwrap_or(u32::MAX);
             let fuzzy = fuzzy.filter(|score| *score >= CLOSE.saturating_mul(letters));
             let mut others = texts.words.split_whitespace();
             let best = if label.starts_with(word.as_str()) {
-                // The shorter of two labels is closer to what was typed.
+                // Of two labels, the shorter one is closer to the typed word.
                 LABEL + 200_u32.saturating_sub(u32::try_from(label.len()).unwrap_or(200))
             } else if others.clone().any(|other| other == word) {
                 WORD
@@ -97,13 +100,13 @@ impl Search {
 }
 
 impl Action {
-    /// How well the action matches a search: by one of its keys as it is written, by its label, or
-    /// by other words for it.
+    /// Returns the score of the action: by one of its keys, spelled exactly, by its label, or by
+    /// synonyms.
     pub fn score(self, search: &mut Search, query: &str) -> Option<u32> {
         self.score_on(self.info().keys, search, query)
     }
 
-    /// As [`Self::score`], for an action that is on other keys.
+    /// Works as [`Self::score`], for an action with other keys.
     pub(crate) fn score_on(self, keys: &[Chord], search: &mut Search, query: &str) -> Option<u32> {
         let info = self.info();
         let query = query.trim();
@@ -126,7 +129,7 @@ mod tests {
     use super::*;
     use crate::app::panels::Panel;
 
-    /// The actions that match, best first; in the order of the table for an empty query.
+    /// Lists the actions that match, best first; in the order of the table for an empty query.
     fn actions_for(query: &str) -> Vec<Action> {
         let mut search = Search::new(query);
         let mut found: Vec<(u32, Action)> = Action::ALL
@@ -137,7 +140,7 @@ mod tests {
         found.into_iter().map(|(_, action)| action).collect()
     }
 
-    /// The words that people use, and the action that they mean.
+    /// Words that users type, with the actions that they mean.
     const WORDS: [(&str, Action); 69] = [
         ("flat", Action::ToggleLightNormals),
         ("smooth", Action::ToggleLightNormals),

@@ -1,4 +1,4 @@
-//! Which actions are switches, and whether they are on.
+//! Finds out which actions are switches, and whether they are on.
 
 use egui::ThemePreference;
 
@@ -25,14 +25,14 @@ const LIGHT_SWITCHES: [Action; 10] = [
 ];
 
 impl Action {
-    /// The slot of the light that the action switches.
+    /// Returns the slot of the light that the action switches.
     #[must_use]
     pub fn slot(self) -> Option<u32> {
         let at = LIGHT_SWITCHES.iter().position(|action| *action == self)?;
         u32::try_from(at).ok()
     }
 
-    /// Whether the action's switch is on; `None` if the action is not a switch.
+    /// Returns whether the action's switch is on; `None` if the action is not a switch.
     #[must_use]
     pub fn is_on(self, state: &State) -> Option<bool> {
         let (scene, view) = (&state.scene, &state.view);
@@ -97,6 +97,7 @@ impl Action {
             Self::ThemeSystem => state.theme == ThemePreference::System,
             Self::ThemeLight => state.theme == ThemePreference::Light,
             Self::ThemeDark => state.theme == ThemePreference::Dark,
+            // The match is exhaustive, so a new action has to state that it is not a switch.
             Self::New | Self::Open | Self::Load | Self::Save | Self::SaveAs | Self::SavePicture => {
                 return None;
             }

@@ -1,8 +1,9 @@
 //! The table of actions: labels, hints, keys and groups.
 //!
-//! Keys, menus, buttons and the cheat sheet all read [`Action::info`] and return an [`Action`];
-//! none of them changes anything. What an action means for a scene stands in one place too, and
-//! whether it can be done now is asked there. Each panel has an action from the table of panels.
+//! Keys, menus, buttons and the cheat sheet read [`Action::info`] and return an [`Action`]; none of
+//! them changes anything. The effect of an action on a scene, and whether the action is available,
+//! are decided in one place too: `resolve`. Each panel has an action, made from the table of
+//! panels.
 
 use egui::Key;
 

@@ -1,4 +1,4 @@
-//! How a dialog ends, and what the user has answered.
+//! The results of dialogs.
 
 use std::path::PathBuf;
 
@@ -6,39 +6,38 @@ use super::material_dialog::{MaterialChoices, MaterialDialog};
 use super::picture_dialog::PictureChoices;
 use super::wanted::{After, ChangedFile, Wanted};
 
-/// What the user has answered.
+/// The user's answer to a dialog.
 #[derive(Debug)]
 pub(crate) enum Answer {
-    /// These files, for this.
+    /// These files, for this purpose.
     Files(Wanted, Vec<PathBuf>),
     /// No file.
     NoFile,
     /// Save first.
     Save(After),
-    /// Do it without saving.
+    /// Continue without saving.
     Discard(After),
     /// This material.
     Material(Box<MaterialDialog>, MaterialChoices),
-    /// A picture or a turntable with these options, into this file; it is asked for if there is
-    /// none.
+    /// A picture or a turntable with these options. Without a path, the file is asked for next.
     Picture(PictureChoices, Option<PathBuf>),
-    /// A texture is wanted for the model in the material dialog.
+    /// Choose a texture for the model in the material dialog.
     ChooseTexture,
-    /// This missing file is to be found.
+    /// Find this missing file.
     Find(PathBuf),
-    /// The discarded work at this place is to be recovered.
+    /// Recover the discarded work at this index.
     RecoverDiscarded(usize),
-    /// What to do with the changed file of the scene, and then.
+    /// The decision about the changed file of the scene, and the work that follows.
     Changed(ChangedFile, PathBuf, Option<After>),
 }
 
-/// How a dialog ends.
+/// The way a dialog ends.
 pub(super) enum End {
     Cancelled,
     File(PathBuf),
     Material(MaterialChoices),
-    /// With this answer.
+    /// The dialog ends with this answer.
     Answer(Answer),
-    /// It stays open, and a texture is chosen.
+    /// The dialog stays open while the user chooses a texture.
     Asked,
 }

@@ -1,7 +1,7 @@
 //! A simple file browser for systems without a file dialog.
 //!
-//! A path can be typed or pasted as a whole; the list below follows it. The arrow keys go from the
-//! field into the list: the keyboard alone is enough.
+//! The user can type or paste a whole path, and the list below follows it. The arrow keys move from
+//! the field into the list, so the keyboard suffices.
 
 mod list;
 
@@ -15,7 +15,7 @@ use crate::app::theme;
 use crate::app::widgets::controls::{Switch, heading};
 pub(crate) use list::Look;
 
-/// Whether the file is opened or saved.
+/// Whether a file is opened or saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mode {
     Open,
@@ -27,21 +27,21 @@ pub(crate) enum Mode {
 pub(crate) struct Browser {
     title: &'static str,
     mode: Mode,
-    /// Endings without the dot, the first being the one that a name without any gets.
+    /// Extensions without the dot. A name without an extension gets the first one.
     endings: Vec<&'static str>,
-    /// Folders that are one click away, with their names.
+    /// Folders to reach with one click, with their names.
     places: Vec<(String, PathBuf)>,
-    /// How the list is shown.
+    /// The display of the list.
     pub(crate) look: Look,
-    /// What stands in the path field.
+    /// The text of the path field.
     path: String,
-    /// The part of a name that was typed, if the list is limited to it.
+    /// The filter of the list: the typed part of a name.
     part: Option<String>,
-    /// The text in the path field at first: it does not filter the list.
+    /// The initial text of the path field, which does not filter the list.
     proposal: String,
     folder: PathBuf,
     entries: Vec<Entry>,
-    /// Why the folder cannot be listed, or the file not be chosen.
+    /// The reason why the folder cannot be listed or the file cannot be chosen.
     fault: Option<String>,
     shown_once: bool,
 }
@@ -62,7 +62,7 @@ pub(crate) enum Choice {
 }
 
 impl Browser {
-    /// A choice that begins in `folder`, with `name` in the path field.
+    /// Creates a browser of `folder`, with `name` in the path field.
     pub(crate) fn new(
         title: &'static str,
         mode: Mode,
@@ -90,19 +90,20 @@ impl Browser {
         browser
     }
 
-    /// The browser with these places, and a list that looks like this.
+    /// Sets the folders to offer and the display of the list.
     pub(crate) fn with(mut self, places: Vec<(String, PathBuf)>, look: Look) -> Self {
         (self.places, self.look) = (places, look);
         self.look.sort(&mut self.entries);
         self
     }
 
-    /// Shows the dialog. Returns how it ended, once it has.
+    /// Shows the dialog. Returns the result when it has ended.
     pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<Choice> {
         ui.set_width(ui.available_width().clamp(240.0, 640.0));
         heading(ui, self.title);
         let label = ui.label("Path");
         let id = ui.scope_id().with("path");
+        // The arrow keys are handled before the field, which would use them too.
         let moved = self.arrows(ui, id);
         let output = egui::TextEdit::singleline(&mut self.path)
             .id(id)
@@ -117,13 +118,14 @@ impl Browser {
             editing.store(ui.ctx(), field.id);
             self.shown_once = true;
         }
+        // Enter confirms the path, or enters the folder and keeps the focus.
         let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         if field.changed() && !moved {
             self.follow();
         }
         let mut choice = if entered { self.take() } else { None };
         if moved || (entered && choice.is_none()) {
-            // It goes on being typed into, behind what stands there now.
+            // The field keeps the focus, with the cursor behind the new path.
             self.type_on(ui, field.id);
         }
         ui.add_space(theme::GAP);
@@ -157,7 +159,7 @@ impl Browser {
         choice
     }
 
-    /// The folders that are one click away. Gives the one that was clicked.
+    /// Shows the folders to reach with one click. Returns the one that was clicked.
     fn places_ui(&self, ui: &mut Ui) -> Option<PathBuf> {
         const WIDTH: f32 = 120.0;
         if self.places.is_empty() || ui.available_width() < 4.0 * WIDTH {
@@ -179,9 +181,9 @@ impl Browser {
         clicked
     }
 
-    /// Moves through the list with the arrow keys, and puts the entry into the field. The keys are
-    /// taken before the field sees them, which would move its cursor. Returns whether one was
-    /// pressed.
+    /// Moves through the list with the arrow keys and puts the entry into the field. The keys are
+    /// consumed before the field sees them, where they would move the cursor. Returns whether an
+    /// arrow key was pressed.
     fn arrows(&mut self, ui: &Ui, field: egui::Id) -> bool {
         if !ui.memory(|memory| memory.has_focus(field)) {
             return false;
@@ -193,12 +195,13 @@ impl Browser {
         if down + up == 0 {
             return false;
         }
+        // The arrow keys move from the row of the typed path.
         let rows: Vec<PathBuf> = self.rows().into_iter().map(|(path, _)| path).collect();
         let typed = self.typed();
         let last = rows.len().saturating_sub(1);
         let to = match rows.iter().position(|row| *row == typed) {
             Some(at) => (at + down).saturating_sub(up).min(last),
-            // The folder above is reached from the first entry.
+            // The first entry of the list is the parent folder, which is reached with an arrow up.
             None if self.folder.parent().is_some() => down.min(last),
             None => 0,
         };
@@ -208,8 +211,8 @@ impl Browser {
         true
     }
 
-    /// The lines of the list, with their paths: the folder above, which is no entry, and the
-    /// entries that fit.
+    /// Lists the rows with their paths: the parent folder, which has no entry, and the entries that
+    /// match.
     fn rows(&self) -> Vec<(PathBuf, Option<&Entry>)> {
         let above = self.folder.parent().map(|above| (above.to_owned(), None));
         let entry = |entry| (self.place(entry), Some(entry));
@@ -220,13 +223,13 @@ impl Browser {
         self.folder.join(&entry.name)
     }
 
-    /// Gives the keyboard to the path field when it is shown next, as at first.
+    /// Focuses the path field when it is shown next, as at first.
     pub(crate) const fn ask_again(&mut self) {
         self.shown_once = false;
     }
 
-    /// What typing replaces at first: the proposed name without its ending. Without a name, it goes
-    /// on behind the folder.
+    /// Returns the initial selection: the proposed name without its extension. Without a name, the
+    /// cursor is behind the folder.
     fn proposed(&self) -> CCursorRange {
         let path = Path::new(&self.path);
         let end = self.path.chars().count();
@@ -241,7 +244,7 @@ impl Browser {
         CCursorRange::two(CCursor::new(from), CCursor::new(from + stem))
     }
 
-    /// Gives the keyboard to the path field, with the cursor at its end.
+    /// Focuses the path field, with the cursor at its end.
     fn type_on(&self, ui: &Ui, field: egui::Id) {
         let mut editing = egui::text_edit::TextEditState::load(ui.ctx(), field).unwrap_or_default();
         let end = CCursor::new(self.path.chars().count());
@@ -250,8 +253,8 @@ impl Browser {
         ui.memory_mut(|memory| memory.request_focus(field));
     }
 
-    /// Takes a click on a path of the list: a folder is entered, a file is chosen, and a second
-    /// click on it takes it.
+    /// Handles a click on a path of the list. A folder is entered. A file is selected, and a second
+    /// click on it confirms it.
     fn click(&mut self, clicked: &Path) -> Option<Choice> {
         let again = self.typed() == clicked;
         if clicked.is_dir() {
@@ -262,7 +265,7 @@ impl Browser {
         again.then(|| self.take()).flatten()
     }
 
-    /// Goes to a folder. The name to save under stays.
+    /// Goes to a folder. When saving, the name stays.
     fn go(&mut self, folder: &Path) {
         let typed = self.typed();
         let name = typed.file_name().filter(|_| self.mode == Mode::Save && !typed.is_dir());
@@ -274,8 +277,8 @@ impl Browser {
         };
     }
 
-    /// The listed entries: names that contain the typed part. Hidden entries are listed on request,
-    /// or if a dot is typed.
+    /// Lists the entries with names that contain the typed part. Hidden entries are listed on
+    /// request, or if the part begins with a dot.
     fn fitting(&self) -> impl Iterator<Item = &Entry> {
         let typed = self.typed();
         let name = typed.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -286,7 +289,7 @@ impl Browser {
             if entry.name.starts_with('.') && !hidden {
                 return false;
             }
-            // Without its ending, which all have.
+            // The extension is ignored, since all entries have it.
             let stem = Path::new(&entry.name).file_stem().map(|stem| stem.to_string_lossy());
             self.part.as_ref().is_none_or(|part| match stem {
                 _ if part.starts_with('.') => entry.name.to_lowercase().starts_with(part),
@@ -296,11 +299,11 @@ impl Browser {
         })
     }
 
-    /// The part of a name that is typed; none if it names a folder or an entry.
+    /// Returns the typed part of a name; none if the path names a folder or an entry.
     fn typed_part(&self) -> Option<String> {
         let last = self.path.rsplit(['/', std::path::MAIN_SEPARATOR]).next();
         if self.mode == Mode::Open && last == Some(".") {
-            // A path to the folder itself, but it begins the name of a hidden entry.
+            // "." is a path to the folder itself, but also the beginning of a hidden name.
             return last.map(str::to_owned);
         }
         let typed = self.typed();
@@ -311,8 +314,8 @@ impl Browser {
         name.filter(|_| self.mode == Mode::Open && !is_whole)
     }
 
-    /// The path that is typed. One that begins anew behind the folder, with a slash or the sign of
-    /// the home folder, is taken from there.
+    /// Returns the typed path. If a new path begins behind the folder, with a slash or with `~`,
+    /// only the new path counts.
     fn typed(&self) -> PathBuf {
         let path = self.path.trim();
         let path = path.rfind("//").map_or(path, |at| &path[at + 1..]);
@@ -323,7 +326,7 @@ impl Browser {
         }
     }
 
-    /// What the button that ends the choice says.
+    /// Returns the label of the button that confirms the choice.
     fn verb(&self) -> &'static str {
         match self.mode {
             Mode::Open => "Open",
@@ -332,7 +335,7 @@ impl Browser {
         }
     }
 
-    /// The file that the path field names, with an ending.
+    /// Returns the file in the path field, with an extension.
     fn named(&self) -> PathBuf {
         let path = self.typed();
         match self.endings.first() {
@@ -351,7 +354,7 @@ impl Browser {
         }
         let path = self.named();
         if path.file_name().is_none() || (self.mode == Mode::Open && !path.exists()) {
-            // The only entry that fits is meant.
+            // If only one entry matches, it is chosen.
             let is_here = typed.parent() == Some(&self.folder) && self.path != self.proposal;
             let fitting: Vec<PathBuf> =
                 self.fitting().take(2).map(|entry| self.folder.join(&entry.name)).collect();
@@ -365,7 +368,7 @@ impl Browser {
         Some(Choice::File(path))
     }
 
-    /// Lists the folder that the typed path is in.
+    /// Lists the folder of the typed path.
     fn follow(&mut self) {
         let path = self.typed();
         let folder = if path.is_dir() { Some(path) } else { path.parent().map(Path::to_owned) };
@@ -383,7 +386,7 @@ impl Browser {
         match std::fs::read_dir(&self.folder) {
             Ok(entries) => {
                 let entries = entries.flatten().map(|entry| {
-                    // The target of a link.
+                    // Links are followed to their target.
                     let data = std::fs::metadata(entry.path()).ok();
                     Entry {
                         name: entry.file_name().to_string_lossy().into_owned(),
@@ -407,7 +410,7 @@ impl Browser {
     }
 }
 
-/// A folder as it stands in the path field: a name typed behind it is in it.
+/// Formats a folder for the path field, such that a name typed behind it is in it.
 fn shown_folder(folder: &Path) -> String {
     folder.join("").display().to_string()
 }

@@ -1,7 +1,8 @@
 //! The dialogs over the window: files, materials, unsaved changes, errors.
 //!
-//! Files are asked for with the system's own dialog, on a thread of its own. A system that has none
-//! answers at once, as no hand could; then a plain choice of our own stands in.
+//! Files are chosen in the system's dialog, which runs on a separate thread. On a system without
+//! such a dialog it returns immediately, faster than any user. The simple browser of this program
+//! then takes its place.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -20,26 +21,26 @@ use crate::app::shell::Parent;
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::controls::{heading, take_focus};
 
-/// A system's dialog that is gone within this time was never there.
+/// A system dialog that ends within this time was never shown.
 const AT_ONCE: Duration = Duration::from_millis(400);
 
-/// All dialogs that are open.
+/// All open dialogs.
 #[derive(Debug, Default)]
 pub(crate) struct Dialogs {
     /// Whether to use the system's file dialogs.
     pub(crate) native: bool,
-    /// Where files are looked for and saved.
+    /// The start folders of dialogs.
     pub(crate) folders: Folders,
-    /// How lists of files are shown.
+    /// The display of lists of files.
     look: Look,
     system: Option<SystemDialog>,
-    /// A dialog of the system's that is to be opened.
+    /// The system dialog to open next.
     waiting: Option<(Wanted, String)>,
-    /// The last one is on top.
+    /// The open dialogs, the top one last.
     open: Vec<Dialog>,
 }
 
-/// A dialog of the system's, on its thread.
+/// A system dialog on its thread.
 #[derive(Debug)]
 struct SystemDialog {
     wanted: Wanted,
@@ -61,7 +62,7 @@ enum Dialog {
     Discarded(Vec<String>),
     /// The file of the scene was changed by another program.
     Changed(PathBuf, Option<After>),
-    /// Whether to replace a file, and the answer of the dialog below if so.
+    /// Whether to replace a file, with the answer of the dialog below for a yes.
     Replace(PathBuf, Option<Box<Answer>>),
 }
 
@@ -93,7 +94,7 @@ impl Dialogs {
         self.open.push(Dialog::Missing(files));
     }
 
-    /// Lists the work that was discarded.
+    /// Lists the discarded work.
     pub(crate) fn list_discarded(&mut self, all: Vec<String>) {
         self.open.push(Dialog::Discarded(all));
     }
@@ -103,7 +104,7 @@ impl Dialogs {
         self.open.push(Dialog::Changed(path, after));
     }
 
-    /// The next file to open is asked for in this folder.
+    /// Sets the folder of the next dialog that opens a file.
     pub(crate) fn begin_in(&mut self, folder: Option<PathBuf>) {
         self.folders.open_in(folder);
     }
@@ -113,7 +114,7 @@ impl Dialogs {
         self.open.push(Dialog::Material(Box::new(dialog)));
     }
 
-    /// Whether a dialog of the window's own is open.
+    /// Returns whether a dialog of the window is open; system dialogs do not count.
     pub(crate) const fn is_open(&self) -> bool {
         !self.open.is_empty()
     }
@@ -124,7 +125,7 @@ impl Dialogs {
         self.open.push(Dialog::Picture(Box::new(dialog)));
     }
 
-    /// The file of the model in the material dialog.
+    /// Returns the file of the model in the material dialog.
     pub(crate) fn model_file(&self) -> Option<&Path> {
         self.open.iter().rev().find_map(|dialog| match dialog {
             Dialog::Material(material) => material.loaded.as_ref().map(|(path, _)| path.as_path()),
@@ -132,7 +133,7 @@ impl Dialogs {
         })
     }
 
-    /// Sets the texture of the model whose material is being chosen.
+    /// Sets the texture of the model in the material dialog.
     pub(crate) fn set_texture(&mut self, path: PathBuf) {
         for dialog in self.open.iter_mut().rev() {
             if let Dialog::Material(material) = dialog {
@@ -141,15 +142,15 @@ impl Dialogs {
         }
     }
 
-    /// Whether a material is being chosen.
+    /// Returns whether a material dialog is open.
     pub(crate) fn asks_material(&self) -> bool {
         self.open.iter().any(|dialog| matches!(dialog, Dialog::Material(_)))
     }
 
-    /// Asks for a file; `name` is offered.
+    /// Asks for a file and proposes `name`.
     ///
     /// # Errors
-    /// If the system's dialog is open already: its title.
+    /// The title of the system dialog that is open already.
     pub(crate) fn ask_file(
         &mut self,
         ctx: &Context,
@@ -168,14 +169,14 @@ impl Dialogs {
         Ok(())
     }
 
-    /// The title of the system's dialog that is open.
+    /// Returns the title of the open system dialog.
     pub(crate) fn system_title(&self) -> Option<&'static str> {
         let open = self.system.as_ref().map(|open| &open.wanted);
         let wanted = open.or(self.waiting.as_ref().map(|(wanted, _)| wanted));
         wanted.map(|wanted| wanted.description().0)
     }
 
-    /// Opens the system's dialog that was asked for, over its parent.
+    /// Opens the requested system dialog over its parent.
     pub(crate) fn open_system(&mut self, ctx: &Context, parent: &dyn Parent) {
         let Some((wanted, name)) = self.waiting.take() else { return };
         let (title, mode, endings) = wanted.description();
@@ -191,6 +192,7 @@ impl Dialogs {
             Mode::Open => dialog.pick_files(),
             Mode::Save => dialog.save_file().map(|path| vec![path]),
         });
+        // Without a thread, the built-in browser is the alternative.
         match task {
             Ok(task) => {
                 let begun = Instant::now();
@@ -204,11 +206,12 @@ impl Dialogs {
     pub(crate) fn ui(&mut self, ctx: &Context) -> Option<Answer> {
         if let Some(answer) = self.hear_system() {
             if matches!(answer, Answer::NoFile) {
-                // It may have been closed by Esc.
+                // The dialog may have been closed by Esc.
                 Keyboard::note_escape(ctx);
             }
             return Some(answer);
         }
+        // Only the top dialog is shown and takes input.
         let number = self.open.len();
         let dialog = self.open.last_mut()?;
         let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
@@ -228,7 +231,8 @@ impl Dialogs {
         self.close(dialog, ended)
     }
 
-    /// The answer of a dialog, unless it would replace a file: that is asked about first.
+    /// Returns the answer of a dialog, unless it would replace a file: then the user is asked
+    /// first.
     fn unless_replaced(
         &mut self,
         mut dialog: Dialog,
@@ -238,7 +242,7 @@ impl Dialogs {
         if !path.is_file() {
             return Some(answer);
         }
-        // If the file is not to be replaced, the dialog asks for another one.
+        // If the user keeps the file, the dialog asks for another one.
         if let Dialog::Browser(_, browser) = &mut dialog {
             browser.ask_again();
         }
@@ -250,7 +254,7 @@ impl Dialogs {
     fn close(&mut self, dialog: Dialog, end: End) -> Option<Answer> {
         Some(match (end, dialog) {
             (End::Answer(answer), Dialog::Replace(..)) => {
-                // The dialog below has its answer, too.
+                // The answer also ends the dialog below.
                 if matches!(self.open.last(), Some(Dialog::Browser(..) | Dialog::Picture(_))) {
                     self.open.pop();
                 }
@@ -262,6 +266,7 @@ impl Dialogs {
                 return self.unless_replaced(dialog, answer, &path);
             }
             (End::Answer(answer), _) => answer,
+            // The browser's display of lists is kept for the next one.
             (End::File(path), Dialog::Browser(wanted, browser)) => {
                 self.look = browser.look;
                 let path = wanted.named(path);
@@ -289,11 +294,12 @@ impl Dialogs {
             Outcome::Lost => None,
         };
         let SystemDialog { wanted, name, begun, .. } = self.system.take()?;
+        // A dialog that ended too early was never shown.
         match outcome {
             Some(Some(paths)) if !paths.is_empty() => self.chosen_by_system(wanted, paths),
             Some(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile),
             Some(_) | None => {
-                // The system has no file dialog: do not try again.
+                // The system has no file dialog, so it is not tried again.
                 self.native = false;
                 self.browse(wanted, &name);
                 None
@@ -301,8 +307,8 @@ impl Dialogs {
         }
     }
 
-    /// The system has asked already whether to replace a file, unless the ending of its name was
-    /// missing.
+    /// Handles files from the system dialog. It has already asked whether to replace a file, unless
+    /// the extension was missing.
     fn chosen_by_system(&mut self, wanted: Wanted, mut paths: Vec<PathBuf>) -> Option<Answer> {
         let Some(path) = paths.first_mut() else { return Some(Answer::NoFile) };
         let named = wanted.named(path.clone());

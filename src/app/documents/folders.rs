@@ -1,4 +1,4 @@
-//! Where file dialogs begin.
+//! The start folders of file dialogs.
 //!
 //! Textures are looked for in the folder of their model, and files are saved in the folder of the
 //! scene or its model. If the user chooses another folder, the next dialog of that kind begins
@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// The most recent folders that are offered.
+/// The maximum number of recent folders to offer.
 const MOST: usize = 6;
 
 /// The purpose of a remembered folder.
@@ -21,23 +21,23 @@ pub(crate) enum Kind {
     Saved,
 }
 
-/// The folders of files.
+/// The folders used for files.
 #[derive(Debug, Default)]
 pub(crate) struct Folders {
-    /// The folder of the scene or the model that the next dialog is about, if it has one.
+    /// The folder of the scene or of the model that the next dialog is about, if it has a file.
     pub(crate) home: Option<PathBuf>,
     /// The folders of recent files, the latest first.
     pub(crate) recent: Vec<PathBuf>,
-    /// The folder chosen last for each kind, and the home that it was chosen for.
+    /// The last folder chosen for each kind, and the `home` at that time.
     chosen: BTreeMap<Kind, (Option<PathBuf>, PathBuf)>,
 }
 
 impl Folders {
-    /// Where a dialog begins.
+    /// Returns the start folder of a dialog.
     pub(crate) fn start(&self, kind: Kind) -> PathBuf {
         let chosen = self.chosen.get(&kind);
         let start = match (chosen, &self.home) {
-            // The next file to open may have nothing to do with the scene.
+            // The next file to open may be unrelated to the scene.
             (Some((_, folder)), _) if kind == Kind::Opened => Some(folder),
             (Some((of, folder)), Some(home)) if of.as_ref() == Some(home) => Some(folder),
             (_, Some(home)) => Some(home),
@@ -47,25 +47,26 @@ impl Folders {
         start.cloned().or_else(|| std::env::current_dir().ok()).unwrap_or_else(|| "/".into())
     }
 
-    /// The next dialog that opens a file begins in this folder.
+    /// Sets the folder of the next dialog that opens a file.
     pub(crate) fn open_in(&mut self, folder: Option<PathBuf>) {
         if let Some(folder) = folder {
             self.chosen.insert(Kind::Opened, (self.home.clone(), folder));
         }
     }
 
-    /// Notes that a file was chosen.
+    /// Remembers the folder of a chosen file.
     pub(crate) fn remember(&mut self, kind: Kind, file: &Path) {
         if let Some(folder) = file.parent() {
             self.chosen.insert(kind, (self.home.clone(), folder.to_owned()));
         }
     }
 
-    /// The folders that are one click away in a dialog, with their names: the user's own, the one
-    /// of the scene or its model, and recent ones.
+    /// Lists the folders to reach with one click, with their names: the home folder, that of the
+    /// scene or its model, and recent ones.
     pub(crate) fn places(&self) -> Vec<(String, PathBuf)> {
         let user = std::env::home_dir().map(|folder| ("Home".to_owned(), folder));
         let mut places: Vec<(String, PathBuf)> = user.into_iter().collect();
+        // Each folder is listed once, the most relevant first.
         let chosen = self.chosen.values().map(|(_, folder)| folder);
         for folder in self.home.iter().chain(chosen).chain(&self.recent) {
             if places.len() > MOST {

@@ -1,4 +1,4 @@
-//! Files that are being read, and what was read.
+//! Files being read, and their contents.
 
 use std::path::{Path, PathBuf};
 
@@ -9,15 +9,15 @@ use marraztu_io::{
     self as io, Finding, Fragment, LoadError, Loaded, Opened, SCENE_ENDING, SceneFileError,
 };
 
-/// A file that is being read.
+/// A file being read.
 #[derive(Debug)]
 pub(crate) struct Loading {
     pub(crate) task: Task<Fetched>,
-    /// Whether it opens a dialog, for which others have to be closed first.
+    /// Whether it will open a dialog, for which other dialogs have to be closed first.
     pub(crate) asks: bool,
 }
 
-/// A file that waits to be read.
+/// A file waiting to be read.
 pub(crate) struct Queued {
     pub(crate) label: String,
     pub(crate) asks: bool,
@@ -31,10 +31,10 @@ impl std::fmt::Debug for Queued {
     }
 }
 
-/// A file that was read.
+/// The content of a file.
 #[derive(Debug)]
 pub(crate) enum Fetched {
-    /// A model; asks for the material if it is not known.
+    /// A model; its material is asked for if not known.
     Model(Box<FetchedModel>),
     /// A texture for an object.
     Texture(ObjectId, Result<(Shared<Texture>, Vec<Finding>), LoadError>),
@@ -42,26 +42,26 @@ pub(crate) enum Fetched {
     Scene(Box<Opening>),
     /// Items from the clipboard.
     Pasted(Result<Box<Fragment>, SceneFileError>),
-    /// The model of an object with another axis of its file pointing up.
+    /// The model of an object, with another axis of its file pointing up.
     Turned(ObjectId, Result<Box<Loaded>, LoadError>),
-    /// Models that were read again.
+    /// Models read again.
     Again(Vec<Reread>),
     /// Missing files that were found.
     Found(Vec<Found>),
-    /// Models that are shown together and alone.
+    /// Models to be shown together, without the current scene.
     Alone(Vec<Result<Arrived, LoadError>>, Arrival),
 }
 
-/// How models that are shown alone were named.
+/// The origin of models that are shown alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Arrival {
-    /// On the command line.
+    /// The command line.
     Start,
-    /// By dropping their files on the window.
+    /// Files dropped on the window.
     Dropped,
 }
 
-/// A model that was read with its own material, and what is told about it.
+/// A model read with the material of its file, and the notice about it.
 #[derive(Debug)]
 pub(crate) struct Arrived {
     pub(crate) object: Object,
@@ -70,7 +70,7 @@ pub(crate) struct Arrived {
     pub(crate) findings: Vec<String>,
 }
 
-/// A model that was read again, or could not be.
+/// The result of reading a model again.
 #[derive(Debug)]
 pub(crate) struct Reread {
     pub(crate) before: Shared<Model>,
@@ -82,13 +82,13 @@ pub(crate) struct Reread {
 pub(crate) struct Found {
     pub(crate) old: PathBuf,
     pub(crate) new: PathBuf,
-    /// Each placeholder, and the model that takes its place.
+    /// Each placeholder, and the model that replaces it.
     pub(crate) models: Vec<(Shared<Model>, Result<Loaded, LoadError>)>,
     pub(crate) texture: Option<Result<Shared<Texture>, LoadError>>,
     pub(crate) findings: Vec<Finding>,
 }
 
-/// A model that was read, or could not be.
+/// The result of reading a model.
 #[derive(Debug)]
 pub(crate) struct FetchedModel {
     pub(crate) path: PathBuf,
@@ -97,24 +97,24 @@ pub(crate) struct FetchedModel {
     pub(crate) result: Result<(Loaded, Option<Shared<Texture>>), LoadError>,
 }
 
-/// How a model is to be loaded.
+/// Options for loading a model.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Wish {
     pub(crate) options: LoadOptions,
     pub(crate) material: Option<MaterialChoice>,
     pub(crate) texture: Option<PathBuf>,
-    /// Whether the scene still counts as saved afterwards.
+    /// Whether the scene counts as saved afterwards, if it did before.
     pub(crate) keeps_saved: bool,
 }
 
-/// A scene that was read, or could not be.
+/// The result of reading a scene.
 #[derive(Debug)]
 pub(crate) struct Opening {
     pub(crate) path: PathBuf,
     pub(crate) result: Result<Opened, SceneFileError>,
 }
 
-/// Whether a path names a scene.
+/// Returns whether a path names a scene.
 pub(crate) fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(SCENE_ENDING))
 }

@@ -1,4 +1,4 @@
-//! The dialog that asks for the material of a new item, and how its file is read.
+//! The dialog that asks for the material of a new item and for the reading of its file.
 
 use std::path::{Path, PathBuf};
 
@@ -15,10 +15,10 @@ use marraztu_core::scene::{
 };
 use marraztu_io::{Finding, Loaded};
 
-/// The choice of a material.
+/// The material dialog.
 #[derive(Debug)]
 pub(crate) struct MaterialDialog {
-    /// The model that was loaded, with its file; `None` if a camera gets the material.
+    /// The model and its file; `None` if the material is for a camera.
     pub(crate) loaded: Option<(PathBuf, Loaded)>,
     choices: MaterialChoices,
     own: Material,
@@ -34,7 +34,7 @@ pub(crate) struct MaterialChoices {
     pub(crate) texture: Option<PathBuf>,
 }
 
-/// How the dialog ends.
+/// The way the dialog ends.
 pub(crate) enum End {
     Taken(MaterialChoices),
     Texture,
@@ -42,12 +42,12 @@ pub(crate) enum End {
 }
 
 impl MaterialDialog {
-    /// For the model of a new camera.
+    /// Creates the dialog for the model of a new camera.
     pub(crate) fn of_camera() -> Self {
         Self::new(None, MaterialChoice::Preset(PresetId::OBSIDIAN), LoadOptions::default())
     }
 
-    /// For a model that was loaded. The file's own material is preselected if it has one.
+    /// Creates the dialog for a model. The file's material is preselected if it has one.
     pub(crate) fn of_model(path: PathBuf, loaded: Loaded) -> Self {
         let material = own_or_silver(&loaded);
         let options = loaded.model.options;
@@ -68,7 +68,7 @@ impl MaterialDialog {
         self.choices.texture = Some(path);
     }
 
-    /// Shows the dialog. Returns how it ended, once it has.
+    /// Shows the dialog. Returns the result when it has ended.
     pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<End> {
         ui.set_width(ui.available_width().clamp(240.0, 460.0));
         match &self.loaded {
@@ -129,6 +129,7 @@ impl MaterialDialog {
                 }
             }
         });
+        // The user's material survives a change to a preset and back.
         let mut own = matches!(now, MaterialChoice::Own(_));
         if ui.toggle_value(&mut own, "My own").clicked() {
             *now = MaterialChoice::Own(self.own);
@@ -140,6 +141,7 @@ impl MaterialDialog {
     }
 
     fn options_ui(&mut self, ui: &mut Ui) -> Option<End> {
+        // The crease angle has no effect on some models, such as those with normals in their files.
         let idle = self.loaded.as_ref().and_then(|(_, loaded)| {
             let why = items::why_no_crease(&loaded.model, true)?;
             Some(format!("Off: {why}"))
@@ -198,7 +200,7 @@ impl MaterialDialog {
     }
 }
 
-/// The file's own material if it has one, otherwise silver.
+/// Returns the file's material if it has one, else silver.
 pub(crate) fn own_or_silver(loaded: &Loaded) -> MaterialChoice {
     if loaded.model.materials.is_empty() {
         MaterialChoice::Preset(PresetId::SILVER)
@@ -207,8 +209,8 @@ pub(crate) fn own_or_silver(loaded: &Loaded) -> MaterialChoice {
     }
 }
 
-/// "6,320 faces, 3,644 vertices"; if something is lost, the first loss with its file, and the
-/// number of further findings.
+/// Summarises a model: "6,320 faces, 3,644 vertices". If the file had losses, the first one follows
+/// with its file, and the number of further findings.
 pub(crate) fn summary(loaded: &Loaded) -> String {
     let mesh = &loaded.model.mesh;
     let faces = mesh.polygon_count();
@@ -222,7 +224,7 @@ pub(crate) fn summary(loaded: &Loaded) -> String {
     }
 }
 
-/// The text of a notice about a model that was read: "Opened ...", or its first loss.
+/// Returns the notice about a model: "Opened ...", or its first loss.
 pub(crate) fn opened(loaded: &Loaded) -> String {
     let (name, summary) = (&loaded.model.name, summary(loaded));
     match loaded.findings.iter().any(|finding| finding.kind.is_loss()) {
@@ -231,19 +233,19 @@ pub(crate) fn opened(loaded: &Loaded) -> String {
     }
 }
 
-/// Everything that was found, a line each; what is lost comes first.
+/// Lists all findings, one per line, losses first.
 pub(crate) fn details(findings: &[Finding]) -> Vec<String> {
     let (lost, mended): (Vec<&Finding>, Vec<&Finding>) =
         findings.iter().partition(|finding| finding.kind.is_loss());
     lost.into_iter().chain(mended).map(ToString::to_string).collect()
 }
 
-/// A finding with the name of its file, without folders.
+/// Formats a finding with the name of its file, without folders.
 pub(crate) fn short(finding: &Finding) -> String {
     format!("{}: {}", file_name(Path::new(&finding.file)), finding.text)
 }
 
-/// Ka, Kd, Ks and Ns of one's own.
+/// Shows Ka, Kd, Ks and Ns of the user's material.
 fn own_ui(ui: &mut Ui, material: &mut Material) {
     ui.horizontal(|ui| {
         let parts = [

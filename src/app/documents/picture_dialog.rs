@@ -1,4 +1,4 @@
-//! The options of a picture or a turntable that is saved.
+//! The options for saving a picture or a turntable.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use marraztu_core::edit::turntable::Turn;
 /// The longest side that a picture may have.
 const LONGEST_SIDE: usize = 16_384;
 
-/// What is saved.
+/// The kind of file to save.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
     Picture,
@@ -20,7 +20,7 @@ pub(crate) enum Purpose {
 }
 
 impl Purpose {
-    /// The name of a file without its ending, and the ending.
+    /// Returns the default name without its extension, and the extension.
     pub(crate) const fn file(self) -> (&'static str, &'static str) {
         match self {
             Self::Picture => ("picture", "png"),
@@ -33,13 +33,13 @@ impl Purpose {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PictureChoices {
     pub(crate) purpose: Purpose,
-    /// Before it is multiplied.
+    /// The size before multiplication by `times`.
     pub(crate) size: Size,
-    /// How many times as wide and as high.
+    /// The factor for both sides.
     pub(crate) times: usize,
     pub(crate) samples: Samples,
     pub(crate) transparent: bool,
-    /// Whether what the window draws over the picture is on it: it then is what the window shows.
+    /// Whether the overlays of the window are saved too. The picture then equals the window's.
     pub(crate) overlays: bool,
     pub(crate) frames: u32,
     pub(crate) seconds: f64,
@@ -47,7 +47,7 @@ pub(crate) struct PictureChoices {
 }
 
 impl PictureChoices {
-    /// The usual options, for a window that shows a picture of this size and these samples.
+    /// Returns the default options for a window with this size and number of samples.
     pub(crate) const fn new(purpose: Purpose, size: Size, samples: Samples) -> Self {
         Self {
             purpose,
@@ -62,35 +62,35 @@ impl PictureChoices {
         }
     }
 
-    /// The size of the picture.
+    /// Returns the size of the picture.
     pub(crate) fn whole(&self) -> Size {
         let side = |side: usize| (side * self.times).clamp(1, LONGEST_SIDE);
         Size::new(side(self.size.width), side(self.size.height))
     }
 }
 
-/// How the dialog ends.
+/// The way the dialog ends.
 #[derive(Debug)]
 pub(crate) enum End {
     Cancelled,
-    /// With these options, into this file.
+    /// Save with these options into this file.
     Into(PictureChoices, PathBuf),
-    /// With these options, into a file that is asked for.
+    /// Save with these options and ask for the file.
     Elsewhere(PictureChoices),
 }
 
-/// The dialog.
+/// The dialog of options.
 #[derive(Debug)]
 pub(crate) struct PictureDialog {
     choices: PictureChoices,
     /// The folder of the last file.
     folder: PathBuf,
-    /// What stands in the field of the file.
+    /// The text of the file field.
     file: String,
 }
 
 impl PictureDialog {
-    /// Options to begin with; a file in `folder` that is not there yet is proposed.
+    /// Creates the dialog and proposes a new file in `folder`.
     pub(crate) fn new(choices: PictureChoices, folder: PathBuf) -> Self {
         let (stem, ending) = choices.purpose.file();
         let named = |n: u32| match n {
@@ -101,14 +101,14 @@ impl PictureDialog {
         Self { choices, folder, file }
     }
 
-    /// Shows the dialog. Returns how it ended, once it has.
+    /// Shows the dialog. Returns the result when it has ended.
     pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<End> {
         ui.set_width(ui.available_width().clamp(240.0, 380.0));
         let is_picture = self.choices.purpose == Purpose::Picture;
         heading(ui, if is_picture { "Save picture" } else { "Save turntable" });
         let mut entered = false;
         egui::Grid::new("picture options").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {
-            // What the window shows has the window's size and samples.
+            // A picture with overlays has the size and the samples of the window.
             ui.add_enabled_ui(!self.choices.overlays, |ui| ui.label("Size"));
             ui.add_enabled_ui(!self.choices.overlays, |ui| self.size_ui(ui));
             ui.end_row();
@@ -155,6 +155,7 @@ impl PictureDialog {
         ui.add_space(6.0);
         let mut end = None;
         ui.horizontal(|ui| {
+            // The button announces that it would replace a file.
             let path = self.path();
             let replaces = path.is_file();
             let save = ui.button(if replaces { "Replace..." } else { "Save" });
@@ -172,7 +173,7 @@ impl PictureDialog {
         end
     }
 
-    /// The file that is named, with an ending.
+    /// Returns the path from the file field, with an extension.
     fn path(&self) -> PathBuf {
         let (stem, ending) = self.choices.purpose.file();
         let name = if self.file.trim().is_empty() { stem } else { self.file.trim() };

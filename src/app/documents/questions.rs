@@ -1,6 +1,6 @@
-//! Questions: unsaved changes, files that would be replaced, missing files, discarded work.
+//! Questions: unsaved changes, replacing a file, missing files, discarded work.
 //!
-//! Each gives its answer once it is answered; `Some(End::Cancelled)` is Cancel.
+//! Each function returns the answer when there is one. Cancel is `Some(End::Cancelled)`.
 
 use std::path::{Path, PathBuf};
 
@@ -72,7 +72,7 @@ pub(super) fn changed_ui(ui: &mut Ui, path: &Path, after: Option<&After>) -> Opt
     buttons.inner
 }
 
-/// Asks whether to replace a file; then the answer is the one that was given for it.
+/// Asks whether to replace a file. If so, returns the `answer` given for that file.
 pub(super) fn replace_ui(
     ui: &mut Ui,
     path: &Path,
@@ -84,7 +84,7 @@ pub(super) fn replace_ui(
     ui.label(format!("There is a file of this name already in {folder}."));
     ui.add_space(4.0);
     let buttons = ui.horizontal(|ui| {
-        // It has the focus, so that Enter twice replaces nothing.
+        // Cancel has the focus, so pressing Enter twice replaces nothing.
         let cancel = ui.button("Keep it");
         take_focus(ui, &cancel);
         let replace = ui.button("Replace").clicked();
@@ -122,7 +122,7 @@ pub(super) fn missing_ui(ui: &mut Ui, files: &[PathBuf]) -> Option<End> {
     if close.clicked() { Some(End::Cancelled) } else { answer }
 }
 
-/// Lists the work that was discarded.
+/// Lists the discarded work.
 pub(super) fn discarded_ui(ui: &mut Ui, all: &[String]) -> Option<End> {
     ui.set_max_width(WIDTH);
     heading(ui, "Discarded work");

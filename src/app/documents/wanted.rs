@@ -1,4 +1,4 @@
-//! The purposes of file dialogs, and the work that follows once the scene is saved.
+//! The purposes of file dialogs, and the work that follows after saving the scene.
 
 use std::path::{Path, PathBuf};
 
@@ -11,57 +11,57 @@ use marraztu_io as io;
 /// The purpose of a file dialog.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Wanted {
-    /// Models to be loaded.
+    /// Load models.
     Model,
-    /// Models to be opened as if they were dropped.
+    /// Open models as if they were dropped.
     Dropped,
-    /// A scene in place of this one.
+    /// Open a scene in place of this one.
     Scene,
-    /// Where to save the scene, and what to do then.
+    /// Save the scene, then continue with this work.
     SceneTo(Option<After>),
-    /// Where to save the picture.
+    /// Save the picture.
     PictureTo,
-    /// Where to save the picture with options.
+    /// Save the picture with options.
     PictureWithOptionsTo,
-    /// Where to save the turntable.
+    /// Save the turntable.
     TurntableTo,
-    /// Where to export the scene.
+    /// Export the scene.
     ExportTo,
-    /// A texture for this object.
+    /// Choose a texture for this object.
     Texture(ObjectId),
-    /// A texture for the model in the material dialog.
+    /// Choose a texture for the model in the material dialog.
     TextureOfModel,
-    /// The new location of a missing model of a scene.
+    /// Find a missing file of the scene.
     Missing(PathBuf),
 }
 
-/// What to do once the scene is saved or discarded.
+/// The work that follows after the scene was saved or discarded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum After {
     Quit,
     New,
-    /// The first scene, drawn as ancestor A drew it.
+    /// Open the first scene, as drawn by ancestor A.
     NewAncestor,
     Open(Option<PathBuf>),
-    /// Recover the unsaved work that is offered at this place.
+    /// Recover the unsaved work at this index.
     Recover(usize),
-    /// Recover the discarded work at this place.
+    /// Recover the discarded work at this index.
     RecoverDiscarded(usize),
 }
 
-/// What to do with a scene after another program has changed its file.
+/// The decision about a scene after another program has changed its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ChangedFile {
     /// Save it under another name.
     SaveElsewhere,
-    /// Replace what the other program has written.
+    /// Replace the other program's version.
     Overwrite,
-    /// Open what the other program has written instead.
+    /// Open the other program's version instead.
     Reload,
 }
 
 impl Wanted {
-    /// The kind of folder that its dialog remembers.
+    /// Returns the kind of folder that its dialog remembers.
     pub(super) const fn kind(&self) -> Kind {
         match self {
             Self::Model | Self::Dropped | Self::Scene | Self::Missing(_) => Kind::Opened,
@@ -74,7 +74,7 @@ impl Wanted {
         }
     }
 
-    /// A path with the ending that it needs.
+    /// Adds the extension that a path needs.
     pub(super) fn named(&self, path: PathBuf) -> PathBuf {
         if !matches!(self, Self::SceneTo(_)) || is_scene(&path) {
             return path;
@@ -85,7 +85,7 @@ impl Wanted {
         PathBuf::from(text)
     }
 
-    /// The title of its dialog, whether a file is opened or saved, and the endings.
+    /// Returns the title of its dialog, its mode, and the extensions.
     pub(super) fn description(&self) -> (&'static str, Mode, Vec<&'static str>) {
         let models = || vec!["obj", "gz"];
         let scenes = || vec!["marraztu"];
@@ -114,7 +114,7 @@ impl Wanted {
     }
 }
 
-/// Whether a path has the ending of a picture.
+/// Returns whether a path has the extension of a picture.
 fn is_picture(path: &Path) -> bool {
     let ending = path.extension().map(|ending| ending.to_string_lossy());
     ending.is_some_and(|ending| {

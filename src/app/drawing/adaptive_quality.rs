@@ -1,13 +1,14 @@
-//! Adaptive quality: how the picture keeps up with the user.
+//! Adaptive quality: keeps the viewport responsive by lowering the quality of pictures.
 //!
-//! While something moves and frames take longer than the budget, they are drawn at reduced quality;
-//! as soon as everything is still, at full quality. Which reduction is told by measurements of this
-//! very scene: while it is still, each reduction is drawn once, for its time and its error, and
-//! while it moves the most exact one on the front of both that keeps the budget is used. Until that
-//! is measured, a short chain is tried in order. No code here reads a clock: times are passed in.
+//! While something moves and frames take longer than the budget, frames are drawn at reduced
+//! quality. As soon as everything is still, full quality returns. The choice of reduction rests on
+//! measurements of the scene at hand: while it is still, each reduction is drawn once to measure
+//! its time and its error. While it moves, the most exact reduction on the Pareto front of time and
+//! error that keeps the budget is used. Until all are measured, a short chain is tried in order. No
+//! code here reads a clock: times are passed in.
 //!
 //! A frame is cancelled for a newer one only at full quality, only if it takes longer than the
-//! budget, and never twice in a row. So a slow frame never delays the next action, while in a
+//! budget, and never twice in a row. A slow frame therefore never delays the next action, and in a
 //! stream of changes at least every second frame is finished and shown. Frames at reduced quality
 //! are always finished: cancelling them would not bring the next one sooner.
 
@@ -16,13 +17,13 @@ use std::time::Duration;
 use super::reduction::{Applicable, COUNT, Reduction};
 use marraztu_lab::front::{Point, front, most_exact_within};
 
-/// A full frame that differs in time from the one before by this factor is of another scene.
+/// A change of the time of full frames by this factor means that the scene is another one.
 const ANOTHER_SCENE: f64 = 1.5;
 
-/// A slower reduction has to cut the error of a quicker one by this part to be on the front.
+/// The part of the error that a slower reduction has to remove to be on the front.
 const LEAST_CUT: f64 = 0.05;
 
-/// What is known of a reduction.
+/// The measurements of one reduction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Known {
     /// The time of the last whole frame.
@@ -31,7 +32,7 @@ struct Known {
     error: Option<f64>,
 }
 
-/// Chooses the reduction from how long frames took, and how far off they are.
+/// Chooses the reduction from measured frame times and errors.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AdaptiveQuality {
     known: [Known; COUNT],
@@ -41,8 +42,8 @@ pub(crate) struct AdaptiveQuality {
 }
 
 impl AdaptiveQuality {
-    /// Chooses the reduction of the next picture; `share` (0 to 1) is the part of it that has to be
-    /// redrawn at full quality.
+    /// Chooses the reduction of the next picture. `share` (0 to 1) is the part of the picture that
+    /// has to be redrawn at full quality.
     pub(crate) fn choose(
         &self,
         moving: bool,
@@ -50,6 +51,7 @@ impl AdaptiveQuality {
         applicable: Applicable,
         budget: Duration,
     ) -> Reduction {
+        // Full quality if nothing moves, if it keeps the budget, or if its time is not known yet.
         let full = self.expected(Reduction::NONE, share);
         if !moving || full.is_none_or(|time| time <= budget) {
             return Reduction::NONE;
@@ -59,6 +61,7 @@ impl AdaptiveQuality {
         } else {
             self.tried(applicable, budget)
         };
+        // A reduction that is not quicker than full quality would only lose detail.
         match chosen {
             Some(chosen) if self.expected(chosen, 1.0).is_none_or(|time| Some(time) < full) => {
                 chosen
@@ -67,7 +70,8 @@ impl AdaptiveQuality {
         }
     }
 
-    /// The most exact reduction of the measured front that keeps the budget, else the quickest.
+    /// Finds the most exact reduction of the measured front that keeps the budget, else the
+    /// quickest.
     fn on_the_front(&self, applicable: Applicable, budget: Duration) -> Option<Reduction> {
         let measured = |one: Reduction| {
             let Known { time, error } = self.known[one.place()];
@@ -77,12 +81,12 @@ impl AdaptiveQuality {
         let points: Vec<Point> = all.iter().map(|(_, point)| *point).collect();
         let order = front(&points, LEAST_CUT);
         let on_front: Vec<Point> = order.iter().map(|i| points[*i]).collect();
-        // The front begins with the quickest.
+        // `front` sorts by time, so the first point is the quickest.
         let place = most_exact_within(&on_front, budget.as_secs_f64()).unwrap_or(0);
         order.get(place).map(|i| all[*i].0)
     }
 
-    /// The first reduction of the chain that may keep the budget, else the quickest.
+    /// Finds the first reduction of the chain that may keep the budget, else the quickest.
     fn tried(&self, applicable: Applicable, budget: Duration) -> Option<Reduction> {
         let mut quickest: Option<(Reduction, Duration)> = None;
         for reduction in Reduction::CHAIN {
@@ -102,13 +106,13 @@ impl AdaptiveQuality {
         quickest.map(|(reduction, _)| reduction)
     }
 
-    /// A reduction of this picture that is not measured yet.
+    /// Finds a reduction of this picture that has not been measured yet.
     fn unknown(&self, applicable: Applicable) -> Option<Reduction> {
         applicable.reductions().find(|one| self.known[one.place()].error.is_none())
     }
 
-    /// A reduction to measure while the picture is still; `None` if full quality keeps the budget,
-    /// or all are known.
+    /// Returns a reduction to measure while the picture is still; `None` if full quality keeps the
+    /// budget or all reductions are measured.
     pub(crate) fn unmeasured(&self, applicable: Applicable, budget: Duration) -> Option<Reduction> {
         let full = self.known[0].time.filter(|time| *time > budget);
         full.and_then(|_| self.unknown(applicable))
@@ -117,17 +121,17 @@ impl AdaptiveQuality {
     /// Records the time and the error of a reduction, drawn while the picture was still.
     pub(crate) fn measured(&mut self, reduction: Reduction, time: Duration, error: f64) {
         let known = &mut self.known[reduction.place()];
-        // A frame that was shown has a better time: its memory was there.
+        // The time of a frame that was shown is better: its memory was already allocated.
         known.time = known.time.or(Some(time));
         known.error = Some(error);
     }
 
-    /// The measured error of a reduction, in steps of a byte.
+    /// Returns the measured error of a reduction, in steps of a byte.
     pub(crate) fn error(&self, reduction: Reduction) -> Option<f64> {
         self.known[reduction.place()].error
     }
 
-    /// The expected time of a frame, if known.
+    /// Returns the expected time of a frame, if known.
     pub(crate) fn expected(&self, reduction: Reduction, share: f64) -> Option<Duration> {
         let whole = self.known[reduction.place()].time;
         if reduction != Reduction::NONE || share >= 1.0 {
@@ -149,6 +153,7 @@ impl AdaptiveQuality {
         } else {
             let before = self.known[0].time.map_or(0.0, |before| before.as_secs_f64());
             let times = time.as_secs_f64() / before;
+            // A very different time means another scene: the old measurements no longer apply.
             if !(1.0 / ANOTHER_SCENE..=ANOTHER_SCENE).contains(&times) {
                 self.known = [Known::default(); COUNT];
                 self.part = None;
@@ -157,8 +162,10 @@ impl AdaptiveQuality {
         }
     }
 
-    /// A view that takes longer at one reduction takes longer at the others: their times follow by
-    /// the root of the ratio, so that a single slow frame moves them little.
+    /// Records the time of a reduced frame and scales the times of all other reductions.
+    ///
+    /// A view that is slower at one reduction is slower at the others too. Their times are scaled
+    /// by the square root of the ratio, which limits the effect of a single slow frame.
     fn record_reduced(&mut self, reduction: Reduction, time: Duration) {
         let before = self.known[reduction.place()].time.replace(time);
         let Some(before) = before.filter(|before| !before.is_zero()) else { return };
@@ -170,7 +177,7 @@ impl AdaptiveQuality {
         }
     }
 
-    /// Records that a frame at full quality was cancelled after this time: it takes longer.
+    /// Records that a frame at full quality was cancelled after this time, which is a lower bound.
     pub(crate) fn record_given_up(&mut self, share: f64, after: Duration) {
         let known = if share < 1.0 { &mut self.part } else { &mut self.known[0].time };
         *known = (*known).max(Some(after));
@@ -190,7 +197,7 @@ pub(crate) struct Attempt {
 }
 
 impl Attempt {
-    /// Whether it is cancelled for a newer frame after this time.
+    /// Returns whether the frame is cancelled for a newer one after this time.
     pub(crate) fn gives_way(&self, elapsed: Duration) -> bool {
         let time = self.expected.map_or(elapsed, |expected| expected.max(elapsed));
         self.reduction == Reduction::NONE && !self.second && time > self.budget
@@ -213,7 +220,7 @@ mod tests {
         Duration::from_millis(time)
     }
 
-    /// What applies of the chain to [`all`], without one sample per pixel.
+    /// Returns the chain as limited by [`all`], without the one with one sample per pixel.
     fn chain() -> [Reduction; 5] {
         let [_, vertex, nearest, half, all_half, quarter] = Reduction::CHAIN;
         [vertex, nearest, half, all_half, quarter].map(|one| all().limited(one))
@@ -223,7 +230,7 @@ mod tests {
         chain().iter().position(|other| *other == reduction).map_or(0, |i| i + 1)
     }
 
-    /// Draws frames whose times are these until the choice stays, and says which it is.
+    /// Draws frames with these times until the choice no longer changes, and returns the choice.
     fn settled(quality: &mut AdaptiveQuality, times: [u64; 6]) -> Reduction {
         let mut last = Reduction::NONE;
         for _ in 0..20 {
@@ -251,7 +258,7 @@ mod tests {
         }
     }
 
-    /// A quality that has measured all: the time and the error of each.
+    /// Returns a quality with every reduction measured: `of` gives its time and its error.
     fn surveyed(of: impl Fn(Reduction) -> (u64, f64)) -> AdaptiveQuality {
         let mut quality = AdaptiveQuality::default();
         quality.record(Reduction::NONE, 1.0, ms(200));
@@ -266,7 +273,7 @@ mod tests {
     fn once_measured_the_most_exact_reduction_that_keeps_the_budget_is_chosen() {
         let half = Reduction { shrink: Shrink::Half, ..Reduction::NONE };
         let vertex = Reduction { vertex_light: true, ..Reduction::NONE };
-        // Here light at vertices costs more than it saves, and nearest texels are far off.
+        // Here vertex lighting costs more than it saves, and nearest texels have a large error.
         let of = |one: Reduction| {
             let mut error = [0.0, 4.0, 9.0][one.shrink as usize];
             let mut time = [150, 40, 10][one.shrink as usize];
@@ -344,7 +351,8 @@ mod tests {
         let slow = Attempt { reduction, expected: Some(ms(500)), second: false, budget };
         assert!(slow.gives_way(ms(0)));
         assert!(!Attempt { second: true, ..slow }.gives_way(ms(10_000)));
-        // What is soon there is waited for, and what is coarse is drawn for the stream's sake.
+        // A frame that is nearly done is awaited. Coarse frames are finished to keep the stream
+        // going.
         let quick = Attempt { expected: Some(ms(20)), ..slow };
         assert!(!quick.gives_way(ms(30)) && quick.gives_way(ms(40)));
         assert!(!Attempt { reduction: chain()[4], ..slow }.gives_way(ms(10_000)));

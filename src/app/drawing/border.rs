@@ -1,9 +1,9 @@
-//! The border of the visible part of an item in a picture.
+//! The border around the visible part of an item in a picture.
 
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::ItemId;
 
-/// The border of the visible part of an item in a picture.
+/// The border around the visible part of an item in a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Border {
     pub(crate) item: ItemId,
@@ -24,11 +24,12 @@ pub(crate) struct Run {
 }
 
 impl Border {
-    /// The border of the pixels that are `own`, row by row.
+    /// Finds the border of the pixels marked in `own`, a mask stored row by row.
     pub(crate) fn of(item: ItemId, size: Size, own: &[bool]) -> Self {
         let is_own =
             |x: usize, y: usize| x < size.width && y < size.height && own[y * size.width + x];
-        // Beyond the left and upper sides x - 1 and y - 1 wrap to what is beyond the others.
+        // At x = 0 and y = 0, x - 1 and y - 1 wrap to `usize::MAX`, which is outside of the picture
+        // too.
         let beside = |x: usize, y: usize, own: bool| {
             is_own(x.wrapping_sub(1), y) == own
                 || is_own(x + 1, y) == own
@@ -41,7 +42,7 @@ impl Border {
     }
 }
 
-/// The pixels that are `chosen`, in runs.
+/// Collects the pixels that satisfy `chosen` into runs.
 fn runs(size: Size, chosen: impl Fn(usize, usize) -> bool) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for y in 0..size.height {

@@ -1,7 +1,7 @@
-//! The images that pictures of the viewport are copied to.
+//! The images into which pictures of the viewport are copied.
 //!
-//! There are three: one may be held by the window, one by what paints it, and one is copied into,
-//! so that no picture is copied while it is shown.
+//! There are three: one may be held by the window and one by the code that paints it, so a third is
+//! always free to copy into. No picture is overwritten while it is shown.
 
 use std::sync::Arc;
 
@@ -9,10 +9,11 @@ use egui::ColorImage;
 
 use marraztu_core::base::image::{Picture, Size};
 
-/// Copies a picture into a free image, and makes that the last one.
+/// Copies a picture into a free image and moves that image to the end.
 pub(super) fn present(images: &mut [Arc<ColorImage>; 3], picture: &Picture) {
     let [first, second, _] = images;
     let free = if Arc::get_mut(first).is_some() { 0 } else { 1 };
+    // If both are still held, the second is replaced by a new image rather than overwritten.
     if free == 1 && Arc::get_mut(second).is_none() {
         *second = Arc::default();
     }
@@ -20,7 +21,7 @@ pub(super) fn present(images: &mut [Arc<ColorImage>; 3], picture: &Picture) {
     images.swap(free, 2);
 }
 
-/// Copies opaque pixels; those are the same with and without multiplication by alpha.
+/// Copies opaque pixels, which are equal with straight and with premultiplied alpha.
 fn show(picture: &Picture, image: &mut ColorImage) {
     let Size { width, height } = picture.size();
     if image.size != [width, height] {
@@ -30,7 +31,7 @@ fn show(picture: &Picture, image: &mut ColorImage) {
     bytes.copy_from_slice(picture.pixels());
 }
 
-/// The picture that an image of the viewport shows.
+/// Returns the picture that an image of the viewport shows.
 pub(crate) fn picture(image: &ColorImage) -> Option<Picture> {
     let [width, height] = image.size;
     let pixels: &[[u8; 4]] = bytemuck::cast_slice(&image.pixels);

@@ -1,6 +1,6 @@
-//! Whether the picture is changing. No code here reads a clock: times are passed in.
+//! Detects whether the picture is changing. No code here reads a clock: times are passed in.
 
-/// Seconds after the last change and the picture that shows it until a moving scene is still.
+/// The seconds without a change, and without a picture in progress, after which a scene is still.
 const STILL: f64 = 0.15;
 
 /// What happened since the last frame.
@@ -14,19 +14,21 @@ pub(crate) struct Happening {
     pub(crate) drawing: bool,
 }
 
-/// Whether the picture is changing.
+/// Tracks whether the picture is changing.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Motion {
-    /// When it changed last, or was still being drawn, in seconds.
+    /// When the picture last changed or was still being drawn, in seconds.
     changed: Option<f64>,
     held: bool,
     moving: bool,
 }
 
 impl Motion {
-    /// Whether the picture is moving: it changes while a mouse button is held, or repeatedly
-    /// without one, as with the wheel or a held key. It is still again when the button is released
-    /// or soon after the last change, but not before the picture of that change is drawn.
+    /// Returns whether the picture is moving.
+    ///
+    /// It moves if it changes while a mouse button is held, or repeatedly without a button, as with
+    /// the wheel or a held key. It is still again when the button is released or soon after the
+    /// last change, but not before the picture of that change is drawn.
     pub(crate) fn notice(&mut self, now: f64, happening: Happening) -> bool {
         let Happening { changed, held, drawing } = happening;
         let let_go = std::mem::replace(&mut self.held, held) && !held;
@@ -39,7 +41,8 @@ impl Motion {
         self.moving
     }
 
-    /// The seconds until it is still unless it changes again; `None` if it is still.
+    /// Returns the seconds until the picture is still unless it changes again; `None` if it is
+    /// still.
     pub(crate) fn rest(&self, now: f64) -> Option<f64> {
         let changed = self.changed.filter(|_| self.moving)?;
         Some((changed + STILL - now).max(0.0))

@@ -1,12 +1,12 @@
-//! What can be reduced in a picture so that it is drawn sooner.
+//! Reductions of quality, which make a picture quicker to draw.
 
 use marraztu_core::accuracy::{Filter, LightAt, Samples, Settings};
 use marraztu_core::base::image::Size;
 
-/// By how much the sides of a picture are divided.
+/// The divisor of the sides of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shrink {
-    /// Not at all.
+    /// Full size.
     #[default]
     Whole,
     /// By two: a quarter of the pixels.
@@ -16,10 +16,10 @@ pub enum Shrink {
 }
 
 impl Shrink {
-    /// All of them.
+    /// All factors.
     const ALL: [Self; 3] = [Self::Whole, Self::Half, Self::Quarter];
 
-    /// The side in pixels of the square that a drawn pixel is shown as.
+    /// Returns the side, in pixels, of the square that shows one drawn pixel.
     #[must_use]
     pub const fn factor(self) -> usize {
         match self {
@@ -30,20 +30,20 @@ impl Shrink {
     }
 }
 
-/// What is reduced in a picture so that it is drawn sooner.
+/// A reduction of quality, which makes a picture quicker to draw.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reduction {
     /// One sample per pixel rather than several.
     pub one_sample: bool,
-    /// The nearest texel rather than a mean.
+    /// The nearest texel rather than a filtered one.
     pub nearest_texels: bool,
-    /// Light at vertices rather than at pixels.
+    /// Lighting per vertex rather than per pixel.
     pub vertex_light: bool,
     /// Fewer pixels, each shown as a square.
     pub shrink: Shrink,
 }
 
-/// The number of reductions, full quality among them.
+/// The number of combinations, including full quality.
 pub(crate) const COUNT: usize = 24;
 
 impl Reduction {
@@ -55,8 +55,8 @@ impl Reduction {
         shrink: Shrink::Whole,
     };
 
-    /// Reductions to try before any is measured, from the least to the greatest loss. Half size
-    /// also comes with light at pixels, since a mesh may have more vertices than the picture has
+    /// Reductions to try before any is measured, from the least to the greatest loss. Half size is
+    /// also tried with lighting per pixel, since a mesh may have more vertices than the picture has
     /// pixels.
     pub(crate) const CHAIN: [Self; 6] = {
         let one = Self { one_sample: true, ..Self::NONE };
@@ -72,7 +72,7 @@ impl Reduction {
         ]
     };
 
-    /// The reduction at this place of all.
+    /// Returns the reduction at a place from 0 to `COUNT` - 1.
     pub(crate) const fn at(place: usize) -> Self {
         Self {
             one_sample: place & 1 != 0,
@@ -82,7 +82,7 @@ impl Reduction {
         }
     }
 
-    /// Its place among all.
+    /// Returns its place: one bit for each flag, and the shrink factor above them.
     pub(crate) fn place(self) -> usize {
         let Self { one_sample, nearest_texels, vertex_light, shrink } = self;
         let bit = |on: bool, place: usize| usize::from(on) << place;
@@ -94,7 +94,7 @@ impl Reduction {
         bit(one_sample, 0) + bit(nearest_texels, 1) + bit(vertex_light, 2) + size
     }
 
-    /// Settings and size of the picture.
+    /// Applies the reduction to the settings and the size of a picture.
     pub(crate) fn applied(self, settings: Settings, size: Size) -> (Settings, Size) {
         let light = match settings.light {
             LightAt::Pixel | LightAt::Sample if self.vertex_light => LightAt::Vertex,
@@ -107,7 +107,7 @@ impl Reduction {
         (Settings { light, filter, samples, ..settings }, size)
     }
 
-    /// In words: "light per vertex, half size". Empty at full quality.
+    /// Describes the reduction: "light per vertex, half size". Empty at full quality.
     #[must_use]
     pub fn words(self) -> String {
         let words = [
@@ -122,7 +122,7 @@ impl Reduction {
     }
 }
 
-/// What can be reduced in this picture.
+/// The properties of a picture that decide which reductions have an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Applicable {
     pub(crate) settings: Settings,
@@ -131,7 +131,7 @@ pub(crate) struct Applicable {
 }
 
 impl Applicable {
-    /// The part of a reduction that applies.
+    /// Removes the parts of a reduction that have no effect on this picture.
     pub(crate) fn limited(self, reduction: Reduction) -> Reduction {
         let Settings { light, filter, samples, .. } = self.settings;
         Reduction {
@@ -143,7 +143,7 @@ impl Applicable {
         }
     }
 
-    /// All reductions of this picture but full quality.
+    /// Lists all reductions that make a difference to this picture, without full quality.
     pub(crate) fn reductions(self) -> impl Iterator<Item = Reduction> {
         (1..COUNT).map(Reduction::at).filter(move |one| self.limited(*one) == *one)
     }

@@ -1,23 +1,23 @@
-//! What is done for a picture while nothing happens: it is refined to more samples per pixel.
+//! Refines a picture to more samples per pixel while the user does nothing.
 //!
-//! The settings of the scene stay as they are: only the window shows more samples than they say.
-//! A refined picture has the bytes that `render --samples` writes. The ancestors' ways of filling
-//! triangles are not refined, since they had one sample per pixel.
+//! The settings of the scene do not change: only the window shows more samples than they specify. A
+//! refined picture has the same bytes that `render --samples` writes. The ancestors' fill
+//! algorithms are not refined, since they had one sample per pixel.
 
 use super::reduction::Shrink;
 use super::snapshot::Snapshot;
 use marraztu_core::accuracy::Samples;
 use marraztu_core::base::image::Picture;
 
-/// The next number of samples per pixel, if the picture is refined to `refined`.
+/// Returns the next number of samples per pixel, if the picture is refined to `refined`.
 pub(crate) fn next_samples(wanted: &Snapshot, refined: Option<Samples>) -> Option<Samples> {
     let most = wanted.refined?.count();
     let now = refined.unwrap_or(wanted.settings.samples).count();
     Samples::ALL.into_iter().find(|next| next.count() > now && next.count() <= most)
 }
 
-/// The root mean square of the differences between a picture and a smaller one whose pixels are
-/// shown as squares, in steps of a byte.
+/// Computes the root mean square difference, in steps of a byte, between a picture and a smaller
+/// one with each pixel enlarged to a square.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 bytes")]
 pub(crate) fn difference(whole: &Picture, small: &Picture, shrink: Shrink) -> f64 {
     let by = shrink.factor();
@@ -48,7 +48,7 @@ mod tests {
         let same = Picture::filled(Size::new(3, 2), [10, 20, 30, 255]);
         assert_eq!(difference(&whole, &same, Shrink::Half), 0.0);
         let mut other = same.clone();
-        // The last square shows one pixel only: that of the corner.
+        // The last square is clipped to one pixel, the one in the corner.
         other.pixels_mut()[5] = [10, 20, 75, 255];
         let expected = (45.0_f64 * 45.0 / 45.0).sqrt();
         assert!((difference(&whole, &other, Shrink::Half) - expected).abs() < 1e-12);

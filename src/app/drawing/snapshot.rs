@@ -1,4 +1,4 @@
-//! Everything that a picture of the viewport depends on.
+//! All inputs of a picture of the viewport.
 
 use std::time::Duration;
 
@@ -6,16 +6,16 @@ use marraztu_core::accuracy::{Samples, Settings};
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{ItemId, Scene, View};
 
-/// Everything that a picture depends on.
+/// All inputs of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Snapshot {
     pub(crate) scene: Scene,
     pub(crate) view: View,
     pub(crate) settings: Settings,
     pub(crate) size: Size,
-    /// Whether the scene is moving, so that the picture may be drawn at reduced quality.
+    /// Whether the scene is moving. If it is, the picture may be drawn at reduced quality.
     pub(crate) moving: bool,
-    /// Whether it ever may be.
+    /// Whether the user allows reduced quality.
     pub(crate) coarse: bool,
     /// The time that a picture may take while the scene is moving.
     pub(crate) budget: Duration,
@@ -23,13 +23,13 @@ pub(crate) struct Snapshot {
     pub(crate) refined: Option<Samples>,
     /// Whether to explain the effects of the picture.
     pub(crate) explain: bool,
-    /// The selected items whose borders are wanted with the picture: the first has its own, the
-    /// others have one together.
+    /// The selected items to outline in the picture. The first has a separate border; the others
+    /// share one.
     pub(crate) outlined: Vec<ItemId>,
 }
 
 impl Snapshot {
-    /// Whether another snapshot differs in more than the time.
+    /// Returns whether another snapshot differs in more than the time.
     pub(crate) fn differs_from(&self, other: &Self) -> bool {
         let Self { scene, view, settings, size, moving: _, .. } = self;
         let view = |of: &View| View { time: view.time, ..of.clone() };

@@ -1,4 +1,4 @@
-//! Draws the pictures of the viewport, and answers what is seen in them.
+//! Draws the pictures of the viewport and answers picks.
 //!
 //! The quality of a picture adapts to the time it takes (see
 //! [`adaptive_quality`](super::adaptive_quality)), and only what has changed is redrawn.
@@ -25,25 +25,25 @@ use marraztu_render::{Cancelled, Damage, FramePlan, Hit, Renderer};
 #[derive(Clone, Debug)]
 pub(crate) struct Drawn {
     pub(crate) image: Arc<ColorImage>,
-    /// From the snapshot to the finished picture in memory.
+    /// The time from the snapshot to the finished picture in memory.
     pub(crate) time: Duration,
     pub(crate) triangles: usize,
-    /// How its quality is reduced.
+    /// The reduction of its quality.
     pub(crate) reduction: Reduction,
-    /// The measured error of that, in steps of a byte.
+    /// The measured error of that reduction, in steps of a byte.
     pub(crate) lost: Option<f64>,
-    /// The samples per pixel, if it is the last picture refined.
+    /// The samples per pixel, if this is the last picture after refinement.
     pub(crate) refined: Option<Samples>,
-    /// What was redrawn, and why.
+    /// The parts that were redrawn, and why.
     pub(crate) changes: Damage,
 }
 
-/// What was done while nothing happened.
+/// The outcome of one step of refinement.
 #[derive(Debug)]
 pub(crate) enum Finer {
-    /// There is nothing more to do.
+    /// Nothing is left to do.
     Done,
-    /// Something else was wanted meanwhile.
+    /// A request arrived, so the step was cancelled.
     Disturbed,
     /// A reduction was measured.
     Measured,
@@ -51,7 +51,7 @@ pub(crate) enum Finer {
     Refined(Box<Drawn>),
 }
 
-/// What is wanted while a frame is drawn.
+/// The frame that is wanted while a frame is being drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Asked {
     /// This frame.
@@ -66,11 +66,11 @@ pub(crate) enum Asked {
 #[derive(Debug)]
 pub(crate) struct ViewportRenderer {
     renderer: Renderer,
-    /// Draws what is not picked in: refined pictures, and reductions that are measured.
+    /// Draws refined pictures and reductions to measure. Picks never read its buffers.
     finer: Renderer,
     /// The samples per pixel that the last picture is refined to.
     refined: Option<Samples>,
-    /// The clock; tests use one of their own.
+    /// The clock; tests replace it.
     clock: fn() -> Instant,
     quality: AdaptiveQuality,
     /// The reduction of the last finished picture; `None` before the first.
@@ -79,8 +79,9 @@ pub(crate) struct ViewportRenderer {
     gave_up: bool,
     /// The last explanation.
     explained: Option<Arc<Explained>>,
-    /// The last was drawn last. One may be held by the window, one by what paints it, and one is
-    /// drawn into: no picture is copied while it is shown.
+    /// The copies of the last pictures, the latest at the end. The window may hold one and the code
+    /// that paints it another, so one is free to copy into: no picture is overwritten while it is
+    /// shown.
     images: [Arc<ColorImage>; 3],
 }
 
@@ -99,13 +100,15 @@ impl ViewportRenderer {
         }
     }
 
-    /// Draws the picture; `None` if it equals the last one, or was cancelled for a newer one.
+    /// Draws the picture. Returns `None` if it equals the last one or was cancelled for a newer
+    /// one.
     pub(crate) fn draw(
         &mut self,
         wanted: &Snapshot,
         asked: &(dyn Fn() -> Asked + Sync),
     ) -> Option<Drawn> {
         let begun = (self.clock)();
+        // The reduction depends on the share of the picture to redraw at full quality.
         let mut plan = planned(wanted, Reduction::NONE);
         let mut changes = self.renderer.damage(&plan);
         let share = share(&changes);
@@ -118,6 +121,7 @@ impl ViewportRenderer {
         if changes.is_nothing() {
             return self.unrefined(wanted, changes);
         }
+        // A newer request cancels this frame only if the frame is too slow; see `Attempt`.
         let expected = self.quality.expected(reduction, share);
         let attempt = Attempt { reduction, expected, second: self.gave_up, budget: wanted.budget };
         let clock = self.clock;
@@ -132,6 +136,7 @@ impl ViewportRenderer {
             self.quality.record_given_up(share, clock().duration_since(begun));
             return None;
         }
+        // The picture is finished: it is shown, and its time guides the next choice.
         present(&mut self.images, self.renderer.picture());
         (self.shown, self.refined) = (Some(reduction), None);
         let time = clock().duration_since(begun);
@@ -139,7 +144,7 @@ impl ViewportRenderer {
         Some(self.drawn(time, changes))
     }
 
-    /// What is shown now.
+    /// Describes the picture that is shown now.
     fn drawn(&self, time: Duration, changes: Damage) -> Drawn {
         let reduction = self.shown.unwrap_or_default();
         Drawn {
@@ -153,7 +158,7 @@ impl ViewportRenderer {
         }
     }
 
-    /// The picture as it was before it was refined, if it is refined further than is wanted now.
+    /// Shows the picture as it was before refinement, if it is refined further than requested.
     fn unrefined(&mut self, wanted: &Snapshot, changes: Damage) -> Option<Drawn> {
         let refined = self.refined?;
         if wanted.refined.is_some_and(|most| most.count() >= refined.count()) {
@@ -164,8 +169,8 @@ impl ViewportRenderer {
         Some(self.drawn(Duration::ZERO, changes))
     }
 
-    /// Does a part of what there is to do while nothing happens, unless `wanted` returns false:
-    /// measures a reduction if pictures of this scene come too late, or refines the last picture.
+    /// Takes one step of the work to do while the user is idle, unless `wanted` returns false:
+    /// measures a reduction if pictures of this scene are too slow, or refines the last picture.
     pub(crate) fn refine(
         &mut self,
         snapshot: &Snapshot,
@@ -174,6 +179,7 @@ impl ViewportRenderer {
         if snapshot.moving || self.gave_up || self.shown != Some(Reduction::NONE) {
             return Finer::Done;
         }
+        // Measurements come first: they decide the quality of the next drag.
         let applicable = applicable(snapshot);
         let begun = (self.clock)();
         let measured = self.quality.unmeasured(applicable, snapshot.budget);
@@ -186,6 +192,7 @@ impl ViewportRenderer {
             self.quality.measured(reduction, time, error);
             return Finer::Measured;
         }
+        // Each step raises the number of samples, so intermediate results appear early.
         let Some(samples) = next_samples(snapshot, self.refined) else { return Finer::Done };
         let settings = marraztu_core::accuracy::Settings { samples, ..snapshot.settings };
         let shot = Shot::new(&snapshot.scene, &snapshot.view, &settings, snapshot.size);
@@ -198,8 +205,8 @@ impl ViewportRenderer {
         Finer::Refined(Box::new(self.drawn(time, changes)))
     }
 
-    /// Explains the effects of the last finished picture; `None` if that is not wanted or has not
-    /// changed.
+    /// Explains the effects of the last finished picture; `None` if that is not requested or has
+    /// not changed.
     pub(crate) fn explain(&mut self, wanted: &Snapshot) -> Option<Arc<Explained>> {
         if !wanted.explain {
             self.explained = None;
@@ -218,7 +225,7 @@ impl ViewportRenderer {
         self.explained.clone()
     }
 
-    /// The hit at a pixel of the picture at full size.
+    /// Returns the hit at a pixel of the picture at full size.
     pub(crate) fn hit(&mut self, [x, y]: [usize; 2]) -> Option<Hit> {
         let by = self.shown?.shrink.factor();
         self.renderer.hit(x / by, y / by)
@@ -230,7 +237,7 @@ fn planned(wanted: &Snapshot, reduction: Reduction) -> FramePlan {
     plan_frame(&Shot::new(&wanted.scene, &wanted.view, &settings, size))
 }
 
-/// The part of the picture that is redrawn, from 0 to 1.
+/// Returns the part of the picture that is redrawn, from 0 to 1.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 tiles")]
 fn share(changes: &Damage) -> f64 {
     changes.tiles() as f64 / changes.tiles_in_all() as f64
@@ -245,17 +252,18 @@ fn applicable(wanted: &Snapshot) -> Applicable {
 }
 
 impl ViewportRenderer {
-    /// Whether the last picture was cancelled for a newer one.
+    /// Returns whether the last picture was cancelled for a newer one.
     pub(crate) const fn was_given_up(&self) -> bool {
         self.gave_up
     }
 
-    /// The border of the visible part of an item.
+    /// Finds the border around the visible part of an item.
     pub(crate) fn border(&mut self, item: ItemId) -> Option<Border> {
         self.border_of(item, &[item])
     }
 
-    /// The border of the visible parts of some items together, under the name of one.
+    /// Finds one border around the visible parts of several items, filed under the id of one of
+    /// them.
     pub(crate) fn border_of(&mut self, item: ItemId, all: &[ItemId]) -> Option<Border> {
         self.shown?;
         let [width, height] = self.images[2].size;
@@ -286,7 +294,7 @@ mod tests {
         Snapshot { scene, view, settings, size, moving, coarse, budget, refined, explain, outlined }
     }
 
-    /// The same in another colour, for which everything has to be drawn.
+    /// Changes the background colour of a snapshot, which requires a full redraw.
     fn recolored(snapshot: &Snapshot, gray: u8) -> Snapshot {
         let mut other = snapshot.clone();
         Command::Background(Color([gray; 3])).apply(&mut other.scene).unwrap();
@@ -297,7 +305,7 @@ mod tests {
         static NOW: Cell<Duration> = const { Cell::new(Duration::ZERO) };
     }
 
-    /// A clock that goes on by 40 ms whenever it is looked at: that is what every frame takes.
+    /// Advances a clock by 40 ms each time it is read, so every frame takes 40 ms.
     fn slow() -> Instant {
         static BEGINNING: OnceLock<Instant> = OnceLock::new();
         let now = NOW.get() + Duration::from_millis(40);
@@ -322,7 +330,7 @@ mod tests {
         statistics.note(&first, 1);
         let finer = Snapshot { refined: Some(Samples::Four), ..wanted.clone() };
         assert!(matches!(renderer.refine(&finer, &|| true), Finer::Refined(_)));
-        // What is no longer wanted finer is shown as it was, and takes no time.
+        // Withdrawing the refinement shows the earlier picture again and takes no time.
         let again = renderer.draw(&wanted, &this).unwrap();
         assert_eq!(again.changes.tiles(), 0);
         statistics.note(&again, 2);
@@ -351,7 +359,7 @@ mod tests {
         let (inner, outer) = (pixels(&border.inner), pixels(&border.outer));
         assert!(!inner.is_empty());
         assert!(outer.iter().all(|(x, y)| !is_own(*x, *y)));
-        // Nothing of the item lies at the picture's edge.
+        // The item does not touch the edge of the picture.
         for (x, y) in (1..159).flat_map(|x| (1..119).map(move |y| (x, y))) {
             let others = [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)];
             let beside = others.iter().any(|(x, y)| !is_own(*x, *y));
@@ -381,7 +389,7 @@ mod tests {
         for i in 0..11 {
             let moving = Snapshot { moving: true, ..recolored(&still, i) };
             let drawn = renderer.draw(&moving, &this).unwrap();
-            // Every frame takes 40 ms: each reduction is tried twice, and no one helps.
+            // Every frame takes 40 ms: each reduction is tried twice, and none keeps the budget.
             let half = "light per vertex, half size";
             let words =
                 ["light per vertex", "half size", half, "light per vertex, quarter size", ""];
@@ -416,7 +424,7 @@ mod tests {
         }
         assert_eq!(drawn.unwrap().reduction.shrink, Shrink::Half);
         let [half_count, half_x, half_y] = places(&mut renderer);
-        // As many pixels in the same place, but for the border.
+        // Half size covers the same area in the same place, except along the border.
         let near = |a: usize, b: usize, by: usize| a.abs_diff(b) <= by;
         assert!(near(count, half_count, count / 5), "{count} {half_count}");
         assert!(near(x / count, half_x / half_count, 2) && near(y / count, half_y / half_count, 2));
@@ -428,7 +436,7 @@ mod tests {
         let mut renderer = ViewportRenderer::new(slow);
         let wanted = snapshot(Size::new(160, 120));
         let first = renderer.draw(&wanted, &newer);
-        // How long it takes was not known: it may have been finished or not.
+        // The first frame's time was unknown, so it may have been finished or cancelled.
         if first.is_none() {
             renderer.draw(&wanted, &newer).unwrap();
         }

@@ -1,11 +1,11 @@
-//! The thread that draws, so that the window stays responsive however long a picture takes.
+//! The drawing thread, which keeps the window responsive however long a picture takes.
 //!
 //! Only the newest snapshot is drawn; a slow frame may be cancelled for it (see
 //! [`adaptive_quality`](super::adaptive_quality)). Picks are answered from the last finished
-//! picture before the next one is started: that is the one the user clicked on.
+//! picture before the next one is started, because that is the picture the user clicked on.
 //!
-//! While nothing is wanted, the last picture is refined, step by step; every request and every
-//! event of the window ends that at once. When all steps are done, the thread sleeps.
+//! While there are no requests, the last picture is refined step by step. Every request and every
+//! event of the window interrupts the refinement. After the last step, the thread sleeps.
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -24,7 +24,7 @@ use marraztu_render::Hit;
 /// The time without events after which the picture is refined.
 const QUIET: Duration = Duration::from_millis(120);
 
-/// A pick: which item is seen at a pixel, and the purpose of the question.
+/// A pick: the pixel to look up, and the purpose of the pick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pick<P> {
     pub(crate) at: [usize; 2],
@@ -36,17 +36,17 @@ pub(crate) struct Pick<P> {
 pub(crate) struct News<P> {
     pub(crate) border: Option<Border>,
     pub(crate) drawn: Option<Drawn>,
-    /// The same picture with more samples per pixel; it follows `drawn`.
+    /// The same picture with more samples per pixel; it arrives after `drawn`.
     pub(crate) refined: Option<Drawn>,
-    /// The borders that were wanted with the picture, if it was drawn anew: of the first item, and
-    /// of the others.
+    /// The borders requested with the picture, if it was redrawn: of the first item, and of the
+    /// others.
     pub(crate) outline: Option<[Option<Border>; 2]>,
     pub(crate) explained: Option<Arc<Explained>>,
     pub(crate) picked: Vec<(Pick<P>, Option<Hit>)>,
     pub(crate) failed: bool,
 }
 
-/// The thread that draws.
+/// The handle of the drawing thread.
 #[derive(Debug)]
 pub(crate) struct Worker<P> {
     shared: Arc<Shared<P>>,
@@ -58,11 +58,11 @@ pub(crate) struct Worker<P> {
 struct Shared<P> {
     desk: Mutex<Desk<P>>,
     changed: Condvar,
-    /// Whether a newer picture is wanted; asked between tiles.
+    /// Whether a newer picture is wanted; read between tiles.
     newer: AtomicBool,
-    /// Whether anything was wanted or happened since refining began; asked between tiles.
+    /// Whether a request or an event arrived since refinement began; read between tiles.
     disturbed: AtomicBool,
-    /// Whether the worker is to stop.
+    /// Whether the thread has to stop.
     over: AtomicBool,
 }
 
@@ -70,16 +70,16 @@ struct Shared<P> {
 struct Desk<P> {
     wanted: Option<Snapshot>,
     picks: VecDeque<Pick<P>>,
-    /// The item whose border was requested.
+    /// The item to outline, on request.
     border: Option<ItemId>,
     news: News<P>,
     busy: bool,
-    /// When the picture that is being drawn was begun.
+    /// When drawing of the current picture began.
     begun: Option<Instant>,
     closed: bool,
     /// Whether nothing is left to refine.
     settled: bool,
-    /// When refining may begin.
+    /// The earliest time at which refinement may begin.
     quiet_at: Instant,
 }
 
@@ -105,7 +105,7 @@ impl<P: Copy + Send + 'static> Worker<P> {
         Ok(Self { shared, last: None, thread: Some(thread) })
     }
 
-    /// Requests this picture, unless it was the last one requested.
+    /// Requests this picture, unless it equals the last request.
     pub(crate) fn draw(&mut self, snapshot: Snapshot) {
         if self.last.as_ref() == Some(&snapshot) {
             return;
@@ -119,23 +119,23 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.shared.changed.notify_all();
     }
 
-    /// Whether the worker is busy.
+    /// Returns whether the worker is busy or has requests.
     pub(crate) fn is_drawing(&self) -> bool {
         let desk = self.shared.lock();
         desk.busy || desk.has_work()
     }
 
-    /// How long the requested picture has been drawn, if it is not finished.
+    /// Returns how long the requested picture has been in progress, if it is not finished.
     pub(crate) fn drawing_for(&self) -> Option<Duration> {
         self.shared.lock().begun.map(|begun| begun.elapsed())
     }
 
-    /// The last snapshot requested.
+    /// Returns the last snapshot requested.
     pub(crate) const fn last(&self) -> Option<&Snapshot> {
         self.last.as_ref()
     }
 
-    /// Picks a pixel of the last picture.
+    /// Requests the item at a pixel of the last picture.
     pub(crate) fn pick(&self, pick: Pick<P>) {
         let mut desk = self.shared.lock();
         desk.picks.push_back(pick);
@@ -144,7 +144,7 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.shared.changed.notify_all();
     }
 
-    /// Asks for the border of an item in the last picture.
+    /// Requests the border of an item in the last picture.
     pub(crate) fn border(&self, item: ItemId) {
         let mut desk = self.shared.lock();
         desk.border = Some(item);
@@ -153,12 +153,12 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.shared.changed.notify_all();
     }
 
-    /// Something happens in the window: refining gives way.
+    /// Interrupts refinement, because something happens in the window.
     pub(crate) fn stir(&self) {
         self.shared.disturb(&mut self.shared.lock());
     }
 
-    /// The results since the last call.
+    /// Takes the results since the last call.
     pub(crate) fn news(&self) -> News<P> {
         let mut desk = self.shared.lock();
         std::mem::replace(&mut desk.news, News::none())
@@ -172,7 +172,7 @@ impl<P: Copy + Send + 'static> Worker<P> {
         }
     }
 
-    /// Waits until nothing is left to refine, too.
+    /// Waits until all requests are answered and nothing is left to refine.
     pub(crate) fn wait_until_refined(&self) {
         let mut desk = self.shared.lock();
         while desk.busy || desk.has_work() || !desk.settled {
@@ -187,7 +187,7 @@ impl<P> Drop for Worker<P> {
         self.shared.over.store(true, Ordering::Relaxed);
         self.shared.changed.notify_all();
         if let Some(thread) = self.thread.take() {
-            // It has told its failure already, if it had any.
+            // If the thread panicked, it has reported its failure already.
             let _ = thread.join();
         }
     }
@@ -211,13 +211,13 @@ impl<P> Shared<P> {
         self.desk.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Ends refining, until nothing has happened for a while.
+    /// Interrupts refinement until the window has been quiet for a while.
     fn disturb(&self, desk: &mut Desk<P>) {
         desk.quiet_at = Instant::now() + QUIET;
         self.disturbed.store(true, Ordering::Relaxed);
     }
 
-    /// Waits for work, or for the time to refine; `None` if the desk is closed.
+    /// Waits for work or for the time to refine; `None` if the desk is closed.
     fn next(&self) -> Option<Work<P>> {
         let mut desk = self.lock();
         (desk.busy, desk.begun) = (false, None);
@@ -226,6 +226,7 @@ impl<P> Shared<P> {
             if desk.closed {
                 return None;
             }
+            // Requests come before refinement, and all of them are taken at once.
             if desk.has_work() {
                 desk.busy = true;
                 desk.begun = desk.wanted.is_some().then(Instant::now);
@@ -237,10 +238,12 @@ impl<P> Shared<P> {
                     desk.wanted.take().map(Box::new),
                 ));
             }
+            // Without anything to refine, the thread sleeps until a request or the end.
             if desk.settled {
                 desk = self.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
                 continue;
             }
+            // Refinement waits for a quiet moment, unless a request wakes the thread earlier.
             let rest = desk.quiet_at.saturating_duration_since(Instant::now());
             if rest.is_zero() {
                 self.disturbed.store(false, Ordering::Relaxed);
@@ -252,15 +255,15 @@ impl<P> Shared<P> {
     }
 }
 
-/// What the thread does next.
+/// The next task of the thread.
 enum Work<P> {
-    /// Answers picks, outlines an item, draws a picture.
+    /// Answer picks, outline an item, draw a picture.
     Asked(VecDeque<Pick<P>>, Option<ItemId>, Option<Box<Snapshot>>),
-    /// Refines the last picture by a step.
+    /// Refine the last picture by a step.
     Refine,
 }
 
-/// Draws and answers until the desk is closed.
+/// Draws pictures and answers requests until the desk is closed.
 fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
     let mut painter = ViewportRenderer::new(Instant::now);
     let mut last = None;
@@ -273,6 +276,7 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
                 continue;
             }
         };
+        // Picks and borders refer to the picture on screen, so they are answered before it changes.
         let picked: Vec<_> = picks.into_iter().map(|pick| (pick, painter.hit(pick.at))).collect();
         let border = border.and_then(|item| painter.border(item));
         if !picked.is_empty() || border.is_some() {
@@ -284,12 +288,13 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
         }
         let Some(wanted) = wanted else { continue };
         if !draw(shared, wake, &mut painter, &wanted, &mut outlined) {
+            // A renderer that panicked may hold inconsistent buffers, so it is replaced.
             painter = ViewportRenderer::new(Instant::now);
             last = None;
             continue;
         }
         shared.lock().settled = false;
-        // After the picture, so that it is not delayed.
+        // The explanation comes after the picture, which it would delay.
         if let Ok(Some(explained)) = catch_unwind(AssertUnwindSafe(|| painter.explain(&wanted))) {
             shared.lock().news.explained = Some(explained);
             wake();
@@ -298,8 +303,8 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
     }
 }
 
-/// Draws a picture. Returns false if the renderer failed: a fault of its own costs a picture, not
-/// the user's work.
+/// Draws a picture. Returns false if the renderer panicked: the fault costs one picture, not the
+/// user's work.
 fn draw<P: Copy + Send>(
     shared: &Shared<P>,
     wake: &impl Fn(),
@@ -307,6 +312,7 @@ fn draw<P: Copy + Send>(
     wanted: &Snapshot,
     outlined: &mut Vec<ItemId>,
 ) -> bool {
+    // The renderer asks between tiles, without a lock.
     let asked = || match shared.over.load(Ordering::Relaxed) {
         true => Asked::Nothing,
         false if shared.newer.load(Ordering::Relaxed) => Asked::Newer,
@@ -319,7 +325,7 @@ fn draw<P: Copy + Send>(
     };
     let another = wanted.outlined != *outlined && !painter.was_given_up();
     if drawn.is_some() || another {
-        // Of this very picture, so that it never lags behind.
+        // The outline is taken from this very picture, so it never lags behind.
         let (first, others) = wanted.outlined.split_first().unzip();
         let own = first.and_then(|item| painter.border(*item));
         let others = others.filter(|others| !others.is_empty());
@@ -337,7 +343,7 @@ fn draw<P: Copy + Send>(
     true
 }
 
-/// Refines the last picture by a step, unless something else is wanted meanwhile.
+/// Refines the last picture by a step, unless a request interrupts it.
 fn refine<P: Copy + Send>(
     shared: &Shared<P>,
     wake: &impl Fn(),
@@ -353,7 +359,7 @@ fn refine<P: Copy + Send>(
             wake();
         }
         Ok(Finer::Disturbed | Finer::Measured) => {}
-        // A picture that cannot be refined is still a picture.
+        // If refinement fails, the unrefined picture remains on screen.
         Ok(Finer::Done) | Err(_) => {
             let mut desk = shared.lock();
             desk.settled = !desk.has_work();

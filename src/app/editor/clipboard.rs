@@ -34,7 +34,7 @@ impl App {
         }
     }
 
-    /// Copies the selected items. Says whether it could.
+    /// Copies the selected items. Returns whether it succeeded.
     fn copy(&mut self, ctx: &Context) -> bool {
         let items: Vec<ItemId> =
             self.state.selected().into_iter().chain(self.state.others()).collect();
@@ -54,7 +54,7 @@ impl App {
     fn copy_material(&mut self, ctx: &Context, id: ObjectId) {
         let Some(object) = self.state.scene.objects.get(id) else { return };
         let material = match &object.material {
-            // Another object has other materials in its file.
+            // A file's material belongs to the file, so its values are copied.
             MaterialChoice::File => MaterialChoice::Own(object.part_look(0).material),
             other => other.clone(),
         };
@@ -68,7 +68,7 @@ impl App {
         }
     }
 
-    /// Reads a text on a thread, since it may name models that have to be read.
+    /// Reads pasted text on a thread, since it may name models that have to be read.
     fn paste(&mut self, ctx: &Context, text: String) {
         let known = Known::of(&self.state.scene);
         self.begin_loading(ctx, "Pasting".to_owned(), false, move |progress| {
@@ -76,7 +76,7 @@ impl App {
         });
     }
 
-    /// Takes items that were read.
+    /// Inserts pasted items that were read.
     pub(crate) fn take_pasted(&mut self, read: Result<Box<Fragment>, SceneFileError>) {
         let result = match read {
             Ok(fragment) => self.insert_fragment(*fragment).map_err(|refusal| refusal.to_string()),
@@ -98,11 +98,13 @@ impl App {
             [name] => name.clone(),
             _ => format!("{} items", names.len()),
         };
+        // The kind of the first pasted items becomes the subject.
         let subject = match (objects.is_empty(), lights.is_empty()) {
             (false, _) => Subject::Object,
             (true, false) => Subject::Light,
             (true, true) => Subject::Camera,
         };
+        // Items are added first; a material then goes to the selected objects.
         let copies = copies::Copies { objects, cameras, lights };
         if !copies.is_empty() {
             let command = copies::insert(scene, view, copies)?;

@@ -1,7 +1,7 @@
-//! Draws the picture and the exact one for comparison, on a thread of its own.
+//! Draws the picture and the exact one for comparison, on a background thread.
 //!
-//! What no longer shows the scene is dropped at once: its drawing ends between two tiles, and only
-//! then the next one begins.
+//! Pictures that are out of date are cancelled immediately, which takes effect between two tiles.
+//! The next ones begin only after that.
 
 use egui::Context;
 
@@ -14,14 +14,15 @@ use marraztu_core::scene::View;
 use marraztu_io as io;
 
 impl App {
-    /// Takes finished pictures, and starts to draw new ones if the comparison is out of date.
+    /// Shows finished pictures, and starts new ones if the comparison is out of date.
     pub(crate) fn compare(&mut self, ctx: &Context) {
         let wanted = self.compared_now();
         let animated = self.state.is_animated();
         self.hear_comparison(ctx, wanted.as_ref());
         let comparison = &mut self.comparison;
         if let Some(drawing) = &comparison.drawing {
-            // An animated scene is compared as it was a moment ago, or it never would be.
+            // An animated scene changes in every frame, so a comparison with an earlier time still
+            // counts.
             let is_wanted = wanted.as_ref().is_some_and(|wanted| match animated {
                 true => at_one_time(wanted, &drawing.of),
                 false => *wanted == drawing.of,
@@ -35,7 +36,7 @@ impl App {
             comparison.current = is_drawn;
             ctx.request_repaint();
         }
-        // While the view moves, nothing is begun that the next frame would drop.
+        // While the view moves, no drawing begins, since the next frame would cancel it.
         let rests = animated || comparison.wanted == wanted;
         comparison.wanted.clone_from(&wanted);
         if !rests {
@@ -44,12 +45,12 @@ impl App {
         let Some(of) = wanted.filter(|_| !is_drawn && comparison.drawing.is_none()) else { return };
         let theirs = of.clone();
         let work = move |progress: &io::Progress| draw(theirs, progress).map(Box::new);
-        // Without a thread there is no comparison.
+        // Without a thread, there is no comparison.
         let task = Task::start(ctx, "Comparing".to_owned(), work).ok();
         comparison.drawing = task.map(|task| Drawing { of, task });
     }
 
-    /// What the comparison should show; `None` if nothing is compared.
+    /// Returns the inputs of the comparison; `None` if there is no comparison.
     fn compared_now(&self) -> Option<Compared> {
         let State { scene, view, settings, lab, .. } = &self.state;
         let size = self.viewport.size().filter(|_| lab.compare != Compare::Off)?;
@@ -58,7 +59,7 @@ impl App {
         Some(Compared { scene, view, settings: *settings, size, against })
     }
 
-    /// Takes a pair that is finished, unless it is of another scene.
+    /// Shows a finished pair, unless it belongs to another scene.
     fn hear_comparison(&mut self, ctx: &Context, wanted: Option<&Compared>) {
         let Some(drawing) = &self.comparison.drawing else { return };
         match drawing.task.outcome() {
@@ -80,7 +81,7 @@ impl App {
     }
 }
 
-/// Whether both show the same, apart from the time.
+/// Returns whether both have the same inputs, except for the time.
 fn at_one_time(a: &Compared, b: &Compared) -> bool {
     let view = View { time: a.view.time, ..b.view.clone() };
     let Compared { scene, view: _, settings, size, against } = b;

@@ -1,4 +1,4 @@
-//! Explains a pixel of the picture, on a thread of its own and with a picture of its own.
+//! Explains a pixel of the picture on a background thread, which draws a separate picture.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use marraztu_core::accuracy::{Samples, Settings, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_render::{PixelColor, Renderer, plan_frame};
 
-/// A pixel that is being explained.
+/// A pixel being explained.
 #[derive(Debug)]
 pub(crate) struct Explaining {
     task: Task<Option<PixelColor>>,
@@ -19,7 +19,7 @@ pub(crate) struct Explaining {
 }
 
 impl App {
-    /// Explains a pixel from now on, also when the picture changes.
+    /// Explains a pixel, and again whenever the picture changes.
     pub(crate) fn explain_pixel(&mut self, ctx: &Context, at: [usize; 2]) {
         self.state.explaining = false;
         let Some(size) = self.viewport.size() else { return };
@@ -27,7 +27,7 @@ impl App {
         let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
         let of = ExplainedPixel { at, scene, view, settings, size, explained: None };
         let (scene, view) = (of.scene.clone(), of.view.clone());
-        // The light at the centre: several samples would be a mean of several surfaces.
+        // One sample at the centre, since several samples would mix several surfaces.
         let settings = Settings { samples: Samples::One, ..settings };
         let task = Task::start(ctx, "explain a pixel".to_owned(), move |_| {
             let mut renderer = Renderer::default();
@@ -40,7 +40,7 @@ impl App {
         }
     }
 
-    /// Takes the explanation; asks again if the picture has changed since.
+    /// Shows the explanation, and starts again if the picture has changed since.
     pub(crate) fn hear_explaining(&mut self, ctx: &Context) {
         let outcome = self.explaining.as_ref().map(|explaining| explaining.task.outcome());
         match outcome {

@@ -6,12 +6,12 @@ use marraztu_core::base::image::Size;
 use marraztu_core::scene::View;
 use marraztu_render::fitted_exposure;
 
-/// The longer side of the picture that the exposure is fitted to: a share of the brightest pixels
-/// needs no more.
+/// The longer side of the picture used to fit the exposure. The share of brightest pixels needs no
+/// larger picture.
 const SIDE: usize = 160;
 
 impl App {
-    /// Brings the brightest surfaces just below white.
+    /// Fits the exposure so the brightest surfaces are just below white.
     pub(crate) fn fit_exposure(&mut self) {
         let Some(Size { width, height }) = self.viewport.size() else { return };
         let longest = width.max(height).max(1);

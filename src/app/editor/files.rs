@@ -1,7 +1,7 @@
 //! Loads models and textures, and saves pictures.
 //!
-//! Files are loaded on background threads; the scene changes only once a file is read completely,
-//! so that a bad file leaves it unchanged.
+//! Files are loaded on background threads. The scene changes only after a file was read completely,
+//! so a bad file leaves it unchanged.
 
 use std::path::PathBuf;
 
@@ -33,7 +33,7 @@ use marraztu_render::plan_frame;
 const MOST_LOADING: usize = 8;
 
 impl App {
-    /// Loads these models as the key `f` does, or opens the scene among them.
+    /// Loads models as the key `f` does, or opens the scenes among the files.
     pub(crate) fn load_files(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
         for path in paths {
             if is_scene(&path) {
@@ -133,9 +133,10 @@ impl App {
     }
 
     pub(crate) fn load_model(&mut self, ctx: &Context, path: PathBuf, wish: Wish) {
+        // Without a material, a dialog asks for it when the file has been read.
         let label = format!("Loading {}", file_name(&path));
         let asks = wish.material.is_none();
-        // Whoever has chosen a material has chosen the axis, too.
+        // A user who has chosen a material in the dialog has chosen the up axis there too.
         let chosen = !asks && !wish.keeps_saved;
         let usual = self.state.up;
         self.begin_loading(ctx, label, asks, move |progress| {
@@ -160,7 +161,7 @@ impl App {
         });
     }
 
-    /// Reads a file on a thread of its own.
+    /// Reads a file on a background thread.
     pub(crate) fn begin_loading(
         &mut self,
         ctx: &Context,
@@ -172,7 +173,7 @@ impl App {
         self.begin_queued(ctx);
     }
 
-    /// Starts to read waiting files, up to the maximum.
+    /// Starts to read queued files, up to the maximum.
     fn begin_queued(&mut self, ctx: &Context) {
         while self.loading.len() < MOST_LOADING
             && let Some(Queued { label, asks, work }) = self.queued.pop_front()
@@ -186,11 +187,11 @@ impl App {
         }
     }
 
-    /// Takes the files that were read.
+    /// Handles the files that were read.
     pub(crate) fn hear_loading(&mut self, ctx: &Context) {
-        // In the order of the requests, however long each file takes.
+        // Files are handled in the order of the requests, whatever order they finish in.
         while let Some(loading) = self.loading.first() {
-            // One question at a time: further models wait for theirs.
+            // Only one material dialog is open at a time, so further models wait.
             if loading.asks && self.dialogs.asks_material() {
                 return;
             }
@@ -199,6 +200,7 @@ impl App {
                 Outcome::Done(fetched) => Some(fetched),
                 Outcome::Lost => None,
             };
+            // A place is free again for a queued file.
             let Loading { task, .. } = self.loading.remove(0);
             self.begin_queued(ctx);
             ctx.request_repaint();
@@ -219,6 +221,7 @@ impl App {
                 match (result, material) {
                     (Err(error), _) => self.tell_load_error(&error),
                     (Ok((loaded, texture)), Some(material)) => {
+                        // Models of the command line do not make the scene unsaved.
                         let keeps_saved = keeps_saved && self.state.history.is_saved();
                         self.insert(ctx, loaded, material, texture);
                         if keeps_saved {
@@ -262,7 +265,7 @@ impl App {
         }
     }
 
-    /// Says that a model was loaded; if there are findings, a notice says the rest.
+    /// Reports that a model was loaded. Findings are reported in a notice.
     pub(crate) fn tell_loaded(&mut self, name: &str, found: &str, findings: &[String]) {
         self.state.tell(Some(match findings {
             [] => format!("Opened {name}: {found}"),
@@ -270,7 +273,7 @@ impl App {
         }));
     }
 
-    /// Adds a loaded model to the scene, and reports the findings about its file.
+    /// Adds a loaded model to the scene and reports the findings about its file.
     fn insert(
         &mut self,
         ctx: &Context,
@@ -306,8 +309,8 @@ impl App {
         }
     }
 
-    /// Saves the picture as the still window shows it; draws it in the background if it does not
-    /// show it yet.
+    /// Saves the picture as the still window shows it. If the window does not show it yet, it is
+    /// drawn in the background.
     fn save_picture(&mut self, ctx: &Context, path: PathBuf) {
         if !self.shows_all() {
             return self.draw_as_shown(ctx, path);
@@ -335,19 +338,19 @@ impl App {
         self.state.tell(Some(format!("Copied a picture of {width} x {height} pixels")));
     }
 
-    /// The picture that the viewport shows.
+    /// Returns the picture that the viewport shows.
     #[must_use]
     pub fn shown_picture(&self) -> Option<Picture> {
         self.viewport.image().and_then(|image| images::picture(image))
     }
 
-    /// Whether the viewport shows the picture at full quality, and refined as far as it will be.
+    /// Returns whether the viewport shows the picture at full quality and fully refined.
     fn shows_all(&self) -> bool {
         let statistics = &self.state.statistics;
         statistics.reduction == Reduction::NONE && statistics.refined == self.state.refined_to()
     }
 
-    /// The picture of the viewport at full quality.
+    /// Returns the picture of the viewport at full quality.
     fn picture(&self) -> Option<Picture> {
         let State { scene, view, settings, .. } = &self.state;
         if self.shows_all() {
@@ -359,7 +362,7 @@ impl App {
         Some(Renderer::default().render(&plan).clone())
     }
 
-    /// Does what the user asked for, now that the scene is saved or discarded.
+    /// Continues with the user's request after the scene was saved or discarded.
     pub(crate) fn after(&mut self, ctx: &Context, after: After) {
         match after {
             After::Quit => self.leave(ctx),
@@ -386,8 +389,9 @@ impl App {
         self.swap(state);
     }
 
-    /// As [`Self::replace`]; gives what was there.
+    /// Replaces the scene as [`Self::replace`] does; returns the old state.
     pub(crate) fn swap(&mut self, state: State) -> State {
+        // Preferences of the window and lists of files belong to the window, not to the scene.
         let State { panels, theme, drawing, layout, overlays, greeting, .. } = self.state;
         let State { gizmo, helpers, watches, up, zoom, narrow, .. } = self.state;
         let statistics = self.state.statistics.clone();
@@ -395,6 +399,7 @@ impl App {
         let recoverable = std::mem::take(&mut self.state.recoverable);
         let discarded = std::mem::take(&mut self.state.discarded);
         let generation = self.state.generation + 1;
+        // Background work for the old scene is of no use for the new one.
         self.end_measuring();
         self.comparison.forget();
         self.first_steps = None;
@@ -422,7 +427,7 @@ impl App {
     }
 }
 
-/// The file's own material if it has one, otherwise silver.
+/// Replaces the file's material by silver if the file does not contain materials.
 fn settled(material: MaterialChoice, loaded: &Loaded) -> MaterialChoice {
     if material == MaterialChoice::File { own_or_silver(loaded) } else { material }
 }

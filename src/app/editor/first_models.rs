@@ -1,8 +1,8 @@
 //! Models that open alone: those of the command line, and those dropped on the untouched first
-//! scene, or opened from the strip over it.
+//! scene or opened from the greeting.
 //!
 //! They are shown as `render` shows them: without the first scene's objects, framed and lit. The
-//! key `f` and the menu add a model to the scene as it is, also to the first one.
+//! key `f` and the menu add a model to the current scene, even if that is the first one.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -21,12 +21,12 @@ use marraztu_core::scene::{LoadOptions, MaterialChoice, Object, Scene, Steps, Up
 use marraztu_io::{self as io, LoadError, Loaded, Progress};
 
 impl App {
-    /// Loads the files of the command line: models alone, or put into the scene among them. They do
-    /// not count as unsaved changes.
+    /// Loads the files of the command line: models alone, or into the scene among the files. They
+    /// do not count as unsaved changes.
     pub fn load_at_start(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
         let (scenes, models): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| is_scene(path));
         if scenes.is_empty() && !models.is_empty() {
-            // The first scene's objects would only be seen to vanish.
+            // Without this, the first scene's objects would appear briefly and vanish.
             let (scene, mut view) = io::empty_scene();
             view.steps.by_size = true;
             self.replace(State::new(scene, view));
@@ -42,7 +42,7 @@ impl App {
         }
     }
 
-    /// Opens files that were dropped onto the window.
+    /// Opens files that were dropped on the window.
     pub(crate) fn take_dropped(&mut self, ctx: &Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_owned()).collect();
@@ -51,7 +51,7 @@ impl App {
         }
     }
 
-    /// Opens files. On the untouched first scene, models take its place.
+    /// Opens files. If the first scene is untouched, models replace it.
     pub(crate) fn open_files(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
         if self.is_untouched() && !paths.iter().any(|path| is_scene(path)) {
             self.load_alone(ctx, paths, Arrival::Dropped);
@@ -60,11 +60,11 @@ impl App {
         }
     }
 
-    /// Whether this is the first scene, or none at all, and nothing was ever done to it.
+    /// Returns whether the scene is the first one or empty, and was never changed.
     pub(crate) fn is_untouched(&self) -> bool {
         let State { scene, history, path, .. } = &self.state;
         let first = io::default_scene().0;
-        // The user may have looked around.
+        // Camera positions are ignored, since the user may have looked around.
         let looked = Scene { cameras: first.cameras.clone(), ..scene.clone() };
         path.is_none()
             && history.steps().len() == 0
@@ -83,8 +83,8 @@ impl App {
         });
     }
 
-    /// Takes models that were read together: alone if the scene is untouched, else beside what is
-    /// there.
+    /// Shows models that were read together: alone if the scene is untouched, else next to its
+    /// objects.
     pub(crate) fn take_alone(
         &mut self,
         ctx: &Context,
@@ -102,7 +102,7 @@ impl App {
             if arrival == Arrival::Start && self.is_untouched() {
                 let (scene, view) = io::default_scene();
                 self.replace(State::new(scene, view));
-                // What else there is to begin with.
+                // The greeting offers other ways to begin.
                 self.greet();
             }
             return;
@@ -116,7 +116,7 @@ impl App {
         if let Err(refusal) = shown {
             return self.refuse(refusal.to_string());
         }
-        // A notice for each of many models would hide them.
+        // With many models, one notice for each would hide the models.
         let only = if arrived.len() == 1 { self.state.scene.objects.ids().next() } else { None };
         for Arrived { object, said, findings } in arrived {
             if let Some(path) = &object.model.source {
@@ -162,8 +162,8 @@ impl App {
         Ok(())
     }
 
-    /// Gives the first scene its steps back when it comes back by Undo, and its successor those
-    /// that go by size by Redo.
+    /// Adjusts the step sizes to undo and redo across the replacement of the first scene: the first
+    /// scene gets its old steps, the new one gets steps by size.
     pub(crate) fn follow_steps(&mut self) {
         let Some(Steps { translation, by_size, .. }) = self.first_steps else { return };
         let is_first = self.state.history.position() == 0;
@@ -173,7 +173,7 @@ impl App {
     }
 }
 
-/// Reads models with their own materials; a file that is named twice is read once.
+/// Reads models with their materials. A file that is named twice is read once.
 fn read_all(
     paths: &[PathBuf],
     usual: UpAxis,

@@ -1,8 +1,8 @@
-//! Keeps unsaved work and preferences in the program's own files.
+//! Keeps unsaved work and preferences in the program's files.
 //!
-//! The scene goes to the journal as soon as it changes, and the journal's thread brings it to the
-//! disk; the window never waits for that. Work that another program has left behind is offered in a
-//! notice that blocks nothing.
+//! The scene goes to the journal as soon as it changes. The journal's thread writes it to the disk,
+//! so the window never waits. Work that another program has left behind is offered in a notice,
+//! which blocks nothing.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
@@ -22,28 +22,29 @@ use marraztu_io::{
 /// The seconds without a change after which preferences are written.
 const QUIET: f64 = 1.0;
 
-/// The program's own files.
+/// The program's files.
 #[derive(Debug)]
 pub(crate) struct Keeping {
     folders: OwnFolders,
     journal: Option<Journal>,
-    /// The unsaved scene that the journal has.
+    /// The unsaved scene that is in the journal.
     kept: Option<Scene>,
     /// Work that other programs have left behind, in the order of [`State::recoverable`].
     offered: Vec<Abandoned>,
-    /// Work that was discarded, in the order of [`State::discarded`].
+    /// Discarded work, in the order of [`State::discarded`].
     discarded: Vec<Discarded>,
-    /// As they were written last.
+    /// The preferences as last written.
     preferences: Preferences,
-    /// The recent files that it has read or written: a file with them adds none of them again.
+    /// The recent files that this program has read or written. A file on disk with these entries
+    /// adds none of them again.
     known: Vec<PathBuf>,
-    /// The preferences now, and since when they differ.
+    /// The current preferences if they differ from the last written, and the time since then.
     changed: Option<(Preferences, f64)>,
 }
 
 impl App {
-    /// Keeps unsaved work and preferences in these folders from now on, and offers the work that
-    /// was left there. `said` is shown in a notice.
+    /// Starts to keep unsaved work and preferences in these folders, and offers the work that was
+    /// left there. `said` is shown in a notice.
     pub fn keep_in(
         &mut self,
         ctx: &Context,
@@ -57,9 +58,11 @@ impl App {
             let text = "Some of the keys that you have chosen are not as they were.".to_owned();
             self.state.notices.push(Notice { text, details: changed_keys, offer: None });
         }
+        // Work of programs that ended without saving is offered, not opened.
         let offered = Abandoned::all(&folders);
         let now = SystemTime::now();
         self.state.recoverable = offered.iter().map(|work| described(work, now)).collect();
+        // Without a journal the program works, but a crash loses unsaved work.
         let journal = match Journal::begin(&folders) {
             Ok(journal) => Some(journal),
             Err(why) => {
@@ -84,12 +87,13 @@ impl App {
         self.list_discarded();
     }
 
-    /// Hands what has changed to the journal, and writes preferences once they have settled.
+    /// Hands changes to the journal, and writes preferences after they have settled.
     pub(crate) fn keep(&mut self, ctx: &Context) {
         let Self { keeping: Some(keeping), waiting_scene, state, .. } = self else { return };
-        // During a lesson it is the user's own scene that must not be lost.
+        // During a lesson, the user's scene is the one to protect.
         let own = waiting_scene.as_deref().unwrap_or(state);
         let State { scene, view, settings, history, path, content, .. } = own;
+        // The journal gets the scene only when it has changed, or learns that all is saved.
         if let Some(journal) = &keeping.journal {
             if history.is_saved() {
                 if keeping.kept.take().is_some() {
@@ -113,6 +117,7 @@ impl App {
             keeping.changed = None;
             return;
         }
+        // Preferences are written once, after a drag or a series of changes has ended.
         match &keeping.changed {
             Some((before, since)) if *before == now => {
                 if time - since >= QUIET {
@@ -128,14 +133,14 @@ impl App {
         }
     }
 
-    /// The program is left: preferences are written, and nothing is left to recover if the user
-    /// has saved or discarded everything.
+    /// Ends keeping as the program quits: writes the preferences, and removes the journal if the
+    /// user has saved or discarded everything.
     pub fn end_keeping(&mut self) {
         let Some(mut keeping) = self.keeping.take() else { return };
         if let Some((changed, _)) = keeping.changed.take() {
             keeping.preferences = changed;
         }
-        // If that fails, the window that could say so is gone.
+        // Failure cannot be reported, as the window is gone.
         let _ = keeping.preferences.save(&keeping.folders, &keeping.known);
         if (self.leaving || self.is_all_saved())
             && let Some(journal) = keeping.journal
@@ -151,7 +156,7 @@ impl App {
         }
     }
 
-    /// Reads the work that is offered at this place, to show it instead of the scene.
+    /// Reads the offered work at this index, to show it in place of the scene.
     pub(crate) fn recover(&mut self, ctx: &Context, at: usize) {
         let Some(work) = self.keeping.as_ref().and_then(|keeping| keeping.offered.get(at)) else {
             return;
@@ -160,7 +165,7 @@ impl App {
         self.read_work(ctx, path);
     }
 
-    /// Reads discarded work, to show it instead of the scene.
+    /// Reads the discarded work at this index, to show it in place of the scene.
     pub(crate) fn recover_discarded(&mut self, ctx: &Context, at: usize) {
         let work = self.keeping.as_ref().and_then(|keeping| keeping.discarded.get(at));
         if let Some(path) = work.map(|work| work.path().to_owned()) {
@@ -175,7 +180,7 @@ impl App {
         });
     }
 
-    /// Moves the work that is offered at this place aside.
+    /// Moves the offered work at this index to the discarded work.
     pub(crate) fn discard_work(&mut self, at: usize) {
         let work = self.keeping.as_ref().and_then(|keeping| keeping.offered.get(at));
         let Some(work) = work else { return };
@@ -188,7 +193,7 @@ impl App {
         self.state.tell(Some(text.to_owned()));
     }
 
-    /// Lists the work that was discarded and can be brought back.
+    /// Lists the discarded work that can be restored.
     fn list_discarded(&mut self) {
         let Some(keeping) = &mut self.keeping else { return };
         keeping.discarded = Discarded::all(&keeping.folders);
@@ -209,19 +214,19 @@ impl App {
         Some(keeping.offered.remove(at))
     }
 
-    /// If the scene that was opened is offered or discarded work: it counts as unsaved, and as a
-    /// scene of the file that it once was saved to. Returns whether it is.
+    /// Marks the opened scene as unsaved if it is offered or discarded work, and assigns it to the
+    /// file that it was once saved to. Returns whether it is such work.
     pub(crate) fn settle_recovered(&mut self, opened: &Path) -> bool {
         let Some(keeping) = &self.keeping else { return false };
         let offered = keeping.offered.iter().position(|work| work.path() == opened);
-        // Discarded work stays where it is until its time is over.
+        // Discarded work stays in its place until it expires.
         let discarded = keeping.discarded.iter().find(|work| work.path() == opened).cloned();
         if let Some(work) = offered.and_then(|at| self.take_offered(at)) {
             self.name_recovered(opened, work.scene_file.clone(), work.content);
             if let Some(keeping) = &mut self.keeping {
                 match &keeping.journal {
                     Some(journal) => journal.replace(work),
-                    // Without a journal it is offered again by the next program.
+                    // Without a journal, the next program offers it again.
                     None => drop(work),
                 }
             }
@@ -232,7 +237,7 @@ impl App {
         true
     }
 
-    /// The scene that was opened is the unsaved one of this file, which had this content.
+    /// Assigns the opened scene to this file, which had this content, as an unsaved scene.
     fn name_recovered(
         &mut self,
         opened: &Path,
@@ -243,7 +248,7 @@ impl App {
         (self.state.path, self.state.content) = (file, content);
         self.state.history.mark_unsaved();
         self.state.tell(Some(format!("Recovered unsaved changes of {name}")));
-        // The user does not know the file that the work was kept in.
+        // The user does not know the name of the journal's file.
         let own_name = file_name(opened);
         for notice in &mut self.state.notices {
             if let Some(rest) = notice.text.strip_prefix(&own_name) {
@@ -255,7 +260,7 @@ impl App {
         }
     }
 
-    /// Remembers a file among the recent ones.
+    /// Adds a file to the recent ones.
     pub(crate) fn note_recent(&mut self, path: &Path) {
         if io::is_example(path) {
             return;
@@ -268,16 +273,16 @@ impl App {
 }
 
 impl Keeping {
-    /// Writes the preferences without letting the window wait.
+    /// Writes the preferences on a thread, so the window does not wait.
     fn write_preferences(&mut self) {
         let (preferences, folders) = (self.preferences.clone(), self.folders.clone());
         let known = self.known.clone();
         self.known.extend_from_slice(&preferences.recent);
         let write = move || {
-            // They are written again when the program is left.
+            // A failure here is repaired by writing the preferences at the end.
             let _ = preferences.save(&folders, &known);
         };
-        // Without a thread, too, they are written then.
+        // So is the lack of a thread.
         let _ = std::thread::Builder::new().name("preferences".to_owned()).spawn(write);
     }
 }
@@ -288,18 +293,19 @@ fn notice(text: String) -> Notice {
     Notice { text, details: Vec::new(), offer: None }
 }
 
-/// "harbour.marraztu", or "a new scene".
+/// Names a scene: "harbour.marraztu", or "a new scene".
 fn scene_name(file: Option<&Path>) -> String {
     file.map_or_else(|| "a new scene".to_owned(), file_name)
 }
 
-/// "The program ended with unsaved changes of harbour.marraztu, from 3 minutes ago."
+/// Describes offered work: "The program ended with unsaved changes of harbour.marraztu, from 3
+/// minutes ago."
 fn described(work: &Abandoned, now: SystemTime) -> String {
     let (name, age) = (scene_name(work.scene_file.as_deref()), age(work.written, now));
     format!("The program ended with unsaved changes of {name}, from {age}.")
 }
 
-/// "3 minutes ago".
+/// Formats an age: "3 minutes ago".
 fn age(written: SystemTime, now: SystemTime) -> String {
     let minutes = now.duration_since(written).unwrap_or_default().as_secs() / 60;
     match minutes {

@@ -1,7 +1,7 @@
-//! Answers requests to the laboratory, and runs its measurements on threads of their own.
+//! Answers requests to the laboratory and runs its measurements on background threads.
 //!
-//! While a measurement runs, the window is drawn at most four times a second, and pairs of pictures
-//! that were timed while it was drawn are discarded.
+//! During a measurement, the window is drawn at most four times a second. Pairs of pictures that
+//! were timed while it was drawn are discarded.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -34,19 +34,19 @@ pub(crate) struct Work {
     watch: Watch,
     sweep: Option<Task<Result<Findings, Unmeasured>>>,
     suite: Option<Task<Result<Vec<Report>, Unmeasured>>>,
-    /// The findings so far.
+    /// The latest intermediate findings.
     so_far: Arc<Mutex<Option<Findings>>>,
     blame: Option<Task<Option<Explained>>>,
     /// The command that repeats the measurement.
     command: String,
-    /// When the window was drawn last.
+    /// When the window was last drawn.
     drawn_at: Option<Instant>,
 }
 
-/// An attribution of the error at a pixel, with the item seen there; `None` for the background.
+/// The attributed error of a pixel, and the item at that pixel; `None` for the background.
 type Explained = (Attribution, Option<String>);
 
-/// The minimum time between two drawings of the window during a measurement; it is longer if a pair
+/// The minimum time between two drawings of the window during a measurement. It is longer if a pair
 /// of pictures takes longer.
 const REST: Duration = Duration::from_millis(250);
 
@@ -54,7 +54,7 @@ const REST: Duration = Duration::from_millis(250);
 const PAIRS_BETWEEN: u32 = 3;
 
 impl Work {
-    /// The time between two drawings of the window.
+    /// Returns the time between two drawings of the window.
     fn rest_now(&self) -> Duration {
         REST.max(PAIRS_BETWEEN * self.watch.pair())
     }
@@ -63,17 +63,17 @@ impl Work {
         self.sweep.is_some() || self.suite.is_some()
     }
 
-    /// The window is being drawn as long as this lives.
+    /// Returns a guard for drawing the window. Measurements made while it exists are invalid.
     pub(crate) fn touch(&self) -> Touch {
         self.watch.touch()
     }
 
-    /// Says that something was drawn on another thread.
+    /// Returns the watch. Other threads report to it when they have drawn.
     pub(crate) fn watch(&self) -> Watch {
         self.watch.clone()
     }
 
-    /// Waits until the window may be drawn again, so that it does not disturb a measurement.
+    /// Waits until the window may be drawn again without disturbing a measurement.
     pub(crate) fn rest(&mut self) {
         if self.is_measuring()
             && let Some(rest) = self.drawn_at.and_then(|at| REST.checked_sub(at.elapsed()))
@@ -84,11 +84,11 @@ impl Work {
     }
 }
 
-/// The command that repeats the measurement on the command line.
+/// Returns the command that repeats the measurement on the command line.
 fn command(state: &State, size: Size, thoroughness: &Thoroughness) -> String {
     let file = match (&state.path, state.history.is_saved()) {
         (Some(path), true) => format!(" '{}'", path.display()),
-        // The first scene, as it was, needs no file.
+        // The first scene, if unchanged, needs no file.
         (None, true) => String::new(),
         _ => " SCENE.marraztu".to_owned(),
     };
@@ -161,13 +161,15 @@ impl App {
         let Some(size) = self.viewport.size().filter(|_| !self.lab.is_measuring()) else { return };
         let State { scene, view, settings, .. } = &self.state;
         let shot = Shot::new(scene, view, settings, size);
+        // The scene is kept to detect later that the results are out of date.
         let measured = Some((scene.clone(), view.clone(), size));
         let only = (axes.len() == 1).then(|| axes[0].key);
         let question = Question { current: *settings, axes, thoroughness };
-        // A cancelled sweep may still report findings: it has a cell of its own.
+        // A cancelled sweep may still report findings, so each sweep has a separate cell.
         self.lab.so_far = Arc::default();
         let (watch, so_far) = (self.lab.watch(), Arc::clone(&self.lab.so_far));
         let mut studio = Studio::new(shot);
+        // Intermediate findings are shown while the sweep continues.
         let work = move |progress: &io::Progress| {
             let watch = watch.with(progress);
             let mut tell = |findings: &Findings| {
@@ -214,7 +216,7 @@ impl App {
         }
     }
 
-    /// Takes the reports of the suite.
+    /// Shows the reports of the suite.
     fn hear_suite(&mut self, ctx: &Context) {
         let Some(task) = &self.lab.suite else { return };
         self.state.lab.running = Some(task.progress.fraction());
@@ -239,7 +241,7 @@ impl App {
         self.state.lab.running = None;
     }
 
-    /// Cancels everything that is measured for a scene that is gone.
+    /// Cancels all measurements of a scene that is gone.
     pub(crate) fn end_measuring(&mut self) {
         if let Some(task) = self.lab.sweep.take() {
             task.progress.cancel();
@@ -257,6 +259,7 @@ impl App {
         let State { scene, view, settings, .. } = &self.state;
         let (mut studio, settings) =
             (Studio::new(Shot::new(scene, view, settings, size)), *settings);
+        // The renderer draws the picture again to name the item at the pixel.
         let work = move |_: &io::Progress| {
             let blame = attribute(&mut studio, &settings, at)?;
             studio.draw(&settings);
@@ -270,7 +273,7 @@ impl App {
         }
     }
 
-    /// Takes the results of background work.
+    /// Handles the results of background work.
     pub(crate) fn hear_laboratory(&mut self, ctx: &Context) {
         self.hear_blame();
         self.hear_suite(ctx);
@@ -337,7 +340,8 @@ impl App {
         }
     }
 
-    /// Opens the scene of a lesson, with the most telling settings. The user's scene waits.
+    /// Opens the scene of a lesson with the settings that show its effect best, and sets the user's
+    /// scene aside.
     pub(crate) fn show_lesson(&mut self, key: &str) {
         let Some(axis) = Axis::named(key) else { return };
         match io::lesson_scene(axis.lesson.scene) {
@@ -351,6 +355,7 @@ impl App {
                 state.lab.away = true;
                 state.lab.costs.clone_from(&self.state.lab.costs);
                 state.tell(Some(format!("Lesson: {}", axis.lesson.title)));
+                // A lesson opened from a lesson keeps the user's scene, not the lesson's.
                 let own = self.swap(state);
                 if !own.lab.away {
                     self.waiting_scene = Some(Box::new(own));
@@ -360,7 +365,7 @@ impl App {
         }
     }
 
-    /// Goes back from the scene of a lesson to that of the user, with all that belongs to it.
+    /// Returns from the scene of a lesson to the user's scene, with its complete state.
     pub(crate) fn back_to_scene(&mut self) {
         let Some(mut own) = self.waiting_scene.take() else { return };
         (own.lab.lesson, own.lab.side) = (self.state.lab.lesson, self.state.lab.side);
@@ -370,7 +375,7 @@ impl App {
     }
 }
 
-/// How the scene of a lesson is compared: an error of one step is seen only if it is amplified.
+/// Returns the comparison for a lesson: an error of one step is visible only if amplified.
 fn compare_of(axis: &Axis) -> Compare {
     match axis.key {
         "rounding" => Compare::Error(256),

@@ -1,5 +1,5 @@
-//! Makes files that take time: pictures with options, turntables, exports. Each is made on a thread
-//! of its own from a snapshot of the scene, with a bar and a way to cancel it.
+//! Makes files that take time: pictures with options, turntables, exports. A background thread
+//! makes each file from a snapshot of the scene, with a progress bar and a way to cancel it.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,31 +19,31 @@ use marraztu_core::scene::View;
 use marraztu_io::{self as io, Animation, AnimationWriter, Progress, Sources};
 use marraztu_render::{Renderer, plan_frame, without_ground};
 
-/// What came of making a file.
+/// The outcome of making a file.
 #[derive(Debug)]
 pub(crate) enum Made {
-    /// It is there; with what is to be said about it.
+    /// The file was written; with notes about it.
     Done(PathBuf, Vec<String>),
     Cancelled,
-    /// Why not, in a sentence.
+    /// The reason, as a sentence.
     Failed(String),
 }
 
-/// Files that are being made.
+/// Files being made.
 #[derive(Debug, Default)]
 pub(crate) struct Making {
     pub(crate) tasks: Vec<Task<Made>>,
-    /// The options of the picture whose file is being asked for.
+    /// The options of the picture, while the file is being chosen.
     choices: Option<PictureChoices>,
-    /// A picture of the window that was asked for.
+    /// A requested picture of the window.
     screenshot: Option<Screenshot>,
 }
 
-/// A picture of the window, and the file that it goes to.
+/// A picture of the window, and the file to save it to.
 #[derive(Debug)]
 struct Screenshot {
     path: PathBuf,
-    /// Whether the window was asked: only once no dialog lies over the picture.
+    /// Whether the picture was requested: not before all dialogs over the picture are closed.
     asked: bool,
     image: Arc<Mutex<Option<Arc<ColorImage>>>>,
 }
@@ -57,7 +57,7 @@ impl App {
         self.make_picture(ctx, path);
     }
 
-    /// Begins to make a picture with these options; asks for the file if there is none.
+    /// Begins to make a picture with these options. Without a path, asks for the file.
     pub(crate) fn take_picture(
         &mut self,
         ctx: &Context,
@@ -74,7 +74,7 @@ impl App {
         }
     }
 
-    /// Begins to make the picture or the turntable whose options were chosen.
+    /// Begins to make the picture or the turntable with the chosen options.
     pub(crate) fn make_picture(&mut self, ctx: &Context, path: PathBuf) {
         let Some(choices) = self.making.choices.take() else { return };
         let sources = self.state.sources();
@@ -85,6 +85,7 @@ impl App {
         if let Err(error) = may_save {
             return self.dialogs.tell_fault(format!("{error}."));
         }
+        // Overlays exist only in the window, so a picture of the window is saved.
         if choices.overlays {
             let image = Arc::default();
             self.making.screenshot = Some(Screenshot { path, asked: false, image });
@@ -125,7 +126,7 @@ impl App {
         }
     }
 
-    /// Takes files that are made.
+    /// Reports finished files.
     pub(crate) fn hear_making(&mut self, ctx: &Context) {
         self.hear_screenshot(ctx);
         let mut made = Vec::new();
@@ -156,7 +157,7 @@ impl App {
         }
     }
 
-    /// Asks for a picture of the window, and saves it once it is there.
+    /// Requests a picture of the window, and saves it when it arrives.
     fn hear_screenshot(&mut self, ctx: &Context) {
         let Some(screenshot) = &mut self.making.screenshot else { return };
         if !screenshot.asked {
@@ -196,7 +197,7 @@ impl App {
     }
 }
 
-/// The part of a picture of the window that shows the viewport.
+/// Cuts the viewport out of a picture of the window.
 fn part_of(shown: &ColorImage, rect: Rect, scale: f32) -> Option<ColorImage> {
     let inside = Rect::from_min_size(egui::Pos2::ZERO, shown.source_size);
     let whole = [shown.size[0], shown.size[1]].iter().all(|side| *side > 0);
@@ -226,7 +227,7 @@ fn picture(path: &Path, shot: &Shot, transparent: bool, progress: &Progress) -> 
     }
 }
 
-/// Draws a turn into a file.
+/// Draws a turntable into a file.
 fn turntable(
     path: &Path,
     shot: &Shot,
@@ -241,7 +242,7 @@ fn turntable(
     }
 }
 
-/// As [`turntable`]; returns the notes about the file, or `None` if it was cancelled.
+/// Does the work of [`turntable`]. Returns the notes about the file, or `None` if it was cancelled.
 fn turn_into(
     path: &Path,
     shot: &Shot,
@@ -255,6 +256,7 @@ fn turn_into(
     let mut writer = AnimationWriter::begin(path, animation, sources).map_err(|it| fail(&it))?;
     let notes = writer.notes().to_vec();
     let mut renderer = Renderer::default();
+    // Frames are written one by one, so memory holds a single picture.
     for i in 0..frames {
         let part = f64::from(i) / f64::from(frames);
         let scene = turned(&shot.scene, &shot.view, turn, part).map_err(|it| fail(&it))?;

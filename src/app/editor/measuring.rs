@@ -1,4 +1,4 @@
-//! Measures the cost of effects on a thread of its own, so that the window stays responsive.
+//! Measures the cost of effects on a background thread, so the window stays responsive.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use marraztu_lab::cost::{self, Costs};
 /// The approximate time of a measurement.
 const BUDGET: Duration = Duration::from_secs(3);
 
-/// A measurement of effects, and its picture.
+/// A measurement of effects in progress, and its picture.
 #[derive(Debug)]
 pub(crate) struct Measuring {
     task: Task<Costs>,
@@ -52,7 +52,7 @@ impl App {
         }
     }
 
-    /// Takes the finished measurement.
+    /// Shows the finished measurement.
     pub(crate) fn hear_measuring(&mut self) {
         let Some(Measuring { task, .. }) = &self.measuring else { return };
         let cancelled = task.progress.is_cancelled();

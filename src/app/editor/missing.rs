@@ -1,8 +1,8 @@
 //! Finds the missing files of a scene.
 //!
-//! The scene is open already, with a placeholder for each. Once the user has found one, it takes
-//! the place of its placeholder in one step, and others that are found in the same folder are
-//! offered.
+//! The scene is already open, with a placeholder for each missing file. When the user has found
+//! one, it replaces its placeholder in one step of undo. Other missing files in the same folder are
+//! then offered.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,8 @@ impl App {
         }
     }
 
-    /// Asks where a missing file is. If none is named and several are missing, lists them first.
+    /// Asks for the location of a missing file. If none is named and several are missing, lists
+    /// them first.
     pub(crate) fn find_missing(&mut self, ctx: &Context, file: Option<PathBuf>) {
         let missing = self.state.scene.missing_files();
         let only = missing.first().filter(|_| missing.len() == 1);
@@ -64,6 +65,7 @@ impl App {
             [[_, new]] => format!("Loading {}", file_name(new)),
             all => format!("Loading {} files", all.len()),
         };
+        // The thread gets only the placeholders to replace, not the scene.
         let work: Vec<_> = pairs
             .into_iter()
             .map(|[old, new]| {
@@ -87,7 +89,7 @@ impl App {
         });
     }
 
-    /// Puts files that were found into the place of their placeholders, in one step.
+    /// Replaces placeholders by the files found, in one step of undo.
     pub(crate) fn take_found(&mut self, all: Vec<Found>) {
         let mut content = Content::default();
         let (mut pairs, mut details) = (Vec::new(), Vec::new());
@@ -114,6 +116,7 @@ impl App {
                 pairs.push([old, new]);
             }
         }
+        // All replacements are one step of undo.
         let commands = content.commands(&self.state.scene);
         let label = match &pairs[..] {
             [[_, new]] => format!("Find {}", file_name(new)),
@@ -127,22 +130,23 @@ impl App {
             let text = format!("{label}: {} findings", details.len());
             self.state.notices.push(Notice { text, details, offer: None });
         }
+        // Files that are still missing may lie near the found ones.
         let nearby = nearby(&self.state.scene.missing_files(), &pairs);
         self.state.missing = MissingFiles { dismissed: false, nearby };
     }
 }
 
-/// What takes the place of placeholders.
+/// The replacements of placeholders.
 #[derive(Default)]
 struct Content {
-    /// The models before and after.
+    /// The placeholders, and the models that replace them.
     models: Vec<(Shared<Model>, Shared<Model>)>,
-    /// The paths that the textures had, and the textures.
+    /// The paths of missing textures, and the textures found.
     textures: Vec<(PathBuf, Shared<Texture>)>,
 }
 
 impl Content {
-    /// The commands that replace the placeholders of a scene.
+    /// Creates the commands that replace the placeholders of a scene.
     fn commands(&self, scene: &Scene) -> Vec<Command> {
         let objects = scene.objects.iter().filter_map(|(id, object)| {
             let object = self.object(object)?;
@@ -156,7 +160,7 @@ impl Content {
         objects.chain(cameras).collect()
     }
 
-    /// An object with what was found; `None` if nothing of it was.
+    /// Returns an object with the files found; `None` if the object needs none of these files.
     fn object(&self, object: &Object) -> Option<Object> {
         let model = self.model(&object.model);
         let texture = object.texture.as_ref().and_then(|texture| self.texture(texture));
@@ -165,6 +169,7 @@ impl Content {
         }
         let mut object = object.clone();
         if let Some(model) = model {
+            // The found model may have fewer parts than the placeholder's object has hidden.
             let parts = u32::try_from(model.mesh.parts().len()).unwrap_or(u32::MAX);
             object.hidden_parts.retain(|part| *part < parts);
             object.model = model;
@@ -178,7 +183,7 @@ impl Content {
         found.map(|(_, model)| model.clone())
     }
 
-    /// The texture in the place of a placeholder, laid over the surface as that was.
+    /// Returns the replacement of a placeholder texture, with its mapping.
     fn texture(&self, before: &Texture) -> Option<Shared<Texture>> {
         let is_it = |(old, _): &&(PathBuf, _)| before.is_placeholder() && before.source == *old;
         let (_, found) = self.textures.iter().find(is_it)?;
@@ -187,7 +192,7 @@ impl Content {
     }
 }
 
-/// The placeholders of a model's file, each once.
+/// Lists the placeholder models of a file, each once.
 fn models_of(scene: &Scene, file: &Path) -> Vec<Shared<Model>> {
     let of_objects = scene.objects.iter().map(|(_, object)| &object.model);
     let of_cameras = scene.cameras.iter().map(|(_, camera)| &camera.model);
@@ -201,14 +206,14 @@ fn models_of(scene: &Scene, file: &Path) -> Vec<Shared<Model>> {
     models
 }
 
-/// Whether an object has a placeholder of this texture.
+/// Returns whether an object has a placeholder of this texture.
 fn textures_of(scene: &Scene, file: &Path) -> bool {
     let mut textures = scene.objects.iter().filter_map(|(_, object)| object.texture.as_ref());
     textures.any(|texture| texture.is_placeholder() && texture.source == file)
 }
 
-/// The old and the new paths of missing files that are in the folder of a found one, or at the same
-/// place in a folder that was moved as a whole.
+/// Pairs the old paths of missing files with new ones: in the folder of a found file, or at the
+/// same relative path in a folder that was moved as a whole.
 fn nearby(missing: &BTreeSet<&Path>, found: &[[PathBuf; 2]]) -> Vec<[PathBuf; 2]> {
     let place = |file: &Path| {
         found.iter().find_map(|[old, new]| {
@@ -219,8 +224,8 @@ fn nearby(missing: &BTreeSet<&Path>, found: &[[PathBuf; 2]]) -> Vec<[PathBuf; 2]
     missing.iter().filter_map(|file| Some([file.to_path_buf(), place(file)?])).collect()
 }
 
-/// The new path of a file if the folder that holds it and `old` was moved, so that `old` is `new`
-/// now.
+/// Returns the new path of a file, assuming that a common parent folder of it and `old` was moved,
+/// which made `old` into `new`.
 fn moved(file: &Path, old: &Path, new: &Path) -> Option<PathBuf> {
     let (mut from, mut to) = (old, new);
     while from.file_name().is_some() && from.file_name() == to.file_name() {

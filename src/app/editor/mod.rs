@@ -1,7 +1,7 @@
 //! The editor: shows everything, and answers all requests at the end of the frame.
 //!
-//! [`App::perform`] alone turns an action into a command or another view; [`App::change`] and
-//! [`App::navigate`] alone write the scene.
+//! Only [`App::perform`] turns an action into a command or another view. Only [`App::change`] and
+//! [`App::navigate`] write the scene.
 
 mod clipboard;
 mod comparing;
@@ -64,32 +64,32 @@ pub struct App {
     pub(crate) dialogs: Dialogs,
     pub(crate) loading: Vec<Loading>,
     pub(crate) searches: Vec<Search>,
-    /// Files that are being made.
+    /// Files being made.
     pub(crate) making: Making,
-    /// Files that wait to be read.
+    /// Files waiting to be read.
     pub(crate) queued: VecDeque<Queued>,
     pub(crate) viewport: Viewport,
-    /// The user's scene, while that of a lesson is shown.
+    /// The user's scene, while the scene of a lesson is shown.
     pub(crate) waiting_scene: Option<Box<State>>,
     pub(crate) lab: Work,
     pub(crate) comparison: Comparison,
     worker: Option<Worker<Purpose>>,
     /// The running measurement of effects.
     pub(crate) measuring: Option<Measuring>,
-    /// The pixel that is being explained.
+    /// The pixel being explained.
     pub(crate) explaining: Option<Explaining>,
     /// Whether the window is closing.
     leaving: bool,
     /// Whether the picture is changing.
     motion: Motion,
-    /// The time of the last frame in which the scene was animated.
+    /// The time of the last frame with an animated scene.
     moved_at: Option<f64>,
     /// The times of the pictures of the last second.
     shown_at: VecDeque<f64>,
     title: String,
-    /// The steps of the first scene, once models have taken its place.
+    /// The step sizes of the first scene, after models have replaced it.
     first_steps: Option<Steps>,
-    /// The program's own files, if it keeps any.
+    /// The program's files, if it keeps any.
     keeping: Option<Keeping>,
     /// The files that are read again when they change.
     watch: Option<Watch>,
@@ -98,7 +98,7 @@ pub struct App {
 }
 
 impl App {
-    /// An editor of this scene.
+    /// Creates an editor of this scene.
     #[must_use]
     pub fn new(scene: Scene, view: View) -> Self {
         Self {
@@ -127,13 +127,13 @@ impl App {
         }
     }
 
-    /// The scene being edited, and everything shown about it.
+    /// Returns the scene being edited, and everything shown about it.
     #[must_use]
     pub const fn state(&self) -> &State {
         &self.state
     }
 
-    /// Uses the system's file dialogs, if it has any.
+    /// Uses the system's file dialogs, if there are any.
     pub(crate) const fn use_system_dialogs(&mut self) {
         self.dialogs.native = true;
     }
@@ -143,12 +143,12 @@ impl App {
         self.state.settings = preset.of(&self.state.settings);
     }
 
-    /// Shows the strip of the first minute, until the first change.
+    /// Shows the greeting until the first change.
     pub const fn greet(&mut self) {
         self.state.greeting = true;
     }
 
-    /// Puts the strip of the first minute away if anything has begun.
+    /// Hides the greeting after the first action.
     fn end_greeting(&mut self) {
         let State { history, path, lab, panels, .. } = &self.state;
         let has_begun =
@@ -167,6 +167,7 @@ impl App {
         self.state.zoom = ctx.zoom_factor();
         self.state.asking = self.dialogs.system_title();
         self.state.narrow = ui.available_width() < NARROW;
+        // Panels and the viewport read the state and collect requests; they change nothing.
         let arrangement = arrange::show(ui, &self.state, &mut requests);
         let place = arrangement.picture();
         if let Some(worker) = &self.worker {
@@ -180,10 +181,11 @@ impl App {
         arrangement.over_picture_ui(ui, &self.state, &mut requests);
         notices::show((&ctx, place), &self.state, &self.loading, &self.making.tasks, &mut requests);
         pixel::show(&ctx, &self.state, place, &mut requests);
+        // The dialogs come last, over everything else.
         let answer = self.dialogs.ui(&ctx);
         let pressed = Action::pressed(&ctx);
 
-        // Last, so that everything that is shown in a frame shows the same scene.
+        // Requests are answered last, so everything in a frame shows the same scene.
         if !requests.is_empty() || !pressed.is_empty() || answer.is_some() {
             ctx.request_repaint();
         }
@@ -207,6 +209,7 @@ impl App {
         if let Some(answer) = answer {
             self.take_answer(&ctx, answer);
         }
+        // Then the results of background work arrive, and new work begins.
         self.end_greeting();
         self.hear_loading(&ctx);
         self.hear_making(&ctx);
@@ -239,12 +242,12 @@ impl App {
         }
     }
 
-    /// Prepares a frame: the results of the worker, the clock, the screen.
+    /// Prepares a frame: takes the worker's results, advances the clock, reads the screen.
     fn begin(&mut self, ctx: &Context, requests: &mut Vec<Request>) {
         if self.worker.is_none() {
             Keyboard::install(ctx);
             tooltips::install(ctx);
-            // Quitting is an action like the others.
+            // Quitting and zooming are actions of the table, so egui's shortcuts are disabled.
             ctx.options_mut(|options| {
                 options.quit_shortcuts.clear();
                 options.zoom_with_keyboard = false;
@@ -252,7 +255,7 @@ impl App {
             let waker = ctx.clone();
             let watch = self.lab.watch();
             let wake = move || {
-                // A picture was drawn: discard what was timed meanwhile.
+                // A picture was drawn, so measurements made meanwhile are discarded.
                 drop(watch.touch());
                 waker.request_repaint();
             };
@@ -263,6 +266,7 @@ impl App {
         }
         if let Some(worker) = &self.worker {
             let news = worker.news();
+            // The rate counts the pictures of the last second.
             if let Some(drawn) = &news.drawn {
                 let now = ctx.input(|input| input.time);
                 self.shown_at.push_back(now);
@@ -285,11 +289,11 @@ impl App {
             }
         }
         self.tick(ctx);
-        // On a high-density screen a line of one pixel is hardly visible.
+        // On a high-density screen, a line of one pixel is hardly visible.
         self.state.view.wide_lines = ctx.pixels_per_point() >= 1.5;
     }
 
-    /// Advances the clock of an animated scene. The next picture wakes the window again, so that it
+    /// Advances the clock of an animated scene. Each new picture wakes the window, so the clock
     /// runs no faster than pictures are drawn.
     fn tick(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
@@ -322,6 +326,7 @@ impl App {
             explain,
             outlined,
         };
+        // Input interrupts the refinement, even if the picture does not change.
         let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
         if held || ctx.input(|input| !input.events.is_empty()) {
             worker.stir();
@@ -335,6 +340,7 @@ impl App {
         if let Some(rest) = self.motion.rest(now) {
             ctx.request_repaint_after(Duration::from_secs_f64(rest));
         }
+        // If drawing takes long, a repaint shows that in the status line.
         worker.draw(wanted);
         if worker.is_drawing() {
             let rest = LATE.saturating_sub(worker.drawing_for().unwrap_or_default());
@@ -353,8 +359,8 @@ impl App {
         }
     }
 
-    /// Does `after`; asks first if there are unsaved changes. From the scene of a lesson, the
-    /// user's own comes back first.
+    /// Continues with `after`, or asks first if there are unsaved changes. The user's scene
+    /// replaces the scene of a lesson first.
     pub(crate) fn unless_unsaved(&mut self, ctx: &Context, after: After) {
         self.back_to_scene();
         if self.state.history.is_saved() {
@@ -364,7 +370,7 @@ impl App {
         }
     }
 
-    /// Whether the user's scene is saved, even if that of a lesson is shown.
+    /// Returns whether the user's scene is saved, even while the scene of a lesson is shown.
     fn is_all_saved(&self) -> bool {
         let own = self.waiting_scene.as_deref().unwrap_or(&self.state);
         own.history.is_saved()
@@ -392,7 +398,7 @@ impl App {
 impl Editor for App {
     fn frame(&mut self, ui: &mut egui::Ui, parent: &dyn Parent) {
         self.lab.rest();
-        // A panic costs one frame, not the user's work, unless it comes in every frame.
+        // A panic costs one frame, not the user's work, unless every frame panics.
         match catch_unwind(AssertUnwindSafe(|| self.editor_ui(ui))) {
             Ok(()) => {
                 self.faults = 0;
@@ -409,7 +415,7 @@ impl Editor for App {
 
     fn left(&mut self) {
         self.end_keeping();
-        // Waits for the thread, so that it does not work while the program ends.
+        // Dropping the worker waits for its thread, which must not run while the program ends.
         self.worker = None;
     }
 }
@@ -417,7 +423,7 @@ impl Editor for App {
 /// The number of consecutive failed frames after which the program gives up.
 const MOST_FAULTS: u32 = 10;
 
-/// The time after which the status line says that a picture is being drawn.
+/// The time after which the status line reports that a picture is being drawn.
 const LATE: Duration = Duration::from_millis(300);
 
 const FAULT: &str = "This is a bug in the program. Your last action may not have been done; \

@@ -1,4 +1,4 @@
-//! Takes preferences from the file at the start, and from the panel.
+//! Applies preferences, from the file at the start or from the panel.
 
 use egui::{Context, ThemePreference, ViewportCommand};
 
@@ -12,10 +12,10 @@ use crate::app::state::layout::Layout;
 use marraztu_io::{Preferences, Theme};
 
 impl App {
-    /// Takes preferences that the user has changed.
+    /// Applies preferences that the user has changed.
     pub(crate) fn take_preferences(&mut self, ctx: &Context, preferences: &Preferences) {
         let before = now(ctx, &self.state, None);
-        // The first size is asked for; any other one is the window's already.
+        // The default size has to be requested; any other size is the window's current one.
         if before.window.is_some() && preferences.window.is_none() {
             ctx.send_viewport_cmd(ViewportCommand::Maximized(false));
             ctx.send_viewport_cmd(ViewportCommand::InnerSize(Preferences::WINDOW.into()));
@@ -27,7 +27,7 @@ impl App {
         }
     }
 
-    /// Uses these preferences. Returns what of the chosen keys is not as it was, in sentences.
+    /// Applies preferences. Returns sentences about chosen keys that have changed.
     pub(super) fn use_preferences(&mut self, ctx: &Context, it: &Preferences) -> Vec<String> {
         let theme = match it.theme {
             Theme::System => ThemePreference::System,

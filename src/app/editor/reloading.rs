@@ -1,8 +1,8 @@
 //! Reads models again, on request or when their files have changed.
 //!
-//! A thread looks at the files twice a second while the user wants it, and wakes the window if one
-//! has changed: nothing else does anything for it. A file is read once it stays as it is from one
-//! look to the next, since other programs write in pieces.
+//! If the user enables it, a thread checks the files twice a second and wakes the window if one has
+//! changed. A file is read after it has stayed the same from one check to the next, since other
+//! programs write files in pieces.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -20,13 +20,14 @@ use marraztu_core::edit::Gesture;
 use marraztu_core::scene::{Command, Item, Model, Object, Scene};
 use marraztu_io::{self as io, LoadError, is_example};
 
-/// Between two looks at the files.
+/// The time between two checks of the files.
 const PAUSE: Duration = Duration::from_millis(500);
 
 impl App {
     /// Reads the models of the scene again: all of them, or those of these files.
     pub(crate) fn reload_models(&mut self, ctx: &Context, only: Option<&BTreeSet<PathBuf>>) {
         let mut wanted: Vec<(PathBuf, Shared<Model>)> = Vec::new();
+        // Objects that share a model have it read once.
         for (_, object) in self.state.scene.objects.iter() {
             let Some(path) = file_of(&object.model) else { continue };
             let is_known = wanted.iter().any(|(_, model)| Shared::same(model, &object.model));
@@ -53,7 +54,7 @@ impl App {
         });
     }
 
-    /// Puts the models that were read again into the place of the old ones, in one step.
+    /// Replaces models by those read again, in one step of undo.
     pub(crate) fn take_again(&mut self, all: Vec<Reread>) {
         let (mut models, mut names) = (Vec::new(), Vec::new());
         for Reread { before, result } in all {
@@ -81,7 +82,7 @@ impl App {
         self.state.tell(Some(label));
     }
 
-    /// Begins or ends to look at the files, and reads those again that have changed.
+    /// Starts or stops watching files, and reads changed files again.
     pub(crate) fn watch_files(&mut self, ctx: &Context) {
         if !self.state.watches {
             self.watch = None;
@@ -96,7 +97,7 @@ impl App {
     }
 }
 
-/// The commands that give objects other models.
+/// Creates the commands that replace the models of objects.
 fn replaced(scene: &Scene, models: &[(Shared<Model>, Shared<Model>)]) -> Vec<Command> {
     let again = |object: &Object| {
         let (_, model) = models.iter().find(|(old, _)| Shared::same(old, &object.model))?;
@@ -110,22 +111,22 @@ fn replaced(scene: &Scene, models: &[(Shared<Model>, Shared<Model>)]) -> Vec<Com
     changed.map(|(id, object)| Command::Replace(Item::Object(id, Box::new(object)))).collect()
 }
 
-/// The file of a model; `None` for the program's own.
+/// Returns the file of a model; `None` for the program's models.
 fn file_of(model: &Model) -> Option<&PathBuf> {
     model.source.as_ref().filter(|path| !is_example(path))
 }
 
-/// Files that are looked at.
+/// Watched files.
 #[derive(Debug)]
 pub(crate) struct Watch {
     files: Arc<Mutex<Files>>,
-    /// The scene whose files they are.
+    /// The scene that the files belong to.
     of: Option<Scene>,
 }
 
 #[derive(Debug, Default)]
 struct Files {
-    /// When each was written, and how long it is: as it was read, and at the last look.
+    /// The time and the length of each file: as last read, and at the last check.
     seen: BTreeMap<PathBuf, [Option<Stamp>; 2]>,
     changed: BTreeSet<PathBuf>,
 }
@@ -142,12 +143,12 @@ impl Watch {
         let files = Arc::new(Mutex::new(Files::default()));
         let (theirs, ctx) = (Arc::downgrade(&files), ctx.clone());
         let thread = std::thread::Builder::new().name("files".to_owned());
-        // Without a thread nothing is read by itself; it can still be asked for.
+        // Without a thread, files are read again only on request.
         let _ = thread.spawn(move || look(&theirs, &ctx));
         Self { files, of: None }
     }
 
-    /// Looks at the files of this scene from now on.
+    /// Watches the files of this scene.
     fn look_at(&mut self, scene: &Scene) {
         if self.of.as_ref() == Some(scene) {
             return;
@@ -155,6 +156,7 @@ impl Watch {
         let paths: BTreeSet<&PathBuf> =
             scene.objects.iter().filter_map(|(_, object)| file_of(&object.model)).collect();
         let mut files = lock(&self.files);
+        // Known files keep their stamps, so a change between two scenes is not missed.
         files.seen.retain(|path, _| paths.contains(path));
         for path in paths {
             files.seen.entry(path.clone()).or_insert_with(|| [stamp(path); 2]);
@@ -183,7 +185,7 @@ fn look(files: &Weak<Mutex<Files>>, ctx: &Context) {
 }
 
 impl Files {
-    /// Looks at all files. Says whether one has changed and rests since.
+    /// Checks all files. Returns whether one has changed and then stayed the same.
     fn look(&mut self) -> bool {
         let before = self.changed.len();
         for (path, [read, last]) in &mut self.seen {

@@ -1,7 +1,7 @@
 //! Answers the requests of keys, panels, menus and the viewport.
 //!
-//! [`App::perform`] alone turns an action into a command or another view; [`App::change`] and
-//! [`App::navigate`] alone write the scene.
+//! Only [`App::perform`] turns an action into a command or another view. Only [`App::change`] and
+//! [`App::navigate`] write the scene.
 
 use std::path::{Path, PathBuf};
 
@@ -24,7 +24,7 @@ use marraztu_core::scene::{Command, ItemId, Subject, View};
 use marraztu_io::is_example;
 
 impl App {
-    /// Closes a panel; says whether it was open.
+    /// Closes a panel. Returns whether it was open.
     pub(super) fn closes(&mut self, panel: Panel) -> bool {
         let panels = self.state.panels;
         self.state.panels = panels.with(panel, false);
@@ -34,13 +34,13 @@ impl App {
     /// Performs the action of a key. Esc first closes whatever is open.
     pub(crate) fn press(&mut self, ctx: &Context, press: Press) {
         if press.chord == Chord::Named(Key::Escape) && self.ends_something(ctx) {
-            // The next Esc does not leave the program at once.
+            // If the next key is also Esc, it does not quit the program yet.
             return Keyboard::note_escape(ctx);
         }
         self.perform(ctx, press.action, press.gesture);
     }
 
-    /// Ends what Esc ends before it leaves the program. Says whether there was anything.
+    /// Ends the innermost mode that Esc ends before it quits. Returns whether there was one.
     fn ends_something(&mut self, ctx: &Context) -> bool {
         let mut requests = Vec::new();
         if self.viewport.cancel_drag(&mut requests) {
@@ -74,6 +74,7 @@ impl App {
     pub fn answer(&mut self, ctx: &Context, request: Request) {
         let state = &mut self.state;
         match request {
+            // Changes of the scene and of the view.
             Request::Do(action) => self.perform(ctx, action, Gesture::Whole),
             Request::Change { command, gesture, label } => self.change(command, gesture, &label),
             Request::Navigate { command, gesture } => self.navigate(command, gesture),
@@ -81,6 +82,7 @@ impl App {
             Request::Settings(settings) => state.settings = settings,
             Request::Drawing(choices) => state.drawing = choices,
             Request::Lab(request) => self.answer_lab(ctx, request),
+            // The selection.
             Request::Select(id) => match selection::pick(&state.scene, &state.view, id) {
                 Ok(selection) => self.select(selection, Gesture::Whole),
                 Err(refusal) => self.refuse(refusal.to_string()),
@@ -100,14 +102,17 @@ impl App {
                 }
             }
             Request::Filter(filter) => state.filter = filter,
+            // The history.
             Request::GoTo(position) => self.go_to(position),
             Request::Abandon(gesture) => self.abandon(gesture),
             Request::BeginRename(id) => state.renaming = Some(id),
             Request::EndRename(name) => self.end_rename(name),
+            // Files.
             Request::ChooseTexture(id) => self.ask_file(ctx, Wanted::Texture(id), ""),
             Request::LoadFiles(paths) => self.load_files(ctx, paths),
             Request::OpenFiles(paths) => self.open_files(ctx, paths),
             Request::AskModels => self.ask_file(ctx, Wanted::Dropped, ""),
+            // Notices. An earlier request of the frame may have removed some: indices are checked.
             Request::Details(at) => {
                 if let Some(notice) = state.notices.get(at) {
                     self.dialogs.tell_details(notice.text.clone(), notice.details.clone());
@@ -127,6 +132,7 @@ impl App {
             }
             Request::ClearNotices => state.past_notices.clear(),
             Request::TurnUp(id, up) => self.turn_up(ctx, id, up),
+            // Background work.
             Request::CancelLoading(at) => {
                 if let Some(loading) = self.loading.get(at) {
                     loading.task.progress.cancel();
@@ -151,12 +157,15 @@ impl App {
     /// Performs an action. Every key, menu entry and button ends here.
     pub fn perform(&mut self, ctx: &Context, action: Action, gesture: Gesture) {
         let label = action.step_label(&self.state, self.state.next_repeat(gesture));
-        // Framing the object by any key or button dismisses the notice that offers it.
+        // Framing the object, by any key or button, dismisses the notice that offers it.
         if action == Action::FrameSelection {
             let framed = self.state.view.object.map(Offer::Frame);
             self.state.notices.retain(|notice| notice.offer.is_none() || notice.offer != framed);
         }
+        // The action is resolved against the scene as it is now, which also decides its
+        // availability.
         let resolved = resolve(action, &self.state, self.state.phase(gesture));
+        // The lights that are on are remembered, to restore them when the user ends the solo.
         if action == Action::SoloLight && action.is_on(&self.state) == Some(false) {
             self.state.lit_before = lights::lit(&self.state.scene);
         }
@@ -214,7 +223,7 @@ impl App {
         }
     }
 
-    /// Aims the selected light, as a click into the picture asks for.
+    /// Aims the selected light at a point clicked in the picture.
     fn aim_at(&mut self, point: DVec3) {
         let State { scene, view, .. } = &self.state;
         let command = aiming::can_aim(scene, view)
@@ -257,8 +266,7 @@ impl App {
         }
     }
 
-    /// Asks for a file, unless the system's dialog is asking for one already: it may be lost behind
-    /// the window.
+    /// Asks for a file, unless a system dialog is open already: it may be hidden behind the window.
     pub(crate) fn ask_file(&mut self, ctx: &Context, wanted: Wanted, name: &str) {
         self.note_folders(&wanted);
         if let Err(open) = self.dialogs.ask_file(ctx, wanted, name) {
@@ -266,7 +274,7 @@ impl App {
         }
     }
 
-    /// Tells dialogs the folder of the scene or the model that the question is about, and those of
+    /// Sets the folders for dialogs: that of the scene or the model in question, and those of
     /// recent files.
     fn note_folders(&mut self, wanted: &Wanted) {
         let own = match wanted {
@@ -322,7 +330,7 @@ impl App {
         self.show_view(selection.view);
     }
 
-    /// Adds an item, which becomes the subject.
+    /// Adds an item and makes its kind the subject.
     pub(crate) fn add(&mut self, command: Command, subject: Subject, label: &str) {
         self.change_then(command, Gesture::Whole, label, |state| {
             selection::set_subject(&mut state.view, subject);
@@ -334,7 +342,7 @@ impl App {
         self.change_then(command, gesture, label, |_| {});
     }
 
-    /// As [`Self::change`]; then selects something, which redo selects again.
+    /// Changes the scene as [`Self::change`] does, then selects items, which redo selects again.
     pub(crate) fn change_then(
         &mut self,
         command: Command,
@@ -347,6 +355,7 @@ impl App {
         let selected = Selected::of(&state.view, &state.several);
         let repeats = state.next_repeat(gesture);
         match state.history.perform(&mut state.scene, command, gesture, label) {
+            // The selection before and after the step is recorded, so undo and redo restore it.
             Ok(()) => {
                 (state.gesture, state.repeats) = (gesture, repeats);
                 state.message = None;
@@ -359,7 +368,7 @@ impl App {
         }
     }
 
-    /// Moves the view, which is no step of the history.
+    /// Moves the view, which is not a step of the history.
     pub(crate) fn navigate(&mut self, command: Command, gesture: Gesture) {
         let state = &mut self.state;
         let repeats = state.next_repeat(gesture);

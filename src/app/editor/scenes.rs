@@ -1,6 +1,6 @@
 //! Opens and saves scenes.
 //!
-//! A scene opens with placeholders for the files that are missing; they can be found later.
+//! A scene opens with placeholders for missing files, which can be found later.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ use marraztu_io::{
 };
 
 impl App {
-    /// Saves the scene to its file, or asks for a file; then does `after`.
+    /// Saves the scene to its file, or asks for a file; then continues with `after`.
     pub(crate) fn save(&mut self, ctx: &Context, after: Option<After>) {
         match self.state.path.clone() {
             Some(path) => self.save_to(ctx, path, after),
@@ -35,7 +35,7 @@ impl App {
         self.ask_file(ctx, Wanted::SceneTo(after), &name);
     }
 
-    /// Saves the scene to `path`. Asks first if that is its own file, and another program has
+    /// Saves the scene to `path`. Asks first if `path` is the scene's file and another program has
     /// changed it.
     pub(crate) fn save_to(&mut self, ctx: &Context, path: PathBuf, after: Option<After>) {
         let is_own = self.state.path.as_deref().is_some_and(|own| is_same(own, &path));
@@ -49,7 +49,7 @@ impl App {
         self.write_scene(ctx, path, after);
     }
 
-    /// Takes the answer to the question what to do with a file that has changed.
+    /// Handles the user's decision about a file that has changed.
     pub(crate) fn take_changed(
         &mut self,
         ctx: &Context,
@@ -80,7 +80,7 @@ impl App {
         }
     }
 
-    /// Opens a scene instead of this one. Unsaved changes have been asked about.
+    /// Opens a scene in place of this one. The caller has asked about unsaved changes.
     pub(crate) fn open_scene(&mut self, ctx: &Context, path: PathBuf) {
         let label = format!("Opening {}", file_name(&path));
         self.begin_loading(ctx, label, false, move |progress| {
@@ -89,7 +89,7 @@ impl App {
         });
     }
 
-    /// Takes an opened scene.
+    /// Shows an opened scene.
     pub(crate) fn take_scene(&mut self, ctx: &Context, opening: Opening) {
         let Opening { path, result } = opening;
         match result {
@@ -106,7 +106,7 @@ impl App {
         let mut state = State { settings, ..State::new(scene, view) };
         selection::settle(&state.scene, &mut state.view);
         state.tell(Some(format!("Opened {}", file_name(path))));
-        // Missing files have a notice of their own.
+        // Missing files have a separate notice.
         let others: Vec<Finding> =
             findings.into_iter().filter(|finding| !is_missing_file(finding.kind)).collect();
         if !others.is_empty() {
@@ -118,7 +118,7 @@ impl App {
             let details = details(&others);
             state.notices.push(Notice { text, details, offer: None });
         }
-        // An example is saved under a name of its own.
+        // An example has no path, so saving it asks for a name.
         if !io::is_example(path) {
             (state.path, state.content) = (Some(path.to_owned()), Some(content));
         }
@@ -132,7 +132,7 @@ impl App {
     }
 }
 
-/// Whether two paths lead to one file.
+/// Returns whether two paths lead to the same file.
 fn is_same(a: &Path, b: &Path) -> bool {
     a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }

@@ -1,4 +1,4 @@
-//! Selects several items, and takes amounts from the keyboard.
+//! Selects several items, and takes typed amounts.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use marraztu_core::edit::several::Others;
 use marraztu_core::scene::{Command, ItemId, Scene, Subject};
 
 impl App {
-    /// Selects items beside those that are selected, instead of them, or no longer.
+    /// Adds items to the selection, removes them, or selects only them.
     pub(crate) fn select_also(&mut self, items: &[ItemId], how: Also) {
         let state = &self.state;
         let first = state.selected();
@@ -23,7 +23,7 @@ impl App {
         let mut current = first;
         for item in items {
             match all.iter().position(|other| other == item) {
-                // The last one stays selected: there is always an item that the keys act on.
+                // The last item stays selected: the keys always need an item to act on.
                 Some(at) if how == Also::Toggle && all.len() > 1 => {
                     all.remove(at);
                     current = current.filter(|current| current != item).or(all.first().copied());
@@ -31,13 +31,14 @@ impl App {
                 Some(_) => {}
                 None => {
                     all.push(*item);
-                    // A box keeps the item that the keys act on, if it is among them.
+                    // A box keeps the item that the keys act on, if the box contains it.
                     if how != Also::Only {
                         current = Some(*item);
                     }
                 }
             }
         }
+        // The keys act on the item added last, or on the first one that is left.
         let current = current.filter(|current| all.contains(current)).or(all.first().copied());
         let Some(current) = current else { return };
         if state.selected() != Some(current) {
@@ -49,7 +50,7 @@ impl App {
         self.state.several = Others::new(current, all);
     }
 
-    /// Adds items and selects all of them; the first becomes the one that the keys act on.
+    /// Adds items and selects all of them. The keys then act on the first.
     pub(crate) fn add_all(&mut self, command: Command, subject: Subject, label: &str) {
         let ids = |scene: &Scene| -> BTreeSet<ItemId> {
             let objects = scene.objects.ids().map(ItemId::Object);

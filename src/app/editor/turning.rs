@@ -1,5 +1,5 @@
-//! The axis of a model's file that points up: the one that the file states, or else the last
-//! choice. An opened model is turned by reading it again.
+//! The up axis of a model's file: the axis that the file states, or else the user's last choice. An
+//! opened model is turned by reading it again.
 
 use std::path::Path;
 
@@ -14,8 +14,8 @@ use marraztu_core::edit::{Gesture, Refusal, framing, items};
 use marraztu_core::scene::{Command, LoadOptions, ObjectId, UpAxis};
 use marraztu_io::{self as io, LoadError, Loaded, is_example};
 
-/// The axis with which a model is opened, and a sentence if that is not Y: the axis that the file
-/// states, else the one that was chosen last.
+/// Returns the up axis for opening a model, and a sentence if it is not Y. It is the axis that the
+/// file states, or else the last choice.
 pub(super) fn usual_up(path: &Path, last: UpAxis) -> (UpAxis, Option<String>) {
     if is_example(path) {
         return (UpAxis::Y, None);
@@ -46,7 +46,8 @@ impl App {
         });
     }
 
-    /// Takes a turned model, in one step. If it is alone, the camera frames it again.
+    /// Replaces a turned model in one step of undo. If it is the only object, the camera frames it
+    /// again.
     pub(crate) fn take_turned(&mut self, id: ObjectId, read: Result<Box<Loaded>, LoadError>) {
         match read {
             Ok(loaded) => {
@@ -73,6 +74,7 @@ impl App {
             object.model = model;
             object.hidden_parts.retain(|part| *part < parts);
         })?;
+        // Framing belongs to the same step of undo, since turning may move the model out of view.
         let mut commands = vec![command.clone()];
         let mut after = scene.clone();
         command.apply(&mut after)?;

@@ -1,6 +1,6 @@
 //! Reports loaded objects that are not visible, and why.
 //!
-//! The search runs on a thread of its own, with pictures of its own: the window does not wait.
+//! The search runs on a background thread and draws separate pictures, so the window does not wait.
 
 use egui::Context;
 
@@ -17,7 +17,7 @@ use marraztu_render::{Renderer, Unseen, unseen};
 #[derive(Debug)]
 pub(crate) struct Search {
     task: Task<Vec<(ObjectId, Unseen)>>,
-    /// The object that the user asked about: it is said, too, that it is seen.
+    /// The object that the user asked about. If it is visible, that is reported too.
     asked: Option<ObjectId>,
 }
 
@@ -25,15 +25,15 @@ pub(crate) struct Search {
 const SIZE: Size = Size::new(800, 600);
 
 impl App {
-    /// Starts to search for which of these objects are not visible in the current scene. That one
-    /// has no faces is a finding of its file already.
+    /// Starts to search for objects among these that are not visible in the current scene. Objects
+    /// without faces are skipped, since their files already have a finding about it.
     pub(crate) fn look_for_unseen(&mut self, ctx: &Context, mut ids: Vec<ObjectId>) {
         let has_faces = |object: &Object| object.model.mesh.polygon_count() > 0;
         ids.retain(|id| self.state.scene.objects.get(*id).is_some_and(has_faces));
         self.search(ctx, ids, None);
     }
 
-    /// Says why nothing of an object is seen, or that it is.
+    /// Reports why an object is not visible, or that it is.
     pub(crate) fn why_unseen(&mut self, ctx: &Context, id: ObjectId) {
         let Some(object) = self.state.scene.objects.get(id) else { return };
         if object.visible {
@@ -59,7 +59,7 @@ impl App {
             all.retain(|(id, _)| ids.contains(id));
             all
         });
-        // Without a thread there is no notice, and nothing is lost.
+        // Without a thread there is no notice, but nothing is lost.
         self.searches.extend(search.map(|task| Search { task, asked }));
     }
 
@@ -85,7 +85,7 @@ impl App {
     }
 }
 
-/// The notice about an object; `None` if it is gone or was reported before.
+/// Creates the notice about an object; `None` if the object is gone or was reported before.
 fn notice(state: &State, id: ObjectId, why: &Unseen) -> Option<Notice> {
     let object = state.scene.objects.get(id)?;
     let name = &object.name;
@@ -93,7 +93,7 @@ fn notice(state: &State, id: ObjectId, why: &Unseen) -> Option<Notice> {
         Unseen::TurnedAway { .. } => Some(Offer::TwoSides(id)),
         Unseen::Covered { .. } | Unseen::BetweenPixels => Some(Offer::Frame(id)),
         Unseen::Transparent => Some(Offer::Opaque(id)),
-        // The plan leaves out surfaces that lie outside the view.
+        // The plan leaves out surfaces outside of the view.
         Unseen::LeftOut(_) | Unseen::Unexamined => {
             (object.model.mesh.polygon_count() > 0).then_some(Offer::Frame(id))
         }
@@ -108,7 +108,7 @@ fn notice(state: &State, id: ObjectId, why: &Unseen) -> Option<Notice> {
     (!told).then(|| Notice { text, details: Vec::new(), offer })
 }
 
-/// Whether an object would be outside the picture, or too small to notice.
+/// Returns whether an object would be outside of the picture or too small to notice.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 pub(crate) fn out_of_sight(state: &State, object: &Object, size: Size) -> bool {
     let Some((centre, radius)) = object.bounding_sphere(0.0) else { return false };
@@ -125,6 +125,7 @@ pub(crate) fn out_of_sight(state: &State, object: &Object, size: Size) -> bool {
         }
         Projection::Orthographic => (lens.parallel_near, lens.parallel_far, lens.half_size),
     };
+    // The bounding sphere is compared with the sides of the frustum and with four pixels.
     let aside = centre.x.abs() - radius > half * width / shorter
         || centre.y.abs() - radius > half * height / shorter;
     let pixels = radius / half * shorter / 2.0;

@@ -18,19 +18,19 @@ impl App {
         self.walk(selected.as_ref(), |state| state.history.redo(&mut state.scene))
     }
 
-    /// Goes to the point after `position` steps, at most to the end.
+    /// Goes to the state after `position` steps, at most to the end.
     pub(crate) fn go_to(&mut self, position: usize) {
         while self.state.history.position() > position && self.undo().is_some() {}
         while self.state.history.position() < position && self.redo().is_some() {}
     }
 
-    /// Takes a gesture back, without a step to redo.
+    /// Undoes a gesture without leaving a step to redo.
     pub(crate) fn abandon(&mut self, gesture: Gesture) {
         let selected = self.state.history.selected_before().cloned();
         self.walk(selected.as_ref(), |state| state.history.abandon(&mut state.scene, gesture));
     }
 
-    /// Crosses one step, on whose other side this was selected.
+    /// Crosses one step of the history and restores the selection on its other side.
     fn walk<R>(&mut self, selected: Option<&Selected>, step: impl FnOnce(&mut State) -> R) -> R {
         let before = self.state.scene.clone();
         self.state.message = None;
@@ -46,8 +46,9 @@ impl App {
         crossed
     }
 
-    /// Aims a camera in analysis again if a step has moved the object that it orbits: the user has
-    /// looked around since the object was moved, and looking around is no step.
+    /// Aims a camera in analysis again if a step has moved the object that it orbits. The user may
+    /// have looked around since the object was moved, and looking around is not part of the
+    /// history.
     fn aim_again(&mut self, before: &Scene) {
         let State { scene, view, history, .. } = &mut self.state;
         let pose = |scene: &Scene| scene.selected_camera(view).pose.clone();
@@ -60,7 +61,7 @@ impl App {
             && placement(before) != placement(scene)
             && let Some(command) = transform::aimed_again(scene, view)
         {
-            // A camera that is there can be aimed.
+            // Aiming an existing camera cannot fail.
             let _ = history.navigate(scene, command, Gesture::Whole);
         }
     }

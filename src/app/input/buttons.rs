@@ -1,6 +1,6 @@
-//! Actions as buttons, switches and entries of menus.
+//! Actions as buttons, switches and menu entries.
 //!
-//! Each tells by its tooltip what it does, on which key it is, and why it cannot be done now.
+//! Their tooltips say what the action does, which key it has, and why it is not available now.
 
 use egui::{Atom, Context, IdSalt, Response, RichText, Role, Ui, WidgetInfo};
 
@@ -11,18 +11,19 @@ use crate::app::widgets::controls::{Choice, Switch, icon_button};
 use crate::app::widgets::icons::Icon;
 
 impl Action {
-    /// What was pressed on the keyboard in this frame, in order.
+    /// Takes the key presses of this frame, in order.
     #[must_use]
     pub fn pressed(ctx: &Context) -> Vec<Press> {
         Keyboard::take(ctx)
     }
 
-    /// A button for the action. Gives it back when clicked.
+    /// Shows a button for the action. Returns the action if it was clicked.
     pub fn button(self, ui: &mut Ui, state: &State) -> Option<Self> {
         self.add(ui, state, egui::Button::new(self.info().label))
     }
 
-    /// A button that looks pressed while the action's switch is on. Gives it back when clicked.
+    /// Shows a button that looks pressed while the action's switch is on. Returns the action if it
+    /// was clicked.
     pub fn switch(self, ui: &mut Ui, state: &State) -> Option<Self> {
         let on = self.is_on(state).unwrap_or(false);
         self.add(
@@ -32,8 +33,8 @@ impl Action {
         )
     }
 
-    /// An entry of a menu with its key at the right and, while its switch is on, a tick at the
-    /// left. Gives the action back when clicked.
+    /// Shows a menu entry with its key at the right and, while its switch is on, a tick at the
+    /// left. Returns the action if it was clicked.
     pub fn menu_item(self, ui: &mut Ui, state: &State) -> Option<Self> {
         let info = self.info();
         let key = first_key(ui, self).unwrap_or_default();
@@ -58,13 +59,12 @@ impl Action {
         clicked
     }
 
-    /// The tooltip of whatever stands for the action: its hint and its keys, and why it cannot be
-    /// done now.
+    /// Adds a tooltip to a control of the action: its hint, its keys, and why it is not available.
     pub fn explain(self, response: Response, state: &State) -> Response {
         self.explain_also(response, state, "")
     }
 
-    /// As [`Self::explain`], with a further sentence.
+    /// Works as [`Self::explain`], with a further sentence.
     pub(crate) fn explain_also(self, response: Response, state: &State, also: &str) -> Response {
         let tip = |ui: &mut Ui| {
             ui.label(self.info().hint);
@@ -95,12 +95,12 @@ impl Action {
     }
 }
 
-/// The key of an action that is shown.
+/// Returns the name of the first key of an action.
 pub(crate) fn first_key(ui: &Ui, action: Action) -> Option<String> {
     Keyboard::keymap(ui.ctx()).keys(action).first().map(|key| key.name())
 }
 
-/// The switch of an action, with its key and its explanation.
+/// Shows the switch of an action, with its key and its tooltip.
 pub(crate) fn action_switch(
     ui: &mut Ui,
     state: &State,
@@ -119,7 +119,7 @@ pub(crate) fn action_switch(
     }
 }
 
-/// The small button of an action.
+/// Shows the icon button of an action.
 pub(crate) fn action_icon(
     ui: &mut Ui,
     state: &State,
@@ -134,7 +134,7 @@ pub(crate) fn action_icon(
     }
 }
 
-/// The choice that an action makes. While it is on it asks for nothing.
+/// Creates the option that an action chooses. An option that is on is never shown as refused.
 pub(crate) fn action_choice<'a>(
     ui: &Ui,
     of: &str,

@@ -1,9 +1,9 @@
-//! The keyboard: which keys belong to the viewport, and the actions they press.
+//! The keyboard: decides which keys belong to the viewport, and which actions they trigger.
 //!
-//! The keys are read before egui sees them: what the viewport owns (Tab, Enter, Esc, arrows) never
-//! moves the focus or clicks a button, not even in the frame in which the viewport gets the
-//! keyboard. While text is edited, a menu is open, or a panel's control has the keyboard, they stay
-//! egui's.
+//! Keys are read before egui sees them. Keys of the viewport (Tab, Enter, Esc, arrows) therefore
+//! never move the focus or click a button, even if the viewport gets the focus in the same frame.
+//! While text is edited, a menu is open, or a control of a panel has the focus, these keys are left
+//! to egui.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -16,52 +16,52 @@ use crate::app::widgets::gestures;
 use crate::app::widgets::regions::{self, Way};
 use marraztu_core::edit::Gesture;
 
-/// A press of a key that asks for something.
+/// A key press that triggers an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Press {
-    /// What it asks for.
+    /// The action.
     pub action: Action,
     /// The key.
     pub chord: Chord,
-    /// A held key is one gesture, from its press until it is let go.
+    /// The gesture. It lasts from the press of a key to its release.
     pub gesture: Gesture,
 }
 
-/// Reads the keys; one lives in each [`Context`].
+/// Reads the keys of one [`Context`].
 #[derive(Debug, Default)]
 pub(crate) struct Keyboard {
     viewport: Option<Id>,
-    /// What letters and numbers do over the viewport.
+    /// The use of letters and numbers over the viewport.
     letters: Letters,
-    /// What was typed while they are [`Letters::Type`]; Enter is a new line, Backspace itself.
+    /// The text typed in mode [`Letters::Type`], with Enter as a line feed and Backspace as itself.
     typed: String,
     down: BTreeSet<Key>,
-    /// While Alt is down, typed text may belong to a menu or another layer of the layout.
+    /// Whether Alt is down: typed text may then belong to a menu or another layer of the layout.
     alt: bool,
-    /// Whether the last key event was sent by a held key: its text follows it.
+    /// Whether the last key event was a repetition by a held key; its text event follows.
     last_was_repeat: bool,
     presses: u64,
     waiting: Vec<Press>,
-    /// Whether the last thing that was pressed was Esc, and closed or left something.
+    /// Whether the last press was Esc, and closed or left something.
     left_by_escape: bool,
-    /// Whether an Esc was held back since this was last asked.
+    /// Whether an Esc was held back since the last query.
     held_escape: bool,
     keymap: Arc<Keymap>,
-    /// The text that was pasted.
+    /// The pasted text.
     pasted: Option<String>,
-    /// Whether the window was asked for the text of the clipboard.
+    /// Whether the text of the clipboard was requested from the window.
     asks_paste: bool,
-    /// The action that the next key is chosen for, and that key.
+    /// The action that waits for a key, and the key once it was pressed.
     choosing: Option<(Action, Option<Chord>)>,
 }
 
 impl Keyboard {
-    /// Sees to it that `ctx` has one.
+    /// Ensures that `ctx` has a keyboard.
     pub(crate) fn install(ctx: &Context) {
         let _ = ctx.plugin_or_default::<Self>();
     }
 
-    /// Tells it which widget is the viewport, and what letters do there.
+    /// Sets the widget of the viewport and the use of letters there.
     pub(crate) fn set_viewport(ctx: &Context, viewport: Id, letters: Letters) {
         let handle = ctx.plugin_or_default::<Self>();
         let mut keyboard = handle.lock();
@@ -70,59 +70,60 @@ impl Keyboard {
         regions::go_further(ctx, viewport);
     }
 
-    /// What was typed for a handle since this was last asked.
+    /// Takes the text typed for a handle since the last call.
     pub(crate) fn take_typed(ctx: &Context) -> String {
         std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().typed)
     }
 
-    /// The keys of all actions.
+    /// Returns the keys of all actions.
     pub(crate) fn keymap(ctx: &Context) -> Arc<Keymap> {
         Arc::clone(&ctx.plugin_or_default::<Self>().lock().keymap)
     }
 
-    /// Gives actions other keys.
+    /// Changes the keys of actions.
     pub(crate) fn set_keymap(ctx: &Context, keymap: Keymap) {
         ctx.plugin_or_default::<Self>().lock().keymap = Arc::new(keymap);
     }
 
-    /// The action that the next key is chosen for, and that key once it was pressed.
+    /// Returns the action that waits for a key, and the key once it was pressed.
     pub(crate) fn choosing(ctx: &Context) -> Option<(Action, Option<Chord>)> {
         ctx.plugin_or_default::<Self>().lock().choosing
     }
 
-    /// Lets the next key be chosen for an action, or no longer.
+    /// Starts or stops waiting for a key of an action.
     pub(crate) fn choose_for(ctx: &Context, action: Option<Action>) {
         ctx.plugin_or_default::<Self>().lock().choosing = action.map(|action| (action, None));
     }
 
-    /// What was pressed since it was last asked, in order.
+    /// Takes the presses since the last call, in order.
     pub(crate) fn take(ctx: &Context) -> Vec<Press> {
         std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().waiting)
     }
 
-    /// The text that was pasted since this was last asked.
+    /// Takes the text pasted since the last call.
     pub(crate) fn take_pasted(ctx: &Context) -> Option<String> {
         ctx.plugin_or_default::<Self>().lock().pasted.take()
     }
 
-    /// Asks the window for the text of the clipboard; it is pasted when it comes.
+    /// Requests the text of the clipboard from the window; it is pasted when it arrives.
     pub(crate) fn ask_paste(ctx: &Context) {
         ctx.plugin_or_default::<Self>().lock().asks_paste = true;
         ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
     }
 
-    /// Whether an Esc was held back: it came after one that closed or left something. Whoever
-    /// presses it twice there does not mean to leave the program.
+    /// Returns whether an Esc was held back because it followed an Esc that closed or left
+    /// something. A double press there is not meant to quit the program.
     pub(crate) fn take_held_escape(ctx: &Context) -> bool {
         std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().held_escape)
     }
 
-    /// Notes that an Esc closed something.
+    /// Records that an Esc closed something.
     pub(crate) fn note_escape(ctx: &Context) {
         ctx.plugin_or_default::<Self>().lock().left_by_escape = true;
     }
 
-    /// From region to region, and to the viewport after the last or before the first.
+    /// Moves the focus to the next or previous region; after the last or before the first, to the
+    /// viewport.
     pub(crate) fn change_owner(ctx: &Context, way: Way) {
         let viewport = ctx.plugin_or_default::<Self>().lock().viewport;
         if let Some(viewport) = viewport {
@@ -145,17 +146,19 @@ impl Keyboard {
         }
     }
 
-    /// Notes a key, and says whether the viewport keeps it from egui.
+    /// Handles a key press. Returns whether the viewport keeps the key from egui.
     fn key(&mut self, owner: Owner, key: Key, modifiers: Modifiers, repeat: bool) -> bool {
         self.last_was_repeat = repeat;
         let left_by_escape = std::mem::take(&mut self.left_by_escape);
         if key == Key::Escape {
+            // The second of two presses of Esc is held back; see `take_held_escape`.
             self.left_by_escape = owner != Owner::Viewport;
             if left_by_escape && owner == Owner::Viewport {
                 self.held_escape = true;
                 return true;
             }
         }
+        // Typed amounts use Enter and Backspace, which trigger no action then.
         let types = self.letters == Letters::Type && owner == Owner::Viewport;
         if types && matches!(key, Key::Enter | Key::Backspace) {
             self.typed.push(if key == Key::Enter { '\n' } else { '\u{8}' });
@@ -175,25 +178,25 @@ impl Keyboard {
         own && owner == Owner::Viewport
     }
 
-    /// Takes the events that the window system sends in place of Ctrl+X, Ctrl+C and Ctrl+V.
+    /// Handles the events that the window system sends instead of Ctrl+X, Ctrl+C and Ctrl+V.
     fn clipboard(&mut self, owner: Owner, event: &Event) {
         let Some(key) = clipboard_key(event) else { return };
         if let Event::Paste(text) = event {
             let acts = matches!(owner, Owner::Viewport | Owner::Panel);
             self.pasted = Some(text.clone()).filter(|_| acts);
             if std::mem::take(&mut self.asks_paste) && acts {
-                // It answers the action, whatever key that is on.
+                // The paste was requested by the action, whatever its key.
                 let (action, chord) = (Action::Paste, Chord::Command(key));
                 self.waiting.push(Press { action, chord, gesture: Gesture::Whole });
                 return;
             }
         }
-        // The release of the key comes as usual.
+        // The release arrives as a usual key event.
         let repeats = !self.down.insert(key);
         self.key(owner, key, Modifiers::COMMAND, repeats);
     }
 
-    /// Asks for the action whose chord fits, if it may act.
+    /// Triggers the action with a fitting chord, if its owner allows it.
     fn ask(&mut self, owner: Owner, fits: impl Fn(&Chord) -> bool) {
         let keymap = Arc::clone(&self.keymap);
         let fitting = |action: &Action| keymap.keys(*action).iter().copied().find(|key| fits(key));
@@ -203,7 +206,7 @@ impl Keyboard {
         let acts = match owner {
             Owner::Viewport => self.letters == Letters::Act || chord == Chord::Named(Key::Escape),
             Owner::Panel => chord.is_global(),
-            // A text field has an undo of its own.
+            // A text field has an undo stack for its text.
             Owner::Text => chord.is_global() && info.group != Group::Edit,
             Owner::Modal => false,
         };
@@ -221,7 +224,7 @@ impl Keyboard {
     }
 }
 
-/// The key of a clipboard event.
+/// Returns the key of a clipboard event.
 const fn clipboard_key(event: &Event) -> Option<Key> {
     match event {
         Event::Cut => Some(Key::X),
@@ -231,15 +234,15 @@ const fn clipboard_key(event: &Event) -> Option<Key> {
     }
 }
 
-/// What letters and numbers do over the viewport.
+/// The use of letters and numbers over the viewport.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Letters {
-    /// They ask for actions.
+    /// They trigger actions.
     #[default]
     Act,
-    /// They steer, and ask for nothing.
+    /// They steer the camera.
     Steer,
-    /// They are an amount for a handle, and ask for nothing.
+    /// They form an amount for a handle.
     Type,
 }
 
@@ -258,6 +261,7 @@ impl egui::Plugin for Keyboard {
 
     fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
         let owner = self.whose(ctx);
+        // While a key is chosen, the first press is taken as the choice.
         if let Some((_, chosen @ None)) = &mut self.choosing {
             let pressed = input.events.iter().find_map(|event| match event {
                 Event::Key { key, pressed: true, modifiers, .. } => Some((*key, *modifiers)),
@@ -268,10 +272,11 @@ impl egui::Plugin for Keyboard {
                 Some((key, modifiers)) => *chosen = chord_of(key, modifiers),
                 None => {}
             }
-            // What is chosen presses nothing and types nothing.
+            // Keys pressed during the choice neither trigger actions nor type text.
             let is_key = |event: &Event| matches!(event, Event::Key { .. } | Event::Text(_));
             input.events.retain(|event| !is_key(event) && clipboard_key(event).is_none());
         }
+        // The viewport's keys are removed from the events, so egui never sees them.
         input.events.retain(|event| match event {
             Event::Key { key, physical_key, pressed: true, modifiers, repeat } => {
                 let held = !self.down.insert(physical_key.unwrap_or(*key));

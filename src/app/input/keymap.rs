@@ -1,4 +1,4 @@
-//! The keys of actions: those of the table, unless the user has chosen others.
+//! The keys of actions: the user's choices, and the table for all others.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use egui::Key;
 
 use crate::app::actions::{Action, Chord};
 
-/// The keys that the user has chosen, by the action's place in the table.
+/// The keys that the user has chosen, by the index of the action in the table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Keymap {
     chosen: BTreeMap<usize, Vec<Chord>>,
@@ -17,23 +17,23 @@ fn place(action: Action) -> usize {
 }
 
 impl Keymap {
-    /// The keys of an action.
+    /// Returns the keys of an action.
     pub(crate) fn keys(&self, action: Action) -> &[Chord] {
         self.chosen.get(&place(action)).map_or(action.info().keys, Vec::as_slice)
     }
 
-    /// Whether the user has chosen its keys.
+    /// Returns whether the user has chosen its keys.
     pub(crate) fn is_chosen(&self, action: Action) -> bool {
         self.chosen.contains_key(&place(action))
     }
 
-    /// Another action that the chord would press.
+    /// Finds another action that the chord would trigger.
     pub(crate) fn clash(&self, action: Action, chord: Chord) -> Option<Action> {
         let others = Action::ALL.iter().copied().filter(|other| *other != action);
         others.into_iter().find(|other| self.keys(*other).iter().any(|it| it.clashes_with(chord)))
     }
 
-    /// Makes this the key of an action, and takes it from all others.
+    /// Makes this the key of an action and takes it from all others.
     pub(crate) fn set(&mut self, action: Action, chord: Chord) {
         while let Some(other) = self.clash(action, chord) {
             self.take(other, chord);
@@ -41,7 +41,7 @@ impl Keymap {
         self.choose(action, vec![chord]);
     }
 
-    /// Takes a key from an action that has it.
+    /// Takes a key from an action.
     fn take(&mut self, from: Action, chord: Chord) {
         let keys = self.keys(from).iter().copied().filter(|it| !it.clashes_with(chord));
         self.choose(from, keys.collect());
@@ -55,7 +55,7 @@ impl Keymap {
         }
     }
 
-    /// Gives an action the keys of the table again, and takes them from all others.
+    /// Restores the keys of an action from the table and takes them from all others.
     pub(crate) fn reset(&mut self, action: Action) {
         self.chosen.remove(&place(action));
         for chord in action.info().keys {
@@ -65,7 +65,7 @@ impl Keymap {
         }
     }
 
-    /// As text: the names of the keys, by the names of the actions.
+    /// Converts the choices to text: the names of the keys, by the names of the actions.
     pub(crate) fn names(&self) -> BTreeMap<String, Vec<String>> {
         let named = |(place, keys): (&usize, &Vec<Chord>)| {
             let keys = keys.iter().flat_map(|key| key.names()).collect();
@@ -74,8 +74,8 @@ impl Keymap {
         self.chosen.iter().filter_map(named).collect()
     }
 
-    /// The keys that these names say; and in sentences, what of them this version does not know or
-    /// gives to other actions. An action of whose keys none is known keeps those of the table.
+    /// Reads keys from their names. Also returns sentences about keys that this version does not
+    /// know or gives to other actions. An action without any known key keeps the keys of the table.
     pub(crate) fn of_names(names: &BTreeMap<String, Vec<String>>) -> (Self, Vec<String>) {
         let (mut keymap, mut said) = (Self::default(), Vec::new());
         for (name, keys) in names {
@@ -96,8 +96,8 @@ impl Keymap {
         (keymap, said)
     }
 
-    /// Takes the keys that the user has chosen from all other actions, as an older version may have
-    /// let them choose a key that the table has given to another action since.
+    /// Takes the user's keys from all other actions. An older version may have allowed a key that
+    /// the table has given to another action since.
     fn settle(&mut self, said: &mut Vec<String>) {
         for action in Action::ALL.iter().copied() {
             let chosen = self.chosen.get(&place(action)).cloned();
@@ -113,7 +113,7 @@ impl Keymap {
     }
 }
 
-/// The chord with this name.
+/// Parses the name of a chord.
 fn chord_named(name: &str) -> Option<Chord> {
     if let Some(key) = name.strip_prefix("Ctrl+Shift+").or_else(|| name.strip_prefix("Cmd+Shift+"))
     {
@@ -139,7 +139,7 @@ fn chord_named(name: &str) -> Option<Chord> {
     }
 }
 
-/// The chord that a press of a key is, if it can be one.
+/// Converts a key press to a chord, if possible.
 pub(crate) fn chord_of(key: Key, modifiers: egui::Modifiers) -> Option<Chord> {
     let is_letter = key.name().len() == 1 && key.name().chars().all(char::is_alphanumeric);
     let is_digit = key.name().chars().all(|letter| letter.is_ascii_digit());
@@ -233,7 +233,7 @@ mod tests {
         assert!(keymap.keys(Action::WhyUnseen).is_empty(), "no key is pressed for two actions");
         assert_eq!(said, ["w is your key of \"Duplicate\", not that of \"Why can't I see it?\"."]);
         assert_eq!(Keymap::of_names(&keymap.names()), (keymap, Vec::new()), "it is said once");
-        // Of two choices by hand, the first action of the table has the key.
+        // If the user has given two actions the same key, the first one in the table keeps it.
         let (keymap, said) = read(&[("Redo", "k"), ("Undo", "k x")]);
         assert!(keymap.keys(Action::Redo).is_empty() && keymap.keys(Action::StepXUp).is_empty());
         assert_eq!((keymap.keys(Action::Undo).len(), said.len()), (2, 2));

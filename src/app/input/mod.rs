@@ -1,4 +1,4 @@
-//! Keyboard and buttons: both return actions.
+//! Keyboard and buttons, which both return actions.
 
 pub(crate) mod buttons;
 pub(crate) mod keyboard;

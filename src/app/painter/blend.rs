@@ -1,14 +1,15 @@
 //! The arithmetic of colours.
 //!
-//! A colour is multiplied by a texel and laid over the pixel below it, all in the values that are
-//! stored (gamma), premultiplied by alpha, as egui wants it:
+//! A colour is multiplied by a texel and blended over the pixel below it. All values are
+//! gamma-encoded, as stored, and premultiplied by alpha, as in egui:
 //!
 //!   c = s t / 255,   p' = c + p (255 - c_alpha) / 255     s colour, t texel, p pixel; 0 to 255
 
 use egui::Color32;
 
-/// Lays one colour over all pixels of a row.
+/// Blends one colour over all pixels of a row.
 pub(super) fn lay(row: &mut [u32], source: [f32; 4]) {
+    // Whole, premultiplied values allow integer arithmetic with the same result.
     let whole = source.map(f32::round);
     if is_opaque(source) {
         let [r, g, b, _] = whole.map(byte);
@@ -20,8 +21,9 @@ pub(super) fn lay(row: &mut [u32], source: [f32; 4]) {
     }
 }
 
-/// The same in whole numbers, two channels at a time: x / 255 rounded is (y + (y >> 8)) >> 8 with
-/// y = x + 128, for every x up to 255 * 255.
+/// Blends in whole numbers, two channels at a time.
+///
+/// x / 255 rounded is (y + (y >> 8)) >> 8 with y = x + 128, for every x up to 255 * 255.
 fn lay_premultiplied(row: &mut [u32], [r, g, b, a]: [u8; 4]) {
     let source = packed(Color32::from_rgb(r, g, b));
     let rest = 255 - u32::from(a);
@@ -37,6 +39,7 @@ fn lay_premultiplied(row: &mut [u32], [r, g, b, a]: [u8; 4]) {
 }
 
 pub(super) fn tint(pixel: &mut u32, color: [u8; 4], texel: Color32) {
+    // Most texels of glyphs are transparent: they are skipped.
     if texel != Color32::TRANSPARENT {
         *pixel = over(*pixel, product(color.map(f32::from), texel.to_array().map(f32::from)));
     }
@@ -50,7 +53,7 @@ pub(super) fn is_opaque(source: [f32; 4]) -> bool {
     source[3] >= 255.0
 }
 
-/// A colour over a pixel.
+/// Blends a colour over a pixel.
 #[inline(always)]
 pub(super) fn over(below: u32, [r, g, b, a]: [f32; 4]) -> u32 {
     let rest = 1.0 - a / 255.0;
@@ -64,7 +67,7 @@ pub(super) fn all_opaque(texels: &[Color32]) -> bool {
     all >> 24 == 0xff
 }
 
-/// As it stands in memory: blue in the lowest byte, green, red, nothing.
+/// Packs a colour as it is stored: blue in the lowest byte, then green, red and a zero.
 #[inline(always)]
 pub(super) fn packed(color: Color32) -> u32 {
     let color = u32::from_le_bytes(color.to_array());

@@ -1,7 +1,7 @@
 //! Paints items into rows of pixels.
 //!
-//! What an item gives a pixel does not depend on the part of it that is painted, so that a window
-//! that was painted in parts is the one painted at once.
+//! The colour of a pixel never depends on the area being painted. A window painted in parts
+//! therefore equals the same window painted at once.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use super::items::{Corner, Item, Ramp, Shape};
 use super::textures::{Filter, Texture};
 use marraztu_render::screen::coverage::{PixelBox, Triangle};
 
-/// Adjacent rows of pixels: blue in the lowest byte, green, red, nothing.
+/// Adjacent rows of pixels: blue in the lowest byte, then green, red and a zero.
 #[derive(Debug)]
 pub(super) struct Strip<'a> {
     pub(super) pixels: &'a mut [u32],
@@ -22,7 +22,7 @@ pub(super) struct Strip<'a> {
 }
 
 impl Strip<'_> {
-    /// The place of pixels of a row.
+    /// Returns the indices of pixels of a row.
     fn place(&self, y: i32, left: i32, right: i32) -> Range<usize> {
         let start = index(y - self.top) * self.width;
         start + index(left)..start + index(right)
@@ -33,7 +33,7 @@ impl Strip<'_> {
         &mut self.pixels[place]
     }
 
-    /// Gives all pixels of an area one colour.
+    /// Fills an area with one colour.
     pub(super) fn clear(&mut self, area: PixelBox, color: Color32) {
         for y in area.top..area.bottom {
             self.row(y, area.left, area.right).fill(packed(color));
@@ -41,7 +41,7 @@ impl Strip<'_> {
     }
 }
 
-/// Paints the part of an item that lies in `within`, which lies in the strip.
+/// Paints the part of an item in `within`, an area of the strip.
 pub(super) fn paint(strip: &mut Strip<'_>, item: &Item, texture: &Texture, within: PixelBox) {
     let area = item.area.intersection(within);
     if area.is_empty() {
@@ -67,7 +67,7 @@ pub(super) fn paint(strip: &mut Strip<'_>, item: &Item, texture: &Texture, withi
     }
 }
 
-/// Whether an item leaves nothing to be seen of what was painted in an area before it.
+/// Returns whether an item hides everything painted before it in an area.
 pub(super) fn hides(item: &Item, texture: &Texture, area: PixelBox) -> bool {
     if item.area.intersection(area) != area {
         return false;
@@ -82,10 +82,10 @@ pub(super) fn hides(item: &Item, texture: &Texture, area: PixelBox) -> bool {
     }
 }
 
-/// The position of texels in a picture.
+/// Maps the pixels of a picture to texels.
 #[derive(Debug)]
 struct Map {
-    /// Whether every pixel shows one texel as it is.
+    /// Whether every pixel shows exactly one texel, without filtering.
     is_texel_for_pixel: bool,
     columns: Columns,
     rows: Vec<usize>,
@@ -93,14 +93,14 @@ struct Map {
 
 #[derive(Debug)]
 enum Columns {
-    /// One after the other.
+    /// Consecutive texels.
     Run(Range<usize>),
     Table(Vec<usize>),
 }
 
 impl Map {
-    /// For a part of the pixels of a picture. The choice is made for the whole, so that each part
-    /// is painted alike.
+    /// Creates the map for a part of the pixels. The filter is chosen for the whole picture, so
+    /// every part is painted alike.
     fn new(whole: PixelBox, area: PixelBox, texture: &Texture, (u, v): (Ramp, Ramp)) -> Self {
         let [width, height] = texture.size();
         let (across, down) = (length(width), length(height));
@@ -126,7 +126,7 @@ impl Map {
         }
     }
 
-    /// Whether all texels are opaque.
+    /// Returns whether all texels are opaque.
     fn is_opaque(&self, texture: &Texture) -> bool {
         let columns = match &self.columns {
             Columns::Run(run) => run.clone(),
@@ -139,15 +139,16 @@ impl Map {
         };
         let mut last = None;
         self.rows.iter().all(|y| {
-            // Enlarged pictures show a row of texels several times.
+            // Enlarged pictures show a row of texels several times: it is tested once.
             last.replace(*y) == Some(*y) || all_opaque(&texture.row(*y)[columns.clone()])
         })
     }
 }
 
-/// The texels of these pixels, if each pixel shows the one after that of the pixel before.
+/// Returns the texels of these pixels, if each pixel shows the texel after that of the pixel
+/// before.
 fn run(ramp: Ramp, pixels: Range<i32>, count: usize, filter: Filter) -> Option<Range<usize>> {
-    // How far from the centre of its texel the centre of a pixel may lie.
+    // The largest distance between the centres of a pixel and of its texel.
     let most = match filter {
         Filter::Nearest => 0.25,
         Filter::Linear => 1.0 / 512.0,
@@ -157,6 +158,7 @@ fn run(ramp: Ramp, pixels: Range<i32>, count: usize, filter: Filter) -> Option<R
         let whole = floor(at);
         ((at - at.floor() - 0.5).abs() <= most).then_some(whole)
     };
+    // The steps are equal, so the first and the last pixel decide for all between them.
     let (first, last) = (texel(pixels.start)?, texel(pixels.end - 1)?);
     let many = i64::from(pixels.end - 1 - pixels.start);
     let (first, last) = (usize::try_from(first).ok()?, usize::try_from(last - many).ok()?);
@@ -164,7 +166,7 @@ fn run(ramp: Ramp, pixels: Range<i32>, count: usize, filter: Filter) -> Option<R
     (first == last && end <= count).then_some(first..end)
 }
 
-/// Paints a picture whose pixels are texels.
+/// Paints a picture that shows one texel per pixel.
 fn paint_texels(
     strip: &mut Strip<'_>,
     area: PixelBox,
@@ -172,10 +174,11 @@ fn paint_texels(
     (color, map): ([u8; 4], &Map),
 ) {
     let unchanged = color == [255; 4];
-    // The row of texels that the row above shows, if that hides what is below it.
+    // The row of texels that the row of pixels above shows, if that row is opaque.
     let mut above = None;
     for (y, row) in (area.top..area.bottom).zip(&map.rows) {
         let place = strip.place(y, area.left, area.right);
+        // An enlarged picture repeats rows of pixels, and copying is cheaper than painting.
         if above == Some(*row) {
             let last = place.start - strip.width..place.end - strip.width;
             strip.pixels.copy_within(last, place.start);
@@ -183,6 +186,7 @@ fn paint_texels(
         }
         let texels = texture.row(*row);
         let into = &mut strip.pixels[place];
+        // Opaque texels are stored; all others are blended.
         above = match &map.columns {
             Columns::Run(run) if unchanged && all_opaque(&texels[run.clone()]) => {
                 into.iter_mut().zip(&texels[run.clone()]).for_each(|(to, it)| *to = packed(*it));
@@ -204,7 +208,7 @@ fn paint_texels(
     }
 }
 
-/// Paints a picture whose pixels lie between texels.
+/// Paints a picture with pixels between texels, by linear filtering.
 fn paint_between_texels(
     strip: &mut Strip<'_>,
     area: PixelBox,
@@ -223,7 +227,7 @@ fn paint_between_texels(
     }
 }
 
-/// What changes from pixel to pixel of a row of a triangle: its value at pixel 0, and its step.
+/// A value that is linear along a row of a triangle: its value at pixel 0, and its step per pixel.
 #[derive(Clone, Copy)]
 struct Slope<const N: usize> {
     start: [f32; N],
@@ -231,7 +235,7 @@ struct Slope<const N: usize> {
 }
 
 /// Paints the part of a triangle in `area`. Pixels are counted from the column `left`, whatever the
-/// part, so that each part is painted alike.
+/// part, so every part is painted alike.
 fn paint_triangle(
     strip: &mut Strip<'_>,
     (left, area): (i32, PixelBox),
@@ -240,6 +244,7 @@ fn paint_triangle(
 ) {
     let Some(triangle) = Triangle::new(corners.map(|corner| corner.at)) else { return };
     let [first, others @ ..] = corners;
+    // Triangles of one colour and one texel need no interpolation.
     let one_color = others.iter().all(|corner| corner.color == first.color);
     let one_place = others.iter().all(|corner| corner.uv == first.uv);
     let [width, height] = texture.size().map(length);
@@ -247,10 +252,12 @@ fn paint_triangle(
     let places =
         corners.map(|corner| [f64::from(corner.uv[0]) * width, f64::from(corner.uv[1]) * height]);
     let ([step, _], whole) = (triangle.steps(), triangle.doubled_area());
+    // The larger of the steps in texels per pixel selects the filter, as for pictures.
     let [across, down] = at_edges(step, whole, &places).map(f64::abs);
     let filter = texture.filter(across.max(down));
     let texel = texture.at(filter, single(places[0][0]), single(places[0][1]));
     for y in area.top..area.bottom {
+        // The edge functions limit the row to the covered pixels; no pixel is tested.
         let edges = triangle.edges_at(left, y);
         let part = area.left - left..area.right - left;
         let Some(part) = span(edges, step, triangle.least(), part) else { continue };
@@ -273,7 +280,7 @@ fn paint_triangle(
     }
 }
 
-/// The value where the edge functions are these: their weighted mean.
+/// Interpolates a value from the edge functions at a point: the mean weighted by them.
 fn at_edges<const N: usize>(edges: [i64; 3], whole: i64, values: &[[f64; N]; 3]) -> [f64; N] {
     #[expect(clippy::cast_precision_loss, reason = "weights need no more than 53 bits")]
     let weight = edges.map(|edge| edge as f64 / whole as f64);
@@ -293,8 +300,8 @@ impl<const N: usize> Slope<N> {
     }
 }
 
-/// The pixels of a part of a row whose edge functions are nowhere below `least`; those of pixel 0
-/// are `edges`.
+/// Returns the pixels of a part of a row at which no edge function is below its `least`. `edges`
+/// are the values at pixel 0.
 fn span(edges: [i64; 3], step: [i64; 3], least: [i64; 3], part: Range<i32>) -> Option<Range<i32>> {
     let (mut start, mut end) = (i64::from(part.start), i64::from(part.end));
     for ((edge, step), least) in edges.into_iter().zip(step).zip(least) {
@@ -331,7 +338,7 @@ fn length(count: usize) -> f64 {
     count as f64
 }
 
-/// An index of a pixel; pixels left of the picture or above it are never painted.
+/// Converts an index of a pixel; pixels left of the picture or above it are never painted.
 fn index(i: i32) -> usize {
     usize::try_from(i).unwrap_or(0)
 }

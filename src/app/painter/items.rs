@@ -1,10 +1,10 @@
-//! What a frame is painted from: rectangles of one colour, upright pictures, triangles.
+//! The items that a frame is painted from: rectangles of one colour, upright pictures, triangles.
 //!
-//! egui's meshes are triangles alone. Most of them come in pairs that make an upright rectangle;
-//! those are found here, since a rectangle is painted many times faster than two triangles.
+//! egui's meshes consist of triangles. Most triangles come in pairs that make an upright rectangle.
+//! This module finds the pairs, since a rectangle is painted many times faster than two triangles.
 //!
-//! Corners are snapped to 1/256 pixel, as graphics cards do, and centres of pixels decide coverage
-//! by the top-left rule: rectangles and triangles that share an edge leave no gap between them, and
+//! Corners are snapped to 1/256 pixel, as in graphics cards, and pixel centres decide coverage by
+//! the top-left rule: rectangles and triangles that share an edge leave no gap between them, and
 //! paint no pixel twice.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -24,15 +24,15 @@ pub(super) struct Corner {
     pub(super) color: [u8; 4],
 }
 
-/// How a place in a texture follows from a column or a row of pixels: `start + step * i` at the
-/// centre of pixel i, in parts of the texture.
+/// A texture coordinate as a function of the column or row of pixels: `start + step * i` at the
+/// centre of pixel i, from 0 to 1 across the texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ramp {
     pub(super) start: f64,
     pub(super) step: f64,
 }
 
-/// A thing that is painted at once.
+/// One item to paint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Shape {
     /// An upright rectangle of one colour, which is multiplied by one texel.
@@ -43,16 +43,16 @@ pub(super) enum Shape {
     Triangle([Corner; 3]),
 }
 
-/// A thing that is painted at once, and the pixels that it may touch.
+/// One item to paint, and the pixels that it may touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Item {
     pub(super) area: PixelBox,
     pub(super) shape: Shape,
-    /// Equal items have equal keys; others have, for all purposes, different ones.
+    /// A hash of the item: equal items have equal keys, and other items almost certainly do not.
     pub(super) key: u64,
 }
 
-/// The pixels that a clip rectangle in points leaves, of a picture of this size.
+/// Converts a clip rectangle from points to pixels of a picture of this size.
 pub(super) fn clip_area(clip: Rect, scale: f32, [width, height]: [usize; 2]) -> PixelBox {
     let most = |count: usize| i32::try_from(count).unwrap_or(i32::MAX);
     let (width, height) = (most(width), most(height));
@@ -62,7 +62,7 @@ pub(super) fn clip_area(clip: Rect, scale: f32, [width, height]: [usize; 2]) -> 
     PixelBox { left, top, right: at(clip.max.x, left, width), bottom: at(clip.max.y, top, height) }
 }
 
-/// Adds the items of a mesh, in their order, as far as they lie in `clip`.
+/// Adds the items of a mesh that lie in `clip`, in their order.
 pub(super) fn items_of(mesh: &Mesh, clip: PixelBox, scale: f32, items: &mut Vec<Item>) {
     let corners: Vec<Corner> = mesh.vertices.iter().map(|vertex| corner(vertex, scale)).collect();
     let triangle = |first: usize| -> Option<[Corner; 3]> {
@@ -70,6 +70,7 @@ pub(super) fn items_of(mesh: &Mesh, clip: PixelBox, scale: f32, items: &mut Vec<
         let of = |index: u32| corners.get(usize::try_from(index).ok()?).copied();
         Some([of(a)?, of(b)?, of(c)?])
     };
+    // A pair of triangles that makes a rectangle is taken at once, else one triangle.
     let mut first = 0;
     while first + 3 <= mesh.indices.len() {
         let Some(one) = triangle(first) else { return };
@@ -86,7 +87,7 @@ pub(super) fn items_of(mesh: &Mesh, clip: PixelBox, scale: f32, items: &mut Vec<
             },
         };
         let area = area.intersection(clip);
-        // What is wholly transparent leaves everything as it is.
+        // Wholly transparent items change no pixel.
         if !area.is_empty() && !is_nothing(&shape) {
             items.push(Item { area, shape, key: key(area, &shape) });
         }
@@ -103,7 +104,7 @@ fn is_nothing(shape: &Shape) -> bool {
 fn corner(vertex: &Vertex, scale: f32) -> Corner {
     let Pos2 { x, y } = vertex.pos;
     let snapped = |at: f32| rounded(f64::from(at) * f64::from(scale) * f64::from(SUBPIXELS));
-    // Within what edge functions can hold.
+    // The edge functions are exact within this range.
     let within = |at: i32| at.clamp(-(1 << 27), 1 << 27);
     Corner {
         at: Snapped { x: within(snapped(x)), y: within(snapped(y)) },
@@ -117,14 +118,15 @@ fn rounded(x: f64) -> i32 {
     x.round() as i32
 }
 
-/// The rectangle that two triangles make, if it is upright, of one colour, and shows an upright
-/// part of its texture.
+/// Finds the rectangle that two triangles make, if it is upright, has one colour and shows an
+/// upright part of its texture.
 fn upright(one: &[Corner; 3], other: &[Corner; 3]) -> Option<(PixelBox, Shape)> {
     let color = one[0].color;
     let all = || one.iter().chain(other);
     if all().any(|corner| corner.color != color) {
         return None;
     }
+    // All corners must be corners of the bounding box of the first triangle.
     let least = |pick: fn(&Corner) -> i32| one.iter().map(pick).min();
     let most = |pick: fn(&Corner) -> i32| one.iter().map(pick).max();
     let (left, right) = (least(|p| p.at.x)?, most(|p| p.at.x)?);
@@ -132,7 +134,7 @@ fn upright(one: &[Corner; 3], other: &[Corner; 3]) -> Option<(PixelBox, Shape)> 
     if left == right || top == bottom {
         return None;
     }
-    // Bit 0: right, bit 1: below. Each triangle lacks one corner, and these are opposite.
+    // Bit 0: right, bit 1: below. Each triangle lacks one corner, and the two are opposite.
     let mut uvs = [None; 4];
     let mut corners_of = |triangle: &[Corner; 3]| -> Option<u8> {
         let mut seen = 0;
@@ -153,6 +155,7 @@ fn upright(one: &[Corner; 3], other: &[Corner; 3]) -> Option<(PixelBox, Shape)> 
     if lacks(seen)? != lacks(seen_by_other)? ^ 3 {
         return None;
     }
+    // The texture coordinates must be upright too: u depends on the column alone, v on the row.
     let [a, b, c, d] = [uvs[0]?, uvs[1]?, uvs[2]?, uvs[3]?];
     if [a[0], b[0]] != [c[0], d[0]] || [a[1], c[1]] != [b[1], d[1]] {
         return None;
@@ -165,7 +168,7 @@ fn upright(one: &[Corner; 3], other: &[Corner; 3]) -> Option<(PixelBox, Shape)> 
             Shape::Picture { color, u, v }
         }
     };
-    // The first centre at or after each side: a centre on the right or lower side is not covered.
+    // The first centre at or after each side. A centre on the right or lower side is not covered.
     let first = |at: i32| (at + SUBPIXELS / 2 - 1).div_euclid(SUBPIXELS);
     let area =
         PixelBox { left: first(left), top: first(top), right: first(right), bottom: first(bottom) };
@@ -173,7 +176,7 @@ fn upright(one: &[Corner; 3], other: &[Corner; 3]) -> Option<(PixelBox, Shape)> 
 }
 
 impl Ramp {
-    /// From `from` to `to` between two places in subpixels.
+    /// Creates the ramp from `from` to `to` between two positions in subpixels.
     fn new([begin, end]: [i32; 2], from: f32, to: f32) -> Self {
         let pixels = f64::from(end - begin) / f64::from(SUBPIXELS);
         let step = (f64::from(to) - f64::from(from)) / pixels;
@@ -181,7 +184,7 @@ impl Ramp {
         Self { start, step }
     }
 
-    /// The place at the centre of pixel `i`.
+    /// Returns the coordinate at the centre of pixel `i`.
     pub(super) fn at(self, i: i32) -> f64 {
         self.start + self.step * f64::from(i)
     }

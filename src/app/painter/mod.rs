@@ -1,11 +1,11 @@
-//! Paints what egui shows into memory, where there is no graphics card to do it.
+//! Paints egui's output into memory on computers without a graphics card.
 //!
-//! The picture is divided into bands of 32 rows, painted in parallel. Each band remembers what was
-//! painted in it last time, and only the columns are painted again in which that differs: while a
-//! user looks around in the viewport, its picture is all that is written.
+//! The picture is divided into bands of 32 rows, which are painted in parallel. Each band remembers
+//! its last items and repaints only the columns in which they differ. While a user looks around in
+//! the viewport, only its picture is repainted.
 //!
-//! `textures` holds the atlas of glyphs and pictures; `items` takes egui's meshes apart; `fill`
-//! paints them, with the arithmetic of `blend`.
+//! `textures` holds the atlas of glyphs and the pictures. `items` splits egui's meshes into items.
+//! `fill` paints them, with the arithmetic of `blend`.
 
 mod blend;
 mod fill;
@@ -26,42 +26,42 @@ use items::Item;
 use marraztu_render::screen::coverage::PixelBox;
 use textures::Textures;
 
-/// The rows of a band.
+/// The number of rows in a band.
 const ROWS: usize = 32;
 
-/// The frames whose changes are remembered, for windows that use several buffers in turn.
+/// The number of frames for which changes are remembered, for windows that swap several buffers.
 const REMEMBERED: usize = 4;
 
-/// What to paint.
+/// The input of one frame.
 #[derive(Debug)]
 pub(crate) struct WindowFrame {
     /// egui's meshes, from the lowest to the uppermost.
     pub(crate) primitives: Vec<ClippedPrimitive>,
     /// Pixels per point.
     pub(crate) scale: f32,
-    /// The colour below everything.
+    /// The background colour.
     pub(crate) ground: Color32,
 }
 
-/// Where to paint it.
+/// The buffer to paint into.
 #[derive(Debug)]
 pub(crate) struct Canvas<'a> {
-    /// Row by row: blue in the lowest byte, green, red, nothing.
+    /// Row by row: blue in the lowest byte, then green, red and a zero.
     pub(crate) pixels: &'a mut [u32],
     /// The number of columns and of rows.
     pub(crate) size: [usize; 2],
-    /// How many frames ago these pixels were painted; 0 if they never were.
+    /// The number of frames since these pixels were painted; 0 if they never were.
     pub(crate) age: usize,
 }
 
-/// Paints frame after frame.
+/// Paints a window, frame after frame.
 #[derive(Debug)]
 pub(crate) struct WindowPainter {
     pool: rayon::ThreadPool,
     textures: Textures,
     layers: Vec<Layer>,
     bands: Vec<Band>,
-    /// The size, the scale, and the ground of the last frame.
+    /// The size, the scale and the background of the last frame.
     setting: Option<([usize; 2], f32, Color32)>,
 }
 
@@ -73,7 +73,7 @@ struct Layer {
     items: Vec<Item>,
 }
 
-/// An item in a band: a number that is another one if anything of it is, and its place.
+/// An item in a band: its position, and a key that changes if anything about the item changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Listed {
     key: u64,
@@ -84,20 +84,20 @@ struct Listed {
 
 #[derive(Debug, Default)]
 struct Band {
-    /// What was painted last, and what is to be painted.
+    /// The items of the last frame and of this one.
     last: Vec<Listed>,
     now: Vec<Listed>,
-    /// The columns that changed in each of the last frames, the newest first.
+    /// The columns that changed in each of the last frames, the latest first.
     changes: VecDeque<Range<i32>>,
 }
 
 impl WindowPainter {
-    /// A painter that has painted nothing.
+    /// Creates a painter that has painted nothing.
     ///
     /// # Errors
     /// If no threads can be started.
     pub(crate) fn new() -> Result<Self, rayon::ThreadPoolBuildError> {
-        // Threads of their own: those that draw the viewport may be busy for long.
+        // A separate pool, because the threads that draw the viewport may be busy for long.
         let threads = std::thread::available_parallelism().map_or(1, usize::from).min(8);
         let name = |i| format!("window {i}");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(name);
@@ -105,7 +105,7 @@ impl WindowPainter {
         Ok(Self { pool: pool.build()?, textures, layers, bands, setting: None })
     }
 
-    /// Paints a frame. Returns what has changed since the frame before it; if that is nothing,
+    /// Paints a frame and returns the areas that changed since the frame before it. If none did,
     /// nothing is painted, unless the canvas is new.
     pub(crate) fn paint(
         &mut self,
@@ -114,6 +114,7 @@ impl WindowPainter {
         textures: &mut TexturesDelta,
     ) -> Vec<PixelBox> {
         self.textures.set(textures);
+        // Another size, scale or background changes every pixel: all bands start anew.
         let setting = (canvas.size, frame.scale, frame.ground);
         if self.setting.replace(setting) != Some(setting) {
             self.layers.clear();
@@ -127,6 +128,7 @@ impl WindowPainter {
         }
         self.layer(frame.primitives, frame.scale, canvas.size);
         self.list();
+        // Each band compares its new items with its old ones.
         let is_new = |band: &Band| band.changes.is_empty();
         let changed = |band: &Band| if is_new(band) { 0..size[0] } else { band.changed() };
         let changes: Vec<_> = self.bands.iter().map(changed).collect();
@@ -138,6 +140,7 @@ impl WindowPainter {
             band.changes.push_front(change);
             band.changes.truncate(REMEMBERED);
         }
+        // Each band repaints all columns that changed since this buffer was last used.
         let Self { pool, textures: known, layers, bands, .. } = self;
         if width > 0 {
             let strips = canvas.pixels.par_chunks_mut(width * ROWS).zip(&*bands).enumerate();
@@ -150,16 +153,18 @@ impl WindowPainter {
             });
         }
         self.textures.free(textures);
+        // The window system is told the changes since the last frame, whatever the age of the
+        // buffer.
         let since = canvas.age.min(1);
         let changed = |(i, band): (usize, &Band)| area_of(i, size, band.since(since, size[0]));
         joined(self.bands.iter().enumerate().map(changed).filter(|area| !area.is_empty()))
     }
 
-    /// Takes new meshes apart, and keeps the items of those that are as they were.
+    /// Splits changed meshes into items and keeps the items of unchanged meshes.
     fn layer(&mut self, primitives: Vec<ClippedPrimitive>, scale: f32, size: [usize; 2]) {
         let mut count = 0;
         for ClippedPrimitive { clip_rect: clip, primitive } in primitives {
-            // Callbacks would paint by OpenGL; nothing in the window has any.
+            // Callbacks would paint by OpenGL, but the window uses none.
             let Primitive::Mesh(mesh) = primitive else { continue };
             match self.layers.get_mut(count) {
                 Some(layer) if layer.clip == clip && layer.mesh == mesh => {}
@@ -176,7 +181,7 @@ impl WindowPainter {
         self.layers.truncate(count);
     }
 
-    /// Lists in each band what is to be painted in it.
+    /// Lists the items of each band.
     fn list(&mut self) {
         for band in &mut self.bands {
             std::mem::swap(&mut band.last, &mut band.now);
@@ -184,6 +189,8 @@ impl WindowPainter {
         }
         for (i, layer) in self.layers.iter().enumerate() {
             let Some(texture) = self.textures.get(layer.mesh.texture_id) else { continue };
+            // The version of the texture is part of the key: new texels repaint every item that
+            // shows them.
             let version = texture.version.wrapping_mul(0x9e37_79b9_7f4a_7c15);
             for (j, Item { area, key, .. }) in layer.items.iter().enumerate() {
                 let columns = (area.left, area.right);
@@ -207,15 +214,18 @@ impl Layer {
 }
 
 impl Band {
-    /// The columns in which what is to be painted differs from what was painted last.
+    /// Returns the columns that have to be repainted since the last frame.
     fn changed(&self) -> Range<i32> {
         let (last, now) = (&self.last[..], &self.now[..]);
         let alike = |(a, b): &(&Listed, &Listed)| a.key == b.key;
+        // Most frames change a few items: the equal ones at both ends of the lists are dropped
+        // first.
         let before = last.iter().zip(now).take_while(alike).count();
         let (last, now) = (&last[before..], &now[before..]);
         let after = last.iter().rev().zip(now.iter().rev()).take_while(alike).count();
         let (last, now) = (&last[..last.len() - after], &now[..now.len() - after]);
-        // Items that stand where they stood are the same, whatever differs beside them.
+        // If no items were added or removed, an item at the same index with the same key is
+        // unchanged.
         let same = |i: usize| last.len() == now.len() && last[i].key == now[i].key;
         let others = |list: &'_ [Listed]| -> Option<Range<i32>> {
             let those = || list.iter().enumerate().filter(|(i, _)| !same(*i));
@@ -225,7 +235,7 @@ impl Band {
         union(others(last).unwrap_or(0..0), others(now).unwrap_or(0..0))
     }
 
-    /// The columns that have changed since a number of frames; all if that is not known.
+    /// Returns the columns that changed in the last `age` frames; all columns if that is unknown.
     fn since(&self, age: usize, width: i32) -> Range<i32> {
         if age == 0 || age > self.changes.len() {
             return 0..width;
@@ -252,6 +262,7 @@ impl Band {
                 Some((layer.items.get(listed.item)?, textures.get(layer.mesh.texture_id)?))
             })
             .collect();
+        // The last item that hides the whole area is the first that needs to be painted.
         let hiding = items.iter().rposition(|(item, texture)| fill::hides(item, texture, area));
         if hiding.is_none() {
             strip.clear(area, ground);
@@ -262,7 +273,7 @@ impl Band {
     }
 }
 
-/// Areas from above to below, those with the same columns joined if they touch.
+/// Joins areas, listed from top to bottom, if they have the same columns and touch.
 fn joined(areas: impl Iterator<Item = PixelBox>) -> Vec<PixelBox> {
     let mut joined: Vec<PixelBox> = Vec::new();
     for area in areas {
@@ -278,7 +289,7 @@ fn joined(areas: impl Iterator<Item = PixelBox>) -> Vec<PixelBox> {
     joined
 }
 
-/// The smallest range that holds both; empty ranges hold nothing.
+/// Returns the smallest range that contains both; empty ranges are ignored.
 fn union(a: Range<i32>, b: Range<i32>) -> Range<i32> {
     match (a.is_empty(), b.is_empty()) {
         (true, _) => b,
@@ -287,7 +298,7 @@ fn union(a: Range<i32>, b: Range<i32>) -> Range<i32> {
     }
 }
 
-/// These columns of band `i` of a picture.
+/// Returns the area of these columns in band `i` of a picture.
 fn area_of(i: usize, [width, height]: [i32; 2], columns: Range<i32>) -> PixelBox {
     let top = i32::try_from(i * ROWS).unwrap_or(i32::MAX);
     let rows = i32::try_from(ROWS).unwrap_or(i32::MAX);

@@ -13,7 +13,7 @@ const GROUND: Color32 = Color32::from_rgb(31, 122, 200);
 const ATLAS: TextureId = TextureId::Managed(0);
 const PICTURE: TextureId = TextureId::Managed(1);
 
-/// A painter with textures, and the pixels that it paints.
+/// A painter with textures, and its pixels.
 struct Desk {
     painter: WindowPainter,
     pixels: Vec<u32>,
@@ -42,7 +42,7 @@ fn everywhere() -> Rect {
     Rect::from_min_max(Pos2::ZERO, pos2(WIDTH as f32, HEIGHT as f32))
 }
 
-/// A white texel in the corner, as in egui's atlas, and noise.
+/// Creates an atlas with a white texel in the corner, as in egui's, and noise in the others.
 fn atlas() -> ColorImage {
     let mut rng = Rng::new(5);
     let mut image = noise([16, 8], &mut rng);
@@ -55,7 +55,7 @@ fn noise(size: [usize; 2], rng: &mut Rng) -> ColorImage {
     ColorImage::new(size, (0..count).map(|_| color(rng)).collect())
 }
 
-/// Half of them opaque, some transparent.
+/// Draws a random colour: half of them are opaque, some transparent.
 fn color(rng: &mut Rng) -> Color32 {
     let byte = |rng: &mut Rng| u8::try_from(rng.below(256)).unwrap();
     let alpha = if rng.percent(50) { 255 } else { byte(rng) & 0xf0 };
@@ -86,11 +86,11 @@ fn plain(rect: Rect, color: Color32) -> Mesh {
 
 fn place(rng: &mut Rng, most: usize) -> f32 {
     let at = rng.between(-20 * 4, 4 * i32::try_from(most).unwrap() + 80) as f32 / 4.0;
-    // Half of them on centres and borders of pixels, or between.
+    // Half of the places lie on centres and borders of pixels or between them.
     if rng.percent(50) { at } else { at + rng.below(1000) as f32 / 1000.0 }
 }
 
-/// Some shape; most are what egui makes.
+/// Draws a random shape; most are of a kind that egui makes.
 fn shape(rng: &mut Rng) -> Mesh {
     let (x, y) = (place(rng, WIDTH), place(rng, HEIGHT));
     let to = pos2(x + rng.below(600) as f32 / 7.0, y + rng.below(400) as f32 / 8.0);
@@ -98,7 +98,7 @@ fn shape(rng: &mut Rng) -> Mesh {
     match rng.below(5) {
         0 => plain(rect, color(rng)),
         1 => {
-            // A glyph, whose texels are pixels.
+            // A glyph with one texel per pixel.
             let (left, top) = (rng.below(9) as f32, rng.below(5) as f32);
             let at = pos2(x.round(), y.round());
             let rect = Rect::from_min_size(at, egui::vec2(6.0, 3.0));
@@ -125,7 +125,7 @@ fn shape(rng: &mut Rng) -> Mesh {
     }
 }
 
-/// The same in f64 and the plainest way: triangle by triangle, pixel by pixel.
+/// Paints the same in f64 and in the plainest way: triangle by triangle, pixel by pixel.
 #[expect(clippy::cast_possible_truncation, reason = "bytes, and places near the picture")]
 fn reference(meshes: &[(Rect, Mesh)], textures: [&ColorImage; 2], nearest: [bool; 2]) -> Vec<u32> {
     let ground = GROUND.to_array().map(f64::from);
@@ -181,7 +181,7 @@ fn sample(image: &ColorImage, nearest: bool, u: f64, v: f64) -> [f64; 4] {
     std::array::from_fn(|i| parts.iter().map(|part| part[i]).sum())
 }
 
-/// The largest difference of a channel.
+/// Returns the largest difference of a channel.
 fn difference(a: &[u32], b: &[u32]) -> u8 {
     let channels = |a: &u32, b: &u32| {
         let pairs = a.to_le_bytes().into_iter().zip(b.to_le_bytes());
@@ -203,7 +203,7 @@ fn every_shape_is_painted_as_the_plainest_arithmetic_paints_it() {
         let corner = pos2(place(&mut rng, WIDTH), place(&mut rng, HEIGHT));
         let part = Rect::from_min_max(Pos2::ZERO, corner);
         let clip = if rng.percent(70) { everywhere() } else { part };
-        // The step from one texel of the picture to the next may fall on either side of a centre.
+        // Rounding may move the border between two texels to either side of a pixel centre.
         let picture_moved = mesh.texture_id == PICTURE;
         let meshes = [(clip, mesh)];
         desk.paint(&meshes, &mut textures);
@@ -219,7 +219,7 @@ fn every_shape_is_painted_as_the_plainest_arithmetic_paints_it() {
 
 #[test]
 fn shapes_that_share_edges_cover_every_pixel_once() {
-    // This color adds 1 to each pixel, as often as it is painted.
+    // This colour adds 1 to each pixel each time it is painted.
     let one = Color32::from_rgba_premultiplied(1, 1, 1, 0);
     let mut rng = Rng::new(2);
     let white = Arc::new(ColorImage::filled([1, 1], Color32::WHITE));
@@ -227,7 +227,7 @@ fn shapes_that_share_edges_cover_every_pixel_once() {
     let mut textures = delta(&[(ATLAS, &white, TextureOptions::LINEAR)]);
     let far = pos2(WIDTH as f32, HEIGHT as f32);
     for round in 0..300 {
-        // Upright rectangles about a cross; one of the four is a fan of triangles.
+        // Upright rectangles around a cross; one of the four is a fan of triangles.
         let at = |rng: &mut Rng, most: usize| {
             let at = rng.below(4 * most as u64) as f32 / 4.0;
             if rng.percent(50) { at } else { at + rng.below(999) as f32 / 999.0 }
@@ -267,7 +267,7 @@ fn only_columns_and_bands_that_differ_are_painted_again() {
     };
     let all = desk.paint(&meshes(rect(40.0, 40.0)), &mut textures);
     assert_eq!(all.iter().map(|area| area.width() * area.height()).sum::<i32>(), 97 * 75);
-    // What is written beside the change shows that nothing is painted there.
+    // A marker in all pixels shows that nothing outside of the change is painted.
     desk.pixels.fill(0xaa_bbcc);
     let changed = desk.paint(&meshes(rect(47.0, 40.0)), &mut textures);
     assert_eq!(changed, [PixelBox { left: 40, top: 32, right: 57, bottom: 64 }]);
@@ -289,8 +289,8 @@ fn frames_painted_over_older_ones_are_those_painted_from_nothing() {
     let mut picture = Arc::new(noise([13, 9], &mut rng));
     let mut desk = Desk::new();
     let mut textures = delta(&[(ATLAS, &atlas, linear), (PICTURE, &picture, nearest)]);
-    // Windows have one to three buffers, which are painted in turn. A frame in which nothing has
-    // changed is not shown.
+    // Windows have one to three buffers, which are painted in turn. A frame without changes is not
+    // shown.
     let mut buffers = vec![vec![0; WIDTH * HEIGHT]; 3];
     let mut painted_at = [None; 3];
     let (mut shown, mut frames) = (0, 0);

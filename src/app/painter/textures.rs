@@ -1,7 +1,7 @@
 //! The textures of egui: the atlas of glyphs, and pictures.
 //!
-//! A picture that replaces a whole texture is kept as it was given, without being copied. Every
-//! change of a texture gives it another version, so that what shows it is painted again.
+//! A picture that replaces a whole texture is kept without a copy. Each change gives the texture a
+//! new version, so every item that shows it is painted again.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use egui::epaint::ImageDelta;
 use egui::{Color32, ColorImage, ImageData, TextureFilter, TextureId};
 use egui::{TextureOptions, TextureWrapMode, TexturesDelta};
 
-/// All textures, under their ids.
+/// All textures by their ids.
 #[derive(Debug, Default)]
 pub(super) struct Textures {
     all: HashMap<TextureId, Texture>,
@@ -22,11 +22,11 @@ pub(super) struct Textures {
 pub(super) struct Texture {
     image: Arc<ColorImage>,
     options: TextureOptions,
-    /// Another one after each change of any texture.
+    /// A number that changes with the texture. No two changes have the same number.
     pub(super) version: u64,
 }
 
-/// How a texture is read between its texels.
+/// The way to read a texture between its texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Filter {
     /// The nearest texel.
@@ -36,7 +36,7 @@ pub(super) enum Filter {
 }
 
 impl Textures {
-    /// Takes new textures and changed parts of known ones.
+    /// Adds new textures and updates parts of known ones.
     pub(super) fn set(&mut self, delta: &mut TexturesDelta) {
         #[expect(clippy::iter_over_hash_type, reason = "each texture stands for itself")]
         for (id, deltas) in delta.set.drain() {
@@ -46,7 +46,7 @@ impl Textures {
         }
     }
 
-    /// Forgets textures that nothing shows any more.
+    /// Removes textures that are not shown any more.
     pub(super) fn free(&mut self, delta: &mut TexturesDelta) {
         #[expect(clippy::iter_over_hash_type, reason = "each texture stands for itself")]
         for id in delta.free.drain() {
@@ -54,7 +54,7 @@ impl Textures {
         }
     }
 
-    /// The texture of this id, if there is one with texels.
+    /// Returns the texture of this id, if it exists and has texels.
     pub(super) fn get(&self, id: TextureId) -> Option<&Texture> {
         self.all.get(&id).filter(|texture| !texture.image.pixels.is_empty())
     }
@@ -75,7 +75,7 @@ impl Textures {
     }
 }
 
-/// Copies a picture into another, its first pixel to `at`; what lies beyond the border is left out.
+/// Copies a picture into another, its first pixel to `at`; pixels beyond the border are left out.
 fn copy(from: &ColorImage, to: &mut ColorImage, [x, y]: [usize; 2]) {
     let [width, _] = to.size;
     let count = from.size[0].min(width.saturating_sub(x));
@@ -89,18 +89,18 @@ fn copy(from: &ColorImage, to: &mut ColorImage, [x, y]: [usize; 2]) {
 }
 
 impl Texture {
-    /// The width and height in texels.
+    /// Returns the width and height in texels.
     pub(super) fn size(&self) -> [usize; 2] {
         self.image.size
     }
 
-    /// A row of texels.
+    /// Returns a row of texels.
     pub(super) fn row(&self, y: usize) -> &[Color32] {
         let [width, _] = self.image.size;
         &self.image.pixels[y * width..(y + 1) * width]
     }
 
-    /// The filter if a step of one pixel moves by this number of texels.
+    /// Returns the filter for a step of this number of texels per pixel.
     pub(super) fn filter(&self, texels: f64) -> Filter {
         let chosen = match texels > 1.0 {
             true => self.options.minification,
@@ -112,7 +112,8 @@ impl Texture {
         }
     }
 
-    /// The texel at index `i` of a row or column of `count`, beyond its ends as the options say.
+    /// Returns the texel of index `i` in a row or column of `count`, wrapped by the texture's
+    /// options.
     pub(super) fn wrapped(&self, i: i64, count: usize) -> usize {
         let last = i64::try_from(count).unwrap_or(i64::MAX) - 1;
         let index = match self.options.wrap_mode {
@@ -126,7 +127,8 @@ impl Texture {
         usize::try_from(index).unwrap_or(0)
     }
 
-    /// The colour at a place, in texels from the upper left corner; 0 to 255 each, premultiplied.
+    /// Samples the texture at a position in texels from the upper left corner. Channels are from 0
+    /// to 255, premultiplied.
     pub(super) fn at(&self, filter: Filter, u: f32, v: f32) -> [f32; 4] {
         let [width, height] = self.size();
         match filter {
@@ -149,7 +151,7 @@ impl Texture {
     }
 }
 
-/// The colour on the way from `a` to `b`, in floats.
+/// Interpolates between `a` and `b`, in floats.
 fn mix(a: Color32, b: Color32, part: f32) -> [f32; 4] {
     let (a, b) = (a.to_array().map(f32::from), b.to_array().map(f32::from));
     std::array::from_fn(|i| a[i] + (b[i] - a[i]) * part)

@@ -1,5 +1,5 @@
-//! About: version, commit, instructions in use, and the licences of the program and of the packages
-//! that it is built from. `tools/licences.py` makes the list of packages.
+//! About: version, commit, instructions in use, and the licences of the program and of its
+//! packages. `tools/licences.py` creates the list of packages.
 
 use egui::{Rect, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, Window, vec2};
 use fearless_simd::Level;
@@ -11,7 +11,7 @@ use crate::app::theme;
 use crate::app::widgets::controls::{heading, put_text, text};
 use marraztu_lab::instructions;
 
-/// A package a line: its name, its version and its licence.
+/// One package per line: name, version and licence.
 const PACKAGES: &str = include_str!("../../../assets/licences.txt");
 
 const SIZE: egui::Vec2 = vec2(460.0, 460.0);
@@ -33,7 +33,7 @@ pub(crate) fn show(ui: &mut Ui, _state: &State, requests: &mut Vec<Request>) {
     }
 }
 
-/// Facts that identify the program in a fault report.
+/// Returns the facts that identify the program in a bug report.
 fn facts() -> [String; 3] {
     [
         format!("Version: {}", env!("CARGO_PKG_VERSION")),
@@ -62,6 +62,7 @@ fn contents(ui: &mut Ui) {
     );
     let row = ui.spacing().interact_size.y.max(theme::ROW);
     let list = ScrollArea::vertical().auto_shrink(false).content_margin(theme::SCROLL_MARGIN);
+    // Only the visible rows are laid out.
     list.show_rows(ui, row, count, |ui, range| {
         for package in &packages[range] {
             let (line, response) =

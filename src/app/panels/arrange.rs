@@ -1,4 +1,4 @@
-//! Arranges the panels around the picture and shows those that are open.
+//! Arranges the panels around the picture and shows the open ones.
 
 use egui::{Frame, Layout, Margin, Rect, Ui, UiBuilder};
 
@@ -10,15 +10,15 @@ use crate::app::state::layout::Places;
 use crate::app::theme;
 use crate::app::widgets::regions;
 
-/// Where everything stands in a frame.
+/// The places of the panels in one frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrangement {
-    /// All between the menus and the status line.
+    /// The area between the menus and the status line.
     area: Rect,
     places: Places,
 }
 
-/// What shows a panel: it adds its requests to those that it is given.
+/// Shows the contents of a panel and adds its requests.
 type Contents = fn(&mut Ui, &State, &mut Vec<Request>);
 
 macro_rules! contents {
@@ -37,13 +37,13 @@ macro_rules! contents {
 each_panel!(contents);
 
 impl Arrangement {
-    /// The place that is left to the picture.
+    /// Returns the area left for the picture.
     pub(crate) const fn picture(&self) -> Rect {
         self.places.picture
     }
 
-    /// Shows what stands over the picture: open panels, the palette and the strip of the first
-    /// minute; last the borders that can be dragged, since the picture would take their presses.
+    /// Shows everything over the picture: open panels, the palette and the greeting. The splitters
+    /// come last, since the picture would take their presses.
     pub(crate) fn over_picture_ui(&self, ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         let builder = UiBuilder::new().id_salt("over the picture").max_rect(self.places.picture);
         let mut child = ui.new_child(builder);
@@ -58,7 +58,7 @@ impl Arrangement {
     }
 }
 
-/// Shows the bars and all docked panels that are open.
+/// Shows the bars and all open docked panels.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> Arrangement {
     let fill = ui.visuals().panel_fill;
     let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
@@ -72,11 +72,12 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> A
     let area = ui.available_rect_before_wrap();
     let mut layout = state.layout;
     if state.renaming.is_some() {
-        // A new name is typed in the outline.
+        // The outline is needed for renaming, so it is shown while an item is renamed.
         layout.unfolded = Some(Side::Outline);
     }
     let renames = state.renaming.is_some();
     let panels = state.panels.with(Panel::Outline, state.panels.has(Panel::Outline) || renames);
+    // Docked panels are laid out first, and the picture gets the rest.
     let places = layout.divide(area, panels);
     if let Some(rect) = places.strip {
         ui.painter().rect_filled(rect, 0.0, fill);
@@ -93,10 +94,10 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> A
     Arrangement { area, places }
 }
 
-/// Shows a panel in its place. What it holds never makes it larger.
+/// Shows a panel in its place. Its contents never enlarge it.
 fn within(ui: &mut Ui, name: &str, rect: Rect, add: impl FnOnce(&mut Ui)) {
     ui.painter().rect_filled(rect, 0.0, ui.visuals().panel_fill);
-    // The contents leave room for a scroll bar.
+    // The contents reserve space for a scroll bar.
     let margin = Margin { left: theme::MARGIN, right: 2, top: 4, bottom: 4 };
     let layout = Layout::top_down(egui::Align::Min);
     let builder = UiBuilder::new().id_salt(name).max_rect(rect - margin).layout(layout);

@@ -1,5 +1,4 @@
-//! The cheat sheet: what the mouse does, and every key with what it would do now. Keys are
-//! changed here, too.
+//! The cheat sheet: mouse input, and every key with its current effect. It also changes keys.
 
 use egui::{Id, Key, RichText, ScrollArea, TextStyle, Ui, Window, vec2};
 
@@ -36,7 +35,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 
 fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let id = Id::unique("search among the keys");
-    // It was not shown in the pass before this one: what was searched for then is forgotten.
+    // If the previous pass did not show the panel, it was just opened: the old search is cleared.
     let pass = ui.ctx().cumulative_pass_nr();
     let last = ui.data_mut(|data| {
         let last = data.get_temp::<u64>(id);
@@ -64,14 +63,14 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let keymap = Keyboard::keymap(ui.ctx());
     let changes = changes_ui(ui, &keymap, requests);
     if ui.data_mut(|data| data.remove_temp::<bool>(switched_id())).is_some() {
-        // What is typed next is searched for; it presses nothing.
+        // The switch returns the focus to the search, where typed letters trigger no actions.
         response.request_focus();
     }
     choosing_ui(ui, &keymap, requests);
     ui.add_space(theme::GAP);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let mut search = Search::new(&wanted);
-        // The mouse has no keys to change.
+        // Mouse input cannot be changed.
         let mut found = !changes && mouse_ui(ui, &mut search);
         for group in Group::ALL {
             let actions: Vec<Action> = group
@@ -98,12 +97,12 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// Whether the switch was clicked in this frame.
+/// Returns the id of the flag for a click on the switch in this frame.
 fn switched_id() -> Id {
     Id::unique("changing keys was switched")
 }
 
-/// The switch between pressing and changing keys; gives whether they are changed.
+/// Shows the switch between using and changing keys. Returns whether keys are being changed.
 fn changes_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) -> bool {
     let id = Id::unique("keys are changed");
     let mut changes = ui.data(|data| data.get_temp(id)).unwrap_or(false);
@@ -125,7 +124,7 @@ fn changes_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) -> bool
     changes
 }
 
-/// What is said while a key is chosen: to press one, or which action has it already.
+/// Asks for a key, or reports that another action has the chosen key.
 fn choosing_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) {
     let Some((action, chord)) = Keyboard::choosing(ui.ctx()) else { return };
     let label = action.info().label;
@@ -150,7 +149,7 @@ fn choosing_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) {
     });
 }
 
-/// One action, with a button that chooses its key.
+/// Shows an action with a button that changes its key.
 fn change_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>, action: Action) {
     let label = action.info().label;
     ui.horizontal(|ui| {
@@ -171,7 +170,7 @@ fn change_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>, action: 
     });
 }
 
-/// What the mouse does over the picture; says whether any of it is searched for.
+/// Lists the mouse input that matches the search. Returns whether any matches.
 fn mouse_ui(ui: &mut Ui, search: &mut Search) -> bool {
     let mut fits = |mouse: &&MouseInfo| {
         let words = format!("{} {}", mouse.words, mouse.inputs.join(" ").to_lowercase());
@@ -198,7 +197,7 @@ fn mouse_ui(ui: &mut Ui, search: &mut Search) -> bool {
     true
 }
 
-/// What stands in a line, after the keys.
+/// The texts of a line after its keys.
 struct Columns<'a> {
     label: &'a str,
     now: &'a str,
@@ -228,7 +227,7 @@ impl Columns<'_> {
     }
 }
 
-/// One action: a click does it.
+/// Shows an action; a click performs it.
 fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action) {
     let info = action.info();
     let available = action.availability(state);

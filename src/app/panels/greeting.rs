@@ -1,5 +1,5 @@
-//! The strip of the first minute: where to begin, over the lower border of the first picture. It
-//! goes with the first change, and never takes the keyboard.
+//! The greeting: first steps, over the lower edge of the first picture. It disappears with the
+//! first change and never takes keyboard focus.
 
 use egui::{Align2, Area, Frame, Id, Order, Rect, Ui, vec2};
 
@@ -12,17 +12,17 @@ use crate::app::widgets::text::file_name;
 use marraztu_core::accuracy::Axis;
 use marraztu_io::EXAMPLES;
 
-/// The lessons that are offered, by their axes, and what they are about.
+/// The lessons to offer, by their axes, with their topics.
 const LESSONS: [(&str, &str); 3] =
     [("samples", "Jagged edges"), ("shading", "Flat or smooth"), ("depth", "Depth that fights")];
 
-/// The number of recent files that are offered.
+/// The maximum number of recent files to offer.
 const RECENT: usize = 3;
 
-/// A picture that is smaller keeps its place for itself.
+/// The greeting is hidden over a smaller picture.
 const LEAST: egui::Vec2 = vec2(420.0, 260.0);
 
-/// Shows the strip; its requests are added to `requests`.
+/// Shows the greeting; its requests are added to `requests`.
 pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Request>) {
     let is_small = picture.width() < LEAST.x || picture.height() < LEAST.y;
     if !state.greeting || !state.overlays || is_small {
@@ -40,7 +40,7 @@ pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Req
     });
 }
 
-/// What can be opened, what is there to be seen, and what can be learned; one row each.
+/// Shows one row each for files to open, examples, and lessons.
 fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.horizontal_wrapped(|ui| {
         ui.weak("Drop a model here, or");

@@ -1,4 +1,4 @@
-//! The history of changes: every step, the point that the scene is at, and a click to any other.
+//! The history of changes: every step, the current position, and a click to go to any other.
 
 use egui::{Atom, Button, Pos2, ScrollArea, Ui, Window};
 
@@ -6,17 +6,17 @@ use crate::app::actions::{Action, Request};
 use crate::app::panels::Panel;
 use crate::app::state::State;
 
-/// The usual width.
+/// The default width.
 const WIDTH: f32 = 240.0;
 
-/// How many steps are seen; the others are scrolled to.
+/// The number of visible steps; the others are scrolled to.
 const ROWS: f32 = 14.0;
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let mut open = true;
     let picture = ui.max_rect();
-    // Notices have the upper border.
+    // Notices appear at the upper edge.
     let at = Pos2::new(picture.left() + 12.0, picture.top() + 84.0);
     Window::new(Panel::History.info().label)
         .open(&mut open)
@@ -30,7 +30,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
-/// The steps; a click goes to the point just after one. Says whether one was clicked.
+/// Lists the steps; a click goes to the state after a step. Returns whether one was clicked.
 pub(super) fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> bool {
     let history = &state.history;
     let labels: Vec<&str> = std::iter::once("Beginning").chain(history.steps()).collect();
@@ -38,12 +38,12 @@ pub(super) fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -
     let mut clicked = false;
     let most = ROWS * (row + ui.spacing().item_spacing.y);
     let list = ScrollArea::vertical().max_height(most).auto_shrink([false, true]);
-    // The last step is seen as it comes.
+    // New steps scroll into view.
     list.stick_to_bottom(true).show_rows(ui, row, labels.len(), |ui, range| {
         for position in range {
             let here = position == history.position();
             let text = format!("{position}  {}", labels[position]);
-            // What grows behind the text keeps it at the left.
+            // A growing atom behind the text keeps the text left-aligned.
             let button = Button::selectable(here, (text, Atom::grow())).truncate();
             let response = ui.add_sized([ui.available_width(), row], button);
             if response.on_hover_text("Goes to the point just after this step").clicked() {

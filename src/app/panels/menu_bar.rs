@@ -1,4 +1,4 @@
-//! The menus, made from the table of actions, and the buttons beside them.
+//! The menus, generated from the table of actions, and the buttons next to them.
 
 use egui::{
     Align, Atom, IdSalt, Layout, MenuBar, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind,
@@ -17,10 +17,10 @@ use crate::app::widgets::text::file_name;
 use marraztu_core::accuracy::AXES;
 use marraztu_io::EXAMPLES;
 
-/// The actions of [`Group::Window`] that have a menu of their own.
+/// The actions of [`Group::Window`] in the submenu for themes.
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];
 
-/// Those that stand under Help.
+/// The actions in the Help menu.
 const HELP: [Action; 4] = [
     Action::Palette,
     Action::Panel(Panel::CheatSheet),
@@ -28,10 +28,10 @@ const HELP: [Action; 4] = [
     Action::Panel(Panel::About),
 ];
 
-/// The one under Edit.
+/// The action of another group in the Edit menu.
 const PREFERENCES: [Action; 1] = [Action::Panel(Panel::Preferences)];
 
-/// Actions that begin another part of a menu: a line stands before them.
+/// Actions that begin a new section of a menu: a separator precedes each of them.
 const PARTS: [Action; 22] = [
     Action::Load,
     Action::Save,
@@ -57,10 +57,10 @@ const PARTS: [Action; 22] = [
     Action::RedUp,
 ];
 
-/// Those of File that begin a scene, or add to it.
+/// The actions of File that begin a scene or add to it.
 const OPENS: [Action; 4] = [Action::New, Action::NewAncestor, Action::Open, Action::Load];
 
-/// How large the interface is.
+/// The actions that scale the interface.
 const SIZES: [Action; 3] = [Action::LargerText, Action::SmallerText, Action::NormalText];
 
 /// Shows the panel; its requests are added to `requests`.
@@ -68,7 +68,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     MenuBar::new().ui(ui, |ui| {
         ui.spacing_mut().button_padding.x = 8.0;
         menu(ui, "File", |ui| {
-            // What else can be opened stands after the actions that open; Quit is the last.
+            // Recent files and examples follow the actions that open files; Quit is last.
             let (begin, rest): (Vec<Action>, Vec<Action>) =
                 Group::File.actions().partition(|action| OPENS.contains(action));
             items(ui, state, requests, begin);
@@ -102,6 +102,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             ui.separator();
             submenu(ui, "Over the picture", |ui| items(ui, state, requests, Group::OVER_PICTURE));
             submenu(ui, "Camera", |ui| group_ui(ui, state, requests, Group::Camera));
+            // The ten lights with keys would fill the menu, so they have a submenu.
             let has_slot = |action: &Action| action.slot().is_some();
             let (slots, rest): (Vec<Action>, Vec<Action>) =
                 Group::Light.actions().partition(has_slot);
@@ -109,6 +110,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             submenu(ui, "Lights on and off", |ui| items(ui, state, requests, slots));
         });
         menu(ui, "Window", |ui| {
+            // The Window menu has the actions of its group that no other menu shows.
             let elsewhere = [&THEMES[..], &HELP, &PREFERENCES, &SIZES].concat();
             let own = Group::Window.actions().filter(|action| !elsewhere.contains(action));
             items(ui, state, requests, own);
@@ -122,7 +124,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             submenu(ui, "Lessons", |ui| lessons_ui(ui, requests));
         });
         ui.add_space(theme::GAP);
-        // In a very narrow window the menus have all the room.
+        // In a very narrow window, the menus take all of the width.
         if ui.available_width() >= 2.0 * theme::ROW + theme::GAP {
             undo_buttons::show(ui, state, requests);
         }
@@ -137,7 +139,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 /// The width of the button that opens the palette.
 const SEARCH: f32 = 170.0;
 
-/// Opens the palette. It looks like the field that it opens, so that it is seen to search.
+/// Shows a button that opens the palette and looks like its search field.
 fn search_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let action = Action::Palette;
     let (rect, response) = ui.allocate_exact_size(vec2(SEARCH, theme::ROW), Sense::click());
@@ -165,18 +167,18 @@ fn menu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     ui.menu_button(name, |ui| within_window(ui, add));
 }
 
-/// The entries of a menu; in a low window they are scrolled.
+/// Shows the entries of a menu; in a low window they scroll.
 fn within_window(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ui.set_min_width(200.0);
     let most = (ui.ctx().content_rect().height() - 2.0 * theme::ROW - 16.0).max(80.0);
-    // A menu that is too low where it stands is moved up before it is scrolled.
+    // A menu that would leave the window moves up before it scrolls.
     ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
         ui.set_min_width(200.0);
         add(ui);
     });
 }
 
-/// A submenu; its name is aligned with those of actions, after the column of ticks.
+/// Shows a submenu. Its name is aligned with the names of actions, after the column of ticks.
 fn submenu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     let ticks = Atom::custom(IdSalt::new("tick"), vec2(12.0, 12.0));
     let shown = ui.menu_button((ticks, name), |ui| within_window(ui, add));
@@ -201,7 +203,7 @@ fn items(
     }
 }
 
-/// The scenes that the program carries; a click opens one in place of this scene.
+/// Lists the built-in scenes; a click opens one in place of this scene.
 fn examples_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
     for example in EXAMPLES {
         let response = ui.button(example.title);
@@ -213,7 +215,7 @@ fn examples_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
     }
 }
 
-/// The files opened or saved last; a click loads a model, or opens a scene.
+/// Lists the files opened or saved last; a click loads a model or opens a scene.
 fn recent_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     if state.recent.is_empty() {
         ui.weak("No files yet");
@@ -229,7 +231,7 @@ fn recent_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
-/// What each axis of accuracy teaches; a click shows it in the laboratory.
+/// Lists the lessons; a click shows one in the laboratory.
 fn lessons_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
     for axis in AXES {
         let title = axis.lesson.title;

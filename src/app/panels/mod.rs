@@ -1,8 +1,8 @@
-//! The table of panels: what each is called, where it stands, and its file.
+//! The table of panels: their names, places and files.
 //!
-//! Actions, menus, scene files and preferences read the table; `arrange` shows what it lists. It
-//! is plain data and stands below the panels themselves, so that the table of actions can read it.
-//! Panels read the state and return requests; they change nothing.
+//! Actions, menus, scene files and preferences read the table; `arrange` shows its panels. The
+//! table is plain data and independent of the panels themselves, so the table of actions can read
+//! it. Panels read the state and return requests; they change nothing.
 
 mod about;
 pub(crate) mod arrange;
@@ -30,21 +30,21 @@ use crate::app::chord::Chord;
 use crate::app::chord::Chord::{Command, Either, Named, Text};
 use marraztu_io as io;
 
-/// Where a panel stands.
+/// The place of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dock {
-    /// Beside the picture; in a narrow window, one at a time.
+    /// At a side of the picture; in a narrow window, one at a time.
     Beside(Side),
-    /// Below everything else.
+    /// At the bottom of the window.
     Bottom,
     /// Below the picture.
     UnderPicture,
-    /// Over the picture, in a place of its own choice.
+    /// Over the picture, wherever the panel chooses.
     Floating,
 }
 
 impl Dock {
-    /// The place beside the picture, if it is one.
+    /// Returns the side of the picture, if the panel is at one.
     #[must_use]
     pub const fn side(self) -> Option<Side> {
         match self {
@@ -54,37 +54,37 @@ impl Dock {
     }
 }
 
-/// A place beside the picture.
+/// A place at a side of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// At the left: the list of objects, cameras and lights.
     Outline,
-    /// At the left, below it: the switches of the view.
+    /// At the left, below the outline: the switches of the view.
     Switches,
     /// At the right: the properties of the selected item.
     Properties,
 }
 
-/// How a panel appears.
+/// The appearance of a panel.
 #[derive(Clone, Copy, Debug)]
 pub struct PanelInfo {
-    /// In files.
+    /// The name in files.
     pub name: &'static str,
-    /// Where it stands.
+    /// Its place.
     pub dock: Dock,
     /// Whether it is open at the first start.
     pub open: bool,
-    /// Keys that show and hide it.
+    /// The keys that show and hide it.
     pub keys: &'static [Chord],
-    /// On menus and buttons.
+    /// The text on menus and buttons.
     pub label: &'static str,
-    /// Over them: one sentence.
+    /// The tooltip: one sentence.
     pub hint: &'static str,
-    /// Other words that people use for it, for searches.
+    /// Synonyms to search for.
     pub words: &'static str,
 }
 
-/// Hands the rows of the table to a macro: variant, file, name in files, dock, whether it is open
+/// Passes the rows of the table to a macro: variant, file, name in files, dock, whether it is open
 /// at the first start, keys, label, hint and words.
 macro_rules! each_panel {
     ($then:ident) => {
@@ -141,7 +141,7 @@ macro_rules! table {
             /// Every panel, in the order of menus.
             pub const ALL: &'static [Self] = &[$(Self::$panel),+];
 
-            /// How the panel appears.
+            /// Returns the appearance of the panel.
             #[must_use]
             pub const fn info(self) -> PanelInfo {
                 match self {
@@ -163,16 +163,16 @@ macro_rules! table {
 each_panel!(table);
 
 impl Panel {
-    /// The panels that Esc closes, and that neither files nor preferences keep open.
+    /// The panels that Esc closes. Files and preferences do not keep them open.
     pub const MOMENTARY: [Self; 3] = [Self::CheatSheet, Self::Preferences, Self::About];
 }
 
-/// Which panels are open.
+/// The set of open panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OpenPanels([bool; Panel::ALL.len()]);
 
 impl OpenPanels {
-    /// Those of the first start.
+    /// The panels open at the first start.
     pub const DEFAULT: Self = {
         let mut open = [false; Panel::ALL.len()];
         let mut i = 0;
@@ -183,39 +183,39 @@ impl OpenPanels {
         Self(open)
     };
 
-    /// Whether a panel is open.
+    /// Returns whether a panel is open.
     #[must_use]
     pub const fn has(self, panel: Panel) -> bool {
         self.0[panel as usize]
     }
 
-    /// These panels, with one of them open or closed.
+    /// Returns these panels with one of them opened or closed.
     #[must_use]
     pub const fn with(mut self, panel: Panel, open: bool) -> Self {
         self.0[panel as usize] = open;
         self
     }
 
-    /// These panels, with one of them toggled.
+    /// Returns these panels with one of them toggled.
     #[must_use]
     pub const fn toggled(self, panel: Panel) -> Self {
         self.with(panel, !self.has(panel))
     }
 
-    /// These panels without the ones that are open only for a moment.
+    /// Returns these panels without the ones that Esc closes.
     #[must_use]
     pub const fn lasting(self) -> Self {
         let [a, b, c] = Panel::MOMENTARY;
         self.with(a, false).with(b, false).with(c, false)
     }
 
-    /// As files keep them.
+    /// Converts the set to the form in files.
     #[must_use]
     pub fn kept(self) -> io::Panels {
         Panel::ALL.iter().map(|panel| (panel.info().name, self.has(*panel))).collect()
     }
 
-    /// Those of a file; what it does not say is as at the first start.
+    /// Reads the set from a file. Panels that the file does not mention are as at the first start.
     #[must_use]
     pub fn of_kept(kept: &io::Panels) -> Self {
         let is_open = |panel: &Panel| kept.is_open(panel.info().name);

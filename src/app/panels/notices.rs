@@ -1,5 +1,5 @@
-//! Notices over the picture: files being loaded, and findings about them. Those that need no answer
-//! go to the status line after some seconds.
+//! Notices over the picture: files being loaded, and findings about them. Notices that need no
+//! answer move to the status line after some seconds.
 
 use std::time::Duration;
 
@@ -19,10 +19,10 @@ use crate::app::widgets::text::file_name;
 use marraztu_core::edit::Gesture;
 use marraztu_core::scene::{ObjectId, UpAxis};
 
-/// The seconds for which a notice that needs no answer is shown.
+/// The time, in seconds, for which a notice without a question is shown.
 const SHOWN: f64 = 8.0;
 
-/// Shows them at the top of the picture; their requests are added to `requests`.
+/// Shows the notices at the top of the picture; their requests are added to `requests`.
 pub(crate) fn show<T>(
     (ctx, picture): (&Context, Rect),
     state: &State,
@@ -49,10 +49,11 @@ pub(crate) fn show<T>(
         .fixed_pos(picture.center_top() + vec2(0.0, 14.0));
     corner.show(ctx, |ui| {
         ui.set_max_width(420.0_f32.min(picture.width() - 16.0).max(200.0));
-        // They lie over others: only controls among them belong to this region.
+        // Notices overlap other regions, so their region is limited to the controls among them.
         let column = Rect::from_min_size(ui.cursor().min, ui.available_size());
         let seen: Option<Rect> = ui.data(|data| data.get_temp(seen_id()));
         regions::begin_in(ui, "notices", seen.unwrap_or(column));
+        // Tasks in progress come first, then offers, then findings.
         for (at, loading) in loading.iter().enumerate() {
             let cancel = Request::CancelLoading(at);
             Frame::popup(ui.style()).show(ui, |ui| task_ui(ui, &loading.task, cancel, requests));
@@ -71,8 +72,8 @@ pub(crate) fn show<T>(
             Frame::popup(ui.style()).show(ui, |ui| missing_ui(ui, &missing, requests));
         }
         for (at, notice) in state.notices.iter().enumerate() {
-            // Ids go with the notice, so that a press on one is never a click on another that has
-            // come to its place.
+            // Ids depend on the notice, not on its index: a press on one notice never becomes a
+            // click on another that has moved to its place.
             ui.push_id((&notice.text, notice.offer.map(Offer::object)), |ui| {
                 Frame::popup(ui.style()).show(ui, |ui| notice_ui(ui, at, notice, state, requests));
             });
@@ -81,7 +82,7 @@ pub(crate) fn show<T>(
     });
 }
 
-/// The id of the place that they took in the frame before.
+/// Returns the id of the notices' area in the previous frame.
 fn seen_id() -> Id {
     Id::unique("place of the notices")
 }
@@ -96,11 +97,11 @@ fn task_ui<T>(ui: &mut Ui, task: &Task<T>, cancel: Request, requests: &mut Vec<R
             requests.push(cancel);
         }
     });
-    // The bar has to move although nothing else does.
+    // The progress bar needs repaints even if nothing else changes.
     ui.ctx().request_repaint_after(Duration::from_millis(50));
 }
 
-/// Unsaved work that a program has left behind.
+/// Shows unsaved work that a crashed program has left behind.
 fn recoverable_ui(ui: &mut Ui, at: usize, work: &str, requests: &mut Vec<Request>) {
     ui.label(work);
     ui.horizontal(|ui| {
@@ -120,7 +121,7 @@ fn recoverable_ui(ui: &mut Ui, at: usize, work: &str, requests: &mut Vec<Request
     });
 }
 
-/// The missing files of the scene.
+/// Reports the missing files of the scene.
 fn missing_ui(ui: &mut Ui, missing: &BTreeSet<&Path>, requests: &mut Vec<Request>) {
     let names: Vec<String> = missing.iter().map(|path| file_name(path)).collect();
     let text = match &names[..] {
@@ -141,7 +142,7 @@ fn missing_ui(ui: &mut Ui, missing: &BTreeSet<&Path>, requests: &mut Vec<Request
     });
 }
 
-/// Missing files in the folder of a found one.
+/// Offers missing files in the folder of a found one.
 fn nearby_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let found: Vec<String> =
         state.missing.nearby.iter().map(|[_, new]| new.display().to_string()).collect();
@@ -190,7 +191,7 @@ fn notice_ui(ui: &mut Ui, at: usize, notice: &Notice, state: &State, requests: &
     }
 }
 
-/// The request that accepts an offer.
+/// Returns the request that accepts an offer.
 fn accepted(offer: Offer, state: &State) -> Option<Request> {
     let gesture = Gesture::Whole;
     match offer.command(&state.scene, &state.view) {
@@ -203,8 +204,8 @@ fn accepted(offer: Offer, state: &State) -> Option<Request> {
     }
 }
 
-/// Sends a notice to the status line once it has been there for some seconds. It stays while the
-/// pointer is over it or it has the keyboard.
+/// Moves a notice to the status line after some seconds. The notice stays while the pointer is over
+/// it or it has the focus.
 fn settle(ui: &Ui, at: usize, focused: bool, requests: &mut Vec<Request>) {
     let id = ui.scope_id().with("since");
     let (now, pointer) = ui.input(|input| (input.time, input.pointer.hover_pos()));
@@ -213,13 +214,13 @@ fn settle(ui: &Ui, at: usize, focused: bool, requests: &mut Vec<Request>) {
     let held = focused || pointer.is_some_and(|at| place.contains(at));
     let since = ui.data_mut(|data| {
         let (since, last): (f64, u64) = data.get_temp(id).unwrap_or((now, pass));
-        // An equal notice that was there before is another one.
+        // After a pause, an equal notice is a new one.
         let since = if held || last + 2 < pass { now } else { since };
         data.insert_temp(id, (since, pass));
         since
     });
     let rest = SHOWN - (now - since);
-    // One a frame: places change with each.
+    // Only one per frame, since the indices of the others change with it.
     let moves = |request: &Request| matches!(request, Request::Settle(_) | Request::PutAway(_));
     if rest <= 0.0 && !requests.iter().any(moves) {
         requests.push(Request::Settle(at));
@@ -228,7 +229,7 @@ fn settle(ui: &Ui, at: usize, focused: bool, requests: &mut Vec<Request>) {
     }
 }
 
-/// The switch of an opened model between the axes of its file that usually point up.
+/// Shows the choice of the up axis of an opened model, between the two usual ones.
 fn up_axis_ui(ui: &mut Ui, state: &State, id: ObjectId, requests: &mut Vec<Request>) {
     let Some(object) = state.scene.objects.get(id) else { return };
     let now = object.model.options.up;

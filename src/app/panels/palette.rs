@@ -1,6 +1,7 @@
-//! The command palette: actions, items and settings, found by what people type.
+//! The command palette finds actions, items and settings by typed words.
 //!
-//! It opens with an empty query. The arrows go through what was found, Enter does it, Esc closes.
+//! It opens with an empty query. The arrow keys move through the results, Enter chooses one, Esc
+//! closes the palette.
 
 use egui::{
     Align2, Id, Key, Modal, RichText, ScrollArea, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, vec2,
@@ -22,18 +23,18 @@ use marraztu_io::EXAMPLES;
 
 const WIDTH: f32 = 560.0;
 
-/// The most lines that are listed.
+/// The maximum number of results.
 const MOST: usize = 60;
 
-/// Something that can be asked for.
+/// A result of the search.
 struct Entry {
     label: String,
-    /// What kind of thing it is.
+    /// The kind of entry.
     kind: &'static str,
     hint: String,
     key: String,
     on: bool,
-    /// Why it cannot be done now.
+    /// The reason why it is not available now, if any.
     refused: Option<String>,
     score: u32,
     request: Request,
@@ -42,19 +43,19 @@ struct Entry {
 /// The height of an entry.
 const ENTRY: f32 = theme::ROW + 2.0;
 
-/// Shows it; its requests are added to `requests`.
+/// Shows the palette; its requests are added to `requests`.
 pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
     let id = Id::unique("palette");
     let room = ui.ctx().content_rect().size();
     let width = WIDTH.min(room.x - 40.0);
     let frame = egui::Frame::popup(&ui.ctx().global_style()).inner_margin(8.0);
-    // It stays where it is, however much is found.
+    // The palette stays in place, whatever the number of results.
     let area = Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, 48.0));
     let shown = Modal::new(id).area(area).frame(frame).show(ui.ctx(), |ui| {
         ui.set_width(width);
         contents(ui, state, requests, (room.y - 120.0).clamp(90.0, 420.0))
     });
-    // Asked once: the answer takes the press of Esc.
+    // Queried once, since the query consumes the press of Esc.
     let closes = shown.should_close();
     if closes {
         Keyboard::note_escape(ui.ctx());
@@ -69,7 +70,7 @@ fn query_id() -> Id {
     Id::unique("palette: query")
 }
 
-/// The next palette begins with an empty query.
+/// Clears the query for the next palette.
 fn forget(ui: &Ui) {
     ui.data_mut(|data| {
         data.remove_temp::<String>(query_id());
@@ -77,13 +78,13 @@ fn forget(ui: &Ui) {
     });
 }
 
-/// The field and the list. Says whether something was chosen.
+/// Shows the field and the list. Returns whether an entry was chosen.
 fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32) -> bool {
     let id = query_id();
     let first = ui.data(|data| data.get_temp::<String>(id)).is_none();
     let mut query: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let mut chosen: usize = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-    // Taken before the field sees them: in it they would move the cursor.
+    // The keys are consumed before the field sees them, where they would move the cursor.
     let (down, up, enter) = ui.input_mut(|input| {
         let mut count = |key| input.count_and_consume_key(egui::Modifiers::NONE, key);
         (count(Key::ArrowDown), count(Key::ArrowUp), count(Key::Enter) > 0)
@@ -110,7 +111,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32
     });
     ui.add_space(theme::GAP);
     let mut clicked = None;
-    // No higher than what is found.
+    // The list is only as high as its results.
     let rows = if entries.is_empty() { 2 } else { entries.len().min(99) };
     let rows = u16::try_from(rows).unwrap_or(99);
     let height = height.min(f32::from(rows) * ENTRY);
@@ -142,7 +143,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32
     true
 }
 
-/// Everything that matches, best first.
+/// Lists all matching entries, best first.
 fn found(keymap: &Keymap, state: &State, query: &str) -> Vec<Entry> {
     let mut search = Search::new(query);
     let mut entries = Vec::new();
@@ -162,6 +163,7 @@ fn found(keymap: &Keymap, state: &State, query: &str) -> Vec<Entry> {
         });
     }
     items(state, &mut search, &mut entries);
+    // Without a query, only actions are listed.
     if !search.is_empty() {
         settings(state, &mut search, &mut entries);
         materials(state, &mut search, &mut entries);
@@ -200,14 +202,15 @@ fn items(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
             key: String::new(),
             on: state.selected() == Some(id),
             refused: None,
-            // Before actions that match alike: a name was given to be found.
+            // Items rank before actions with equal matches, as the user chose their names to find
+            // them.
             score: score + 50,
             request: Request::Select(id),
         });
     }
 }
 
-/// The materials, for the selected objects.
+/// Adds the materials for the selected objects.
 fn materials(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
     let Some(ItemId::Object(id)) = state.selected() else { return };
     let Some(object) = state.scene.objects.get(id) else { return };
@@ -228,7 +231,7 @@ fn materials(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
     }
 }
 
-/// A change of the selected objects.
+/// Creates a change of the selected objects.
 fn of_objects(state: &State, id: ObjectId, label: String, change: impl Fn(&mut Object)) -> Request {
     let (scene, others) = (&state.scene, state.others());
     match items::change_object(scene, id, change) {
@@ -241,7 +244,7 @@ fn of_objects(state: &State, id: ObjectId, label: String, change: impl Fn(&mut O
     }
 }
 
-/// What can have a colour, which is written as `#ff8000` or by its name.
+/// Adds everything that can get a colour, written as `#ff8000` or by its name.
 fn colors(
     state: &State,
     (written, color): (&str, Color),
@@ -259,6 +262,7 @@ fn colors(
         Some(ItemId::Object(id)) => {
             let what = format!("Colour of {name}");
             let request = of_objects(state, id, what.clone(), |object| {
+                // Highlights stay as they are; ambient light follows the new colour.
                 let Material { specular, exponent, .. } = object.part_look(0).material;
                 let diffuse = color.factors();
                 let ambient = diffuse.map(|part| 0.2 * part);
@@ -323,7 +327,7 @@ impl Entry {
     fn ui(&self, ui: &mut Ui, chosen: bool) -> egui::Response {
         let enabled = self.refused.is_none();
         let size = vec2(ui.available_width(), ENTRY);
-        // The arrows go through the list while the field has the keyboard.
+        // The entry takes no focus, so the field keeps the keyboard while the arrow keys move.
         let (rect, response) = ui.allocate_exact_size(size, Sense::CLICK);
         response.widget_info(|| {
             WidgetInfo::selected(egui::Role::ListBoxOption, enabled, chosen, &self.label)
@@ -340,6 +344,7 @@ impl Entry {
         } else if response.hovered() {
             ui.painter().rect_filled(rect, 4.0, visuals.widgets.inactive.bg_fill);
         }
+        // From the right: the key, the kind, and the hint if there is space.
         let mut right = rect.right() - 6.0;
         if !self.key.is_empty() {
             let at = egui::pos2(right, rect.center().y);

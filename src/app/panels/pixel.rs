@@ -1,4 +1,5 @@
-//! A pixel explained: what is seen there, what its colour is made of, and the vectors of its light.
+//! The explanation of a pixel: the item at the pixel, the terms of its colour, and the light
+//! vectors.
 
 use egui::{
     Align2, Color32, Context, Grid, Label, Painter, Pos2, Rect, RichText, Role, ScrollArea, Sense,
@@ -18,13 +19,13 @@ use marraztu_render::{PixelColor, SurfacePoint, Term};
 /// The height of the diagram.
 const DIAGRAM: f32 = 120.0;
 
-/// The length of a vector of length 1 in it.
+/// The length of a unit vector in the diagram.
 const VECTOR: f32 = 72.0;
 
-/// The height of the title, the buttons, and what is around them.
+/// The height of the title, the buttons, and their margins.
 const BUTTONS: f32 = 76.0;
 
-/// The height of the axes above it.
+/// The height of the axes of the world above the window.
 const AXES: f32 = 90.0;
 
 /// Shows the window; its requests are added to `requests`.
@@ -44,7 +45,7 @@ pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut V
         .collapsible(false)
         .show(ctx, |ui| match &pixel.explained {
             Some(explained) => {
-                // The buttons stay in sight.
+                // The buttons remain visible below the scrolled contents.
                 ScrollArea::vertical().max_height(most - BUTTONS).show(ui, |ui| {
                     explained_ui(ui, state, pixel, explained);
                 });
@@ -60,7 +61,7 @@ pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut V
 
 fn explained_ui(ui: &mut Ui, state: &State, pixel: &ExplainedPixel, explained: &PixelColor) {
     let mono = |text: String| RichText::new(text).monospace();
-    // The answer first.
+    // The colour comes first, since it is the answer.
     ui.scope(|ui| sum_ui(ui, pixel, explained));
     if explained.linear {
         ui.weak("Linear light: encoded in sRGB before it is rounded.");
@@ -117,15 +118,15 @@ fn buttons_ui(
     });
 }
 
-/// How wide the name of a term is.
+/// The width of a term's name.
 const TERM: f32 = 140.0;
 
-/// How wide each of its three numbers is.
+/// The width of each number of a term.
 const NUMBER: f32 = 58.0;
 
-/// The terms, their sum, and the byte that it is.
+/// Shows the terms, their sum, and the resulting byte.
 fn sum_ui(ui: &mut Ui, pixel: &ExplainedPixel, explained: &PixelColor) {
-    // Without a sign if nothing is left of the number.
+    // A number that rounds to 0 has no sign.
     let number = |x: f64| format!("{:.3}", if x.abs() < 5e-4 { 0.0 } else { x });
     ui.spacing_mut().item_spacing.y = 1.0;
     let weak = ui.visuals().weak_text_color();
@@ -143,7 +144,7 @@ fn sum_ui(ui: &mut Ui, pixel: &ExplainedPixel, explained: &PixelColor) {
     ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
 }
 
-/// A row of the sum: a name, and three numbers under one another's.
+/// Shows a row of the sum: a name, and three numbers in columns.
 fn term_ui(ui: &mut Ui, label: &str, values: [String; 3], color: Color32) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = theme::GAP;
@@ -166,9 +167,9 @@ fn term_ui(ui: &mut Ui, label: &str, values: [String; 3], color: Color32) {
     });
 }
 
-/// N, V, and L and R of the strongest light, seen from the side: N points up.
+/// Draws N and V, and L and R of the strongest light, seen from the side with N upwards.
 fn diagram_ui(ui: &mut Ui, pixel: &ExplainedPixel, point: &SurfacePoint, explained: &PixelColor) {
-    // Of the nearest surface, which N belongs to.
+    // Only the nearest surface counts, since N belongs to it.
     let lit = |term: &&Term| term.layer == 0 && term.ray.is_some_and(|ray| ray.n_l > 0.0);
     let bright = |term: &&Term| term.value.iter().sum::<f64>();
     let strongest =
@@ -181,7 +182,7 @@ fn diagram_ui(ui: &mut Ui, pixel: &ExplainedPixel, point: &SurfacePoint, explain
     let weak = ui.visuals().weak_text_color();
     painter.hline(rect.shrink(12.0).x_range(), middle.y, Stroke::new(2.0, weak));
     let ray = strongest.and_then(|term| Some((term.light?, term.ray?)));
-    // The plane of N and L, or of N and V without a light.
+    // The plane of N and L, or of N and V if there is no light.
     let aside = ray.map_or(point.to_eye, |(_, ray)| ray.to_light);
     let across = math::unit(aside - point.normal * point.normal.dot(aside))
         .unwrap_or_else(|| point.normal.any_orthonormal_vector());
@@ -210,7 +211,7 @@ fn diagram_ui(ui: &mut Ui, pixel: &ExplainedPixel, point: &SurfacePoint, explain
     ui.add(Label::new(RichText::new(words).small()).wrap());
 }
 
-/// A vector in the plane of the diagram: to the left what leans towards the light.
+/// Projects a vector into the plane of the diagram, with the light at the left.
 #[expect(clippy::cast_possible_truncation, reason = "a drawing for the eye")]
 fn flat(v: DVec3, normal: DVec3, across: DVec3) -> Vec2 {
     vec2(-v.dot(across) as f32, -v.dot(normal) as f32)

@@ -1,7 +1,7 @@
-//! The plan panel: each effect of the picture, on or left out, why, and its cost.
+//! The plan panel: each effect of the picture, whether it is on, why, and its cost.
 //!
-//! Each effect has a line, with the items it applies to below it if they differ. Effects that are
-//! on have a full disk and full text; costs are numbers with bars, so that the largest stands out.
+//! Each effect has a line, with lines for its items below it if they differ. Effects that are on
+//! have a full disk and strong text. Costs are numbers with bars, so the largest is easy to see.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -30,16 +30,16 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     controls::no_narrower(ui, LEAST, |ui| table_ui(ui, state, &explained));
 }
 
-/// The width of the button that measures.
+/// The width of the Measure button.
 const BUTTON: f32 = 70.0;
 
-/// In less width the table is scrolled sideways.
+/// Narrower panels scroll the table sideways.
 const LEAST: f32 = 400.0;
 
-/// In less width the columns are closer together.
+/// Narrower panels have narrower columns.
 const ROOMY: f32 = 540.0;
 
-/// The summary, and the button that measures.
+/// Shows the summary and the Measure button.
 fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained: &Explained) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
@@ -47,7 +47,7 @@ fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained:
         ui.add_space(theme::GAP);
         let summary = RichText::new(summary(explained)).weak();
         let text = controls::text(ui, summary.clone(), TextStyle::Body, f32::INFINITY);
-        // In a narrow window the summary gives way to the button.
+        // In a narrow window, the button takes the place of the summary.
         let room = ui.available_width() - BUTTON - 2.0 * f32::from(theme::MARGIN);
         let label = if text.size().x <= room { ui.label(summary) } else { title };
         label.on_hover_text("Leaving effects out changes no bit of the picture.");
@@ -87,14 +87,14 @@ fn summary(explained: &Explained) -> String {
     format!("{on} on; {left_out} left out, which changes no bit")
 }
 
-/// Whether the measurement is of the picture in the viewport.
+/// Returns whether the measurement belongs to the picture in the viewport.
 fn is_of_now(measured: &Measured, state: &State) -> bool {
     measured.settings == state.settings
         && measured.view == state.view
         && measured.scene == state.scene
 }
 
-/// The start and width of each column.
+/// The rectangles of the columns in a row.
 struct Columns {
     name: Rect,
     on: Rect,
@@ -128,6 +128,7 @@ impl Columns {
 fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
     let (head, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
     let columns = Columns::of(head.with_max_x(head.right() - f32::from(theme::MARGIN)));
+    // Headings of text columns are left-aligned, of numbers right-aligned.
     let titles = [
         (columns.name, "Effect"),
         (columns.on, "Of"),
@@ -146,6 +147,7 @@ fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
 
     let id = Id::unique("plan: unfolded");
     let mut open: BTreeSet<Effect> = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    // The bars of all groups have one scale.
     let most = explained.groups().filter_map(|group| group.pixels()).max().unwrap_or(0);
     let times = state.plan.costs.as_ref().filter(|measured| is_of_now(measured, state));
     let area = ScrollArea::vertical().id_salt("plan").auto_shrink(false);
@@ -171,7 +173,7 @@ fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
     ui.data_mut(|data| data.insert_temp(id, open));
 }
 
-/// The line of an effect. Says whether it was clicked.
+/// Shows the line of an effect. Returns whether it was clicked.
 fn group_ui(
     ui: &mut Ui,
     most: u64,
@@ -226,13 +228,13 @@ fn use_ui(ui: &mut Ui, most: u64, one: &EffectUse) {
 struct Row<'a> {
     name: &'a str,
     indent: f32,
-    /// Whether it is unfolded; `None` if it cannot be.
+    /// Whether it is unfolded; `None` if it cannot be unfolded.
     chevron: Option<bool>,
     on: bool,
     things: &'a str,
     why: &'a str,
     pixels: Option<u64>,
-    /// The largest number of pixels that stands in the table.
+    /// The largest number of pixels in the table.
     most: u64,
 }
 
@@ -260,6 +262,7 @@ impl Row<'_> {
                 Rect::from_center_size(pos2(columns.name.left() + 4.0, middle), vec2(8.0, 8.0));
             icon.paint(ui.painter(), at, 8.0, color);
         }
+        // The disk is next to the effect's name, or next to the item's name in the lines below.
         let disk = if self.name.is_empty() { columns.on.left() + 5.0 } else { mark + 6.0 };
         disk_ui(ui, pos2(disk, middle), self.on);
         let put = |rect: Rect, left: f32, text: &str, color: Color32| {
@@ -295,7 +298,7 @@ impl Row<'_> {
     }
 }
 
-/// A disk: full if an effect is on, empty if it is left out.
+/// Draws a disk: full if an effect is on, empty if it is left out.
 fn disk_ui(ui: &Ui, at: egui::Pos2, on: bool) {
     let visuals = ui.visuals();
     if on {
@@ -306,7 +309,7 @@ fn disk_ui(ui: &Ui, at: egui::Pos2, on: bool) {
     }
 }
 
-/// A number at the right of its column, over a bar as long as its part of the whole.
+/// Draws a right-aligned number over a bar of its share.
 fn number_ui(ui: &Ui, column: Rect, text: &str, part: f64, strong: bool) {
     let visuals = ui.visuals();
     let color = if strong { visuals.text_color() } else { visuals.weak_text_color() };

@@ -1,7 +1,7 @@
-//! Preferences: everything that the program remembers, with a reset for each and for all.
+//! Preferences: everything that the program remembers, with a reset for each row and for all.
 //!
-//! A row changes a copy of [`Preferences`]. The app takes the changed copy as it takes the file at
-//! the start: all rows share one request.
+//! A row changes a copy of [`Preferences`]. The app applies the changed copy in the same way as the
+//! file at the start, so one request serves all rows.
 
 use egui::{
     Align, DragValue, Layout, ScrollArea, Sense, TextStyle, ThemePreference, Ui, Window, vec2,
@@ -25,13 +25,13 @@ const LABEL: f32 = 150.0;
 
 type Requests = Vec<Request>;
 
-/// Something that is remembered.
+/// A remembered value.
 struct Row {
     label: &'static str,
     hint: &'static str,
-    /// Shows it, and changes it.
+    /// Shows the value and lets the user change it.
     ui: fn(&mut Ui, &mut Preferences, &mut Requests),
-    /// Copies it from the first to the second.
+    /// Copies the value from the first preferences to the second.
     copy: fn(&Preferences, &mut Preferences),
 }
 
@@ -214,7 +214,7 @@ fn choose<T: Copy + PartialEq>(
     }
 }
 
-/// The preferences as they are now, with the last known size of the window.
+/// Returns the current preferences, with the last known size of the window.
 pub(crate) fn now(ctx: &egui::Context, state: &State, before: Option<[f32; 2]>) -> Preferences {
     let scale = ctx.zoom_factor();
     let (rect, maximized, minimized) = ctx.input(|input| {
@@ -223,6 +223,7 @@ pub(crate) fn now(ctx: &egui::Context, state: &State, before: Option<[f32; 2]>) 
     });
     let maximized = maximized.unwrap_or(false);
     let size = rect.map(|rect| (rect.size() * scale).round());
+    // A maximized or minimized window says nothing about the usual size.
     let size = size.filter(|_| !maximized && minimized != Some(true));
     let whole = |size: egui::Vec2| [size.x, size.y];
     Preferences {
@@ -268,10 +269,11 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 
 fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let mut now = now(ui.ctx(), state, None);
-    // A window of the first start is no choice.
+    // The default size does not count as a choice of the user.
     now.window =
         now.window.filter(|size| size.map(f32::to_bits) != Preferences::WINDOW.map(f32::to_bits));
     let before = now.clone();
+    // `Preferences::default` does not name panels, so the ones of the first start are added.
     let panels = OpenPanels::DEFAULT.kept();
     let first = Preferences { panels, ..Preferences::default() };
     let list = ui.available_height() - 2.0 * theme::ROW;

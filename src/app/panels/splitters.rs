@@ -10,10 +10,10 @@ use crate::app::state::layout::{Places, Splitter};
 use crate::app::theme;
 use crate::app::widgets::icons::Icon;
 
-/// How wide a splitter is to the mouse.
+/// The width of a splitter for the mouse.
 const GRIP: f32 = 7.0;
 
-/// Shows all splitters, over the panels; their requests are added to `requests`.
+/// Shows all splitters over the panels; their requests are added to `requests`.
 pub(crate) fn show(
     ui: &Ui,
     state: &State,
@@ -26,7 +26,7 @@ pub(crate) fn show(
         else {
             continue;
         };
-        // No stop of Tab: sizes are no part of a scene.
+        // Tab skips splitters, since sizes are not part of the scene.
         let sense = Sense::click_and_drag() - Sense::FOCUSABLE;
         let response = ui.interact(grip, Id::unique(("splitter", splitter)), sense);
         let name = splitter.name();
@@ -43,7 +43,7 @@ pub(crate) fn show(
         } else {
             Stroke::new(1.0, theme::line(ui.visuals()))
         };
-        // Within the panel: of the picture no pixel is covered.
+        // The line is inside the panel, so it covers no pixel of the picture.
         let half = stroke.width / 2.0;
         if splitter.is_upright() {
             let at_left = splitter == Splitter::Right && places.strip.is_none();
@@ -60,7 +60,7 @@ pub(crate) fn show(
     }
 }
 
-/// The buttons that unfold a panel each.
+/// Shows the buttons that unfold panels.
 pub(crate) fn strip_ui(ui: &mut Ui, rect: Rect, state: &State, requests: &mut Vec<Request>) {
     let inner = rect.shrink2(vec2((rect.width() - theme::ROW) / 2.0, theme::GAP));
     let mut child = ui.new_child(UiBuilder::new().id_salt("strip").max_rect(inner));

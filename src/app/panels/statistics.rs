@@ -1,4 +1,4 @@
-//! Statistics over the picture: how much is drawn, how long it takes, and what was drawn again.
+//! Statistics over the picture: triangles drawn, times, and redrawn parts.
 
 use egui::{Align2, Ui};
 
@@ -9,7 +9,7 @@ use crate::app::widgets::text::grouped;
 use marraztu_core::scene::ItemId;
 use marraztu_render::{Change, Damage, DamageCause};
 
-/// Shows the panel in a corner of the picture; it asks for nothing.
+/// Shows the panel in a corner of the picture; it makes no requests.
 pub(crate) fn show(ui: &mut Ui, state: &State, _: &mut Vec<Request>) {
     let statistics = &state.statistics;
     let shown = || state.scene.objects.iter().filter(|(_, object)| object.visible);
@@ -34,7 +34,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, _: &mut Vec<Request>) {
     plate_ui(ui, ui.max_rect(), Align2::LEFT_TOP, text);
 }
 
-/// How large the pixels of a smaller picture are shown.
+/// Describes the enlargement of pixels in a smaller picture.
 const fn shown_as(shrink: Shrink) -> &'static str {
     match shrink {
         Shrink::Whole => "",
@@ -46,7 +46,7 @@ const fn shown_as(shrink: Shrink) -> &'static str {
 /// The maximum number of names in a reason.
 const NAMES: usize = 2;
 
-/// How much of the last picture was redrawn, and why: "14 of 169 tiles drawn: teapot moved".
+/// Describes the redrawn part of the last picture: "14 of 169 tiles drawn: teapot moved".
 fn redrawn(state: &State, changes: &Damage) -> String {
     let why = match changes.cause() {
         DamageCause::First => "a new picture".to_owned(),
@@ -61,7 +61,7 @@ fn redrawn(state: &State, changes: &Damage) -> String {
     format!("{} of {} tiles drawn: {why}", changes.tiles(), changes.tiles_in_all())
 }
 
-/// The changes of items, grouped by kind: "teapot moved, cube and 2 more look different".
+/// Describes changes of items by kind: "teapot moved, cube and 2 more look different".
 fn reasons<'a>(items: &[(ItemId, Change)], name: impl Fn(ItemId) -> Option<&'a str>) -> String {
     let all = [
         (Change::Moved, "moved"),

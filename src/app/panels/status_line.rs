@@ -1,8 +1,8 @@
-//! The status line: what the next key would do, and the last message; without one, what the mouse
-//! does over the picture.
+//! The status line: the effect of the next key, and the last message; without a message, mouse
+//! input over the picture.
 //!
-//! If there is no room for all parts, the least important ones in the middle are left out; no part
-//! is cut off. What the mouse does has the room that is left.
+//! If the window is too narrow for all parts, the least important parts in the middle are left out;
+//! no part is truncated. Hints about the mouse fill the rest of the line.
 
 use egui::{
     Align, Layout, Popup, PopupCloseBehavior, RichText, Role, ScrollArea, Sense, TextStyle, Ui,
@@ -20,10 +20,10 @@ use marraztu_core::scene::{
     CameraMode, Fill, Frame, ItemId, Observer, Projection, Subject, Transformation,
 };
 
-/// What stands between the parts of the line.
+/// The separator between parts.
 const BETWEEN: &str = "  |  ";
 
-/// A longer name is written with dots in its middle.
+/// Longer names are elided in the middle.
 const LONGEST_NAME: usize = 28;
 
 /// Shows the panel; its requests are added to `requests`.
@@ -35,6 +35,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
                 past_ui(ui, state, requests);
                 ui.add_space(theme::GAP);
             }
+            // An open system dialog comes first, since it may be hidden behind the window.
             if let Some(title) = state.asking {
                 let text = format!("the dialog \"{title}\" is open");
                 let message = Message { text, tone: Tone::Done };
@@ -49,7 +50,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// A button that lists the notices that have left the picture, with their details.
+/// Shows a button that lists past notices with their details.
 fn past_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let name = match state.past_notices.len() {
         1 => "1 notice".to_owned(),
@@ -85,14 +86,14 @@ fn past_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     response.on_hover_text(last);
 }
 
-/// The largest size of the list of notices.
+/// The maximum size of the list of notices.
 const LIST: egui::Vec2 = vec2(420.0, 300.0);
 
 fn width(ui: &Ui, text: &str) -> f32 {
     controls::text(ui, RichText::new(text), TextStyle::Body, f32::INFINITY).size().x
 }
 
-/// As much of what the mouse does as there is room for beside the whole line.
+/// Shows the hints about the mouse that fit next to the whole line.
 fn mouse_ui(ui: &mut Ui, state: &State) {
     let used = width(ui, &parts(state).join(BETWEEN)) + 8.0 * theme::GAP;
     let room = ui.available_width() - used;
@@ -103,7 +104,7 @@ fn mouse_ui(ui: &mut Ui, state: &State) {
         .on_hover_text("What the mouse does over the picture; the list of keys has all of it");
 }
 
-/// What the mouse does over the picture, from what is needed first.
+/// Lists hints about the mouse, the most important first.
 fn mouse_hints(state: &State) -> Vec<&'static str> {
     let view = &state.view;
     if view.observer == Observer::Object {
@@ -127,7 +128,7 @@ fn line_ui(ui: &mut Ui, state: &State) {
     response.on_hover_text(format!("{whole}\n{TIME}"));
 }
 
-/// Explains the time at the end of the line.
+/// The explanation of the time at the end of the line.
 const TIME: &str = "The time to draw the last picture, from the scene to pixels in memory. \
     It does not include the time to show the picture in the window.";
 
@@ -146,8 +147,8 @@ fn message_ui(ui: &mut Ui, message: &Message, room: f32) {
     response.on_hover_text(&message.text);
 }
 
-/// The parts of the line, in order: the selection, what the keys do to it, the observer, what it
-/// cost.
+/// Lists the parts of the line in order: the selection, the effect of the keys, the observer, the
+/// cost of the picture.
 fn parts(state: &State) -> Vec<String> {
     let (scene, view) = (&state.scene, &state.view);
     let mut parts =
@@ -177,6 +178,7 @@ fn parts(state: &State) -> Vec<String> {
         let lost = lost.unwrap_or_default();
         parts.push(format!("while moving: {}{lost}", statistics.reduction.words()));
     }
+    // The time of the last picture would be misleading while a slow one is drawn.
     if statistics.late {
         parts.push("drawing".to_owned());
         return parts;
@@ -188,7 +190,7 @@ fn parts(state: &State) -> Vec<String> {
     parts
 }
 
-/// How far the picture is refined.
+/// Describes the progress of refinement.
 fn refined(state: &State) -> Option<String> {
     let most = state.refined_to().filter(|_| state.statistics.pictures > 0)?;
     let now = state.statistics.refined.unwrap_or(state.settings.samples);
@@ -198,7 +200,7 @@ fn refined(state: &State) -> Option<String> {
     })
 }
 
-/// What is drawn otherwise than at first: polygon by polygon, as a wireframe, the selection alone.
+/// Describes unusual display modes: polygon by polygon, wireframe, isolated selection.
 fn drawn(state: &State) -> Vec<String> {
     let (scene, view) = (&state.scene, &state.view);
     let mut parts = Vec::new();
@@ -244,7 +246,7 @@ fn selected(state: &State) -> String {
     }
 }
 
-/// What x, y and z do to the selection, or why nothing.
+/// Returns the effect of x, y and z on the selection, or why they have no effect.
 fn transformation(state: &State) -> Result<Transformation, &'static str> {
     let (scene, view) = (&state.scene, &state.view);
     if state.selected().is_some_and(|id| scene.locked.contains(&id)) {
@@ -283,7 +285,7 @@ fn frame(state: &State) -> Option<&'static str> {
     }
 }
 
-/// How far the next press of x, y or z goes.
+/// Describes the step size of x, y or z.
 fn step(state: &State) -> Option<String> {
     let by = &state.view.steps;
     Some(match transformation(state).ok()? {
@@ -296,10 +298,10 @@ fn step(state: &State) -> Option<String> {
     })
 }
 
-/// The parts joined; if they do not fit, dots replace those in the middle.
+/// Joins the parts. If they do not fit, dots replace parts in the middle.
 fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
     let whole = parts.join(BETWEEN);
-    // The first part and the last ones say most.
+    // The first part and the last ones are the most important.
     for left_out in 0..parts.len().saturating_sub(1) {
         if left_out == 0 {
             if fits(&whole) {
@@ -319,7 +321,7 @@ fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
     parts.first().cloned().unwrap_or_default()
 }
 
-/// `name`, with dots in its middle if it has more than `longest` letters.
+/// Elides the middle of `name` if it has more than `longest` letters.
 pub(crate) fn middle_elided(name: &str, longest: usize) -> String {
     let letters: Vec<char> = name.chars().collect();
     if letters.len() <= longest {

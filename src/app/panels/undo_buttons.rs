@@ -1,8 +1,8 @@
-//! Undo and Redo in the bar of menus.
+//! Undo and Redo in the menu bar.
 //!
-//! A click does one step. Held, pulled down, or clicked with the right button, they list the steps
-//! as the Back button of a browser lists pages; the step on which the mouse button is let go is the
-//! last one that is undone or redone.
+//! A click undoes or redoes one step. A held button, a drag downwards or a right click lists the
+//! steps, as the Back button of a browser lists pages. Releasing the mouse button on a step undoes
+//! or redoes all steps up to it.
 
 use std::time::Duration;
 
@@ -20,14 +20,14 @@ use crate::app::widgets::icons::Icon;
 /// The seconds after which a held button lists its steps.
 const HOLD: f64 = 0.35;
 
-/// How many steps are seen; the others are scrolled to.
+/// The number of visible steps; the others are scrolled to.
 const ROWS: f32 = 14.0;
 
 /// The width of the list.
 const WIDTH: f32 = 240.0;
 
-/// A step of the list: its place in the history, and the position that the history is at once this
-/// step and all nearer ones are undone, or redone.
+/// A step of the list: its index in the history, and the position of the history after undoing or
+/// redoing this step and all nearer ones.
 type Step = (usize, usize);
 
 /// Shows both buttons; their requests are added to `requests`.
@@ -40,7 +40,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     button_ui(ui, state, requests, (Action::Redo, Icon::Redo), undone);
 }
 
-/// A button with its steps, the nearest first.
+/// Shows a button with its steps, the nearest first.
 fn button_ui(
     ui: &mut Ui,
     state: &State,
@@ -55,12 +55,14 @@ fn button_ui(
     icon_at(ui, rect, &response, icon, name, enabled);
     let id = Popup::default_response_id(&response);
     let pulled: bool = ui.data(|data| data.get_temp(id)).unwrap_or(false);
+    // A release after pulling the list down is not a click on the button.
     if response.clicked() && !pulled {
         requests.push(action.into());
     }
     let pulls = pulled || is_pulled(ui, &response);
     let let_go = pulls && !ui.input(|input| input.pointer.primary_down());
     let opens = response.secondary_clicked() || (pulls && !pulled);
+    // A right click or a pull opens the list.
     let popup = Popup::from_response(&response)
         .open_memory(opens.then_some(SetOpenCommand::Bool(true)))
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
@@ -78,7 +80,7 @@ fn button_ui(
     action.explain_also(response, state, "Held or pulled down, it lists the steps.");
 }
 
-/// Whether the button is held for long enough, or was pressed and is pulled down.
+/// Returns whether the button was held long enough, or pressed and dragged downwards.
 fn is_pulled(ui: &Ui, response: &Response) -> bool {
     let (held, since, now, at) = ui.input(|input| {
         let pointer = &input.pointer;
@@ -92,8 +94,8 @@ fn is_pulled(ui: &Ui, response: &Response) -> bool {
     held >= HOLD || at.is_some_and(|at| at.y > response.rect.bottom())
 }
 
-/// The list. Gives the position of the step that was clicked, or on which the button was let go
-/// that has pulled the list down.
+/// Shows the list. Returns the history position of the step that was clicked, or on which the mouse
+/// button was released after pulling the list down.
 fn list_ui(
     ui: &mut Ui,
     state: &State,
@@ -119,7 +121,7 @@ fn list_ui(
             if !rect.intersects(seen) {
                 continue;
             }
-            // A step goes with all that are nearer.
+            // All nearer steps are included.
             let goes = at.is_some_and(|at| at.y >= rect.top());
             let said = format!("{name} {}: {}", i + 1, labels[place]);
             let clicked = row_ui(ui, rect, labels[place], &said, goes);
@@ -138,7 +140,7 @@ fn list_ui(
     chosen
 }
 
-/// A row of the list, marked if its step goes with the one under the pointer. Says whether it was
+/// Shows a row, marked if its step is included in the one under the pointer. Returns whether it was
 /// clicked.
 fn row_ui(ui: &Ui, rect: Rect, label: &str, said: &str, goes: bool) -> bool {
     let response = ui.interact(rect, ui.scope_id().with(said), Sense::click());

@@ -32,7 +32,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         });
         section(ui, "Display", true, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            // Flat shading is a choice in the section above.
+            // Flat shading is in the section above.
             let here = |action: &Action| {
                 *action != Action::ToggleLightNormals && !Group::OVER_PICTURE.contains(action)
             };
@@ -59,8 +59,8 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// Choices among actions: each with its name, whether it is the one, and the action that makes it
-/// so.
+/// Shows a choice among actions: each entry has a label, whether it is chosen, and the action that
+/// chooses it.
 fn actions_ui(
     ui: &mut Ui,
     state: &State,
@@ -77,7 +77,7 @@ fn actions_ui(
     }
 }
 
-/// What the keys act on. The key `c` goes from one to the next.
+/// Shows the subject of the keys. The key `c` changes it to the next one.
 pub(crate) fn subject_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let subject = state.view.subject;
     let all = [
@@ -112,7 +112,7 @@ fn transformation_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     actions_ui(ui, state, requests, "Transformation", &all);
 }
 
-/// How cameras move, or in which frame objects are transformed.
+/// Shows the mode of cameras, or the frame of an object's transformation.
 pub(crate) fn frame_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let view = &state.view;
     let (of, [first, second], is_second) = match view.subject {
@@ -157,10 +157,10 @@ fn background_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// The width of the field of the exposure, in points.
+/// The width of the exposure field, in points.
 const EXPOSURE_WIDTH: f32 = 84.0;
 
-/// The brightness of all light, with a button that fits it.
+/// Shows the exposure, with a button that fits it to the picture.
 fn exposure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     row(ui, "Exposure", |ui| {
         let most = View::MOST_EXPOSURE;
@@ -175,7 +175,7 @@ fn exposure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// The lights with a key of their own, as a row of small switches.
+/// Shows the lights that have keys as a row of small switches.
 fn slots_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
@@ -210,6 +210,7 @@ fn slot_ui(
     let light = state.scene.lights.iter().find(|(_, light)| light.slot == slot);
     let on = light.is_some_and(|(_, light)| light.on);
     let enabled = light.is_some();
+    // A key without a light keeps the focus, so screen readers can report it.
     let sense = if enabled { Sense::click() } else { Sense::focusable_noninteractive() };
     let (rect, _) = ui.allocate_exact_size(vec2(place.width, theme::ROW), Sense::hover());
     let response = ui.interact(rect, place.id, regions::sense(sense, place.is_stop));
@@ -227,7 +228,7 @@ fn slot_ui(
         ui.painter().rect_stroke(rect, 3.0, line, StrokeKind::Inside);
     }
     if on {
-        // What shines is underlined, too.
+        // An underline as well as a colour marks lights that are on.
         let bar = rect.with_min_y(rect.bottom() - 2.0).shrink2(vec2(3.0, 0.0));
         ui.painter().rect_filled(bar, 1.0, theme::accent(visuals));
     }
@@ -249,7 +250,7 @@ fn normals_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     row(ui, "Normals", |ui| actions_ui(ui, state, requests, "Normals", &all));
 }
 
-/// How exactly pictures are drawn: the presets, and every axis of the table.
+/// Shows the accuracy presets and every axis of the table.
 fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let now = state.settings;
     let hints: Vec<String> = ACCURACY_PRESETS.iter().map(AccuracyPreset::in_words).collect();
@@ -262,7 +263,7 @@ fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         requests.push(Request::Settings(ACCURACY_PRESETS[clicked].of(&now)));
     }
     for (i, axis) in AXES.iter().filter(|axis| !is_of_light(axis)).enumerate() {
-        // No control is far from the beginning of a region of the keyboard.
+        // A second region splits the long list for the keyboard.
         if i == AXES.len() / 2 {
             regions::begin(ui, "more axes");
         }
@@ -270,7 +271,7 @@ fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
-/// What the window does beyond the settings: it refines, and keeps a budget of time.
+/// Shows the preferences for drawing: refinement, and the time budget while moving.
 fn drawing_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let now = state.drawing;
     let label = |samples: &Samples| format!("{} samples", samples.count());
@@ -305,21 +306,22 @@ fn drawing_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
-/// Milliseconds: 60, 30 and 10 pictures a second.
+/// Milliseconds for 60, 30 and 10 pictures per second.
 const BUDGETS: [u16; 3] = [16, 33, 100];
 
-/// Whether an axis stands among the switches of light: how things are shaded, where they shine.
+/// Returns whether an axis is in the section for light: shading and highlights.
 fn is_of_light(axis: &Axis) -> bool {
     matches!(axis.key, "shading" | "specular")
 }
 
-/// The choices of an axis of accuracy.
+/// Shows the choices of an axis of accuracy.
 pub(crate) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, requests: &mut Vec<Request>) {
     let now = state.settings;
     let senseless = (axis.sense)(&state.scene, &state.view).err();
     let own = |choice: &marraztu_core::accuracy::Choice| {
         choice.is_of_its_own(&state.scene, &state.view, &now)
     };
+    // The tooltip states the error of a choice, or why the choice has no effect now.
     let hints: Vec<String> = axis
         .choices
         .iter()

@@ -1,4 +1,4 @@
-//! The window painted by OpenGL: eframe.
+//! The window painted with OpenGL, by eframe.
 
 use eframe::NativeOptions;
 use egui::{Ui, ViewportBuilder, Visuals};
@@ -6,7 +6,7 @@ use egui::{Ui, ViewportBuilder, Visuals};
 use super::{Editor, Make, StartError, display_error};
 
 pub(super) fn run(viewport: ViewportBuilder, make: Make) -> Result<(), StartError> {
-    // Without dithering, so that colours are those of the other shell.
+    // Without dithering, which makes the colours equal to those of the other shell.
     let options = NativeOptions { viewport, dithering: false, ..NativeOptions::default() };
     let make: eframe::AppCreator<'static> =
         Box::new(|creation| Ok(Box::new(Guest { editor: make(&creation.egui_ctx), left: false })));
@@ -16,7 +16,7 @@ pub(super) fn run(viewport: ViewportBuilder, make: Make) -> Result<(), StartErro
 /// The editor as an app of eframe.
 struct Guest {
     editor: Box<dyn Editor>,
-    /// Whether the window was asked to close, and the editor did not object.
+    /// Whether the window was asked to close and the editor did not object.
     left: bool,
 }
 
@@ -32,8 +32,8 @@ impl eframe::App for Guest {
     }
 
     fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
-        // eframe also ends when the window is lost, without the frame that asks about closing. If
-        // the editor objects to closing, there is another frame before the end.
+        // eframe also calls this if the window is lost, without a frame that asks about closing. If
+        // the editor objects to closing, another frame follows before the end.
         if self.left {
             self.editor.left();
         }

@@ -1,8 +1,8 @@
-//! The shells: what stands between the editor and the windows of the system.
+//! The shells: the layer between the editor and the windows of the system.
 //!
-//! `gl` is eframe, which paints with OpenGL. `software` paints with the processor alone, straight
-//! into the memory of the window, and needs no OpenGL: it shows the same bytes, and where OpenGL is
-//! itself software it is several times as fast. The editor does not know which of them it is in.
+//! `gl` is eframe, which paints with OpenGL. `software` paints on the CPU, directly into the memory
+//! of the window, without OpenGL. Both show the same bytes. If OpenGL is itself implemented in
+//! software, `software` is several times as fast. The editor does not depend on the shell.
 
 mod gl;
 mod software;
@@ -14,75 +14,76 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use egui::{Context, Ui, ViewportBuilder};
 use winit::raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 
-/// What paints the window.
+/// The way to paint the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shell {
-    /// OpenGL if there is a graphics card for it, otherwise the processor.
+    /// OpenGL if there is a graphics card, else the CPU.
     #[default]
     Automatic,
     /// OpenGL.
     Gl,
-    /// The processor, without OpenGL.
+    /// The CPU, without OpenGL.
     Software,
 }
 
-/// The window, for dialogs of the system that stand over it.
+/// The window as the parent of system dialogs.
 pub(crate) trait Parent: HasWindowHandle + HasDisplayHandle {}
 
 impl<T: HasWindowHandle + HasDisplayHandle> Parent for T {}
 
-/// What a shell shows.
+/// The content of a window.
 pub(crate) trait Editor {
-    /// Shows a frame, and answers what the user did in it.
+    /// Shows a frame and handles the user's input.
     fn frame(&mut self, ui: &mut Ui, parent: &dyn Parent);
 
-    /// The user has left: the window was asked to close, and the editor did not object. A window
-    /// that is lost, to a display that ends or by a fault, is not left.
+    /// Handles the end of the window after the user has left, which means that the window was asked
+    /// to close and the editor did not object. Not called if the window is lost with its display or
+    /// by a fault.
     fn left(&mut self);
 }
 
-/// Makes the editor once the window stands.
+/// Creates the editor after the window was opened.
 pub(crate) type Make = Box<dyn FnOnce(&Context) -> Box<dyn Editor>>;
 
-/// Why no window could be opened, or why it was lost.
+/// The reason why no window could be opened, or why it was lost.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StartError {
-    /// Nothing to show a window on.
+    /// There is no display.
     #[error("no display to open a window on: neither DISPLAY nor WAYLAND_DISPLAY is set")]
     NoDisplay,
-    /// The display does not answer.
+    /// The display does not respond.
     #[error("the display cannot be reached: {0}")]
     Display(String),
     /// A library of the system is missing.
     #[error("the system lacks a library that windows need: {0}")]
     Library(String),
-    /// No OpenGL, not even in software.
+    /// There is no OpenGL, not even in software.
     #[error("OpenGL was not found: install a graphics driver, or use --shell software")]
     NoGl,
-    /// The window is gone, though it was not closed.
+    /// The window is gone without having been closed.
     #[error("the window was lost: {0}")]
     Lost(String),
-    /// Something else.
+    /// Another error.
     #[error("the window could not be opened: {0}")]
     Other(String),
 }
 
-/// What the choice of a shell depends on.
+/// The facts that decide between the shells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Facts {
     /// Whether a graphics card can be opened.
     has_card: bool,
-    /// Whether OpenGL was told to be software.
+    /// Whether the environment asks for OpenGL in software.
     gl_is_software: bool,
 }
 
-/// Shows the editor in a window, and comes back when it is closed.
+/// Shows the editor in a window and returns when the window is closed.
 ///
 /// # Errors
 /// If no window can be opened, or if it is lost.
 pub(crate) fn run(shell: Shell, window: ViewportBuilder, make: Make) -> Result<(), StartError> {
-    // Until the window stands, the system's libraries tell of their absence by panics. They are
-    // told in one sentence instead of being printed.
+    // Until the window is open, libraries of the system report missing parts by panics. Panics are
+    // silenced, and their text is returned as an error of one sentence.
     let earlier = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| {}));
     let make: Make = Box::new(|ctx| {
@@ -100,7 +101,7 @@ pub(crate) fn run(shell: Shell, window: ViewportBuilder, make: Make) -> Result<(
     })
 }
 
-/// The shell that is used: never [`Shell::Automatic`].
+/// Chooses the shell; never returns [`Shell::Automatic`].
 const fn chosen(shell: Shell, facts: Facts) -> Shell {
     match shell {
         Shell::Automatic if facts.has_card && !facts.gl_is_software => Shell::Gl,
@@ -116,12 +117,12 @@ impl Facts {
     }
 }
 
-/// Whether Mesa takes the value of a variable for a yes.
+/// Returns whether Mesa interprets the value of a variable as true.
 fn is_yes(value: &str) -> bool {
     !matches!(value.to_ascii_lowercase().as_str(), "" | "0" | "n" | "no" | "f" | "false" | "off")
 }
 
-/// Whether a graphics card can be opened to draw with.
+/// Returns whether a graphics card can be opened for drawing.
 fn has_card() -> bool {
     if !cfg!(target_os = "linux") {
         return true;
@@ -132,10 +133,10 @@ fn has_card() -> bool {
     cards.any(|card| std::fs::File::options().read(true).write(true).open(card.path()).is_ok())
 }
 
-/// Whether there is anything to show a window on.
+/// Checks that there is a display.
 ///
 /// # Errors
-/// If there is nothing.
+/// If there is no display.
 pub(crate) fn find_display() -> Result<(), StartError> {
     match cfg!(target_os = "linux") && !has_display() {
         true => Err(StartError::NoDisplay),
@@ -149,7 +150,7 @@ fn has_display() -> bool {
         .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
 }
 
-/// What the panic of a library means.
+/// Interprets the text of a library's panic.
 fn explained(text: &str) -> StartError {
     if text.contains("failed to find a matching configuration") {
         StartError::NoGl
@@ -161,7 +162,7 @@ fn explained(text: &str) -> StartError {
     }
 }
 
-/// What an error of the display means: "os error at FILE OF THE LIBRARY:LINE: REASON".
+/// Interprets an error of the display: "os error at FILE OF THE LIBRARY:LINE: REASON".
 fn display_error(error: &dyn std::error::Error) -> StartError {
     let text = error.to_string();
     let reason = text.rsplit(": ").next().unwrap_or(&text).to_owned();

@@ -1,7 +1,7 @@
-//! The window painted by the processor: the loop of events.
+//! The window painted by the CPU: the event loop.
 //!
-//! It does what eframe does with the same libraries, winit and egui-winit, for the one window that
-//! the editor has. It sleeps until something happens or the editor wants to be shown again.
+//! It does the same as eframe, with the same libraries winit and egui-winit, for the editor's one
+//! window. It sleeps until an event arrives or the editor requests a repaint.
 
 use egui::ViewportBuilder;
 use winit::application::ApplicationHandler;
@@ -22,7 +22,7 @@ pub(super) fn run(builder: ViewportBuilder, make: Make) -> Result<(), StartError
 
 struct Software {
     proxy: EventLoopProxy<Wake>,
-    /// What the window is opened with, until it is.
+    /// The arguments for opening the window, until it is open.
     beginning: Option<(ViewportBuilder, Make)>,
     window: Option<Window>,
     end: Option<Result<(), StartError>>,

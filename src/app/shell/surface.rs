@@ -18,9 +18,9 @@ pub(super) struct Surface {
     context: softbuffer::Context<Shared>,
     surface: softbuffer::Surface<Shared, Shared>,
     painter: WindowPainter,
-    /// Whether the window has lost what it showed, so that all of it is shown again.
+    /// Whether the window has lost its content and has to be presented as a whole.
     exposed: bool,
-    /// Whether the memory is not what it was after the last frame.
+    /// Whether the memory may differ from the last frame.
     lost: bool,
 }
 
@@ -34,12 +34,12 @@ impl Surface {
         Ok(Self { context, surface, painter, exposed: true, lost: true })
     }
 
-    /// Shows all of the window in the next frame, not only what has changed.
+    /// Presents the whole window in the next frame, not only the changes.
     pub(super) const fn expose(&mut self) {
         self.exposed = true;
     }
 
-    /// Paints a frame and shows it. Returns a copy of its pixels if that is wanted.
+    /// Paints and presents a frame. Returns a copy of its pixels on request.
     pub(super) fn show(
         &mut self,
         size: [u32; 2],
@@ -65,6 +65,7 @@ impl Surface {
         let mut buffer = self.surface.buffer_mut()?;
         let size = [buffer.width(), buffer.height()];
         let size = size.map(|count| usize::try_from(count.get()).unwrap_or(usize::MAX));
+        // Without a known age, the painter paints every pixel.
         let age = if self.lost { 0 } else { usize::from(buffer.age()) };
         let mut canvas = Canvas { pixels: &mut buffer, size, age };
         let changed = self.painter.paint(&mut canvas, frame, textures);
@@ -82,7 +83,7 @@ impl Surface {
         Ok(copy)
     }
 
-    /// Takes other memory for the window. The next frame shows all of it.
+    /// Replaces the memory of the window. The next frame is presented as a whole.
     fn renew(&mut self, error: &SoftBufferError) -> Result<(), StartError> {
         let window = Arc::clone(self.surface.window());
         let lost = |_| StartError::Lost(error.to_string());

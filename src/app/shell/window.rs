@@ -1,4 +1,4 @@
-//! The window painted by the processor: its events, its frames, and when they come.
+//! The window painted by the CPU: its events, its frames, and their timing.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -16,24 +16,24 @@ use super::surface::Surface;
 use super::{Editor, Make, StartError, display_error};
 use crate::app::painter::WindowFrame;
 
-/// Frames follow each other no faster.
+/// The minimum interval between frames.
 const FASTEST: Duration = Duration::from_micros(1_000_000 / 144);
-/// Those of a window that is not seen.
+/// The minimum interval between frames of a window that is not visible.
 const UNSEEN: Duration = Duration::from_millis(100);
-/// How long the display may take to say when a frame can be shown, before the editor goes on
-/// without showing it: some never do for a window that is covered.
+/// The maximum time to wait for the display's permission to present a frame. After it, the editor
+/// runs without presenting: some displays never respond for a window that is covered.
 const PATIENCE: Duration = Duration::from_millis(250);
-/// How long what the display tells about the window is believed, without an event.
+/// The time for which information of the display about the window is reused without an event.
 const BELIEVED: Duration = Duration::from_secs(1);
-/// The longest side of a texture; windows and pictures have none so long.
+/// The longest side of a texture; windows and pictures are smaller.
 const LONGEST_SIDE: usize = 1 << 14;
 
-/// What wakes the loop, besides events of the window.
+/// An event that wakes the loop, other than events of the window.
 #[derive(Debug)]
 pub(super) enum Wake {
-    /// A frame is wanted at a time; asked for in this pass of egui.
+    /// A repaint was requested for this time, in this pass of egui.
     Repaint { at: Instant, pass: u64 },
-    /// A screen reader asks for something.
+    /// A screen reader requests something.
     Access(accesskit_winit::Event),
 }
 
@@ -43,7 +43,7 @@ impl From<accesskit_winit::Event> for Wake {
     }
 }
 
-/// Whether to go on.
+/// Whether the loop continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Flow {
     On,
@@ -51,7 +51,7 @@ pub(super) enum Flow {
     Left,
 }
 
-/// The window, the editor in it, and what is known about both.
+/// The window, the editor in it, and their state.
 pub(super) struct Window {
     window: Arc<winit::window::Window>,
     ctx: Context,
@@ -59,22 +59,22 @@ pub(super) struct Window {
     surface: Surface,
     editor: Box<dyn Editor>,
     info: ViewportInfo,
-    /// When the display told it; `None` if it has changed since.
+    /// When the information was read; `None` if it is out of date.
     told_at: Option<Instant>,
     size: PhysicalSize<u32>,
     scale: f64,
-    /// Whether the display says when frames are shown.
+    /// Whether the display says when to present a frame.
     is_paced: bool,
     opened_at: Instant,
     has_been_shown: bool,
     /// When the last frame began.
     last: Option<Instant>,
-    /// When a frame is wanted.
+    /// When the next frame is requested.
     due: Option<Instant>,
-    /// When the display was asked for a frame.
+    /// When the display was asked to present a frame.
     asked_at: Option<Instant>,
     actions: Vec<ActionRequested>,
-    /// Textures that are not painted yet.
+    /// Textures that have not been painted yet.
     textures: TexturesDelta,
 }
 
@@ -86,7 +86,8 @@ impl Window {
         make: Make,
     ) -> Result<Self, StartError> {
         let ctx = Context::default();
-        // It is shown once something is painted; screen readers want to know it before.
+        // The window stays hidden until the first frame. Screen readers must be attached before it
+        // is shown.
         let builder = no_larger_than_the_screen(builder, event_loop).with_visible(false);
         let window = egui_winit::create_window(&ctx, event_loop, &builder);
         let window = Arc::new(window.map_err(|error| display_error(&error))?);
@@ -109,10 +110,11 @@ impl Window {
             input.pixels_per_point = pixels_per_point;
         });
         let handle = event_loop.display_handle().ok().map(|handle| handle.as_raw());
+        // X11 does not say when frames are shown.
         let is_paced =
             !matches!(handle, Some(RawDisplayHandle::Xlib(_) | RawDisplayHandle::Xcb(_)));
         let surface = Surface::new(&window)?;
-        // egui may lay a frame out twice, as in eframe.
+        // egui may lay out a frame twice, as in eframe.
         ctx.options_mut(|options| options.max_passes = TWICE);
         let editor = make(&ctx);
         let (told_at, now) = (None, Instant::now());
@@ -137,12 +139,12 @@ impl Window {
         })
     }
 
-    /// The window was closed because the user left.
+    /// Tells the editor that the user has left.
     pub(super) fn leave(&mut self) {
         self.editor.left();
     }
 
-    /// The next time at which a frame is wanted.
+    /// Returns the time of the next frame.
     pub(super) fn next(&self) -> Option<Instant> {
         if let Some(asked_at) = self.asked_at {
             return Some(asked_at + PATIENCE);
@@ -152,9 +154,9 @@ impl Window {
         self.due.map(|due| earliest.map_or(due, |earliest| due.max(earliest)))
     }
 
-    /// egui wants a frame at a time; it asked in this pass.
+    /// Handles a repaint request of egui from this pass.
     pub(super) fn wake(&mut self, at: Instant, pass: u64) {
-        // Older wishes were fulfilled by frames since.
+        // Older requests were fulfilled by frames since then.
         let now = self.ctx.cumulative_pass_nr_for(ViewportId::ROOT);
         if now == pass || now == pass + 1 {
             self.want(at);
@@ -167,7 +169,7 @@ impl Window {
 
     pub(super) fn hear(&mut self, event: &WindowEvent) {
         match event {
-            // The event may be older than the size.
+            // The event may be older than the current size.
             WindowEvent::Resized(_) => self.size = self.window.inner_size(),
             WindowEvent::ScaleFactorChanged { scale_factor, .. } => self.scale = *scale_factor,
             WindowEvent::Occluded(occluded) => {
@@ -182,6 +184,7 @@ impl Window {
             }
             _ => {}
         }
+        // All other events may change the window, so its information is read again.
         if !matches!(
             event,
             WindowEvent::CursorMoved { .. }
@@ -213,12 +216,12 @@ impl Window {
         self.want(Instant::now());
     }
 
-    /// The display wants the window to be painted.
+    /// Handles the display's request to paint the window.
     pub(super) fn redraw(&mut self, event_loop: &ActiveEventLoop) -> Result<Flow, StartError> {
         if self.is_paced {
             return self.frame(event_loop, true);
         }
-        // Here it only tells that a part of the window has come into view.
+        // On X11, the event only says that a part of the window was uncovered.
         self.surface.expose();
         self.want(Instant::now());
         Ok(Flow::On)
@@ -232,6 +235,8 @@ impl Window {
         if self.next().is_none_or(|next| next > now) {
             return Ok(Flow::On);
         }
+        // A display that paces frames is asked first; without an answer in time, the editor runs
+        // anyway.
         let is_late = self.asked_at.take().is_some();
         if self.is_paced && self.is_seen() && !is_late && self.last.is_some() {
             self.asked_at = Some(now);
@@ -245,10 +250,11 @@ impl Window {
         self.info.minimized != Some(true) && self.info.occluded != Some(true)
     }
 
-    /// Lets the editor answer what has happened, and shows it.
+    /// Runs the editor with the input since the last frame, and presents the result.
     fn frame(&mut self, event_loop: &ActiveEventLoop, show: bool) -> Result<Flow, StartError> {
         let now = Instant::now();
         (self.last, self.due, self.asked_at) = (Some(now), None, None);
+        // Information about the window comes from the display, so it is reused for a while.
         if self.told_at.is_none_or(|then| now - then > BELIEVED) {
             egui_winit::update_viewport_info(&mut self.info, &self.ctx, &self.window, false);
             self.told_at = Some(now);
@@ -259,6 +265,8 @@ impl Window {
         let output = self.ctx.run_ui(input, |ui| editor.frame(ui, parent));
         self.info.events.clear();
         let FullOutput { platform_output, textures_delta, shapes, pixels_per_point, .. } = output;
+        // Textures are collected even if nothing is painted, since egui sends each change only
+        // once.
         self.textures.append(textures_delta);
         let (state, window) = (&mut self.state, &self.window);
         state.handle_platform_output_with_event_loop(window, event_loop, platform_output);
@@ -267,6 +275,7 @@ impl Window {
         if self.obey(commands.unwrap_or_default(), asked_to_close) == Flow::Left {
             return Ok(Flow::Left);
         }
+        // A screenshot needs pixels, even of a window that is not visible.
         let wants_copy = self.actions.iter().any(ActionRequested::wants_paint);
         let mut copy = None;
         if (show && self.is_seen()) || wants_copy {
@@ -283,7 +292,7 @@ impl Window {
         Ok(Flow::On)
     }
 
-    /// What has come in since the last frame.
+    /// Collects the input since the last frame.
     fn input(&mut self) -> RawInput {
         let size = vec2(pixels(self.size.width), pixels(self.size.height));
         let size = size / (single(self.scale) * self.ctx.zoom_factor());
@@ -298,7 +307,7 @@ impl Window {
         input.take()
     }
 
-    /// Does what the editor wants done to the window.
+    /// Performs the editor's commands to the window.
     fn obey(&mut self, commands: Vec<ViewportCommand>, asked_to_close: bool) -> Flow {
         if asked_to_close && !commands.contains(&ViewportCommand::CancelClose) {
             return Flow::Left;
@@ -308,13 +317,13 @@ impl Window {
             let window = &self.window;
             egui_winit::process_viewport_commands(&self.ctx, info, commands, window, actions);
             self.told_at = None;
-            // Some displays change it at once, without an event.
+            // Some displays change the size immediately, without an event.
             self.size = self.window.inner_size();
         }
         Flow::On
     }
 
-    /// Does what commands want done to the clipboard and with the picture of the window.
+    /// Performs clipboard actions and screenshots.
     fn act(&mut self, copy: Option<&Arc<egui::ColorImage>>) {
         for action in std::mem::take(&mut self.actions) {
             let event = match action {
@@ -336,7 +345,7 @@ impl Window {
 
 impl Drop for Window {
     fn drop(&mut self) {
-        // egui takes textures that were not painted for a fault.
+        // egui reports dropped textures as a fault.
         self.textures.clear();
     }
 }
@@ -353,19 +362,19 @@ fn pasted(state: &mut State) -> Option<Event> {
     }
 }
 
-/// Lets egui wake the loop, from every thread.
+/// Lets egui wake the loop from any thread.
 fn repaint_through(ctx: &Context, proxy: EventLoopProxy<Wake>) {
     let proxy = Mutex::new(proxy);
     ctx.set_request_repaint_callback(move |wish| {
-        // So late a time means never.
+        // A time beyond the range of the clock means never.
         let Some(at) = Instant::now().checked_add(wish.delay) else { return };
         let wake = Wake::Repaint { at, pass: wish.current_cumulative_pass_nr };
-        // If the loop has ended, nothing is to be repainted.
+        // After the end of the loop, repaints are ignored.
         let _ = proxy.lock().unwrap_or_else(PoisonError::into_inner).send_event(wake);
     });
 }
 
-/// A window larger than every screen makes some displays fail.
+/// Limits the size to that of the largest screen: some displays fail with larger windows.
 fn no_larger_than_the_screen(
     builder: ViewportBuilder,
     event_loop: &ActiveEventLoop,

@@ -10,30 +10,30 @@ use marraztu_lab::error::{Error, Measure, Region};
 use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::{Budgets, Report, brief};
 
-/// What the panel of the laboratory shows.
+/// The contents of the laboratory panel.
 #[derive(Debug)]
 pub struct Laboratory {
-    /// The last measurement, or the one so far.
+    /// The last measurement, or the results so far of the running one.
     pub report: Option<Report>,
-    /// The reports of the suite, once it was measured.
+    /// The reports of the suite, if it was measured.
     pub suite: Vec<Report>,
-    /// Which of them is shown; `None` if that of the scene on screen is.
+    /// The index of the suite's report to show; `None` shows the report of the scene on screen.
     pub shown_suite: Option<usize>,
     /// The progress of the running measurement, from 0 to 1.
     pub running: Option<f64>,
-    /// Why measuring failed, if it did.
+    /// The error message of the last measurement, if it failed.
     pub failed: Option<String>,
     /// The error metric.
     pub measure: Measure,
-    /// The pixels that it is taken over.
+    /// The pixels over which the metric is computed.
     pub region: Region,
-    /// The axis whose plot is shown, by its key; `None` for the overview.
+    /// The axis of the plot on show, by its key; `None` for the overview.
     pub panel: Option<&'static str>,
     /// The budgets of time and error.
     pub budgets: Budgets,
     /// How the picture is compared with the exact one.
     pub compare: Compare,
-    /// What it is compared with; several samples per pixel are always compared with 256.
+    /// The picture to compare with; several samples per pixel are always compared with 256.
     pub reference: Reference,
     /// The error of the picture at the last comparison.
     pub judged: Option<Judged>,
@@ -41,13 +41,13 @@ pub struct Laboratory {
     pub picking: bool,
     /// The last attribution, in lines.
     pub attribution: Option<Vec<String>>,
-    /// The axis whose lesson is shown.
+    /// The axis of the lesson on show.
     pub lesson: &'static Axis,
-    /// Whether this is the scene of a lesson, and there is another to go back to.
+    /// Whether the scene is that of a lesson, with the user's scene to return to.
     pub away: bool,
-    /// What was measured of each axis, by its key, in a sentence.
+    /// The measured effect of each axis, as a sentence, by the axis's key.
     pub costs: BTreeMap<&'static str, String>,
-    /// The panel beside the plots.
+    /// The panel next to the plots.
     pub side: Side,
     /// The scene, the view and the size that were measured.
     pub(crate) measured: Option<(Scene, View, Size)>,
@@ -79,18 +79,18 @@ impl Default for Laboratory {
     }
 }
 
-/// The panel beside the plots.
+/// The panel next to the plots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
-    /// Every choice with its figures.
+    /// Every choice with its measurements.
     #[default]
     Table,
-    /// What each axis teaches.
+    /// A lesson about each axis.
     Lessons,
 }
 
 impl Laboratory {
-    /// The report that is shown.
+    /// Returns the report to show.
     #[must_use]
     pub fn shown(&self) -> Option<&Report> {
         match self.shown_suite {
@@ -99,23 +99,23 @@ impl Laboratory {
         }
     }
 
-    /// Keeps in a sentence what was measured of each axis.
+    /// Keeps the measured effect of each axis as a sentence.
     pub(crate) fn note_costs(&mut self, report: &Report) {
         for axis in AXES.iter().filter(|axis| report.findings.rows_of(axis).count() > 1) {
             self.costs.insert(axis.key, report.verdict_on(axis));
         }
     }
 
-    /// What the picture is compared with: several samples per pixel with 256.
+    /// Returns the picture to compare with: several samples per pixel are compared with 256.
     pub(crate) fn against(&self, settings: &Settings) -> Reference {
         if settings.samples == Samples::One { self.reference } else { Reference::Sampled }
     }
 
-    /// Whether the measurement is not of the picture in the viewport any more.
+    /// Returns whether the measured scene, view or size differs from the viewport's.
     #[must_use]
     pub fn is_stale(&self, state: &State) -> bool {
         self.measured.as_ref().is_some_and(|(scene, view, size)| {
-            // What the keys act on, and how far, changes nothing of the picture.
+            // The item that the keys act on and the size of their steps do not affect the picture.
             let same_view = View {
                 subject: view.subject,
                 light: view.light,
@@ -130,28 +130,28 @@ impl Laboratory {
     }
 }
 
-/// How the picture is compared with the exact one.
+/// The way to compare the picture with the exact one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Compare {
     /// Not at all.
     #[default]
     Off,
-    /// The exact picture to the left of this fraction of the width.
+    /// The exact picture in the left part of the window, up to this fraction of the width.
     Split(f32),
     /// The error instead of the picture, amplified by this factor.
     Error(u16),
 }
 
-/// The error of a picture against the exact one.
+/// The measured error of a picture against the exact one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judged {
     /// The error.
     pub error: Error,
-    /// Of the picture that these settings draw.
+    /// The settings of the picture.
     pub settings: Settings,
 }
 
-/// An error in words: "largest 3 steps, RMSE 0.02, 1.2% of the bytes differ".
+/// Describes an error: "largest 3 steps, RMSE 0.02, 1.2% of the bytes differ".
 pub(crate) fn in_words(error: &Error) -> String {
     let figures = &error.whole;
     if figures.largest == 0 && error.coverage == 0 {

@@ -1,4 +1,4 @@
-//! What is known of the last picture: its statistics, its effects, and a pixel that is explained.
+//! Information about the last picture: its statistics, its effects, and the explanation of a pixel.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,26 +15,26 @@ use marraztu_render::{Damage, PixelColor};
 /// Statistics of the last picture.
 #[derive(Clone, Debug)]
 pub struct Statistics {
-    /// From the snapshot to the finished picture in memory, on the thread that draws, of the last
-    /// picture that differs from the one before.
+    /// The time from the snapshot to the finished picture in memory, on the drawing thread, of the
+    /// last picture that differs from the one before.
     pub time: Duration,
     /// The size of the picture.
     pub size: Size,
     /// The number of pictures drawn.
     pub pictures: u64,
-    /// Whether the picture of what there is now takes so long that the last one is still shown.
+    /// Whether the next picture takes so long that this one is out of date.
     pub late: bool,
     /// The number of pictures shown in the last second.
     pub rate: u32,
     /// The number of triangles drawn.
     pub triangles: usize,
-    /// How its quality is reduced.
+    /// The reduction of its quality.
     pub reduction: Reduction,
-    /// The measured error of that: the root mean square, in steps of a byte.
+    /// The measured error of that reduction: the root mean square, in steps of a byte.
     pub lost: Option<f64>,
-    /// The samples per pixel that it is refined to.
+    /// The samples per pixel after refinement.
     pub refined: Option<Samples>,
-    /// What was redrawn, and why.
+    /// The parts that were redrawn, and why.
     pub changes: Option<Damage>,
 }
 
@@ -59,7 +59,7 @@ impl Statistics {
     /// Records a picture, the `rate`th in the last second.
     pub(crate) fn note(&mut self, drawn: &Drawn, rate: u32) {
         let [width, height] = drawn.image.size;
-        // That nothing had to be drawn again tells nothing of how long the picture takes.
+        // A picture without redrawn tiles says nothing about the time that a picture takes.
         let is_new = self.pictures == 0 || drawn.changes.tiles() > 0;
         *self = Self {
             time: if is_new { drawn.time } else { self.time },
@@ -81,35 +81,35 @@ impl Statistics {
 pub struct Plan {
     /// Its effects.
     pub explained: Option<Arc<Explained>>,
-    /// Their costs in time, if measured.
+    /// Their measured costs in time, if any.
     pub costs: Option<Arc<Measured>>,
-    /// Whether it is being measured.
+    /// Whether a measurement is running.
     pub measuring: bool,
 }
 
-/// The measured costs of effects, and their picture.
+/// The measured costs of effects, with the picture that was measured.
 #[derive(Clone, Debug)]
 pub struct Measured {
-    /// What was measured.
+    /// The costs.
     pub costs: Costs,
-    /// What there was to draw.
+    /// The scene.
     pub scene: Scene,
-    /// How it was looked at.
+    /// The view.
     pub view: View,
-    /// How exactly it was drawn.
+    /// The settings of accuracy.
     pub settings: Settings,
 }
 
-/// A pixel that is explained, and the picture that it belongs to.
+/// The explanation of a pixel, and the picture that the pixel belongs to.
 #[derive(Clone, Debug)]
 pub struct ExplainedPixel {
     /// Column and row, from the upper left.
     pub at: [usize; 2],
-    /// What there is to draw.
+    /// The scene.
     pub scene: Scene,
-    /// How it is looked at.
+    /// The view.
     pub view: View,
-    /// How exactly it is drawn.
+    /// The settings of accuracy.
     pub settings: Settings,
     /// The size of the picture.
     pub size: Size,
@@ -118,7 +118,7 @@ pub struct ExplainedPixel {
 }
 
 impl ExplainedPixel {
-    /// Whether the picture is still the one that was explained.
+    /// Returns whether the picture is still the one that was explained.
     #[must_use]
     pub fn is_of(&self, state: &State, size: Size) -> bool {
         let Self { scene, view, settings, .. } = self;

@@ -1,8 +1,8 @@
 //! Divides the window among the panels and the picture.
 //!
-//! Splitters set wishes: widths of the columns in points, heights as shares. What a window has room
-//! for is worked out from them in each frame, and they stay as they are, so that panels recover
-//! when a window that was small is large again.
+//! Splitters set wishes: widths of the columns in points, and heights as shares. Each frame derives
+//! the real sizes from the wishes and from the size of the window. The wishes do not change, so
+//! panels recover when a small window becomes large again.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use egui::{Rect, pos2, vec2};
 
 use crate::app::panels::{Dock, OpenPanels, Panel, Side};
 
-/// Windows narrower than this show one panel at a time, beside a strip of buttons.
+/// Windows narrower than this show one panel at a time, next to a strip of buttons.
 pub const NARROW: f32 = 900.0;
 
 /// Windows at least this wide have room for wider columns.
@@ -19,10 +19,10 @@ const WIDE: f32 = 1200.0;
 /// The width of the strip of buttons in a narrow window.
 const STRIP: f32 = 30.0;
 
-/// The least height of a panel that shares a column, and of the picture.
+/// The least height of the picture and of a panel that shares a column.
 const LEAST: f32 = 72.0;
 
-/// A border between two panels that can be dragged.
+/// A border between two panels that the user can drag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Splitter {
     /// At the right of the left column.
@@ -38,11 +38,11 @@ pub enum Splitter {
 }
 
 impl Splitter {
-    /// All of them.
+    /// All splitters.
     pub const ALL: [Self; 5] =
         [Self::Left, Self::Right, Self::Switches, Self::Laboratory, Self::Plan];
 
-    /// Its name for screen readers.
+    /// Returns its name for screen readers.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -54,21 +54,21 @@ impl Splitter {
         }
     }
 
-    /// Whether it is dragged to the left and right.
+    /// Returns whether it is dragged to the left and right.
     #[must_use]
     pub const fn is_upright(self) -> bool {
         matches!(self, Self::Left | Self::Right)
     }
 }
 
-/// What the user wishes: `None` is the size that suits the window.
+/// The sizes that the user wishes; `None` is the size that suits the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Layout {
     /// The width of the left column, in points.
     pub left: Option<f32>,
     /// The width of the properties, in points.
     pub right: Option<f32>,
-    /// The share of the left column that the switches have, from 0 to 1.
+    /// The share of the left column that the switches take, from 0 to 1.
     pub switches: Option<f32>,
     /// The laboratory's share of the height.
     pub laboratory: Option<f32>,
@@ -98,7 +98,7 @@ pub struct Places {
 }
 
 impl Layout {
-    /// What the user has chosen, by the names of the borders.
+    /// Returns the sizes that the user has chosen, by the names of the splitters.
     #[must_use]
     pub fn shares(&self) -> BTreeMap<String, f32> {
         let chosen = |splitter: Splitter| {
@@ -114,7 +114,7 @@ impl Layout {
         Splitter::ALL.into_iter().filter_map(chosen).collect()
     }
 
-    /// The layout with these shares.
+    /// Creates the layout with these sizes.
     #[must_use]
     pub fn of_shares(shares: &BTreeMap<String, f32>) -> Self {
         let share =
@@ -130,7 +130,8 @@ impl Layout {
     }
 }
 
-/// A part of `of`, with at least `least` for it and `rest` beside it; half if there is no room.
+/// Returns a part of `of` with at least `least` points, leaving at least `rest`; half if there is
+/// not enough room.
 fn share(of: f32, part: f32, least: f32, rest: f32) -> f32 {
     let size = if of < least + rest { of / 2.0 } else { (of * part).clamp(least, of - rest) };
     size.round()
@@ -141,6 +142,7 @@ impl Layout {
     #[must_use]
     pub fn divide(&self, area: Rect, panels: OpenPanels) -> Places {
         let mut rest = area;
+        // The laboratory spans the width of the window, so it is cut off first.
         let laboratory = panels.has(Panel::Laboratory).then(|| {
             let height = share(area.height(), self.laboratory.unwrap_or(0.58), 150.0, 150.0);
             let (above, place) = cut(rest, area.bottom() - height);
@@ -161,6 +163,7 @@ impl Layout {
         } else {
             self.columns(area.width(), &mut rest, panels, &mut places);
         }
+        // The plan lies under the picture, between the columns.
         places.plan = panels.has(Panel::Plan).then(|| {
             let height = share(rest.height(), self.plan.unwrap_or(0.34), 90.0, LEAST);
             let (above, place) = cut(rest, rest.bottom() - height);
@@ -171,7 +174,7 @@ impl Layout {
         places
     }
 
-    /// One panel at a time, beside the strip.
+    /// Places the strip and the one panel that is unfolded.
     fn one_column(&self, rest: &mut Rect, places: &mut Places) {
         places.strip = Some(rest.with_max_x(rest.left() + STRIP));
         rest.min.x += STRIP;
@@ -190,7 +193,7 @@ impl Layout {
         rest.min.x += width;
     }
 
-    /// The columns at both sides.
+    /// Places the columns at both sides.
     fn columns(&self, width: f32, rest: &mut Rect, panels: OpenPanels, places: &mut Places) {
         let (left, right) = if width >= WIDE { (228.0, 280.0) } else { (212.0, 256.0) };
         if panels.has(Panel::Outline) || panels.has(Panel::View) {
@@ -215,7 +218,7 @@ impl Layout {
         }
     }
 
-    /// The layout after a splitter was dragged to `to`, while the panels stood in these places.
+    /// Returns the layout after a splitter was dragged to `to`, given the places of the panels now.
     #[must_use]
     pub fn dragged(mut self, splitter: Splitter, to: egui::Pos2, area: Rect, now: &Places) -> Self {
         let part =
@@ -238,7 +241,7 @@ impl Layout {
         self
     }
 
-    /// The layout with a splitter where it was at the first start.
+    /// Returns the layout with a splitter at its default place.
     #[must_use]
     pub const fn reset(mut self, splitter: Splitter) -> Self {
         match splitter {
@@ -252,7 +255,7 @@ impl Layout {
     }
 }
 
-/// The parts of a rectangle above and below a height.
+/// Splits a rectangle at a height into the parts above and below.
 fn cut(rect: Rect, y: f32) -> (Rect, Rect) {
     (rect.with_max_y(y), rect.with_min_y(y))
 }
@@ -262,7 +265,7 @@ impl Places {
         self.strip.map_or(0.0, |strip| strip.width())
     }
 
-    /// The place of a dock, if a panel stands there.
+    /// Returns the place of a dock, if it holds a panel.
     #[must_use]
     pub const fn of(&self, dock: Dock) -> Option<Rect> {
         match dock {
@@ -275,7 +278,7 @@ impl Places {
         }
     }
 
-    /// All panels, and the picture.
+    /// Iterates over all panels and the picture.
     pub fn all(&self) -> impl Iterator<Item = Rect> {
         let Self { strip, outline, switches, properties, laboratory, plan, picture } = *self;
         [strip, outline, switches, properties, laboratory, plan, Some(picture)]
@@ -283,7 +286,7 @@ impl Places {
             .flatten()
     }
 
-    /// The place at which a splitter is taken hold of, `thick` points wide, if there is one.
+    /// Returns the area for grabbing a splitter, `thick` points wide, if the splitter is shown.
     #[must_use]
     pub fn grip(&self, splitter: Splitter, thick: f32) -> Option<Rect> {
         let upright = |rect: Rect, x: f32| {

@@ -23,7 +23,7 @@ use marraztu_core::scene::{ItemId, Light, LightId, Object, Scene, UpAxis, View};
 use marraztu_io::{Fingerprint, Helpers, Sources, WindowState, is_example};
 pub use notices::{Message, MissingFiles, Notice, Offer, Tone};
 
-/// The number of items from which on the outline has a field that filters them.
+/// The number of items from which the outline has a filter.
 const MANY: usize = 12;
 
 /// The scene being edited, and everything shown about it.
@@ -35,7 +35,7 @@ pub struct State {
     pub view: View,
     /// The settings of accuracy.
     pub settings: Settings,
-    /// How the window draws beyond what the settings say.
+    /// The user's preferences for drawing in the window.
     pub drawing: DrawingChoices,
     /// The history of changes.
     pub history: History,
@@ -43,20 +43,19 @@ pub struct State {
     pub path: Option<PathBuf>,
     /// The last message, for the status line.
     pub message: Option<Message>,
-    /// Notices over the picture: until the user dismisses them, or for some seconds.
+    /// Notices over the picture. Some stay until the user dismisses them, others for a few seconds.
     pub notices: Vec<Notice>,
-    /// Notices that have gone to the status line, the latest last.
+    /// Notices that have moved to the status line, the latest last.
     pub past_notices: Vec<Notice>,
     /// Statistics of the last picture.
     pub statistics: Statistics,
     /// The effects of the last picture, while the plan is shown.
     pub plan: Plan,
-    /// Which panels are shown.
+    /// The panels that are shown.
     pub panels: OpenPanels,
-    /// Whether pictures may be coarser while something moves, if they would come too late
-    /// otherwise.
+    /// Whether pictures may be drawn at reduced quality while something moves.
     pub coarse_while_moving: bool,
-    /// How the window is divided among them.
+    /// The division of the window among the panels.
     pub layout: Layout,
     /// Whether the palette is open.
     pub palette: bool,
@@ -64,29 +63,29 @@ pub struct State {
     pub overlays: bool,
     /// Whether handles to move, rotate and scale the selection lie over the picture.
     pub gizmo: bool,
-    /// What else is drawn over the picture.
+    /// The other helpers drawn over the picture.
     pub helpers: Helpers,
     /// Whether models are read again when their files change.
     pub watches: bool,
     /// The up axis of models if their files do not state one.
     pub up: UpAxis,
-    /// The part of a name by which the outline filters items.
+    /// The filter of the outline, a part of a name.
     pub filter: String,
-    /// The lights that were on before one was left alone.
+    /// The lights that were on before the user isolated one.
     pub lit_before: BTreeSet<LightId>,
-    /// The items that are selected beside the one that the keys act on.
+    /// The other selected items, without the one that the keys act on.
     pub several: Others,
     /// Whether the next click into the picture aims the selected light.
     pub aiming: bool,
-    /// The title of the system's dialog that is open.
+    /// The title of the system dialog that is open.
     pub asking: Option<&'static str>,
-    /// Whether the strip of the first minute is shown.
+    /// Whether the greeting over the first picture is shown.
     pub greeting: bool,
     /// Whether the next click into the picture explains a pixel.
     pub explaining: bool,
-    /// The pixel that is explained.
+    /// The explanation of a pixel.
     pub explained: Option<Arc<ExplainedPixel>>,
-    /// How large the interface is; 1 is the system's size.
+    /// The scale of the interface; 1 is the system's size.
     pub zoom: f32,
     /// Whether the window is so narrow that panels are folded.
     pub narrow: bool,
@@ -96,13 +95,13 @@ pub struct State {
     pub lab: Laboratory,
     /// The files opened or saved last, the latest first.
     pub recent: Vec<PathBuf>,
-    /// What is said about each unsaved work that a program has left behind.
+    /// A description of each unsaved work that a crashed program has left behind.
     pub recoverable: Vec<String>,
     /// The item that is being renamed.
     pub renaming: Option<ItemId>,
     /// The notices about missing files.
     pub missing: MissingFiles,
-    /// A line for each discarded work that can be brought back.
+    /// A description of each discarded work that can be restored.
     pub discarded: Vec<String>,
     /// The content of the scene's file as this program read or wrote it last.
     pub(crate) content: Option<Fingerprint>,
@@ -110,12 +109,12 @@ pub struct State {
     pub(crate) generation: u32,
     /// The gesture of the last change.
     pub(crate) gesture: Gesture,
-    /// How many changes it has had.
+    /// The number of changes in that gesture.
     pub(crate) repeats: u32,
 }
 
-/// How the window draws beyond what the settings of accuracy say: a preference of the user's, which
-/// neither files nor the laboratory know.
+/// Preferences for drawing in the window. They are not part of files and do not affect the
+/// laboratory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawingChoices {
     /// Whether the picture is refined while nothing happens.
@@ -127,14 +126,14 @@ pub struct DrawingChoices {
 }
 
 impl Default for DrawingChoices {
-    /// Without refining: the program's window does what the preferences say.
+    /// Returns choices without refinement; the program's window takes it from the preferences.
     fn default() -> Self {
         Self { refines: false, refined: Settings::REFINED, budget_ms: 33 }
     }
 }
 
 impl State {
-    /// The state of a new scene, without history.
+    /// Creates the state of a new scene, without history.
     #[must_use]
     pub fn new(scene: Scene, view: View) -> Self {
         Self {
@@ -182,33 +181,33 @@ impl State {
         }
     }
 
-    /// The item that the keys act on.
+    /// Returns the item that the keys act on.
     #[must_use]
     pub fn selected(&self) -> Option<ItemId> {
         selection::selected(&self.view)
     }
 
-    /// The items that are selected beside the one that the keys act on.
+    /// Returns the other selected items, without the one that the keys act on.
     #[must_use]
     pub fn others(&self) -> Vec<ItemId> {
         self.several.of(&self.scene, &self.view).collect()
     }
 
-    /// Whether an item is selected, as the one that the keys act on or beside it.
+    /// Returns whether an item is selected, whether or not the keys act on it.
     #[must_use]
     pub fn is_selected(&self, id: ItemId) -> bool {
         self.selected() == Some(id)
             || self.several.of(&self.scene, &self.view).any(|other| other == id)
     }
 
-    /// Whether there are enough items for the outline to have a field that filters them.
+    /// Returns whether there are enough items for the outline to have a filter.
     #[must_use]
     pub fn has_filter(&self) -> bool {
         let Scene { objects, cameras, lights, .. } = &self.scene;
         objects.len() + cameras.len() + lights.len() >= MANY
     }
 
-    /// Whether the outline lists an item.
+    /// Returns whether the outline lists an item.
     #[must_use]
     pub fn is_listed(&self, id: ItemId) -> bool {
         let filter = self.filter.to_lowercase();
@@ -218,7 +217,7 @@ impl State {
             || self.name(id).is_some_and(|name| name.to_lowercase().contains(&filter))
     }
 
-    /// What commands act on, in words: the name of the selected item, or how many there are.
+    /// Names the targets of commands: the name of the selected item, or the number of items.
     #[must_use]
     pub fn acted_on_name(&self) -> String {
         match self.others().len() {
@@ -227,14 +226,15 @@ impl State {
         }
     }
 
-    /// Whether anything is drawn over the picture now: a comparison shows the pictures alone.
+    /// Returns whether overlays are drawn over the picture now. A comparison hides them.
     #[must_use]
     pub fn shows_overlays(&self) -> bool {
         self.overlays && self.lab.compare == laboratory::Compare::Off
     }
 
-    /// The samples per pixel that the picture is refined to while nothing happens; `None` if it is
-    /// shown as the settings say. Comparisons and measurements are of the settings alone.
+    /// Returns the samples per pixel for refinement while the user is idle; `None` if the picture
+    /// is shown with the samples of the settings. Comparisons and measurements always use the
+    /// settings.
     #[must_use]
     pub fn refined_to(&self) -> Option<Samples> {
         let DrawingChoices { refines, refined, .. } = self.drawing;
@@ -244,7 +244,7 @@ impl State {
         (wanted && self.settings.can_refine()).then_some(refined)
     }
 
-    /// The items whose outlines are drawn over the picture: first the one that the keys act on.
+    /// Returns the items to outline in the picture, first the one that the keys act on.
     pub(crate) fn outlined(&self) -> Vec<ItemId> {
         match self.selected() {
             Some(first) if self.shows_overlays() => {
@@ -254,33 +254,33 @@ impl State {
         }
     }
 
-    /// Its name; empty if nothing is selected.
+    /// Returns the name of the selected item; empty if nothing is selected.
     #[must_use]
     pub fn selected_name(&self) -> &str {
         self.selected().and_then(|id| self.name(id)).unwrap_or_default()
     }
 
-    /// The name of an item.
+    /// Returns the name of an item.
     #[must_use]
     pub fn name(&self, id: ItemId) -> Option<&str> {
         self.scene.name(id)
     }
 
-    /// The file name of the scene, or of its only model; or a placeholder.
+    /// Returns the file name of the scene or of its only model, or a placeholder.
     #[must_use]
     pub fn file_name(&self) -> String {
         let name = self.path.as_deref().or(self.only_model()).and_then(Path::file_name);
         name.map_or_else(|| "new scene".to_owned(), |name| name.to_string_lossy().into_owned())
     }
 
-    /// The file of the only model.
+    /// Returns the file of the only model.
     fn only_model(&self) -> Option<&Path> {
         let mut objects = self.scene.objects.iter();
         let model = objects.next().and_then(|(_, object)| object.model.source.as_deref());
         model.filter(|_| objects.next().is_none())
     }
 
-    /// The folder of the scene, or of its selected model, or of the first model that has one.
+    /// Returns the folder of the scene, of its selected model, or of the first model with a file.
     pub(crate) fn folder(&self) -> Option<PathBuf> {
         let source = |object: &Object| object.model.source.clone().filter(|path| !is_example(path));
         let selected = self.view.object.and_then(|id| self.scene.objects.get(id)).and_then(source);
@@ -290,7 +290,8 @@ impl State {
         file.parent().map(Path::to_owned)
     }
 
-    /// A name without ending for a file of the scene: that of its scene file, or of its only model.
+    /// Proposes a name without extension for a file of the scene: that of the scene file, or of the
+    /// only model.
     pub(crate) fn proposed_name(&self) -> String {
         let stem = self.path.as_deref().or(self.only_model()).and_then(Path::file_stem);
         stem.map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned())
@@ -301,12 +302,12 @@ impl State {
         self.message = text.map(|text| Message { text, tone: Tone::Done });
     }
 
-    /// The files that the scene was read from.
+    /// Returns the files that the scene was read from.
     pub(crate) fn sources(&self) -> Sources {
         Sources::of(&self.scene).with(&self.path)
     }
 
-    /// What a scene file keeps of the window.
+    /// Returns the state of the window that a scene file stores.
     #[must_use]
     pub fn window(&self) -> WindowState {
         WindowState {
@@ -315,14 +316,14 @@ impl State {
         }
     }
 
-    /// Takes what a scene file has kept of the window.
+    /// Applies the state of the window that a scene file has stored.
     pub(crate) fn set_window(&mut self, window: &WindowState) {
         let WindowState { coarse_while_moving, panels } = window;
         self.coarse_while_moving = *coarse_while_moving;
         self.panels = OpenPanels::of_kept(panels);
     }
 
-    /// Whether anything in the scene moves by itself.
+    /// Returns whether anything in the scene moves by itself.
     #[must_use]
     pub fn is_animated(&self) -> bool {
         let circles = |light: &Light| light.kind.orbit().is_some_and(|orbit| orbit.on);
@@ -330,7 +331,7 @@ impl State {
             || self.scene.lights.iter().any(|(_, light)| circles(light))
     }
 
-    /// How many changes `gesture` will have had after the next one.
+    /// Returns the number of changes in `gesture` after the next one.
     pub(crate) fn next_repeat(&self, gesture: Gesture) -> u32 {
         match self.phase(gesture) {
             GesturePhase::First => 1,
@@ -338,7 +339,8 @@ impl State {
         }
     }
 
-    /// The phase of the next change in `gesture`: the first one pushes the old transform.
+    /// Returns the phase of the next change in `gesture`. The first change pushes the old
+    /// transform.
     #[must_use]
     pub fn phase(&self, gesture: Gesture) -> GesturePhase {
         if gesture != Gesture::Whole && gesture == self.gesture {

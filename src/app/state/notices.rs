@@ -1,4 +1,4 @@
-//! What the window says: messages in the status line, notices, and what they offer.
+//! The messages of the window: in the status line, and as notices with offers.
 
 use std::path::PathBuf;
 
@@ -19,9 +19,9 @@ pub struct Message {
 /// The tone of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tone {
-    /// It was done.
+    /// An action was done.
     Done,
-    /// It was not done, for this reason.
+    /// An action was not done, for the reason given.
     Refused,
 }
 
@@ -37,7 +37,8 @@ pub struct Notice {
 }
 
 impl Notice {
-    /// Whether it waits for an answer. Any other notice goes to the status line after some seconds.
+    /// Returns whether it waits for an answer. Any other notice moves to the status line after some
+    /// seconds.
     #[must_use]
     pub const fn needs_answer(&self) -> bool {
         match self.offer {
@@ -52,27 +53,27 @@ impl Notice {
 pub struct MissingFiles {
     /// Whether the notice that counts them was dismissed.
     pub dismissed: bool,
-    /// The old and the new path of those in the folder of a file that the user has found.
+    /// The old and new paths of missing files that lie in the folder of a file found by the user.
     pub nearby: Vec<[PathBuf; 2]>,
 }
 
 /// An action that a notice offers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Offer {
-    /// To bring an object into view.
+    /// Bring an object into view.
     Frame(ObjectId),
-    /// To draw both sides of an object's faces.
+    /// Draw both sides of an object's faces.
     TwoSides(ObjectId),
-    /// To show an object that is hidden.
+    /// Show a hidden object.
     Show(ObjectId),
-    /// To make an object opaque.
+    /// Make an object opaque.
     Opaque(ObjectId),
-    /// To choose which axis of its file points up in an object.
+    /// Choose the axis of its file that points up.
     Up(ObjectId),
 }
 
 impl Offer {
-    /// The label of its button.
+    /// Returns the label of its button.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -84,7 +85,7 @@ impl Offer {
         }
     }
 
-    /// The object that it is about.
+    /// Returns the object that it is about.
     #[must_use]
     pub const fn object(self) -> ObjectId {
         match self {
@@ -96,11 +97,11 @@ impl Offer {
         }
     }
 
-    /// The change of the scene, and its label in the history; `None` if the model has to be read
-    /// again first.
+    /// Returns the change of the scene and its label in the history; `None` if the model has to be
+    /// read again first.
     ///
     /// # Errors
-    /// If the object is gone, or the observer is an object.
+    /// Fails if the object is gone or is the observer.
     pub fn command(self, scene: &Scene, view: &View) -> Result<Option<(Command, String)>, Refusal> {
         let id = self.object();
         let name = &scene.objects.get(id).ok_or(Refusal::Gone)?.name;
@@ -122,8 +123,11 @@ impl Offer {
     }
 }
 
-/// Makes an object opaque: its own opacity becomes 1. If it was, the materials or the texture of
-/// its file hide it: it gets the first part's material as its own, or shows its material alone.
+/// Makes an object opaque by setting its opacity to 1.
+///
+/// If the opacity was 1 already, the materials or the texture of the file make it transparent. If
+/// every part has an opacity of 0, the object gets the first part's material as its own. If a part
+/// has a texture, the object shows its material alone.
 fn make_opaque(object: &mut Object) {
     let was_transparent = object.opacity < 1.0;
     object.opacity = 1.0;

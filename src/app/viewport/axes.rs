@@ -1,4 +1,4 @@
-//! The world's axes in a corner of the picture; a click on an end looks from there.
+//! The world's axes in a corner of the picture; a click on an end looks along that axis.
 
 use egui::{Align2, Color32, Pos2, Rect, Stroke, TextStyle, Ui, vec2};
 use glam::DMat3;
@@ -8,13 +8,13 @@ use crate::app::state::State;
 use crate::app::theme;
 use marraztu_core::base::math::Axis;
 
-/// From the middle to an end, in points.
+/// The distance from the middle to an end, in points.
 const LENGTH: f32 = 30.0;
 
 /// The radius of an end.
 const END: f32 = 8.0;
 
-/// Pictures smaller than this have no axes in their corner.
+/// Pictures with a smaller side than this do not show the axes.
 const LEAST: f32 = 180.0;
 
 /// The end of an axis.
@@ -23,13 +23,13 @@ pub(super) struct End {
     axis: Axis,
     positive: bool,
     at: Pos2,
-    /// Towards the observer: positive.
+    /// The component towards the observer.
     nearness: f32,
-    /// What a click on it does.
+    /// The action of a click on it.
     pub(super) action: Action,
 }
 
-/// The six ends, the farthest first; none in a small picture.
+/// Returns the six ends, the farthest first; none in a small picture.
 #[expect(clippy::cast_possible_truncation, reason = "places on the screen are for the eye")]
 pub(super) fn ends(state: &State, rect: Rect) -> Vec<End> {
     if !state.shows_overlays() || rect.width().min(rect.height()) < LEAST {
@@ -54,12 +54,12 @@ pub(super) fn ends(state: &State, rect: Rect) -> Vec<End> {
     ends
 }
 
-/// The end at a place of the window: the nearest of those that lie over one another.
+/// Finds the end at a place of the window. If ends overlap, the nearest to the observer is found.
 pub(super) fn end_at(ends: &[End], at: Pos2) -> Option<End> {
     ends.iter().rev().find(|end| end.at.distance(at) <= END + 1.0).copied()
 }
 
-/// Draws the axes: X, Y and Z have letters, their other ends are rings.
+/// Draws the axes. The positive ends have letters; the negative ends are rings.
 pub(super) fn show(ui: &Ui, rect: Rect, ends: &[End], hovered: Option<End>) {
     if ends.is_empty() {
         return;
@@ -68,7 +68,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, ends: &[End], hovered: Option<End>) {
     let painter = ui.painter().with_clip_rect(rect);
     painter.circle_filled(middle, LENGTH + END + 3.0, Color32::from_black_alpha(90));
     for end in ends {
-        // On the dark disk the light colours are read in both themes.
+        // The light colours are readable on the dark disk in both themes.
         let color = theme::axis_on_dark(end.axis);
         let is_hovered = hovered == Some(*end);
         let ring = if is_hovered { Color32::WHITE } else { color };
@@ -96,7 +96,7 @@ mod tests {
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(800.0, 600.0));
         let all = ends(&state, rect);
         assert_eq!(all.len(), 6);
-        // The camera looks along -Z: +Z and -Z lie over one another in the middle.
+        // The camera looks along -Z, so +Z and -Z overlap in the middle.
         let middle = all.last().unwrap().at;
         assert_eq!(end_at(&all, middle).unwrap().action, Action::LookFront);
         let right = middle + vec2(LENGTH, 0.0);

@@ -1,4 +1,4 @@
-//! What a click into the picture asks for, once it is known what it has hit.
+//! Turns clicks into the picture into requests, as soon as the picked item is known.
 
 use egui::Context;
 
@@ -14,7 +14,7 @@ use marraztu_core::scene::ItemId;
 use marraztu_render::Hit;
 
 impl Viewport {
-    /// Takes the answer to a pick; adds the requests that follow from it.
+    /// Handles the answer to a pick and adds the resulting requests.
     pub(super) fn answer(
         &mut self,
         ctx: &Context,
@@ -38,7 +38,7 @@ impl Viewport {
                 let found = item.map(|item| self.unlocked(state, pick.at, item));
                 requests.extend(found.map(|item| item.map_or_else(Request::Refuse, also)));
             }
-            // It is answered without a picture.
+            // A box is answered without a pick in the picture.
             Purpose::Box(_) => {}
             Purpose::Aim(at) => requests.push(match (hit, self.place) {
                 (Some(hit), Some((rect, size))) => {
@@ -49,7 +49,7 @@ impl Viewport {
                 }
                 _ => Request::Refuse("nothing is here to aim at: click on an object".to_owned()),
             }),
-            // What lies under a light's mark is meant.
+            // A light's mark is skipped in favour of the object under it.
             Purpose::Frame => match self.framed(state, pick.at, item) {
                 Some(item) => {
                     requests.extend([Request::Select(item), Request::Do(Action::FrameSelection)]);
@@ -64,7 +64,8 @@ impl Viewport {
         }
     }
 
-    /// What a double click frames: the object there, also if the mark of a light lies over it.
+    /// Returns the item that a double click frames. A light's mark is skipped in favour of the
+    /// object under it.
     fn framed(&self, state: &State, at: [usize; 2], item: Option<ItemId>) -> Option<ItemId> {
         match item {
             Some(ItemId::Light(_)) => {
@@ -75,8 +76,8 @@ impl Viewport {
         }
     }
 
-    /// The request of a click on `hit`: selects the polygon in polygon mode, otherwise the item; a
-    /// second click on the same pixel selects the object behind the selected one.
+    /// Returns the request of a click on `hit`: it selects the polygon in polygon mode, else the
+    /// item. A second click on the same pixel selects the object behind the selected one.
     fn selecting(&mut self, state: &State, at: [usize; 2], hit: Hit) -> Request {
         match self.unlocked(state, at, hit.item) {
             Ok(item) if item == hit.item => {}
@@ -101,7 +102,7 @@ impl Viewport {
         }
     }
 
-    /// The item that a click here selects: `item`, or the nearest behind it if that is locked.
+    /// Returns the item that a click selects: `item`, or the nearest unlocked one behind it.
     fn unlocked(&self, state: &State, at: [usize; 2], item: ItemId) -> Result<ItemId, String> {
         let is_locked = |item: &ItemId| state.scene.locked.contains(item);
         if !is_locked(&item) {

@@ -1,7 +1,7 @@
 //! Compares the picture with the exact one: a split viewport, or the amplified error.
 //!
-//! Both pictures are drawn on one background thread whenever the scene has changed, so that they
-//! always show the same moment. Until they are there, the exact half is dimmed and says so.
+//! One background thread draws both pictures whenever the scene has changed, so they always show
+//! the same moment. Until they are finished, the exact half is dimmed and labelled.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use marraztu_io::Progress;
 use marraztu_lab::error::{Error, amplified};
 use marraztu_lab::picture_source::{PictureSource as _, Reference, Studio};
 
-/// Everything that the two pictures depend on.
+/// All inputs of the two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Compared {
     pub(crate) scene: Scene,
@@ -46,7 +46,7 @@ pub(crate) struct Drawing {
     pub(crate) task: Task<Option<Box<Pair>>>,
 }
 
-/// Draws both; `None` if `progress` is cancelled.
+/// Draws both pictures; `None` if `progress` is cancelled.
 pub(crate) fn draw(of: Compared, progress: &Progress) -> Option<Pair> {
     let shot = Shot::new(&of.scene, &of.view, &of.settings, of.size);
     let mut studio = Studio::watched(shot, progress.clone());
@@ -62,15 +62,15 @@ pub(crate) fn draw(of: Compared, progress: &Progress) -> Option<Pair> {
     Some(Pair { of, exact: exact.picture().clone(), ours: ours.picture().clone(), error })
 }
 
-/// The pictures, and the thread that draws them.
+/// The compared pictures, and the task that draws new ones.
 #[derive(Default)]
 pub(crate) struct Comparison {
-    /// The pair that is being drawn, if one is.
+    /// The pair in progress, if any.
     pub(crate) drawing: Option<Drawing>,
     pub(crate) drawn: Option<Box<Pair>>,
     /// The request of the last frame.
     pub(crate) wanted: Option<Compared>,
-    /// Whether the drawn half belongs to the picture in the window.
+    /// Whether the finished pair belongs to the picture in the window.
     pub(crate) current: bool,
     exact: Option<TextureHandle>,
     /// The amplified error, with its factor.
@@ -86,7 +86,7 @@ impl std::fmt::Debug for Comparison {
 }
 
 impl Comparison {
-    /// Forgets the pictures of a scene that is no longer shown.
+    /// Discards the pictures of a scene that is no longer shown.
     pub(crate) fn forget(&mut self) {
         if let Some(drawing) = &self.drawing {
             drawing.task.progress.cancel();
@@ -94,7 +94,7 @@ impl Comparison {
         (self.drawn, self.exact, self.error, self.current) = (None, None, None, false);
     }
 
-    /// Shows a pair from now on.
+    /// Shows a new pair.
     pub(crate) fn take(&mut self, ctx: &Context, drawn: Box<Pair>) {
         load(ctx, &mut self.exact, "exact", &drawn.exact);
         self.error = None;
@@ -112,6 +112,7 @@ impl Comparison {
 
     fn split_ui(&self, ui: &Ui, rect: Rect, part: f32, requests: &mut Vec<Request>) {
         let scale = ui.ctx().pixels_per_point();
+        // The split is aligned to whole pixels, so it cuts through none.
         let x = ((rect.left() + part * rect.width()) * scale).round() / scale;
         let left = rect.with_max_x(x);
         if let Some(exact) = &self.exact {
@@ -124,7 +125,7 @@ impl Comparison {
         let (dark, light) = (egui::Color32::from_black_alpha(160), egui::Color32::WHITE);
         ui.painter().vline(x, rect.y_range(), Stroke::new(3.0, dark));
         ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, light));
-        // At the lower end, so that it does not cover the picture.
+        // The handle is at the lower end, where it covers little of the picture.
         let low = pos2(x, rect.bottom() - HANDLE.y);
         let handle = Rect::from_center_size(low, HANDLE);
         let response = ui.interact(grip_at(rect, part), Id::unique("split"), Sense::drag());
@@ -147,6 +148,7 @@ impl Comparison {
             dim(ui, rect);
             return plate_ui(ui, rect, Align2::LEFT_TOP, format!("Error x {factor}: drawing"));
         };
+        // The amplified picture is computed once per pair and factor.
         if self.error.as_ref().is_none_or(|(last, _)| *last != factor) {
             let mut texture = self.error.take().map(|(_, texture)| texture);
             let picture = amplified(&drawn.ours, &drawn.exact, factor);
@@ -163,15 +165,15 @@ impl Comparison {
     }
 }
 
-/// Dims what does not show the scene as it is now.
+/// Dims a picture that is out of date.
 fn dim(ui: &Ui, rect: Rect) {
     ui.painter().rect_filled(rect, 0.0, egui::Color32::from_black_alpha(120));
 }
 
-/// The size of the handle of the slider.
+/// The size of the slider's handle.
 const HANDLE: egui::Vec2 = vec2(12.0, 34.0);
 
-/// The grip of the slider between the two pictures; a press there is not a press on the picture.
+/// Returns the area for grabbing the slider; a press there does not reach the picture.
 pub(crate) fn grip(state: &State, rect: Rect) -> Option<Rect> {
     match state.lab.compare {
         Compare::Split(part) => Some(grip_at(rect, part)),
@@ -188,7 +190,7 @@ fn whole() -> Rect {
     Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0))
 }
 
-/// Puts a picture into a texture, unfiltered.
+/// Copies a picture into a texture without filtering.
 fn load(ctx: &Context, texture: &mut Option<TextureHandle>, name: &str, picture: &Picture) {
     let Size { width, height } = picture.size();
     let bytes = picture.pixels().as_flattened();

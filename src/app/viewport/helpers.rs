@@ -1,6 +1,6 @@
-//! Helpers over the picture: the ground's grid, and the sizes of the selected objects.
+//! Helpers over the picture: the grid on the ground, and the sizes of the selected objects.
 //!
-//! The grid lies behind everything: its lines are drawn over those pixels alone that show the
+//! The grid appears behind everything, because its lines cover only pixels that show the
 //! background.
 
 use egui::{Color32, ColorImage, Painter, Pos2, Rect, Stroke, TextStyle, Ui, vec2};
@@ -14,13 +14,14 @@ use marraztu_core::base::math::Axis;
 use marraztu_core::edit::{arrange, steps};
 use marraztu_core::scene::{Bounds, ItemId};
 
-/// The lines of the grid to each side of its middle.
+/// The number of grid lines on each side of the middle.
 const LINES: i32 = 10;
 
-/// Each line is cut into this many pieces, since one that passes the observer is cut at near.
+/// The number of pieces of each line. A piece that reaches behind the observer is cut at the near
+/// plane.
 const PIECES: i32 = 20;
 
-/// The grid on the ground, seen where `image` shows the background.
+/// Draws the grid on the ground over pixels of `image` that show the background.
 pub(super) fn grid_ui(ui: &Ui, state: &State, onto: &Projection, image: Option<&ColorImage>) {
     let Some(image) = image.filter(|_| state.helpers.grid && state.shows_overlays()) else {
         return;
@@ -31,6 +32,7 @@ pub(super) fn grid_ui(ui: &Ui, state: &State, onto: &Projection, image: Option<&
     let painter = ui.painter().with_clip_rect(rect);
     let spacing = steps::of_grid(&state.scene);
     let at = |x: i32, z: i32| DVec3::new(f64::from(x), 0.0, f64::from(z)) * spacing;
+    // Dark lines on a bright background, bright lines on a dark one.
     let is_bright = u32::from(r) + u32::from(g) + u32::from(b) > 3 * 128;
     let plain =
         if is_bright { Color32::from_black_alpha(70) } else { Color32::from_white_alpha(60) };
@@ -53,7 +55,7 @@ pub(super) fn grid_ui(ui: &Ui, state: &State, onto: &Projection, image: Option<&
     }
 }
 
-/// The pixels that show the background.
+/// The picture, as a mask of the background.
 struct Ground<'a> {
     image: &'a ColorImage,
     rect: Rect,
@@ -61,10 +63,11 @@ struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    /// Draws those parts of a line at which the picture shows the background.
+    /// Draws the parts of a line over pixels that show the background.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within a line")]
     fn line(&self, painter: &Painter, ends: [Pos2; 2], stroke: Stroke) {
         let Some([from, to]) = within(self.rect, ends) else { return };
+        // The line is sampled about once per point, and samples over the background are joined.
         let count = (to - from).length().ceil().max(1.0) as u16;
         let at = |i: u16| from + (to - from) * (f32::from(i) / f32::from(count));
         let mut begun = None;
@@ -100,8 +103,8 @@ impl Ground<'_> {
     }
 }
 
-/// The part of a line within a rectangle (Liang and Barsky, "A New Concept and Method for Line
-/// Clipping", 1984).
+/// Clips a line to a rectangle (Liang and Barsky, "A New Concept and Method for Line Clipping",
+/// 1984).
 fn within(rect: Rect, [a, b]: [Pos2; 2]) -> Option<[Pos2; 2]> {
     let way = b - a;
     let (mut from, mut to) = (0.0_f32, 1.0_f32);
@@ -124,7 +127,7 @@ fn within(rect: Rect, [a, b]: [Pos2; 2]) -> Option<[Pos2; 2]> {
     (from < to).then(|| [a + way * from, a + way * to])
 }
 
-/// The boxes around the selected objects, and how large they are.
+/// Draws boxes around the selected objects, labelled with their sizes.
 pub(super) fn dimensions_ui(ui: &Ui, state: &State, onto: &Projection) {
     if !state.helpers.dimensions || !state.shows_overlays() {
         return;
@@ -147,6 +150,7 @@ pub(super) fn dimensions_ui(ui: &Ui, state: &State, onto: &Projection) {
 fn box_ui(ui: &Ui, painter: &Painter, onto: &Projection, bounds: &Bounds, stroke: Stroke) {
     let corners = bounds.corners();
     let size = bounds.extent();
+    // Each axis has four parallel edges. The outermost on the screen is labelled.
     for axis in Axis::ALL {
         let bit = 1 << axis.index();
         let edges = (0..8).filter(|corner| corner & bit == 0);
@@ -155,11 +159,11 @@ fn box_ui(ui: &Ui, painter: &Painter, onto: &Projection, bounds: &Bounds, stroke
             onto.line(painter, *ends, stroke);
         }
         let middles = edges.iter().filter_map(|[a, b]| onto.place((*a + *b) * 0.5));
-        // Height stands at the left, the others at the bottom.
+        // The height is at the left, the other sizes at the bottom.
         let outer = |at: &Pos2| if axis == Axis::Y { -at.x } else { at.y };
         if let Some(at) = middles.max_by(|a, b| outer(a).total_cmp(&outer(b))) {
             let text = format!("{} {}", LETTERS[axis.index()], short(size[axis.index()]));
-            // Beside the edge, so that neither it nor a handle is covered.
+            // Next to the edge, where it covers neither the edge nor a handle.
             let aside = if axis == Axis::Y { vec2(-28.0, 0.0) } else { vec2(0.0, 13.0) };
             label_ui(ui, painter, at + aside, text, theme::axis_on_dark(axis));
         }
@@ -168,7 +172,7 @@ fn box_ui(ui: &Ui, painter: &Painter, onto: &Projection, bounds: &Bounds, stroke
 
 const LETTERS: [&str; 3] = ["x", "y", "z"];
 
-/// A text on a dark plate, its middle at `at`.
+/// Draws a text on a dark plate, centred at `at`.
 pub(super) fn label_ui(ui: &Ui, painter: &Painter, at: Pos2, text: String, color: Color32) {
     let font = TextStyle::Small.resolve(ui.style());
     let galley = painter.layout_no_wrap(text, font, color);

@@ -1,7 +1,8 @@
-//! The marks of lights over the picture, and the cone of the selected one.
+//! The marks of lights over the picture, and the cone of the selected light.
 //!
-//! A sun, a bulb and a spot each have a small disk with an icon where they stand; a click on it
-//! selects the light. They are drawn by the window over the finished picture, in no file.
+//! A sun, a bulb and a spot each have a small disk with an icon at their position; a click on it
+//! selects the light. The window draws the marks over the finished picture, so they are not part of
+//! saved pictures.
 
 use egui::{Color32, Painter, Pos2, Rect, Stroke, Ui, vec2};
 use glam::{DMat4, DVec3, DVec4};
@@ -17,7 +18,7 @@ use marraztu_core::scene::{Aim, HALF_APERTURE, ItemId, LightId};
 /// The radius of a mark in points.
 const RADIUS: f32 = 9.0;
 
-/// The parts of the circle at the end of a cone.
+/// The number of sides of the circle at the end of a cone.
 const SIDES: u32 = 32;
 
 /// The projection from the world to the window.
@@ -39,7 +40,7 @@ impl Projection {
         self.clip_from_world * at.extend(1.0)
     }
 
-    /// The place of a point between near and far.
+    /// Projects a point between the near and far planes to the window.
     pub(super) fn place(&self, at: DVec3) -> Option<Pos2> {
         let clip = self.clip(at);
         (clip.w > 0.0 && clip.z <= clip.w).then(|| self.screen(clip))
@@ -58,7 +59,7 @@ impl Projection {
         self.rect
     }
 
-    /// A line of the world, cut at the near plane.
+    /// Draws a line of the world, cut at the near plane.
     pub(super) fn line(&self, painter: &Painter, ends: [DVec3; 2], stroke: Stroke) {
         if let Some(line) = self.segment(ends) {
             painter.line_segment(line, Stroke::new(stroke.width + 2.0, SHADE));
@@ -66,10 +67,10 @@ impl Projection {
         }
     }
 
-    /// The part of a line of the world that lies before the observer.
+    /// Projects the part of a line that lies in front of the observer.
     pub(super) fn segment(&self, ends: [DVec3; 2]) -> Option<[Pos2; 2]> {
         let [a, b] = ends.map(|end| self.clip(end));
-        // Before the near plane w - z is negative; it is linear along the line.
+        // In front of the near plane, w - z is negative. It is linear along the line.
         let [da, db] = [a, b].map(|clip| clip.w - clip.z);
         let [a, b] = match (da >= 0.0, db >= 0.0) {
             (true, true) => [a, b],
@@ -80,7 +81,7 @@ impl Projection {
         (a.w > 0.0 && b.w > 0.0).then(|| [self.screen(a), self.screen(b)])
     }
 
-    /// The point of the world that a pixel of this depth shows.
+    /// Returns the point of the world that a pixel of this depth shows.
     pub(super) fn world(&self, at: Pos2, depth: f32) -> Option<DVec3> {
         let part = (at - self.rect.min) / self.rect.size();
         let (x, y) = (f64::from(part.x) * 2.0 - 1.0, 1.0 - f64::from(part.y) * 2.0);
@@ -90,7 +91,7 @@ impl Projection {
     }
 }
 
-/// Behind lines, so that they are seen on any ground.
+/// The outline of lines, which makes them visible on any background.
 const SHADE: Color32 = Color32::from_black_alpha(110);
 
 /// A mark on the screen.
@@ -98,15 +99,15 @@ const SHADE: Color32 = Color32::from_black_alpha(110);
 pub(super) struct Mark {
     pub(super) id: LightId,
     pub(super) at: Pos2,
-    /// From the observer.
+    /// The distance from the observer.
     distance: f64,
-    /// Whether it stands where an object or a camera is, which a click selects first.
+    /// Whether the light is attached to an object or a camera, which a click selects first.
     follows: bool,
-    /// Whether clicks pass it.
+    /// Whether the light is locked: clicks ignore it.
     locked: bool,
 }
 
-/// The marks of all lights that stand within the picture, the nearest first.
+/// Returns the marks of all lights within the picture, the nearest first.
 pub(super) fn marks(state: &State, projection: &Projection) -> Vec<Mark> {
     let (scene, view) = (&state.scene, &state.view);
     let eye = scene.observer_frame(view).w_axis.truncate();
@@ -132,8 +133,8 @@ pub(super) fn marks(state: &State, projection: &Projection) -> Vec<Mark> {
     marks
 }
 
-/// The lights whose marks are at a place of the window: those that stand free, then those that
-/// follow something. Locked ones are passed.
+/// Finds the lights with marks at a place of the window: the free lights, and the attached ones.
+/// Locked lights are skipped.
 pub(super) fn lights_at(marks: &[Mark], at: Pos2) -> [Vec<ItemId>; 2] {
     [false, true].map(|follows| {
         let here = |mark: &&Mark| mark.follows == follows && mark.at.distance(at) <= RADIUS + 1.0;
@@ -146,10 +147,11 @@ pub(super) fn lights_at(marks: &[Mark], at: Pos2) -> [Vec<ItemId>; 2] {
     })
 }
 
-/// Draws the marks, and what the selected light shines at.
+/// Draws the marks, and the direction or cone of the selected light.
 pub(super) fn show(ui: &Ui, state: &State, projection: &Projection, marks: &[Mark]) {
     let painter = ui.painter().with_clip_rect(projection.rect);
     let accent = theme::accent_on_dark();
+    // Cones lie below all marks.
     if state.helpers.directions && state.shows_overlays() {
         for id in state.scene.lights.ids().filter(|id| !state.is_selected(ItemId::Light(*id))) {
             let light = state.scene.lights.get(id).filter(|light| light.on);
@@ -162,11 +164,12 @@ pub(super) fn show(ui: &Ui, state: &State, projection: &Projection, marks: &[Mar
     if let Some(ItemId::Light(id)) = state.selected().filter(|_| state.shows_overlays()) {
         cone_ui(&painter, state, projection, id, Stroke::new(1.5, accent));
     }
+    // Marks are sorted by distance: the nearest is drawn last.
     for mark in marks.iter().rev() {
         let Some(light) = state.scene.lights.get(mark.id) else { continue };
         let selected = state.is_selected(ItemId::Light(mark.id));
         if mark.follows && !selected {
-            // It would lie over its owner: a small dot says that there is one.
+            // A full mark would cover the owner, so an attached light has only a small dot.
             painter.circle(mark.at, 3.0, SHADE, Stroke::new(1.0, Color32::WHITE));
             continue;
         }
@@ -175,7 +178,7 @@ pub(super) fn show(ui: &Ui, state: &State, projection: &Projection, marks: &[Mar
         let ink = if light.on { color } else { Color32::GRAY };
         let ring = if selected { Stroke::new(2.5, accent) } else { Stroke::new(1.0, ink) };
         if light.kind.has_diamond() && light.on && state.view.marks {
-            // Its diamond is part of the picture, and stays in sight.
+            // The diamond of the light is part of the picture and has to stay visible.
             painter.circle_stroke(mark.at, RADIUS + 1.0, Stroke::new(ring.width + 2.0, SHADE));
             painter.circle_stroke(mark.at, RADIUS + 1.0, ring);
             continue;
@@ -184,27 +187,27 @@ pub(super) fn show(ui: &Ui, state: &State, projection: &Projection, marks: &[Mar
         let rect = Rect::from_center_size(mark.at, vec2(2.0 * RADIUS, 2.0 * RADIUS));
         Icon::of_light(light).paint(&painter, rect, 11.0, ink);
         if !light.on {
-            // Off, and not by the colour alone.
+            // A stroke shows that the light is off, not the colour alone.
             let end = vec2(RADIUS, -RADIUS) * 0.7;
             painter.line_segment([mark.at - end, mark.at + end], Stroke::new(1.5, ink));
         }
     }
 }
 
-/// The direction of a sun, the cone of a spot.
+/// Draws the direction of a sun or the cone of a spot.
 fn cone_ui(painter: &Painter, state: &State, to: &Projection, id: LightId, stroke: Stroke) {
     let (scene, view) = (&state.scene, &state.view);
     let Some(Aim { position, direction }) = aiming::stands(scene, view, id) else { return };
     let Some(light) = scene.lights.get(id) else { return };
     let eye = scene.observer_frame(view).w_axis.truncate();
-    // As long as a quarter of the way to the eye, so that it is seen from near and far.
+    // A quarter of the distance to the eye, so the cone is visible from near and far.
     let length = (position.distance(eye) * 0.25).max(1e-6);
     let end = position + direction * length;
     if light.kind.has_direction() {
         arrow_ui(painter, to, position, end, eye, stroke);
     }
     let Some(half_aperture) = (HALF_APERTURE.get)(&light.kind) else { return };
-    // Almost flat cones would reach to infinity.
+    // The angle is limited, since the base of an almost flat cone would be infinitely large.
     let angle = half_aperture.min(80.0).to_radians();
     let side = direction.any_orthonormal_vector();
     let other = direction.cross(side);

@@ -1,4 +1,4 @@
-//! The menu of what is under the pointer.
+//! The context menu of the item under the pointer.
 
 use egui::{Id, Ui};
 
@@ -34,10 +34,10 @@ impl Viewport {
     }
 }
 
-/// The menu of the background; below it stand the lights to add.
+/// The menu of the background; the lights to add follow it.
 const ON_NOTHING: &[Action] = &[Action::FrameAll, Action::Load, Action::AddCamera];
 
-/// The menu of an item.
+/// Returns the menu of an item.
 const fn actions_on(item: ItemId) -> &'static [Action] {
     match item {
         ItemId::Object(_) => &[
@@ -80,7 +80,7 @@ const fn actions_on(item: ItemId) -> &'static [Action] {
     }
 }
 
-/// The id of the menu.
+/// Returns the id of the menu.
 pub(super) fn id() -> Id {
     Id::unique("viewport menu")
 }

@@ -1,7 +1,7 @@
 //! The viewport: the picture, with mouse and keyboard input over it.
 //!
-//! The picture is aligned to the pixels of the screen and shown unfiltered, so that each pixel of
-//! the renderer is a pixel of the screen.
+//! The picture is aligned to the pixels of the screen and shown unfiltered: one pixel of the
+//! renderer is one pixel of the screen.
 
 mod axes;
 mod clicks;
@@ -45,9 +45,9 @@ pub(crate) enum Purpose {
     Hover,
     /// Selects the item that was clicked.
     Select,
-    /// Selects the item that was clicked too, or no longer.
+    /// Adds the item that was clicked to the selection, or removes it.
     SelectAlso,
-    /// Selects what lies in this part of the window.
+    /// Selects the items in this part of the window.
     Box(Rect),
     /// Frames the item that was double-clicked.
     Frame,
@@ -62,7 +62,7 @@ pub(crate) enum Purpose {
 pub(crate) struct Viewport {
     texture: Option<TextureHandle>,
     image: Option<Arc<ColorImage>>,
-    /// Its place in the window, and its size in pixels.
+    /// The place in the window, and the size in pixels.
     place: Option<(Rect, Size)>,
     mouse: Mouse,
     /// The pixel under the pointer, and the hit there if known.
@@ -70,13 +70,13 @@ pub(crate) struct Viewport {
     menu: Option<Menu>,
     /// The border of the item under the pointer.
     border: Option<Border>,
-    /// The borders of the selected item, and of those that are selected beside it.
+    /// The borders of the item that the keys act on, and of the other selected items.
     outline: [Option<Border>; 2],
     /// Whether the picture has changed since the last pick under the pointer.
     stale: bool,
-    /// The item whose border was requested for this picture.
+    /// The item of the last border requested for this picture.
     asked: Option<ItemId>,
-    /// The pixel and the observer of the last click: a second click there selects what is behind.
+    /// The pixel and the observer of the last click. A second click there selects the item behind.
     clicked: Option<([usize; 2], DMat4)>,
 }
 
@@ -93,22 +93,22 @@ impl std::fmt::Debug for Viewport {
 }
 
 impl Viewport {
-    /// The size of the picture in pixels; `None` before the first frame.
+    /// Returns the size of the picture in pixels; `None` before the first frame.
     pub(crate) fn size(&self) -> Option<Size> {
         self.place.map(|(_, size)| size)
     }
 
-    /// Its place in the window; `None` before the first frame.
+    /// Returns its place in the window; `None` before the first frame.
     pub(crate) fn rect(&self) -> Option<Rect> {
         self.place.map(|(rect, _)| rect)
     }
 
-    /// The image it shows.
+    /// Returns the image on screen.
     pub(crate) fn image(&self) -> Option<&Arc<ColorImage>> {
         self.image.as_ref()
     }
 
-    /// Takes an amount from the keyboard from now on; returns whether the selection has handles.
+    /// Begins to take an amount from the keyboard. Returns whether the selection has handles.
     pub(crate) fn type_amount(&mut self, state: &State) -> bool {
         let grab = self.place.and_then(|(rect, size)| Grab::typing(state, rect, size));
         let found = grab.is_some();
@@ -116,7 +116,7 @@ impl Viewport {
         found
     }
 
-    /// Gives the picture the keyboard.
+    /// Gives the keyboard focus to the picture.
     pub(crate) fn take_keyboard(&self, ctx: &Context) {
         ctx.memory_mut(|memory| memory.request_focus(Id::unique("viewport")));
     }
@@ -126,7 +126,7 @@ impl Viewport {
         self.mouse.cancel(requests)
     }
 
-    /// Takes the results of the worker; adds requests that follow from them.
+    /// Handles the results of the worker and adds the resulting requests.
     pub(crate) fn hear(
         &mut self,
         ctx: &Context,
@@ -145,7 +145,8 @@ impl Viewport {
         }
         if let Some(drawn) = news.drawn {
             self.take(ctx, drawn.image);
-            // A new picture may show another item there; the old hit is the best guess until then.
+            // A new picture may show another item under the pointer; until the pick, the old hit is
+            // used.
             self.stale = true;
             self.asked = None;
         }
@@ -172,6 +173,7 @@ impl Viewport {
             let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             ui.painter().image(texture.id(), rect, all, egui::Color32::WHITE);
         }
+        // The mouse comes first: its state decides whether letters steer, type or act.
         let hit = self.hovered.and_then(|(_, hit)| hit);
         let gizmo = Gizmo::new(state, rect, size);
         let typed = Keyboard::take_typed(ui.ctx());
@@ -185,6 +187,7 @@ impl Viewport {
         Keyboard::set_viewport(ui.ctx(), id, letters);
         let projection = Projection::new(state, rect, size);
         let over = Over { gizmo, ..Over::new(state, rect, &projection) };
+        // Overlays take a click first. Only a click on the picture needs a pick by the worker.
         for (at, purpose) in picks {
             if let Some(request) = self.over_click(state, &over, at, purpose) {
                 requests.extend(request);
@@ -210,7 +213,7 @@ impl Viewport {
         self.menu_ui(ui, state, requests);
     }
 
-    /// Picks the pixel under the pointer, once for each pixel it enters.
+    /// Picks the pixel under the pointer, once for each pixel that the pointer enters.
     fn hover(&mut self, response: &Response, worker: &Worker<Purpose>) {
         let Some(pointer) = response.hover_pos().filter(|_| !self.mouse.is_dragging()) else {
             self.hovered = None;
@@ -218,7 +221,7 @@ impl Viewport {
         };
         let at = self.pixel(pointer);
         if std::mem::take(&mut self.stale) || self.hovered.is_none_or(|(last, _)| last != at) {
-            // What was seen one pixel aside is the best guess until the answer comes.
+            // The hit of the previous pixel is the best guess until the answer arrives.
             self.hovered = Some((at, self.hovered.and_then(|(_, hit)| hit)));
             worker.pick(Pick { at, purpose: Purpose::Hover });
         }
@@ -239,9 +242,10 @@ impl Viewport {
     }
 
     fn take(&mut self, ctx: &Context, image: Arc<ColorImage>) {
-        // A picture of the viewport's size is shown as it is; a coarser one is interpolated.
+        // A picture of the viewport's size is shown unfiltered; a coarser one is interpolated.
         let fits = self.place.is_none_or(|(_, size)| [size.width, size.height] == image.size);
         let filter = if fits { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
+        // Reusing a texture of the same size avoids an allocation per picture.
         match &mut self.texture {
             Some(texture) if texture.size() == image.size => {
                 texture.set_partial([0, 0], Arc::clone(&image), filter);
@@ -254,7 +258,7 @@ impl Viewport {
         self.image = Some(image);
     }
 
-    /// The pixel of the picture under a point of the window.
+    /// Returns the pixel of the picture under a point of the window.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -270,7 +274,7 @@ impl Viewport {
         [along(part.x, size.width), along(part.y, size.height)]
     }
 
-    /// The middle of a pixel in the window.
+    /// Returns the centre of a pixel in the window.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
     fn point(&self, [x, y]: [usize; 2]) -> Pos2 {
         let Some((rect, size)) = self.place else { return Pos2::ZERO };
@@ -299,7 +303,7 @@ impl Viewport {
     }
 }
 
-/// The rest of `ui`, moved to whole pixels, and its size in pixels.
+/// Returns the rest of `ui`, aligned to whole pixels, and its size in pixels.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -317,7 +321,7 @@ fn whole_pixels(ui: &Ui) -> (Rect, Size) {
     (Rect::from_min_size(min, points), size)
 }
 
-/// Gives the viewport keyboard focus if it is clicked or no other widget has it.
+/// Gives the viewport keyboard focus if it is clicked or no widget has it.
 fn keep_focus(ctx: &Context, response: &Response) {
     let pressed = ctx.input(|input| input.pointer.any_pressed()) && response.contains_pointer();
     let free =

@@ -29,10 +29,10 @@ use marraztu_core::edit::{Gesture, Refusal, navigation, steps};
 use marraztu_core::scene::{CameraMode, Command, Projection};
 use marraztu_render::Hit;
 
-/// A drag that stays within this distance of its start, in points, is a click.
+/// The distance from the start, in points, within which a drag is a click.
 const CLICK: f32 = 4.0;
 
-/// How far splitters reach into the picture.
+/// The width of a splitter inside the picture, in points.
 const SPLITTER: f32 = 4.0;
 
 /// Points that a touchpad scrolls for one notch of a wheel.
@@ -42,27 +42,27 @@ const POINTS_A_NOTCH: f32 = 50.0;
 #[derive(Debug)]
 pub(crate) struct Mouse {
     drag: Option<Drag>,
-    /// A factor of the default speed of flight.
+    /// The speed of flight, relative to the default.
     speed: f64,
     count: u64,
-    /// Whether the last press of the left button was one on the picture, and the one before it.
+    /// Whether the last press of the left button hit the picture, and the one before it.
     pressed: [bool; 2],
-    /// The handle of the gizmo that is held, or whose amount is typed.
+    /// The handle of the gizmo that is dragged or gets a typed amount.
     grab: Option<Box<Grab>>,
 }
 
 /// The picture under the mouse.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Under<'a> {
-    /// The place of the picture in the window.
+    /// The area of the picture in the window.
     pub(crate) rect: Rect,
     /// Its size in pixels.
     pub(crate) size: Size,
     /// The hit under the pointer, if known.
     pub(crate) hit: Option<Hit>,
-    /// The handles that lie over it.
+    /// The gizmo over the picture.
     pub(crate) gizmo: Option<&'a Gizmo>,
-    /// What was typed while a handle is held.
+    /// The text typed in this frame while a handle is held.
     pub(crate) typed: &'a str,
 }
 
@@ -72,12 +72,12 @@ struct Drag {
     button: PointerButton,
     gesture: Gesture,
     from: Pos2,
-    /// The position up to which it was handled, and the current one.
+    /// The position that was handled last, and the current one.
     at: Pos2,
     to: Pos2,
-    /// Whether it has moved farther than a click may.
+    /// Whether it has moved farther than a click.
     moved: bool,
-    /// Whether it was cancelled: it does nothing until the button is released.
+    /// Whether it was cancelled: it has no effect until the button is released.
     over: bool,
     /// Whether Shift was held when it began.
     shift: bool,
@@ -91,7 +91,7 @@ enum Motion {
     Fly,
     /// Drags a handle of the gizmo.
     Handle,
-    /// Draws a box, in which all is selected.
+    /// Draws a box that selects the items in it.
     Box,
 }
 
@@ -102,17 +102,17 @@ impl Default for Mouse {
 }
 
 impl Mouse {
-    /// Whether a button is held.
+    /// Returns whether a button is held.
     pub(crate) const fn is_dragging(&self) -> bool {
         self.drag.is_some()
     }
 
-    /// Whether letters steer.
+    /// Returns whether letters steer.
     pub(crate) fn is_flying(&self) -> bool {
         self.drag.is_some_and(|drag| drag.motion == Motion::Fly && !drag.over)
     }
 
-    /// The speed of flight, while it flies.
+    /// Returns the speed of flight, while flying.
     pub(crate) fn flight(&self) -> Option<f64> {
         self.is_flying().then_some(self.speed)
     }
@@ -144,7 +144,7 @@ impl Mouse {
         requests: &mut Vec<Request>,
     ) -> Vec<(Pos2, Purpose)> {
         let mut picks = Vec::new();
-        // Event by event: on a slow machine a whole click fits into one frame.
+        // Events are handled one by one: on a slow machine, a frame may contain a whole click.
         for event in ui.input(|input| input.events.clone()) {
             match event {
                 Event::PointerButton { pos, button, pressed: true, modifiers } => {
@@ -174,7 +174,8 @@ impl Mouse {
             // It was released outside the window.
             (self.drag, self.grab) = (None, None);
         }
-        // A click that put a notice away, and one on what lay under it, are no double click.
+        // Both presses must hit the picture: the first of two clicks may have closed a notice over
+        // it.
         if response.double_clicked_by(PointerButton::Primary) && self.pressed == [true; 2] {
             picks.extend(response.interact_pointer_pos().map(|at| (at, Purpose::Frame)));
         }
@@ -201,15 +202,16 @@ impl Mouse {
         if comparison::grip(state, response.rect).is_some_and(|grip| grip.contains(from)) {
             return;
         }
-        // At the border of the picture a press is for a splitter.
+        // At the border of the picture, a press belongs to a splitter.
         if !response.rect.shrink(SPLITTER).contains(from) {
             return;
         }
-        // A press that closes a menu does no more than that.
+        // A press that closes a menu has no other effect.
         if !response.contains_pointer() || egui::Popup::is_any_open(ui.ctx()) {
             return;
         }
         self.end_typing(requests);
+        // The button and the modifiers select the motion; a handle under the pointer comes first.
         let pose = state.scene.selected_camera(&state.view).pose.now();
         let held = under.gizmo.and_then(|gizmo| Some((gizmo, gizmo.handle_at(from)?)));
         let motion = match button {
@@ -236,10 +238,10 @@ impl Mouse {
         self.drag = Some(Drag { motion, button, gesture, from, at, to, moved, over, shift });
     }
 
-    /// Handles the movement of the pointer since the last call.
+    /// Applies the movement of the pointer since the last call.
     fn go_on(&mut self, ui: &Ui, state: &State, size: Size, requests: &mut Vec<Request>) {
         let Some(drag) = &mut self.drag else { return };
-        // Includes the movement that was held back while the drag could still become a click.
+        // The first movement includes the part during which the drag could still become a click.
         drag.moved |= (drag.to - drag.from).length() > CLICK;
         let by = if drag.moved { drag.to - drag.at } else { Vec2::ZERO };
         if drag.moved {
@@ -272,6 +274,7 @@ impl Mouse {
             Some(drag) if drag.button == button => drag.to = to,
             _ => return,
         }
+        // The movement up to the release belongs to the drag.
         self.go_on(ui, state, under.size, requests);
         self.pull(ui, under, requests);
         let typed = self.grab.take().is_some_and(|grab| grab.is_typed());
@@ -279,6 +282,7 @@ impl Mouse {
         if drag.motion == Motion::Box && drag.moved && !drag.over {
             picks.push((drag.from, Purpose::Box(Rect::from_two_pos(drag.from, drag.to))));
         }
+        // A press without a drag is a click.
         if drag.moved || drag.over || typed {
             return;
         }
@@ -292,7 +296,7 @@ impl Mouse {
         }
     }
 
-    /// Handles the keys that steer while the right button is held.
+    /// Moves the camera by the keys that are held with the right button.
     fn fly(&mut self, ui: &Ui, drag: Drag, state: &State, requests: &mut Vec<Request>) {
         let held = |key| ui.input(|input| f64::from(u8::from(input.key_down(key))));
         let along = |back, forth| held(forth) - held(back);
@@ -309,7 +313,7 @@ impl Mouse {
             (false, true) => 0.25,
             _ => 1.0,
         };
-        // Ten steps of the keys in a second.
+        // Ten steps of translation per second.
         let distance = step(state) * 10.0 * self.speed * haste * f64::from(dt);
         let command = navigation::fly(
             &state.scene,
@@ -327,6 +331,7 @@ impl Mouse {
             let notches = input.events.iter().map(notches).sum::<f64>();
             (notches, input.pointer.delta() != Vec2::ZERO, input.pointer.latest_pos())
         });
+        // Moving the pointer or holding a key begins a new gesture.
         if moved || !ui.input(|input| input.keys_down.is_empty()) {
             self.count += 1;
         }
@@ -355,7 +360,7 @@ impl Mouse {
     }
 }
 
-/// The command for a movement of the pointer, in pixels.
+/// Returns the command for a movement of the pointer, in pixels.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 fn moving(drag: Drag, state: &State, pixels: Vec2, size: Size) -> Result<Command, Refusal> {
     let (scene, view) = (&state.scene, &state.view);
@@ -365,7 +370,7 @@ fn moving(drag: Drag, state: &State, pixels: Vec2, size: Size) -> Result<Command
     match drag.motion {
         Motion::Pan => navigation::pan(scene, view, DVec2::new(dx, dy), size, phase),
         Motion::Orbit => {
-            // Half a turn across the picture.
+            // Half a turn across the shorter side.
             let angle = std::f64::consts::PI / shorter;
             navigation::orbit(scene, view, -dx * angle, -dy * angle, phase)
         }
@@ -374,12 +379,12 @@ fn moving(drag: Drag, state: &State, pixels: Vec2, size: Size) -> Result<Command
             let angle = 2.0 * lens.half_angle.to_radians() / shorter;
             navigation::look(scene, view, -dx * angle, -dy * angle, phase)
         }
-        // These are followed elsewhere.
+        // Other functions handle these motions.
         Motion::Handle | Motion::Box => Err(Refusal::Gone),
     }
 }
 
-/// The request for a movement of the view.
+/// Returns the request for a movement of the view.
 fn navigating(command: Result<Command, Refusal>, gesture: Gesture) -> Request {
     match command {
         Ok(command) => Request::Navigate { command, gesture },
@@ -387,7 +392,7 @@ fn navigating(command: Result<Command, Refusal>, gesture: Gesture) -> Request {
     }
 }
 
-/// Notches of the wheel, positive towards the picture.
+/// Returns the turn of the wheel in notches, positive towards the picture.
 fn notches(event: &Event) -> f64 {
     match event {
         Event::MouseWheel { unit, delta, .. } => f64::from(match unit {
@@ -402,13 +407,13 @@ fn notches(event: &Event) -> f64 {
     }
 }
 
-/// The length of a step of translation.
+/// Returns the length of a step of translation.
 fn step(state: &State) -> f64 {
     steps::length(&state.scene, &state.view)
 }
 
-/// How far before the camera lies what has this depth in the picture: the projection's depth
-/// z = n (f - d) / (d (f - n)), solved for d.
+/// Returns the distance in front of the camera for a depth in the picture: the projection's depth z
+/// = n (f - d) / (d (f - n)), solved for d.
 fn distance(state: &State, depth: f32) -> Option<f64> {
     let lens = state.scene.selected_camera(&state.view).lens;
     let (near, far) = (lens.near, lens.far);

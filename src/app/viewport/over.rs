@@ -1,4 +1,4 @@
-//! What lies over the picture: the outline of the selection, marks of lights, axes.
+//! Overlays of the picture: the outline of the selection, marks of lights, axes.
 
 use egui::{Pos2, Rect, Response, Ui};
 
@@ -11,7 +11,7 @@ use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
 use marraztu_core::scene::ItemId;
 
-/// What lies over the picture and can be clicked.
+/// The overlays that can be clicked.
 pub(super) struct Over {
     pub(super) ends: Vec<axes::End>,
     pub(super) marks: Vec<marks::Mark>,
@@ -26,7 +26,7 @@ impl Over {
 }
 
 impl Viewport {
-    /// Marks the pixel that is explained.
+    /// Marks the explained pixel with crosshairs.
     fn explained_ui(&self, ui: &Ui, rect: Rect, state: &State) {
         let Some(explained) = &state.explained else { return };
         let at = self.point(explained.at);
@@ -43,7 +43,7 @@ impl Viewport {
         }
     }
 
-    /// Draws the gizmo, what a drag of it does, and the box that is drawn.
+    /// Draws the gizmo, the description of its drag, and the selection box.
     fn handles_ui(&self, ui: &Ui, rect: Rect, response: &Response, over: &Over) {
         let grab = self.mouse.grab();
         if let Some(gizmo) = &over.gizmo {
@@ -70,7 +70,7 @@ impl Viewport {
         }
     }
 
-    /// What a click on something over the picture asks for; `None` if it is for the picture.
+    /// Handles a click on an overlay; `None` if the click belongs to the picture.
     pub(super) fn over_click(
         &mut self,
         state: &State,
@@ -81,7 +81,7 @@ impl Viewport {
         let is_end = axes::end_at(&over.ends, at);
         match (purpose, is_end) {
             (Purpose::Select, Some(end)) => Some(Some(Request::Do(end.action))),
-            // The two clicks of a double click have turned the view already.
+            // Both clicks of a double click have turned the view already.
             (Purpose::Frame, Some(_)) => Some(None),
             (Purpose::SelectAlso, None) => {
                 let [free, _] = marks::lights_at(&over.marks, at);
@@ -103,7 +103,7 @@ impl Viewport {
         }
     }
 
-    /// The items that reach into a part of the window.
+    /// Lists the items that reach into a part of the window.
     fn items_in(&self, state: &State, over: &Over, area: Rect) -> Vec<ItemId> {
         let Some((rect, size)) = self.place else { return Vec::new() };
         let onto = Projection::new(state, rect, size);
@@ -122,7 +122,8 @@ impl Viewport {
         items
     }
 
-    /// The first of what lies here, or the next after the selected one if it was clicked before.
+    /// Returns `first`, or on a repeated click the item after the selected one among all items
+    /// here.
     pub(super) fn deeper(
         &self,
         state: &State,
@@ -134,6 +135,7 @@ impl Viewport {
         if !again {
             return first;
         }
+        // Free lights come first, then objects from front to back, then attached lights.
         let [mut all, following] = marks::lights_at(&over.marks, at);
         let pixel = self.pixel(at);
         let objects = self.size().map(|size| picking::objects_at(state, pixel, size));
@@ -144,7 +146,7 @@ impl Viewport {
         here.and_then(|here| all.get((here + 1) % all.len())).copied().unwrap_or(first)
     }
 
-    /// Draws what lies over the picture: outline, marks of lights, axes.
+    /// Draws the overlays: outlines, marks of lights, axes.
     pub(super) fn over_ui(
         &self,
         ui: &Ui,
@@ -157,10 +159,11 @@ impl Viewport {
         helpers::grid_ui(ui, state, projection, self.image.as_deref());
         helpers::dimensions_ui(ui, state, projection);
         placeholders::show(ui, state, projection);
+        // Overlays are drawn from back to front: grid, boxes, outlines, marks, gizmo, axes.
         let first = state.outlined().first().copied();
         let [own, others] = &self.outline;
         let accent = theme::accent_on_dark();
-        // Those beside it are weaker: it is the one that the keys act on.
+        // The other selected items have a weaker outline than the one that the keys act on.
         let borders = [(others, accent.gamma_multiply(0.6)), (own, accent)];
         for (border, color) in borders {
             if let Some(border) = border.as_ref().filter(|it| Some(it.item) == first) {

@@ -1,10 +1,10 @@
-//! Draws over the picture: the border of the item under the pointer.
+//! Draws the border of an item over the picture.
 
 use egui::{Color32, Mesh, Rect, Ui, vec2};
 
 use crate::app::drawing::border::Border;
 
-/// Outlines an item with a dark border, so that it is visible on any background.
+/// Draws the border of an item with a dark outer line, visible on any background.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
 pub(crate) fn border_ui(ui: &Ui, rect: Rect, border: &Border, color: Color32) {
     let pixel = rect.size() / vec2(border.size.width as f32, border.size.height as f32);

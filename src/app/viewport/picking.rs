@@ -1,4 +1,5 @@
-//! Finds all objects under the pointer, nearest first; the picture holds only the nearest.
+//! Finds all objects under the pointer, nearest first. The z-buffer of the picture knows only the
+//! nearest.
 
 use egui::Rect;
 use glam::{DMat4, DVec2, DVec3, DVec4};
@@ -27,7 +28,7 @@ impl Onto {
         }
     }
 
-    /// The pixel of a point in clip space.
+    /// Converts a point from clip space to pixels.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     fn pixel(&self, clip: DVec4) -> DVec2 {
         let (width, height) = (self.size.width as f64, self.size.height as f64);
@@ -40,7 +41,7 @@ impl Onto {
     }
 }
 
-/// The visible objects at a pixel, nearest first.
+/// Lists the visible objects at a pixel, nearest first.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 pub(crate) fn objects_at(state: &State, [x, y]: [usize; 2], size: Size) -> Vec<ObjectId> {
     let at = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
@@ -50,12 +51,12 @@ pub(crate) fn objects_at(state: &State, [x, y]: [usize; 2], size: Size) -> Vec<O
         let nearest = nearest_depth(&onto, object, at);
         found.extend(nearest.map(|depth| (depth, id)));
     }
-    // Depth is 1 at the near plane.
+    // With reversed depth, the near plane has depth 1.
     found.sort_by(|(a, _), (b, _)| b.total_cmp(a));
     found.into_iter().map(|(_, id)| id).collect()
 }
 
-/// The visible objects with a vertex in a part of the window.
+/// Lists the visible objects with a vertex in a part of the window.
 pub(crate) fn objects_within(state: &State, onto: &Projection, area: Rect) -> Vec<ObjectId> {
     let shown = state.scene.objects.iter().filter(|(_, object)| object.visible);
     let touches = |object: &Object| {
@@ -65,9 +66,11 @@ pub(crate) fn objects_within(state: &State, onto: &Projection, area: Rect) -> Ve
     shown.filter(|(_, object)| touches(object)).map(|(id, _)| id).collect()
 }
 
-/// The depth of the nearest triangle at a point; triangles that cross the near plane are skipped.
+/// Finds the depth of the nearest triangle at a point. Triangles that cross the near plane are
+/// skipped.
 fn nearest_depth(onto: &Onto, object: &Object, at: DVec2) -> Option<f64> {
     let mesh = &object.model.mesh;
+    // Each vertex is projected once; triangles share the results.
     let points: Vec<Option<DVec3>> = mesh
         .positions()
         .iter()
@@ -90,7 +93,8 @@ fn nearest_depth(onto: &Onto, object: &Object, at: DVec2) -> Option<f64> {
     depths.max_by(f64::total_cmp)
 }
 
-/// The depth at a point inside a projected triangle; projected depth is linear there.
+/// Interpolates the depth at a point inside a projected triangle. Projected depth is linear in the
+/// picture.
 fn depth_in(at: DVec2, [a, b, c]: [DVec3; 3]) -> Option<f64> {
     let side = |p: DVec3, q: DVec3| (q - p).truncate().perp_dot(at - p.truncate());
     let [u, v, w] = [side(b, c), side(c, a), side(a, b)];
@@ -109,7 +113,7 @@ mod tests {
     const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\n\
         v 1 1 1\nv -1 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
-    /// Cubes of ten units a side, one behind the other along the view.
+    /// Creates cubes of ten units a side, one behind the other along the view.
     fn state(depths: &[f64]) -> State {
         let options = LoadOptions::default();
         let progress = io::Progress::new();

@@ -1,4 +1,4 @@
-//! The names of missing files at the boxes that take their place.
+//! Labels the placeholders of missing files.
 
 use egui::{Ui, vec2};
 
@@ -8,7 +8,7 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::text::file_name;
 
-/// Shows the name of each missing model at its box.
+/// Shows the file name of each missing model at its box.
 pub(super) fn show(ui: &Ui, state: &State, onto: &Projection) {
     let view = &state.view;
     if !state.shows_overlays() || view.polygons.is_some() {
@@ -23,7 +23,7 @@ pub(super) fn show(ui: &Ui, state: &State, onto: &Projection) {
             && onto.rect().contains(at)
         {
             let text = format!("{} is missing", file_name(file));
-            // Below the middle, where the gizmo of the selection is.
+            // Below the middle, which the gizmo of the selection occupies.
             label_ui(ui, &painter, at + vec2(0.0, 28.0), text, theme::warning_on_dark());
         }
     }

@@ -1,9 +1,9 @@
-//! A colour that opens a picker: a square of shades, a bar of hues, and red, green and blue as
-//! numbers.
+//! A colour field that opens a picker: a square of shades, a bar of hues, and red, green and blue
+//! as numbers.
 //!
-//! Hue, saturation and value are those of Smith, "Color Gamut Transform Pairs", SIGGRAPH 1978, of
-//! display values. What is picked is kept beside the colour that it gave, so that grey does not
-//! forget its hue while it is dragged through.
+//! Hue, saturation and value follow Smith, "Color Gamut Transform Pairs", SIGGRAPH 1978, applied to
+//! display values. The picked HSV values are kept together with the colour, because grey has no
+//! hue: a drag through grey would otherwise lose the hue.
 
 use std::ops::RangeInclusive;
 
@@ -50,7 +50,7 @@ impl Hsv {
     }
 
     fn color(self) -> Color {
-        // Each channel is full for a third of the hues, and rises and falls for a sixth.
+        // Each channel is full for a third of the hues and ramps over a sixth on either side.
         let channel = |turn: f64| {
             let sixth = ((self.hue + turn) * 6.0).rem_euclid(6.0);
             let full = ((sixth - 3.0).abs() - 1.0).clamp(0.0, 1.0);
@@ -60,7 +60,7 @@ impl Hsv {
     }
 }
 
-/// A colour that opens a picker. Gives the colour that it should become.
+/// Shows a colour that opens a picker. Returns the colour that the user picked.
 pub(crate) fn swatch(
     ui: &mut Ui,
     name: &str,
@@ -99,9 +99,10 @@ const fn shown(color: Color) -> Color32 {
 }
 
 fn picker_ui(ui: &mut Ui, name: &str, color: Color) -> Option<(Color, Gesture)> {
-    // Fields look as in panels, not as entries of a menu.
+    // Fields look as in panels, not as the entries of a menu.
     ui.set_style(ui.ctx().global_style());
     ui.set_width(WIDTH);
+    // The kept HSV values are used unless the colour was changed by other means.
     let id = ui.scope_id().with("hue, saturation and value");
     let kept = ui.data(|data| data.get_temp::<[f64; 3]>(id));
     let kept = kept.map(|[hue, saturation, value]| Hsv { hue, saturation, value });
@@ -119,7 +120,8 @@ fn picker_ui(ui: &mut Ui, name: &str, color: Color) -> Option<(Color, Gesture)> 
     response.widget_info(|| WidgetInfo::labeled(Role::ColorWell, true, format!("{name}: hue")));
     bar(ui, rect, hsv);
     if let Some(at) = pressed_at(&response) {
-        // A whole turn is no turn: the ends of the bar are the same red.
+        // The hue stops short of 1, which would be the red of 0: the marker would jump to the other
+        // end.
         hsv.hue = part(at.x, rect.left()..=rect.right()).min(0.999_999);
         picked = Some(gestures::of(&response));
     }
@@ -131,7 +133,7 @@ fn picker_ui(ui: &mut Ui, name: &str, color: Color) -> Option<(Color, Gesture)> 
     typed.or_else(|| hex_ui(ui, name, color).map(|to| (to, Gesture::Whole)))
 }
 
-/// The colour as six hexadecimal digits, as pages of the web write it.
+/// Shows the colour as six hexadecimal digits, as in HTML.
 fn hex_ui(ui: &mut Ui, name: &str, color: Color) -> Option<Color> {
     let [r, g, b] = color.0;
     let id = ui.scope_id().with("hexadecimal");
@@ -141,6 +143,7 @@ fn hex_ui(ui: &mut Ui, name: &str, color: Color) -> Option<Color> {
     let mut text = kept.filter(|_| edited).unwrap_or_else(|| format!("#{r:02x}{g:02x}{b:02x}"));
     let edit = TextEdit::singleline(&mut text).id(field).desired_width(WIDTH - 8.0);
     let response = ui.add(edit).accessible_name(format!("{name}: hexadecimal"));
+    // Escape leaves the field without a change.
     let left = response.lost_focus() && !ui.input(|input| input.key_pressed(egui::Key::Escape));
     let to = hexadecimal(&text);
     if left && to.is_none() {
@@ -151,7 +154,7 @@ fn hex_ui(ui: &mut Ui, name: &str, color: Color) -> Option<Color> {
     to.filter(|to| left && *to != color)
 }
 
-/// `#7db8f7` or `7db8f7`; of three digits each counts twice.
+/// Parses `#7db8f7` or `7db8f7`; each of three digits counts twice.
 pub(crate) fn hexadecimal(text: &str) -> Option<Color> {
     let digits = text.trim().trim_start_matches('#');
     let digit = |c: char| c.to_digit(16).and_then(|digit| u8::try_from(digit).ok());
@@ -167,7 +170,7 @@ fn pressed_at(response: &Response) -> Option<Pos2> {
     response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on())
 }
 
-/// Where `at` stands between two ends, from 0 to 1.
+/// Returns the position of `at` between two ends, from 0 to 1.
 fn part(at: f32, ends: RangeInclusive<f32>) -> f64 {
     let length = f64::from(ends.end() - ends.start());
     (f64::from(at - ends.start()) / length).clamp(0.0, 1.0)
@@ -192,7 +195,7 @@ fn numbers_ui(ui: &mut Ui, name: &str, color: Color) -> Option<(Color, Gesture)>
     .inner
 }
 
-/// The shades of a hue: saturation to the right, value upwards.
+/// Draws the shades of a hue: saturation to the right, value upwards.
 fn square(ui: &Ui, rect: Rect, hsv: Hsv) {
     const CELLS: u16 = 16;
     let color = |x: f64, y: f64| shown(Hsv { saturation: x, value: 1.0 - y, ..hsv }.color());
@@ -202,7 +205,7 @@ fn square(ui: &Ui, rect: Rect, hsv: Hsv) {
     cursor(ui, rect);
 }
 
-/// All hues.
+/// Draws the bar of hues.
 fn bar(ui: &Ui, rect: Rect, hsv: Hsv) {
     let full = |hue: f64| shown(Hsv { hue, saturation: 1.0, value: 1.0 }.color());
     ui.painter().add(gradient(rect, [36, 1], |x, _| full(x)));
@@ -210,7 +213,8 @@ fn bar(ui: &Ui, rect: Rect, hsv: Hsv) {
     cursor(ui, rect);
 }
 
-/// A rectangle of colours, `cells` across and down, `color` of places from 0 to 1.
+/// Creates a mesh of `cells` rectangles across and down; `color` maps places from 0 to 1 to
+/// colours.
 fn gradient(rect: Rect, cells: [u16; 2], color: impl Fn(f64, f64) -> Color32) -> Shape {
     let mut mesh = Mesh::default();
     let [across, down] = cells;
@@ -229,7 +233,7 @@ fn gradient(rect: Rect, cells: [u16; 2], color: impl Fn(f64, f64) -> Color32) ->
     Shape::mesh(mesh)
 }
 
-/// The picked colour, in a ring that is visible on light and on dark.
+/// Draws the picked colour in a ring that is visible on light and dark colours.
 fn ring(ui: &Ui, at: Pos2, color: Color32) {
     let at = pos2(at.x.round(), at.y.round());
     ui.painter().circle(at, 6.0, color, Stroke::new(2.0, Color32::WHITE));

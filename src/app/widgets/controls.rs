@@ -1,7 +1,7 @@
 //! The controls of panels: sections, rows, switches, choices, icon buttons.
 //!
-//! Each control has a name for screen readers, a ring while it has the keyboard, a tooltip, and
-//! tells what is on by a shape as well as by a colour.
+//! Each control has a name for screen readers, a focus ring and a tooltip. It shows that it is on
+//! by a shape as well as by a colour.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use super::icons::Icon;
 use super::regions;
 use crate::app::theme;
 
-/// A line of text, truncated with dots if it does not fit.
+/// Lays out a line of text, truncated with dots if it does not fit.
 pub(crate) fn text(
     ui: &Ui,
     text: impl Into<WidgetText>,
@@ -25,13 +25,13 @@ pub(crate) fn text(
     text.into().into_galley(ui, Some(TextWrapMode::Truncate), width.max(0.0), style)
 }
 
-/// Puts a line of text into `rect`, at its left, in the middle of its height.
+/// Draws a line of text at the left of `rect`, vertically centred.
 pub(crate) fn put_text(ui: &Ui, rect: Rect, galley: Arc<Galley>, color: Color32) {
     let at = pos2(rect.left(), rect.center().y - galley.size().y / 2.0);
     ui.painter().galley_with_override_text_color(at, galley, color);
 }
 
-/// A part of a panel that can be folded away.
+/// Shows a part of a panel that can be folded.
 pub(crate) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl FnOnce(&mut Ui)) {
     regions::begin(ui, ("section", ui.layer_id(), title));
     let id = Id::unique(("section", title));
@@ -60,13 +60,13 @@ pub(crate) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl Fn
     regions::follow_focus(ui);
 }
 
-/// The name of a dialog, above what stands in it.
+/// Shows the name of a dialog above its contents.
 pub(crate) fn heading(ui: &mut Ui, name: impl Into<RichText>) {
     ui.heading(name);
     ui.add_space(theme::GAP);
 }
 
-/// Shows what needs `least` points of width; in less it is scrolled sideways.
+/// Shows contents that need `least` points of width; narrower panels scroll sideways.
 pub(crate) fn no_narrower(ui: &mut Ui, least: f32, add: impl FnOnce(&mut Ui)) {
     if ui.available_width() >= least {
         return add(ui);
@@ -78,7 +78,7 @@ pub(crate) fn no_narrower(ui: &mut Ui, least: f32, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// A row: what it is about at the left, what sets it at the right.
+/// Shows a row: a label at the left, a control at the right.
 pub(crate) fn row<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = theme::GAP;
@@ -91,28 +91,28 @@ pub(crate) fn row<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui) -> R) -
     .inner
 }
 
-/// A row that only tells something.
+/// Shows a row with a value that cannot be changed.
 pub(crate) fn fact(ui: &mut Ui, label: &str, value: &str) {
     row(ui, label, |ui| {
         ui.add(egui::Label::new(value).truncate()).on_hover_text(value);
     });
 }
 
-/// A switch with a tick, as wide as there is room. Says whether it was clicked.
+/// A switch with a tick, as wide as the panel.
 #[derive(Clone, Debug)]
 pub(crate) struct Switch<'a> {
     /// Its label.
     pub(crate) label: &'a str,
-    /// The key that does the same.
+    /// Its key, if any.
     pub(crate) key: Option<String>,
     /// Whether it is on.
     pub(crate) on: bool,
-    /// Whether it can be switched.
+    /// Whether it can be clicked.
     pub(crate) enabled: bool,
 }
 
 impl<'a> Switch<'a> {
-    /// A switch without a key.
+    /// Creates a switch without a key.
     pub(crate) const fn new(label: &'a str, on: bool) -> Self {
         Self { label, key: None, on, enabled: true }
     }
@@ -159,14 +159,14 @@ fn tick_box(ui: &Ui, rect: Rect, on: bool, enabled: bool) {
     painter.rect_stroke(rect, 3.0, line, StrokeKind::Inside);
 }
 
-/// How wide a key is as it is drawn.
+/// Returns the width of a key cap.
 pub(crate) fn key_width(ui: &Ui, key: &str) -> f32 {
     let font = TextStyle::Monospace.resolve(ui.style());
     let galley = ui.painter().layout_no_wrap(key.to_owned(), font, Color32::WHITE);
     (galley.size().x + 8.0).max(16.0)
 }
 
-/// A key as it looks on a keyboard, its right end at `at`. Gives where its left end is.
+/// Draws a key cap with its right end at `at`. Returns the x position of its left end.
 pub(crate) fn key_cap(ui: &Ui, at: egui::Pos2, key: &str, enabled: bool) -> f32 {
     let visuals = ui.visuals();
     let fade = |color: Color32| if enabled { color } else { visuals.disable(color) };
@@ -182,7 +182,7 @@ pub(crate) fn key_cap(ui: &Ui, at: egui::Pos2, key: &str, enabled: bool) -> f32 
     rect.left()
 }
 
-/// One of a few things that exclude one another.
+/// One of several options that exclude one another.
 #[derive(Clone, Debug)]
 pub(crate) struct Choice<'a> {
     /// Its name.
@@ -191,28 +191,28 @@ pub(crate) struct Choice<'a> {
     pub(crate) name: String,
     /// The key that chooses it.
     pub(crate) key: Option<String>,
-    /// Whether it is the one.
+    /// Whether it is chosen.
     pub(crate) on: bool,
-    /// Why it cannot be chosen, if so.
+    /// The reason why it cannot be chosen, if any.
     pub(crate) refused: Option<String>,
-    /// What it means.
+    /// An explanation for the tooltip.
     pub(crate) hint: &'a str,
 }
 
 impl<'a> Choice<'a> {
-    /// A choice that can be made; `of` says among what, for screen readers.
+    /// Creates an option. `of` names the group for screen readers.
     pub(crate) fn new(of: &str, label: &'a str, on: bool, hint: &'a str) -> Self {
         let name = format!("{of}: {label}");
         Self { label, name, key: None, on, refused: None, hint }
     }
 }
 
-/// Things that exclude one another, side by side. Gives the place of the one that was clicked.
+/// Shows options in one row. Returns the index of a clicked option that was not chosen yet.
 pub(crate) fn choices(ui: &mut Ui, choices: &[Choice<'_>]) -> Option<usize> {
     choices_in(ui, choices, choices.len().max(1))
 }
 
-/// The same in as many rows as their names need.
+/// Shows options in as many rows as their labels need.
 pub(crate) fn choices_in_rows(ui: &mut Ui, choices: &[Choice<'_>]) -> Option<usize> {
     let columns = columns(ui, choices);
     choices_in(ui, choices, columns)
@@ -225,11 +225,13 @@ fn choices_in(ui: &mut Ui, choices: &[Choice<'_>], columns: usize) -> Option<usi
     ui.painter().rect_filled(all, 4.0, ui.visuals().widgets.inactive.bg_fill);
     let mut clicked = None;
     let mut at = all.left_top();
-    // One stop of Tab: the arrows go from choice to choice.
+    // The group is one stop of Tab: the arrow keys move between the options.
     let ids: Vec<Id> = choices.iter().map(|choice| ui.scope_id().with(&choice.name)).collect();
     let chosen = choices.iter().position(|choice| choice.on);
     let stop = regions::stop(ui, &ids, chosen, columns);
     for (i, choice) in choices.iter().enumerate() {
+        // Each option gets an equal share of the rest of its row, so rounding leaves no gap at the
+        // end.
         let in_row = columns.min(choices.len() - i / columns * columns);
         let rest = u16::try_from(in_row - i % columns).unwrap_or(1);
         let width = ((all.right() - at.x) / f32::from(rest)).round();
@@ -246,7 +248,7 @@ fn choices_in(ui: &mut Ui, choices: &[Choice<'_>], columns: usize) -> Option<usi
     clicked
 }
 
-/// How many choices stand side by side, so that each has room for its name.
+/// Returns the number of options in a row, such that each has room for its label.
 fn columns(ui: &Ui, choices: &[Choice<'_>]) -> usize {
     let width = |choice: &Choice<'_>| {
         text(ui, choice.label, TextStyle::Body, f32::INFINITY).size().x + 2.0 * ROOM
@@ -256,16 +258,16 @@ fn columns(ui: &Ui, choices: &[Choice<'_>]) -> usize {
         |n: &usize| u16::try_from(*n).is_ok_and(|n| f32::from(n) * widest <= ui.available_width());
     let all = choices.len().max(1);
     let most = (1..=all).rev().find(fits).unwrap_or(1);
-    // As even as may be.
+    // Rows are as even as possible.
     all.div_ceil(all.div_ceil(most))
 }
 
-/// Beside the name of a choice, to each side.
+/// The space on either side of a label.
 const ROOM: f32 = 4.0;
 
 fn choice_ui(ui: &Ui, rect: Rect, choice: &Choice<'_>, is_stop: bool) -> Response {
     let enabled = choice.refused.is_none();
-    // One that cannot be chosen can still be gone to, to hear why.
+    // An unavailable option still takes the focus, so screen readers can read the reason.
     let sense = if enabled { Sense::click() } else { Sense::focusable_noninteractive() };
     let sense = regions::sense(sense, is_stop);
     let response = ui.interact(rect, ui.scope_id().with(&choice.name), sense);
@@ -276,20 +278,21 @@ fn choice_ui(ui: &Ui, rect: Rect, choice: &Choice<'_>, is_stop: bool) -> Respons
     let mut color = text_color(ui, enabled);
     if choice.on {
         painter.rect_filled(rect, 4.0, visuals.selection.bg_fill);
-        // A bar as well, for those who do not see the colour.
+        // A bar as well, for users who do not see the colour.
         let bar = Rect::from_min_max(rect.left_bottom() - vec2(-6.0, 2.0), rect.right_bottom());
         painter.rect_filled(bar.with_max_x(rect.right() - 6.0), 1.0, theme::accent(visuals));
         color = visuals.selection.stroke.color;
     } else if enabled && response.hovered() {
         painter.rect_filled(rect, 4.0, visuals.widgets.hovered.bg_fill);
     }
+    // The label and the key are centred together.
     let key_font = TextStyle::Monospace.resolve(ui.style());
     let key = choice.key.clone().filter(|_| !choice.on).unwrap_or_default();
     let key = painter.layout_no_wrap(key, key_font, color);
     let gap = if key.size().x > 0.0 { 5.0 } else { 0.0 };
     let room = rect.width() - 2.0 * ROOM;
     let label = text(ui, choice.label, TextStyle::Body, room);
-    // The key makes room first.
+    // If space is short, the key is left out first.
     let show_key = label.size().x + gap + key.size().x <= room;
     let width = label.size().x + if show_key { gap + key.size().x } else { 0.0 };
     let at = rect.center() - vec2(width / 2.0, label.size().y / 2.0);
@@ -311,7 +314,7 @@ fn choice_ui(ui: &Ui, rect: Rect, choice: &Choice<'_>, is_stop: bool) -> Respons
     })
 }
 
-/// A small button with a picture. Its name is the first line of its tooltip.
+/// Shows a small button with an icon. The first line of its tooltip is its name.
 pub(crate) fn icon_button(ui: &mut Ui, icon: Icon, name: &str, enabled: bool) -> Response {
     let sense = if enabled { Sense::click() } else { Sense::hover() };
     let (rect, response) = ui.allocate_exact_size(vec2(theme::ROW, theme::ROW), sense);
@@ -319,7 +322,7 @@ pub(crate) fn icon_button(ui: &mut Ui, icon: Icon, name: &str, enabled: bool) ->
     response
 }
 
-/// Draws a button with a picture in `rect`, for a response that is there already.
+/// Draws a button with an icon in `rect` for an existing response.
 pub(crate) fn icon_at(
     ui: &Ui,
     rect: Rect,
@@ -342,7 +345,7 @@ pub(crate) fn icon_at(
     focus_ring(ui, rect, response);
 }
 
-/// The ring about what has the keyboard.
+/// Draws the ring around the control with keyboard focus.
 pub(crate) fn focus_ring(ui: &Ui, rect: Rect, response: &Response) {
     if response.has_focus() {
         let ring = theme::ring(ui.visuals());
@@ -350,13 +353,13 @@ pub(crate) fn focus_ring(ui: &Ui, rect: Rect, response: &Response) {
     }
 }
 
-/// The colour of text on a control.
+/// Returns the colour of text on a control.
 pub(crate) fn text_color(ui: &Ui, enabled: bool) -> Color32 {
     let color = ui.visuals().text_color();
     if enabled { color } else { ui.visuals().disable(color) }
 }
 
-/// The button that Enter presses, unless another was chosen.
+/// Gives a button the keyboard, so Enter presses it, unless another control of the dialog has it.
 pub(crate) fn take_focus(ui: &Ui, button: &Response) {
     let layer = ui.layer_id();
     let here = |id: Id| ui.ctx().read_response(id).is_some_and(|it| it.layer_id == layer);

@@ -6,12 +6,13 @@
 //! factor  = ["-" | "+"] factor | number | "pi" | "sqrt" "(" sum ")" | "(" sum ")"
 //! ```
 
-/// How deep brackets and signs may be nested: more is no number that a person typed.
+/// The maximum nesting of brackets and signs; deeper expressions are rejected, as the parser
+/// recurses.
 const DEEPEST: usize = 50;
 
-/// The value of an expression; `None` if it has none or is not finite.
+/// Evaluates an expression; `None` if it is malformed or its value is not finite.
 pub(crate) fn value(text: &str) -> Option<f64> {
-    // egui's own fields show the mathematical minus sign.
+    // egui's own fields use the Unicode minus sign.
     let plain = text.replace('\u{2212}', "-");
     let letters: Vec<char> = plain.chars().filter(|c| !c.is_whitespace()).collect();
     let mut reader = Reader { rest: &letters, depth: 0 };
@@ -73,7 +74,7 @@ impl Reader<'_> {
         value
     }
 
-    /// The sum up to the closing bracket.
+    /// Parses a sum up to the closing bracket.
     fn closed(&mut self) -> Option<f64> {
         let sum = self.sum()?;
         self.takes(")").then_some(sum)
@@ -82,6 +83,7 @@ impl Reader<'_> {
     fn number(&mut self) -> Option<f64> {
         let mut length = 0;
         while let Some(letter) = self.rest.get(length) {
+            // A sign belongs to the number only directly after an exponent's e.
             let exponent = matches!(letter, 'e' | 'E') && length > 0;
             let sign = matches!(letter, '+' | '-')
                 && length > 0

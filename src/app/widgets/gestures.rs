@@ -1,7 +1,7 @@
-//! Which changes belong to one gesture, so that one drag is one step of undo.
+//! Assigns changes to gestures: one drag is one step of undo.
 //!
-//! A gesture of the mouse lasts from the press of a button until it is let go, that frame included:
-//! a slider's value can change once more in it.
+//! A gesture of the mouse lasts from the press of a button to its release. It includes the frame of
+//! the release, since a slider's value may change once more there.
 
 use std::hash::{DefaultHasher, Hash, Hasher as _};
 
@@ -9,8 +9,8 @@ use egui::{Context, Id, Response};
 
 use marraztu_core::edit::Gesture;
 
-/// The gesture that a change of this widget's value belongs to: part of the drag while a button of
-/// the mouse is down, whole for a typed value or an arrow key.
+/// Returns the gesture of a change to this widget's value: part of a drag while a mouse button is
+/// down, whole for a typed value or an arrow key.
 #[must_use]
 pub fn of(response: &Response) -> Gesture {
     let pressing = |pointer: &egui::PointerState| pointer.any_down() || pointer.any_released();
@@ -21,14 +21,14 @@ pub fn of(response: &Response) -> Gesture {
     }
 }
 
-/// Gesture number `number` of the source called `salt`.
+/// Creates gesture number `number` of the source called `salt`.
 pub(crate) fn numbered(number: u64, salt: impl Hash) -> Gesture {
     let mut hasher = DefaultHasher::new();
     (number, salt).hash(&mut hasher);
     Gesture::Part(hasher.finish())
 }
 
-/// Notes that a button of the mouse went down.
+/// Counts a press of a mouse button.
 pub(crate) fn count_press(ctx: &Context) {
     ctx.data_mut(|data| *data.get_temp_mut_or_default::<u64>(id()) += 1);
 }

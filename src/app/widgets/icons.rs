@@ -65,7 +65,7 @@ pub(crate) enum Icon {
 }
 
 impl Icon {
-    /// The icon of an item.
+    /// Returns the icon of an item.
     pub(crate) fn of(scene: &Scene, id: ItemId) -> Self {
         match id {
             ItemId::Object(_) => Self::Object,
@@ -74,7 +74,7 @@ impl Icon {
         }
     }
 
-    /// The icon of a light.
+    /// Returns the icon of a light.
     pub(crate) const fn of_light(light: &Light) -> Self {
         Self::Light(light.kind.info().icon)
     }

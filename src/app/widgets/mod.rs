@@ -1,4 +1,4 @@
-//! Controls that panels are made of. They know nothing of the scene that is edited.
+//! Controls that panels are made of. They do not depend on the edited scene.
 
 pub(crate) mod color_picker;
 pub(crate) mod controls;

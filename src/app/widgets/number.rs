@@ -1,8 +1,7 @@
 //! Number fields: the value can be dragged, typed, or given as an expression.
 //!
-//! At rest a field shows as many digits as it has room for; while it is edited, all of them. A
-//! field that is left without another number typed into it asks for nothing, so that walking
-//! through the fields rounds nothing.
+//! An idle field shows the digits that fit; a focused field shows all of them. Leaving a field
+//! without typing another number changes nothing, so tabbing through fields does not round values.
 
 use std::ops::RangeInclusive;
 
@@ -17,13 +16,13 @@ use marraztu_core::base::math::Axis;
 use marraztu_core::edit::Gesture;
 use marraztu_core::edit::angles::{nearest, same_turn};
 
-/// As many characters as a number at rest has at most.
+/// The maximum length of an idle number, in characters.
 const ROOM: usize = 8;
 
 /// The width of a digit, in parts of the font's size.
 const DIGIT: f32 = 0.53;
 
-/// From the border of a field to what stands in it.
+/// The distance from the border of a field to its text.
 const PADDING: f32 = 3.0;
 
 const LETTERS: [&str; 3] = ["X", "Y", "Z"];
@@ -42,7 +41,7 @@ pub(crate) struct Number<'a> {
 }
 
 impl<'a> Number<'a> {
-    /// A field called `name` by screen readers, with what it means when the pointer rests on it.
+    /// Creates a field called `name` by screen readers. Its tooltip shows `hint`.
     pub(crate) fn new(name: impl Into<String>, hint: &'a str) -> Self {
         Self {
             name: name.into(),
@@ -56,38 +55,38 @@ impl<'a> Number<'a> {
         }
     }
 
-    /// The letter of an axis stands before the number, and behind its name.
+    /// Adds the letter of an axis before the number and after the name.
     fn axis(self, axis: Axis) -> Self {
         let name = format!("{} {}", self.name, LETTERS[axis.index()]);
         Self { axis: Some(axis), name, letter: LETTERS[axis.index()], ..self }
     }
 
-    /// A letter stands before the number.
+    /// Adds a letter before the number.
     pub(crate) fn letter(self, letter: &'static str) -> Self {
         Self { letter, ..self }
     }
 
-    /// A unit stands behind the number.
+    /// Adds a unit after the number.
     pub(crate) fn suffix(self, suffix: &'static str) -> Self {
         Self { suffix, ..self }
     }
 
-    /// How much a drag by one point changes it.
+    /// Sets the change per point of a drag.
     pub(crate) fn speed(self, speed: f64) -> Self {
         Self { speed, ..self }
     }
 
-    /// Values outside are clamped.
+    /// Sets the range. Values outside are clamped.
     pub(crate) fn range(self, range: RangeInclusive<f64>) -> Self {
         Self { range, ..self }
     }
 
-    /// Only whole numbers.
+    /// Allows only whole numbers.
     pub(crate) fn whole(self) -> Self {
         Self { whole: true, ..self }
     }
 
-    /// As many characters as there is room for beside the letter and the unit.
+    /// Returns the number of characters that fit next to the letter and the unit.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 3 and 8")]
     fn room(&self, width: f32) -> usize {
         let signs =
@@ -96,11 +95,12 @@ impl<'a> Number<'a> {
         room.clamp(3.0, ROOM as f32) as usize
     }
 
-    /// Shows it, `width` points wide. Gives the number that it should become.
+    /// Shows the field, `width` points wide. Returns the number that the user entered.
     pub(crate) fn ui(self, ui: &mut Ui, width: f32, value: f64) -> Option<(f64, Gesture)> {
         let id = ui.next_auto_id();
         let mut to = value;
-        // Asked when the text is made, for Tab gives the field the keyboard just before that.
+        // Focus is read only when the text is made: Tab moves the focus to the field just before
+        // that.
         let (ctx, room) = (ui.ctx().clone(), self.room(width));
         let parsed = ctx.clone();
         let mixed = is_mixed(&ctx, &self.name);
@@ -110,6 +110,7 @@ impl<'a> Number<'a> {
             (false, true) => "mixed".to_owned(),
             (false, false) => short_in(number, room),
         };
+        // The range clamps only new input: values from files are shown as they are.
         let mut field = DragValue::new(&mut to)
             .speed(self.speed)
             .range(self.range)
@@ -139,12 +140,12 @@ impl<'a> Number<'a> {
         if !self.suffix.is_empty() {
             field = field.suffix(RichText::new(self.suffix).weak());
         }
-        // A scope would give the field another id.
+        // The padding is set directly, since a scope would change the id of the field.
         let padding = std::mem::replace(&mut ui.spacing_mut().button_padding.x, PADDING);
         let response = ui.add(field).accessible_name(&self.name);
         ui.spacing_mut().button_padding.x = padding;
         if response.clicked() {
-            // egui marks as much of the text as the field showed at rest.
+            // egui selects only the length of the idle text, which may be shorter than all digits.
             let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
             state.cursor.set_char_range(Some(CCursorRange::select_all_str(&exact(value))));
             state.store(ui.ctx(), id);
@@ -153,13 +154,14 @@ impl<'a> Number<'a> {
             ui.label(self.hint);
             ui.label(RichText::new("Drag, or click and type a number or a sum").weak());
         });
+        // A focused field without another number typed into it reports no change.
         let to = if self.whole { to.round() } else { to };
         let changed = response.changed() && (response.dragged() || exact(to) != exact(value));
         changed.then(|| (to, gestures::of(&response)))
     }
 }
 
-/// Shows the fields with these names as "mixed" from now on: several items have other numbers.
+/// Marks fields by their names as "mixed" from now on: the selected items have different values.
 pub(crate) fn set_mixed(ctx: &Context, names: Vec<String>) {
     ctx.data_mut(|data| data.insert_temp(mixed_names(), names));
 }
@@ -177,17 +179,17 @@ fn bad_text() -> Id {
     Id::unique("text that is no number")
 }
 
-/// Notes that a field could make nothing of its text.
+/// Records that a field could not parse its text.
 pub(super) fn say_bad_text(ctx: &Context, text: &str) {
     ctx.data_mut(|data| data.insert_temp(bad_text(), text.to_owned()));
 }
 
-/// The text that was typed into a field since this was last asked, if it means nothing there.
+/// Takes the text that a field could not parse since the last call.
 pub(crate) fn take_bad_text(ctx: &Context) -> Option<String> {
     ctx.data_mut(|data| data.remove_temp(bad_text()))
 }
 
-/// Three fields like `field` in a row, one for each axis. Gives the vector that they should become.
+/// Shows one copy of `field` for each axis in a row. Returns the vector that the user entered.
 pub(crate) fn vector(ui: &mut Ui, field: &Number<'_>, value: DVec3) -> Option<(DVec3, Gesture)> {
     ui.spacing_mut().item_spacing.x = theme::GAP;
     let width = (ui.available_width() - 2.0 * theme::GAP) / 3.0;
@@ -204,7 +206,7 @@ pub(crate) fn vector(ui: &mut Ui, field: &Number<'_>, value: DVec3) -> Option<(D
     changed
 }
 
-/// A number in few characters, with at most three decimals.
+/// Formats a number in few characters, with at most three decimals.
 pub(crate) fn short(number: f64) -> String {
     short_in(number, ROOM)
 }
@@ -212,7 +214,7 @@ pub(crate) fn short(number: f64) -> String {
 fn short_in(number: f64, room: usize) -> String {
     for decimals in (0..=3).rev() {
         let text = trimmed(&format!("{number:.decimals$}"));
-        // Of a number that is not 0, something other than 0 is to be seen.
+        // A number other than 0 is never shown as 0.
         if text.chars().count() <= room && (text != "0" || number.abs() < 1e-12) {
             return text;
         }
@@ -221,7 +223,7 @@ fn short_in(number: f64, room: usize) -> String {
     if text.len() <= room { text } else { format!("{number:.0e}") }
 }
 
-/// A number with all digits that a person could mean.
+/// Formats a number with all digits that a user may have entered.
 fn exact(number: f64) -> String {
     let size = number.abs();
     if size != 0.0 && !(1e-6..1e15).contains(&size) {
@@ -236,9 +238,11 @@ fn trimmed(text: &str) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// The angles of a turn that are nearest to those shown last, which stay if they say the same:
-/// otherwise 95 degrees about Y would jump to 180, 85 and 180 while they are dragged. `canonical`
-/// is shown first; `turn` gives the turn of angles.
+/// Returns the angles to show for a rotation: the last ones if they give the same rotation, else
+/// the nearest equivalent ones.
+///
+/// Without this, an angle of 95 degrees about Y would jump to 180, 85 and 180 during a drag.
+/// `canonical` is shown first; `turn` converts angles into a rotation.
 pub(crate) fn shown_angles(
     ui: &Ui,
     name: &'static str,
@@ -256,7 +260,7 @@ pub(crate) fn shown_angles(
     shown
 }
 
-/// Keeps angles that the user gave, for [`shown_angles`].
+/// Keeps angles that the user entered, for [`shown_angles`].
 pub(crate) fn keep_angles(ui: &Ui, name: &'static str, given: DVec3) {
     ui.data_mut(|data| data.insert_temp(ui.scope_id().with(name), given.to_array()));
 }

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, Rect, TextStyle, Ui, vec2};
 
-/// Words on a dark plate in a corner of the picture, so that they are read on any background.
+/// Shows text on a dark plate in a corner of the picture, readable on any background.
 pub(crate) fn plate_ui(ui: &Ui, rect: Rect, corner: Align2, text: String) {
     let font = TextStyle::Body.resolve(ui.style());
     let painter = ui.painter();

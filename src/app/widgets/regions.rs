@@ -1,18 +1,18 @@
-//! Regions of the window for the keyboard: F6 goes from one to the next, Tab within one.
+//! Regions of the window for the keyboard: F6 moves to the next region, Tab moves within one.
 //!
-//! A region is named where it begins to be shown. To go there, the focus is given to the first
-//! control that is shown after that. Which region has the focus is told by the place of what has
-//! it: controls need not know.
+//! A region is registered where it begins to be shown. To enter it, the focus moves to the first
+//! control shown after that point. The region with the focus is found from the position of the
+//! focused control, so controls need not know about regions.
 
 use std::hash::Hash;
 
 use egui::{Context, FocusDirection, Id, Key, Rect, Sense, Ui};
 
-/// The beginning of a region, in the order in which regions are shown.
+/// A registered region. The list has the order of display.
 #[derive(Clone, Copy, Debug)]
 struct Region {
     id: Id,
-    /// What is seen of the panel that it is in.
+    /// The visible part of the panel that contains it.
     column: Rect,
     top: f32,
 }
@@ -21,10 +21,10 @@ struct Region {
 struct Regions {
     pass: u64,
     shown: Vec<Region>,
-    /// The region that the keyboard is to go to, and the one that it went to last.
+    /// The region to focus next, and the last one that got the focus.
     target: Option<Id>,
     current: Option<Id>,
-    /// What had the keyboard before it was taken back, and the place of the region it was taken to.
+    /// The control that had the focus before a step back, and the index of the region it went to.
     back: Option<(Id, usize)>,
 }
 
@@ -32,16 +32,17 @@ fn key() -> Id {
     Id::unique("regions")
 }
 
-/// Begins a region at the place where `ui` goes on.
+/// Begins a region at the current position of `ui`.
 pub(crate) fn begin(ui: &Ui, name: impl Hash + std::fmt::Debug) {
     begin_in(ui, name, ui.clip_rect());
 }
 
-/// Begins a region that is seen within `column` alone.
+/// Begins a region that is visible only within `column`.
 pub(crate) fn begin_in(ui: &Ui, name: impl Hash + std::fmt::Debug, column: Rect) {
     let id = Id::unique("region").with(name);
     let region = Region { id, column, top: ui.cursor().top() };
     let pass = ui.ctx().cumulative_pass_nr();
+    // The first region of a frame clears the list of the frame before.
     let is_target = ui.data_mut(|data| {
         let regions: &mut Regions = data.get_temp_mut_or_default(key());
         if regions.pass != pass {
@@ -56,6 +57,7 @@ pub(crate) fn begin_in(ui: &Ui, name: impl Hash + std::fmt::Debug, column: Rect)
         }
         is_target
     });
+    // The focus moves to the next control that is shown, the first of this region.
     if is_target {
         ui.memory_mut(|memory| {
             if let Some(focused) = memory.focused() {
@@ -66,17 +68,16 @@ pub(crate) fn begin_in(ui: &Ui, name: impl Hash + std::fmt::Debug, column: Rect)
     }
 }
 
-/// Forwards or backwards through the regions.
+/// A direction through the regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way {
-    /// To the next one.
+    /// To the next region.
     On,
-    /// To the one before.
+    /// To the previous region.
     Back,
 }
 
-/// Takes the keyboard to the region after or before the one that has it; beyond the ends, to
-/// `viewport`.
+/// Moves the focus to the next or the previous region; beyond either end, to `viewport`.
 pub(crate) fn go(ctx: &Context, viewport: Id, way: Way) {
     let focused = ctx.memory(|memory| memory.focused()).filter(|id| *id != viewport);
     let place = focused.and_then(|id| ctx.read_response(id)).map(|response| response.rect);
@@ -93,6 +94,7 @@ pub(crate) fn go(ctx: &Context, viewport: Id, way: Way) {
                 here.and_then(|before| regions.shown.get(before))
             }
         };
+        // The focus moves when the target is shown, in the next frame.
         regions.target = next.map(|region| region.id);
         let place = next.and_then(|next| regions.shown.iter().position(|it| it.id == next.id));
         regions.back = focused.zip(place).filter(|_| way == Way::Back);
@@ -104,8 +106,10 @@ pub(crate) fn go(ctx: &Context, viewport: Id, way: Way) {
     ctx.request_repaint();
 }
 
-/// A region whose first control is that of the next one has none of its own: on the way back, the
-/// keyboard goes further. Called in each frame after all regions were shown.
+/// Moves the focus one more region back if the last step back found a region without controls.
+///
+/// The first control shown after the start of such a region belongs to the next one, which had the
+/// focus already. Called in each frame after all regions were shown.
 pub(crate) fn go_further(ctx: &Context, viewport: Id) {
     let focused = ctx.memory(|memory| memory.focused());
     let beyond = ctx.data_mut(|data| {
@@ -132,13 +136,14 @@ pub(crate) fn go_further(ctx: &Context, viewport: Id) {
 }
 
 impl Regions {
-    /// The place in the list of the region at a place of the window; if none is there, of the one
-    /// where the keyboard went last.
+    /// Finds the index of the region at a place of the window, else of the region that last got the
+    /// focus.
     fn holding(&self, place: Option<Rect>) -> Option<usize> {
         let at = place.map(|place| place.center());
         let holds = |region: &Region| {
             at.is_some_and(|at| region.column.contains(at) && region.top <= at.y + 1.0)
         };
+        // The column may hold several regions: the lowest one that begins above the place counts.
         let there = self.shown.iter().enumerate().filter(|(_, region)| holds(region));
         let there = there.max_by(|(_, a), (_, b)| a.top.total_cmp(&b.top));
         there
@@ -147,13 +152,14 @@ impl Regions {
     }
 }
 
-/// Which of several controls that stand together Tab stops at: the one that has the keyboard, else
-/// the chosen one, else the first. The arrows go from one to the next, `columns` of them in a row.
+/// Returns the index of the control in a group at which Tab stops: the focused one, else the chosen
+/// one, else the first. The arrow keys move between the controls, `columns` to a row.
 pub(crate) fn stop(ui: &Ui, ids: &[Id], chosen: Option<usize>, columns: usize) -> usize {
     let focused = ui.memory(|memory| memory.focused());
     let Some(here) = ids.iter().position(|id| Some(*id) == focused) else {
         return chosen.unwrap_or(0);
     };
+    // While the group has the focus, egui leaves the arrow keys to it.
     let filter = egui::EventFilter {
         horizontal_arrows: true,
         vertical_arrows: true,
@@ -182,12 +188,12 @@ pub(crate) fn stop(ui: &Ui, ids: &[Id], chosen: Option<usize>, columns: usize) -
     there
 }
 
-/// A sense that Tab stops at, or does not.
+/// Returns a sense with or without a stop of Tab.
 pub(crate) fn sense(sense: Sense, is_stop: bool) -> Sense {
     if is_stop { sense } else { sense - Sense::FOCUSABLE }
 }
 
-/// Scrolls what got the keyboard in `ui` into sight; called where the contents end.
+/// Scrolls the focused control of `ui` into view; called at the end of its contents.
 pub(crate) fn follow_focus(ui: &Ui) {
     let Some(focused) = ui.memory(|memory| memory.focused()) else { return };
     let id = key().with("followed");

@@ -1,9 +1,9 @@
-//! Materials as small spheres, drawn by the program's own renderer.
+//! Previews of materials as small spheres, drawn by the program's renderer.
 //!
-//! A sphere of radius 1 before an orthographic camera, lit by ambient light and by a sun from the
-//! upper left. It is drawn at twice its size and every four pixels become one. Its outline is not
-//! the renderer's, which covers a pixel or does not, but a disk whose border is as transparent as
-//! it covers its pixels; the sphere goes a little beyond it.
+//! The preview shows a sphere of radius 1 through an orthographic camera, lit by ambient light and
+//! by a sun from the upper left. It is drawn at twice its size and averaged over squares of four
+//! pixels. Its outline is not the renderer's, which is not anti-aliased, but a disk with alpha
+//! equal to the coverage of each border pixel. The sphere is slightly larger than the disk.
 
 use std::sync::Arc;
 
@@ -26,17 +26,17 @@ use marraztu_io::cam_model;
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
 
-/// Quarters of a pixel come from this many by this many.
+/// The supersampling factor per axis.
 const FINER: usize = 2;
 
-/// What a sphere shows.
+/// The material that a sphere shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Sphere {
-    /// One of the nineteen.
+    /// One of the nineteen presets.
     Preset(PresetId),
-    /// What a file says.
+    /// The material of a file.
     File(Material),
-    /// The user's own.
+    /// A material edited by the user.
     Own(Material),
 }
 
@@ -48,7 +48,7 @@ impl Sphere {
         }
     }
 
-    /// Spheres in one place take turns in one texture.
+    /// Returns the index of its texture. Spheres with equal indices share one texture in turn.
     fn place(self) -> usize {
         match self {
             Self::Preset(id) => PresetId::all().position(|other| other == id).unwrap_or(0),
@@ -58,10 +58,10 @@ impl Sphere {
     }
 }
 
-/// Paints the sphere of a material into a square.
+/// Draws the sphere of a material into a square.
 pub(crate) fn paint(ui: &Ui, rect: Rect, sphere: Sphere) {
     let side = (rect.width().min(rect.height()) * ui.pixels_per_point()).round();
-    // A dialog shows them in a size of its own.
+    // Dialogs use another size, so each layer has separate textures.
     let id = Id::unique(("spheres of materials", ui.layer_id()));
     let all = ui.data_mut(|data| data.get_temp_mut_or_default::<Arc<Mutex<Spheres>>>(id).clone());
     let texture = all.lock().texture(ui, sphere, pixels(side));
@@ -76,7 +76,7 @@ fn pixels(side: f32) -> usize {
     side.clamp(1.0, 512.0) as usize
 }
 
-/// What was drawn, and what it takes to draw another.
+/// The textures of spheres drawn so far, and the scene and renderer for others.
 #[derive(Default)]
 struct Spheres {
     drawn: Vec<Option<Drawn>>,
@@ -99,6 +99,7 @@ impl Spheres {
         {
             return drawn.texture.id();
         }
+        // The studio is created with the first sphere and used for all.
         let (scene, renderer) = self.studio.get_or_insert_with(studio);
         let image = image(scene, renderer, material, side);
         let texture =
@@ -109,7 +110,7 @@ impl Spheres {
     }
 }
 
-/// A sphere, a camera and two lights.
+/// Creates a scene with a sphere, a camera and two lights.
 fn studio() -> (Scene, Renderer) {
     let mut scene = Scene::with_camera(Camera {
         name: String::new(),
@@ -133,13 +134,14 @@ fn studio() -> (Scene, Renderer) {
     (scene, Renderer::new(Level::new()))
 }
 
-/// The disk of `side` by `side` pixels that shows a material.
+/// Draws a disk of `side` by `side` pixels that shows a material.
 fn image(
     scene: &mut Scene,
     renderer: &mut Renderer,
     material: Material,
     side: usize,
 ) -> ColorImage {
+    // The object in the scene gets the material, and the scene is drawn again.
     if let Some(object) = scene.objects.get(ObjectId(1)) {
         let object = Object { material: MaterialChoice::Own(material), ..object.clone() };
         let item = Item::Object(ObjectId(1), Box::new(object));
@@ -153,7 +155,7 @@ fn image(
     disk(renderer.render(&plan), side)
 }
 
-/// The mean of every four pixels, within a disk.
+/// Averages squares of four pixels, and cuts out a disk.
 #[expect(clippy::cast_precision_loss, reason = "a sphere has a few hundred pixels at most")]
 fn disk(picture: &Picture, side: usize) -> ColorImage {
     let radius = side as f32 / 2.0;
@@ -174,7 +176,7 @@ fn disk(picture: &Picture, side: usize) -> ColorImage {
     ColorImage::new([side, side], pixels)
 }
 
-/// A sphere of radius 1, its normals exact.
+/// Creates a sphere of radius 1 with exact normals.
 fn ball() -> Shared<Model> {
     const RINGS: u32 = 24;
     const SECTORS: u32 = 48;
@@ -182,6 +184,7 @@ fn ball() -> Shared<Model> {
         parts: vec![Part { name: String::new(), material: None }],
         ..MeshSource::default()
     };
+    // Vertices in rings from pole to pole. The poles are rings of equal points.
     for ring in 0..=RINGS {
         let polar = std::f64::consts::PI * f64::from(ring) / f64::from(RINGS);
         for sector in 0..SECTORS {
@@ -192,6 +195,7 @@ fn ball() -> Shared<Model> {
         }
     }
     source.normals.clone_from(&source.positions);
+    // Positions of a unit sphere are also its normals.
     let corner = |ring: u32, sector: u32| {
         let position = ring * SECTORS + sector % SECTORS;
         SourceCorner { position, uv: NONE, normal: position }
@@ -244,7 +248,7 @@ mod tests {
         assert_eq!(at(16, 16).a(), 255);
         assert!(at(11, 9).r() > at(16, 16).r() && at(16, 16).r() > at(24, 26).r());
         assert!(image.pixels.iter().all(|pixel| pixel.g() == 0 && pixel.b() == 0), "no background");
-        // The far side gets ambient light alone: 0.1 of 255.
+        // The far side gets ambient light only: 0.1 of 255.
         assert_eq!(at(25, 27).r(), 26);
     }
 }

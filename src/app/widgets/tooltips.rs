@@ -1,12 +1,12 @@
 //! Hides tooltips when a key is pressed.
 //!
-//! egui keeps a tooltip for as long as the pointer rests, even if what it belongs to has gone or
-//! lies under a dialog by then. It hides them while something scrolls; so a key is given as a turn
-//! of the wheel by nothing. Afterwards only what the pointer is really over has its tooltip again.
+//! egui keeps a tooltip while the pointer rests, even if its widget has gone or is covered by a
+//! dialog. egui also hides tooltips while something scrolls, so each key press sends a wheel event
+//! with a distance of zero. Afterwards only the widget under the pointer shows its tooltip again.
 
 use egui::{Context, Event, Modifiers, MouseWheelUnit, Plugin, RawInput, TouchPhase, Vec2};
 
-/// Adds what hides tooltips.
+/// Installs the plugin that hides tooltips.
 pub(crate) fn install(ctx: &Context) {
     ctx.add_plugin(HiddenByKeys);
 }

@@ -13,7 +13,7 @@ use crate::app::widgets::icons::Icon;
 /// The height of the list.
 const HEIGHT: f32 = 264.0;
 
-/// The widths of the columns at the right.
+/// The widths of the columns for size and date.
 const SIZE: f32 = 70.0;
 const DATE: f32 = 90.0;
 
@@ -37,7 +37,7 @@ impl Column {
         }
     }
 
-    /// The part of a line that it has.
+    /// Returns the part of a line that the column occupies.
     fn within(self, line: Rect) -> Rect {
         let date = (line.right() - DATE).max(line.left());
         let size = (date - SIZE).max(line.left());
@@ -49,25 +49,25 @@ impl Column {
     }
 }
 
-/// How the list is shown.
+/// The display of the list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Look {
-    /// Whether to list files with a dot at the beginning of their names.
+    /// Whether to list files with names that begin with a dot.
     pub(crate) hidden: bool,
-    /// The column by which it is sorted.
+    /// The column to sort by.
     pub(crate) by: Column,
-    /// Whether the last comes first.
+    /// Whether the order is reversed.
     pub(crate) reversed: bool,
 }
 
 impl Look {
-    /// Sorts entries: folders before files.
+    /// Sorts entries, folders before files.
     pub(super) fn sort(self, entries: &mut [Entry]) {
         let name = |entry: &Entry| entry.name.to_lowercase();
         entries.sort_by(|a, b| {
             let order = match self.by {
                 Column::Name => name(a).cmp(&name(b)),
-                // The largest and the latest are looked for.
+                // The largest and the latest come first, which users look for most.
                 Column::Size => b.bytes.cmp(&a.bytes).then_with(|| name(a).cmp(&name(b))),
                 Column::Date => b.modified.cmp(&a.modified).then_with(|| name(a).cmp(&name(b))),
             };
@@ -78,10 +78,11 @@ impl Look {
 }
 
 impl Browser {
-    /// Lists what fits the typed name; gives the path that was clicked. The chosen line is scrolled
-    /// to if it has `moved`.
+    /// Lists the entries that match the typed name. Returns the path that was clicked. If the
+    /// selection has `moved`, its line is scrolled into view.
     pub(super) fn list_ui(&mut self, ui: &mut Ui, moved: bool) -> Option<PathBuf> {
         ui.spacing_mut().item_spacing.y = 0.0;
+        // A second click on a column reverses its order.
         if let Some(column) = self.header_ui(ui) {
             self.look.reversed = self.look.by == column && !self.look.reversed;
             self.look.by = column;
@@ -109,7 +110,7 @@ impl Browser {
         clicked
     }
 
-    /// The names of the columns. Gives the one that was clicked.
+    /// Shows the names of the columns. Returns the column that was clicked.
     fn header_ui(&self, ui: &mut Ui) -> Option<Column> {
         let width = ui.available_width() - f32::from(theme::MARGIN);
         let (line, _) = ui.allocate_exact_size(vec2(width, theme::ROW), Sense::hover());
@@ -144,7 +145,7 @@ impl Browser {
     }
 }
 
-/// A line of the list. Says whether it was clicked.
+/// Shows a line of the list. Returns whether it was clicked.
 fn row_ui(ui: &mut Ui, entry: Option<&Entry>, chosen: bool, now: SystemTime) -> bool {
     let (line, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW), Sense::click());
@@ -167,7 +168,7 @@ fn row_ui(ui: &mut Ui, entry: Option<&Entry>, chosen: bool, now: SystemTime) -> 
         let rect = column.within(line).shrink2(vec2(theme::GAP, 0.0));
         let galley = text(ui, words, TextStyle::Body, rect.width());
         let rect = match column {
-            // Numbers are compared by their ends.
+            // Numbers are right-aligned to compare them.
             Column::Size => Align2::RIGHT_CENTER.align_size_within_rect(galley.size(), rect),
             Column::Name | Column::Date => rect,
         };
@@ -185,7 +186,7 @@ fn row_ui(ui: &mut Ui, entry: Option<&Entry>, chosen: bool, now: SystemTime) -> 
     response.clicked()
 }
 
-/// "812 B", "4.3 KB", "12 MB": with two digits at least.
+/// Formats a size: "812 B", "4.3 KB", "12 MB", with at least two digits.
 #[expect(clippy::cast_precision_loss, reason = "two digits are shown")]
 fn size(bytes: u64) -> String {
     let mut rest = bytes as f64;
@@ -199,7 +200,7 @@ fn size(bytes: u64) -> String {
     format!("{rest:.0} TB")
 }
 
-/// "5 min ago", "3 h ago", "2 days ago"; of older files the day, in the time zone of Greenwich.
+/// Formats an age: "5 min ago", "3 h ago", "2 days ago". Older files show their date in UTC.
 fn age(modified: SystemTime, now: SystemTime) -> String {
     const MINUTE: u64 = 60;
     const HOUR: u64 = 60 * MINUTE;
@@ -218,10 +219,10 @@ fn age(modified: SystemTime, now: SystemTime) -> String {
     }
 }
 
-/// The day this number of days after 1 January 1970, as "2026-11-27".
+/// Formats a day, counted from 1 January 1970, as "2026-11-27".
 ///
-/// Years begin in March, which makes the leap day the last day of a year. After
-/// H. Hinnant, "chrono-compatible low-level date algorithms", 2013.
+/// Years begin in March here, which makes the leap day the last day of a year. After H. Hinnant,
+/// "chrono-compatible low-level date algorithms", 2013.
 fn day(days: u64) -> String {
     let days = days + 719_468;
     let (era, of_era) = (days / 146_097, days % 146_097);

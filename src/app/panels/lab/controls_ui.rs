@@ -140,11 +140,13 @@ struct Budget {
     hint: &'static str,
     suffix: &'static str,
     value: Option<f64>,
-    /// The point within the budget; `None` without a budget, or if no point is within it.
+    /// The point within the budget. The outer `None` means no budget, the inner one that no point
+    /// is within it.
     found: Option<Option<usize>>,
 }
 
-/// A budget, and what it comes to: a click makes that live. Gives the budget that it should become.
+/// Shows a budget and the choice that meets it; a click applies that choice. Returns the changed
+/// budget.
 fn budget_ui(
     ui: &mut Ui,
     budget: &Budget,

@@ -1,4 +1,4 @@
-//! The lesson of each axis of accuracy: three sentences, its choices, and a scene that shows it.
+//! The lesson about each axis of accuracy: three sentences, its choices, and a scene that shows it.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -51,7 +51,8 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// What the axis costs and buys, with the figures of this machine once they are measured.
+/// Shows the cost and the benefit of the axis, as measured on this computer, or a button to
+/// measure.
 fn cost_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let axis = state.lab.lesson;
     if let Some(cost) = state.lab.costs.get(axis.key) {

@@ -1,7 +1,8 @@
-//! The laboratory: time against error, the table behind it, and the lesson of each axis.
+//! The laboratory: plots of time against error, the table behind them, and a lesson about each
+//! axis.
 //!
-//! At the left what is asked, in the middle the plots, at the right the table or the lessons. A
-//! click on a mark or on a row of the table draws the picture so.
+//! The controls are at the left, the plots in the middle, the table or the lessons at the right. A
+//! click on a mark or on a row of the table applies its settings.
 
 mod controls_ui;
 mod lessons;
@@ -19,7 +20,7 @@ use crate::app::{actions::LabRequest, state::laboratory::Side, theme};
 /// The width of the controls.
 const ASKED: f32 = 264.0;
 
-/// In less width than this, one part is shown at a time.
+/// Narrower panels show one part at a time.
 const WIDE: f32 = 1100.0;
 
 /// Shows the panel; its requests are added to `requests`.
@@ -45,12 +46,12 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// One part at a time, for there is no room beside it.
+/// Shows one part at a time, with a choice of the part.
 fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let id = Id::unique("part of the laboratory");
     let mut part: usize = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     if part >= 2 {
-        // What is asked for elsewhere is shown.
+        // The part follows the state, which other panels may have changed.
         part = if state.lab.side == Side::Table { 2 } else { 3 };
     }
     let all = [
@@ -87,7 +88,7 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 
 fn within(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {
     let layout = Layout::top_down(egui::Align::Min);
-    // A child of its own, so that what it holds does not make the panel larger.
+    // A separate child, so the contents cannot enlarge the panel.
     let mut child = ui.new_child(UiBuilder::new().max_rect(rect).layout(layout));
     child.set_clip_rect(rect.expand(2.0).intersect(ui.clip_rect()));
     add(&mut child);

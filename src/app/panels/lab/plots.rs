@@ -1,5 +1,5 @@
-//! The plots of time against error: an overview, or the panel of an axis. Clicking a mark draws the
-//! picture with its settings.
+//! The plots of time against error: an overview, or the panel of an axis. A click on a mark applies
+//! its settings.
 
 use egui::{Color32, Id, Pos2, Rect, Response, RichText, ScrollArea, Sense, Stroke, Ui, Visuals};
 use egui::{WidgetInfo, pos2, vec2};
@@ -12,24 +12,24 @@ use crate::app::widgets::controls::{self, Choice, choices_in_rows};
 use crate::app::widgets::regions;
 use marraztu_lab::report::{Panel, PanelMark, Panels, Report, TextBox, brief, place};
 
-/// The height of a plot with its title, if the panel has room for it: 420 points and a line.
+/// The usual height of a plot with its title, 420 points and a line, if the panel is high enough.
 const USUAL: f32 = 444.0;
 
-/// The least height, in a panel that is lower.
+/// The minimum height, in a panel that is lower.
 const LEAST: f32 = 200.0;
 
-/// The height that the verdict gets under the plot, if there is room.
+/// The height reserved for the verdict under the plot, if the panel is high enough.
 const VERDICT: f32 = 84.0;
 
 /// The radius of a mark.
 const MARK: f32 = 5.0;
 
-/// The colour of the default, in every plot.
+/// Returns the colour of the default in every plot.
 const fn default_color(visuals: &Visuals) -> Color32 {
     if visuals.dark_mode { Color32::from_rgb(230, 159, 0) } else { Color32::from_rgb(213, 94, 0) }
 }
 
-/// The colour of a mark that is not pointed at.
+/// Returns the colour of a mark without the pointer on it.
 fn mark_color(visuals: &Visuals, mark: &PanelMark) -> Color32 {
     if mark.is_default { default_color(visuals) } else { theme::accent(visuals) }
 }
@@ -54,8 +54,8 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// The height of the plot in this room: in a low panel it has all of it, so that its scales are
-/// seen, and the verdict is scrolled to.
+/// Returns the height of the plot. In a low panel the plot takes all of the height, so its scales
+/// are visible, and the user scrolls to the verdict.
 fn height(room: f32) -> f32 {
     (room - VERDICT).max(room.min(USUAL)).max(LEAST)
 }
@@ -75,7 +75,7 @@ fn empty_ui(ui: &mut Ui, state: &State) {
     ui.vertical_centered(|ui| ui.add(egui::Label::new(text).wrap()));
 }
 
-/// The choice between the scene on screen and those of the suite.
+/// Shows the choice between the scene on screen and the scenes of the suite.
 fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     if state.lab.suite.is_empty() {
         return;
@@ -95,7 +95,7 @@ fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
-/// The choice of a panel.
+/// Shows the choice of a plot.
 fn panels_ui(ui: &mut Ui, panels: &Panels, shown: &Panel, requests: &mut Vec<Request>) {
     let all: Vec<&Panel> = std::iter::once(&panels.overview).chain(&panels.axes).collect();
     let chips: Vec<Choice<'_>> = all
@@ -121,6 +121,7 @@ fn panel_ui(
         ui.strong(&panel.title);
         ui.weak(RichText::new(panel.note).small());
     });
+    // Marks are connected in order, each with a line for the noise of its time.
     let transform = plot_ui(ui, panels);
     let at: Vec<Pos2> = panel.marks.iter().map(|mark| position(mark, &transform)).collect();
     let line = Stroke::new(1.5, theme::accent(ui.visuals()));
@@ -132,7 +133,7 @@ fn panel_ui(
         painter.hline(from..=to, at.y, Stroke::new(1.0, ink));
     }
     let is_now = |mark: &PanelMark| report.findings.points[mark.point].settings == state.settings;
-    // One stop of Tab: the arrows go from mark to mark.
+    // The marks are one stop of Tab: the arrow keys move between them.
     let ids: Vec<Id> =
         panel.marks.iter().map(|mark| ui.scope_id().with(("mark", mark.point))).collect();
     let stop = regions::stop(ui, &ids, panel.marks.iter().position(is_now), 1);
@@ -151,7 +152,7 @@ fn position(mark: &PanelMark, transform: &PlotTransform) -> Pos2 {
     transform.position_from_point(&PlotPoint::new(mark.at[0], mark.at[1]))
 }
 
-/// The scales, the line of exact choices, and the noise.
+/// Draws the scales, the line of exact choices, and the noise.
 fn plot_ui(ui: &mut Ui, panels: &Panels) -> PlotTransform {
     let marks = |ticks: &[(f64, String)]| -> Vec<GridMark> {
         ticks.iter().map(|(value, _)| GridMark { value: *value, step_size: 1.0 }).collect()
@@ -170,7 +171,7 @@ fn plot_ui(ui: &mut Ui, panels: &Panels) -> PlotTransform {
         .allow_boxed_zoom(false)
         .allow_double_click_reset(false)
         .show_crosshair(false)
-        // The data are stronger than the grid.
+        // Without a grid, the data are the strongest lines.
         .show_grid(false)
         .sense(Sense::hover())
         .default_x_bounds(left, right)
@@ -203,7 +204,7 @@ fn plot_ui(ui: &mut Ui, panels: &Panels) -> PlotTransform {
     shown.transform
 }
 
-/// Names beside marks; no two overlap.
+/// Draws names next to marks, without overlaps.
 fn names_ui(ui: &Ui, panel: &Panel, at: &[Pos2], frame: &Rect) {
     let font = egui::TextStyle::Small.resolve(ui.style());
     let visuals = ui.visuals();
@@ -216,6 +217,7 @@ fn names_ui(ui: &Ui, panel: &Panel, at: &[Pos2], frame: &Rect) {
         })
         .collect();
     let marks: Vec<[f32; 2]> = at.iter().map(|at| [at.x, at.y]).collect();
+    // Placement is independent of egui: it gets marks, sizes and a frame.
     let sizes: Vec<[f32; 2]> =
         galleys.iter().map(|galley| [galley.size().x + 2.0, galley.size().y]).collect();
     let frame = TextBox { min: [frame.left(), frame.top()], max: [frame.right(), frame.bottom()] };
@@ -249,7 +251,7 @@ fn mark_ui(
     response.on_hover_ui(|ui| tip_ui(ui, mark, report))
 }
 
-/// The figures of a choice, for its tooltip.
+/// Shows the measurements of a choice in its tooltip.
 fn tip_ui(ui: &mut Ui, mark: &PanelMark, report: &Report) {
     let point = &report.findings.points[mark.point];
     let [least, most] = report.findings.noise_of(mark.point);

@@ -1,4 +1,4 @@
-//! The table of the laboratory: every choice with its figures; a click applies it.
+//! The table of the laboratory: every choice with its measurements; a click applies it.
 
 use egui::{Color32, Id, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
@@ -11,7 +11,7 @@ use marraztu_lab::error::{Error, Region};
 use marraztu_lab::report::{Report, brief, heading};
 use marraztu_lab::sweep::{Measured, Row, Verdict};
 
-/// A column: its heading, what it tells, and its share of the width.
+/// A column of the table.
 struct Column {
     heading: &'static str,
     hint: &'static str,
@@ -19,10 +19,10 @@ struct Column {
     value: fn(&Measured, &Error, Region) -> String,
 }
 
-/// In less width the table is scrolled sideways.
+/// Narrower panels scroll the table sideways.
 const LEAST: f32 = 480.0;
 
-/// What of the width the names have.
+/// The share of the width for the names.
 const NAMES: f32 = 0.30;
 
 const COLUMNS: [Column; 7] = [
@@ -91,6 +91,7 @@ fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Vec<Reque
         let front = report.front();
         let rows: Vec<&Row> = report.rows();
         let ids: Vec<Id> = (0..rows.len()).map(|i| ui.scope_id().with(("row", i))).collect();
+        // The rows are one stop of Tab: the arrow keys move between them.
         let is_now = |row: &&Row| report.findings.points[row.point].settings == state.settings;
         let stop = regions::stop(ui, &ids, rows.iter().position(is_now), 1);
         for (i, row) in rows.into_iter().enumerate() {
@@ -108,14 +109,14 @@ fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Vec<Reque
     });
 }
 
-/// The place of a row among the others, for the keyboard.
+/// The keyboard stop of a row.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     id: Id,
     is_stop: bool,
 }
 
-/// The place of a column in a row.
+/// Returns the cell of a column in a row.
 fn cell(row: Rect, column: usize) -> Rect {
     let before: f32 = COLUMNS[..column].iter().map(|column| column.share).sum();
     let left = row.left() + (NAMES + before) * row.width();
@@ -158,7 +159,7 @@ fn row_ui(
         (false, false) => (Color32::TRANSPARENT, visuals.text_color()),
     };
     ui.painter().rect_filled(rect, 3.0, fill);
-    // Choices on the front have a bar.
+    // A bar marks choices on the Pareto front.
     if on_front {
         let bar = Rect::from_min_size(rect.min + vec2(1.0, 3.0), vec2(2.0, rect.height() - 6.0));
         ui.painter().rect_filled(bar, 1.0, theme::accent(ui.visuals()));
@@ -168,6 +169,7 @@ fn row_ui(
     let label = text(ui, format!("{}{star}", row.name), TextStyle::Body, left.width());
     put_text(ui, left, label, ink);
     for (i, column) in COLUMNS.iter().enumerate() {
+        // Times within the noise are shown weakly.
         let noise = i < 3 && point.verdict == Verdict::Alike && row.point != 0 && !now;
         let ink = if noise { ui.visuals().weak_text_color() } else { ink };
         right_text(ui, cell(rect, i), &(column.value)(point, error, report.region), ink);
@@ -193,7 +195,7 @@ fn right_text(ui: &Ui, rect: Rect, value: &str, ink: Color32) {
     ui.painter().galley_with_override_text_color(at, galley, ink);
 }
 
-/// What the figures rest on, and what was not measured.
+/// Shows the conditions of the measurement, and the parts that were not measured.
 fn foot_ui(ui: &mut Ui, report: &Report) {
     let findings = &report.findings;
     let [width, height] = findings.size;

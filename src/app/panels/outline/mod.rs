@@ -1,7 +1,7 @@
 //! The outline: the list of objects, cameras and lights.
 //!
-//! All its lines are of one height, so that only those in sight are made, however many parts a
-//! model has. The selection here is that of the keys.
+//! All lines have the same height, so only the visible ones are created, no matter how many parts a
+//! model has. The selection in the list is the one that the keys act on.
 
 mod order;
 mod row;
@@ -22,10 +22,10 @@ use crate::app::widgets::regions;
 use marraztu_core::scene::{ItemId, ObjectId, Subject};
 use order::{place, reorder};
 
-/// One line of the list.
+/// A line of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Line {
-    /// The name of a list.
+    /// The heading of a list.
     Header(Subject),
     /// An item.
     Item(ItemId),
@@ -60,8 +60,9 @@ fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         let count = u16::try_from(lines.len()).unwrap_or(u16::MAX);
         let size = vec2(ui.available_width(), f32::from(count) * theme::ROW);
         let (all, _) = ui.allocate_exact_size(size, Sense::hover());
-        // Other lines come to the same places when the list is scrolled or unfolded.
+        // After scrolling or unfolding, other lines have the same places.
         ui.ctx().allow_widget_id_changes_in(all);
+        // The list is one stop of Tab: the arrow keys move between its items.
         let items: Vec<ItemId> = lines.iter().filter_map(|line| line.item()).collect();
         let ids: Vec<Id> = items.iter().map(|item| row::id(ui, *item)).collect();
         let chosen = items.iter().position(|item| state.selected() == Some(*item));
@@ -73,6 +74,7 @@ fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             follow_selection(ui, state, *line, rect);
             let (y, bottom) = (rect.top() - all.top(), rect.bottom() - all.top());
             let is_stop = stop.is_some() && line.item() == stop;
+            // The line at which Tab stops is created even out of sight, so it keeps the focus.
             if is_stop || (bottom >= seen.top() && y <= seen.bottom()) {
                 line_ui(ui, state, requests, *line, rect, (&mut unfolded, is_stop));
             }
@@ -91,7 +93,7 @@ impl Line {
     }
 }
 
-/// The lines, from the top.
+/// Lists the lines from top to bottom.
 fn lines(state: &State, unfolded: &BTreeSet<ObjectId>) -> Vec<Line> {
     let scene = &state.scene;
     let fitting = |line: &Line| line.item().is_none_or(|item| state.is_listed(item));
@@ -113,7 +115,7 @@ fn lines(state: &State, unfolded: &BTreeSet<ObjectId>) -> Vec<Line> {
     lines
 }
 
-/// A field for a part of a name, if there are many items.
+/// Shows a filter for names, if there are many items.
 fn filter_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     if !state.has_filter() {
         return;
@@ -130,7 +132,7 @@ fn filter_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.add_space(2.0);
 }
 
-/// Brings the selected item into sight once, when it becomes the selected one.
+/// Scrolls to the selected item once, when it becomes selected.
 fn follow_selection(ui: &Ui, state: &State, line: Line, rect: Rect) {
     let Line::Item(item) = line else { return };
     if state.selected() != Some(item) {
@@ -195,7 +197,7 @@ fn header_ui(
     let count = controls::text(ui, count.to_string(), TextStyle::Small, 60.0);
     controls::put_text(ui, rect.with_min_x(end), count, weak);
     if is_subject {
-        // An underline as well: the keys act here.
+        // An underline as well as a colour marks the list that the keys act on.
         let line = Rect::from_min_max(
             pos2(left.left(), rect.bottom() - 3.0),
             pos2(end - 8.0, rect.bottom() - 1.5),
@@ -212,7 +214,7 @@ fn header_ui(
     });
 }
 
-/// The button that adds an item to a list.
+/// Shows the button that adds an item to a list.
 fn add_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, subject: Subject) {
     match subject {
         Subject::Object => action_icon(ui, state, requests, Icon::Plus, Action::Load),
@@ -231,7 +233,7 @@ fn add_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, subject: Subj
     }
 }
 
-/// What can be done with the selected item, at the foot of the list.
+/// Shows the actions on the selected item below the list.
 fn tools_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;

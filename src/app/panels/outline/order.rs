@@ -1,4 +1,4 @@
-//! Moves items in the outline's lists, by buttons or by dragging.
+//! Reorders items in the lists of the outline, by buttons or by dragging.
 
 use egui::Ui;
 
@@ -8,7 +8,7 @@ use crate::app::theme;
 use marraztu_core::edit::{Gesture, items, selection};
 use marraztu_core::scene::ItemId;
 
-/// The place of an item in its list, and the length of the list.
+/// Returns the index of an item in its list, and the length of the list.
 pub(super) fn place(state: &State, id: ItemId) -> Option<(usize, usize)> {
     let scene = &state.scene;
     Some(match id {
@@ -18,13 +18,13 @@ pub(super) fn place(state: &State, id: ItemId) -> Option<(usize, usize)> {
     })
 }
 
-/// Moves an item to another place in its list.
+/// Moves an item to another index in its list.
 pub(super) fn reorder(state: &State, requests: &mut Vec<Request>, id: ItemId, to: usize) {
     let label = format!("Move {} in the list", state.name(id).unwrap_or_default());
     change(requests, label, Gesture::Whole, items::reorder(&state.scene, id, to));
 }
 
-/// Lets the line of `onto` take an item of its kind that is dragged there.
+/// Lets the line of `onto` accept an item of its kind that is dragged there.
 pub(super) fn take_dragged(
     ui: &Ui,
     state: &State,
@@ -45,7 +45,7 @@ pub(super) fn take_dragged(
     let y = if below { response.rect.bottom() } else { response.rect.top() };
     ui.painter().hline(response.rect.x_range(), y, theme::ring(ui.visuals()));
     if response.dnd_release_payload::<ItemId>().is_some() {
-        // Taken out of its place first, what stood behind it moves up by one.
+        // The item is removed first, which moves the items after it up by one.
         let before = at + usize::from(below);
         let to = if from < before { before - 1 } else { before };
         if to != from {

@@ -1,4 +1,4 @@
-//! One line of the outline: an item, or a part of one.
+//! A line of the outline: an item, or a part of one.
 
 use egui::{
     Color32, Id, Key, Popup, Pos2, Rect, Response, Role, Sense, TextEdit, TextStyle, Ui,
@@ -15,25 +15,25 @@ use crate::app::widgets::regions;
 use marraztu_core::edit::{Gesture, items};
 use marraztu_core::scene::{ItemId, ObjectId, Scene};
 
-/// Where icons of items begin, from the left end of the line.
+/// The distance of the icons from the left end of the line.
 const INDENT: f32 = 20.0;
 
-/// One line with an item.
+/// A line with an item.
 pub(crate) struct Row {
     pub(crate) item: ItemId,
     pub(crate) rect: Rect,
-    /// Whether Tab stops at it, and at what stands in it.
+    /// Whether Tab stops at the line and its buttons.
     pub(crate) is_stop: bool,
     /// Whether its parts are listed.
     pub(crate) unfolded: bool,
 }
 
-/// The id of an item's line.
+/// Returns the id of an item's line.
 pub(crate) fn id(ui: &Ui, item: ItemId) -> Id {
     ui.scope_id().with(("item", item))
 }
 
-/// The place of the item among `items` in whose line a button has the keyboard.
+/// Returns the index of the item with a focused button in its line.
 pub(crate) fn busy(ui: &Ui, items: &[ItemId]) -> Option<usize> {
     let focused = ui.memory(egui::Memory::focused)?;
     let scope = ui.scope_id();
@@ -42,7 +42,7 @@ pub(crate) fn busy(ui: &Ui, items: &[ItemId]) -> Option<usize> {
     items.iter().position(|item| buttons(item).contains(&focused))
 }
 
-/// Shows an item. Says whether its parts are to be folded or unfolded.
+/// Shows an item. Returns whether the user folds or unfolds its parts.
 pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, row: &Row) -> bool {
     let Row { item, rect, is_stop, unfolded } = *row;
     let name = state.name(item).unwrap_or_default();
@@ -57,6 +57,7 @@ pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, r
     let color = ground_color(ui, is_subject, shown);
     let icon = Rect::from_min_size(rect.min + vec2(INDENT, 0.0), vec2(16.0, rect.height()));
     Icon::of(&state.scene, item).paint(ui.painter(), icon, 13.0, color);
+    // Buttons are placed from the right, and the name takes the rest.
     let mut right = shown_ui(ui, state, requests, row, shown);
     right = lock_ui(ui, state, requests, row, (right, response.hovered()));
     if let ItemId::Light(id) = item
@@ -79,7 +80,7 @@ pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, r
     fold_ui(ui, state, row, unfolded, color)
 }
 
-/// Whether a file of an item is missing.
+/// Returns whether a file of an item is missing.
 fn is_missing(scene: &Scene, item: ItemId) -> bool {
     match item {
         ItemId::Object(id) => {
@@ -92,8 +93,8 @@ fn is_missing(scene: &Scene, item: ItemId) -> bool {
     }
 }
 
-/// The line's ground: filled for the item that the keys act on, marked at the left for the selected
-/// one of each list.
+/// Draws the background of the line: filled for the item that the keys act on, marked at the left
+/// for the selected item of each list.
 fn ground(ui: &Ui, state: &State, item: ItemId, rect: Rect, response: &Response) {
     let view = &state.view;
     let selected = match item {
@@ -105,7 +106,7 @@ fn ground(ui: &Ui, state: &State, item: ItemId, rect: Rect, response: &Response)
     if state.selected() == Some(item) {
         ui.painter().rect_filled(rect, 4.0, visuals.selection.bg_fill);
     } else if state.is_selected(item) {
-        // Framed too: the one that the keys act on is filled alone.
+        // Other selected items have a frame and a weaker fill.
         ui.painter().rect_filled(rect, 4.0, visuals.selection.bg_fill.gamma_multiply(0.55));
         let edge = egui::Stroke::new(1.0, theme::accent(visuals));
         ui.painter().rect_stroke(rect, 4.0, edge, egui::StrokeKind::Inside);
@@ -127,7 +128,7 @@ fn ground_color(ui: &Ui, selected: bool, shown: bool) -> Color32 {
     }
 }
 
-/// Whether an object or a camera's mark is drawn, or a light shines.
+/// Returns whether an object or a camera's mark is drawn, or a light is on.
 fn is_shown(scene: &Scene, item: ItemId) -> bool {
     match item {
         ItemId::Object(id) => scene.objects.get(id).is_some_and(|object| object.visible),
@@ -136,7 +137,7 @@ fn is_shown(scene: &Scene, item: ItemId) -> bool {
     }
 }
 
-/// The eye, or the switch of a light. Gives where its left end is.
+/// Shows the eye, or the switch of a light. Returns the x position of its left end.
 fn shown_ui(ui: &Ui, state: &State, requests: &mut Vec<Request>, row: &Row, shown: bool) -> f32 {
     let Row { item, rect, is_stop, .. } = *row;
     let (icon, verb) = match (item, shown) {
@@ -155,6 +156,7 @@ fn shown_ui(ui: &Ui, state: &State, requests: &mut Vec<Request>, row: &Row, show
         ItemId::Object(_) | ItemId::Camera(_) => None,
     };
     let clicked = response.clicked();
+    // With Alt, a click isolates the item.
     let alone = clicked && response.ctx.input(|input| input.modifiers.alt);
     response.on_hover_ui(|ui| {
         ui.label(&label);
@@ -182,11 +184,11 @@ fn shown_ui(ui: &Ui, state: &State, requests: &mut Vec<Request>, row: &Row, show
     rect.left()
 }
 
-/// How wide the lock is.
+/// The width of the lock.
 const LOCK: f32 = 16.0;
 
-/// The lock, its right end at `right`: a closed one is always seen, an open one while the pointer
-/// or the keyboard is on the line. Gives where its left end is.
+/// Shows the lock with its right end at `right`. A closed lock is always visible, an open one while
+/// the pointer or the focus is on the line. Returns the x position of its left end.
 fn lock_ui(
     ui: &Ui,
     state: &State,
@@ -214,18 +216,19 @@ fn lock_ui(
     rect.left()
 }
 
-/// The colour of a light and its key, right end at `at`. Gives where their left end is.
+/// Shows the colour and the key of a light with their right end at `at`. Returns the x position of
+/// their left end.
 fn light_ui(ui: &Ui, color: [u8; 4], slot: u32, at: Pos2) -> f32 {
     let left = controls::key_cap(ui, at, &slot.to_string(), true) - theme::GAP;
     let rect = Rect::from_center_size(pos2(left - 6.0, at.y), vec2(12.0, 12.0));
     let [r, g, b, _] = color;
-    // A disk: a white square looks like a box to be ticked.
+    // A disk, since a white square would look like a checkbox.
     let line = egui::Stroke::new(1.0, ui.visuals().weak_text_color());
     ui.painter().circle(rect.center(), 5.5, Color32::from_rgb(r, g, b), line);
     rect.left()
 }
 
-/// The id of the name that is being typed.
+/// Returns the id of the name being typed.
 fn new_name() -> Id {
     Id::unique("new name")
 }
@@ -235,8 +238,7 @@ pub(crate) fn forget_new_name(ui: &Ui) {
     ui.data_mut(|data| data.remove_temp::<String>(new_name()));
 }
 
-/// A field for another name. It is left with Enter, by Esc without a new name, by a click
-/// elsewhere.
+/// Shows a field for a new name. Enter or a click outside confirms the name, Esc cancels.
 fn rename_ui(ui: &mut Ui, requests: &mut Vec<Request>, rect: Rect, name: &str) {
     let id = new_name();
     let begun: Option<String> = ui.data(|data| data.get_temp(id));
@@ -246,6 +248,7 @@ fn rename_ui(ui: &mut Ui, requests: &mut Vec<Request>, rect: Rect, name: &str) {
         .align(egui::Align2::LEFT_CENTER)
         .margin(vec2(3.0, 1.0));
     let response = ui.put(rect.shrink2(vec2(0.0, 1.0)), field).accessible_name("New name");
+    // At first the whole name is selected, so typing replaces it.
     if begun.is_none() {
         response.request_focus();
         let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
@@ -260,7 +263,8 @@ fn rename_ui(ui: &mut Ui, requests: &mut Vec<Request>, rect: Rect, name: &str) {
     ui.data_mut(|data| data.insert_temp(id, text));
 }
 
-/// The items of a list from the selected one to another; that one alone in another list.
+/// Lists the items from the selected one to another. If they are in different lists, only the other
+/// one is listed.
 fn range_to(state: &State, item: ItemId) -> Vec<ItemId> {
     let scene = &state.scene;
     let list: Vec<ItemId> = match item {
@@ -275,11 +279,12 @@ fn range_to(state: &State, item: ItemId) -> Vec<ItemId> {
     }
 }
 
-/// What clicks on the line ask for.
+/// Handles clicks on the line.
 fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &Response) {
     if response.double_clicked() {
         requests.push(Request::BeginRename(item));
     } else if response.clicked() {
+        // As in file managers, Ctrl toggles an item and Shift selects a range.
         let (also, range) =
             response.ctx.input(|input| (input.modifiers.command, input.modifiers.shift));
         requests.push(match (also, range) {
@@ -324,7 +329,7 @@ fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &R
     });
 }
 
-/// The arrow before an object of several parts. Says whether it was clicked.
+/// Shows the arrow of an object with several parts. Returns whether it was clicked.
 fn fold_ui(ui: &Ui, state: &State, row: &Row, unfolded: bool, color: Color32) -> bool {
     let Row { item, rect, is_stop, .. } = *row;
     let ItemId::Object(id) = item else { return false };

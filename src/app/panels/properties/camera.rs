@@ -53,7 +53,7 @@ fn pose_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId
     }
 }
 
-/// R = Ry Rx Rz of yaw, pitch and roll in degrees.
+/// Computes R = Ry Rx Rz of yaw, pitch and roll in degrees.
 fn camera_turn(degrees: DVec3) -> DMat3 {
     let turn = |axis: Axis, degrees: f64| math::rotation(axis.unit(), degrees.to_radians());
     turn(Axis::Y, degrees.x) * turn(Axis::X, degrees.y) * turn(Axis::Z, degrees.z)
@@ -96,7 +96,7 @@ fn lens_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId
     set(far, &|parallel_far| Lens { parallel_far, ..lens });
 }
 
-/// What other observers see of the camera.
+/// Shows the properties of the camera's model, as seen by other observers.
 fn mark_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
     let scene = &state.scene;
     let hint = "Shows the camera to other observers as a small pyramid";

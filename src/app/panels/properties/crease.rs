@@ -9,8 +9,8 @@ use crate::app::widgets::number::Number;
 use marraztu_core::edit::{Gesture, items};
 use marraztu_core::scene::{Crease, Object, ObjectId};
 
-/// A mesh of more polygons than this gets its new normals when the drag ends: to compute them for
-/// every frame would be too slow.
+/// The maximum number of polygons for new normals in every frame of a drag. Larger meshes, for
+/// which that would be too slow, get new normals at the end of the drag.
 const MOST_WHILE_DRAGGED: usize = 200_000;
 
 pub(crate) fn show(
@@ -39,11 +39,11 @@ pub(crate) fn show(
     }
 }
 
-/// An angle that waits for the end of a drag.
+/// An angle waiting for the end of a drag.
 #[derive(Clone, Copy, Debug)]
 struct Waiting {
     degrees: f64,
-    /// The frame that last showed it: a drag goes on from frame to frame.
+    /// The frame that last showed it. A drag shows it in every frame.
     frame: u64,
 }
 
@@ -58,7 +58,7 @@ impl Waiting {
         ui.scope_id().with("crease angle")
     }
 
-    /// A change that is held back until the button is released.
+    /// Holds a change back until the button is released.
     fn until_let_go(
         ui: &Ui,
         waiting: Option<Self>,

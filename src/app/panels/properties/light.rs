@@ -17,7 +17,7 @@ use marraztu_core::scene::{
     Aim, Anchor, Attenuation, ItemId, Light, LightId, Orbit, Scene, SpotOwner, Tracked,
 };
 
-/// A light that is being shown.
+/// The light in the panel.
 struct Shown<'a> {
     state: &'a State,
     id: LightId,
@@ -31,6 +31,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
     if light.kind.numbers().next().is_some() {
         section(ui, "Cone", true, |ui| shown.numbers_ui(ui, requests));
     }
+    // The sections depend on how the light is placed.
     match light.kind.anchor() {
         Anchor::Everywhere => {}
         Anchor::Direction(direction) => {
@@ -66,7 +67,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
     }
 }
 
-/// What turns the light towards something.
+/// Shows the actions that aim the light.
 fn aim_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.horizontal_wrapped(|ui| {
         requests.extend(Action::AimAtSelection.button(ui, state).map(Request::from));
@@ -165,7 +166,7 @@ impl Shown<'_> {
         }
     }
 
-    /// The numbers of its kind.
+    /// Shows the numbers of its kind.
     fn numbers_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
         for (row, now) in self.light.kind.numbers() {
             let number = Number::new(row.name, row.hint).speed(row.speed);
@@ -177,7 +178,7 @@ impl Shown<'_> {
         }
     }
 
-    /// What the spot is fixed to.
+    /// Shows the choice of the spot's owner.
     fn owner_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, owner: &SpotOwner) {
         let scene = &self.state.scene;
         let mut owners = vec![SpotOwner::SelectedObject, SpotOwner::SelectedCamera];
@@ -193,7 +194,7 @@ impl Shown<'_> {
             let shown = combo.show_ui(ui, |ui| {
                 let size = egui::vec2(1.0, ui.spacing().interact_size.y);
                 for to in owners {
-                    // Only those in sight are made, however many objects there are.
+                    // Only visible entries are created, since a scene may have many objects.
                     if !ui.is_rect_visible(egui::Rect::from_min_size(ui.cursor().min, size)) {
                         ui.allocate_space(size);
                         continue;
@@ -211,7 +212,7 @@ impl Shown<'_> {
         });
     }
 
-    /// The current position and direction of the spot.
+    /// Returns the current position and direction of the spot.
     fn aim(&self, owner: &SpotOwner) -> Aim {
         let nowhere = Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z };
         self.state.scene.aim(&self.state.view, owner).unwrap_or(nowhere)
@@ -234,7 +235,7 @@ impl Shown<'_> {
     }
 }
 
-/// One channel of the colour: a slider and a number.
+/// Shows a channel of the colour as a slider and a number.
 fn channel_ui(ui: &mut Ui, name: &str, keys: &str, value: u8) -> Option<(u8, Gesture)> {
     row(ui, name, |ui| {
         const FIELD: f32 = 46.0;
@@ -242,7 +243,7 @@ fn channel_ui(ui: &mut Ui, name: &str, keys: &str, value: u8) -> Option<(u8, Ges
         let hint = format!("0 to 255; keys {keys}");
         let slid = ui.scope(|ui| {
             ui.spacing_mut().slider_width = ui.available_width() - FIELD - theme::GAP;
-            // The handle's size follows the height.
+            // The handle's size depends on the height.
             ui.spacing_mut().interact_size.y = 15.0;
             ui.add(Slider::new(&mut to, 0..=255).show_value(false))
         });
@@ -266,7 +267,7 @@ fn owner_name(scene: &Scene, owner: &SpotOwner) -> String {
     }
 }
 
-/// The value of a field that holds a whole number.
+/// Converts the value of a field for whole numbers.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "kept from 0 to 9999")]
 fn whole(number: f64) -> u32 {
     number.clamp(0.0, 9999.0) as u32

@@ -1,4 +1,4 @@
-//! The choice of a material: the nineteen presets as spheres, the file's, or one's own.
+//! The choice of a material: the nineteen presets as spheres, the file's, or the user's own.
 
 use egui::{Id, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
@@ -13,10 +13,10 @@ use marraztu_core::base::color::Color;
 use marraztu_core::edit::Gesture;
 use marraztu_core::scene::{Material, MaterialChoice, Object, PresetId};
 
-/// Spheres in a row: the nineteen, the file's and the user's own fill three rows.
+/// The number of spheres per row: 21 spheres, with the file's and the user's own, fill three rows.
 const COLUMNS: u8 = 7;
 
-/// Shows the choice; `object` is the object with the material, if it is one. Gives the choice
+/// Shows the choice. `object` is the object with the material, if it is one. Returns the choice
 /// that was made.
 pub(crate) fn choice_ui(
     ui: &mut Ui,
@@ -27,6 +27,7 @@ pub(crate) fn choice_ui(
     let mut cells: Vec<(MaterialChoice, Sphere, String)> = PresetId::all()
         .map(|id| (MaterialChoice::Preset(id), Sphere::Preset(id), id.get().name.to_owned()))
         .collect();
+    // The last two cells show the file's material and the user's own.
     let file = coefficients(&MaterialChoice::File, object);
     cells.push((MaterialChoice::File, Sphere::File(file), "the file's own".to_owned()));
     cells.push((MaterialChoice::Own(own), Sphere::Own(own), "your own".to_owned()));
@@ -61,7 +62,8 @@ pub(crate) fn choice_ui(
     chosen
 }
 
-/// The coefficients of a choice; of the file's, those of its first part.
+/// Returns the coefficients of a choice; for the file's material, the coefficients of its first
+/// part.
 fn coefficients(choice: &MaterialChoice, object: Option<&Object>) -> Material {
     match choice {
         MaterialChoice::Preset(id) => id.get().material,
@@ -80,7 +82,7 @@ fn same_kind(a: &MaterialChoice, b: &MaterialChoice) -> bool {
     }
 }
 
-/// The place of a sphere among the others.
+/// The position of a sphere for the keyboard, and its size.
 struct Cell {
     id: Id,
     is_stop: bool,
@@ -103,7 +105,7 @@ impl Cell {
             ui.painter().rect_filled(rect, 4.0, visuals.widgets.hovered.bg_fill);
         }
         spheres::paint(ui, rect.shrink(3.0), sphere);
-        // Materials that are not presets carry a letter.
+        // Materials other than presets have a label.
         let letter = match sphere {
             Sphere::Preset(_) => "",
             Sphere::File(_) => "file",
@@ -131,7 +133,7 @@ fn corner_text(ui: &Ui, rect: Rect, letter: &str) {
     ui.painter().galley_with_override_text_color(at, galley, ui.visuals().text_color());
 }
 
-/// Ka, Kd, Ks and Ns of the user's own material.
+/// Shows Ka, Kd, Ks and Ns of the user's material.
 fn own_ui(ui: &mut Ui, material: Material) -> Option<(Material, Gesture)> {
     let mut changed = None;
     let rows: [(&str, &str, [f64; 3]); 4] = [

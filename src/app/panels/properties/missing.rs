@@ -1,4 +1,4 @@
-//! The missing files of an item, each with a button that asks where it is.
+//! The missing files of an item, each with a button to find it.
 
 use std::path::Path;
 

@@ -30,8 +30,8 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     title(ui, state, item);
     let others = several::note_ui(ui, state, item);
     let asked = requests.len();
-    // Ids of fields go with the item and its scene, so that a number typed for one never lands in
-    // another.
+    // The ids of fields depend on the scene and the item. A number typed for one item never ends up
+    // in another.
     let area = ScrollArea::vertical().id_salt("properties").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         ui.push_id((state.generation, item), |ui| match item {
@@ -66,9 +66,9 @@ fn title(ui: &mut Ui, state: &State, item: ItemId) {
     response.on_hover_text(state.name(item).unwrap_or_default());
 }
 
-/// How far one press of x, y or z goes.
+/// Shows the step sizes of the keys x, y and z.
 fn steps_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, scaling: bool) {
-    // Steps that go by size are shown, since the program has chosen them.
+    // Sizes chosen by the program are shown unfolded.
     section(ui, "Step sizes", state.view.steps.by_size, |ui| {
         let steps = state.view.steps;
         let does = |to| match to {
@@ -112,7 +112,7 @@ fn steps_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, scaling: bo
     });
 }
 
-/// A number in a row of its own.
+/// Shows a number in a separate row.
 fn number_row(
     ui: &mut Ui,
     label: &str,

@@ -56,6 +56,7 @@ fn placement_ui(
         change(requests, format!("Move {}", object.name), gesture, command);
     }
     let hint = "Degrees about X, then Y, then Z of the object";
+    // Angles are not unique: those shown stay close to the user's input.
     let canonical = placement::turn_degrees(placement);
     let given = shown_angles(ui, "rotation", canonical, object_turn);
     let field = Number::new("Rotation", hint).speed(0.5);
@@ -80,7 +81,7 @@ fn placement_ui(
     up_axis_ui(ui, requests, id, object);
 }
 
-/// Which axis of the model's file points up; nothing for the program's own models.
+/// Shows the up axis of the model's file. The program's own models do not show it.
 fn up_axis_ui(ui: &mut Ui, requests: &mut Vec<Request>, id: ObjectId, object: &Object) {
     let is_own = object.model.source.as_deref().is_none_or(is_example);
     if is_own {
@@ -103,14 +104,15 @@ fn up_axis_ui(ui: &mut Ui, requests: &mut Vec<Request>, id: ObjectId, object: &O
     }
 }
 
-/// The size of a mesh with more vertices is measured again when a drag has ended.
+/// Meshes with more vertices are measured only at the end of a drag.
 const MOST_WHILE_DRAGGED: usize = 200_000;
 
-/// The sizes of the box around an object in the world, as it is placed; measured when it changes.
+/// Returns the size of the box around an object in the world, measured again if it changes.
 fn size(ui: &Ui, id: ObjectId, object: &Object) -> Option<DVec3> {
     type Measured = (ObjectId, DMat4, Shared<Model>, Option<DVec3>);
     let key = Id::unique("size of an object");
     let (now, model) = (*object.placement.now(), &object.model);
+    // The size is cached, since it visits every vertex.
     let known: Option<Measured> = ui.data(|data| data.get_temp(key));
     if let Some((of, placement, mesh, size)) = known {
         let many = model.mesh.positions().len() > MOST_WHILE_DRAGGED;
@@ -125,7 +127,7 @@ fn size(ui: &Ui, id: ObjectId, object: &Object) -> Option<DVec3> {
     size
 }
 
-/// Factors along the axes of the chosen frame, and the button that multiplies by them.
+/// Shows factors along the axes of the chosen frame, and the button that applies them.
 fn stretch_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, object: &Object) {
     let id = ui.scope_id().with("stretch");
     let kept: [f64; 3] = ui.data(|data| data.get_temp(id)).unwrap_or([1.0; 3]);
@@ -151,7 +153,7 @@ fn stretch_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, object: &
     });
 }
 
-/// R = Rx Ry Rz of degrees.
+/// Computes R = Rx Ry Rz of angles in degrees.
 fn object_turn(degrees: DVec3) -> DMat3 {
     Axis::ALL.iter().fold(DMat3::IDENTITY, |turn, axis| {
         turn * math::rotation(axis.unit(), degrees[axis.index()].to_radians())
@@ -234,7 +236,7 @@ fn drawing_ui(
     });
 }
 
-/// What the model is, in numbers.
+/// Shows the numbers of the model.
 fn model_ui(ui: &mut Ui, object: &Object) {
     let model = &object.model;
     let mesh = &model.mesh;

@@ -1,5 +1,4 @@
-//! The properties of several selected items: what differs among them is said, and a change sets all
-//! of them.
+//! The properties of several selected items: lists the differences, and applies a change to all.
 
 use egui::{RichText, Ui};
 
@@ -9,8 +8,8 @@ use crate::app::widgets::number::set_mixed;
 use marraztu_core::edit::{placement, several as together};
 use marraztu_core::scene::{Anchor, Attenuation, ItemId, Light, Scene};
 
-/// Says how many items a change sets, and in which properties they differ. Gives those of the
-/// selected one's kind.
+/// Reports the number of items that a change sets, and the properties in which they differ. Returns
+/// the other items of the same kind.
 pub(super) fn note_ui(ui: &mut Ui, state: &State, item: ItemId) -> Vec<ItemId> {
     let same_kind = |other: &ItemId| std::mem::discriminant(other) == std::mem::discriminant(&item);
     let others: Vec<ItemId> = state.others().into_iter().filter(same_kind).collect();
@@ -34,7 +33,7 @@ pub(super) fn note_ui(ui: &mut Ui, state: &State, item: ItemId) -> Vec<ItemId> {
     others
 }
 
-/// Lets every change that the panel asks for set all of them.
+/// Extends every change requested by the panel to all items.
 pub(super) fn spread(ui: &Ui, state: &State, others: &[ItemId], requests: &mut [Request]) {
     if others.is_empty() {
         return;
@@ -49,7 +48,7 @@ pub(super) fn spread(ui: &Ui, state: &State, others: &[ItemId], requests: &mut [
     }
 }
 
-/// The names of the fields whose numbers differ between two items of a kind.
+/// Names the number fields that differ between two items of a kind.
 fn numbers(scene: &Scene, first: ItemId, other: ItemId) -> Vec<String> {
     let (Some(a), Some(b)) = (fields(scene, first), fields(scene, other)) else {
         return Vec::new();
@@ -61,7 +60,7 @@ fn numbers(scene: &Scene, first: ItemId, other: ItemId) -> Vec<String> {
     a.into_iter().filter(differs).map(|(name, _)| name).collect()
 }
 
-/// The number fields of an item, by their names in the panel.
+/// Lists the number fields of an item, by their names in the panel.
 fn fields(scene: &Scene, id: ItemId) -> Option<Vec<(String, f64)>> {
     let mut all = Fields(Vec::new());
     match id {
@@ -141,7 +140,7 @@ impl Fields {
     }
 }
 
-/// The properties in which items differ from the first, by their names in the panel.
+/// Names the properties that differ between the first item and others, as in the panel.
 fn mixed(scene: &Scene, first: ItemId, others: &[ItemId]) -> Vec<&'static str> {
     let mut names: Vec<&'static str> = Vec::new();
     for other in others {
@@ -154,7 +153,7 @@ fn mixed(scene: &Scene, first: ItemId, others: &[ItemId]) -> Vec<&'static str> {
     names
 }
 
-/// The properties in which two items of a kind differ.
+/// Names the properties that differ between two items of a kind.
 fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
     let rows: Vec<(bool, &'static str)> = match (first, other) {
         (ItemId::Object(a), ItemId::Object(b)) => {
@@ -162,6 +161,7 @@ fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
                 return Vec::new();
             };
             let (m, n) = (a.placement.now(), b.placement.now());
+            // Rounding errors of decomposed matrices do not count as differences.
             let near = |a: glam::DVec3, b: glam::DVec3| a.distance(b) <= 1e-9 * a.length().max(1.0);
             let turns = (placement::turn_degrees(m), placement::turn_degrees(n));
             vec![

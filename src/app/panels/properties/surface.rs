@@ -93,7 +93,7 @@ fn maps_ui(ui: &mut Ui, object: &Object) {
             .iter()
             .map(|texture| {
                 let name = file_name(&texture.source);
-                // The program's own pictures are marked so in scene files.
+                // Scene files mark the program's own pictures with this prefix.
                 let name = name.strip_prefix("own:").unwrap_or(&name);
                 let size = texture.picture.size();
                 format!("{name} ({} x {})", size.width, size.height)

@@ -1,7 +1,8 @@
-//! Drags of a handle: from places of the pointer, or from typed numbers, to amounts.
+//! Drags of a handle: converts positions of the pointer, or typed numbers, into amounts.
 //!
-//! Every amount counts from the scene in which the drag began, and from the place where the button
-//! went down; nothing is added up, so nothing drifts, and the way back leads to where it began.
+//! Every amount is relative to the scene at the start of the drag and to the place of the press.
+//! Nothing is accumulated from frame to frame, so nothing drifts, and moving back restores the
+//! start.
 
 use egui::{Pos2, Rect, Vec2};
 use glam::DVec3;
@@ -17,34 +18,34 @@ use marraztu_core::edit::gizmo::{self, Amount};
 use marraztu_core::edit::{Gesture, GesturePhase, several};
 use marraztu_core::scene::{ItemId, Scene, Transformation, View};
 
-/// Points of the window over which a scale doubles.
+/// The distance over which a scale doubles, in points of the window.
 const DOUBLE: f64 = 100.0;
 
-/// A ring seen more from its edge than this, as a cosine, turns by the way along it.
+/// The cosine below which a ring is seen edge-on: it then turns by the distance along its edge.
 const RING_EDGE_ON: f64 = 0.3;
 
-/// A handle that is held.
+/// A handle that is being dragged.
 #[derive(Debug)]
 pub(crate) struct Grab {
     gizmo: Gizmo,
     handle: Handle,
     from: Pos2,
-    /// The scene and the view in which it began.
+    /// The scene and the view at the start.
     scene: Scene,
     view: View,
     others: Vec<ItemId>,
     name: String,
-    /// The last angle, and all of them together over several turns.
+    /// The last angle, and the sum of all changes over several turns.
     angle: f64,
     turned: f64,
     typed: Typed,
-    /// What was asked for last.
+    /// The last amount requested.
     asked: Option<Amount>,
-    /// What it does now, in words.
+    /// The current effect, in words.
     pub(crate) said: String,
 }
 
-/// What the pointer and the keyboard say in a frame.
+/// The input of one frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pull<'a> {
     pub(crate) to: Pos2,
@@ -53,7 +54,7 @@ pub(crate) struct Pull<'a> {
 }
 
 impl Grab {
-    /// Takes a handle at a place of the window.
+    /// Grabs a handle at a place of the window.
     pub(crate) fn new(state: &State, gizmo: &Gizmo, handle: Handle, from: Pos2) -> Self {
         let mut grab = Self {
             gizmo: gizmo.clone(),
@@ -73,7 +74,7 @@ impl Grab {
         grab
     }
 
-    /// Begins to take numbers without the mouse, along or about X.
+    /// Begins to take typed numbers without the mouse, along or about X.
     pub(crate) fn typing(state: &State, rect: Rect, size: Size) -> Option<Self> {
         let gizmo = Gizmo::of(state, rect, size)?;
         let handle = match gizmo.pivot.kind {
@@ -86,17 +87,19 @@ impl Grab {
         Some(grab)
     }
 
-    /// The handle.
+    /// Returns the handle.
     pub(crate) const fn handle(&self) -> Handle {
         self.handle
     }
 
-    /// Whether it is to be taken for a drag although the pointer has hardly moved.
+    /// Returns whether a number was typed, which counts as a drag even if the pointer has hardly
+    /// moved.
     pub(crate) fn is_typed(&self) -> bool {
         self.typed != Typed::default()
     }
 
-    /// Follows the pointer and the keyboard. Adds the change, and says whether Enter ended it.
+    /// Follows the pointer and the keyboard. Adds the change and returns whether Enter ended the
+    /// drag.
     pub(crate) fn follow(
         &mut self,
         pull: Pull<'_>,
@@ -120,7 +123,7 @@ impl Grab {
         ended
     }
 
-    /// The same without the mouse: nothing happens before a number is typed.
+    /// Follows the keyboard without the mouse: nothing happens before a number is typed.
     pub(crate) fn follow_typed(
         &mut self,
         pull: Pull<'_>,
@@ -145,7 +148,7 @@ impl Grab {
         }
     }
 
-    /// "Move teapot 12 along x".
+    /// Describes the amount for the history: "Move teapot 12 along x".
     fn label(&self, amount: Amount) -> String {
         let name = &self.name;
         let list = |v: DVec3| v.to_array().map(short).join(", ");
@@ -173,7 +176,7 @@ impl Grab {
         }
     }
 
-    /// Says what it does now.
+    /// Updates the description of the current effect.
     fn say(&mut self, amount: Option<Amount>) {
         let mut said = match amount {
             Some(amount) => self.label(amount),
@@ -193,12 +196,13 @@ impl Grab {
         self.said = said;
     }
 
-    /// What a typed number means on this handle, or along the axis that was typed before it.
+    /// Converts a typed number into an amount of this handle, or along the axis typed before it.
     fn of_number(&self, number: f64) -> Option<Amount> {
         let axis = self.typed.axis().or(match self.handle {
             Handle::Axis(axis) | Handle::Ring(axis) => Some(axis),
             Handle::Plane(_) | Handle::Outer | Handle::Middle => None,
         });
+        // A plane applies the number to both of its axes, a handle without an axis to all three.
         let all = match self.handle {
             Handle::Plane(across) => DVec3::ONE - across.unit(),
             Handle::Axis(_) | Handle::Ring(_) | Handle::Outer | Handle::Middle => DVec3::ONE,
@@ -222,14 +226,16 @@ impl Grab {
         })
     }
 
-    /// What the place of the pointer means; `None` where the handle leads nowhere.
+    /// Converts the position of the pointer into an amount; `None` if the position has no solution.
     fn of_pointer(&mut self, to: Pos2) -> Option<Amount> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
         let middle = sight.in_view(pivot.origin);
+        // Handles without a direction scale by the distance dragged to the upper right.
         let by = to - self.from;
         let growth = libm::exp2(f64::from(by.x - by.y) / DOUBLE);
         match (self.handle, pivot.kind) {
             (Handle::Axis(axis), kind) => {
+                // Positions along the axis: their ratio scales, their difference moves.
                 let (from, to) = (self.along(axis, self.from)?, self.along(axis, to)?);
                 Some(match kind {
                     Transformation::Scaling => {
@@ -245,6 +251,7 @@ impl Grab {
             }
             (Handle::Middle, Transformation::Scaling) => Some(Amount::Scale(DVec3::splat(growth))),
             (Handle::Plane(across), _) => {
+                // A plane handle moves on the plane through the middle; only its two axes count.
                 let [a, b] = others(across);
                 let normal = self.gizmo.axis(a)?.cross(self.gizmo.axis(b)?).try_normalize()?;
                 let moved = self.moved_on(middle, normal, to)?;
@@ -259,7 +266,7 @@ impl Grab {
         }
     }
 
-    /// How far along an axis a place is, in units of the world.
+    /// Returns the position of a place along an axis, in units of the world.
     fn along(&self, axis: Axis, at: Pos2) -> Option<f64> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
         let middle = sight.in_view(pivot.origin);
@@ -267,21 +274,21 @@ impl Grab {
         ray.on_line(middle, self.gizmo.axis(axis)?, sight.towards_eye(middle))
     }
 
-    /// How far the pointer has moved on a plane, in the frame.
+    /// Returns the movement of the pointer on a plane, in the frame.
     fn moved_on(&self, middle: DVec3, normal: DVec3, to: Pos2) -> Option<DVec3> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
         let hit = |at| sight.ray(at).on_plane(middle, normal);
         pivot.in_frame(sight.in_world(hit(to)? - hit(self.from)?))
     }
 
-    /// The direction to the observer, in the frame.
+    /// Returns the direction to the observer, in the frame.
     fn line_of_sight(&self) -> Option<DVec3> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
         let eye = sight.towards_eye(sight.in_view(pivot.origin));
         math::unit(pivot.in_frame(sight.in_world(eye))?)
     }
 
-    /// How far a ring was turned, over several turns too.
+    /// Returns the rotation of a ring so far, which may exceed a full turn.
     fn turned_to(&mut self, to: Pos2) -> Option<f64> {
         use std::f64::consts::{PI, TAU};
         let angle = self.angle_at(to)?;
@@ -291,30 +298,33 @@ impl Grab {
         Some(self.turned * self.gizmo.pivot.hand())
     }
 
-    /// The angle of a place about the ring's axis, in the world.
+    /// Returns the angle of a place about the ring's axis, in the world.
     fn angle_at(&self, at: Pos2) -> Option<f64> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
         let middle = sight.in_view(pivot.origin);
         let eye = sight.towards_eye(middle);
         let about = match self.handle {
+            // An edge-on ring has no usable intersection with the line of sight.
             Handle::Ring(axis) => self.gizmo.axis(axis)?,
             Handle::Outer => eye,
             Handle::Axis(_) | Handle::Plane(_) | Handle::Middle => return None,
         };
         if self.handle != Handle::Outer && eye.dot(about).abs() < RING_EDGE_ON {
-            // Along the ring where it is nearest to the observer: a radius is a radian.
+            // The drag counts along the tangent at the point nearest to the observer: one radius is
+            // one radian.
             let near = (eye - about * eye.dot(about)).try_normalize()?;
             let ahead = sight.place(middle + about.cross(near) * sight.unit_at(middle))?;
             let way: Vec2 = (ahead - sight.place(middle)?).normalized();
             return Some(f64::from((at - self.from).dot(way) / super::LENGTH));
         }
         let hit = sight.ray(at).on_plane(middle, about)? - middle;
+        // Any direction in the ring's plane serves as zero, since only differences count.
         let side = about.any_orthonormal_vector();
         Some(libm::atan2(hit.dot(about.cross(side)), hit.dot(side)))
     }
 }
 
-/// The only number of a vector that is not `rest`, and its axis.
+/// Returns the only component of a vector that differs from `rest`, with its axis.
 fn only(v: DVec3, rest: f64) -> Option<(Axis, f64)> {
     let mut own = Axis::ALL.into_iter().filter(|axis| v[axis.index()] != rest);
     let axis = own.next()?;

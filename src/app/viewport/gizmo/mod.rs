@@ -1,8 +1,8 @@
 //! The gizmo: handles over the picture that move, rotate or scale the selected item.
 //!
-//! It has the same size on the screen at every distance, and lies over everything. Its parts are
-//! lines, squares and rings of the window; the part that is under the pointer is found among them.
-//! A press on a part that becomes no drag stays a click into the picture.
+//! The gizmo keeps its size on the screen at every distance and is drawn over everything. Its parts
+//! are lines, squares and rings of the window; the part under the pointer is found by its distance.
+//! A press on a part without a drag counts as a click into the picture.
 
 mod drag;
 mod show;
@@ -20,60 +20,59 @@ use marraztu_core::edit::gizmo::{Pivot, pivot};
 use marraztu_core::scene::Transformation;
 use sight::Sight;
 
-/// From the middle to the end of an axis, in points.
+/// The distance from the middle to the end of an axis, in points.
 const LENGTH: f32 = 84.0;
 
-/// An axis is at most this part of the smaller side of the picture.
+/// The maximum length of an axis, as a part of the smaller side of the picture.
 const MOST: f32 = 0.28;
 
-/// A press this near to a line is on it.
+/// The distance within which the pointer hits a line, in points.
 const REACH: f32 = 6.0;
 
-/// The middle of the squares of planes along both axes, and half of their side, in parts of an
-/// axis.
+/// The position of a plane's square along both axes, and half of its side, in parts of an axis.
 const PLANE: [f64; 2] = [0.32, 0.09];
 
 /// The radius of the handle in the middle, in points.
 const MIDDLE: f32 = 8.0;
 
-/// The radius of the ring about the line of sight, in parts of an axis.
+/// The radius of the ring around the line of sight, in parts of an axis.
 const OUTER: f32 = 1.18;
 
-/// The sides of a ring.
+/// The number of sides of a ring.
 const SIDES: u32 = 64;
 
-/// An axis that points at the observer more than this, as a cosine, cannot be dragged along.
+/// The cosine above which an axis points at the observer too directly to be dragged along.
 const HEAD_ON: f64 = 0.985;
 
-/// A plane that is seen more from its edge than this, as a cosine, cannot be dragged on.
+/// The cosine below which a plane is seen too much edge-on to be dragged on.
 const EDGE_ON: f64 = 0.15;
 
-/// The middle of a gizmo farther outside of the picture than this is not shown, in points.
+/// The distance outside of the picture, in points, from which a gizmo is hidden.
 const OUTSIDE: f32 = 2.0;
 
-/// What can be dragged.
+/// A part of the gizmo that can be dragged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Handle {
-    /// Along an axis.
+    /// Moves or scales along an axis.
     Axis(Axis),
-    /// In the plane across an axis.
+    /// Moves or scales in the plane perpendicular to an axis.
     Plane(Axis),
-    /// About an axis.
+    /// Rotates about an axis.
     Ring(Axis),
-    /// About the line of sight.
+    /// Rotates about the line of sight.
     Outer,
-    /// In the plane of the picture, or in all directions alike.
+    /// Moves in the plane of the picture, or scales in all directions alike.
     Middle,
 }
 
-/// What is seen of a handle.
+/// The shape of a handle on the screen.
 #[derive(Clone, Debug, PartialEq)]
 enum Shape {
-    /// From the middle to an end.
+    /// A line from the middle to an end.
     Line([Pos2; 2]),
     /// A square in its plane.
     Square([Pos2; 4]),
-    /// Half of a ring, nearer to the observer; and the other half.
+    /// A ring as two halves, the near one in front of the middle.
     Ring { near: Vec<Pos2>, far: Vec<Pos2> },
     /// A whole circle.
     Circle(Pos2, f32),
@@ -93,12 +92,12 @@ struct Part {
 pub(crate) struct Gizmo {
     pivot: Pivot,
     sight: Sight,
-    /// The later ones lie over the others.
+    /// The handles in drawing order, the uppermost last.
     parts: Vec<Part>,
 }
 
 impl Gizmo {
-    /// The gizmo of the selected item, if it is shown.
+    /// Creates the gizmo of the selected item, if it is visible.
     pub(super) fn new(state: &State, rect: Rect, size: Size) -> Option<Self> {
         if !state.gizmo || !state.shows_overlays() || state.aiming || state.explaining {
             return None;
@@ -107,13 +106,15 @@ impl Gizmo {
         (!gizmo.parts.is_empty()).then_some(gizmo)
     }
 
-    /// The gizmo of the selected item, whether it is shown or not.
+    /// Creates the gizmo of the selected item, visible or not.
     fn of(state: &State, rect: Rect, size: Size) -> Option<Self> {
         let pivot = pivot(&state.scene, &state.view).ok()?;
         let sight = Sight::new(state, rect, size);
         let middle = sight.in_view(pivot.origin);
         let mut gizmo = Self { pivot, sight, parts: Vec::new() };
         let place = sight.place(middle).filter(|at| rect.expand(OUTSIDE).contains(*at));
+        // A middle outside of the picture leaves the gizmo without handles; typed numbers still
+        // work.
         if let Some(place) = place {
             gizmo.build(middle, place, LENGTH.min(rect.size().min_elem() * MOST));
         }
@@ -122,13 +123,14 @@ impl Gizmo {
 
     fn build(&mut self, middle: DVec3, place: Pos2, length: f32) {
         let outer = length * OUTER;
-        // Not so long that an end comes behind the observer.
+        // Limited so no end comes to lie behind the observer.
         let length = f64::from(length) * self.sight.unit_at(middle);
         let length = if length.is_finite() { length.min(middle.length() * 0.5) } else { return };
         let add = |parts: &mut Vec<Part>, handle, shape: Option<Shape>| {
             parts.extend(shape.map(|shape| Part { handle, shape }));
         };
         let mut parts = Vec::new();
+        // Later parts lie over earlier ones: axes over planes, the middle over all.
         match self.pivot.kind {
             Transformation::Rotation => {
                 add(&mut parts, Handle::Outer, Some(Shape::Circle(place, outer)));
@@ -149,7 +151,7 @@ impl Gizmo {
         self.parts = parts;
     }
 
-    /// An axis in view space.
+    /// Returns the direction of an axis in view space.
     fn axis(&self, axis: Axis) -> Option<DVec3> {
         self.pivot.direction(axis).map(|v| self.sight.turned(v))
     }
@@ -176,7 +178,8 @@ impl Gizmo {
     fn ring(&self, middle: DVec3, about: Axis, length: f64) -> Option<Shape> {
         let axis = self.axis(about)?;
         let eye = self.sight.towards_eye(middle);
-        // Towards the observer as far as the plane allows, so that the near half comes first.
+        // The direction in the ring's plane that points to the observer; the near half is centred
+        // on it.
         let near = (eye - axis * eye.dot(axis)).try_normalize();
         let near = near.unwrap_or_else(|| axis.any_orthonormal_vector());
         let side = axis.cross(near);
@@ -185,7 +188,7 @@ impl Gizmo {
             let aside = near * libm::cos(turn) + side * libm::sin(turn);
             self.sight.place(middle + aside * length)
         };
-        // Seen from above a ring has no far half.
+        // A ring seen almost from above has no far half.
         let flat = eye.dot(axis).abs() > 0.98;
         let half = if flat { SIDES } else { SIDES / 2 };
         let points = |range: std::ops::RangeInclusive<u32>| range.map(point).collect();
@@ -194,11 +197,11 @@ impl Gizmo {
         Some(Shape::Ring { near: near?, far: far? })
     }
 
-    /// The handle at a place of the window: the nearest, and of those that lie over one another the
-    /// upper one.
+    /// Finds the handle at a place of the window: the nearest one, and the upper one among equals.
     pub(crate) fn handle_at(&self, at: Pos2) -> Option<Handle> {
         let reached = |part: &&Part| part.shape.distance(at).is_some_and(|far| far <= REACH);
         let over = self.parts.iter().rev().filter(reached);
+        // Disks and squares are hit anywhere inside, so they win over lines near to them.
         let rank = |part: &&Part| match part.shape {
             Shape::Disk(_) | Shape::Square(_) => 0.0,
             Shape::Line(_) | Shape::Ring { .. } | Shape::Circle(..) => {
@@ -210,10 +213,11 @@ impl Gizmo {
 }
 
 impl Shape {
-    /// How far a place is from it, at least 0.
+    /// Returns the distance of a place from the shape, at least 0; `None` if an area does not
+    /// contain it.
     fn distance(&self, at: Pos2) -> Option<f32> {
         match self {
-            // Near the middle all axes are as near: only the disk is meant there.
+            // All axes meet in the middle, so their inner ends are left to the disk.
             Self::Line([from, to]) => {
                 let from = *from + (*to - *from) * 0.15;
                 Some(segment_distance(at, [from, *to]))
@@ -229,7 +233,7 @@ impl Shape {
     }
 }
 
-/// The distance of a place from a line between two others.
+/// Returns the distance of a place from a line segment.
 fn segment_distance(at: Pos2, [a, b]: [Pos2; 2]) -> f32 {
     let (way, to) = (b - a, at - a);
     let part =
@@ -237,7 +241,7 @@ fn segment_distance(at: Pos2, [a, b]: [Pos2; 2]) -> f32 {
     at.distance(a + way * part)
 }
 
-/// Whether a place is inside of a quadrilateral that is convex.
+/// Returns whether a place is inside a convex quadrilateral.
 fn inside(at: Pos2, corners: &[Pos2; 4]) -> bool {
     let side = |i: usize| {
         let (a, b) = (corners[i], corners[(i + 1) % 4]);
@@ -248,7 +252,7 @@ fn inside(at: Pos2, corners: &[Pos2; 4]) -> bool {
     sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
 }
 
-/// The two axes that an axis is across.
+/// Returns the two axes perpendicular to an axis.
 const fn others(axis: Axis) -> [Axis; 2] {
     match axis {
         Axis::X => [Axis::Y, Axis::Z],

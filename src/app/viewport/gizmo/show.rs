@@ -1,4 +1,4 @@
-//! Draws the gizmo: axes in their colours with their letters, over everything.
+//! Draws the gizmo over everything, its axes coloured and labelled.
 
 use egui::{Align2, Color32, CursorIcon, Painter, Pos2, Rect, Shape as Paint, Stroke, TextStyle};
 use egui::{Ui, Vec2, vec2};
@@ -8,19 +8,19 @@ use crate::app::theme;
 use marraztu_core::base::math::Axis;
 use marraztu_core::scene::Transformation;
 
-/// Behind lines, so that they are seen on any ground.
+/// The outline of lines, which makes them visible on any background.
 const SHADE: Color32 = Color32::from_black_alpha(150);
 
 /// The radius of the disk behind a letter.
 const LETTER: f32 = 8.0;
 
 impl Gizmo {
-    /// Draws it; `held` is the handle that is dragged, `hovered` the one under the pointer.
+    /// Draws the gizmo. `held` is the handle being dragged, `hovered` the one under the pointer.
     pub(crate) fn show(&self, ui: &Ui, rect: Rect, held: Option<Handle>, hovered: Option<Handle>) {
         let painter = ui.painter().with_clip_rect(rect);
         let chosen = held.or(hovered);
         for part in &self.parts {
-            // While one is dragged the others would only be in the way.
+            // The other handles are hidden during a drag, where they would be in the way.
             if held.is_none_or(|held| held == part.handle || part.handle == Handle::Middle) {
                 self.part_ui(ui, &painter, part, chosen == Some(part.handle));
             }
@@ -31,6 +31,7 @@ impl Gizmo {
     }
 
     fn part_ui(&self, ui: &Ui, painter: &Painter, part: &Part, bright: bool) {
+        // Each axis has its colour; a handle under the pointer is white.
         let own = match part.handle {
             Handle::Axis(axis) | Handle::Plane(axis) | Handle::Ring(axis) => {
                 theme::axis_on_dark(axis)
@@ -48,6 +49,7 @@ impl Gizmo {
         };
         match (&part.shape, part.handle) {
             (Shape::Line([from, to]), Handle::Axis(axis)) => {
+                // The line starts outside of the disk in the middle.
                 let way = (*to - *from).normalized();
                 line(painter, &[*from + way * MIDDLE, *to], stroke);
                 let beyond = *to + way * (LETTER + 7.0);
@@ -60,6 +62,7 @@ impl Gizmo {
                 painter.add(Paint::convex_polygon(corners.to_vec(), fill, edge));
             }
             (Shape::Ring { near, far }, Handle::Ring(axis)) => {
+                // The far half of a ring is thin, to tell it from the near half.
                 if far.len() > 1 {
                     painter
                         .add(Paint::line(far.clone(), Stroke::new(1.0, own.gamma_multiply(0.5))));
@@ -82,7 +85,7 @@ impl Gizmo {
         }
     }
 
-    /// The end of an axis: an arrow moves, a square scales.
+    /// Draws the end of an axis: an arrow to move, a square to scale.
     fn end_ui(&self, painter: &Painter, at: Pos2, way: Vec2, color: Color32) {
         let edge = Stroke::new(1.0, SHADE);
         match self.pivot.kind {

@@ -1,7 +1,7 @@
-//! How the observer sees points, in f64 relative to the observer.
+//! The projection from points of the world to the window, in f64 relative to the observer.
 //!
-//! Far from the world's origin a point of the world has few digits left for what is near to it;
-//! relative to the eye it has them all.
+//! Far from the world's origin, world coordinates leave few digits for small distances. Coordinates
+//! relative to the eye keep full precision near it.
 
 use egui::{Pos2, Rect, vec2};
 use glam::{DMat3, DVec2, DVec3};
@@ -10,18 +10,18 @@ use crate::app::state::State;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::Projection;
 
-/// The observer and the picture.
+/// The observer, and the place of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sight {
     eye: DVec3,
     axes: DMat3,
     parallel: bool,
-    /// Points of the window for a unit across, at distance 1 in perspective.
+    /// The points of the window per unit across, at distance 1 in perspective.
     points: DVec2,
     rect: Rect,
 }
 
-/// A ray of sight, in view space.
+/// A ray through a place of the window, in view space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ray {
     pub(crate) from: DVec3,
@@ -44,32 +44,33 @@ impl Sight {
         }
     }
 
-    /// A point of the world in view space.
+    /// Converts a point from world space to view space.
     pub(crate) fn in_view(&self, at: DVec3) -> DVec3 {
         self.turned(at - self.eye)
     }
 
-    /// A vector of the world in view space.
+    /// Rotates a vector from world space to view space.
     pub(crate) fn turned(&self, v: DVec3) -> DVec3 {
         self.axes.transpose() * v
     }
 
-    /// A vector of view space in the world.
+    /// Rotates a vector from view space to world space.
     pub(crate) fn in_world(&self, v: DVec3) -> DVec3 {
         self.axes * v
     }
 
-    /// The direction from a point of view space to the observer.
+    /// Returns the direction from a point in view space to the observer.
     pub(crate) fn towards_eye(&self, at: DVec3) -> DVec3 {
         if self.parallel { DVec3::Z } else { -at.normalize_or(DVec3::NEG_Z) }
     }
 
-    /// How far before the observer it is, as perspective divides by it.
+    /// Returns the divisor of the projection: the distance in front of the observer in perspective,
+    /// else 1.
     fn divisor(&self, at: DVec3) -> f64 {
         if self.parallel { 1.0 } else { -at.z }
     }
 
-    /// The place of a point of view space in the window, if it is before the observer.
+    /// Projects a point in view space to the window, if it is in front of the observer.
     #[expect(clippy::cast_possible_truncation, reason = "places on the screen are for the eye")]
     pub(crate) fn place(&self, at: DVec3) -> Option<Pos2> {
         let divisor = self.divisor(at);
@@ -80,12 +81,12 @@ impl Sight {
         seen.then(|| self.rect.center() + vec2(far(x), far(y)))
     }
 
-    /// The length of a point of the window at this point of view space.
+    /// Returns the length, in view space, of one point of the window at this depth.
     pub(crate) fn unit_at(&self, at: DVec3) -> f64 {
         self.divisor(at) / self.points.min_element()
     }
 
-    /// The ray through a place of the window.
+    /// Returns the ray through a place of the window.
     pub(crate) fn ray(&self, at: Pos2) -> Ray {
         let by = at - self.rect.center();
         let across =
@@ -99,7 +100,7 @@ impl Sight {
 }
 
 impl Ray {
-    /// The point in which it meets the plane through `at`, across `normal`.
+    /// Intersects the ray with the plane through `at` perpendicular to `normal`.
     pub(crate) fn on_plane(&self, at: DVec3, normal: DVec3) -> Option<DVec3> {
         let slope = self.along.dot(normal);
         let way = (at - self.from).dot(normal) / slope;
@@ -107,8 +108,8 @@ impl Ray {
         (slope.abs() > 1e-9 * self.along.length() && way > 0.0 && hit.is_finite()).then_some(hit)
     }
 
-    /// How far along the line through `at` in direction `axis` (of length 1) it comes nearest to
-    /// the line: in the plane of the line that faces the observer most.
+    /// Returns the position along the line through `at` in direction `axis` (of length 1) that the
+    /// ray points at: where it meets the plane of the line that faces the observer most.
     pub(crate) fn on_line(&self, at: DVec3, axis: DVec3, towards_eye: DVec3) -> Option<f64> {
         let normal = towards_eye - axis * axis.dot(towards_eye);
         let hit = self.on_plane(at, normal.try_normalize()?)?;

@@ -1,8 +1,8 @@
-//! An amount from the keyboard: an axis, and a number or a sum.
+//! Amounts typed on the keyboard: an axis, and a number or an expression.
 
 use marraztu_core::base::math::Axis;
 
-/// What was typed: an axis, and a number.
+/// The typed input: an axis, and a number.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Typed {
     axis: Option<usize>,
@@ -10,7 +10,7 @@ pub(super) struct Typed {
 }
 
 impl Typed {
-    /// Takes what was typed. Returns whether Enter ended it.
+    /// Adds typed characters. Returns whether Enter ended the input.
     pub(super) fn take(&mut self, text: &str) -> bool {
         for sign in text.chars() {
             match sign {

@@ -1,4 +1,4 @@
-//! Handles of the gizmo and boxes, held by the mouse.
+//! Mouse input for handles of the gizmo and for selection boxes.
 
 use egui::{Rect, Ui};
 
@@ -9,13 +9,13 @@ use crate::app::widgets::gestures;
 use marraztu_core::edit::Gesture;
 
 impl Mouse {
-    /// The handle of the gizmo that is held, once it is more than a click.
+    /// Returns the handle being dragged, once the press is more than a click.
     pub(crate) fn grab(&self) -> Option<&Grab> {
         let moved = self.drag.is_none_or(|drag| drag.moved && !drag.over);
         self.grab.as_deref().filter(|grab| moved || grab.is_typed())
     }
 
-    /// Takes numbers for a handle from now on, without the mouse.
+    /// Begins to take a typed amount for a handle, without the mouse.
     pub(crate) fn type_amount(&mut self, grab: Grab) {
         if self.drag.is_none() {
             self.count += 1;
@@ -23,18 +23,18 @@ impl Mouse {
         }
     }
 
-    /// Whether letters and numbers are for a handle.
+    /// Returns whether typed letters and numbers belong to a handle.
     pub(crate) const fn is_typing(&self) -> bool {
         self.grab.is_some()
     }
 
-    /// The corners of the box that is drawn.
+    /// Returns the selection box in progress.
     pub(crate) fn selection_box(&self) -> Option<Rect> {
         let drag = self.drag.filter(|drag| drag.motion == Motion::Box && drag.moved && !drag.over);
         drag.map(|drag| Rect::from_two_pos(drag.from, drag.to))
     }
 
-    /// Lets the handle that is held follow the pointer and what is typed.
+    /// Lets the held handle follow the pointer and the typed text.
     pub(super) fn pull(&mut self, ui: &Ui, under: Under<'_>, requests: &mut Vec<Request>) {
         let typed_gesture = self.typed_gesture();
         let Some(grab) = &mut self.grab else { return };
@@ -52,19 +52,19 @@ impl Mouse {
         }
         let pull = Pull { to: drag.to, snap, typed: under.typed };
         if grab.follow(pull, drag.gesture, requests) {
-            // Enter ends the drag: the button may be let go anywhere.
+            // Enter ends the drag, and the release of the button has no further effect.
             (drag.over, self.grab) = (true, None);
         }
     }
 
-    /// A press ends an amount that is typed: it stays as it is.
+    /// Ends a typed amount at a press of the mouse and keeps its effect.
     pub(super) fn end_typing(&mut self, requests: &mut Vec<Request>) {
         if self.grab.take().is_some_and(|grab| !grab.is_typed()) {
             requests.push(Request::Abandon(self.typed_gesture()));
         }
     }
 
-    /// The gesture of an amount that is typed without the mouse.
+    /// Returns the gesture of an amount that is typed without the mouse.
     pub(super) fn typed_gesture(&self) -> Gesture {
         gestures::numbered(self.count, "typed amount")
     }

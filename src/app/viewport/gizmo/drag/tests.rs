@@ -1,4 +1,4 @@
-//! Drags of handles, in scenes of every size.
+//! Drags of handles, in small and large scenes, near the origin and far from it.
 
 use super::*;
 use crate::app::viewport::gizmo::Shape;
@@ -54,14 +54,14 @@ fn end(gizmo: &Gizmo, handle: Handle) -> Pos2 {
     }
 }
 
-/// Drags a handle, and applies what the last request asks for.
+/// Drags a handle and applies the last request.
 fn drag(state: &mut State, handle: Handle, by: Vec2, typed: &str) -> Option<Amount> {
     let gizmo = gizmo(state);
     let from = end(&gizmo, handle);
     assert_eq!(gizmo.handle_at(from), Some(handle));
     let mut grab = Grab::new(state, &gizmo, handle, from);
     let mut requests = Vec::new();
-    // On the way there it goes elsewhere.
+    // The drag takes a detour, which must not matter.
     let pull = |to, typed| Pull { to, snap: false, typed };
     grab.follow(pull(from + vec2(7.0, 31.0), ""), Gesture::Part(1), &mut requests);
     grab.follow(pull(from + by, typed), Gesture::Part(1), &mut requests);
@@ -82,7 +82,8 @@ fn what_is_dragged_along_an_axis_stays_under_the_pointer_at_every_size_and_dista
             let after = gizmo(&state);
             let shift = |g: &Gizmo| g.sight.place(g.sight.in_view(g.pivot.origin)).unwrap();
             let moved = shift(&after) - shift(&before);
-            // The handle's end was pulled, so the middle follows but for perspective.
+            // The end of the handle was dragged, so the middle moves as far, except for
+            // perspective.
             assert!((moved - way * 0.4).length() < 8.0, "{axis:?} {offset} {size}: {moved:?}");
             let delta = placed(&state).w_axis.truncate() - DVec3::splat(offset);
             let off = delta - axis.unit() * delta[axis.index()];
