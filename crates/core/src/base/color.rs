@@ -1,8 +1,8 @@
 //! Colours, as bytes and as factors.
 //!
-//! Colours are display values throughout: a byte from 0 to 255 stands for a factor from 0 to 1, and
-//! no curve is applied on the way in or out, unless light is computed in linear sRGB: then
-//! [`linear`] decodes colours and [`encoded`] encodes pictures.
+//! Colours are display values throughout: a byte from 0 to 255 represents a factor from 0 to 1,
+//! without a transfer curve. The exception is light computed in linear sRGB: [`linear`] then
+//! decodes colours, and [`encoded`] encodes pictures.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,10 +15,10 @@ impl Color {
     pub const BLACK: Self = Self([0, 0, 0]);
     /// White.
     pub const WHITE: Self = Self([255, 255, 255]);
-    /// Back faces, and edges of polygons that face away.
+    /// The colour of back faces, and of edges of polygons that face away.
     pub const BACK_FACE: Self = Self([255, 0, 0]);
 
-    /// The colours that have a name, as in CSS; gray is written in two ways.
+    /// The named colours, as in CSS; gray has two spellings.
     pub const NAMED: [(&str, Self); 10] = [
         ("black", Self::BLACK),
         ("white", Self::WHITE),
@@ -32,20 +32,20 @@ impl Color {
         ("magenta", Self([255, 0, 255])),
     ];
 
-    /// The colour of this name, in upper or lower case.
+    /// Finds the colour with this name, in upper or lower case.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let is_it = |(own, _): &&(&str, Self)| own.eq_ignore_ascii_case(name);
         Self::NAMED.iter().find(is_it).map(|(_, color)| *color)
     }
 
-    /// The factors from 0 to 1 that the bytes stand for.
+    /// The factors from 0 to 1 that the bytes represent.
     #[must_use]
     pub fn factors(self) -> [f64; 3] {
         self.0.map(|byte| f64::from(byte) / 255.0)
     }
 
-    /// The nearest colour to three factors, clamped to 0 to 1.
+    /// The nearest colour to three factors, which are clamped to 0 to 1.
     #[must_use]
     pub fn from_factors(factors: [f64; 3]) -> Self {
         Self(factors.map(byte))

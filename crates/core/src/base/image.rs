@@ -14,7 +14,7 @@ pub struct Picture {
     derived: Derived,
 }
 
-/// What follows from a picture's pixels; found when it is first needed.
+/// Properties of a picture's pixels, computed on first use.
 #[derive(Clone, Debug, Default)]
 struct Derived {
     found: OnceLock<Found>,
@@ -25,13 +25,13 @@ struct Derived {
 #[derive(Clone, Copy, Debug)]
 struct Found {
     least: u8,
-    /// Whether any is neither 0 nor 255.
+    /// Whether any alpha is neither 0 nor 255.
     partial: bool,
     /// Whether any pixel is neither black nor white.
     grey: bool,
 }
 
-/// It follows from the pixels, which are compared anyway.
+/// Always equal: the properties follow from the pixels, which are compared anyway.
 impl PartialEq for Derived {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -95,13 +95,13 @@ impl Picture {
         &self.pixels
     }
 
-    /// All pixels, to be written.
+    /// Returns all pixels for writing, and drops the properties computed from them.
     pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
         self.derived = Derived::default();
         &mut self.pixels
     }
 
-    /// The least alpha of all pixels; 255 if there are none.
+    /// The smallest alpha of all pixels; 255 for an empty picture.
     #[must_use]
     pub fn least_alpha(&self) -> u8 {
         self.found().least
@@ -113,8 +113,8 @@ impl Picture {
         self.found().partial
     }
 
-    /// Whether, as a map of opacity, it is anywhere between nothing and all. Its alpha counts; if
-    /// all of it is opaque, its colour does.
+    /// Whether the picture, as an opacity map, has values between transparent and opaque. Its alpha
+    /// counts, or its colour if all pixels are opaque.
     #[must_use]
     pub fn fades(&self) -> bool {
         let Found { least, partial, grey } = self.found();
@@ -128,7 +128,7 @@ impl Picture {
         get_or_compute(&self.derived.alphas, || self.bounds(of))
     }
 
-    /// Bounds of the colours' components, and so of any mean of them, by columns and rows from the
+    /// Bounds of the colour components, and so of any mean of them, by columns and rows from the
     /// upper left.
     #[must_use]
     pub fn color_bounds(&self) -> &ByteBounds {

@@ -1,16 +1,16 @@
 //! Vectors, matrices and projections, and their conventions.
 //!
-//! * Right-handed, Y up; vectors are columns, a matrix stands to their left: `p' = M p`.
-//! * Spaces, in the order of the pipeline: object, world, view (of the observer, who looks along
-//!   its own -Z), clip (homogeneous), screen (pixels, x to the right, y down, a pixel's centre at
-//!   one half). A matrix is named `to_from`: `clip_from_view * view_from_world`.
-//! * Depth after division is reversed: 1 at the near plane, 0 at the far one. Inside the view
+//! * Right-handed, Y up; vectors are columns and matrices multiply from the left: `p' = M p`.
+//! * Spaces, in the order of the pipeline: object, world, view (the observer looks along -Z), clip
+//!   (homogeneous), screen (pixels, x to the right, y down, pixel centres at one half). A matrix is
+//!   named `to_from`: `clip_from_view * view_from_world`.
+//! * Depth after division is reversed: 1 at the near plane, 0 at the far plane. Inside the view
 //!   volume, `0 <= z <= w`, `-w <= x <= w`, `-w <= y <= w`.
 //! * A polygon's front is the side from which its corners run counter-clockwise.
 //! * Angles are radians here, degrees in the interface and in files.
 //!
-//! Sines and cosines come from the `libm` crate, glam's too, so they have the same bits on every
-//! machine.
+//! Sines and cosines, also those in glam, come from the `libm` crate, so every machine computes the
+//! same bits.
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
@@ -32,7 +32,7 @@ impl Axis {
     /// All three, in order.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    /// The direction of the axis in its own frame.
+    /// The unit vector of the axis.
     #[must_use]
     pub const fn unit(self) -> DVec3 {
         match self {
@@ -42,7 +42,7 @@ impl Axis {
         }
     }
 
-    /// 0, 1 or 2.
+    /// The index of the axis: 0, 1 or 2.
     #[must_use]
     pub const fn index(self) -> usize {
         self as usize
@@ -51,23 +51,22 @@ impl Axis {
 
 /// Applies `f` to each of three values.
 ///
-/// In code for many lanes, the array's own `map` is not always inlined, and every operation becomes
-/// a call.
+/// In SIMD code, the array's own `map` is not always inlined, and every operation becomes a call.
 #[inline(always)]
 pub fn each<A, B>([a, b, c]: [A; 3], mut f: impl FnMut(A) -> B) -> [B; 3] {
     [f(a), f(b), f(c)]
 }
 
-/// Normalises `v`, whatever its length; `None` if it is zero or not finite.
+/// Normalises a vector of any length; `None` if it is zero or not finite.
 ///
-/// The largest component is brought to 1 first, so that squares neither overflow nor vanish.
+/// The largest component is scaled to 1 first, so squares neither overflow nor vanish.
 #[must_use]
 pub fn unit(v: DVec3) -> Option<DVec3> {
     let largest = v.abs().max_element();
     if !(largest > 0.0 && v.is_finite()) {
         return None;
     }
-    // In two steps, since a subnormal component has no finite reciprocal.
+    // Two divisions, since a subnormal component has no finite reciprocal.
     let v = v / largest;
     Some(v / v.length())
 }
@@ -80,7 +79,7 @@ pub fn rotation(axis: DVec3, radians: f64) -> DMat3 {
     DMat3::from_axis_angle(axis, radians)
 }
 
-/// A right-handed frame whose Z is `z` and whose Y is as near to `y` as possible (Gram-Schmidt, Z
+/// Builds a right-handed frame with Z along `z` and Y as near to `y` as possible (Gram-Schmidt, Z
 /// first, X = Y x Z). If both are parallel or one of them vanishes, the undetermined axes come from
 /// `fallback`, which must be orthonormal.
 #[must_use]
@@ -103,8 +102,8 @@ pub fn frame(z: DVec3, y: DVec3, fallback: DMat3) -> DMat3 {
 
 /// The frame of an observer at `eye` that looks at `target`, upright with respect to `up`.
 ///
-/// If it looks straight up or down, the right vector of `last` is kept; if eye and target are
-/// equal, all of `last` is. There is no NaN and no jump.
+/// If the observer looks straight up or down, the right vector of `last` is kept; if eye and target
+/// are equal, all of `last` is. The frame never contains NaN and never jumps.
 #[must_use]
 pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
     let Some(z) = unit(eye - target) else { return last };
@@ -119,8 +118,7 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
 ///
 /// This is the inverse transpose up to a positive factor, and is defined for a singular `m` as
 /// well. The sign keeps the normals of a mirrored object on its outer side. `m` is scaled by
-/// [`at_power_of_two`] first, so that the squares of normals neither overflow nor vanish, even in
-/// f32.
+/// [`at_power_of_two`] first, so the squares of normals neither overflow nor vanish, even in f32.
 #[must_use]
 pub fn normal_matrix(m: DMat3) -> DMat3 {
     let m = at_power_of_two(m);
@@ -132,14 +130,14 @@ pub fn normal_matrix(m: DMat3) -> DMat3 {
     if m.determinant() < 0.0 { cofactors * -1.0 } else { cofactors }
 }
 
-/// `m` times a power of two that brings its largest entry to between 1/2 and 1.
+/// Scales `m` by a power of two that brings its largest entry between 1/2 and 1.
 #[must_use]
 pub fn at_power_of_two(m: DMat3) -> DMat3 {
     m * power_of_two_near(1.0 / largest_entry(m))
 }
 
-/// The largest power of two that is at most `x`, for `x` above 0; 1 for any other. A number
-/// that is multiplied by it keeps its digits.
+/// The largest power of two that is at most `x`, for a normal `x` above 0; otherwise 1. Multiplying
+/// a number by it keeps all digits.
 #[must_use]
 pub fn power_of_two_near(x: f64) -> f64 {
     if x.is_normal() && x > 0.0 { libm::ldexp(1.0, libm::ilogb(x)) } else { 1.0 }
@@ -156,7 +154,7 @@ pub fn has_full_rank(m: DMat3) -> bool {
     m.is_finite() && size > 0.0 && ((m * (1.0 / size)).determinant().abs() > 1e-15)
 }
 
-/// The perspective projection: `half_angle` (radians) is visible to each side of the view's axis
+/// The perspective projection. `half_angle` (radians) is visible to each side of the view axis
 /// across the shorter side of the picture; the longer side shows more. Depth is 1 at `near`, 0 at
 /// `far`.
 #[must_use]
@@ -172,7 +170,7 @@ pub fn perspective(half_angle: f64, near: f64, far: f64, size: Size) -> DMat4 {
     )
 }
 
-/// The orthographic projection: `half_size` is visible to each side of the view's axis across the
+/// The orthographic projection. `half_size` is visible to each side of the view axis across the
 /// shorter side of the picture. Depth is 1 at `near`, 0 at `far`.
 #[must_use]
 pub fn orthographic(half_size: f64, near: f64, far: f64, size: Size) -> DMat4 {

@@ -1,10 +1,10 @@
 //! Random numbers that are the same on every machine.
 //!
 //! SplitMix64 (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA
-//! 2014): every seed is as good as any other, so the number of a batch of test cases can serve as
-//! one. Tests depend on the sequence: pictures with listed sums and counterexamples named by their
-//! seeds are made from it. It is therefore written here rather than taken from a library, whose
-//! distributions may change with its version.
+//! 2014): all seeds are equally good, so the number of a batch of test cases can serve as a seed.
+//! Tests depend on the sequence: it produces pictures with listed sums and counterexamples named by
+//! their seeds. The generator is written here because a library may change its distributions in a
+//! new version.
 
 use glam::DVec3;
 
@@ -13,13 +13,13 @@ use glam::DVec3;
 pub struct Rng(u64);
 
 impl Rng {
-    /// The generator of a seed.
+    /// Creates the generator of a seed.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// 64 random bits.
+    /// Returns 64 random bits.
     pub const fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -49,12 +49,12 @@ impl Rng {
         all[self.index(all.len())].clone()
     }
 
-    /// True with a probability of `percent` percent.
+    /// Returns true with a probability of `percent` percent.
     pub fn percent(&mut self, percent: u64) -> bool {
         self.below(100) < percent
     }
 
-    /// True with a probability of 1 in `n`.
+    /// Returns true with a probability of 1 in `n`.
     pub fn one_in(&mut self, n: u64) -> bool {
         self.below(n) == 0
     }
@@ -80,7 +80,7 @@ impl Rng {
 mod tests {
     use super::*;
 
-    /// The first numbers of seed 1234567 as published with the reference implementation.
+    /// The numbers are the first of seed 1234567, as published with the reference implementation.
     #[test]
     fn the_sequence_is_that_of_splitmix64() {
         let mut rng = Rng::new(1_234_567);

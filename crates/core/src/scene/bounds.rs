@@ -12,7 +12,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The extent of points; `None` if there are none.
+    /// The extent of points; `None` if the list is empty.
     #[must_use]
     pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
         points.into_iter().map(Self::at).reduce(|all, p| all.around(&p))
@@ -48,7 +48,7 @@ impl Bounds {
         place.max(self.min).min(self.max)
     }
 
-    /// Its eight corners.
+    /// The eight corners of the box.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
         let pick = |i: usize, bit: usize, axis: usize| {

@@ -1,4 +1,4 @@
-//! A camera, its pose and its lens. It looks along its own -Z.
+//! A camera, its pose and its lens. It looks along -Z of its frame.
 
 use glam::{DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
@@ -31,17 +31,17 @@ pub struct Pose {
     pub eye: DVec3,
     /// Its axes as columns, orthonormal and right-handed.
     pub axes: DMat3,
-    /// How it moves.
+    /// The mode in which the camera moves.
     pub mode: CameraMode,
 }
 
-/// How a camera moves.
+/// The mode in which a camera moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CameraMode {
-    /// It moves in its own frame.
+    /// The camera moves in its own frame.
     #[default]
     Fly,
-    /// It orbits the centre of an object, which it looks at.
+    /// The camera orbits the centre of an object and looks at it (an orbit camera).
     Analysis {
         /// The object.
         target: ObjectId,
@@ -49,19 +49,19 @@ pub enum CameraMode {
 }
 
 impl Pose {
-    /// At `eye`, looking along -Z.
+    /// Creates a pose at `eye` that looks along -Z.
     #[must_use]
     pub const fn facing_minus_z(eye: DVec3) -> Self {
         Self { eye, axes: DMat3::IDENTITY, mode: CameraMode::Fly }
     }
 
-    /// `world_from_camera`.
+    /// The matrix `world_from_camera`.
     #[must_use]
     pub fn world_from_camera(&self) -> DMat4 {
         math::placed(self.axes, self.eye)
     }
 
-    /// How the camera moves now: it orbits only while its target is the selected object.
+    /// The current mode. The camera orbits only while its target is the selected object.
     #[must_use]
     pub fn mode_with(&self, selected: Option<ObjectId>) -> CameraMode {
         match self.mode {
@@ -103,7 +103,7 @@ impl Default for Lens {
 }
 
 impl Lens {
-    /// Whether it gives a valid projection.
+    /// Whether the lens gives a valid projection.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let Self { half_angle, near, far, half_size, parallel_near, parallel_far } = *self;
@@ -117,7 +117,7 @@ impl Lens {
             && parallel_far > parallel_near
     }
 
-    /// `clip_from_view` for a picture of this size.
+    /// The matrix `clip_from_view` for a picture of this size.
     #[must_use]
     pub fn clip_from_view(&self, projection: Projection, size: Size) -> DMat4 {
         match projection {

@@ -11,21 +11,21 @@ use crate::base::color::Color;
 pub struct Light {
     /// Its name in the outline.
     pub name: String,
-    /// The number of its key: 0 to 9 have one. No two lights have the same.
+    /// The slot: the number of the light's key; 0 to 9 have a key. Each light has a different slot.
     pub slot: u32,
-    /// Whether it is on.
+    /// Whether the light is on.
     pub on: bool,
     /// Its colour.
     pub color: Color,
-    /// How its light fades; the sun's and ambient light do not.
+    /// The attenuation with distance; suns and ambient light ignore it.
     pub attenuation: Attenuation,
-    /// Whether objects cast shadows in its light; ambient light has none.
+    /// Whether objects cast shadows in this light; ambient light casts no shadows.
     pub shadows: bool,
-    /// Its kind, with what that kind needs.
+    /// The kind of light, with its parameters.
     pub kind: LightKind,
 }
 
-/// How light fades with the distance d: 1 / (constant + linear d + quadratic d^2).
+/// The attenuation at distance d: 1 / (constant + linear d + quadratic d^2).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Attenuation {
@@ -53,13 +53,13 @@ impl Attenuation {
 }
 
 impl Light {
-    /// Whether it can cast shadows: it comes from somewhere.
+    /// Whether the light can cast shadows. Ambient light cannot.
     #[must_use]
     pub const fn can_cast_shadows(&self) -> bool {
         !matches!(self.kind.anchor(), Anchor::Everywhere)
     }
 
-    /// A white light that is on.
+    /// Creates a white light that is on.
     #[must_use]
     pub fn new(name: &str, slot: u32, kind: LightKind) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! Which edges of a mesh are smooth.
+//! The rules by which edges of a mesh are smooth.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 pub struct Crease(f64);
 
 impl Crease {
-    /// All faces around a vertex are smooth with each other, whether they share edges or not.
+    /// All faces around a vertex are smooth with each other, even without a common edge.
     pub const SMOOTH: Self = Self(180.0);
 
-    /// `degrees`, if they are from 0 to 180.
+    /// Returns `degrees` as a crease angle if they are from 0 to 180.
     #[must_use]
     pub fn new(degrees: f64) -> Option<Self> {
         (0.0..=180.0).contains(&degrees).then_some(Self(degrees))
@@ -45,12 +45,13 @@ impl TryFrom<f64> for Crease {
     }
 }
 
-/// Which polygons share the normals that are computed for their corners.
+/// The rule by which polygons share computed normals.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Smoothing {
-    /// Those that are connected by edges no sharper than this.
+    /// Polygons share normals if edges no sharper than this angle connect them.
     Crease(Crease),
-    /// Those in the same smoothing group: the group of each polygon, 0 for none.
+    /// Polygons share normals if they share a smoothing group. Lists the group of each polygon, 0
+    /// for none.
     Groups(Vec<u32>),
 }
 

@@ -1,7 +1,8 @@
-//! A value with the values that it had before.
+//! A value with its earlier values.
 //!
-//! Every transformation pushes the old value, so that `u` can walk back. The stack is a list whose
-//! tail is shared: a copy of a scene costs nothing, and old values come back bit for bit.
+//! Every transformation pushes the old value onto a stack, so `u` can walk back. The stack is a
+//! linked list with a shared tail: copying it takes constant time, and old values come back bit for
+//! bit.
 
 use std::sync::Arc;
 
@@ -12,7 +13,7 @@ pub struct Tracked<T> {
 }
 
 impl<T> Tracked<T> {
-    /// A value without earlier ones.
+    /// Creates a value without earlier values.
     pub const fn new(now: T) -> Self {
         Self { now, before: None }
     }
@@ -28,7 +29,7 @@ impl<T> Tracked<T> {
         self.earlier().count()
     }
 
-    /// Whether both have the same earlier values, and one comes from the other without a push.
+    /// Whether both have the same earlier values, so one comes from the other without a push.
     #[must_use]
     pub fn shares_stack_with(&self, other: &Self) -> bool {
         match (&self.before, &other.before) {
@@ -101,7 +102,7 @@ impl<T: std::fmt::Debug> std::fmt::Debug for Tracked<T> {
     }
 }
 
-/// Drops a long stack in a loop: the compiler's own code would recurse once for each value.
+/// Drops a long stack in a loop, since the generated code would recurse once for each value.
 impl<T> Drop for Tracked<T> {
     fn drop(&mut self) {
         let mut next = self.before.take();

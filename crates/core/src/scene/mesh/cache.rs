@@ -1,6 +1,6 @@
-//! The derived data of a mesh, computed when it is first needed.
+//! Derived data of a mesh, computed on first use.
 //!
-//! A picture needs only a part of it; computing and storing the rest would take longer than
+//! A picture needs only part of this data. Computing and storing all of it would take longer than
 //! drawing.
 
 use std::sync::OnceLock;
@@ -18,17 +18,17 @@ use crate::scene::mesh::outlines::{Outlines, triangles};
 use crate::scene::mesh::{Shape, index};
 use crate::scene::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, NormalSource, RayTree, Triangle};
 
-/// The data for flat shading of a polygon, in one cache line.
+/// The data for flat shading of one polygon, within a cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
 pub struct Facet {
-    /// The mean of its corners.
+    /// The mean of the polygon's corners.
     pub centre: [f32; 3],
-    /// See [`Mesh::polygon_normals`].
+    /// The polygon's normal; see [`Mesh::polygon_normals`].
     pub normal: [f32; 3],
 }
 
-/// A kind of data that is derived from a mesh when it is first needed.
+/// A kind of data that is derived from a mesh on first use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Derived {
     /// [`Mesh::corners`].
@@ -43,7 +43,7 @@ pub enum Derived {
     Facets,
     /// [`Mesh::draw_order`].
     DrawOrder,
-    /// The tangents of corners, beside one kind of normals.
+    /// The tangents of corners, for one kind of normals.
     Tangents(NormalSource),
     /// [`Mesh::edge_order`], [`Mesh::edges`] and [`Mesh::edge_polygons`].
     EdgeOrder,
@@ -51,16 +51,16 @@ pub enum Derived {
     RayTree,
 }
 
-/// The data that has been computed.
+/// The derived data that has been computed so far.
 #[derive(Default)]
 pub(crate) struct Found {
     corners: OnceLock<Vec<Corner>>,
     order: OnceLock<DrawOrder>,
-    /// With computed normals, and with those of the file.
+    /// The tangents for computed normals, and for the file's normals.
     pub(super) tangents: [OnceLock<Vec<CornerTangents>>; 2],
 }
 
-/// The data that has been computed and does not depend on the normals of vertices.
+/// The derived data that does not depend on vertex normals.
 #[derive(Default)]
 pub(crate) struct FoundOfShape {
     triangles: OnceLock<Vec<Triangle>>,
@@ -73,7 +73,7 @@ pub(crate) struct FoundOfShape {
 }
 
 impl Mesh {
-    /// The corners of all polygons, one after the other.
+    /// The corners of all polygons, in the order of the polygons.
     #[must_use]
     pub fn corners(&self) -> &[Corner] {
         get_or_compute::<Vec<_>>(&self.found.corners, || {
@@ -104,7 +104,7 @@ impl Mesh {
         self.triangles()[triangle as usize].polygon
     }
 
-    /// Computes some data of the mesh now, so that it can be read inside
+    /// Computes one kind of data now, so it can be read inside
     /// [`without_computing`](crate::base::once::without_computing).
     pub fn prepare(&self, what: Derived) {
         match what {
@@ -133,12 +133,12 @@ impl Mesh {
         self.shape.corners.len() - 2 * self.polygon_count()
     }
 
-    /// The position of a corner, by its place in [`Self::corners`].
+    /// The position of a corner, by its index in [`Self::corners`].
     pub fn corner_position(&self, corner: usize) -> glam::DVec3 {
         super::dvec3(self.shape.positions[self.shape.corners[corner] as usize])
     }
 
-    /// The corners of a triangle, as places in [`Self::corners`].
+    /// The corners of a triangle, as indices into [`Self::corners`].
     #[inline(always)]
     pub fn triangle(&self, number: usize) -> [usize; 3] {
         if self.has_triangles_only() {
@@ -153,21 +153,21 @@ impl Mesh {
         self.shape.corners[corner] as usize
     }
 
-    /// The uv coordinates of a triangle's corners; `None` if one has none.
+    /// The uv coordinates of a triangle's corners; `None` if a corner lacks them.
     #[inline(always)]
     #[must_use]
     pub fn triangle_uvs(&self, number: u32) -> Option<[[f32; 2]; 3]> {
         self.uvs_at(self.uv_places(number)?)
     }
 
-    /// Asks the cache for what [`Self::uv_places`] reads.
+    /// Prefetches the data that [`Self::uv_places`] reads.
     #[inline(always)]
     pub fn prefetch_uv_places(&self, number: u32) {
         let [first, ..] = self.triangle(number as usize);
         prefetch_index(&self.shape.corner_uvs, first);
     }
 
-    /// The places of the uv coordinates of a triangle's corners, for [`Self::uvs_at`].
+    /// The indices of the uv coordinates of a triangle's corners, for [`Self::uvs_at`].
     #[inline(always)]
     pub fn uv_places(&self, number: u32) -> Option<[u32; 3]> {
         let [a, b, c] = self.triangle(number as usize);
@@ -175,20 +175,20 @@ impl Mesh {
         Some([of(a)?, of(b)?, of(c)?])
     }
 
-    /// Asks the cache for what [`Self::uvs_at`] reads.
+    /// Prefetches the data that [`Self::uvs_at`] reads.
     #[inline(always)]
     pub fn prefetch_uvs(&self, places: [u32; 3]) {
         places.iter().for_each(|place| prefetch_index(&self.shape.uvs, *place as usize));
     }
 
-    /// The uv coordinates at three places; `None` if a place has none.
+    /// The uv coordinates at three indices; `None` if a corner lacks them.
     #[inline(always)]
     pub fn uvs_at(&self, [a, b, c]: [u32; 3]) -> Option<[[f32; 2]; 3]> {
         let of = |place: u32| self.shape.uvs.get(place as usize).copied();
         Some([of(a)?, of(b)?, of(c)?])
     }
 
-    /// The colours of a triangle's corners, which the mesh must have.
+    /// The colours of a triangle's corners. The mesh must have colours.
     #[inline(always)]
     #[must_use]
     pub fn triangle_colors(&self, number: u32) -> [[f32; 3]; 3] {
@@ -197,7 +197,7 @@ impl Mesh {
         })
     }
 
-    /// The normal of each polygon by Newell's method, of length 1; (0, 0, 1) for one without area.
+    /// The unit normal of each polygon, by Newell's method; (0, 0, 1) for a polygon without area.
     #[must_use]
     pub fn polygon_normals(&self) -> &[[f32; 3]] {
         get_or_compute::<Vec<_>>(&self.shape.found.normals, || {
@@ -233,8 +233,8 @@ impl Mesh {
         get_or_compute(&self.found.order, || DrawOrder::along_curve(self))
     }
 
-    /// Draws the mesh in the order of its file, unless a better one has been computed: for a
-    /// program that draws one picture and ends, that is not worth its time.
+    /// Draws the mesh in the order of its file, unless a better order has been computed. A program
+    /// that draws one picture and exits would lose more time than it gains by sorting.
     pub fn draw_as_filed(&self) {
         get_or_compute(&self.found.order, || DrawOrder::as_filed(self));
     }
@@ -245,7 +245,7 @@ impl Mesh {
         get_or_compute(&self.shape.found.edge_order, || EdgeOrder::new(self))
     }
 
-    /// The sides of all polygons, each once.
+    /// The edges of the mesh: the sides of all polygons, each listed once.
     #[must_use]
     pub fn edges(&self) -> &[Edge] {
         self.edge_table().edges()
@@ -261,7 +261,7 @@ impl Mesh {
         get_or_compute(&self.shape.found.edges, || Edges::of(self))
     }
 
-    /// The triangles in a tree of boxes, in which rays find those that they may meet.
+    /// The BVH of the triangles, for ray-triangle intersection.
     #[must_use]
     pub fn ray_tree(&self) -> &RayTree {
         get_or_compute(&self.shape.found.ray_tree, || RayTree::new(self))
