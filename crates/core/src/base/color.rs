@@ -39,19 +39,19 @@ impl Color {
         Self::NAMED.iter().find(is_it).map(|(_, color)| *color)
     }
 
-    /// The factors from 0 to 1 that the bytes represent.
+    /// Returns the factors from 0 to 1 that the bytes represent.
     #[must_use]
     pub fn factors(self) -> [f64; 3] {
         self.0.map(|byte| f64::from(byte) / 255.0)
     }
 
-    /// The nearest colour to three factors, which are clamped to 0 to 1.
+    /// Returns the nearest colour to three factors, which are clamped to 0 to 1.
     #[must_use]
     pub fn from_factors(factors: [f64; 3]) -> Self {
         Self(factors.map(byte))
     }
 
-    /// The colour as an opaque pixel.
+    /// Returns the colour as an opaque pixel.
     #[must_use]
     pub fn opaque(self) -> [u8; 4] {
         let [r, g, b] = self.0;
@@ -59,7 +59,7 @@ impl Color {
     }
 }
 
-/// The byte nearest to 255 times a factor: clamped once, rounded to nearest. NaN gives 0.
+/// Returns the byte nearest to 255 times a factor: clamped once, rounded to nearest. NaN gives 0.
 #[must_use]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped just before")]
 pub fn byte(factor: f64) -> u8 {
@@ -68,7 +68,7 @@ pub fn byte(factor: f64) -> u8 {
     (factor.min(1.0) * 255.0 + 0.5) as u8
 }
 
-/// The linear value of an sRGB colour, from 0 to 1 for values from 0 to 1:
+/// Decodes an sRGB colour to its linear value, from 0 to 1 for values from 0 to 1:
 ///
 ///   c / 12.92 up to 0.04045,   ((c + 0.055) / 1.055)^2.4 above
 ///
@@ -79,7 +79,7 @@ pub fn linear(stored: f64) -> f64 {
     if stored <= 0.04045 { stored / 12.92 } else { libm::pow((stored + 0.055) / 1.055, 2.4) }
 }
 
-/// The sRGB colour of a linear value: the inverse of [`linear`].
+/// Encodes a linear value as an sRGB colour: the inverse of [`linear`].
 #[must_use]
 pub fn encoded(linear: f64) -> f64 {
     let linear = linear.max(0.0);

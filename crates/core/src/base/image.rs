@@ -50,13 +50,13 @@ pub struct Size {
 }
 
 impl Size {
-    /// A size of `width` by `height` pixels.
+    /// Creates a size of `width` by `height` pixels.
     #[must_use]
     pub const fn new(width: usize, height: usize) -> Self {
         Self { width, height }
     }
 
-    /// The number of pixels.
+    /// Returns the number of pixels.
     #[must_use]
     pub const fn area(self) -> usize {
         self.width * self.height
@@ -64,7 +64,7 @@ impl Size {
 }
 
 impl Picture {
-    /// A picture of one colour.
+    /// Creates a picture of one colour.
     #[must_use]
     pub fn filled(size: Size, pixel: [u8; 4]) -> Self {
         let pixels = vec![pixel; size.area()];
@@ -72,7 +72,8 @@ impl Picture {
         Self { width: size.width, height: size.height, pixels, derived }
     }
 
-    /// A picture of these pixels, row by row from the top; `None` if their number does not fit.
+    /// Creates a picture of these pixels, row by row from the top; `None` if their number does not
+    /// fit.
     #[must_use]
     pub fn from_pixels(size: Size, pixels: Vec<[u8; 4]>) -> Option<Self> {
         (pixels.len() == size.area()).then_some(Self {
@@ -83,13 +84,13 @@ impl Picture {
         })
     }
 
-    /// Width and height.
+    /// Returns width and height.
     #[must_use]
     pub const fn size(&self) -> Size {
         Size::new(self.width, self.height)
     }
 
-    /// All pixels, row by row from the top.
+    /// Returns all pixels, row by row from the top.
     #[must_use]
     pub fn pixels(&self) -> &[[u8; 4]] {
         &self.pixels
@@ -101,20 +102,20 @@ impl Picture {
         &mut self.pixels
     }
 
-    /// The smallest alpha of all pixels; 255 for an empty picture.
+    /// Returns the smallest alpha of all pixels; 255 for an empty picture.
     #[must_use]
     pub fn least_alpha(&self) -> u8 {
         self.found().least
     }
 
-    /// Whether the alpha of any pixel is neither 0 nor 255.
+    /// Returns whether the alpha of any pixel is neither 0 nor 255.
     #[must_use]
     pub fn has_partial_alpha(&self) -> bool {
         self.found().partial
     }
 
-    /// Whether the picture, as an opacity map, has values between transparent and opaque. Its alpha
-    /// counts, or its colour if all pixels are opaque.
+    /// Returns whether the picture, as an opacity map, has values between transparent and opaque.
+    /// Its alpha counts, or its colour if all pixels are opaque.
     #[must_use]
     pub fn fades(&self) -> bool {
         let Found { least, partial, grey } = self.found();
@@ -155,7 +156,7 @@ impl Picture {
         *get_or_compute(&self.derived.found, find)
     }
 
-    /// The pixel in column `x` of row `y`, both counted from the upper left.
+    /// Returns the pixel in column `x` of row `y`, both counted from the upper left.
     #[must_use]
     pub fn pixel(&self, x: usize, y: usize) -> [u8; 4] {
         self.pixels[y * self.width + x]

@@ -32,7 +32,7 @@ impl Axis {
     /// All three, in order.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    /// The unit vector of the axis.
+    /// Returns the unit vector of the axis.
     #[must_use]
     pub const fn unit(self) -> DVec3 {
         match self {
@@ -42,7 +42,7 @@ impl Axis {
         }
     }
 
-    /// The index of the axis: 0, 1 or 2.
+    /// Returns the index of the axis: 0, 1 or 2.
     #[must_use]
     pub const fn index(self) -> usize {
         self as usize
@@ -71,7 +71,7 @@ pub fn unit(v: DVec3) -> Option<DVec3> {
     Some(v / v.length())
 }
 
-/// The rotation about `axis` (of length 1) by the right-hand rule.
+/// Returns the rotation about `axis` (of length 1) by the right-hand rule.
 ///
 /// Rodrigues' formula: `R = cos a I + sin a [k]x + (1 - cos a) k k'`.
 #[must_use]
@@ -100,7 +100,7 @@ pub fn frame(z: DVec3, y: DVec3, fallback: DMat3) -> DMat3 {
     DMat3::from_cols(y.cross(z), y, z)
 }
 
-/// The frame of an observer at `eye` that looks at `target`, upright with respect to `up`.
+/// Returns the frame of an observer at `eye` that looks at `target`, upright with respect to `up`.
 ///
 /// If the observer looks straight up or down, the right vector of `last` is kept; if eye and target
 /// are equal, all of `last` is. The frame never contains NaN and never jumps.
@@ -114,7 +114,8 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
     }
 }
 
-/// The matrix that transforms normals if `m` transforms surfaces: sign(det m) times its cofactors.
+/// Returns the matrix that transforms normals if `m` transforms surfaces: sign(det m) times its
+/// cofactors.
 ///
 /// This is the inverse transpose up to a positive factor, and is defined for a singular `m` as
 /// well. The sign keeps the normals of a mirrored object on its outer side. `m` is scaled by
@@ -136,8 +137,8 @@ pub fn at_power_of_two(m: DMat3) -> DMat3 {
     m * power_of_two_near(1.0 / largest_entry(m))
 }
 
-/// The largest power of two that is at most `x`, for a normal `x` above 0; otherwise 1. Multiplying
-/// a number by it keeps all digits.
+/// Returns the largest power of two that is at most `x`, for a normal `x` above 0; otherwise 1.
+/// Multiplying a number by it keeps all digits.
 #[must_use]
 pub fn power_of_two_near(x: f64) -> f64 {
     if x.is_normal() && x > 0.0 { libm::ldexp(1.0, libm::ilogb(x)) } else { 1.0 }
@@ -147,16 +148,16 @@ fn largest_entry(m: DMat3) -> f64 {
     m.x_axis.abs().max(m.y_axis.abs()).max(m.z_axis.abs()).max_element()
 }
 
-/// Whether `m` has rank 3, relative to its own size.
+/// Returns whether `m` has rank 3, relative to its own size.
 #[must_use]
 pub fn has_full_rank(m: DMat3) -> bool {
     let size = largest_entry(m);
     m.is_finite() && size > 0.0 && ((m * (1.0 / size)).determinant().abs() > 1e-15)
 }
 
-/// The perspective projection. `half_angle` (radians) is visible to each side of the view axis
-/// across the shorter side of the picture; the longer side shows more. Depth is 1 at `near`, 0 at
-/// `far`.
+/// Returns the perspective projection. `half_angle` (radians) is visible to each side of the view
+/// axis across the shorter side of the picture; the longer side shows more. Depth is 1 at `near`, 0
+/// at `far`.
 #[must_use]
 pub fn perspective(half_angle: f64, near: f64, far: f64, size: Size) -> DMat4 {
     let focal = 1.0 / libm::tan(half_angle);
@@ -170,8 +171,8 @@ pub fn perspective(half_angle: f64, near: f64, far: f64, size: Size) -> DMat4 {
     )
 }
 
-/// The orthographic projection. `half_size` is visible to each side of the view axis across the
-/// shorter side of the picture. Depth is 1 at `near`, 0 at `far`.
+/// Returns the orthographic projection. `half_size` is visible to each side of the view axis across
+/// the shorter side of the picture. Depth is 1 at `near`, 0 at `far`.
 #[must_use]
 pub fn orthographic(half_size: f64, near: f64, far: f64, size: Size) -> DMat4 {
     let DVec2 { x, y } = shorter_side(size) / half_size;
@@ -184,7 +185,7 @@ pub fn orthographic(half_size: f64, near: f64, far: f64, size: Size) -> DMat4 {
     )
 }
 
-/// The factors of x and y with which the shorter side of the picture spans -1 to 1.
+/// Returns the factors of x and y with which the shorter side of the picture spans -1 to 1.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 fn shorter_side(size: Size) -> DVec2 {
     let (width, height) = (size.width as f64, size.height as f64);
@@ -192,13 +193,13 @@ fn shorter_side(size: Size) -> DVec2 {
     DVec2::new(shorter / width, shorter / height)
 }
 
-/// The matrix of a frame at a position.
+/// Returns the matrix of a frame at a position.
 #[must_use]
 pub fn placed(axes: DMat3, origin: DVec3) -> DMat4 {
     DMat4::from_mat3_translation(axes, origin)
 }
 
-/// Whether all numbers of two matrices have the same bits.
+/// Returns whether all numbers of two matrices have the same bits.
 #[must_use]
 pub fn same_bits(a: &DMat4, b: &DMat4) -> bool {
     a.to_cols_array().map(f64::to_bits) == b.to_cols_array().map(f64::to_bits)

@@ -27,24 +27,24 @@ impl Rng {
         z ^ (z >> 31)
     }
 
-    /// An integer from 0 to `n` - 1.
+    /// Returns an integer from 0 to `n` - 1.
     pub fn below(&mut self, n: u64) -> u64 {
         (self.bits() >> 11) % n
     }
 
-    /// An index into a list of `n` elements.
+    /// Returns an index into a list of `n` elements.
     pub fn index(&mut self, n: usize) -> usize {
         usize::try_from(self.below(n as u64)).expect("below a usize")
     }
 
-    /// An integer from `low` to `high`, inclusive.
+    /// Returns an integer from `low` to `high`, inclusive.
     pub fn between(&mut self, low: i32, high: i32) -> i32 {
         let span = i64::from(high) - i64::from(low) + 1;
         let up = self.below(span.unsigned_abs());
         i32::try_from(i64::from(low) + i64::try_from(up).expect("below 2^32")).expect("between")
     }
 
-    /// A copy of one of the elements.
+    /// Returns a copy of one of the elements.
     pub fn one_of<T: Clone>(&mut self, all: &[T]) -> T {
         all[self.index(all.len())].clone()
     }
@@ -59,18 +59,18 @@ impl Rng {
         self.below(n) == 0
     }
 
-    /// A number from 0 up to, but not including, 1.
+    /// Returns a number from 0 up to, but not including, 1.
     #[expect(clippy::cast_precision_loss, reason = "53 bits")]
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number from `low` to `high`.
+    /// Returns a number from `low` to `high`.
     pub fn real(&mut self, low: f64, high: f64) -> f64 {
         low + self.unit() * (high - low)
     }
 
-    /// A point in the cube from -`size` to `size`.
+    /// Returns a point in the cube from -`size` to `size`.
     pub fn vector(&mut self, size: f64) -> DVec3 {
         DVec3::new(self.real(-size, size), self.real(-size, size), self.real(-size, size))
     }

@@ -14,7 +14,7 @@ const SUN: f64 = 0.6;
 /// A light within this distance of an object's centre, in the object's radii, is in the centre.
 const NEAR: f64 = 0.1;
 
-/// The selected light, if it can be aimed.
+/// Returns the selected light, if it can be aimed.
 ///
 /// # Errors
 /// If the light is neither a spot nor a sun, or is locked.
@@ -24,7 +24,7 @@ pub fn can_aim(scene: &Scene, view: &View) -> Result<LightId, Refusal> {
     if light.kind.has_direction() { Ok(id) } else { Err(Refusal::NotAimed) }
 }
 
-/// The position and direction of a light, for its mark and for aiming it.
+/// Returns the position and direction of a light, for its mark and for aiming it.
 ///
 /// A sun is infinitely far away, so its position is next to the scene, on the side from which it
 /// shines. Ambient light has no position, so the result is `None`.
@@ -50,7 +50,7 @@ pub fn stands(scene: &Scene, view: &View, id: LightId) -> Option<Aim> {
 /// Aims the selected light at the centre of the selected object.
 ///
 /// # Errors
-/// If there is no object, or the light cannot be aimed or is in the object's centre.
+/// If the scene has no object, or the light cannot be aimed or is in the object's centre.
 pub fn aim_at_selection(
     scene: &Scene,
     view: &View,

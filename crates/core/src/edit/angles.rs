@@ -43,7 +43,7 @@ pub fn nearest(degrees: DVec3, last: DVec3, turn: impl Fn(DVec3) -> DMat3) -> DV
         .fold(first, |best, angles| if distance(&angles) < distance(&best) { angles } else { best })
 }
 
-/// Whether two rotations are equal up to rounding.
+/// Returns whether two rotations are equal up to rounding.
 #[must_use]
 pub fn same_turn(a: DMat3, b: DMat3) -> bool {
     let difference = a - b;
@@ -51,12 +51,12 @@ pub fn same_turn(a: DMat3, b: DMat3) -> bool {
     columns.iter().all(|column| column.abs().max_element() < 1e-9)
 }
 
-/// The other angles within a full turn that give the same rotation.
+/// Returns the other angles within a full turn that give the same rotation.
 fn other(degrees: DVec3) -> DVec3 {
     DVec3::new(degrees.x + 180.0, 180.0 - degrees.y, degrees.z + 180.0)
 }
 
-/// The same angle, above -180 and up to 180 degrees.
+/// Returns the same angle, above -180 and up to 180 degrees.
 fn within_half_a_turn(degrees: f64) -> f64 {
     degrees - 360.0 * ((degrees - 180.0) / 360.0).ceil()
 }

@@ -15,7 +15,7 @@ use crate::scene::{
 /// The largest number of places that are tried for copies.
 const MOST_IN_A_ROW: u16 = 1000;
 
-/// Items with the ids by which they refer to each other.
+/// Items with ids, through which they refer to each other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Copies {
     /// The objects, in the order of the list.
@@ -27,7 +27,7 @@ pub struct Copies {
 }
 
 impl Copies {
-    /// Whether all three lists are empty.
+    /// Returns whether all three lists are empty.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.objects.is_empty() && self.cameras.is_empty() && self.lights.is_empty()
@@ -105,8 +105,8 @@ pub fn insert(scene: &Scene, view: &View, copies: Copies) -> Result<Command, Ref
     Ok(Command::Batch(commands))
 }
 
-/// The owner of a copied spot: the copy of the owner, the owner itself if it exists here, or else
-/// the selected item of the same kind.
+/// Returns the owner of a copied spot: the copy of the owner, the owner itself if it exists here,
+/// or else the selected item of the same kind.
 fn attached(
     scene: &Scene,
     owner: &SpotOwner,
@@ -130,7 +130,8 @@ fn attached(
     }
 }
 
-/// The translation that takes copies of these objects to a free place: a multiple of their width.
+/// Returns the translation that takes copies of these objects to a free place: a multiple of their
+/// width.
 fn free_place(scene: &Scene, view: &View, objects: &[&Object]) -> DVec3 {
     let step = width(scene, view, objects);
     let is_taken = |by: DVec3| {
@@ -146,8 +147,8 @@ fn free_place(scene: &Scene, view: &View, objects: &[&Object]) -> DVec3 {
     places.into_iter().find(|by| !is_taken(*by)).unwrap_or(step)
 }
 
-/// The total width of objects, along the horizontal world axis that points most to the right in the
-/// picture.
+/// Returns the total width of objects, along the horizontal world axis that points most to the
+/// right in the picture.
 fn width(scene: &Scene, view: &View, objects: &[&Object]) -> DVec3 {
     let right = scene.observer_frame(view).x_axis.truncate();
     let axis = if right.x.abs() >= right.z.abs() {

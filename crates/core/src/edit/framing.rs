@@ -43,7 +43,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The axes of a camera that looks from this side.
+    /// Returns the axes of a camera that looks from this side.
     #[must_use]
     pub const fn axes(self) -> DMat3 {
         match self {
@@ -66,7 +66,7 @@ const MARGIN: f64 = 1.0 / 20.0;
 /// Frames the selected object (key `.`).
 ///
 /// # Errors
-/// If there is no object, or it has no vertices.
+/// If no object is selected, or it has no vertices.
 pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     let (id, _) = set_transform::selected_object(scene, view)?;
     objects(scene, view, &[id])
@@ -80,7 +80,7 @@ pub fn all(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     objects(scene, view, &shown(scene, view))
 }
 
-/// The visible objects.
+/// Returns the visible objects.
 fn shown(scene: &Scene, view: &View) -> Vec<ObjectId> {
     let shown = |id: &ObjectId, object: &Object| {
         object.visible && (!view.only_selected || view.object == Some(*id))
@@ -107,7 +107,7 @@ pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Result<Comma
     framed(scene, view, &shown(scene, view), axes, MARGIN)
 }
 
-/// The distance at which [`models`] shows a sphere of radius `r`.
+/// Returns the distance at which [`models`] shows a sphere of radius `r`.
 #[must_use]
 pub fn models_distance(first: &Lens, r: f64) -> f64 {
     lens(first, r * (1.0 + MARGIN)).0
@@ -116,14 +116,14 @@ pub fn models_distance(first: &Lens, r: f64) -> f64 {
 /// Frames the selected object from a side (Ctrl+1, 3 and 7).
 ///
 /// # Errors
-/// If there is no object, or it has no vertices.
+/// If no object is selected, or it has no vertices.
 pub fn side(scene: &Scene, view: &View, side: Side) -> Result<Command, Refusal> {
     let (id, _) = set_transform::selected_object(scene, view)?;
     framed(scene, view, &[id], side.axes(), 0.0)
 }
 
-/// The bounding sphere of objects. For several objects, it encloses their spheres and is centred in
-/// the box around these. `None` if no object has vertices.
+/// Returns the bounding sphere of objects. For several objects, it encloses their spheres and is
+/// centred in the box around these. `None` if no object has vertices.
 #[must_use]
 pub fn sphere(scene: &Scene, view: &View, ids: &[ObjectId]) -> Option<Sphere> {
     let spheres: Vec<(DVec3, f64)> = ids
@@ -141,7 +141,7 @@ pub fn sphere(scene: &Scene, view: &View, ids: &[ObjectId]) -> Option<Sphere> {
     Some(Sphere { centre, radius: spheres.iter().map(reach).fold(0.0, f64::max) })
 }
 
-/// The distance from the centre of a sphere of radius `r`, and the lens for viewing it.
+/// Returns the distance from the centre of a sphere of radius `r`, and the lens for viewing it.
 #[must_use]
 pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
     let distance = r / libm::sin(lens.half_angle.to_radians());
@@ -190,7 +190,7 @@ fn framed(
     set_transform::pose_and_lens(scene, view.camera, pose, lens, GesturePhase::First)
 }
 
-/// The sphere about the mean of an object's vertices, through the farthest vertex.
+/// Returns the sphere about the mean of an object's vertices, through the farthest vertex.
 fn about_the_mean(object: &Object, time: f64) -> Sphere {
     let centre = object.centre(time);
     let squares = object.placed_vertices(time).map(|p| p.distance_squared(centre));

@@ -32,13 +32,13 @@ pub enum Amount {
 }
 
 impl Pivot {
-    /// The direction of an axis in the world; `None` if the axis has length 0.
+    /// Returns the direction of an axis in the world; `None` if the axis has length 0.
     #[must_use]
     pub fn direction(&self, axis: Axis) -> Option<DVec3> {
         math::unit(self.axes.col(axis.index()))
     }
 
-    /// The length of a unit along an axis, in world units.
+    /// Returns the length of a unit along an axis, in world units.
     #[must_use]
     pub fn unit(&self, axis: Axis) -> f64 {
         self.axes.col(axis.index()).length()
@@ -51,15 +51,15 @@ impl Pivot {
         (math::has_full_rank(self.axes) && inside.is_finite()).then_some(inside)
     }
 
-    /// The handedness: -1 if the frame is mirrored and turns therefore run the other way in the
-    /// world, else 1.
+    /// Returns the handedness: -1 if the frame is mirrored and turns therefore run the other way in
+    /// the world, else 1.
     #[must_use]
     pub fn hand(&self) -> f64 {
         if self.axes.determinant() < 0.0 { -1.0 } else { 1.0 }
     }
 }
 
-/// The pivot for transforming the selected item of the subject.
+/// Returns the pivot for transforming the selected item of the subject.
 ///
 /// In the global frame an object is rotated and scaled about the world's origin, so the handles are
 /// there.

@@ -140,14 +140,14 @@ impl History {
         }
     }
 
-    /// The selection before the step that undo would undo.
+    /// Returns the selection before the step that undo would undo.
     #[must_use]
     pub fn selected_before(&self) -> Option<&Selected> {
         let last = self.steps.get(self.position.checked_sub(1)?)?;
         last.selected.as_ref().map(|[before, _]| before)
     }
 
-    /// The selection after the step that redo would redo.
+    /// Returns the selection after the step that redo would redo.
     #[must_use]
     pub fn selected_after(&self) -> Option<&Selected> {
         self.steps.get(self.position)?.selected.as_ref().map(|[_, after]| after)
@@ -202,18 +202,18 @@ impl History {
         while self.position < position && self.redo(scene).is_some() {}
     }
 
-    /// The labels of all steps, oldest first: the steps done, then the steps undone.
+    /// Returns the labels of all steps, oldest first: the steps done, then the steps undone.
     pub fn steps(&self) -> impl ExactSizeIterator<Item = &str> {
         self.steps.iter().map(|step| step.label.as_str())
     }
 
-    /// The number of steps done.
+    /// Returns the number of steps done.
     #[must_use]
     pub const fn position(&self) -> usize {
         self.position
     }
 
-    /// Whether the scene is unchanged since it was last saved or loaded.
+    /// Returns whether the scene is unchanged since it was last saved or loaded.
     #[must_use]
     pub fn is_saved(&self) -> bool {
         self.saved == Some(self.position)

@@ -237,7 +237,7 @@ pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Result<Command, Refu
     change_camera(scene, id, |camera| camera.lens = lens)
 }
 
-/// The reason why a crease angle has no effect on a model; `None` if it has.
+/// Returns the reason why a crease angle has no effect on a model; `None` if it has.
 #[must_use]
 pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> {
     if Shape::named(&model.name).is_some_and(|shape| shape.model().shares_file_with(model)) {
@@ -365,7 +365,7 @@ fn one_or_batch(mut commands: Vec<Command>) -> Command {
     if commands.len() == 1 { commands.remove(0) } else { Command::Batch(commands) }
 }
 
-/// The name of a new light: its kind, after the kind of its owner.
+/// Returns the name of a new light: its kind, after the kind of its owner.
 fn light_name(kind: &LightKind) -> String {
     let name = kind.info().name;
     match kind.owner() {

@@ -1,6 +1,6 @@
 //! Lights models that come without a scene.
 //!
-//! The lights are those of the first scene, with positions and attenuation scaled to the size of
+//! These are the lights of the first scene, with positions and attenuation scaled to the size of
 //! the models. Their brightness is balanced to the models' materials: for any normal, ambient plus
 //! diffuse light stays below white, so only highlights can reach white.
 //!
@@ -93,7 +93,7 @@ fn place(light: &mut Light, centre: DVec3, scale: f64) {
     }
 }
 
-/// The factor of all lights with which every surface in the sphere is at most as bright as
+/// Returns the factor of all lights with which every surface in the sphere is at most as bright as
 /// [`BRIGHTEST`]; at most 1.
 fn balance(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
     let ambient: f64 = scene
@@ -112,7 +112,7 @@ fn balance(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
     if brightest > BRIGHTEST { BRIGHTEST / brightest } else { 1.0 }
 }
 
-/// Ka and Kd of each part and channel of an object.
+/// Returns Ka and Kd of each part and channel of an object.
 fn coefficients(object: &Object) -> impl Iterator<Item = [f64; 2]> {
     let parts = u32::try_from(object.model.mesh.parts().len().max(1)).unwrap_or(u32::MAX);
     (0..parts).flat_map(|part| {
@@ -121,7 +121,7 @@ fn coefficients(object: &Object) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// The largest length of any sum of lights at a point of the sphere.
+/// Returns the largest length of any sum of lights at a point of the sphere.
 fn most_diffuse(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
     let lights: Vec<&Light> =
         scene.lights.iter().map(|(_, light)| light).filter(|light| light.on).collect();
@@ -152,8 +152,8 @@ fn most_diffuse(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
     most
 }
 
-/// The light that arrives at `p`: the direction to the light times its strength. `None` for light
-/// without direction.
+/// Returns the light that arrives at `p`: the direction to the light times its strength. `None` for
+/// light without direction.
 fn light_at(light: &Light, scene: &Scene, view: &View, p: DVec3) -> Option<DVec3> {
     let LightOrigin { position, direction } = scene.light_origin(view, &light.kind)?;
     // On its axis, a spot is as bright as a bulb.
@@ -166,7 +166,7 @@ fn light_at(light: &Light, scene: &Scene, view: &View, p: DVec3) -> Option<DVec3
     (d > 0.0).then(|| to / d * strength(light) / (constant + linear * d + quadratic * d * d))
 }
 
-/// The brightest channel of a light, 0 to 1.
+/// Returns the brightest channel of a light, 0 to 1.
 fn strength(light: &Light) -> f64 {
     f64::from(light.color.0.into_iter().max().unwrap_or(0)) / 255.0
 }

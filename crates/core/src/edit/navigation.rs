@@ -154,7 +154,7 @@ pub fn zoom(
     }
 }
 
-/// World units per pixel at `depth` in front of the camera.
+/// Returns the world units per pixel at `depth` in front of the camera.
 #[must_use]
 pub fn units_per_pixel(scene: &Scene, view: &View, size: Size, depth: f64) -> f64 {
     let lens = scene.selected_camera(view).lens;
@@ -166,7 +166,7 @@ pub fn units_per_pixel(scene: &Scene, view: &View, size: Size, depth: f64) -> f6
     }
 }
 
-/// The pose of the selected camera, if it is the observer.
+/// Returns the pose of the selected camera, if it is the observer.
 fn looking_pose(scene: &Scene, view: &View) -> Result<Pose, Refusal> {
     if view.observer == Observer::Object && view.object.is_some() {
         return Err(Refusal::ObjectLooks);
@@ -174,14 +174,14 @@ fn looking_pose(scene: &Scene, view: &View) -> Result<Pose, Refusal> {
     Ok(effective_pose(scene, view))
 }
 
-/// The pivot of drags: the centre of the selected object, otherwise the origin.
+/// Returns the pivot of drags: the centre of the selected object, otherwise the origin.
 fn pivot(scene: &Scene, view: &View) -> DVec3 {
     let object = view.object.and_then(|id| scene.objects.get(id));
     object.map_or(DVec3::ZERO, |object| object.centre(view.time))
 }
 
-/// The depth of the pivot if it is in front of the camera, otherwise its distance, and at least the
-/// near plane. Thus a drag always moves the view, and the wheel passes through the pivot.
+/// Returns the depth of the pivot if it is in front of the camera, otherwise its distance, and at
+/// least the near plane. Thus a drag always moves the view, and the wheel passes through the pivot.
 fn depth(scene: &Scene, view: &View, pose: &Pose) -> f64 {
     let away = pose.eye - pivot(scene, view);
     let ahead = away.dot(pose.axes.z_axis);
@@ -189,13 +189,14 @@ fn depth(scene: &Scene, view: &View, pose: &Pose) -> f64 {
     if ahead > near { ahead } else { away.length().max(near) }
 }
 
-/// Units per pixel, if `half` units are on each side of the axis across the shorter side.
+/// Returns the units per pixel if `half` units are on each side of the axis across the shorter
+/// side.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 fn shown_per_pixel(half: f64, size: Size) -> f64 {
     2.0 * half / size.width.min(size.height).max(1) as f64
 }
 
-/// Pixels from the middle of the picture, x to the right and y up.
+/// Returns a position relative to the middle of the picture, x to the right and y up.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 fn from_middle(at: DVec2, size: Size) -> DVec2 {
     let middle = DVec2::new(size.width as f64, size.height as f64) / 2.0;

@@ -16,14 +16,14 @@ use super::{GesturePhase, Refusal};
 use crate::base::math::{self, Axis};
 use crate::scene::{Aim, CameraId, CameraMode, Command, LightId, ObjectId, Pose, Scene, View};
 
-/// The position of an object's origin.
+/// Returns the position of an object's origin.
 #[must_use]
 pub fn translation(placement: &DMat4) -> DVec3 {
     placement.w_axis.truncate()
 }
 
-/// An object's rotation as degrees about X, Y and Z, `R = Rx Ry Rz`. Returns the equivalent angles
-/// with the smallest X and Z.
+/// Returns an object's rotation as degrees about X, Y and Z, `R = Rx Ry Rz`. Of the equivalent
+/// angles, these have the smallest X and Z.
 #[must_use]
 pub fn turn_degrees(placement: &DMat4) -> DVec3 {
     let turn = turn(placement);
@@ -41,7 +41,7 @@ pub fn turn_degrees(placement: &DMat4) -> DVec3 {
     angles::plainest(DVec3::new(about_x, about_y, about_z).map(f64::to_degrees))
 }
 
-/// The scale of an object along its axes; X is negative if the object is mirrored.
+/// Returns the scale of an object along its axes; X is negative if the object is mirrored.
 #[must_use]
 pub fn scale(placement: &DMat4) -> DVec3 {
     let m = DMat3::from_mat4(*placement);
@@ -49,7 +49,7 @@ pub fn scale(placement: &DMat4) -> DVec3 {
     DVec3::new(x, m.y_axis.length(), m.z_axis.length())
 }
 
-/// A camera's yaw, pitch and roll in degrees, `R = Ry Rx Rz`.
+/// Returns a camera's yaw, pitch and roll in degrees, `R = Ry Rx Rz`.
 #[must_use]
 pub fn camera_degrees(pose: &Pose) -> DVec3 {
     let [x, y, z] = [pose.axes.x_axis, pose.axes.y_axis, pose.axes.z_axis];
@@ -271,12 +271,12 @@ fn placement(scene: &Scene, id: ObjectId) -> Result<DMat4, Refusal> {
     Ok(*scene.objects.get(id).ok_or(Refusal::Gone)?.placement.now())
 }
 
-/// The rotation of a placement, without scale, shear and mirroring.
+/// Returns the rotation of a placement, without scale, shear and mirroring.
 fn turn(placement: &DMat4) -> DMat3 {
     math::frame(placement.z_axis.truncate(), placement.y_axis.truncate(), DMat3::IDENTITY)
 }
 
-/// The rotations about X, Y and Z by these degrees.
+/// Returns the rotations about X, Y and Z by these degrees.
 fn turns(degrees: DVec3) -> Result<[DMat3; 3], Refusal> {
     let [x, y, z] = Axis::ALL
         .map(|axis| set_transform::turn(axis.unit(), (degrees[axis.index()] % 360.0).to_radians()));

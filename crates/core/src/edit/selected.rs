@@ -25,7 +25,7 @@ impl Selected {
         Self { subject, object, camera, light, others: others.clone() }
     }
 
-    /// The item that the keys acted on.
+    /// Returns the item that the keys acted on.
     fn item(&self) -> Option<ItemId> {
         match self.subject {
             Subject::Camera => Some(ItemId::Camera(self.camera)),

@@ -102,7 +102,7 @@ pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal
 /// Selects the next item of the subject, cyclically (key Tab).
 ///
 /// # Errors
-/// If there is no other item.
+/// If the list has no other item.
 pub fn next(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Selection, Refusal> {
     fn after<K: Copy + Ord, T, D>(list: &List<K, T, D>, id: Option<K>) -> Option<K> {
         list.after(id).filter(|next| Some(*next) != id)
@@ -117,7 +117,7 @@ pub fn next(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Selection
     select_in(scene, view, id.ok_or(Refusal::OnlyOne)?, phase)
 }
 
-/// The item that the subject's keys act on.
+/// Returns the item that the subject's keys act on.
 #[must_use]
 pub fn selected(view: &View) -> Option<ItemId> {
     match view.subject {
@@ -127,7 +127,7 @@ pub fn selected(view: &View) -> Option<ItemId> {
     }
 }
 
-/// The subject for items of this kind.
+/// Returns the subject for items of this kind.
 #[must_use]
 pub const fn subject_of(id: ItemId) -> Subject {
     match id {
@@ -186,7 +186,7 @@ pub fn toggle_observer(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
 /// Switches polygon mode on, from polygon 0, or off (key `o`).
 ///
 /// # Errors
-/// If there is no object, or it has no polygons.
+/// If no object is selected, or it has no polygons.
 pub fn toggle_polygons(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     view.polygons = match view.polygons {
         Some(_) => None,
@@ -272,7 +272,7 @@ pub fn settle(scene: &Scene, view: &mut View) {
     keep_polygons(scene, view);
 }
 
-/// The selected item of a list after a change: the same item, or the nearest remaining one.
+/// Returns the selected item of a list after a change: the same item, or the nearest remaining one.
 fn remaining<K: Copy + Ord, T, D>(
     before: &List<K, T, D>,
     after: &List<K, T, D>,

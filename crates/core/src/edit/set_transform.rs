@@ -12,7 +12,7 @@ use crate::scene::{
     LightId, Object, ObjectId, Pose, Scene, SpotOwner, Tracked, Transformation, View,
 };
 
-/// The selected object.
+/// Returns the selected object.
 pub(super) fn selected_object<'a>(
     scene: &'a Scene,
     view: &View,
@@ -21,7 +21,7 @@ pub(super) fn selected_object<'a>(
     Ok((id, scene.objects.get(id).ok_or(Refusal::NoObject)?))
 }
 
-/// The selected light.
+/// Returns the selected light.
 pub(super) fn selected_light<'a>(
     scene: &'a Scene,
     view: &View,
@@ -137,7 +137,7 @@ pub fn aimed_again(scene: &Scene, view: &View) -> Option<Command> {
     Some(Command::Replace(Item::Camera(view.camera, Box::new(camera))))
 }
 
-/// The upright pose in analysis that looks at the centre of an object.
+/// Returns the upright pose in analysis that looks at the centre of an object.
 pub(super) fn aimed(pose: &Pose, target: ObjectId, centre: DVec3) -> Pose {
     let steep = math::unit(pose.eye - centre)
         .is_some_and(|z| z.cross(DVec3::Y).length() < STEEP && z.dot(pose.axes.z_axis) > 0.9);
@@ -149,7 +149,7 @@ pub(super) fn aimed(pose: &Pose, target: ObjectId, centre: DVec3) -> Pose {
     }
 }
 
-/// The centre that the selected camera orbits in analysis; `None` in fly.
+/// Returns the centre that the selected camera orbits in analysis; `None` in fly.
 pub(super) fn analysis_centre(scene: &Scene, view: &View) -> Option<DVec3> {
     match scene.selected_camera(view).pose.now().mode_with(view.object) {
         CameraMode::Fly => None,
@@ -165,7 +165,7 @@ pub(super) enum LightPlace {
     Aim(Aim),
 }
 
-/// The part of a light that can be transformed, or the reason why it cannot be transformed.
+/// Returns the part of a light that can be transformed, or the reason why it cannot be transformed.
 pub(super) fn place_of(light: &Light) -> Result<LightPlace, Refusal> {
     match light.kind.anchor() {
         Anchor::Everywhere => Err(Refusal::Ambient),
@@ -179,8 +179,8 @@ pub(super) fn place_of(light: &Light) -> Result<LightPlace, Refusal> {
     }
 }
 
-/// The transformation of x, y and z for a light, if `chosen` is asked for. A sun can only be turned
-/// and a bulb only be moved, for any `chosen`.
+/// Returns the transformation of x, y and z for a light, if `chosen` is asked for. A sun can only
+/// be turned and a bulb only be moved, for any `chosen`.
 ///
 /// # Errors
 /// If the light has neither a position nor a direction that can be set.
@@ -226,7 +226,7 @@ pub(super) fn light(
     Ok(Command::Replace(Item::Light(id, Box::new(light))))
 }
 
-/// The rotation by `radians` about an axis of any length; the identity if the length is 0.
+/// Returns the rotation by `radians` about an axis of any length; the identity if the length is 0.
 ///
 /// Full turns are left to the sine: a remainder by the nearest number to 2 pi would lose 4e-11 at
 /// an angle of 1e6.

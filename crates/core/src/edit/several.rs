@@ -29,7 +29,7 @@ impl Others {
         Self { with: Some(with), items }
     }
 
-    /// The items that are now selected in addition to the one that the keys act on.
+    /// Returns the items that are now selected in addition to the one that the keys act on.
     pub fn of<'a>(
         &'a self,
         scene: &'a Scene,
@@ -74,7 +74,7 @@ pub fn each(
     }
 }
 
-/// The view in which the keys act on this item.
+/// Returns the view with this item as the selected one.
 fn as_if_selected(view: &View, id: ItemId) -> View {
     let mut view = view.clone();
     view.subject = selection::subject_of(id);
@@ -135,7 +135,7 @@ pub fn spread(scene: &Scene, command: Command, others: &[ItemId]) -> Command {
     Command::Batch(commands)
 }
 
-/// The first item that a command replaces.
+/// Returns the first item that a command replaces.
 fn replaced(command: &Command) -> Option<&Item> {
     match command {
         Command::Replace(item) => Some(item),
@@ -149,7 +149,7 @@ fn replaced(command: &Command) -> Option<&Item> {
     }
 }
 
-/// Another item of the same kind, with the values that `changed` changes.
+/// Returns another item of the same kind, with the values that `changed` changes.
 fn alike(scene: &Scene, changed: &Item, other: ItemId) -> Option<Item> {
     match (changed, other) {
         (Item::Object(id, to), ItemId::Object(other)) if *id != other => {
@@ -315,8 +315,8 @@ fn owner_alike(before: &SpotOwner, after: &SpotOwner, own: &mut SpotOwner) {
     }
 }
 
-/// All listed items of the subject's list. If all of these are already selected, the listed items
-/// of all lists.
+/// Returns all listed items of the subject's list. If all of these are already selected, the listed
+/// items of all lists.
 #[must_use]
 pub fn all(
     scene: &Scene,

@@ -37,7 +37,7 @@ pub fn insert(scene: &Scene, view: &View, shape: Shape) -> Command {
     insert_object(scene, object)
 }
 
-/// The centre of the bottom of the box around all objects.
+/// Returns the centre of the bottom of the box around all objects.
 fn ground(scene: &Scene, time: f64) -> DVec3 {
     let vertices = scene.objects.iter().flat_map(|(_, object)| object.placed_vertices(time));
     Bounds::of(vertices).map_or(DVec3::ZERO, |bounds| {

@@ -28,7 +28,7 @@ pub enum Sign {
 }
 
 impl Sign {
-    /// The amount with this sign.
+    /// Applies this sign to an amount.
     #[must_use]
     pub const fn of(self, amount: f64) -> f64 {
         match self {
@@ -83,8 +83,8 @@ pub fn step(
     }
 }
 
-/// The distance of one step along `axis` for the selected item of the subject, in the units of the
-/// frame in which it moves.
+/// Returns the distance of one step along `axis` for the selected item of the subject, in the units
+/// of the frame in which it moves.
 #[must_use]
 pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
     let length = steps::length(scene, view);
@@ -247,7 +247,7 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
 /// of the selected object. Returning to fly does not move it and pushes nothing.
 ///
 /// # Errors
-/// If there is no selected object to look at.
+/// If no object is selected.
 pub fn toggle_analysis(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     let pose = effective_pose(scene, view);
     match pose.mode {
@@ -289,7 +289,7 @@ fn transform(
     set_transform::object(scene, view, id, placement, phase)
 }
 
-/// The selected camera's pose, with its current mode.
+/// Returns the selected camera's pose, with its current mode.
 pub(super) fn effective_pose(scene: &Scene, view: &View) -> Pose {
     let pose = scene.selected_camera(view).pose.now();
     Pose { mode: pose.mode_with(view.object), ..*pose }
@@ -308,8 +308,9 @@ pub(super) fn orbited(pose: &Pose, turn: DMat3, centre: DVec3) -> Pose {
     Pose { eye, axes, mode: pose.mode }
 }
 
-/// The axes of a camera that has moved from `before` to `eye`, with the same deviation from the
-/// centre as before. The deviation is zero, unless the camera was framed before it began to orbit.
+/// Returns the axes of a camera that has moved from `before` to `eye`, with the same deviation from
+/// the centre as before. The deviation is zero, unless the camera was framed before it began to
+/// orbit.
 fn aimed_as(before: &Pose, eye: DVec3, axes: DMat3, centre: DVec3) -> DMat3 {
     let aimed = |eye: DVec3, axes: DMat3| math::look_at(eye, centre, axes.y_axis, axes);
     let aside = aimed(before.eye, before.axes).transpose() * before.axes;

@@ -19,8 +19,8 @@ pub enum Turn {
     Camera,
 }
 
-/// The scene after `part` of a full turn, counter-clockwise seen from above. A part of 0 returns
-/// the scene unchanged.
+/// Returns the scene after `part` of a full turn, counter-clockwise seen from above. A part of 0
+/// returns the scene unchanged.
 ///
 /// # Errors
 /// If nothing is visible.

@@ -49,7 +49,7 @@ pub enum SpotOwner {
 }
 
 impl SpotOwner {
-    /// The position and direction of a fixed spot; `None` if an item owns the spot.
+    /// Returns the position and direction of a fixed spot; `None` if an item owns the spot.
     #[must_use]
     pub const fn fixed(&self) -> Option<&Tracked<Aim>> {
         match self {
@@ -96,7 +96,7 @@ impl Default for Orbit {
 }
 
 impl Orbit {
-    /// The position of a bulb at `time` (seconds of the scene's clock) if it is placed at
+    /// Returns the position of a bulb at `time` (seconds of the scene's clock) if it is placed at
     /// `position`.
     #[must_use]
     pub fn at(&self, position: DVec3, time: f64) -> DVec3 {

@@ -55,7 +55,7 @@ pub enum Item {
 }
 
 impl Item {
-    /// Its id.
+    /// Returns the id.
     #[must_use]
     pub const fn id(&self) -> ItemId {
         match self {
@@ -65,7 +65,7 @@ impl Item {
         }
     }
 
-    /// The reason why the item is invalid in a scene, or `None` if it is valid.
+    /// Returns the reason why the item is invalid in a scene, or `None` if it is valid.
     fn fault(&self) -> Option<CommandError> {
         let finite = match self {
             Self::Object(_, object) => {
@@ -142,7 +142,8 @@ impl Command {
         }
     }
 
-    /// Whether `self`, applied right after `earlier`, overwrites everything that `earlier` set.
+    /// Returns whether `self`, applied right after `earlier`, overwrites everything that `earlier`
+    /// set.
     #[must_use]
     pub fn overwrites(&self, earlier: &Self) -> bool {
         match (self, earlier) {

@@ -9,13 +9,13 @@ use crate::base::color::Color;
 /// A light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    /// Its name in the outline.
+    /// The name in the outline.
     pub name: String,
     /// The slot: the number of the light's key; 0 to 9 have a key. Each light has a different slot.
     pub slot: u32,
     /// Whether the light is on.
     pub on: bool,
-    /// Its colour.
+    /// The colour.
     pub color: Color,
     /// The attenuation with distance; suns and ambient light ignore it.
     pub attenuation: Attenuation,
@@ -44,7 +44,7 @@ impl Default for Attenuation {
 }
 
 impl Attenuation {
-    /// Whether the light at every distance is finite and not negative.
+    /// Returns whether the light at every distance is finite and not negative.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let all = [self.constant, self.linear, self.quadratic];
@@ -53,7 +53,7 @@ impl Attenuation {
 }
 
 impl Light {
-    /// Whether the light can cast shadows. Ambient light cannot.
+    /// Returns whether the light can cast shadows. Ambient light cannot.
     #[must_use]
     pub const fn can_cast_shadows(&self) -> bool {
         !matches!(self.kind.anchor(), Anchor::Everywhere)
@@ -73,8 +73,8 @@ impl Light {
         }
     }
 
-    /// The five lights of the first scene: ambient, sun, bulb, and the spots of the selected object
-    /// and of the selected camera.
+    /// Returns the five lights of the first scene: ambient, sun, bulb, and the spots of the
+    /// selected object and of the selected camera.
     #[must_use]
     pub fn five() -> [Self; 5] {
         let spot = |owner| LightKind::Spot { owner, half_aperture: 22.5, exponent: 5.0 };

@@ -16,12 +16,12 @@ pub enum LightKind {
     Ambient,
     /// Directional light, from infinitely far away.
     Sun {
-        /// The direction in which its light travels, of length 1.
+        /// The direction of the light's travel, of length 1.
         direction: Tracked<DVec3>,
     },
     /// A point light, in all directions.
     Bulb {
-        /// Its position.
+        /// The position.
         position: Tracked<DVec3>,
         /// The circular motion about the world's Y axis.
         orbit: Orbit,
@@ -115,7 +115,7 @@ pub static CONCENTRATION: LightNumber = LightNumber {
 pub static LIGHT_NUMBERS: [&LightNumber; 2] = [&HALF_APERTURE, &CONCENTRATION];
 
 impl LightNumber {
-    /// Whether a light may have this value.
+    /// Returns whether a light may have this value.
     #[must_use]
     pub fn is_valid(&self, number: f64) -> bool {
         (0.0..=self.largest).contains(&number)
@@ -123,7 +123,7 @@ impl LightNumber {
 }
 
 impl LightKind {
-    /// The facts about this kind of light.
+    /// Returns the facts about this kind of light.
     #[must_use]
     pub const fn info(&self) -> LightKindInfo {
         match self {
@@ -134,7 +134,7 @@ impl LightKind {
         }
     }
 
-    /// The source of the light's position and direction.
+    /// Returns the source of the light's position and direction.
     #[must_use]
     pub const fn anchor(&self) -> Anchor<'_> {
         match self {
@@ -145,7 +145,7 @@ impl LightKind {
         }
     }
 
-    /// The source of the light's position and direction, for changing it.
+    /// Returns the source of the light's position and direction, for changing it.
     pub const fn anchor_mut(&mut self) -> AnchorMut<'_> {
         match self {
             Self::Ambient => AnchorMut::Everywhere,
@@ -155,7 +155,7 @@ impl LightKind {
         }
     }
 
-    /// The circular motion, if lights of this kind can circle.
+    /// Returns the circular motion, if lights of this kind can circle.
     #[must_use]
     pub const fn orbit(&self) -> Option<&Orbit> {
         match self {
@@ -164,7 +164,7 @@ impl LightKind {
         }
     }
 
-    /// The circular motion, for changing it.
+    /// Returns the circular motion, for changing it.
     pub const fn orbit_mut(&mut self) -> Option<&mut Orbit> {
         match self {
             Self::Bulb { orbit, .. } => Some(orbit),
@@ -172,12 +172,12 @@ impl LightKind {
         }
     }
 
-    /// The numbers of the light, each with its description.
+    /// Returns the numbers of the light, each with its description.
     pub fn numbers(&self) -> impl Iterator<Item = (&'static LightNumber, f64)> {
         LIGHT_NUMBERS.iter().filter_map(|row| Some((*row, (row.get)(self)?)))
     }
 
-    /// The owner, if lights of this kind have one.
+    /// Returns the owner, if lights of this kind have one.
     #[must_use]
     pub const fn owner(&self) -> Option<&SpotOwner> {
         match self.anchor() {
@@ -186,7 +186,7 @@ impl LightKind {
         }
     }
 
-    /// Whether the light has a position and thus fades with distance.
+    /// Returns whether the light has a position and thus fades with distance.
     #[must_use]
     pub const fn has_position(&self) -> bool {
         match self.anchor() {
@@ -195,7 +195,7 @@ impl LightKind {
         }
     }
 
-    /// Whether the light has a direction and thus can be aimed.
+    /// Returns whether the light has a direction and thus can be aimed.
     #[must_use]
     pub const fn has_direction(&self) -> bool {
         match self.anchor() {
@@ -204,13 +204,13 @@ impl LightKind {
         }
     }
 
-    /// Whether a diamond marks the light's position in the picture.
+    /// Returns whether a diamond marks the light's position in the picture.
     #[must_use]
     pub const fn has_diamond(&self) -> bool {
         matches!(self.anchor(), Anchor::Position(_))
     }
 
-    /// Whether the numbers are valid, and the position and direction finite.
+    /// Returns whether the numbers are valid, and the position and direction finite.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let anchored = match self.anchor() {

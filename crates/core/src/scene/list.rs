@@ -81,79 +81,79 @@ impl<K: PartialEq, T: PartialEq, D> PartialEq for List<K, T, D> {
 }
 
 impl<K: Copy + Ord, T, D> List<K, T, D> {
-    /// The number of items.
+    /// Returns the number of items.
     #[must_use]
     pub fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// Whether the list is empty.
+    /// Returns whether the list is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
 
-    /// The position of the item with this id.
+    /// Returns the position of the item with this id.
     #[must_use]
     pub fn position(&self, id: K) -> Option<usize> {
         let label = self.labels.get(&id)?;
         self.entries.binary_search_by_key(label, |entry| entry.label).ok()
     }
 
-    /// Whether the list has an item with this id.
+    /// Returns whether the list has an item with this id.
     #[must_use]
     pub fn contains(&self, id: K) -> bool {
         self.labels.contains_key(&id)
     }
 
-    /// The item with this id.
+    /// Returns the item with this id.
     #[must_use]
     pub fn get(&self, id: K) -> Option<&T> {
         Some(&*self.entries.get(self.position(id)?)?.item)
     }
 
-    /// All items with their ids, first to last.
+    /// Returns all items with their ids, first to last.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = (K, &T)> + ExactSizeIterator {
         self.entries.iter().map(|entry| (entry.id, &*entry.item))
     }
 
-    /// The item at a position, counted from 0, with its id.
+    /// Returns the item at a position, counted from 0, with its id.
     #[must_use]
     pub fn at(&self, at: usize) -> Option<(K, &T)> {
         self.entries.get(at).map(|entry| (entry.id, &*entry.item))
     }
 
-    /// The value that `compute` derives from the list. It is computed once, and all copies keep it
-    /// until they change.
+    /// Returns the value that `compute` derives from the list. It is computed once, and all copies
+    /// keep it until they change.
     pub(super) fn derived(&self, compute: impl FnOnce(&Self) -> D) -> &D {
         get_or_compute(&self.derived, || compute(self))
     }
 
-    /// All ids, first to last.
+    /// Returns all ids, first to last.
     pub fn ids(&self) -> impl DoubleEndedIterator<Item = K> + ExactSizeIterator {
         self.entries.iter().map(|entry| entry.id)
     }
 
-    /// The id of the first item.
+    /// Returns the id of the first item.
     #[must_use]
     pub fn first(&self) -> Option<K> {
         self.id_at(0)
     }
 
-    /// The id at a position, counted from 0.
+    /// Returns the id at a position, counted from 0.
     #[must_use]
     pub fn id_at(&self, at: usize) -> Option<K> {
         self.entries.get(at).map(|entry| entry.id)
     }
 
-    /// The id after `id`, wrapping at the end; the first if `id` is not in the list.
+    /// Returns the id after `id`, wrapping at the end; the first if `id` is not in the list.
     #[must_use]
     pub fn after(&self, id: Option<K>) -> Option<K> {
         let next = id.and_then(|id| self.position(id)).map_or(0, |at| at + 1);
         self.id_at(next).or_else(|| self.first())
     }
 
-    /// The first id that is not in `before`. Nodes that both lists share are skipped.
+    /// Returns the first id that is not in `before`. Nodes that both lists share are skipped.
     #[must_use]
     pub fn first_since(&self, before: &Self) -> Option<K> {
         let new = before.labels.diff(&self.labels).filter_map(|difference| match difference {
@@ -175,7 +175,8 @@ impl<K: Copy + Ord, T, D> List<K, T, D> {
         self.entries.insert(at, Entry { label, id, item: Arc::new(item) });
     }
 
-    /// A label between those of the previous item and the item at `at`; `None` if all are taken.
+    /// Returns a free label between the previous item and the item at `at`; `None` if all are
+    /// taken.
     fn free_label(&self, at: usize) -> Option<i64> {
         let label = |at: usize| self.entries.get(at).map(|entry| entry.label);
         match (at.checked_sub(1).and_then(label), label(at)) {
@@ -277,7 +278,7 @@ mod tests {
         assert!(expected.iter().enumerate().all(|(at, id)| list.position(*id) == Some(at)));
     }
 
-    /// A change of a list: its position and its kind.
+    /// Generates a change of a list: its position and its kind.
     fn change() -> impl Strategy<Value = (usize, u8)> {
         (0_usize..40, 0_u8..4)
     }

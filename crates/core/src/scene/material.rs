@@ -25,9 +25,9 @@ fn is_dark(emission: &[f64; 3]) -> bool {
 /// A material with its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preset {
-    /// Its name in the picker and on the command line.
+    /// The name in the picker and on the command line.
     pub name: &'static str,
-    /// Its coefficients.
+    /// The coefficients.
     pub material: Material,
 }
 
@@ -57,12 +57,12 @@ impl PresetId {
     /// See [`Self::EMERALD`].
     pub const SILVER: Self = Self(9);
 
-    /// All rows, in order.
+    /// Returns all rows, in order.
     pub fn all() -> impl ExactSizeIterator<Item = Self> {
         (0..PRESETS.len()).map(Self)
     }
 
-    /// The row with this name. Case, blanks, `-` and `_` are ignored.
+    /// Returns the row with this name. Case, blanks, `-` and `_` are ignored.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let plain = |text: &str| -> String {
@@ -72,7 +72,7 @@ impl PresetId {
         PRESETS.iter().position(|preset| plain(preset.name) == plain(name)).map(Self)
     }
 
-    /// The row.
+    /// Returns the row.
     #[must_use]
     pub const fn get(self) -> &'static Preset {
         &PRESETS[self.0]

@@ -136,7 +136,7 @@ impl Scene {
         }
     }
 
-    /// Whether the scene has an item with this id.
+    /// Returns whether the scene has an item with this id.
     #[must_use]
     pub fn contains(&self, id: ItemId) -> bool {
         match id {
@@ -146,7 +146,7 @@ impl Scene {
         }
     }
 
-    /// The name of an item.
+    /// Returns the name of an item.
     #[must_use]
     pub fn name(&self, id: ItemId) -> Option<&str> {
         Some(match id {
@@ -156,15 +156,15 @@ impl Scene {
         })
     }
 
-    /// The lowest free slot.
+    /// Returns the lowest free slot.
     #[must_use]
     pub fn free_slot(&self) -> u32 {
         let taken: BTreeSet<u32> = self.lights.iter().map(|(_, light)| light.slot).collect();
         (0..).find(|slot| !taken.contains(slot)).unwrap_or(0)
     }
 
-    /// The first view of a scene. It selects the first object, camera and light; suns precede other
-    /// lights.
+    /// Returns the first view of a scene. It selects the first object, camera and light; suns
+    /// precede other lights.
     #[must_use]
     pub fn first_view(&self) -> View {
         let is_sun = |light: &Light| matches!(light.kind.anchor(), Anchor::Direction(_));
@@ -174,15 +174,15 @@ impl Scene {
         View::new(self.objects.first(), camera, light)
     }
 
-    /// The selected camera, or the first camera if the selected one is gone.
+    /// Returns the selected camera, or the first camera if the selected one is gone.
     #[must_use]
     pub fn selected_camera(&self, view: &View) -> &Camera {
         let first = || self.cameras.first().and_then(|id| self.cameras.get(id));
         self.cameras.get(view.camera).or_else(first).expect("a scene always has a camera")
     }
 
-    /// The frame of an object as an observer, and of its spot. The axes come from the Z and Y
-    /// columns by Gram-Schmidt, so the frame is never mirrored or scaled.
+    /// Returns the frame of an object as an observer, and of its spot. The axes come from the Z and
+    /// Y columns by Gram-Schmidt, so the frame is never mirrored or scaled.
     #[must_use]
     pub fn frame_of_object(object: &Object, time: f64) -> DMat4 {
         let m = object.world_from_object(time);
@@ -191,7 +191,7 @@ impl Scene {
         math::placed(axes, m.w_axis.truncate())
     }
 
-    /// The current position and direction of a spot; `None` if its owner is gone.
+    /// Returns the current position and direction of a spot; `None` if its owner is gone.
     #[must_use]
     pub fn aim(&self, view: &View, owner: &SpotOwner) -> Option<Aim> {
         let object = |id| self.objects.get(id).map(|o| Self::frame_of_object(o, view.time));
@@ -206,7 +206,7 @@ impl Scene {
         Some(Aim { position: frame.w_axis.truncate(), direction: -frame.z_axis.truncate() })
     }
 
-    /// The current position and direction of a light; `None` if its owner is gone.
+    /// Returns the current position and direction of a light; `None` if its owner is gone.
     #[must_use]
     pub fn light_origin(&self, view: &View, kind: &LightKind) -> Option<LightOrigin> {
         let circled = |at: DVec3| kind.orbit().map_or(at, |orbit| orbit.at(at, view.time));
@@ -222,8 +222,8 @@ impl Scene {
         Some(LightOrigin { position, direction })
     }
 
-    /// The matrix `world_from_view` of the observer: the frame of the selected object if the view
-    /// asks for it and an object is selected, else the frame of the selected camera.
+    /// Returns the matrix `world_from_view` of the observer: the frame of the selected object if
+    /// the view asks for it and an object is selected, else the frame of the selected camera.
     #[must_use]
     pub fn observer_frame(&self, view: &View) -> DMat4 {
         let object = match view.observer {

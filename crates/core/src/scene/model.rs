@@ -20,9 +20,9 @@ pub struct Model {
     pub companions: Vec<PathBuf>,
     /// The options with which the file was read.
     pub options: LoadOptions,
-    /// Its shape.
+    /// The shape.
     pub mesh: Mesh,
-    /// Its materials; the mesh's parts refer to them by index.
+    /// The materials; the mesh's parts refer to them by index.
     pub materials: Vec<FileMaterial>,
     /// The colour of edges, from the file's line `c r g b` or `# color r g b`.
     pub edge_color: Option<Color>,
@@ -45,7 +45,7 @@ impl Model {
         }
     }
 
-    /// Whether the model is a box that replaces a missing file.
+    /// Returns whether the model is a box that replaces a missing file.
     #[must_use]
     pub const fn is_placeholder(&self) -> bool {
         self.mesh.is_placeholder()
@@ -65,7 +65,8 @@ impl Model {
         }
     }
 
-    /// Whether both come from one reading of a file, and so differ at most in their crease angles.
+    /// Returns whether both come from one reading of a file, and so differ at most in their crease
+    /// angles.
     #[must_use]
     pub fn shares_file_with(&self, other: &Self) -> bool {
         self.mesh.shares_shape_with(&other.mesh)
@@ -128,7 +129,7 @@ impl UpAxis {
     pub const ALL: [Self; 6] =
         [Self::X, Self::Y, Self::Z, Self::MinusX, Self::MinusY, Self::MinusZ];
 
-    /// The axis as a word: "z", "-z".
+    /// Returns the axis as a word: "z", "-z".
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -167,7 +168,7 @@ impl Scale {
         (factor.is_finite() && factor > 0.0).then_some(Self(factor))
     }
 
-    /// The factor.
+    /// Returns the factor.
     #[must_use]
     pub const fn get(self) -> f64 {
         self.0
@@ -209,9 +210,9 @@ pub enum Winding {
 /// A material of an MTL file, with invalid values replaced.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileMaterial {
-    /// Its name, from `newmtl`.
+    /// The name, from `newmtl`.
     pub name: String,
-    /// Its coefficients.
+    /// The coefficients.
     pub material: Material,
     /// The opacity `d`: the fraction of the background that the surface covers, from 0 to 1.
     pub opacity: f64,

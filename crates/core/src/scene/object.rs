@@ -15,11 +15,11 @@ use crate::base::{Shared, color::Color};
 /// A model placed in the scene, with the appearance of its surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// Its name in the outline.
+    /// The name in the outline.
     pub name: String,
     /// Whether the object is drawn.
     pub visible: bool,
-    /// Its shape.
+    /// The shape.
     pub model: Shared<Model>,
     /// The indices of the model's parts that are not drawn.
     pub hidden_parts: BTreeSet<u32>,
@@ -89,13 +89,13 @@ impl Default for Spin {
 }
 
 impl Spin {
-    /// Whether the object turns about any axis.
+    /// Returns whether the object turns about any axis.
     #[must_use]
     pub fn is_on(&self) -> bool {
         self.axes.contains(&true)
     }
 
-    /// The rotation at `time`, in seconds of the scene's clock.
+    /// Returns the rotation at `time`, in seconds of the scene's clock.
     #[must_use]
     pub fn at(&self, time: f64) -> DMat3 {
         // Whole turns are dropped, since a small angle keeps more digits.
@@ -132,7 +132,7 @@ impl Object {
         }
     }
 
-    /// Whether both sides of the object's faces are drawn and lit.
+    /// Returns whether both sides of the object's faces are drawn and lit.
     #[must_use]
     pub fn is_two_sided(&self) -> bool {
         match self.sides {
@@ -142,34 +142,34 @@ impl Object {
         }
     }
 
-    /// The matrix `world_from_object` at `time`, in seconds of the scene's clock.
+    /// Returns the matrix `world_from_object` at `time`, in seconds of the scene's clock.
     #[must_use]
     pub fn world_from_object(&self, time: f64) -> DMat4 {
         let placement = *self.placement.now();
         if self.spin.is_on() { placement * DMat4::from_mat3(self.spin.at(time)) } else { placement }
     }
 
-    /// The matrix `world_from_mesh` at `time`. It places the positions of the mesh, which are
-    /// relative to [`Mesh::offset`](super::Mesh::offset).
+    /// Returns the matrix `world_from_mesh` at `time`. It places the positions of the mesh, which
+    /// are relative to [`Mesh::offset`](super::Mesh::offset).
     #[must_use]
     pub fn world_from_mesh(&self, time: f64) -> DMat4 {
         self.world_from_object(time) * self.model.mesh.object_from_mesh()
     }
 
-    /// The world positions of the vertices that a face uses.
+    /// Returns the world positions of the vertices that a face uses.
     pub fn placed_vertices(&self, time: f64) -> impl Iterator<Item = DVec3> {
         let world_from_mesh = self.world_from_mesh(time);
         self.model.mesh.used_positions().map(move |p| world_from_mesh.transform_point3(p))
     }
 
-    /// The mean of the object's vertices in the world.
+    /// Returns the mean of the object's vertices in the world.
     #[must_use]
     pub fn centre(&self, time: f64) -> DVec3 {
         self.world_from_mesh(time).transform_point3(self.model.mesh.mean())
     }
 
-    /// The centre and radius of a bounding sphere in the world. The centre is the middle of the
-    /// model's box, and the sphere passes through the farthest vertex. `None` without vertices.
+    /// Returns the centre and radius of a bounding sphere in the world. The centre is the middle of
+    /// the model's box, and the sphere passes through the farthest vertex. `None` without vertices.
     #[must_use]
     pub fn bounding_sphere(&self, time: f64) -> Option<(DVec3, f64)> {
         let middle = self.model.mesh.bounds()?.centre();
@@ -178,8 +178,8 @@ impl Object {
         Some((centre, squares.fold(0.0, f64::max).sqrt()))
     }
 
-    /// The largest side of the object's box along the object's axes, in world units. Steps "by
-    /// size" depend on it.
+    /// Returns the largest side of the object's box along the object's axes, in world units. Steps
+    /// "by size" depend on it.
     #[must_use]
     pub fn largest_extent(&self) -> f64 {
         let Some(bounds) = self.model.mesh.bounds() else { return 0.0 };
@@ -189,21 +189,21 @@ impl Object {
         sides.into_iter().fold(0.0, f64::max)
     }
 
-    /// Whether a part of the model is drawn. A placeholder is drawn as a whole, since the hidden
-    /// parts belong to the missing file.
+    /// Returns whether a part of the model is drawn. A placeholder is drawn as a whole, since the
+    /// hidden parts belong to the missing file.
     #[must_use]
     pub fn shows_part(&self, part: u32) -> bool {
         self.model.is_placeholder() || !self.hidden_parts.contains(&part)
     }
 
-    /// The coefficients, opacity and texture of one of the model's parts.
+    /// Returns the coefficients, opacity and texture of one of the model's parts.
     #[must_use]
     pub fn part_look(&self, part: u32) -> PartLook<'_> {
         let named = self.model.mesh.parts().get(part as usize).and_then(|part| part.material);
         self.material_look(named.and_then(|material| self.model.materials.get(material as usize)))
     }
 
-    /// The coefficients, opacity and texture of a part with this material of the model.
+    /// Returns the coefficients, opacity and texture of a part with this material of the model.
     #[must_use]
     pub fn material_look<'a>(&'a self, file: Option<&'a FileMaterial>) -> PartLook<'a> {
         let material = match &self.material {
@@ -233,7 +233,7 @@ impl Object {
 /// The appearance of one part of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartLook<'a> {
-    /// Its coefficients.
+    /// The coefficients.
     pub material: super::Material,
     /// The object's opacity, multiplied by `d` of the file's material if that material is used.
     pub opacity: f64,
@@ -248,8 +248,9 @@ pub struct PartLook<'a> {
 }
 
 impl<'a> PartLook<'a> {
-    /// The map of this kind to show, if any. Like the file's texture, the file's maps apply to any
-    /// chosen material. The exception is `map_d`, which goes with the `d` of the file's material.
+    /// Returns the map of this kind to show, if any. Like the file's texture, the file's maps apply
+    /// to any chosen material. The exception is `map_d`, which goes with the `d` of the file's
+    /// material.
     #[must_use]
     pub fn map(&self, kind: MapKind) -> Option<&'a SurfaceMap> {
         self.maps?.get(&kind).filter(|_| kind != MapKind::Opacity || self.of_file)

@@ -38,8 +38,8 @@ impl Shape {
     pub const ALL: [Self; 6] =
         [Self::Ground, Self::Plane, Self::Cube, Self::Sphere, Self::Cylinder, Self::Torus];
 
-    /// Whether the shape is a ground for other objects. A ground touches the lowest object, and is
-    /// at least as large as the scene.
+    /// Returns whether the shape is a ground for other objects. A ground touches the lowest object,
+    /// and is at least as large as the scene.
     #[must_use]
     pub const fn is_ground(self) -> bool {
         match self {
@@ -48,7 +48,7 @@ impl Shape {
         }
     }
 
-    /// Its name, also in scene files.
+    /// Returns the name, which scene files use, too.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -61,13 +61,13 @@ impl Shape {
         }
     }
 
-    /// The shape with this name.
+    /// Returns the shape with this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|shape| shape.name() == name)
     }
 
-    /// The model, shared by all objects of this shape.
+    /// Returns the model, shared by all objects of this shape.
     #[must_use]
     pub fn model(self) -> Shared<Model> {
         static MODELS: [OnceLock<Shared<Model>>; 6] = [const { OnceLock::new() }; 6];
@@ -109,7 +109,7 @@ mod tests {
     use super::*;
     use crate::scene::{dvec3, newell};
 
-    /// The position and normal of each corner, polygon by polygon.
+    /// Returns the position and normal of each corner, polygon by polygon.
     fn polygons(mesh: &Mesh) -> Vec<Vec<(DVec3, DVec3)>> {
         let count = u32::try_from(mesh.polygon_count()).unwrap();
         let corners = |i: u32| {
@@ -126,7 +126,7 @@ mod tests {
         polygon.iter().map(|(p, _)| *p)
     }
 
-    /// The volume, by the divergence theorem over fans, and the surface area.
+    /// Returns the volume, by the divergence theorem over fans, and the surface area.
     fn volume_and_area(mesh: &Mesh) -> (f64, f64) {
         let mut sums = (0.0, 0.0);
         for polygon in polygons(mesh) {

@@ -1,4 +1,4 @@
-//! The rules by which edges of a mesh are smooth.
+//! The rules for smooth edges of a mesh.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ impl Crease {
         (0.0..=180.0).contains(&degrees).then_some(Self(degrees))
     }
 
-    /// The angle in degrees.
+    /// Returns the angle in degrees.
     #[must_use]
     pub const fn get(self) -> f64 {
         self.0
@@ -45,7 +45,7 @@ impl TryFrom<f64> for Crease {
     }
 }
 
-/// The rule by which polygons share computed normals.
+/// The rule for sharing computed normals between polygons.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Smoothing {
     /// Polygons share normals if edges no sharper than this angle connect them.

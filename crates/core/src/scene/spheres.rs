@@ -20,7 +20,7 @@ pub struct Spheres {
 const ROUNDING: f64 = 1.0 + 1e-9;
 
 impl Objects {
-    /// A bounding sphere for each object. The result is kept until an object changes.
+    /// Returns a bounding sphere for each object. The result is kept until an object changes.
     #[must_use]
     pub fn spheres(&self) -> &Spheres {
         self.derived(Spheres::of)

@@ -37,7 +37,7 @@ impl MapKind {
         Self::Normal,
     ];
 
-    /// The statement of the map in an MTL file.
+    /// Returns the statement of the map in an MTL file.
     #[must_use]
     pub const fn statement(self) -> &'static str {
         match self {
@@ -51,7 +51,7 @@ impl MapKind {
         }
     }
 
-    /// The name of the map in the interface.
+    /// Returns the name of the map in the interface.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {

@@ -12,7 +12,7 @@ use crate::base::once::get_or_compute;
 /// A picture and its mapping onto a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Its file.
+    /// The file.
     pub source: PathBuf,
     /// The texels, in rows from the top; textures may share them. The uv (0, 0) is the lower left
     /// corner.
@@ -42,7 +42,7 @@ impl Texture {
         Self { source, picture: placeholder().clone(), wrap, offset, scale }
     }
 
-    /// Whether the texture replaces a missing file.
+    /// Returns whether the texture replaces a missing file.
     #[must_use]
     pub fn is_placeholder(&self) -> bool {
         Shared::same(&self.picture, placeholder())

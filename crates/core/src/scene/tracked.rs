@@ -18,18 +18,19 @@ impl<T> Tracked<T> {
         Self { now, before: None }
     }
 
-    /// The current value.
+    /// Returns the current value.
     pub const fn now(&self) -> &T {
         &self.now
     }
 
-    /// The number of earlier values.
+    /// Returns the number of earlier values.
     #[must_use]
     pub fn depth(&self) -> usize {
         self.earlier().count()
     }
 
-    /// Whether both have the same earlier values, so one comes from the other without a push.
+    /// Returns whether both have the same earlier values, so one comes from the other without a
+    /// push.
     #[must_use]
     pub fn shares_stack_with(&self, other: &Self) -> bool {
         match (&self.before, &other.before) {
@@ -39,7 +40,7 @@ impl<T> Tracked<T> {
         }
     }
 
-    /// The earlier values, the latest first.
+    /// Returns the earlier values, the latest first.
     pub fn earlier(&self) -> impl Iterator<Item = &T> {
         std::iter::successors(self.before.as_deref(), |placed| placed.before.as_deref())
             .map(|placed| &placed.now)
@@ -59,7 +60,7 @@ impl<T: Clone> Tracked<T> {
         Self { now, before: self.before.clone() }
     }
 
-    /// The value before the last transformation; `None` before the first.
+    /// Returns the value before the last transformation; `None` before the first.
     #[must_use]
     pub fn undone(&self) -> Option<Self> {
         self.before.as_deref().cloned()

@@ -79,13 +79,13 @@ impl Triangulator {
     }
 }
 
-/// Twice the area of a triangle, positive if it runs counter-clockwise.
+/// Returns twice the area of a triangle, positive if it runs counter-clockwise.
 fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Whether all triangles of the fan from the first corner have the right orientation. Seen from
-/// that corner, a simple polygon then turns one way only, and by less than a full turn.
+/// Returns whether all triangles of the fan from the first corner have the right orientation. Seen
+/// from that corner, a simple polygon then turns one way only, and by less than a full turn.
 fn fan_is_right(flat: &[DVec2]) -> bool {
     let tolerance = tolerance(flat);
     flat[1..].windows(2).all(|side| {
@@ -94,7 +94,8 @@ fn fan_is_right(flat: &[DVec2]) -> bool {
     }) && turns_once(flat)
 }
 
-/// Whether the directions from the first corner span less than a full turn, unlike those of a star.
+/// Returns whether the directions from the first corner span less than a full turn, unlike those of
+/// a star.
 fn turns_once(flat: &[DVec2]) -> bool {
     // In less than a full turn, directions enter the half-plane behind the first side once and stay
     // there.
@@ -107,7 +108,7 @@ fn number(corners: usize) -> u32 {
     u32::try_from(corners).expect("a mesh numbers its corners with 32 bits")
 }
 
-/// The error bound of a cross product with a vector of length 1.
+/// Returns the error bound of a cross product with a vector of length 1.
 fn tolerance(flat: &[DVec2]) -> f64 {
     let extent = flat.iter().fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
     8.0 * f64::EPSILON * extent
@@ -256,7 +257,7 @@ impl Ring {
         }
     }
 
-    /// The positions of a corner and its neighbours, in order.
+    /// Returns the positions of a corner and its neighbours, in order.
     fn triangle(&self, corner: u32) -> [DVec2; 3] {
         let at = |i: u32| self.flat[i as usize];
         [at(self.last[corner as usize]), at(corner), at(self.next[corner as usize])]
@@ -268,12 +269,12 @@ impl Ring {
         }
     }
 
-    /// Whether the search for ears has reached its limit.
+    /// Returns whether the search for ears has reached its limit.
     const fn is_spent(&self) -> bool {
         self.looked_at >= self.budget
     }
 
-    /// The next ear among the candidates.
+    /// Returns the next ear among the candidates.
     fn ear(&mut self) -> Option<u32> {
         while !self.is_spent() {
             let corner = self.candidates.pop_front()?;
@@ -319,7 +320,7 @@ impl Ring {
             .or(left.first().copied())
     }
 
-    /// Whether the ear at `corner` is free of other remaining corners.
+    /// Returns whether the ear at `corner` is free of other remaining corners.
     fn is_free(&mut self, corner: u32, how: Blocked) -> bool {
         let own = [self.last[corner as usize], corner, self.next[corner as usize]];
         let ear = self.triangle(corner);
@@ -338,7 +339,7 @@ impl Ring {
         !blocked
     }
 
-    /// A box that contains every corner that may block an ear, including rounding errors.
+    /// Returns a box that contains every corner that may block an ear, including rounding errors.
     ///
     /// Each side of the ear moves outwards by at most error / length, so the ear grows about the
     /// centre of its inscribed circle by that over the circle's radius.
@@ -353,7 +354,7 @@ impl Ring {
         [a.min(b).min(c) - grown, a.max(b).max(c) + grown]
     }
 
-    /// The error bound of the area of a triangle with a side of the ear.
+    /// Returns the error bound of the area of a triangle with a side of the ear.
     fn error(&self, [a, b, c]: [DVec2; 3]) -> f64 {
         self.tolerance * ((b - a).abs() + (c - b).abs()).max_element()
     }

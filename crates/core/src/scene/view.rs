@@ -20,7 +20,7 @@ pub struct View {
     pub light: Option<LightId>,
     /// The transformation that the keys x, y and z apply.
     pub transformation: Transformation,
-    /// The frame in which objects are transformed.
+    /// The frame for transforming objects.
     pub frame: Frame,
     /// The sizes of steps.
     pub steps: Steps,
@@ -32,7 +32,7 @@ pub struct View {
     pub fill: Fill,
     /// Whether edges are drawn over filled polygons.
     pub edges_over_fill: bool,
-    /// The mode in which the selected object is drawn polygon by polygon, if it is on.
+    /// Polygon mode, which draws the selected object polygon by polygon, if it is on.
     pub polygons: Option<PolygonMode>,
     /// Whether earlier polygons stay drawn in that mode.
     pub polygons_stay: bool,
@@ -62,13 +62,13 @@ impl View {
     /// The largest exposure in both directions.
     pub const MOST_EXPOSURE: f64 = 10.0;
 
-    /// The factor that the exposure gives to all light.
+    /// Returns the factor that the exposure gives to all light.
     #[must_use]
     pub fn light_factor(&self) -> f64 {
         self.exposure.exp2()
     }
 
-    /// The first view of a scene.
+    /// Returns the first view of a scene.
     #[must_use]
     pub const fn new(object: Option<ObjectId>, camera: CameraId, light: Option<LightId>) -> Self {
         Self {
@@ -121,7 +121,7 @@ pub enum Transformation {
     Scaling,
 }
 
-/// The frame in which objects are transformed.
+/// The frame for transforming objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Frame {
     /// The object's frame: M := M T.
@@ -202,7 +202,7 @@ pub enum NormalLength {
     BySize,
 }
 
-/// The mode in which the selected object is drawn polygon by polygon.
+/// Polygon mode, which draws the selected object polygon by polygon.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PolygonMode {
     /// The selected polygon.

@@ -78,12 +78,12 @@ impl Around {
         })
     }
 
-    /// The corners around a vertex, ascending.
+    /// Returns the corners around a vertex, ascending.
     pub(crate) fn corners(&self, vertex: usize) -> &[u32] {
         &self.corners[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
     }
 
-    /// The polygon of a corner.
+    /// Returns the polygon of a corner.
     #[inline]
     pub(crate) fn polygon(&self, corner: u32) -> usize {
         let polygon = match &self.polygons {

@@ -211,7 +211,7 @@ mod tests {
             self.0.polygon_parts.push(0);
         }
 
-        /// The numbers of bodies, and of bodies inside out.
+        /// Returns the numbers of bodies, and of bodies inside out.
         fn bodies(mut self) -> [usize; 2] {
             self.0.parts = vec![Part { name: "it".to_owned(), material: None }];
             let ClosedBodies { all, inside_out } = Mesh::new(self.0).unwrap().closed_bodies();

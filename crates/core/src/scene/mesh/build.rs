@@ -105,7 +105,7 @@ impl Mesh {
         }
     }
 
-    /// Whether `other` is the same mesh up to the crease angle; see [`Self::with_crease`].
+    /// Returns whether `other` is the same mesh up to the crease angle; see [`Self::with_crease`].
     #[must_use]
     pub fn shares_shape_with(&self, other: &Self) -> bool {
         Shared::same(&self.shape, &other.shape)
@@ -121,7 +121,7 @@ fn unused(vertices: usize, corners: &[u32]) -> Vec<u32> {
     (0..).zip(is_used).filter(|(_, is_used)| !is_used).map(|(vertex, _)| vertex).collect()
 }
 
-/// The starts of consecutive lists with these lengths, and the end of the last list.
+/// Returns the starts of consecutive lists with these lengths, and the end of the last list.
 fn running_sum(counts: &[u32]) -> Vec<u32> {
     let mut sums = Vec::with_capacity(counts.len() + 1);
     let mut sum = 0;

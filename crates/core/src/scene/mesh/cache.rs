@@ -73,7 +73,7 @@ pub(crate) struct FoundOfShape {
 }
 
 impl Mesh {
-    /// The corners of all polygons, in the order of the polygons.
+    /// Returns the corners of all polygons, in the order of the polygons.
     #[must_use]
     pub fn corners(&self) -> &[Corner] {
         get_or_compute::<Vec<_>>(&self.found.corners, || {
@@ -88,13 +88,13 @@ impl Mesh {
         })
     }
 
-    /// The triangles of all polygons, in the order of the polygons.
+    /// Returns the triangles of all polygons, in the order of the polygons.
     #[must_use]
     pub fn triangles(&self) -> &[Triangle] {
         get_or_compute::<Vec<_>>(&self.shape.found.triangles, || triangles(&self.outlines()))
     }
 
-    /// The polygon that a triangle belongs to.
+    /// Returns the polygon that a triangle belongs to.
     #[inline(always)]
     #[must_use]
     pub fn polygon_of(&self, triangle: u32) -> u32 {
@@ -121,24 +121,24 @@ impl Mesh {
         }
     }
 
-    /// Whether each polygon is one triangle.
+    /// Returns whether each polygon is one triangle.
     #[inline(always)]
     const fn has_triangles_only(&self) -> bool {
         self.triangles_only
     }
 
-    /// The number of triangles.
+    /// Returns the number of triangles.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.shape.corners.len() - 2 * self.polygon_count()
     }
 
-    /// The position of a corner, by its index in [`Self::corners`].
+    /// Returns the position of a corner, by its index in [`Self::corners`].
     pub fn corner_position(&self, corner: usize) -> glam::DVec3 {
         super::dvec3(self.shape.positions[self.shape.corners[corner] as usize])
     }
 
-    /// The corners of a triangle, as indices into [`Self::corners`].
+    /// Returns the corners of a triangle, as indices into [`Self::corners`].
     #[inline(always)]
     pub fn triangle(&self, number: usize) -> [usize; 3] {
         if self.has_triangles_only() {
@@ -147,13 +147,13 @@ impl Mesh {
         each(self.triangles()[number].corners, |corner| corner as usize)
     }
 
-    /// The vertex of a corner.
+    /// Returns the vertex of a corner.
     #[inline(always)]
     pub(super) fn vertex_of(&self, corner: usize) -> usize {
         self.shape.corners[corner] as usize
     }
 
-    /// The uv coordinates of a triangle's corners; `None` if a corner lacks them.
+    /// Returns the uv coordinates of a triangle's corners; `None` if a corner lacks them.
     #[inline(always)]
     #[must_use]
     pub fn triangle_uvs(&self, number: u32) -> Option<[[f32; 2]; 3]> {
@@ -167,7 +167,7 @@ impl Mesh {
         prefetch_index(&self.shape.corner_uvs, first);
     }
 
-    /// The indices of the uv coordinates of a triangle's corners, for [`Self::uvs_at`].
+    /// Returns the indices of the uv coordinates of a triangle's corners, for [`Self::uvs_at`].
     #[inline(always)]
     pub fn uv_places(&self, number: u32) -> Option<[u32; 3]> {
         let [a, b, c] = self.triangle(number as usize);
@@ -181,14 +181,14 @@ impl Mesh {
         places.iter().for_each(|place| prefetch_index(&self.shape.uvs, *place as usize));
     }
 
-    /// The uv coordinates at three indices; `None` if a corner lacks them.
+    /// Returns the uv coordinates at three indices; `None` if a corner lacks them.
     #[inline(always)]
     pub fn uvs_at(&self, [a, b, c]: [u32; 3]) -> Option<[[f32; 2]; 3]> {
         let of = |place: u32| self.shape.uvs.get(place as usize).copied();
         Some([of(a)?, of(b)?, of(c)?])
     }
 
-    /// The colours of a triangle's corners. The mesh must have colours.
+    /// Returns the colours of a triangle's corners. The mesh must have colours.
     #[inline(always)]
     #[must_use]
     pub fn triangle_colors(&self, number: u32) -> [[f32; 3]; 3] {
@@ -197,7 +197,8 @@ impl Mesh {
         })
     }
 
-    /// The unit normal of each polygon, by Newell's method; (0, 0, 1) for a polygon without area.
+    /// Returns the unit normal of each polygon, by Newell's method; (0, 0, 1) for a polygon without
+    /// area.
     #[must_use]
     pub fn polygon_normals(&self) -> &[[f32; 3]] {
         get_or_compute::<Vec<_>>(&self.shape.found.normals, || {
@@ -207,7 +208,7 @@ impl Mesh {
         })
     }
 
-    /// The data for flat shading of each polygon.
+    /// Returns the data for flat shading of each polygon.
     #[must_use]
     pub fn facets(&self) -> &[Facet] {
         get_or_compute::<Vec<_>>(&self.shape.found.facets, || {
@@ -220,14 +221,14 @@ impl Mesh {
         })
     }
 
-    /// Whether the polygons form closed surfaces: every edge is traversed as often in one direction
-    /// as in the other.
+    /// Returns whether the polygons form closed surfaces: every edge is traversed as often in one
+    /// direction as in the other.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         *get_or_compute(&self.shape.found.closed, || is_closed(&self.outlines()))
     }
 
-    /// The triangles and vertices in the order in which they are drawn fastest.
+    /// Returns the triangles and vertices in their fastest draw order.
     #[must_use]
     pub fn draw_order(&self) -> &DrawOrder {
         get_or_compute(&self.found.order, || DrawOrder::along_curve(self))
@@ -239,19 +240,19 @@ impl Mesh {
         get_or_compute(&self.found.order, || DrawOrder::as_filed(self));
     }
 
-    /// The edges in the order in which they are drawn fastest.
+    /// Returns the edges in their fastest draw order.
     #[must_use]
     pub fn edge_order(&self) -> &EdgeOrder {
         get_or_compute(&self.shape.found.edge_order, || EdgeOrder::new(self))
     }
 
-    /// The edges of the mesh: the sides of all polygons, each listed once.
+    /// Returns the edges of the mesh: the sides of all polygons, each listed once.
     #[must_use]
     pub fn edges(&self) -> &[Edge] {
         self.edge_table().edges()
     }
 
-    /// The polygons that have this edge as a side.
+    /// Returns the polygons that have this edge as a side.
     #[must_use]
     pub fn edge_polygons(&self, edge: &Edge) -> &[u32] {
         self.edge_table().polygons(edge)
@@ -261,20 +262,20 @@ impl Mesh {
         get_or_compute(&self.shape.found.edges, || Edges::of(self))
     }
 
-    /// The BVH of the triangles, for ray-triangle intersection.
+    /// Returns the BVH of the triangles, for ray-triangle intersection.
     #[must_use]
     pub fn ray_tree(&self) -> &RayTree {
         get_or_compute(&self.shape.found.ray_tree, || RayTree::new(self))
     }
 
-    /// The outlines of all polygons.
+    /// Returns the outlines of all polygons.
     pub(crate) fn outlines(&self) -> Outlines<'_> {
         self.shape.outlines()
     }
 }
 
 impl Shape {
-    /// The outlines of all polygons.
+    /// Returns the outlines of all polygons.
     pub(crate) fn outlines(&self) -> Outlines<'_> {
         Outlines { places: &self.positions, corners: &self.corners, starts: &self.starts }
     }

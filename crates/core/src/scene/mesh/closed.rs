@@ -18,9 +18,9 @@ use crate::scene::mesh::outlines::Outlines;
 /// The number of polygons that a thread takes at a time.
 const SHARE: usize = 4096;
 
-/// Whether the polygons form closed surfaces, each with one side outside. If the orientation of a
-/// polygon differs from its neighbour's, their edge is traversed twice in one direction, so the
-/// surface is open.
+/// Returns whether the polygons form closed surfaces, each with one side outside. If the
+/// orientation of a polygon differs from its neighbour's, their edge is traversed twice in one
+/// direction, so the surface is open.
 pub(crate) fn is_closed(outlines: &Outlines<'_>) -> bool {
     let keys: Vec<u64> = outlines.places.par_iter().map(|place| key(*place)).collect();
     let polygons = (0..outlines.starts.len() - 1).into_par_iter().with_min_len(SHARE);
@@ -28,7 +28,7 @@ pub(crate) fn is_closed(outlines: &Outlines<'_>) -> bool {
     sum.reduce(|| 0, u64::wrapping_add) == 0
 }
 
-/// The sum of the hashes of a polygon's sides.
+/// Returns the sum of the hashes of a polygon's sides.
 pub(super) fn boundary(vertices: &[u32], keys: &[u64]) -> u64 {
     let Some(mut from) = vertices.last().map(|last| keys[*last as usize]) else { return 0 };
     let mut sum = 0_u64;
@@ -52,7 +52,7 @@ pub(super) fn key([x, y, z]: [f32; 3]) -> u64 {
     mixed(mixed(bits(x) << 32 | bits(y)) ^ bits(z))
 }
 
-/// The mixing function of SplitMix64, a permutation of the 64-bit numbers: Steele, Lea and
+/// Applies the mixing function of SplitMix64, a permutation of the 64-bit numbers: Steele, Lea and
 /// Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014.
 const fn mixed(x: u64) -> u64 {
     let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);

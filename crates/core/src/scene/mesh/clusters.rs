@@ -18,7 +18,7 @@ pub struct DrawTriangle {
 }
 
 impl DrawTriangle {
-    /// The vertices and the number as a row of four integers.
+    /// Returns the vertices and the number as a row of four integers.
     #[inline(always)]
     #[must_use]
     pub const fn row(&self) -> [i32; 4] {

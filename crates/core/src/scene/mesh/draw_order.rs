@@ -13,7 +13,7 @@ use super::clusters::{Cluster, DrawTriangle, clusters};
 use crate::base::lists::sorted_by_keys;
 use crate::scene::{Bounds, Mesh, NONE, dvec3};
 
-/// The triangles and vertices of a mesh in the order in which they are drawn fastest.
+/// The triangles and vertices of a mesh in their fastest draw order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DrawOrder {
     /// The x coordinates of the vertices that triangles use.
@@ -60,7 +60,7 @@ pub enum NormalSource {
 }
 
 impl Points {
-    /// The points of a triangle with these vertices, in the draw order `order`.
+    /// Returns the points of a triangle with these vertices, in the draw order `order`.
     #[inline(always)]
     #[must_use]
     pub fn of(&self, order: &DrawOrder, number: u32, vertices: [u32; 3]) -> [u32; 3] {
@@ -147,7 +147,7 @@ impl DrawOrder {
         prefetch_index(&self.vertices_by_number, number as usize);
     }
 
-    /// The vertices of a triangle of the mesh, as indices into [`Self::x`].
+    /// Returns the vertices of a triangle of the mesh, as indices into [`Self::x`].
     #[inline(always)]
     #[must_use]
     pub fn vertices_of(&self, number: u32) -> [u32; 3] {
@@ -157,13 +157,13 @@ impl DrawOrder {
         }
     }
 
-    /// The index of a triangle of the mesh in [`Self::triangles`].
+    /// Returns the index of a triangle of the mesh in [`Self::triangles`].
     #[inline(always)]
     fn place(&self, number: u32) -> u32 {
         if self.places.is_empty() { number } else { self.places[number as usize] }
     }
 
-    /// The points with one kind of normals.
+    /// Returns the points with one kind of normals.
     #[must_use]
     pub const fn points(&self, source: NormalSource) -> &Points {
         match source {
@@ -197,7 +197,7 @@ impl DrawOrder {
         points
     }
 
-    /// The position of a vertex.
+    /// Returns the position of a vertex.
     #[inline(always)]
     #[must_use]
     pub fn position(&self, vertex: u32) -> [f64; 3] {
@@ -206,12 +206,12 @@ impl DrawOrder {
     }
 }
 
-/// The vertices of a triangle, by the mesh's numbers.
+/// Returns the vertices of a triangle, by the mesh's numbers.
 fn vertices(mesh: &Mesh, number: usize) -> [u32; 3] {
     mesh.triangle(number).map(|corner| mesh.shape.corners[corner])
 }
 
-/// The position of a triangle's centre on the Morton curve, with ten bits for each axis.
+/// Returns the position of a triangle's centre on the Morton curve, with ten bits for each axis.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -52,7 +52,7 @@ impl Edges {
         &self.edges
     }
 
-    /// The polygons that have this edge as a side.
+    /// Returns the polygons that have this edge as a side.
     pub(crate) fn polygons(&self, edge: &Edge) -> &[u32] {
         &self.polygons[edge.first as usize..(edge.first + edge.count) as usize]
     }

@@ -63,7 +63,7 @@ impl Limit {
         Self { cos2: cos * cos, sin2: sin * sin, slack }
     }
 
-    /// Whether the angle between two unit vectors is at most the crease angle:
+    /// Returns whether the angle between two unit vectors is at most the crease angle:
     ///
     ///   tan(angle / 2) = |a - b| / |a + b|
     ///
@@ -131,7 +131,7 @@ struct Fans {
 }
 
 impl Fans {
-    /// The first face of a face's fan.
+    /// Returns the first face of a face's fan.
     fn first(&mut self, mut face: u32) -> u32 {
         loop {
             let earlier = self.earlier[face as usize];
@@ -179,7 +179,7 @@ impl Sorter<'_> {
         block
     }
 
-    /// The normal of a polygon; `None` for one without area.
+    /// Returns the normal of a polygon; `None` for one without area.
     fn normal(&self, polygon: usize) -> Option<DVec3> {
         match &self.normals {
             Some(normals) => normals[polygon],
@@ -187,8 +187,9 @@ impl Sorter<'_> {
         }
     }
 
-    /// Whether a quick check shows that all faces around a vertex form one fan. Faces without area,
-    /// and faces that use the vertex twice, make the sum of the normals too short to pass.
+    /// Returns whether a quick check shows that all faces around a vertex form one fan. Faces
+    /// without area, and faces that use the vertex twice, make the sum of the normals too short to
+    /// pass.
     #[expect(clippy::cast_precision_loss, reason = "few faces")]
     fn is_one_fan(&self, corners: &[u32], sum: DVec3) -> bool {
         if corners.len() < 2 {
@@ -208,7 +209,7 @@ impl Sorter<'_> {
         }
     }
 
-    /// Whether at most `FEW` faces around a vertex are connected edge by edge.
+    /// Returns whether at most `FEW` faces around a vertex are connected edge by edge.
     fn is_connected(&self, corners: &[u32]) -> bool {
         let mut sides = [[NONE; 2]; FEW];
         for (sides, corner) in sides.iter_mut().zip(corners) {
@@ -231,7 +232,7 @@ impl Sorter<'_> {
         true
     }
 
-    /// The vertices before and after a corner of a polygon.
+    /// Returns the vertices before and after a corner of a polygon.
     #[inline]
     fn neighbours(&self, corner: u32) -> [u32; 2] {
         let own = self.around.polygon(corner);

@@ -64,7 +64,7 @@ pub struct MeshSource {
     pub parts: Vec<Part>,
     /// The file's names for each part; empty if the mesh is not from a file.
     pub part_names: Vec<PartNames>,
-    /// The rule by which polygons share computed normals.
+    /// The rule for sharing computed normals between polygons.
     pub smoothing: Smoothing,
 }
 
@@ -225,102 +225,102 @@ impl PartialEq for Mesh {
 }
 
 impl Mesh {
-    /// The origin of positions, bounds and mean in object space. It is 0 unless the model is far
-    /// from its origin.
+    /// Returns the origin of positions, bounds and mean in object space. It is 0 unless the model
+    /// is far from its origin.
     #[must_use]
     pub fn offset(&self) -> DVec3 {
         self.shape.offset
     }
 
-    /// The transformation from the space of the positions to object space.
+    /// Returns the transformation from the space of the positions to object space.
     #[must_use]
     pub fn object_from_mesh(&self) -> DMat4 {
         DMat4::from_translation(self.shape.offset)
     }
 
-    /// The positions of all vertices, relative to [`Self::offset`].
+    /// Returns the positions of all vertices, relative to [`Self::offset`].
     #[must_use]
     pub fn positions(&self) -> &[[f32; 3]] {
         &self.shape.positions
     }
 
-    /// The positions of the vertices that a face uses, relative to [`Self::offset`]; all positions
-    /// if there is no face.
+    /// Returns the positions of the vertices that a face uses, relative to [`Self::offset`]; all
+    /// positions if the mesh has no faces.
     pub fn used_positions(&self) -> impl Iterator<Item = DVec3> {
         used(&self.shape.positions, &self.shape.unused)
     }
 
-    /// The vertices that no face uses, ascending.
+    /// Returns the vertices that no face uses, ascending.
     #[must_use]
     pub fn unused_vertices(&self) -> &[u32] {
         &self.shape.unused
     }
 
-    /// Red, green and blue of each vertex; empty if the file has no colours.
+    /// Returns red, green and blue of each vertex; empty if the file has no colours.
     #[must_use]
     pub fn colors(&self) -> &[[f32; 3]] {
         &self.shape.colors
     }
 
-    /// Texture coordinates.
+    /// Returns all texture coordinates.
     #[must_use]
     pub fn uvs(&self) -> &[[f32; 2]] {
         &self.shape.uvs
     }
 
-    /// Vertices with their normals. The first points have the order of [`Self::positions`] and
-    /// computed normals, one for each vertex. Further computed normals follow, then the file's
-    /// normals.
+    /// Returns the vertices with their normals. The first points have the order of
+    /// [`Self::positions`] and computed normals, one for each vertex. Further computed normals
+    /// follow, then the file's normals.
     #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
-    /// The number of polygons.
+    /// Returns the number of polygons.
     #[must_use]
     pub fn polygon_count(&self) -> usize {
         self.shape.polygon_parts.len()
     }
 
-    /// The corners of one polygon.
+    /// Returns the corners of one polygon.
     #[must_use]
     pub fn polygon(&self, polygon: u32) -> &[Corner] {
         &self.corners()[self.corners_of(polygon)]
     }
 
-    /// The range of one polygon's corners in [`Self::corners`].
+    /// Returns the range of one polygon's corners in [`Self::corners`].
     #[must_use]
     pub fn corners_of(&self, polygon: u32) -> std::ops::Range<usize> {
         self.shape.starts[polygon as usize] as usize
             ..self.shape.starts[polygon as usize + 1] as usize
     }
 
-    /// Whether a corner of a polygon has texture coordinates.
+    /// Returns whether a corner of a polygon has texture coordinates.
     #[must_use]
     pub fn has_uvs(&self, polygon: u32) -> bool {
         let uvs = self.shape.corner_uvs.get(self.corners_of(polygon));
         uvs.is_some_and(|uvs| uvs.iter().any(|uv| *uv != NONE))
     }
 
-    /// The part that each polygon belongs to.
+    /// Returns the part that each polygon belongs to.
     #[must_use]
     pub fn polygon_parts(&self) -> &[u32] {
         &self.shape.polygon_parts
     }
 
-    /// The polygons without area, in ascending order; they have no normal.
+    /// Returns the polygons without area, in ascending order; they have no normal.
     #[must_use]
     pub fn without_area(&self) -> &[u32] {
         &self.shape.without_area
     }
 
-    /// The mean of a polygon's corners.
+    /// Returns the mean of a polygon's corners.
     #[must_use]
     pub fn polygon_centre(&self, polygon: u32) -> DVec3 {
         mean(self.outlines().of(polygon as usize))
     }
 
-    /// The range of one polygon's triangles in [`Self::triangles`].
+    /// Returns the range of one polygon's triangles in [`Self::triangles`].
     #[must_use]
     pub fn triangles_of(&self, polygon: u32) -> std::ops::Range<usize> {
         // Every earlier polygon has two triangles less than it has corners.
@@ -329,44 +329,44 @@ impl Mesh {
         corners.start - before..corners.end - before - 2
     }
 
-    /// The runs of the file's `o`, `g` and `usemtl`.
+    /// Returns the runs of the file's `o`, `g` and `usemtl`.
     #[must_use]
     pub fn parts(&self) -> &[Part] {
         &self.shape.parts
     }
 
-    /// The file's names for a part; all `None` if the mesh is not from a file.
+    /// Returns the file's names for a part; all `None` if the mesh is not from a file.
     #[must_use]
     pub fn part_names(&self, part: u32) -> &PartNames {
         const NAMELESS: &PartNames = &PartNames { object: None, group: None, material: None };
         self.shape.part_names.get(part as usize).unwrap_or(NAMELESS)
     }
 
-    /// Whether any polygon has normals of the file.
+    /// Returns whether any polygon has normals of the file.
     #[must_use]
     pub const fn has_file_normals(&self) -> bool {
         !self.corners.filed.is_empty()
     }
 
-    /// Whether every polygon has normals of the file.
+    /// Returns whether every polygon has normals of the file.
     #[must_use]
     pub const fn has_file_normals_only(&self) -> bool {
         self.has_file_normals() && self.corners.filed_only
     }
 
-    /// The rule by which polygons share computed normals.
+    /// Returns the rule for sharing computed normals between polygons.
     #[must_use]
     pub const fn smoothing(&self) -> &Smoothing {
         &self.smoothing
     }
 
-    /// The extent of [`Self::used_positions`]; `None` without vertices.
+    /// Returns the extent of [`Self::used_positions`]; `None` without vertices.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         self.shape.bounds
     }
 
-    /// The mean of [`Self::used_positions`], the target of orbit cameras.
+    /// Returns the mean of [`Self::used_positions`], the target of orbit cameras.
     #[must_use]
     pub fn mean(&self) -> DVec3 {
         self.shape.mean
@@ -386,7 +386,7 @@ fn used<'a>(positions: &'a [[f32; 3]], unused: &'a [u32]) -> impl Iterator<Item 
     (0..).zip(positions).filter(is_used).map(|(_, p)| dvec3(*p))
 }
 
-/// The normal of a polygon, with twice its area as length:
+/// Returns the normal of a polygon, with twice its area as length:
 ///
 ///   n = sum over sides p, q of (p - o) x (q - o),   o the first corner
 ///
@@ -425,7 +425,8 @@ mod tests {
         SourceCorner { position, uv: NONE, normal: NONE }
     }
 
-    /// A roof: two squares that meet at a right angle along the side from vertex 0 to vertex 1.
+    /// Builds a roof: two squares that meet at a right angle along the side from vertex 0 to
+    /// vertex 1.
     fn roof() -> MeshSource {
         MeshSource {
             positions: vec![

@@ -5,12 +5,12 @@ use glam::DVec3;
 /// Unit normals cancel out if their sum is at most this long, since the rest is rounding error.
 const CANCELLED: f64 = 1e-9;
 
-/// Whether the unit normals with this sum cancel out.
+/// Returns whether the unit normals with this sum cancel out.
 pub(crate) fn cancels(sum: DVec3) -> bool {
     sum.length() <= CANCELLED
 }
 
-/// A normal for storage: (0, 0, 1) if there is no direction.
+/// Rounds a normal to f32; `None` becomes (0, 0, 1).
 pub(crate) fn shown_normal(normal: Option<DVec3>) -> [f32; 3] {
     narrow(normal.unwrap_or(DVec3::Z))
 }

@@ -26,7 +26,7 @@ pub fn split_positions(positions: &[[f64; 3]], corners: &[u32]) -> (DVec3, Vec<[
     (offset, positions.par_iter().map(relative).collect())
 }
 
-/// Bounds the positions that faces use, or all positions if there is no face.
+/// Bounds the positions that faces use, or all positions without faces.
 fn bounds(positions: &[[f64; 3]], corners: &[u32]) -> Option<Bounds> {
     let at = |p: &[f64; 3]| Some(Bounds::at(DVec3::from_array(*p)));
     let used = corners.par_iter().filter_map(|vertex| positions.get(*vertex as usize));

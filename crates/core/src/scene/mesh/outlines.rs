@@ -24,13 +24,13 @@ pub struct CornerLists {
 }
 
 impl CornerLists {
-    /// The uv of a corner, or [`NONE`].
+    /// Returns the uv of a corner, or [`NONE`].
     #[must_use]
     pub fn uv(&self, corner: usize) -> u32 {
         self.uvs.get(corner).copied().unwrap_or(NONE)
     }
 
-    /// The normal of a corner, or [`NONE`].
+    /// Returns the normal of a corner, or [`NONE`].
     #[must_use]
     pub fn normal(&self, corner: usize) -> u32 {
         self.normals.get(corner).copied().unwrap_or(NONE)
@@ -48,18 +48,18 @@ pub(crate) struct Outlines<'a> {
 }
 
 impl<'a> Outlines<'a> {
-    /// The vertices of a polygon's corners.
+    /// Returns the vertices of a polygon's corners.
     pub(crate) fn vertices(&self, polygon: usize) -> &'a [u32] {
         &self.corners[self.starts[polygon] as usize..self.starts[polygon + 1] as usize]
     }
 
-    /// The positions of a polygon's corners.
+    /// Returns the positions of a polygon's corners.
     pub(crate) fn of(&self, polygon: usize) -> impl ExactSizeIterator<Item = DVec3> + Clone + 'a {
         let places = self.places;
         self.vertices(polygon).iter().map(|vertex| dvec3(places[*vertex as usize]))
     }
 
-    /// The unit normal of a polygon by Newell's method; `None` for a polygon without area.
+    /// Returns the unit normal of a polygon by Newell's method; `None` for a polygon without area.
     pub(crate) fn normal(&self, polygon: usize) -> Option<DVec3> {
         math::unit(newell(self.of(polygon)))
     }

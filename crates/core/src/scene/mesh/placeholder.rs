@@ -36,7 +36,7 @@ impl Mesh {
         Self { is_placeholder: true, ..mesh }
     }
 
-    /// Whether the mesh is a box that replaces a missing file.
+    /// Returns whether the mesh is a box that replaces a missing file.
     #[must_use]
     pub const fn is_placeholder(&self) -> bool {
         self.is_placeholder

@@ -56,7 +56,7 @@ struct Normals {
 }
 
 impl Normals {
-    /// The points of corners, each with the mean normal of all faces around its vertex.
+    /// Returns the points of corners, each with the mean normal of all faces around its vertex.
     fn points(self, outlines: &Outlines<'_>) -> Computed {
         let smooth = |vertex: u32| {
             let sum = self.sums[vertex as usize];
@@ -132,24 +132,26 @@ pub(crate) struct CornerPoints {
 }
 
 impl CornerPoints {
-    /// The point of a corner with the computed normal; `vertices` lists the vertices of all
+    /// Returns the point of a corner with the computed normal; `vertices` lists the vertices of all
     /// corners.
     pub(crate) fn smooth(&self, vertices: &[u32], corner: usize) -> u32 {
         let list = if self.smooth.is_empty() { vertices } else { &self.smooth };
         list[corner]
     }
 
-    /// The point of a corner with the file's normal, or else with the computed normal.
+    /// Returns the point of a corner with the file's normal, or else with the computed normal.
     pub(crate) fn filed(&self, vertices: &[u32], corner: usize) -> u32 {
         if self.filed.is_empty() { self.smooth(vertices, corner) } else { self.filed[corner] }
     }
 
-    /// The point of a corner with the file's normal, if its polygon has normals of the file.
+    /// Returns the point of a corner with the file's normal, if its polygon has normals of the
+    /// file.
     pub(crate) fn of_file(&self, corner: usize) -> Option<u32> {
         self.filed.get(corner).copied().filter(|point| *point >= self.first_filed)
     }
 
-    /// Whether points with computed normals have the numbers of their vertices, at all corners.
+    /// Returns whether points with computed normals have the numbers of their vertices, at all
+    /// corners.
     pub(crate) const fn are_vertices(&self) -> bool {
         self.smooth.is_empty()
     }
@@ -180,7 +182,7 @@ impl CornerPoints {
 }
 
 /// Computes the points of a mesh and the points of its corners. Points with the file's normals
-/// follow those with computed ones.
+/// follow the points with computed normals.
 pub(crate) fn points_and_corners(
     source: &MeshSource,
     lists: &CornerLists,

@@ -61,14 +61,15 @@ impl TreeBlock {
         block
     }
 
-    /// The mask of triangles with numbers in a range: from the first bound to below the second.
+    /// Returns the mask of triangles with numbers in a range: from the first bound to below the
+    /// second.
     #[inline(always)]
     pub fn among<S: Simd>(&self, simd: S, [first, end]: [u32; 2]) -> u64 {
         let numbers = u32x8::from_slice(simd, &self.numbers);
         (numbers.simd_ge(first) & numbers.simd_lt(end)).to_bitmask()
     }
 
-    /// One triangle of the block.
+    /// Returns one triangle of the block.
     #[must_use]
     pub fn triangle(&self, i: usize) -> TreeTriangle {
         TreeTriangle {
@@ -97,7 +98,7 @@ impl Default for TreeNode {
 }
 
 impl TreeNode {
-    /// The children, each with the smallest and the largest coordinates of its box.
+    /// Returns the children, each with the smallest and the largest coordinates of its box.
     #[inline(always)]
     pub fn children(&self) -> impl Iterator<Item = (&TreeChild, &[[f32; 3]; 2])> {
         let children = self.children.iter().take_while(|child| **child != TreeChild::NONE);
@@ -119,7 +120,7 @@ impl TreeChild {
     /// Marks an unused child.
     const NONE: Self = Self { first: u32::MAX, count: 0 };
 
-    /// The blocks of a leaf.
+    /// Returns the blocks of a leaf.
     #[must_use]
     pub const fn blocks(self) -> Range<usize> {
         let first = self.first as usize;
@@ -193,7 +194,7 @@ impl RayTree {
         child
     }
 
-    /// The triangles of a leaf.
+    /// Returns the triangles of a leaf.
     pub fn leaf(&self, child: TreeChild) -> impl Iterator<Item = TreeTriangle> + '_ {
         let place = move |i: usize| (child.first as usize + i / TREE_BLOCK, i % TREE_BLOCK);
         (0..child.count as usize).map(place).map(|(block, i)| self.blocks[block].triangle(i))
@@ -323,12 +324,13 @@ impl Groups {
     }
 }
 
-/// The bits of a box.
+/// Returns the bits of a box.
 fn bits(of: &Box3) -> [[u32; 3]; 2] {
     of.map(|corner| corner.map(f32::to_bits))
 }
 
-/// The bits of three corners, in an order that does not depend on the triangle's first corner.
+/// Returns the bits of three corners, in an order that does not depend on the triangle's first
+/// corner.
 fn sorted(corners: &[[f32; 3]; 3]) -> [[u32; 3]; 3] {
     let mut all = corners.map(|corner| corner.map(f32::to_bits));
     all.sort_unstable();

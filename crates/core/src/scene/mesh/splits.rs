@@ -64,7 +64,7 @@ impl Mesh {
     }
 }
 
-/// Whether a point lies on the segment from `a` to `b`, but not at an end.
+/// Returns whether a point lies on the segment from `a` to `b`, but not at an end.
 fn stands_on(p: DVec3, a: DVec3, b: DVec3) -> bool {
     let along = b - a;
     let square = along.length_squared();

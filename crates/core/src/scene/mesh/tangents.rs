@@ -80,7 +80,7 @@ impl Geometry<LibmOps> for WithUvs<'_> {
 }
 
 impl Mesh {
-    /// The tangents of each triangle's corners, for one kind of normals.
+    /// Returns the tangents of each triangle's corners, for one kind of normals.
     #[must_use]
     pub fn tangents(&self, source: NormalSource) -> &[CornerTangents] {
         let cell = match source {
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
     use crate::scene::{MeshSource, Part, SourceCorner};
 
-    /// A square in the plane z = 0. Its second triangle is mirrored on the texture.
+    /// Builds a square in the plane z = 0. Its second triangle is mirrored on the texture.
     fn square() -> Mesh {
         let corner = |(position, uv)| SourceCorner { position, uv, normal: crate::scene::NONE };
         Mesh::new(MeshSource {

@@ -26,7 +26,7 @@ use crate::scene::{
 /// The number of texels in a row of the map.
 const SIDE: usize = 256;
 
-/// The opacity at a distance from the centre, relative to the radius.
+/// Returns the opacity at a distance from the centre, relative to the radius.
 fn opacity(r: f64) -> f64 {
     let s = (2.0 * r - 1.0).clamp(0.0, 1.0);
     1.0 - s * s * (3.0 - 2.0 * s)
@@ -55,7 +55,7 @@ pub(super) fn build(builder: &mut Builder) {
     builder.source.parts = vec![part("ground", 0), part("rim", 1)];
 }
 
-/// The ground's materials: the same grey, once opaque and once fading.
+/// Returns the ground's materials: the same grey, once opaque and once fading.
 pub(super) fn materials() -> Vec<FileMaterial> {
     let mut picture = Picture::filled(Size::new(SIDE, SIDE), [0, 0, 0, 255]);
     #[expect(clippy::cast_precision_loss, reason = "few texels")]

@@ -60,18 +60,18 @@ impl Builder {
     }
 }
 
-/// The index of the last of `len` items.
+/// Returns the index of the last of `len` items.
 fn last(len: usize) -> u32 {
     u32::try_from(len - 1).expect("a shape has few vertices")
 }
 
-/// Sine and cosine of `i` / `n` of a turn; zeros are exact.
+/// Returns sine and cosine of `i` / `n` of a turn; zeros are exact.
 pub(super) fn turn(i: u32, n: u32) -> [f64; 2] {
     let angle = TAU * f64::from(i) / f64::from(n);
     [libm::sin(angle), libm::cos(angle)].map(|x| if x.abs() < 1e-15 { 0.0 } else { x })
 }
 
-/// `i` / `n` as a number.
+/// Returns `i` / `n` as a number.
 fn share(i: u32, n: u32) -> f64 {
     f64::from(i) / f64::from(n)
 }
@@ -108,7 +108,7 @@ pub(super) fn cube(builder: &mut Builder) {
     }
 }
 
-/// The direction at a longitude and a latitude, given by their sines and cosines.
+/// Returns the direction at a longitude and a latitude, given by their sines and cosines.
 fn direction([east_sin, east_cos]: [f64; 2], [up_sin, up_cos]: [f64; 2]) -> DVec3 {
     DVec3::new(up_cos * east_sin, up_sin, up_cos * east_cos)
 }

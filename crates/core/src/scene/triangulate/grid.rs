@@ -78,7 +78,7 @@ impl Grid {
         std::mem::take(&mut self.looked_at)
     }
 
-    /// The cell of a position, or the nearest cell.
+    /// Returns the cell of a position, or the nearest cell.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

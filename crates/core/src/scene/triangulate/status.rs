@@ -29,7 +29,7 @@ impl Status {
         self.home[edge as usize] != NOWHERE
     }
 
-    /// The last edge for which `is` holds. The edges for which it holds must come first.
+    /// Returns the last edge for which `is` holds. The edges for which it holds must come first.
     pub(super) fn last_of(&self, is: impl Fn(u32) -> bool) -> Option<u32> {
         let (chunk, place) = self.place(is)?;
         place.checked_sub(1).map(|place| self.chunks[chunk as usize][place])
@@ -78,7 +78,7 @@ impl Status {
         }
     }
 
-    /// The position behind the edges for which `is` holds: a chunk, and an index in it.
+    /// Returns the position behind the edges for which `is` holds: a chunk, and an index in it.
     fn place(&self, is: impl Fn(u32) -> bool) -> Option<(u32, usize)> {
         let first = |chunk: &u32| is(self.chunks[*chunk as usize][0]);
         let chunk = *self.order.get(self.order.partition_point(first).saturating_sub(1))?;

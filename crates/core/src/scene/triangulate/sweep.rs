@@ -120,13 +120,14 @@ impl Sweep {
         self.rank[a as usize] < self.rank[b as usize]
     }
 
-    /// Twice the area of a triangle, positive if it runs counter-clockwise.
+    /// Returns twice the area of a triangle, positive if it runs counter-clockwise.
     fn area(&self, a: u32, b: u32, c: u32) -> i128 {
         let [a, b, c] = [a, b, c].map(|corner| self.points[corner as usize].map(i128::from));
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     }
 
-    /// Whether a corner is to the right of an edge. If it is on the edge, the other corners decide.
+    /// Returns whether a corner is to the right of an edge. If it is on the edge, the other corners
+    /// decide.
     fn is_right_of(&self, edge: u32, corners: [u32; 3]) -> bool {
         let lower = self.next(edge);
         let side = |corner: u32| Some(self.area(lower, edge, corner)).filter(|area| *area != 0);
@@ -177,7 +178,7 @@ impl Sweep {
         }
     }
 
-    /// Whether two pieces become one at a corner, i.e. whether it is a merge vertex.
+    /// Returns whether two pieces become one at a corner, i.e. whether it is a merge vertex.
     fn merges(&self, corner: u32) -> bool {
         let (last, next) = (self.last(corner), self.next(corner));
         self.is_below(last, corner)

@@ -10,7 +10,7 @@ fn outline(places: &[(f64, f64)]) -> Vec<DVec3> {
     places.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect()
 }
 
-/// Twice the signed areas of the triangles about `normal`.
+/// Returns twice the signed areas of the triangles about `normal`.
 fn areas(outline: &[DVec3], normal: DVec3, triangles: &[[u32; 3]]) -> Vec<f64> {
     let area = |t: &[u32; 3]| newell(t.iter().map(|&i| outline[i as usize])).dot(normal);
     triangles.iter().map(area).collect()
@@ -51,7 +51,7 @@ fn sound(outline: &[DVec3]) -> Vec<f64> {
     areas
 }
 
-/// A square with a square hole. A bridge joins the first corner of each.
+/// Returns a square with a square hole. A bridge joins the first corner of each.
 fn square_with_a_hole() -> Vec<DVec3> {
     outline(&[
         (0.0, 0.0),
@@ -87,8 +87,8 @@ fn a_hole_joined_by_a_bridge_stays_a_hole_seen_from_any_side() {
     }
 }
 
-/// The outline of an island of 6 x 6 cells, one cell side after the other. The island consists of
-/// the cells that are connected to the first by sides, and of enclosed cells.
+/// Returns the outline of an island of 6 x 6 cells, one cell side after the other. The island
+/// consists of the cells that are connected to the first by sides, and of enclosed cells.
 fn island(cells: &[bool; 36]) -> Vec<DVec3> {
     type Cell = (i32, i32);
     let land = |(x, y): Cell| {
@@ -140,7 +140,7 @@ fn island(cells: &[bool; 36]) -> Vec<DVec3> {
     }
 }
 
-/// A plate with square holes in a row, each joined to the previous one.
+/// Returns a plate with square holes in a row, each joined to the previous one.
 fn plate(holes: u8) -> Vec<DVec3> {
     let x = |i: u8| f64::from(i) * 4.0;
     let mut places = vec![(0.0, 0.0), (x(holes), 0.0), (x(holes), 4.0), (0.0, 4.0), (0.0, 0.0)];
