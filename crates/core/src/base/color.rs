@@ -101,7 +101,8 @@ mod tests {
             assert_eq!(byte(encoded(linear(stored))), value);
         }
         assert_eq!((linear(0.0), linear(1.0), encoded(0.0)), (0.0, 1.0, 0.0));
-        // From outside: the middle between black and white light is 188, and 18% grey is 118.
+        // From an external source: the middle between black and white light is 188, and 18% grey is
+        // 118.
         assert_eq!((byte(encoded(0.5)), byte(encoded(0.18))), (188, 118));
         assert_eq!((linear(f64::NAN), linear(-1.0), encoded(-1.0)), (0.0, 0.0, 0.0));
     }

@@ -6,10 +6,10 @@
 //!   named `to_from`: `clip_from_view * view_from_world`.
 //! * Depth after division is reversed: 1 at the near plane, 0 at the far plane. Inside the view
 //!   volume, `0 <= z <= w`, `-w <= x <= w`, `-w <= y <= w`.
-//! * A polygon's front is the side from which its corners run counter-clockwise.
+//! * The front of a polygon is the side from which its corners run counter-clockwise.
 //! * Angles are radians here, degrees in the interface and in files.
 //!
-//! Sines and cosines, also those in glam, come from the `libm` crate, so every machine computes the
+//! Sines and cosines, including glam's, come from the `libm` crate, so every machine computes the
 //! same bits.
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};

@@ -54,7 +54,7 @@ pub fn reset(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Command,
 /// in line with the centre of the selected object's box.
 ///
 /// # Errors
-/// If there are no such objects, or all of them are locked or already in line.
+/// If the list has no such objects, or all of them are locked or already in line.
 pub fn align(
     scene: &Scene,
     view: &View,

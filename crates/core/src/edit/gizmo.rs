@@ -23,11 +23,11 @@ pub struct Pivot {
 /// The amount of a transformation, in the frame of a [`Pivot`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
-    /// Units along each axis.
+    /// A translation in units along each axis.
     Move(DVec3),
-    /// An angle in radians about an axis, by the right-hand rule.
+    /// A rotation in radians about an axis, by the right-hand rule.
     Turn(DVec3, f64),
-    /// A factor for each axis.
+    /// A scale factor for each axis.
     Scale(DVec3),
 }
 

@@ -84,7 +84,7 @@ pub fn step(
 }
 
 /// Returns the distance of one step along `axis` for the selected item of the subject, in the units
-/// of the frame in which it moves.
+/// of the item's frame.
 #[must_use]
 pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
     let length = steps::length(scene, view);

@@ -113,11 +113,11 @@ pub enum Subject {
 /// The transformation that the keys x, y and z apply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Transformation {
-    /// Move.
+    /// Translation.
     Translation,
-    /// Turn.
+    /// Rotation.
     Rotation,
-    /// Scale; objects only.
+    /// Scaling; objects only.
     Scaling,
 }
 

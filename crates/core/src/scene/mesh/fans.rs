@@ -23,8 +23,8 @@ use crate::scene::mesh::normals::{cancels, narrow, shown_normal};
 use crate::scene::mesh::outlines::Outlines;
 use crate::scene::{Crease, NONE, Point, dvec3};
 
-/// The tolerance of the crease angle in degrees. Numbers in files have about six digits, so right
-/// angles are only that exact.
+/// A smooth edge may exceed the crease angle by this angle, in degrees. Numbers in files have about
+/// six digits, so right angles are only that exact.
 const TOLERANCE: f64 = 1e-4;
 
 /// The most faces around a vertex or an edge that are compared pair by pair; more are sorted first.
@@ -126,7 +126,7 @@ struct Fans {
     sums: Vec<DVec3>,
     /// The index of each face's point in the block; [`NONE`] for the vertex's point.
     points: Vec<u32>,
-    /// Pairs of a face and the other end of an edge at it, or its smoothing group.
+    /// The other ends of edges, or smoothing groups, each paired with a face.
     keys: Vec<(u32, u32)>,
 }
 

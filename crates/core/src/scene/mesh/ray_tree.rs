@@ -26,7 +26,7 @@ use crate::scene::Mesh;
 /// A BVH of a mesh's triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RayTree {
-    /// The root; an empty leaf if no triangle of the mesh has an area.
+    /// The root. If no triangle of the mesh has an area, the tree has neither nodes nor triangles.
     pub root: TreeChild,
     /// The inner nodes.
     pub nodes: Vec<TreeNode>,

@@ -71,8 +71,7 @@ impl Geometry<LibmOps> for WithUvs<'_> {
 
     fn set_tangent(&mut self, found: Option<TangentSpace>, face: usize, vertex: usize) {
         let number = self.numbers[face] as usize;
-        // If there is no tangent, for example if texture coordinates have no area, there is no
-        // bump.
+        // Without a tangent, for example if texture coordinates have no area, the bump is dropped.
         let encoded = found.map_or([0.0; 4], |it| it.tangent_encoded());
         let finite = encoded.iter().all(|x| x.is_finite());
         self.tangents[number][vertex] = if finite { encoded } else { [0.0; 4] };

@@ -48,7 +48,7 @@ impl Grid {
         self.cells[row * self.columns + column].push(corner);
     }
 
-    /// Whether any corner in a box matches. If `is` returns `None`, the corner is removed.
+    /// Returns whether any corner in a box matches. If `is` returns `None`, the corner is removed.
     pub(super) fn any(
         &mut self,
         [min, max]: [DVec2; 2],

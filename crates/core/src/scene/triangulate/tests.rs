@@ -275,8 +275,8 @@ fn polygons_of_many_corners_are_cut_correctly_whatever_their_shape() {
     }
 }
 
-/// The number of visited corners grows no faster than the polygon, in shapes in which each corner
-/// blocks many ears.
+/// The number of visited corners grows no faster than the polygon, even if each corner blocks many
+/// ears.
 #[test]
 fn the_work_on_a_polygon_grows_with_its_corners_whatever_its_shape() {
     for corners in [10_000, 100_000] {
