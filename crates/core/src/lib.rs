@@ -1,12 +1,12 @@
-//! Scenes of models, settings of accuracy, and the commands that change a scene.
+//! Scenes, accuracy settings, and the commands that change a scene.
 //!
-//! This crate is plain data and the rules for it. It draws nothing, reads no files and knows of no
-//! windows. Its modules use those before them in this list:
+//! This crate holds plain data and the rules for it. It does not draw, read files or open windows.
+//! Each module uses only the modules before it in this list:
 //!
-//! * [`base`]: conventions of the mathematics, colours, pictures in memory, parallel work.
+//! * [`base`]: mathematical conventions, colours, pictures in memory, parallel work.
 //! * [`scene`]: objects, cameras, lights, materials, the view, and [`scene::Command`].
-//! * [`accuracy`]: the axes along which pictures can be more or less exact, and settings on them.
-//! * [`edit`]: decides which command a key or a drag means, and keeps the undo stack.
+//! * [`accuracy`]: the axes between exact and fast, and settings with a choice for each axis.
+//! * [`edit`]: turns keys and drags into commands, and keeps the undo stack.
 //!
 //! Only [`edit::History`] changes a scene, so every change can be undone:
 //!

@@ -1,41 +1,42 @@
-//! Bounds of a byte over rectangles of a grid: the least and the largest.
+//! Bounds of a byte over rectangles of a grid: the smallest and the largest value.
 //!
-//! They are kept for cells of 4 x 4 bytes, and for cells of twice that side, up to a single one, as
-//! in a pyramid of mip maps: 17% of the memory of the bytes themselves. Bounds of a rectangle are
-//! those of the few cells that it reaches into, so they may be too wide, but never too narrow.
+//! Bounds are stored for cells of 4 x 4 bytes and, like the levels of a mipmap, for cells of twice
+//! that side, up to one cell for the whole grid. This takes 17% of the memory of the bytes. A
+//! rectangle gets the joined bounds of the few cells that it overlaps, so its bounds may be too
+//! wide, but never too narrow.
 
 use std::ops::RangeInclusive;
 
 /// The side of the finest cells, as a power of two.
 const FINEST: u32 = 2;
-/// Cells along a side that a rectangle reaches into, at most.
+/// The largest number of cells that a rectangle overlaps along one side.
 const MOST: usize = 4;
 
-/// The least and the largest byte of rectangles of a grid: bounds that may be too wide, but never
+/// The smallest and the largest byte in rectangles of a grid. The bounds may be too wide, but never
 /// too narrow.
 #[derive(Clone, Debug)]
 pub struct ByteBounds {
-    /// From the finest cells to the only one.
+    /// The levels, from the finest cells to a single cell.
     levels: Vec<Cells>,
 }
 
-/// Cells of one size, row by row: the least and the largest byte in each.
+/// Cells of one size, row by row: the smallest and the largest byte in each.
 #[derive(Clone, Debug)]
 struct Cells {
     columns: usize,
     bounds: Vec<[u8; 2]>,
 }
 
-/// The bounds of two parts together.
+/// Joins the bounds of two parts.
 fn joined([low, high]: [u8; 2], [other_low, other_high]: [u8; 2]) -> [u8; 2] {
     [low.min(other_low), high.max(other_high)]
 }
 
-/// The bounds of nothing.
+/// The bounds of an empty set.
 const NOTHING: [u8; 2] = [u8::MAX, 0];
 
 impl Cells {
-    /// Cells of `side` x `side` of the bounds that stand row by row.
+    /// Joins bounds, given row by row, into cells of `side` x `side`.
     fn new(width: usize, side: usize, bounds: impl Iterator<Item = [u8; 2]>) -> Self {
         let columns = width.div_ceil(side);
         let mut cells = Vec::new();
@@ -52,7 +53,8 @@ impl Cells {
 }
 
 impl ByteBounds {
-    /// The bounds of bytes that stand in rows of `width`; each may be bounded itself.
+    /// Builds the levels for a grid with rows of `width`. Each element is a pair of bounds, so a
+    /// plain byte is given twice.
     #[must_use]
     pub fn new(width: usize, bytes: impl Iterator<Item = [u8; 2]>) -> Self {
         let mut levels = vec![Cells::new(width, 1 << FINEST, bytes)];
@@ -64,11 +66,12 @@ impl ByteBounds {
         Self { levels }
     }
 
-    /// Bounds of the bytes in some columns and rows, which must be within the grid; of nothing, the
-    /// least is above the largest.
+    /// Returns bounds of the bytes in some columns and rows, which must be within the grid. In an
+    /// empty grid, the smallest is above the largest.
     #[must_use]
     #[inline]
     pub fn over(&self, columns: &RangeInclusive<usize>, rows: &RangeInclusive<usize>) -> [u8; 2] {
+        // The finest level with few enough cells gives the tightest bounds at a constant cost.
         let few = |range: &RangeInclusive<usize>, shift: u32| {
             (range.end() >> shift) - (range.start() >> shift) < MOST
         };
@@ -109,7 +112,7 @@ mod tests {
         a.min(b)..=a.max(b)
     }
 
-    /// The exact bounds.
+    /// Returns the exact bounds, by visiting each byte.
     fn exact(
         bytes: &[u8],
         width: usize,
@@ -131,7 +134,7 @@ mod tests {
                 let [low, high] = bounds.over(&columns, &rows);
                 let [least, largest] = exact(&bytes, size.width, &columns, &rows);
                 assert!(low <= least && largest <= high, "{size:?} {columns:?} {rows:?}");
-                // A rectangle of whole cells, four at most along a side.
+                // A rectangle of whole cells, at most four along a side.
                 let whole = |range: &RangeInclusive<usize>, count: usize| {
                     let first = range.start() / 4 * 4;
                     first..=(first + 15).min(count - 1)

@@ -1,8 +1,8 @@
 //! Colours, as bytes and as factors.
 //!
-//! Colours are display values throughout: a byte from 0 to 255 stands for a factor from 0 to 1, and
-//! no curve is applied on the way in or out, unless light is computed in linear sRGB: then
-//! [`linear`] decodes colours and [`encoded`] encodes pictures.
+//! Colours are display values throughout: a byte from 0 to 255 represents a factor from 0 to 1,
+//! without a transfer curve. The exception is light computed in linear sRGB: [`linear`] then
+//! decodes colours, and [`encoded`] encodes pictures.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,10 +15,10 @@ impl Color {
     pub const BLACK: Self = Self([0, 0, 0]);
     /// White.
     pub const WHITE: Self = Self([255, 255, 255]);
-    /// Back faces, and edges of polygons that face away.
+    /// The colour of back faces, and of edges of polygons that face away.
     pub const BACK_FACE: Self = Self([255, 0, 0]);
 
-    /// The colours that have a name, as in CSS; gray is written in two ways.
+    /// The named colours, as in CSS; gray has two spellings.
     pub const NAMED: [(&str, Self); 10] = [
         ("black", Self::BLACK),
         ("white", Self::WHITE),
@@ -32,26 +32,26 @@ impl Color {
         ("magenta", Self([255, 0, 255])),
     ];
 
-    /// The colour of this name, in upper or lower case.
+    /// Finds the colour with this name, in upper or lower case.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let is_it = |(own, _): &&(&str, Self)| own.eq_ignore_ascii_case(name);
         Self::NAMED.iter().find(is_it).map(|(_, color)| *color)
     }
 
-    /// The factors from 0 to 1 that the bytes stand for.
+    /// Returns the factors from 0 to 1 that the bytes represent.
     #[must_use]
     pub fn factors(self) -> [f64; 3] {
         self.0.map(|byte| f64::from(byte) / 255.0)
     }
 
-    /// The nearest colour to three factors, clamped to 0 to 1.
+    /// Returns the nearest colour to three factors, which are clamped to 0 to 1.
     #[must_use]
     pub fn from_factors(factors: [f64; 3]) -> Self {
         Self(factors.map(byte))
     }
 
-    /// The colour as an opaque pixel.
+    /// Returns the colour as an opaque pixel.
     #[must_use]
     pub fn opaque(self) -> [u8; 4] {
         let [r, g, b] = self.0;
@@ -59,7 +59,7 @@ impl Color {
     }
 }
 
-/// The byte nearest to 255 times a factor: clamped once, rounded to nearest. NaN gives 0.
+/// Returns the byte nearest to 255 times a factor: clamped once, rounded to nearest. NaN gives 0.
 #[must_use]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped just before")]
 pub fn byte(factor: f64) -> u8 {
@@ -68,7 +68,7 @@ pub fn byte(factor: f64) -> u8 {
     (factor.min(1.0) * 255.0 + 0.5) as u8
 }
 
-/// The linear value of an sRGB colour, from 0 to 1 for values from 0 to 1:
+/// Decodes an sRGB colour to its linear value, from 0 to 1 for values from 0 to 1:
 ///
 ///   c / 12.92 up to 0.04045,   ((c + 0.055) / 1.055)^2.4 above
 ///
@@ -79,7 +79,7 @@ pub fn linear(stored: f64) -> f64 {
     if stored <= 0.04045 { stored / 12.92 } else { libm::pow((stored + 0.055) / 1.055, 2.4) }
 }
 
-/// The sRGB colour of a linear value: the inverse of [`linear`].
+/// Encodes a linear value as an sRGB colour: the inverse of [`linear`].
 #[must_use]
 pub fn encoded(linear: f64) -> f64 {
     let linear = linear.max(0.0);
@@ -101,7 +101,8 @@ mod tests {
             assert_eq!(byte(encoded(linear(stored))), value);
         }
         assert_eq!((linear(0.0), linear(1.0), encoded(0.0)), (0.0, 1.0, 0.0));
-        // From outside: the middle between black and white light is 188, and 18% grey is 118.
+        // From an external source: the middle between black and white light is 188, and 18% grey is
+        // 118.
         assert_eq!((byte(encoded(0.5)), byte(encoded(0.18))), (188, 118));
         assert_eq!((linear(f64::NAN), linear(-1.0), encoded(-1.0)), (0.0, 0.0, 0.0));
     }

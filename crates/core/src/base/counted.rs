@@ -32,7 +32,7 @@ impl PartialEq for Counted {
 
 impl Eq for Counted {}
 
-/// The number of comparisons that `work` takes.
+/// Returns the number of comparisons that `work` takes.
 pub(crate) fn comparisons<R>(work: impl FnOnce() -> R) -> usize {
     COMPARISONS.set(0);
     work();

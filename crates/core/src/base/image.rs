@@ -14,7 +14,7 @@ pub struct Picture {
     derived: Derived,
 }
 
-/// What follows from a picture's pixels; found when it is first needed.
+/// Properties of a picture's pixels, computed on first use.
 #[derive(Clone, Debug, Default)]
 struct Derived {
     found: OnceLock<Found>,
@@ -25,13 +25,13 @@ struct Derived {
 #[derive(Clone, Copy, Debug)]
 struct Found {
     least: u8,
-    /// Whether any is neither 0 nor 255.
+    /// Whether any alpha is neither 0 nor 255.
     partial: bool,
     /// Whether any pixel is neither black nor white.
     grey: bool,
 }
 
-/// It follows from the pixels, which are compared anyway.
+/// Always equal: the properties follow from the pixels, which are compared anyway.
 impl PartialEq for Derived {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -43,20 +43,20 @@ impl Eq for Derived {}
 /// The width and height of a picture in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Size {
-    /// Pixels in a row.
+    /// The number of pixels in a row.
     pub width: usize,
-    /// Rows.
+    /// The number of rows.
     pub height: usize,
 }
 
 impl Size {
-    /// A size of `width` by `height` pixels.
+    /// Creates a size of `width` by `height` pixels.
     #[must_use]
     pub const fn new(width: usize, height: usize) -> Self {
         Self { width, height }
     }
 
-    /// The number of pixels.
+    /// Returns the number of pixels.
     #[must_use]
     pub const fn area(self) -> usize {
         self.width * self.height
@@ -64,7 +64,7 @@ impl Size {
 }
 
 impl Picture {
-    /// A picture of one colour.
+    /// Creates a picture of one colour.
     #[must_use]
     pub fn filled(size: Size, pixel: [u8; 4]) -> Self {
         let pixels = vec![pixel; size.area()];
@@ -72,7 +72,8 @@ impl Picture {
         Self { width: size.width, height: size.height, pixels, derived }
     }
 
-    /// A picture of these pixels, row by row from the top; `None` if their number does not fit.
+    /// Creates a picture of these pixels, row by row from the top; `None` if their number does not
+    /// fit.
     #[must_use]
     pub fn from_pixels(size: Size, pixels: Vec<[u8; 4]>) -> Option<Self> {
         (pixels.len() == size.area()).then_some(Self {
@@ -83,38 +84,38 @@ impl Picture {
         })
     }
 
-    /// Width and height.
+    /// Returns width and height.
     #[must_use]
     pub const fn size(&self) -> Size {
         Size::new(self.width, self.height)
     }
 
-    /// All pixels, row by row from the top.
+    /// Returns all pixels, row by row from the top.
     #[must_use]
     pub fn pixels(&self) -> &[[u8; 4]] {
         &self.pixels
     }
 
-    /// All pixels, to be written.
+    /// Returns all pixels for writing, and drops the properties computed from them.
     pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
         self.derived = Derived::default();
         &mut self.pixels
     }
 
-    /// The least alpha of all pixels; 255 if there are none.
+    /// Returns the smallest alpha of all pixels; 255 for an empty picture.
     #[must_use]
     pub fn least_alpha(&self) -> u8 {
         self.found().least
     }
 
-    /// Whether the alpha of any pixel is neither 0 nor 255.
+    /// Returns whether the alpha of any pixel is neither 0 nor 255.
     #[must_use]
     pub fn has_partial_alpha(&self) -> bool {
         self.found().partial
     }
 
-    /// Whether, as a map of opacity, it is anywhere between nothing and all. Its alpha counts; if
-    /// all of it is opaque, its colour does.
+    /// Returns whether the picture, as an opacity map, has values between transparent and opaque.
+    /// Its alpha counts, or its colour if all pixels are opaque.
     #[must_use]
     pub fn fades(&self) -> bool {
         let Found { least, partial, grey } = self.found();
@@ -128,7 +129,7 @@ impl Picture {
         get_or_compute(&self.derived.alphas, || self.bounds(of))
     }
 
-    /// Bounds of the colours' components, and so of any mean of them, by columns and rows from the
+    /// Bounds of the colour components, and so of any mean of them, by columns and rows from the
     /// upper left.
     #[must_use]
     pub fn color_bounds(&self) -> &ByteBounds {
@@ -155,7 +156,7 @@ impl Picture {
         *get_or_compute(&self.derived.found, find)
     }
 
-    /// The pixel in column `x` of row `y`, both counted from the upper left.
+    /// Returns the pixel in column `x` of row `y`, both counted from the upper left.
     #[must_use]
     pub fn pixel(&self, x: usize, y: usize) -> [u8; 4] {
         self.pixels[y * self.width + x]

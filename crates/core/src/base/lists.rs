@@ -1,8 +1,8 @@
-//! Joins and sorts long lists, with several threads.
+//! Joins long lists on all threads, and sorts numbers by keys.
 
 use rayon::prelude::*;
 
-/// Joins lists, with all threads copying.
+/// Joins lists; all threads copy.
 #[must_use]
 pub fn concatenated<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>) -> Vec<T> {
     if lists.len() == 1 {
@@ -16,7 +16,7 @@ pub fn concatenated<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>) -> Vec<T> {
         })
         .collect();
     let all = ends.last().copied().unwrap_or(0);
-    // Each thread copies neighbours, so it looks for the next list only when one ends.
+    // Each thread copies a run of elements, so it searches for the next list only if one ends.
     let at = |place: &mut usize, i: usize| {
         let begin = ends[*place] - lists[*place].len();
         if i < begin || i >= ends[*place] {
@@ -27,10 +27,10 @@ pub fn concatenated<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>) -> Vec<T> {
     (0..all).into_par_iter().map_with(0, at).collect()
 }
 
-/// The numbers 0 to n - 1 by ascending keys; numbers with equal keys keep their order.
+/// Sorts the numbers 0 to n - 1 by ascending keys; numbers with equal keys keep their order.
 ///
-/// An LSD radix sort with digits of eleven bits: Knuth, "The Art of Computer Programming" 3, 5.2.5.
-/// `keys[i]` belongs to number i; only the low `bits` bits of the keys are compared.
+/// This is an LSD radix sort with digits of eleven bits: Knuth, "The Art of Computer Programming"
+/// 3, 5.2.5. `keys[i]` belongs to number i; only the low `bits` bits of the keys are compared.
 #[must_use]
 pub fn sorted_by_keys(keys: Vec<u32>, bits: u32) -> Vec<u32> {
     const DIGIT: u32 = 11;
@@ -39,6 +39,7 @@ pub fn sorted_by_keys(keys: Vec<u32>, bits: u32) -> Vec<u32> {
     let mut to = vec![(0, 0); from.len()];
     for shift in (0..bits).step_by(DIGIT as usize) {
         let digit = |key: u32| (key >> shift) as usize & ((1 << DIGIT) - 1);
+        // Count each digit, then turn the counts into the place of each digit's first item.
         let mut places = vec![0; 1 << DIGIT];
         for (key, _) in &from {
             places[digit(*key)] += 1;
@@ -47,6 +48,7 @@ pub fn sorted_by_keys(keys: Vec<u32>, bits: u32) -> Vec<u32> {
         for place in &mut places {
             sum += std::mem::replace(place, sum);
         }
+        // Items move in order, so the sort by earlier digits survives.
         for item in &from {
             let place = &mut places[digit(item.0)];
             to[*place] = *item;

@@ -1,16 +1,16 @@
 //! Vectors, matrices and projections, and their conventions.
 //!
-//! * Right-handed, Y up; vectors are columns, a matrix stands to their left: `p' = M p`.
-//! * Spaces, in the order of the pipeline: object, world, view (of the observer, who looks along
-//!   its own -Z), clip (homogeneous), screen (pixels, x to the right, y down, a pixel's centre at
-//!   one half). A matrix is named `to_from`: `clip_from_view * view_from_world`.
-//! * Depth after division is reversed: 1 at the near plane, 0 at the far one. Inside the view
+//! * Right-handed, Y up; vectors are columns and matrices multiply from the left: `p' = M p`.
+//! * Spaces, in the order of the pipeline: object, world, view (the observer looks along -Z), clip
+//!   (homogeneous), screen (pixels, x to the right, y down, pixel centres at one half). A matrix is
+//!   named `to_from`: `clip_from_view * view_from_world`.
+//! * Depth after division is reversed: 1 at the near plane, 0 at the far plane. Inside the view
 //!   volume, `0 <= z <= w`, `-w <= x <= w`, `-w <= y <= w`.
-//! * A polygon's front is the side from which its corners run counter-clockwise.
+//! * The front of a polygon is the side from which its corners run counter-clockwise.
 //! * Angles are radians here, degrees in the interface and in files.
 //!
-//! Sines and cosines come from the `libm` crate, glam's too, so they have the same bits on every
-//! machine.
+//! Sines and cosines, including glam's, come from the `libm` crate, so every machine computes the
+//! same bits.
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
@@ -32,7 +32,7 @@ impl Axis {
     /// All three, in order.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    /// The direction of the axis in its own frame.
+    /// Returns the unit vector of the axis.
     #[must_use]
     pub const fn unit(self) -> DVec3 {
         match self {
@@ -42,7 +42,7 @@ impl Axis {
         }
     }
 
-    /// 0, 1 or 2.
+    /// Returns the index of the axis: 0, 1 or 2.
     #[must_use]
     pub const fn index(self) -> usize {
         self as usize
@@ -51,28 +51,27 @@ impl Axis {
 
 /// Applies `f` to each of three values.
 ///
-/// In code for many lanes, the array's own `map` is not always inlined, and every operation becomes
-/// a call.
+/// In SIMD code, the array's own `map` is not always inlined, and every operation becomes a call.
 #[inline(always)]
 pub fn each<A, B>([a, b, c]: [A; 3], mut f: impl FnMut(A) -> B) -> [B; 3] {
     [f(a), f(b), f(c)]
 }
 
-/// Normalises `v`, whatever its length; `None` if it is zero or not finite.
+/// Normalises a vector of any length; `None` if it is zero or not finite.
 ///
-/// The largest component is brought to 1 first, so that squares neither overflow nor vanish.
+/// The largest component is scaled to 1 first, so squares neither overflow nor vanish.
 #[must_use]
 pub fn unit(v: DVec3) -> Option<DVec3> {
     let largest = v.abs().max_element();
     if !(largest > 0.0 && v.is_finite()) {
         return None;
     }
-    // In two steps, since a subnormal component has no finite reciprocal.
+    // Two divisions, since a subnormal component has no finite reciprocal.
     let v = v / largest;
     Some(v / v.length())
 }
 
-/// The rotation about `axis` (of length 1) by the right-hand rule.
+/// Returns the rotation about `axis` (of length 1) by the right-hand rule.
 ///
 /// Rodrigues' formula: `R = cos a I + sin a [k]x + (1 - cos a) k k'`.
 #[must_use]
@@ -80,7 +79,7 @@ pub fn rotation(axis: DVec3, radians: f64) -> DMat3 {
     DMat3::from_axis_angle(axis, radians)
 }
 
-/// A right-handed frame whose Z is `z` and whose Y is as near to `y` as possible (Gram-Schmidt, Z
+/// Builds a right-handed frame with Z along `z` and Y as near to `y` as possible (Gram-Schmidt, Z
 /// first, X = Y x Z). If both are parallel or one of them vanishes, the undetermined axes come from
 /// `fallback`, which must be orthonormal.
 #[must_use]
@@ -101,10 +100,10 @@ pub fn frame(z: DVec3, y: DVec3, fallback: DMat3) -> DMat3 {
     DMat3::from_cols(y.cross(z), y, z)
 }
 
-/// The frame of an observer at `eye` that looks at `target`, upright with respect to `up`.
+/// Returns the frame of an observer at `eye` that looks at `target`, upright with respect to `up`.
 ///
-/// If it looks straight up or down, the right vector of `last` is kept; if eye and target are
-/// equal, all of `last` is. There is no NaN and no jump.
+/// If the observer looks straight up or down, the right vector of `last` is kept; if eye and target
+/// are equal, all of `last` is. The frame never contains NaN and never jumps.
 #[must_use]
 pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
     let Some(z) = unit(eye - target) else { return last };
@@ -115,12 +114,12 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
     }
 }
 
-/// The matrix that transforms normals if `m` transforms surfaces: sign(det m) times its cofactors.
+/// Returns the matrix that transforms normals if `m` transforms surfaces: sign(det m) times its
+/// cofactors.
 ///
 /// This is the inverse transpose up to a positive factor, and is defined for a singular `m` as
 /// well. The sign keeps the normals of a mirrored object on its outer side. `m` is scaled by
-/// [`at_power_of_two`] first, so that the squares of normals neither overflow nor vanish, even in
-/// f32.
+/// [`at_power_of_two`] first, so the squares of normals neither overflow nor vanish, even in f32.
 #[must_use]
 pub fn normal_matrix(m: DMat3) -> DMat3 {
     let m = at_power_of_two(m);
@@ -132,14 +131,14 @@ pub fn normal_matrix(m: DMat3) -> DMat3 {
     if m.determinant() < 0.0 { cofactors * -1.0 } else { cofactors }
 }
 
-/// `m` times a power of two that brings its largest entry to between 1/2 and 1.
+/// Scales `m` by a power of two that brings its largest entry between 1/2 and 1.
 #[must_use]
 pub fn at_power_of_two(m: DMat3) -> DMat3 {
     m * power_of_two_near(1.0 / largest_entry(m))
 }
 
-/// The largest power of two that is at most `x`, for `x` above 0; 1 for any other. A number
-/// that is multiplied by it keeps its digits.
+/// Returns the largest power of two that is at most `x`, for a normal `x` above 0; otherwise 1.
+/// Multiplying a number by it keeps all digits.
 #[must_use]
 pub fn power_of_two_near(x: f64) -> f64 {
     if x.is_normal() && x > 0.0 { libm::ldexp(1.0, libm::ilogb(x)) } else { 1.0 }
@@ -149,16 +148,16 @@ fn largest_entry(m: DMat3) -> f64 {
     m.x_axis.abs().max(m.y_axis.abs()).max(m.z_axis.abs()).max_element()
 }
 
-/// Whether `m` has rank 3, relative to its own size.
+/// Returns whether `m` has rank 3, relative to its own size.
 #[must_use]
 pub fn has_full_rank(m: DMat3) -> bool {
     let size = largest_entry(m);
     m.is_finite() && size > 0.0 && ((m * (1.0 / size)).determinant().abs() > 1e-15)
 }
 
-/// The perspective projection: `half_angle` (radians) is visible to each side of the view's axis
-/// across the shorter side of the picture; the longer side shows more. Depth is 1 at `near`, 0 at
-/// `far`.
+/// Returns the perspective projection. `half_angle` (radians) is visible to each side of the view
+/// axis across the shorter side of the picture; the longer side shows more. Depth is 1 at `near`, 0
+/// at `far`.
 #[must_use]
 pub fn perspective(half_angle: f64, near: f64, far: f64, size: Size) -> DMat4 {
     let focal = 1.0 / libm::tan(half_angle);
@@ -172,8 +171,8 @@ pub fn perspective(half_angle: f64, near: f64, far: f64, size: Size) -> DMat4 {
     )
 }
 
-/// The orthographic projection: `half_size` is visible to each side of the view's axis across the
-/// shorter side of the picture. Depth is 1 at `near`, 0 at `far`.
+/// Returns the orthographic projection. `half_size` is visible to each side of the view axis across
+/// the shorter side of the picture. Depth is 1 at `near`, 0 at `far`.
 #[must_use]
 pub fn orthographic(half_size: f64, near: f64, far: f64, size: Size) -> DMat4 {
     let DVec2 { x, y } = shorter_side(size) / half_size;
@@ -186,7 +185,7 @@ pub fn orthographic(half_size: f64, near: f64, far: f64, size: Size) -> DMat4 {
     )
 }
 
-/// The factors of x and y with which the shorter side of the picture spans -1 to 1.
+/// Returns the factors of x and y with which the shorter side of the picture spans -1 to 1.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 fn shorter_side(size: Size) -> DVec2 {
     let (width, height) = (size.width as f64, size.height as f64);
@@ -194,13 +193,13 @@ fn shorter_side(size: Size) -> DVec2 {
     DVec2::new(shorter / width, shorter / height)
 }
 
-/// The matrix of a frame at a position.
+/// Returns the matrix of a frame at a position.
 #[must_use]
 pub fn placed(axes: DMat3, origin: DVec3) -> DMat4 {
     DMat4::from_mat3_translation(axes, origin)
 }
 
-/// Whether all numbers of two matrices have the same bits.
+/// Returns whether all numbers of two matrices have the same bits.
 #[must_use]
 pub fn same_bits(a: &DMat4, b: &DMat4) -> bool {
     a.to_cols_array().map(f64::to_bits) == b.to_cols_array().map(f64::to_bits)

@@ -1,11 +1,11 @@
 //! Values that are computed when a thread first needs them.
 //!
-//! The value is computed outside of its cell. A thread of rayon takes up other work while it waits
-//! for others; if that work needed the same cell, the thread would wait for itself. Computing a
-//! value twice is the cheaper mistake.
+//! The value is computed outside its cell. A rayon thread runs other work while it waits for
+//! others; if that work needed the same cell, the thread would wait for itself. Computing a value
+//! twice is the cheaper mistake.
 //!
 //! For the same reason nothing is computed inside [`without_computing`], where threads hold locks
-//! on what they draw.
+//! on parts of the picture.
 
 use std::cell::Cell;
 use std::sync::OnceLock;
@@ -15,10 +15,10 @@ thread_local! {
     static FORBIDDEN: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Returns the value of a cell, and computes it first if the cell is empty.
+/// Returns the value of a cell, computing it first if the cell is empty.
 ///
 /// # Panics
-/// In builds with debug assertions, inside of [`without_computing`] if the cell is empty.
+/// In builds with debug assertions, if the cell is empty inside [`without_computing`].
 #[inline]
 #[expect(clippy::disallowed_methods, reason = "this is the function to use instead")]
 pub fn get_or_compute<T>(cell: &OnceLock<T>, compute: impl FnOnce() -> T) -> &T {
@@ -33,7 +33,7 @@ pub fn get_or_compute<T>(cell: &OnceLock<T>, compute: impl FnOnce() -> T) -> &T 
     })
 }
 
-/// Runs a part of a parallel section in which everything it reads has already been computed.
+/// Runs a part of a parallel section. All values that it reads must have been computed before.
 pub fn without_computing<R>(work: impl FnOnce() -> R) -> R {
     /// Restores the flag, also if the work panics.
     struct Restore(bool);
@@ -54,7 +54,7 @@ mod tests {
     fn a_value_that_needs_itself_while_threads_wait_is_still_computed() {
         static CELL: OnceLock<u32> = OnceLock::new();
         fn value(depth: u32) -> u32 {
-            // As if a waiting thread took up work that needs the same value.
+            // As if a waiting thread ran work that needs the same value.
             if depth == 0 { 7 } else { *get_or_compute(&CELL, || value(depth - 1)) }
         }
         assert_eq!(*get_or_compute(&CELL, || value(3)), 7);

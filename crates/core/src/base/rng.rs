@@ -1,10 +1,10 @@
 //! Random numbers that are the same on every machine.
 //!
 //! SplitMix64 (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA
-//! 2014): every seed is as good as any other, so the number of a batch of test cases can serve as
-//! one. Tests depend on the sequence: pictures with listed sums and counterexamples named by their
-//! seeds are made from it. It is therefore written here rather than taken from a library, whose
-//! distributions may change with its version.
+//! 2014): all seeds are equally good, so the number of a batch of test cases can serve as a seed.
+//! Tests depend on the sequence: it produces pictures with listed sums and counterexamples named by
+//! their seeds. The generator is written here because a library may change its distributions in a
+//! new version.
 
 use glam::DVec3;
 
@@ -13,13 +13,13 @@ use glam::DVec3;
 pub struct Rng(u64);
 
 impl Rng {
-    /// The generator of a seed.
+    /// Creates the generator of a seed.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// 64 random bits.
+    /// Returns 64 random bits.
     pub const fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -27,50 +27,50 @@ impl Rng {
         z ^ (z >> 31)
     }
 
-    /// An integer from 0 to `n` - 1.
+    /// Returns an integer from 0 to `n` - 1.
     pub fn below(&mut self, n: u64) -> u64 {
         (self.bits() >> 11) % n
     }
 
-    /// An index into a list of `n` elements.
+    /// Returns an index into a list of `n` elements.
     pub fn index(&mut self, n: usize) -> usize {
         usize::try_from(self.below(n as u64)).expect("below a usize")
     }
 
-    /// An integer from `low` to `high`, inclusive.
+    /// Returns an integer from `low` to `high`, inclusive.
     pub fn between(&mut self, low: i32, high: i32) -> i32 {
         let span = i64::from(high) - i64::from(low) + 1;
         let up = self.below(span.unsigned_abs());
         i32::try_from(i64::from(low) + i64::try_from(up).expect("below 2^32")).expect("between")
     }
 
-    /// A copy of one of the elements.
+    /// Returns a copy of one of the elements.
     pub fn one_of<T: Clone>(&mut self, all: &[T]) -> T {
         all[self.index(all.len())].clone()
     }
 
-    /// True with a probability of `percent` percent.
+    /// Returns true with a probability of `percent` percent.
     pub fn percent(&mut self, percent: u64) -> bool {
         self.below(100) < percent
     }
 
-    /// True with a probability of 1 in `n`.
+    /// Returns true with a probability of 1 in `n`.
     pub fn one_in(&mut self, n: u64) -> bool {
         self.below(n) == 0
     }
 
-    /// A number from 0 up to, but not including, 1.
+    /// Returns a number from 0 up to, but not including, 1.
     #[expect(clippy::cast_precision_loss, reason = "53 bits")]
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number from `low` to `high`.
+    /// Returns a number from `low` to `high`.
     pub fn real(&mut self, low: f64, high: f64) -> f64 {
         low + self.unit() * (high - low)
     }
 
-    /// A point in the cube from -`size` to `size`.
+    /// Returns a point in the cube from -`size` to `size`.
     pub fn vector(&mut self, size: f64) -> DVec3 {
         DVec3::new(self.real(-size, size), self.real(-size, size), self.real(-size, size))
     }
@@ -80,7 +80,7 @@ impl Rng {
 mod tests {
     use super::*;
 
-    /// The first numbers of seed 1234567 as published with the reference implementation.
+    /// The numbers are the first of seed 1234567, as published with the reference implementation.
     #[test]
     fn the_sequence_is_that_of_splitmix64() {
         let mut rng = Rng::new(1_234_567);

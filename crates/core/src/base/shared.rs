@@ -3,8 +3,8 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// An [`Arc`] whose comparison looks at the address first, so that comparing two snapshots of a
-/// scene does not walk through every vertex of the meshes that they share.
+/// An [`Arc`] that compares addresses first, so comparing two snapshots of a scene does not visit
+/// every vertex of their shared meshes.
 #[derive(Debug, Default)]
 pub struct Shared<T>(Arc<T>);
 
@@ -14,20 +14,20 @@ impl<T> Shared<T> {
         Self(Arc::new(value))
     }
 
-    /// Whether both are the same value in memory.
+    /// Returns whether both are the same value in memory.
     #[must_use]
     pub fn same(a: &Self, b: &Self) -> bool {
         Arc::ptr_eq(&a.0, &b.0)
     }
 
-    /// The address of the value: of two values that are kept, different ones have different
-    /// addresses.
+    /// Returns the address of the value. Different values have different addresses while both are
+    /// alive.
     #[must_use]
     pub fn address(this: &Self) -> usize {
         Arc::as_ptr(&this.0).addr()
     }
 
-    /// Whether both are the same value in memory, or neither is there.
+    /// Returns whether both are the same value in memory, or both are `None`.
     #[must_use]
     pub fn both_same(a: Option<&Self>, b: Option<&Self>) -> bool {
         match (a, b) {

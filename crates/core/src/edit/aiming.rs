@@ -1,4 +1,4 @@
-//! Aims lights: where each stands, and which direction leads to a point.
+//! Aims lights: finds the position of a light and its direction to a point.
 
 use glam::DVec3;
 
@@ -8,26 +8,26 @@ use crate::scene::{
     Aim, Anchor, Command, ItemId, LightId, LightOrigin, Scene, SpotOwner, Tracked, View,
 };
 
-/// How far from the middle of the scene the mark of a sun stands, in its radii.
+/// The distance of a sun's mark from the middle of the scene, in the scene's radii.
 const SUN: f64 = 0.6;
 
-/// A light nearer to the centre of an object than this, in the object's radii, is in the centre.
+/// A light within this distance of an object's centre, in the object's radii, is in the centre.
 const NEAR: f64 = 0.1;
 
-/// The selected light, if it can be aimed.
+/// Returns the selected light, if it can be aimed.
 ///
 /// # Errors
-/// If it is neither a spot nor a sun.
+/// If the light is neither a spot nor a sun, or is locked.
 pub fn can_aim(scene: &Scene, view: &View) -> Result<LightId, Refusal> {
     let (id, light) = set_transform::selected_light(scene, view)?;
     set_transform::unlocked(scene, ItemId::Light(id))?;
     if light.kind.has_direction() { Ok(id) } else { Err(Refusal::NotAimed) }
 }
 
-/// The position and the direction of a light, for its mark and to aim it.
+/// Returns the position and direction of a light, for its mark and for aiming it.
 ///
-/// A sun, which is infinitely far away, stands beside the scene, on the side that it shines from;
-/// ambient light stands nowhere.
+/// A sun is infinitely far away, so its position is next to the scene, on the side from which it
+/// shines. Ambient light has no position, so the result is `None`.
 #[must_use]
 pub fn stands(scene: &Scene, view: &View, id: LightId) -> Option<Aim> {
     let LightOrigin { position, direction } =
@@ -50,7 +50,7 @@ pub fn stands(scene: &Scene, view: &View, id: LightId) -> Option<Aim> {
 /// Aims the selected light at the centre of the selected object.
 ///
 /// # Errors
-/// If there is no object, or the light cannot be aimed or stands in the centre.
+/// If the scene has no object, or the light cannot be aimed or is in the object's centre.
 pub fn aim_at_selection(
     scene: &Scene,
     view: &View,
@@ -61,16 +61,16 @@ pub fn aim_at_selection(
     let sphere = framing::sphere(scene, view, &[object]).ok_or(Refusal::NothingToFrame)?;
     let from = stands(scene, view, id).ok_or(Refusal::NotAimed)?.position;
     if from.distance(sphere.centre) < NEAR * sphere.radius {
-        // From within the object no direction leads to it.
+        // From inside the object, no direction leads to it.
         return Err(Refusal::AimedAtItself);
     }
     aim(scene, view, id, sphere.centre, phase)
 }
 
-/// Aims a light at a point. A spot that follows its owner stays where it is from then on.
+/// Aims a light at a point. A spot that follows its owner becomes fixed at its current position.
 ///
 /// # Errors
-/// If the light cannot be aimed or stands there.
+/// If the light cannot be aimed or is at that point.
 pub fn aim(
     scene: &Scene,
     view: &View,

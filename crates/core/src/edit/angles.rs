@@ -1,36 +1,37 @@
-//! Angles that say the same turn, and which of them are shown.
+//! Finds equivalent angles of a rotation, and chooses which to show.
 //!
-//! A turn about three axes, A(a) B(b) C(c), is also A(a + 180) B(180 - b) C(c + 180), and whole
-//! turns may be added to each angle. If b is 90 or -90 degrees, A and C turn about one axis, and
-//! only the sum or the difference of a and c counts.
+//! A rotation about three axes, A(a) B(b) C(c), equals A(a + 180) B(180 - b) C(c + 180), and full
+//! turns may be added to each angle. If b is 90 or -90 degrees (gimbal lock), A and C turn about
+//! one axis, and only the sum or the difference of a and c matters.
 
 use glam::{DMat3, DVec3};
 
-/// How near to 90 degrees b makes A and C turn about one axis, in degrees.
+/// A and C turn about one axis if b is this near to 90 degrees.
 const UPRIGHT: f64 = 1e-6;
 
-/// The angles of the same turn with the smallest a and c: 120 degrees about B are 0, 120, 0 and not
-/// 180, 60, 180.
+/// Returns the equivalent angles with the smallest a and c: 120 degrees about B are 0, 120, 0 and
+/// not 180, 60, 180.
 #[must_use]
 pub(super) fn plainest(degrees: DVec3) -> DVec3 {
     let aside = |angles: DVec3| angles.x.abs() + angles.z.abs();
     let other = other(degrees).map(within_half_a_turn);
-    // Rounding does not decide between two that are equally plain.
+    // Rounding must not decide between equally plain angles.
     if aside(other) < aside(degrees) - 1e-9 { other } else { degrees }
 }
 
-/// The angles of the same turn that are nearest to `last`. `turn` gives the turn of angles.
+/// Returns the equivalent angles nearest to `last`. `turn` computes the rotation of angles.
 #[must_use]
 pub fn nearest(degrees: DVec3, last: DVec3, turn: impl Fn(DVec3) -> DMat3) -> DVec3 {
     let mut all = vec![degrees, other(degrees)];
     if (degrees.y.abs() - 90.0).abs() < UPRIGHT {
-        // The last c stays, and a takes what it changes; which way depends on the axes.
+        // Keep the last c and let a take up the change; the sign depends on the axes.
         let with =
             |sign: f64| DVec3::new(degrees.x + sign * (last.z - degrees.z), degrees.y, last.z);
         all.extend(
             [-1.0, 1.0].map(with).into_iter().filter(|it| same_turn(turn(*it), turn(degrees))),
         );
     }
+    // Full turns may be added to each angle.
     let near = |angles: DVec3| {
         let turns = ((last - angles) / 360.0).round();
         angles + turns * 360.0
@@ -42,7 +43,7 @@ pub fn nearest(degrees: DVec3, last: DVec3, turn: impl Fn(DVec3) -> DMat3) -> DV
         .fold(first, |best, angles| if distance(&angles) < distance(&best) { angles } else { best })
 }
 
-/// Whether two turns are the same but for rounding.
+/// Returns whether two rotations are equal up to rounding.
 #[must_use]
 pub fn same_turn(a: DMat3, b: DMat3) -> bool {
     let difference = a - b;
@@ -50,12 +51,12 @@ pub fn same_turn(a: DMat3, b: DMat3) -> bool {
     columns.iter().all(|column| column.abs().max_element() < 1e-9)
 }
 
-/// The other angles within a turn that say the same.
+/// Returns the other angles within a full turn that give the same rotation.
 fn other(degrees: DVec3) -> DVec3 {
     DVec3::new(degrees.x + 180.0, 180.0 - degrees.y, degrees.z + 180.0)
 }
 
-/// The same angle above -180 and up to 180 degrees.
+/// Returns the same angle, above -180 and up to 180 degrees.
 fn within_half_a_turn(degrees: f64) -> f64 {
     degrees - 360.0 * ((degrees - 180.0) / 360.0).ceil()
 }
@@ -90,7 +91,7 @@ mod tests {
             let mut shown = DVec3::ZERO;
             for step in 1..=80 {
                 let exact = axis.unit() * 10.0 * f64::from(step);
-                // As they are computed from a matrix: the middle one within a quarter turn.
+                // As computed from a matrix: the middle angle is within a quarter turn.
                 let wrapped = exact.map(within_half_a_turn);
                 let canonical = if wrapped.y.abs() > 90.0 {
                     other(wrapped).map(within_half_a_turn)

@@ -1,4 +1,4 @@
-//! Arranges objects: on the ground, in line with another, back to where their files put them.
+//! Arranges objects: on the ground, in line with another object, or back at the place in the file.
 
 use glam::{DMat4, DVec3};
 
@@ -6,14 +6,14 @@ use super::{GesturePhase, Refusal, set_transform, steps};
 use crate::base::math::Axis;
 use crate::scene::{Bounds, Command, ItemId, Object, ObjectId, Scene, View};
 
-/// The box around an object in the world.
+/// Returns the bounding box of an object in the world.
 #[must_use]
 pub fn world_box(object: &Object, time: f64) -> Option<Bounds> {
     Bounds::of(object.placed_vertices(time))
 }
 
-/// The height of the ground: of the highest level plane of the menu of shapes that is shown, else
-/// 0. `id` itself is no ground.
+/// Returns the height of the ground: of the highest visible and level ground or plane shape, else
+/// 0. Excludes `id`.
 #[must_use]
 pub fn ground(scene: &Scene, id: ObjectId) -> f64 {
     let planes = scene.objects.iter().filter(|(other, object)| {
@@ -27,7 +27,7 @@ pub fn ground(scene: &Scene, id: ObjectId) -> f64 {
 /// Moves the selected object up or down until its lowest point is at the height of the ground.
 ///
 /// # Errors
-/// If no object is selected, or it is empty, locked, or on the ground already.
+/// If no object is selected, or it is empty, locked, or already on the ground.
 pub fn drop_to_ground(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Command, Refusal> {
     let (id, object) = set_transform::selected_object(scene, view)?;
     let bounds = world_box(object, view.time).ok_or(Refusal::NoPolygons)?;
@@ -38,7 +38,7 @@ pub fn drop_to_ground(scene: &Scene, view: &View, phase: GesturePhase) -> Result
     moved(scene, view, id, DVec3::Y * by, phase)
 }
 
-/// Puts the selected object back to where its file has it.
+/// Resets the selected object to the placement of its file.
 ///
 /// # Errors
 /// If no object is selected, or it is locked or has not been moved.
@@ -50,11 +50,11 @@ pub fn reset(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Command,
     set_transform::object(scene, view, id, DMat4::IDENTITY, phase)
 }
 
-/// Moves the objects among `others` along an axis of the world until the middles of their boxes
-/// are in line with that of the selected object.
+/// Moves the objects among `others` along an axis of the world until the centres of their boxes are
+/// in line with the centre of the selected object's box.
 ///
 /// # Errors
-/// If there are none, or all of them are locked or in line already.
+/// If the list has no such objects, or all of them are locked or already in line.
 pub fn align(
     scene: &Scene,
     view: &View,
@@ -80,7 +80,7 @@ pub fn align(
     if commands.is_empty() { Err(refused) } else { Ok(Command::Batch(commands)) }
 }
 
-/// An object moved along the world's axes.
+/// Moves an object along the world's axes.
 fn moved(
     scene: &Scene,
     view: &View,

@@ -1,4 +1,4 @@
-//! Copies of items: next to the originals, or from text that was copied in this or another window.
+//! Copies items: next to the originals, or from text copied in this or another window.
 
 use std::collections::BTreeMap;
 
@@ -12,10 +12,10 @@ use crate::scene::{
     Pose, Scene, SpotOwner, Tracked, View,
 };
 
-/// The most places that are tried for copies.
+/// The largest number of places that are tried for copies.
 const MOST_IN_A_ROW: u16 = 1000;
 
-/// Items with the ids that they have among themselves.
+/// Items with ids, through which they refer to each other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Copies {
     /// The objects, in the order of the list.
@@ -27,15 +27,15 @@ pub struct Copies {
 }
 
 impl Copies {
-    /// Whether it is empty.
+    /// Returns whether all three lists are empty.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.objects.is_empty() && self.cameras.is_empty() && self.lights.is_empty()
     }
 }
 
-/// Adds copies of the selected items. Copies of objects are moved by the width of the originals,
-/// once or as often as needed to find a free place.
+/// Adds copies of the selected items. Copies of objects are moved by the width of the originals, as
+/// often as needed to reach a free place.
 ///
 /// # Errors
 /// If nothing is selected.
@@ -52,11 +52,11 @@ pub fn duplicate(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Comman
     })
 }
 
-/// Adds items under new ids and free names. If an equal object has the same place, all are moved
-/// next to it. Spots and cameras stay attached to the objects among them.
+/// Adds items under new ids and free names. If the place of an object is taken by an equal object,
+/// all items are moved next to it. Spots and cameras stay attached to copied objects.
 ///
 /// # Errors
-/// If one of them is not valid in the scene.
+/// If an item is invalid in the scene.
 pub fn insert(scene: &Scene, view: &View, copies: Copies) -> Result<Command, Refusal> {
     let Copies { objects, cameras, lights } = copies;
     let by = free_place(scene, view, &objects.iter().map(|(_, it)| it).collect::<Vec<_>>());
@@ -67,7 +67,7 @@ pub fn insert(scene: &Scene, view: &View, copies: Copies) -> Result<Command, Ref
         commands.push(command);
         Ok(())
     };
-    // Each is inserted at the front.
+    // Each object is inserted at the front, so the last is inserted first.
     let mut new_objects = BTreeMap::new();
     let mut placed = Vec::new();
     for ((old, mut object), new) in objects.into_iter().rev().zip(scene.next_id..) {
@@ -80,6 +80,7 @@ pub fn insert(scene: &Scene, view: &View, copies: Copies) -> Result<Command, Ref
         let command = insert_objects(&after, placed);
         add(&mut after, command)?;
     }
+    // A camera keeps orbiting an object that is copied with it. Without its target it flies.
     let mut new_cameras = BTreeMap::new();
     for (old, mut camera) in cameras {
         let pose = *camera.pose.now();
@@ -104,8 +105,8 @@ pub fn insert(scene: &Scene, view: &View, copies: Copies) -> Result<Command, Ref
     Ok(Command::Batch(commands))
 }
 
-/// The owner of a spot that was copied: the copy of its owner, its owner if that is here, or else
-/// the selected item of its kind.
+/// Returns the owner of a copied spot: the copy of the owner, the owner itself if it exists here,
+/// or else the selected item of the same kind.
 fn attached(
     scene: &Scene,
     owner: &SpotOwner,
@@ -129,7 +130,8 @@ fn attached(
     }
 }
 
-/// The movement that takes copies of these objects to a free place: a multiple of their width.
+/// Returns the translation that takes copies of these objects to a free place: a multiple of their
+/// width.
 fn free_place(scene: &Scene, view: &View, objects: &[&Object]) -> DVec3 {
     let step = width(scene, view, objects);
     let is_taken = |by: DVec3| {
@@ -145,8 +147,8 @@ fn free_place(scene: &Scene, view: &View, objects: &[&Object]) -> DVec3 {
     places.into_iter().find(|by| !is_taken(*by)).unwrap_or(step)
 }
 
-/// The width of objects together, along the level axis of the world that points most to the right
-/// in the picture.
+/// Returns the total width of objects, along the horizontal world axis that points most to the
+/// right in the picture.
 fn width(scene: &Scene, view: &View, objects: &[&Object]) -> DVec3 {
     let right = scene.observer_frame(view).x_axis.truncate();
     let axis = if right.x.abs() >= right.z.abs() {

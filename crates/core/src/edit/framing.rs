@@ -1,4 +1,4 @@
-//! Framing: the camera position from which things fill the picture.
+//! Framing: the camera position from which objects fill the picture.
 //!
 //! ```text
 //! distance = r / sin(a)                                 r the bounding radius, a the half-angle
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The camera keeps its direction. In analysis it keeps looking at the mean of the object's
-//! vertices, so the framed sphere has its centre there.
+//! vertices, so the framed sphere is centred there.
 
 use glam::{DMat3, DVec3};
 
@@ -19,16 +19,16 @@ use crate::scene::{CameraMode, Command, Lens, Object, ObjectId, Observer, Pose, 
 /// The bounding sphere to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// Its middle.
+    /// The centre.
     pub centre: DVec3,
-    /// Its radius: at least 0.
+    /// The radius: at least 0.
     pub radius: f64,
 }
 
-/// A view along an axis of the world.
+/// A view of the scene along an axis of the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
-    /// Along -Z.
+    /// From +Z, along -Z.
     Front,
     /// From +X, along -X.
     Right,
@@ -43,7 +43,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The axes of a camera that looks from there.
+    /// Returns the axes of a camera that looks from this side.
     #[must_use]
     pub const fn axes(self) -> DMat3 {
         match self {
@@ -57,7 +57,7 @@ impl Side {
     }
 }
 
-/// The default direction to view models from: degrees to the right of the front, and up.
+/// The default direction for viewing models, in degrees: to the right of the front, and up.
 pub const MODELS_FROM: [f64; 2] = [30.0, 20.0];
 
 /// The margin around models in the picture, as a fraction of the distance.
@@ -66,7 +66,7 @@ const MARGIN: f64 = 1.0 / 20.0;
 /// Frames the selected object (key `.`).
 ///
 /// # Errors
-/// If there is no object, or it has no vertices.
+/// If no object is selected, or it has no vertices.
 pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     let (id, _) = set_transform::selected_object(scene, view)?;
     objects(scene, view, &[id])
@@ -80,7 +80,7 @@ pub fn all(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     objects(scene, view, &shown(scene, view))
 }
 
-/// The visible objects.
+/// Returns the visible objects.
 fn shown(scene: &Scene, view: &View) -> Vec<ObjectId> {
     let shown = |id: &ObjectId, object: &Object| {
         object.visible && (!view.only_selected || view.object == Some(*id))
@@ -91,13 +91,13 @@ fn shown(scene: &Scene, view: &View) -> Vec<ObjectId> {
 /// Frames these objects.
 ///
 /// # Errors
-/// If none of them has vertices.
+/// If no object has vertices.
 pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, Refusal> {
     framed(scene, view, ids, scene.selected_camera(view).pose.now().axes, 0.0)
 }
 
 /// Frames everything visible with a margin, from `right` degrees to the right of the front and `up`
-/// degrees above: the view of models that come without a scene.
+/// degrees above it. This is the view of models that come without a scene.
 ///
 /// # Errors
 /// If nothing is visible.
@@ -107,7 +107,7 @@ pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Result<Comma
     framed(scene, view, &shown(scene, view), axes, MARGIN)
 }
 
-/// The distance at which [`models`] shows a sphere of radius `r`.
+/// Returns the distance at which [`models`] shows a sphere of radius `r`.
 #[must_use]
 pub fn models_distance(first: &Lens, r: f64) -> f64 {
     lens(first, r * (1.0 + MARGIN)).0
@@ -116,14 +116,14 @@ pub fn models_distance(first: &Lens, r: f64) -> f64 {
 /// Frames the selected object from a side (Ctrl+1, 3 and 7).
 ///
 /// # Errors
-/// If there is no object, or it has no vertices.
+/// If no object is selected, or it has no vertices.
 pub fn side(scene: &Scene, view: &View, side: Side) -> Result<Command, Refusal> {
     let (id, _) = set_transform::selected_object(scene, view)?;
     framed(scene, view, &[id], side.axes(), 0.0)
 }
 
-/// The bounding sphere of objects: of one object its own, of several that of their bounding box.
-/// `None` if none of them has vertices.
+/// Returns the bounding sphere of objects. For several objects, it encloses their spheres and is
+/// centred in the box around these. `None` if no object has vertices.
 #[must_use]
 pub fn sphere(scene: &Scene, view: &View, ids: &[ObjectId]) -> Option<Sphere> {
     let spheres: Vec<(DVec3, f64)> = ids
@@ -141,7 +141,7 @@ pub fn sphere(scene: &Scene, view: &View, ids: &[ObjectId]) -> Option<Sphere> {
     Some(Sphere { centre, radius: spheres.iter().map(reach).fold(0.0, f64::max) })
 }
 
-/// The distance from the centre of a sphere of radius `r`, and the lens to see it.
+/// Returns the distance from the centre of a sphere of radius `r`, and the lens for viewing it.
 #[must_use]
 pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
     let distance = r / libm::sin(lens.half_angle.to_radians());
@@ -158,7 +158,7 @@ pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
     (distance, framed)
 }
 
-/// Frames these objects along these axes, with a margin as a fraction of the distance.
+/// Frames these objects with these camera axes. The margin is a fraction of the distance.
 fn framed(
     scene: &Scene,
     view: &View,
@@ -171,6 +171,7 @@ fn framed(
     }
     let camera = scene.selected_camera(view);
     let mode = camera.pose.now().mode_with(view.object);
+    // A camera in analysis of the framed object keeps orbiting it; any other camera flies.
     let analysed = match (mode, ids) {
         (CameraMode::Analysis { target }, [id]) if target == *id => scene.objects.get(*id),
         (CameraMode::Analysis { .. } | CameraMode::Fly, _) => None,
@@ -180,16 +181,16 @@ fn framed(
         None => (sphere(scene, view, ids), CameraMode::Fly),
     };
     let Sphere { centre, radius } = sphere.ok_or(Refusal::NothingToFrame)?;
-    // A single point is looked at as if it were a sphere of one unit.
+    // A single point is framed like a sphere of radius 1.
     let radius = if radius > 0.0 { radius } else { 1.0 };
     let (distance, lens) = lens(&camera.lens, radius * (1.0 + margin));
-    // In parallel projection a margin is there already.
+    // In orthographic projection, 1.1 r already includes a margin.
     let lens = Lens { half_size: 1.1 * radius, ..lens };
     let pose = Pose { eye: centre + axes.z_axis * distance, axes, mode };
     set_transform::pose_and_lens(scene, view.camera, pose, lens, GesturePhase::First)
 }
 
-/// The sphere about the mean of an object's vertices, through the one farthest from it.
+/// Returns the sphere about the mean of an object's vertices, through the farthest vertex.
 fn about_the_mean(object: &Object, time: f64) -> Sphere {
     let centre = object.centre(time);
     let squares = object.placed_vertices(time).map(|p| p.distance_squared(centre));

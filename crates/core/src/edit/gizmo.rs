@@ -1,7 +1,7 @@
-//! Handles for the mouse: where the selected item is moved, rotated or scaled, along which axes,
-//! and what an amount means there.
+//! Handles for the mouse: the point and the axes for moving, rotating or scaling the selected item,
+//! and the meaning of an amount there.
 //!
-//! An amount counts from the scene in which a drag began, so that a drag adds up no rounding.
+//! An amount is relative to the scene at the start of a drag, so rounding errors do not add up.
 
 use glam::{DMat3, DVec3};
 
@@ -9,62 +9,63 @@ use super::{GesturePhase, Refusal, aiming, set_transform, steps, transform};
 use crate::base::math::{self, Axis};
 use crate::scene::{Command, Frame, ItemId, Observer, Scene, Subject, Transformation, View};
 
-/// Where the handles of the selected item stand.
+/// The position and the axes of the selected item's handles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pivot {
-    /// What they do.
+    /// The transformation that the handles apply.
     pub kind: Transformation,
-    /// Their place in the world.
+    /// The position of the handles in the world.
     pub origin: DVec3,
-    /// The frame's axes in the world, as long as its units.
+    /// The frame's axes in the world, with the lengths of its units.
     pub axes: DMat3,
 }
 
-/// How far an item is transformed, in the frame of a [`Pivot`].
+/// The amount of a transformation, in the frame of a [`Pivot`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
-    /// Units along each axis.
+    /// A translation in units along each axis.
     Move(DVec3),
-    /// An angle in radians about an axis, by the right-hand rule.
+    /// A rotation in radians about an axis, by the right-hand rule.
     Turn(DVec3, f64),
-    /// A factor for each axis.
+    /// A scale factor for each axis.
     Scale(DVec3),
 }
 
 impl Pivot {
-    /// The direction of an axis in the world; `None` if it has no length.
+    /// Returns the direction of an axis in the world; `None` if the axis has length 0.
     #[must_use]
     pub fn direction(&self, axis: Axis) -> Option<DVec3> {
         math::unit(self.axes.col(axis.index()))
     }
 
-    /// The length of a unit along an axis, in the world.
+    /// Returns the length of a unit along an axis, in world units.
     #[must_use]
     pub fn unit(&self, axis: Axis) -> f64 {
         self.axes.col(axis.index()).length()
     }
 
-    /// A vector of the world in the frame; `None` if the frame is flat.
+    /// Transforms a world vector into the frame; `None` if the frame is flat.
     #[must_use]
     pub fn in_frame(&self, v: DVec3) -> Option<DVec3> {
         let inside = self.axes.inverse() * v;
         (math::has_full_rank(self.axes) && inside.is_finite()).then_some(inside)
     }
 
-    /// -1 if the frame is mirrored, so that its turns run the other way in the world; else 1.
+    /// Returns the handedness: -1 if the frame is mirrored and turns therefore run the other way in
+    /// the world, else 1.
     #[must_use]
     pub fn hand(&self) -> f64 {
         if self.axes.determinant() < 0.0 { -1.0 } else { 1.0 }
     }
 }
 
-/// Where the selected item of the subject is transformed.
+/// Returns the pivot for transforming the selected item of the subject.
 ///
-/// In the global frame an object is rotated and scaled about the world's origin, and there the
-/// handles stand.
+/// In the global frame an object is rotated and scaled about the world's origin, so the handles are
+/// there.
 ///
 /// # Errors
-/// If it cannot be transformed, or is the camera that the picture is seen through.
+/// If the item cannot be transformed, or is the camera through which the picture is seen.
 pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
     let kind = view.transformation;
     match view.subject {
@@ -111,7 +112,7 @@ pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
 /// Transforms the selected item of the subject by an amount.
 ///
 /// # Errors
-/// If it cannot be transformed in this way.
+/// If the item cannot be transformed in this way.
 pub fn transform(
     scene: &Scene,
     view: &View,
@@ -125,7 +126,7 @@ pub fn transform(
     }
 }
 
-/// The amount rounded to whole steps of the keys x, y and z.
+/// Rounds an amount to whole steps of the keys x, y and z.
 #[must_use]
 pub fn snapped(scene: &Scene, view: &View, amount: Amount) -> Amount {
     match amount {
@@ -144,6 +145,7 @@ pub fn snapped(scene: &Scene, view: &View, amount: Amount) -> Amount {
             Amount::Turn(axis, degrees.to_radians())
         }
         Amount::Scale(factors) => Amount::Scale(factors.map(|factor| {
+            // Scale steps multiply, so a factor snaps to a power of the step.
             let step = libm::log(view.steps.scaling);
             let count = libm::log(libm::fabs(factor)) / step;
             if factor == 0.0 || !count.is_finite() {

@@ -1,9 +1,9 @@
-//! The history: changes as steps that can be undone and redone.
+//! The history: the undo stack.
 //!
 //! One undo undoes one step. A step holds the commands that lead away from the current position:
-//! steps before it lead back, steps after it lead forward.
+//! earlier steps lead back, later steps lead forward.
 //!
-//! Looking around is not a step. Instead, steps that do not move the camera take its new pose, and
+//! Looking around is not a step. Instead, steps that do not move the camera adopt its new pose, so
 //! undoing them does not move the view.
 
 use super::{Gesture, Selected};
@@ -14,22 +14,22 @@ use crate::scene::{
 #[derive(Debug)]
 struct Step {
     label: String,
-    /// Applied from last to first.
+    /// The commands, in reverse order of application.
     commands: Vec<Command>,
-    /// The selection before and after it, if that was noted.
+    /// The selection before and after the step, if it was recorded.
     selected: Option<[Selected; 2]>,
 }
 
-/// The steps done and undone. It is the only writer of the scene: any other change would invalidate
-/// the steps.
+/// The steps done and undone. Only the history writes the scene, since any other change would
+/// invalidate the steps.
 #[derive(Debug)]
 pub struct History {
     steps: Vec<Step>,
-    /// The number of steps done; those after them were undone.
+    /// The number of steps done; later steps were undone.
     position: usize,
     /// The gesture of the last step, while it may continue.
     open: Gesture,
-    /// The gesture that moves the view, and how the cameras looked before it.
+    /// The gesture that moves the view, and the views of the cameras before it.
     looking: (Gesture, Vec<(CameraId, Looking)>),
     /// The position at which the scene was saved; `None` if no step leads there any more.
     saved: Option<usize>,
@@ -42,18 +42,18 @@ impl Default for History {
 }
 
 impl History {
-    /// A history without steps, of a scene that counts as saved.
+    /// Creates a history without steps, for a scene that counts as saved.
     #[must_use]
     pub const fn new() -> Self {
         let looking = (Gesture::Whole, Vec::new());
         Self { steps: Vec::new(), position: 0, open: Gesture::Whole, looking, saved: Some(0) }
     }
 
-    /// Applies a command, and records under `label` how to undo it; of a gesture, the last label
-    /// stays. Undone steps are discarded.
+    /// Applies a command, and records the step for undoing it under `label`. In a gesture, the last
+    /// label is kept. Undone steps are discarded.
     ///
     /// # Errors
-    /// If the command does not fit the scene; then neither scene nor history changes.
+    /// If the command does not fit the scene. Scene and history are then unchanged.
     pub fn perform(
         &mut self,
         scene: &mut Scene,
@@ -65,12 +65,12 @@ impl History {
         self.steps.truncate(self.position);
         match self.steps.last_mut() {
             Some(step) if gesture != Gesture::Whole && gesture == self.open => {
-                // The step goes back to before the gesture began; the places that the gesture went
-                // through on its way are of no interest to anybody.
+                // The step leads back to the state before the gesture. Intermediate states are not
+                // recorded.
                 if !step.commands.last().is_some_and(|last| last.overwrites(&back)) {
                     step.commands.push(back);
                 }
-                // It says how far the whole gesture went.
+                // The last label describes the whole gesture.
                 label.clone_into(&mut step.label);
                 self.saved = self.saved.filter(|saved| *saved < self.position);
             }
@@ -85,11 +85,11 @@ impl History {
         Ok(())
     }
 
-    /// Moves the view: applies a command that gives cameras other poses and lenses. It is no step;
-    /// any other command is one, under the label "Move the view".
+    /// Moves the view: applies a command that changes only poses and lenses of cameras. This is not
+    /// a step. Any other command becomes a step with the label "Move the view".
     ///
     /// # Errors
-    /// If the command does not fit the scene; then neither scene nor history changes.
+    /// If the command does not fit the scene. Scene and history are then unchanged.
     pub fn navigate(
         &mut self,
         scene: &mut Scene,
@@ -109,13 +109,14 @@ impl History {
         for ((id, before), (_, after)) in before.iter().zip(looking(scene)) {
             self.follow(*id, before, &after);
         }
+        // A gesture keeps the views from before its first change, for cancelling it.
         if gesture == Gesture::Whole || gesture != self.looking.0 {
             self.looking = (gesture, before);
         }
         Ok(())
     }
 
-    /// Lets the steps on both sides keep how a camera looks now.
+    /// Updates the steps on both sides with the new view of a camera.
     fn follow(&mut self, id: CameraId, before: &Looking, after: &Looking) {
         let (done, undone) = self.steps.split_at_mut(self.position);
         let sides =
@@ -123,15 +124,15 @@ impl History {
         for steps in sides {
             let mut follower =
                 Follower { id, pose: Some(before.pose.clone()), lens: Some(before.lens) };
-            // From the nearest on: the last command of a step is applied first.
+            // The nearest step comes first; the last command of a step is applied first.
             for command in steps.flat_map(|step: &mut Step| step.commands.iter_mut().rev()) {
                 follower.pass(command, after);
             }
         }
     }
 
-    /// Notes what was selected before the last step, unless it is part of a gesture that began
-    /// before, and what is selected after it.
+    /// Records the selection before and after the last step. If the step continues a gesture, the
+    /// selection from before the gesture is kept.
     pub fn note_selected(&mut self, before: Selected, after: Selected) {
         if let Some(step) = self.position.checked_sub(1).and_then(|last| self.steps.get_mut(last)) {
             let before = step.selected.take().map_or(before, |[before, _]| before);
@@ -139,20 +140,20 @@ impl History {
         }
     }
 
-    /// The selection before the step that undo would undo.
+    /// Returns the selection before the step that undo would undo.
     #[must_use]
     pub fn selected_before(&self) -> Option<&Selected> {
         let last = self.steps.get(self.position.checked_sub(1)?)?;
         last.selected.as_ref().map(|[before, _]| before)
     }
 
-    /// The selection after the step that redo would redo.
+    /// Returns the selection after the step that redo would redo.
     #[must_use]
     pub fn selected_after(&self) -> Option<&Selected> {
         self.steps.get(self.position)?.selected.as_ref().map(|[_, after]| after)
     }
 
-    /// Undoes the last step. Returns its label; `None` if there was no step.
+    /// Undoes the last step and returns its label; `None` at the beginning of the history.
     pub fn undo(&mut self, scene: &mut Scene) -> Option<String> {
         let last = self.position.checked_sub(1)?;
         let label = self.cross(scene, last)?;
@@ -160,15 +161,16 @@ impl History {
         Some(label)
     }
 
-    /// Redoes the step that was undone last. Returns its label; `None` if there was none.
+    /// Redoes the step that was undone last and returns its label; `None` at the end of the
+    /// history.
     pub fn redo(&mut self, scene: &mut Scene) -> Option<String> {
         let label = self.cross(scene, self.position)?;
         self.position += 1;
         Some(label)
     }
 
-    /// Cancels the current gesture, without a step to redo. Returns whether there was anything to
-    /// undo.
+    /// Cancels the current gesture, without leaving a step to redo. Returns whether there was a
+    /// change to undo.
     pub fn abandon(&mut self, scene: &mut Scene, gesture: Gesture) -> bool {
         if gesture == Gesture::Whole {
             return false;
@@ -178,7 +180,7 @@ impl History {
             for (id, before) in before {
                 let Some(camera) = scene.cameras.get(id) else { continue };
                 let camera = Box::new(before.given_to(camera));
-                // A pose that was there fits.
+                // The camera had this pose before, so the command fits.
                 let _ = self.navigate(
                     scene,
                     Command::Replace(Item::Camera(id, camera)),
@@ -194,24 +196,24 @@ impl History {
         true
     }
 
-    /// Goes to the point after `position` steps, at most to the end.
+    /// Goes to the point after `position` steps, or to the end if there are fewer.
     pub fn go_to(&mut self, scene: &mut Scene, position: usize) {
         while self.position > position && self.undo(scene).is_some() {}
         while self.position < position && self.redo(scene).is_some() {}
     }
 
-    /// The labels of all steps, oldest first: those done, then those undone.
+    /// Returns the labels of all steps, oldest first: the steps done, then the steps undone.
     pub fn steps(&self) -> impl ExactSizeIterator<Item = &str> {
         self.steps.iter().map(|step| step.label.as_str())
     }
 
-    /// The number of steps done.
+    /// Returns the number of steps done.
     #[must_use]
     pub const fn position(&self) -> usize {
         self.position
     }
 
-    /// Whether the scene is unchanged since it was last saved or loaded.
+    /// Returns whether the scene is unchanged since it was last saved or loaded.
     #[must_use]
     pub fn is_saved(&self) -> bool {
         self.saved == Some(self.position)
@@ -239,13 +241,14 @@ impl History {
         let commands = std::mem::take(&mut step.commands);
         match Command::Batch(commands.into_iter().rev().collect()).apply(scene) {
             Ok(Command::Batch(mut back)) => {
-                // The batch gives them in the order of their application; a step keeps the reverse.
+                // The batch returns commands in the order of application; a step stores the
+                // reverse.
                 back.reverse();
                 step.commands = back;
                 Some(step.label.clone())
             }
-            // Only where somebody else has written the scene: the steps lead nowhere any more, and
-            // the scene is kept as it is.
+            // This happens only if other code has written the scene. The steps are then invalid,
+            // and the scene is kept as it is.
             _ => {
                 (self.steps, self.position, self.saved) = (Vec::new(), 0, None);
                 None
@@ -254,7 +257,7 @@ impl History {
     }
 }
 
-/// How a camera looks at the scene.
+/// The view of a camera: its pose and lens.
 #[derive(Clone, Debug)]
 struct Looking {
     pose: Tracked<Pose>,
@@ -271,7 +274,7 @@ impl Looking {
     }
 }
 
-/// Goes from step to step with a camera that has moved.
+/// Passes the new view of a camera from step to step.
 struct Follower {
     id: CameraId,
     /// The pose to replace; `None` beyond a step that changes it.
@@ -280,7 +283,7 @@ struct Follower {
 }
 
 impl Follower {
-    /// Gives the camera its new view in a command that only keeps the old one.
+    /// Sets the new view in a command that keeps the camera's old view.
     fn pass(&mut self, command: &mut Command, after: &Looking) {
         match command {
             Command::Replace(Item::Camera(id, camera)) if *id == self.id => {
@@ -291,7 +294,7 @@ impl Follower {
                     camera.lens = after.lens;
                 }
             }
-            // There is no such camera beyond.
+            // Beyond this command the camera does not exist.
             Command::Insert { item: Item::Camera(id, _), .. }
             | Command::Remove(ItemId::Camera(id))
                 if *id == self.id =>
@@ -310,9 +313,9 @@ impl Follower {
     }
 }
 
-/// Sets a stored pose to the new one if its step did not move the camera. A step that only aimed
-/// it, since the object that it looks at has moved, did not: whoever undoes it aims it again.
-/// Returns the pose to replace farther on.
+/// Sets a stored pose to the new one if its step did not move the camera, and returns the pose to
+/// replace in further steps. A step that only aimed the camera at its moved object did not move it:
+/// undoing that step aims the camera again.
 fn followed(
     old: &Tracked<Pose>,
     stored: &mut Tracked<Pose>,
@@ -329,7 +332,7 @@ fn followed(
     Some(std::mem::replace(stored, after.pose.clone()))
 }
 
-/// Collects the cameras that a command replaces. Says whether it does nothing else.
+/// Collects the cameras that a command replaces. Returns whether it has no other effect.
 fn cameras_of(command: &Command, ids: &mut Vec<CameraId>) -> bool {
     match command {
         Command::Replace(Item::Camera(id, _)) => {

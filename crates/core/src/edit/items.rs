@@ -13,7 +13,7 @@ use crate::scene::{
     Tracked,
 };
 
-/// The maximum number of parts to split at once, so that the outline stays readable.
+/// The largest number of parts to split at once, which keeps the outline readable.
 pub const MOST_PARTS: usize = 1000;
 
 /// Adds an object at the front of the list.
@@ -22,7 +22,7 @@ pub fn insert_object(scene: &Scene, object: Object) -> Command {
     insert_objects(scene, vec![object])
 }
 
-/// Adds objects, each at the front of the list, so that the last comes first.
+/// Adds objects, each at the front of the list, so the last one comes first.
 #[must_use]
 pub fn insert_objects(scene: &Scene, objects: Vec<Object>) -> Command {
     let mut names: Names<'_> = scene.objects.iter().map(|(_, other)| &*other.name).collect();
@@ -56,7 +56,7 @@ pub fn insert_camera(scene: &Scene, model: Shared<Model>, material: MaterialChoi
 /// Adds a white light in the lowest free slot.
 ///
 /// # Errors
-/// If it is a spot of an object or a camera that is not there.
+/// If it is a spot, and the owner is not in the scene.
 pub fn insert_light(scene: &Scene, kind: LightKind) -> Result<Command, Refusal> {
     put_light(scene, Light::new(&light_name(&kind), 0, kind))
 }
@@ -102,6 +102,7 @@ pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
     if matches!(id, ItemId::Camera(_)) && scene.cameras.len() == 1 {
         return Err(CommandError::LastCamera.into());
     }
+    // Spots that are attached to the item are removed first, so undo restores the item before them.
     let attached = |light: &Light| {
         let Some(owner) = light.kind.owner() else { return false };
         match owner {
@@ -119,7 +120,7 @@ pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
 /// Renames an item.
 ///
 /// # Errors
-/// If the name is empty, or the item gone.
+/// If the name is empty, or the item is gone.
 pub fn rename(scene: &Scene, id: ItemId, name: &str) -> Result<Command, Refusal> {
     let name = name.trim();
     if name.is_empty() {
@@ -165,7 +166,7 @@ pub fn toggle_locked(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
 /// Shows or hides one part of an object.
 ///
 /// # Errors
-/// If the object is gone, or has no such part.
+/// If the object is gone, or does not have this part.
 pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Result<Command, Refusal> {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if part as usize >= object.model.mesh.parts().len() {
@@ -178,11 +179,11 @@ pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Result<Command, Re
     })
 }
 
-/// Turns each part into an object: the object itself keeps the first part, the others follow it in
-/// the list. All share the model.
+/// Splits an object into one object for each part. The object itself keeps the first part, and the
+/// others follow it in the list. All share the model.
 ///
 /// # Errors
-/// If the object is gone, or has one part or too many.
+/// If the object is gone, or has only one part or too many parts.
 pub fn split(scene: &Scene, id: ObjectId) -> Result<Command, Refusal> {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     let at = scene.objects.position(id).ok_or(Refusal::Gone)?;
@@ -198,6 +199,7 @@ pub fn split(scene: &Scene, id: ObjectId) -> Result<Command, Refusal> {
     let names = part_names(scene, object, &used);
     let mut commands = Vec::with_capacity(used.len() + 1);
     let mut next_id = scene.next_id;
+    // Each piece hides all parts but one.
     for (i, (part, name)) in used.iter().zip(names).enumerate() {
         let mut piece = object.clone();
         piece.name = name;
@@ -216,7 +218,7 @@ pub fn split(scene: &Scene, id: ObjectId) -> Result<Command, Refusal> {
     Ok(Command::Batch(commands))
 }
 
-/// The names of the objects that an object is split into.
+/// Chooses names for the objects that an object is split into.
 fn part_names(scene: &Scene, object: &Object, parts: &BTreeSet<u32>) -> Vec<String> {
     let others = scene.objects.iter().filter(|(_, other)| !std::ptr::eq(*other, object));
     let mut names: Names<'_> = others.map(|(_, other)| &*other.name).collect();
@@ -227,7 +229,7 @@ fn part_names(scene: &Scene, object: &Object, parts: &BTreeSet<u32>) -> Vec<Stri
 /// Sets the lens of a camera.
 ///
 /// # Errors
-/// If no picture could be made through it, or the camera is gone.
+/// If the lens is invalid, or the camera is gone.
 pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Result<Command, Refusal> {
     if !lens.is_valid() {
         return Err(CommandError::Lens.into());
@@ -235,7 +237,7 @@ pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Result<Command, Refu
     change_camera(scene, id, |camera| camera.lens = lens)
 }
 
-/// Why a crease angle has no effect on a model, if so.
+/// Returns the reason why a crease angle has no effect on a model; `None` if it has.
 #[must_use]
 pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> {
     if Shape::named(&model.name).is_some_and(|shape| shape.model().shares_file_with(model)) {
@@ -251,8 +253,8 @@ pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> 
     }
 }
 
-/// Sets the crease angle of an object's model. Shares the model of another object of the same file
-/// that already has this angle.
+/// Sets the crease angle of an object's model. If another object of the same file already has this
+/// angle, its model is shared.
 ///
 /// # Errors
 /// If the object is gone, or the angle has no effect on it.
@@ -324,7 +326,7 @@ pub fn change_light(
     })
 }
 
-/// Changes a light, unless the change is refused.
+/// Changes a light, unless `change` refuses.
 pub(super) fn try_change_light(
     scene: &Scene,
     id: LightId,
@@ -363,7 +365,7 @@ fn one_or_batch(mut commands: Vec<Command>) -> Command {
     if commands.len() == 1 { commands.remove(0) } else { Command::Batch(commands) }
 }
 
-/// The name of a new light: its kind, behind what it is attached to.
+/// Returns the name of a new light: its kind, after the kind of its owner.
 fn light_name(kind: &LightKind) -> String {
     let name = kind.info().name;
     match kind.owner() {

@@ -1,9 +1,8 @@
 //! Lights models that come without a scene.
 //!
-//! The lights are those of the first scene, placed and fading as if the models had the size for
-//! which they were made. Their brightness is balanced to the models' materials: whatever the normal
-//! of a surface, its ambient and diffuse light stays below white, so that only highlights can reach
-//! it.
+//! These are the lights of the first scene, with positions and attenuation scaled to the size of
+//! the models. Their brightness is balanced to the models' materials: for any normal, ambient plus
+//! diffuse light stays below white, so only highlights can reach white.
 //!
 //! ```text
 //! s = distance of the camera that frames the models / 400          (the first camera's distance)
@@ -11,8 +10,8 @@
 //! D = max over points p and sets of lights S of |sum over S of I_l(p) L_l(p)|
 //! ```
 //!
-//! The diffuse light that a normal N receives is the sum of the positive N.L, which is N times the
-//! sum of some of the lights, so that D is an upper bound for every N.
+//! The diffuse light at a normal N is the sum of the positive N.L. This is N times the sum of some
+//! of the lights, so D is an upper bound for every N.
 
 use glam::DVec3;
 
@@ -24,7 +23,7 @@ use crate::scene::{
     Scene, SpotOwner, Tracked, View,
 };
 
-/// The distance of the first scene's camera, for which its lights are made.
+/// The distance of the first scene's camera, for which the first scene's lights are made.
 const FIRST_DISTANCE: f64 = 400.0;
 
 /// The position of the first scene's bulb, relative to the centre.
@@ -33,16 +32,17 @@ const BULB: DVec3 = DVec3::new(0.0, 0.0, -200.0);
 /// The direction towards the sun: to the left of the front and up.
 const KEY_FROM: DVec3 = DVec3::new(-0.25, 0.75, 0.612_372_435_695_794_5);
 
-/// The most ambient and diffuse light, as a fraction of white.
+/// The largest ambient plus diffuse light, as a fraction of white.
 const BRIGHTEST: f64 = 0.97;
 
-/// The lights that are balanced at most; more are taken to shine from one direction.
+/// The largest number of lights that are balanced; the sum of further lights is overestimated, as
+/// if they shone from one direction.
 const MOST_SUBSETS: usize = 8;
 
-/// Places and balances the first scene's lights for the models of a scene, which its camera frames.
+/// Places and balances the first scene's lights for the models that the scene's camera frames.
 ///
-/// The bulb and the spot of the selected object are switched off: one stands in the picture, the
-/// other inside a model. The spot of the camera loses the edge of its cone.
+/// The bulb and the spot of the selected object are switched off, since the bulb would be in the
+/// picture and the spot inside a model. The camera's spot is opened until its edge disappears.
 ///
 /// # Errors
 /// If there is nothing to light.
@@ -68,8 +68,9 @@ pub fn models(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     Ok(Command::Batch(commands))
 }
 
-/// A light of the first scene, placed for models `scale` times as large.
+/// Places a light of the first scene for models that are `scale` times as large.
 fn place(light: &mut Light, centre: DVec3, scale: f64) {
+    // Attenuation depends on the distance, so it is scaled, too.
     let Attenuation { constant, linear, quadratic } = light.attenuation;
     let scaled =
         Attenuation { constant, linear: linear / scale, quadratic: quadratic / (scale * scale) };
@@ -85,15 +86,15 @@ fn place(light: &mut Light, centre: DVec3, scale: f64) {
         AnchorMut::Owner(SpotOwner::SelectedObject) => light.on = false,
         AnchorMut::Everywhere | AnchorMut::Owner(_) => {}
     }
-    // The cone of the camera's spot holds models that are framed. From near by, its edge would be a
+    // The cone of the camera's spot contains framed models. At close range, its edge would be a
     // hard circle in the picture.
     if let Some(half_aperture) = (HALF_APERTURE.get_mut)(&mut light.kind) {
         *half_aperture = HALF_APERTURE.largest;
     }
 }
 
-/// The factor of all lights with which no surface in the sphere is brighter than [`BRIGHTEST`]; at
-/// most 1.
+/// Returns the factor of all lights with which every surface in the sphere is at most as bright as
+/// [`BRIGHTEST`]; at most 1.
 fn balance(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
     let ambient: f64 = scene
         .lights
@@ -111,7 +112,7 @@ fn balance(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
     if brightest > BRIGHTEST { BRIGHTEST / brightest } else { 1.0 }
 }
 
-/// Ka and Kd of each part and channel of an object.
+/// Returns Ka and Kd of each part and channel of an object.
 fn coefficients(object: &Object) -> impl Iterator<Item = [f64; 2]> {
     let parts = u32::try_from(object.model.mesh.parts().len().max(1)).unwrap_or(u32::MAX);
     (0..parts).flat_map(|part| {
@@ -120,13 +121,14 @@ fn coefficients(object: &Object) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// The largest length of a sum of lights that reach a point of the sphere.
+/// Returns the largest length of any sum of lights at a point of the sphere.
 fn most_diffuse(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
     let lights: Vec<&Light> =
         scene.lights.iter().map(|(_, light)| light).filter(|light| light.on).collect();
     let at = |p: DVec3| {
         let reaching: Vec<DVec3> =
             lights.iter().filter_map(|light| light_at(light, scene, view, p)).collect();
+        // All subsets of the first lights are tried. For the others, the sum of lengths is a bound.
         let (few, others) = reaching.split_at(reaching.len().min(MOST_SUBSETS));
         let sum_of = |set: usize| {
             let of_set = few.iter().enumerate().filter(|(i, _)| set >> i & 1 == 1);
@@ -135,25 +137,26 @@ fn most_diffuse(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
         let most = (0..1_usize << few.len()).map(sum_of).fold(0.0, f64::max);
         most + others.iter().map(|light| light.length()).sum::<f64>()
     };
-    // A lattice through the sphere; what lies between its points is within the margin to white.
+    // Sample a lattice through the sphere. The change between its points is within the margin to
+    // white.
     let lattice = |i: i32| f64::from(i) / 8.0;
     let mut most: f64 = 0.0;
     for (x, y, z) in
         (-8..=8).flat_map(|x| (-8..=8).flat_map(move |y| (-8..=8).map(move |z| (x, y, z))))
     {
         let p = DVec3::new(lattice(x), lattice(y), lattice(z));
-        // The surface of the sphere is where lights are nearest.
+        // Points outside move to the surface of the sphere, where lights are nearest.
         let p = if p.length() > 1.0 { p / p.length() } else { p };
         most = most.max(at(centre + p * radius));
     }
     most
 }
 
-/// The light that arrives at `p`, as the direction towards it times its strength. `None` if it has
-/// no direction.
+/// Returns the light that arrives at `p`: the direction to the light times its strength. `None` for
+/// light without direction.
 fn light_at(light: &Light, scene: &Scene, view: &View, p: DVec3) -> Option<DVec3> {
     let LightOrigin { position, direction } = scene.light_origin(view, &light.kind)?;
-    // In the middle of its cone a spot is as bright as a bulb.
+    // On its axis, a spot is as bright as a bulb.
     let Some(position) = position else {
         return direction.map(|direction| -direction * strength(light));
     };
@@ -163,12 +166,12 @@ fn light_at(light: &Light, scene: &Scene, view: &View, p: DVec3) -> Option<DVec3
     (d > 0.0).then(|| to / d * strength(light) / (constant + linear * d + quadratic * d * d))
 }
 
-/// The brightest channel of a light, 0 to 1.
+/// Returns the brightest channel of a light, 0 to 1.
 fn strength(light: &Light) -> f64 {
     f64::from(light.color.0.into_iter().max().unwrap_or(0)) / 255.0
 }
 
-/// A colour times a factor of at most 1, rounded down.
+/// Multiplies a colour by a factor of at most 1, rounding down.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -1,4 +1,4 @@
-//! Changes of lights: on, colour, aperture, slot, owner.
+//! Changes lights: switch, colour, aperture, slot, owner.
 
 use std::collections::BTreeSet;
 
@@ -11,10 +11,10 @@ use crate::scene::{
     LightNumber, Orbit, Scene, SpotOwner, Subject, Tracked, View,
 };
 
-/// The degrees by which a press of `+` or `-` opens or closes a spot.
+/// The change of a spot's aperture for a press of `+` or `-`, in degrees.
 pub const APERTURE_STEP: f64 = 5.0;
 
-/// Red, green or blue of a light.
+/// A colour channel of a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Channel {
     /// The keys q and Q.
@@ -35,25 +35,25 @@ impl Channel {
     }
 }
 
-/// A sun that shines straight down.
+/// Returns the kind of a sun that shines straight down.
 #[must_use]
 pub const fn sun() -> LightKind {
     LightKind::Sun { direction: Tracked::new(DVec3::NEG_Y) }
 }
 
-/// A bulb at the origin.
+/// Returns the kind of a bulb at the origin.
 #[must_use]
 pub fn bulb() -> LightKind {
     LightKind::Bulb { position: Tracked::new(DVec3::ZERO), orbit: Orbit::default() }
 }
 
-/// A spot with default aperture and concentration.
+/// Returns the kind of a spot with default aperture and concentration.
 #[must_use]
 pub const fn spot(owner: SpotOwner) -> LightKind {
     LightKind::Spot { owner, half_aperture: 22.5, exponent: 5.0 }
 }
 
-/// The owner of a free spot at the origin that shines along -Z.
+/// Returns the owner of a free spot at the origin that shines along -Z.
 #[must_use]
 pub const fn fixed() -> SpotOwner {
     SpotOwner::Fixed(Tracked::new(Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z }))
@@ -69,11 +69,11 @@ pub fn toggle_slot(scene: &Scene, slot: u32) -> Result<Command, Refusal> {
     change_light(scene, id, |light| light.on = !light.on)
 }
 
-/// Leaves the selected light alone on. If it is alone already, those of `before` are on again, or
-/// all lights if none of them is left.
+/// Switches all lights off except the selected one. If it is already alone, switches the lights of
+/// `before` back on, or all lights if `before` has no other remaining light.
 ///
 /// # Errors
-/// If no light is selected, or there is no other.
+/// If no light is selected, or it is the only light.
 pub fn solo(scene: &Scene, view: &View, before: &BTreeSet<LightId>) -> Result<Command, Refusal> {
     let (own, _) = set_transform::selected_light(scene, view)?;
     if scene.lights.len() < 2 {
@@ -90,13 +90,13 @@ pub fn solo(scene: &Scene, view: &View, before: &BTreeSet<LightId>) -> Result<Co
     commands.collect::<Result<_, _>>().map(Command::Batch)
 }
 
-/// Whether a light is on and all others are off.
+/// Returns whether a light is on and all others are off.
 #[must_use]
 pub fn is_solo(scene: &Scene, id: LightId) -> bool {
     scene.lights.len() > 1 && scene.lights.iter().all(|(other, light)| light.on == (other == id))
 }
 
-/// The lights that are on.
+/// Returns the lights that are on.
 #[must_use]
 pub fn lit(scene: &Scene) -> BTreeSet<LightId> {
     scene.lights.iter().filter(|(_, light)| light.on).map(|(id, _)| id).collect()
@@ -105,7 +105,7 @@ pub fn lit(scene: &Scene) -> BTreeSet<LightId> {
 /// Changes one channel of the selected light, within 0 to 255 (keys q Q, v V, a A).
 ///
 /// # Errors
-/// At the end of the range, and while the subject is not lights.
+/// At the end of the range, or if the subject is not lights.
 pub fn step_color(
     scene: &Scene,
     view: &View,
@@ -126,7 +126,7 @@ pub fn step_color(
 /// Changes the aperture of the selected spot by an angle in degrees, within 0 to 90 (+ and -).
 ///
 /// # Errors
-/// At the end of the range, for other lights, and while the subject is not lights.
+/// At the end of the range, for other lights, or if the subject is not lights.
 pub fn step_aperture(scene: &Scene, view: &View, degrees: f64) -> Result<Command, Refusal> {
     let (id, light) = subject_light(scene, view)?;
     let old = (HALF_APERTURE.get)(&light.kind).ok_or(Refusal::NotASpot)?;
@@ -138,7 +138,7 @@ pub fn step_aperture(scene: &Scene, view: &View, degrees: f64) -> Result<Command
     set_number(scene, id, &HALF_APERTURE, new)
 }
 
-/// Sets a number of a light, clamped to what is valid.
+/// Sets a number of a light, clamped to its valid range.
 ///
 /// # Errors
 /// If the light has no such number, or the number is not finite.
@@ -161,7 +161,7 @@ pub fn set_number(
 /// Attaches a spot to another owner.
 ///
 /// # Errors
-/// If the light is not a spot, or the owner is not there.
+/// If the light is not a spot, or the owner is not in the scene.
 pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Result<Command, Refusal> {
     check_owner(scene, &to)?;
     set_transform::unlocked(scene, ItemId::Light(id))?;
@@ -179,7 +179,7 @@ pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Result<Command, R
 /// Sets the key of a light.
 ///
 /// # Errors
-/// If another light has it.
+/// If another light has this key.
 pub fn set_slot(scene: &Scene, id: LightId, slot: u32) -> Result<Command, Refusal> {
     if scene.lights.iter().any(|(other, light)| other != id && light.slot == slot) {
         return Err(Refusal::SlotTaken(slot));
@@ -187,10 +187,10 @@ pub fn set_slot(scene: &Scene, id: LightId, slot: u32) -> Result<Command, Refusa
     change_light(scene, id, |light| light.slot = slot)
 }
 
-/// Sets how a light fades with distance.
+/// Sets the attenuation of a light with distance.
 ///
 /// # Errors
-/// If it would become infinite or negative.
+/// If the light would become infinite or negative.
 pub fn set_attenuation(scene: &Scene, id: LightId, to: Attenuation) -> Result<Command, Refusal> {
     if !to.is_valid() {
         return Err(CommandError::Attenuation.into());
@@ -219,10 +219,10 @@ pub fn toggle_selected_shadows(scene: &Scene, view: &View) -> Result<Command, Re
     toggle_shadows(scene, id)
 }
 
-/// Switches the shadows of all lights off if any casts them, else on.
+/// Switches the shadows of all lights off if any light casts shadows, else on.
 ///
 /// # Errors
-/// If no light can cast any.
+/// If no light can cast shadows.
 pub fn toggle_all_shadows(scene: &Scene) -> Result<Command, Refusal> {
     let to = !casts_shadows(scene);
     let able = scene.lights.iter().filter(|(_, light)| light.can_cast_shadows());
@@ -233,13 +233,13 @@ pub fn toggle_all_shadows(scene: &Scene) -> Result<Command, Refusal> {
     if changed.is_empty() { Err(Refusal::NoLight) } else { Ok(Command::Batch(changed)) }
 }
 
-/// Whether any light of a scene casts shadows.
+/// Returns whether any light of a scene casts shadows.
 #[must_use]
 pub fn casts_shadows(scene: &Scene) -> bool {
     scene.lights.iter().any(|(_, light)| light.can_cast_shadows() && light.shadows)
 }
 
-/// The selected light, while the subject is lights.
+/// Returns the selected light, if the subject is lights.
 fn subject_light<'a>(
     scene: &'a Scene,
     view: &View,

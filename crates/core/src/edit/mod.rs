@@ -1,4 +1,4 @@
-//! Decides commands: what a change of the scene consists of, and the history of changes.
+//! Decides which command makes a change of the scene, and keeps the history of changes.
 //!
 //! Everything here except [`History`] only decides: it reads a scene and a view, and returns a
 //! [`Command`](crate::scene::Command), a view, or a [`Refusal`] for the status line. Only

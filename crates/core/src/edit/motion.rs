@@ -1,7 +1,7 @@
 //! Motion: the spin of objects and the orbit of bulbs.
 //!
-//! Before a motion changes, the rotation so far is applied to the placement and the motion restarts
-//! from there, so that nothing jumps on the screen.
+//! Before a motion changes, the rotation so far is applied to the placement, and the motion
+//! restarts from there. Thus nothing jumps on the screen.
 
 use super::items::{change_object, try_change_light};
 use super::{GesturePhase, Refusal};
@@ -18,7 +18,7 @@ pub fn toggle_spin(scene: &Scene, id: ObjectId, axis: Axis, time: f64) -> Result
     set_spin(scene, id, spin, time, GesturePhase::First)
 }
 
-/// Sets the spin of an object from `time` on; it keeps the rotation so far.
+/// Sets the spin of an object from `time` on, keeping the rotation so far.
 ///
 /// # Errors
 /// If the speed is not finite, or the object is gone.
@@ -45,10 +45,10 @@ pub fn set_spin(
     })
 }
 
-/// Applies the rotation of a spinning object to its placement; it keeps spinning.
+/// Applies the rotation of a spinning object to its placement. The object keeps spinning.
 ///
 /// # Errors
-/// If it does not spin, or is gone.
+/// If the object does not spin, or is gone.
 pub fn apply_spin(scene: &Scene, id: ObjectId, time: f64) -> Result<Command, Refusal> {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if !object.spin.is_on() {
@@ -60,17 +60,17 @@ pub fn apply_spin(scene: &Scene, id: ObjectId, time: f64) -> Result<Command, Ref
 /// Starts or stops the orbit of a bulb about the world's Y.
 ///
 /// # Errors
-/// If the light is no bulb, or is gone.
+/// If the light is not a bulb, or is gone.
 pub fn toggle_orbit(scene: &Scene, id: LightId, time: f64) -> Result<Command, Refusal> {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     let orbit = light.kind.orbit().ok_or(Refusal::NotABulb)?;
     set_orbit(scene, id, Orbit { on: !orbit.on, ..*orbit }, time, GesturePhase::First)
 }
 
-/// Sets the orbit of a bulb from `time` on; it keeps its current position.
+/// Sets the orbit of a bulb from `time` on, keeping its current position.
 ///
 /// # Errors
-/// If the speed is not finite, the light is no bulb, or is gone.
+/// If the speed is not finite, or the light is not a bulb or is gone.
 pub fn set_orbit(
     scene: &Scene,
     id: LightId,

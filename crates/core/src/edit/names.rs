@@ -2,12 +2,13 @@
 
 use std::collections::{HashMap, HashSet};
 
-/// The names in use in a list, and those taken since.
+/// The names in use in a list, and the names given since.
 #[derive(Debug, Default)]
 pub(super) struct Names<'a> {
     taken: HashSet<&'a str>,
     given: HashSet<String>,
-    /// For each name without its number: all lower numbers from 2 on are in use.
+    /// The next number to try for each name without its number: all lower ones from 2 on are in
+    /// use.
     next: HashMap<String, u64>,
 }
 
@@ -20,7 +21,7 @@ impl<'a> FromIterator<&'a str> for Names<'a> {
 impl Names<'_> {
     /// Takes `wish` if it is free, otherwise with the lowest free number appended.
     ///
-    /// Names are only added, so that each number is tried once, however many are given.
+    /// Names are only added, so each number is tried once, regardless of the number of names.
     pub(super) fn take(&mut self, wish: &str) -> String {
         if self.is_free(wish) {
             self.given.insert(wish.to_owned());
@@ -43,7 +44,7 @@ impl Names<'_> {
     }
 }
 
-/// A name without its number: "sun 2" goes on to "sun 3", not to "sun 2 2".
+/// Strips the number from a name: "sun 2" is followed by "sun 3", not by "sun 2 2".
 fn stem(name: &str) -> &str {
     match name.rsplit_once(' ') {
         Some((stem, number)) if number.parse::<u32>().is_ok() => stem,

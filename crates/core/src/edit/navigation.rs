@@ -1,7 +1,7 @@
 //! Navigation: orbit, pan, zoom, look and fly with the selected camera.
 //!
-//! Drags yaw about the world's Y and pitch about the camera's X. Pixels are converted to units of
-//! the world at the depth of the hit, so that it stays under the pointer.
+//! Drags yaw about the world's Y and pitch about the camera's X. Pixels are converted to world
+//! units at the depth of the hit, so the hit stays under the pointer.
 
 use glam::{DVec2, DVec3};
 
@@ -10,20 +10,19 @@ use super::{GesturePhase, Refusal, set_transform};
 use crate::base::image::Size;
 use crate::scene::{CameraMode, Command, Lens, Observer, Pose, Projection, Scene, View};
 
-/// The factor of the distance for one notch of the wheel.
+/// The factor that each notch of the wheel applies to the distance.
 pub const NOTCH: f64 = 0.9;
 
-/// A point of the picture to zoom to, in pixels from the upper left, with the depth of the hit
-/// there if known.
+/// A point of the picture to zoom to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pointer {
-    /// Pixels from the upper left.
+    /// The position, in pixels from the upper left.
     pub at: DVec2,
-    /// Units along the view's axis.
+    /// The depth of the hit there in units along the view axis, if known.
     pub depth: Option<f64>,
 }
 
-/// Turns the camera in place: `yaw` to the left, `pitch` upwards, in radians. In analysis the
+/// Turns the camera in place: `yaw` to the left, `pitch` upwards, in radians. In analysis, the
 /// camera orbits in the opposite direction instead.
 ///
 /// # Errors
@@ -43,7 +42,7 @@ pub fn look(
     set_transform::pose(scene, view.camera, Pose { axes: turn * pose.axes, ..pose }, phase)
 }
 
-/// Orbits the camera around the centre of the selected object (the origin without one), by
+/// Orbits the camera around the centre of the selected object (or the origin without an object), by
 /// `yaw` about the world's Y and `pitch` about the camera's X, in radians.
 ///
 /// # Errors
@@ -58,6 +57,7 @@ pub fn orbit(
     let pose = looking_pose(scene, view)?;
     let turn = set_transform::turn(DVec3::Y, yaw)? * set_transform::turn(pose.axes.x_axis, pitch)?;
     let pose = match set_transform::analysis_centre(scene, view) {
+        // In fly, the axes turn along with the eye, so the centre keeps its place in the picture.
         Some(centre) => orbited(&pose, turn, centre),
         None => {
             let centre = pivot(scene, view);
@@ -68,8 +68,8 @@ pub fn orbit(
     set_transform::pose(scene, view.camera, pose, phase)
 }
 
-/// Pans the camera, so that points at the depth of the selected object follow a pointer that has
-/// moved by `pixels` (x to the right, y down). Returns to fly.
+/// Pans the camera for a pointer that has moved by `pixels` (x to the right, y down). Points at the
+/// depth of the selected object follow the pointer. Returns to fly.
 ///
 /// # Errors
 /// If the observer is an object.
@@ -86,8 +86,8 @@ pub fn pan(
     set_transform::pose(scene, view.camera, Pose { mode: CameraMode::Fly, ..pose }, phase)
 }
 
-/// Moves the camera in its own frame, for the keys that fly while the right button is held. Returns
-/// to fly.
+/// Moves the camera in its frame, for the keys that fly while the right button is held. Returns to
+/// fly.
 ///
 /// # Errors
 /// If the observer is an object.
@@ -104,11 +104,11 @@ pub fn fly(
 /// Zooms in by this number of notches of the wheel (out if negative).
 ///
 /// In perspective the eye moves along the ray through the pointer; in orthographic projection the
-/// half-size changes. The hit stays under the pointer. In analysis the camera moves along its axis,
-/// never nearer to the centre than the near plane.
+/// half-size changes. In both cases the hit stays under the pointer. In analysis the camera moves
+/// along its axis, and stops at the distance of the near plane from the centre.
 ///
 /// # Errors
-/// If the observer is an object, or the camera is as near as it may be.
+/// If the observer is an object, or the camera is at its nearest distance.
 pub fn zoom(
     scene: &Scene,
     view: &View,
@@ -118,13 +118,14 @@ pub fn zoom(
     phase: GesturePhase,
 ) -> Result<Command, Refusal> {
     let pose = looking_pose(scene, view)?;
-    // The factor of the distance, within the range of f64.
+    // The factor of the distance. Clamping the notches keeps it within the range of f64.
     let left = libm::pow(NOTCH, notches.clamp(-200.0, 200.0));
     let centre = set_transform::analysis_centre(scene, view);
     match (view.projection, centre) {
         (Projection::Orthographic, _) => {
             let camera = scene.selected_camera(view);
             let lens = Lens { half_size: camera.lens.half_size * left, ..camera.lens };
+            // Moving aside by the change of the picture's size keeps the point under the pointer.
             let aside =
                 from_middle(pointer.at, size) * shown_per_pixel(camera.lens.half_size, size);
             let aside = if centre.is_some() { DVec2::ZERO } else { aside * (1.0 - left) };
@@ -153,7 +154,7 @@ pub fn zoom(
     }
 }
 
-/// The units of the world per pixel at `depth` in front of the camera.
+/// Returns the world units per pixel at `depth` in front of the camera.
 #[must_use]
 pub fn units_per_pixel(scene: &Scene, view: &View, size: Size, depth: f64) -> f64 {
     let lens = scene.selected_camera(view).lens;
@@ -165,7 +166,7 @@ pub fn units_per_pixel(scene: &Scene, view: &View, size: Size, depth: f64) -> f6
     }
 }
 
-/// The pose of the selected camera, if it is the observer.
+/// Returns the pose of the selected camera, if it is the observer.
 fn looking_pose(scene: &Scene, view: &View) -> Result<Pose, Refusal> {
     if view.observer == Observer::Object && view.object.is_some() {
         return Err(Refusal::ObjectLooks);
@@ -173,14 +174,14 @@ fn looking_pose(scene: &Scene, view: &View) -> Result<Pose, Refusal> {
     Ok(effective_pose(scene, view))
 }
 
-/// The pivot of drags: the centre of the selected object, otherwise the origin.
+/// Returns the pivot of drags: the centre of the selected object, otherwise the origin.
 fn pivot(scene: &Scene, view: &View) -> DVec3 {
     let object = view.object.and_then(|id| scene.objects.get(id));
     object.map_or(DVec3::ZERO, |object| object.centre(view.time))
 }
 
-/// The depth of the pivot if it is in front of the camera, otherwise its distance, and at least the
-/// near plane: a drag always moves the view, and the wheel passes through the pivot.
+/// Returns the depth of the pivot if it is in front of the camera, otherwise its distance, and at
+/// least the near plane. Thus a drag always moves the view, and the wheel passes through the pivot.
 fn depth(scene: &Scene, view: &View, pose: &Pose) -> f64 {
     let away = pose.eye - pivot(scene, view);
     let ahead = away.dot(pose.axes.z_axis);
@@ -188,13 +189,14 @@ fn depth(scene: &Scene, view: &View, pose: &Pose) -> f64 {
     if ahead > near { ahead } else { away.length().max(near) }
 }
 
-/// Units in a pixel, where `half` of them are to each side of the axis across the shorter side.
+/// Returns the units per pixel if `half` units are on each side of the axis across the shorter
+/// side.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 fn shown_per_pixel(half: f64, size: Size) -> f64 {
     2.0 * half / size.width.min(size.height).max(1) as f64
 }
 
-/// Pixels from the middle of the picture, x to the right and y up.
+/// Returns a position relative to the middle of the picture, x to the right and y up.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 fn from_middle(at: DVec2, size: Size) -> DVec2 {
     let middle = DVec2::new(size.width as f64, size.height as f64) / 2.0;

@@ -1,11 +1,11 @@
 //! Placements as numbers: position, rotation, scale.
 //!
-//! An object's placement is a matrix, which need not be a product of one translation, rotation and
-//! scale. Setting one of them keeps the others: a new rotation replaces the old one in the matrix,
-//! and a shear stays.
+//! An object's placement is a matrix, which may not be a product of one translation, rotation and
+//! scale. Setting one of these keeps the others: a new rotation replaces the old one in the matrix,
+//! and a shear is kept.
 //!
-//! Angles are in degrees here: an object's are about X, Y and Z with `R = Rx Ry Rz`, a camera's are
-//! yaw, pitch and roll with `R = Ry Rx Rz`.
+//! Angles are in degrees here. Objects have angles about X, Y and Z with `R = Rx Ry Rz`; cameras
+//! have yaw, pitch and roll with `R = Ry Rx Rz`.
 
 use glam::{DMat3, DMat4, DVec3};
 
@@ -16,14 +16,14 @@ use super::{GesturePhase, Refusal};
 use crate::base::math::{self, Axis};
 use crate::scene::{Aim, CameraId, CameraMode, Command, LightId, ObjectId, Pose, Scene, View};
 
-/// The position of an object's origin.
+/// Returns the position of an object's origin.
 #[must_use]
 pub fn translation(placement: &DMat4) -> DVec3 {
     placement.w_axis.truncate()
 }
 
-/// An object's turn as degrees about X, Y and Z, `R = Rx Ry Rz`: of the angles that say the same,
-/// those with the smallest X and Z.
+/// Returns an object's rotation as degrees about X, Y and Z, `R = Rx Ry Rz`. Of the equivalent
+/// angles, these have the smallest X and Z.
 #[must_use]
 pub fn turn_degrees(placement: &DMat4) -> DVec3 {
     let turn = turn(placement);
@@ -35,13 +35,13 @@ pub fn turn_degrees(placement: &DMat4) -> DVec3 {
     let (about_x, about_z) = if z.x.abs() < 1.0 - 1e-12 {
         (libm::atan2(-z.y, z.z), libm::atan2(-y.x, x.x))
     } else {
-        // X and Z turn about the same axis: all of it is given to X.
+        // X and Z turn about the same axis (gimbal lock), so X gets the whole angle.
         (libm::atan2(y.z, y.y), 0.0)
     };
     angles::plainest(DVec3::new(about_x, about_y, about_z).map(f64::to_degrees))
 }
 
-/// The scale of an object along its axes; X is negative if it is mirrored.
+/// Returns the scale of an object along its axes; X is negative if the object is mirrored.
 #[must_use]
 pub fn scale(placement: &DMat4) -> DVec3 {
     let m = DMat3::from_mat4(*placement);
@@ -49,7 +49,7 @@ pub fn scale(placement: &DMat4) -> DVec3 {
     DVec3::new(x, m.y_axis.length(), m.z_axis.length())
 }
 
-/// A camera's yaw, pitch and roll in degrees, `R = Ry Rx Rz`.
+/// Returns a camera's yaw, pitch and roll in degrees, `R = Ry Rx Rz`.
 #[must_use]
 pub fn camera_degrees(pose: &Pose) -> DVec3 {
     let [x, y, z] = [pose.axes.x_axis, pose.axes.y_axis, pose.axes.z_axis];
@@ -113,7 +113,7 @@ pub fn object_scale(
     let linear = DMat3::from_mat4(m);
     let column = |axis: Axis| {
         let i = axis.index();
-        // A column of no length, from a file, takes its direction from the turn.
+        // A column of length 0, from a file, takes its direction from the rotation.
         if old[i] == 0.0 { turn * axis.unit() * to[i] } else { linear.col(i) * (to[i] / old[i]) }
     };
     let [x, y, z] = Axis::ALL.map(column);
@@ -130,7 +130,7 @@ pub fn object_scale(
 /// Sets the whole placement of an object.
 ///
 /// # Errors
-/// If it is not finite, or flat, or the object is gone.
+/// If the placement is flat or not finite, or the object is gone.
 pub fn object(
     scene: &Scene,
     view: &View,
@@ -144,10 +144,11 @@ pub fn object(
     set_transform::object(scene, view, id, to, phase)
 }
 
-/// The placement `own` with the numbers that were changed from `old` to `new`: of the position, of
-/// the rotation or of the scale. `None` if the object would become flat.
+/// Copies the numbers that changed from `old` to `new` into the placement `own`: of the position,
+/// and of the scale or else the rotation. `None` if the object would become flat.
 #[must_use]
 pub(super) fn alike(old: &DMat4, new: &DMat4, own: &DMat4) -> Option<DMat4> {
+    // Numbers that did not change, up to rounding, keep the object's value.
     let chosen = |old: DVec3, new: DVec3, own: DVec3| {
         let near = (old - new).abs().cmple(old.abs().max(new.abs()) * 1e-9);
         (DVec3::select(near, own, new), near.all())
@@ -190,8 +191,8 @@ pub fn camera_eye(
     set_transform::pose(scene, id, Pose { eye: to, axes, ..pose }, phase)
 }
 
-/// Sets yaw, pitch and roll of a camera, in degrees as in [`camera_degrees`]. In analysis it orbits
-/// its centre at the same distance.
+/// Sets yaw, pitch and roll of a camera, in degrees as in [`camera_degrees`]. In analysis the
+/// camera orbits its centre at the same distance.
 ///
 /// # Errors
 /// If the numbers are not finite, or the camera is gone.
@@ -213,7 +214,7 @@ pub fn camera_turn(
     set_transform::pose(scene, id, Pose { eye, axes, ..pose }, phase)
 }
 
-/// Sets the whole pose of a camera. It flies afterwards.
+/// Sets the whole pose of a camera, and returns it to fly.
 ///
 /// # Errors
 /// If the numbers are not finite, or the camera is gone.
@@ -230,7 +231,7 @@ pub fn camera(
 /// Sets the position of a bulb or a free spot.
 ///
 /// # Errors
-/// If the light has no position of its own, or the numbers are not finite.
+/// If the light's position cannot be set, or the numbers are not finite.
 pub fn light_position(
     scene: &Scene,
     id: LightId,
@@ -245,10 +246,10 @@ pub fn light_position(
     set_transform::light(scene, id, place, phase)
 }
 
-/// Sets the direction of a sun or a free spot, of any length but 0.
+/// Sets the direction of a sun or a free spot. `to` may have any length except 0.
 ///
 /// # Errors
-/// If the light has no direction of its own, or the direction has no length.
+/// If the light's direction cannot be set, or `to` has length 0.
 pub fn light_direction(
     scene: &Scene,
     id: LightId,
@@ -270,12 +271,12 @@ fn placement(scene: &Scene, id: ObjectId) -> Result<DMat4, Refusal> {
     Ok(*scene.objects.get(id).ok_or(Refusal::Gone)?.placement.now())
 }
 
-/// The frame of a placement, without scale, shear and mirroring.
+/// Returns the rotation of a placement, without scale, shear and mirroring.
 fn turn(placement: &DMat4) -> DMat3 {
     math::frame(placement.z_axis.truncate(), placement.y_axis.truncate(), DMat3::IDENTITY)
 }
 
-/// The turns about X, Y and Z by these degrees.
+/// Returns the rotations about X, Y and Z by these degrees.
 fn turns(degrees: DVec3) -> Result<[DMat3; 3], Refusal> {
     let [x, y, z] = Axis::ALL
         .map(|axis| set_transform::turn(axis.unit(), (degrees[axis.index()] % 360.0).to_radians()));

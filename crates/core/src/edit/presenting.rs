@@ -1,7 +1,8 @@
-//! Shows models that come without a scene: alone, framed and lit, before a neutral background.
+//! Shows models that come without a scene: alone, framed and lit, in front of a neutral background.
 //!
-//! The window with files on the command line, a model dropped on the untouched first scene, and
-//! `render` show the same. In the window the model is selected, and the camera orbits it.
+//! The result is the same in the window with files on the command line, after dropping a model on
+//! the untouched first scene, and in `render`. In the window the model is selected, and the camera
+//! orbits it.
 
 use super::items::insert_objects;
 use super::{Refusal, framing, lighting, selection};
@@ -9,12 +10,12 @@ use crate::scene::{
     CameraMode, Command, Item, ItemId, Object, ObjectId, Observer, Pose, Scene, Subject, View,
 };
 
-/// Replaces all objects by these, frames them and lights them, before a neutral background. Returns
-/// the change, and the view of the changed scene, whose steps go by its size. The first object is
-/// selected, and the camera is in analysis of it without being turned.
+/// Replaces all objects by these, frames and lights them, and sets a neutral background. Returns
+/// the change, and the view of the changed scene, with steps by size. The first object is selected,
+/// and the camera is in analysis of it without being turned.
 ///
 /// # Errors
-/// If the scene cannot be changed that way.
+/// If the scene cannot be changed in this way.
 pub fn alone(scene: &Scene, view: &View, objects: Vec<Object>) -> Result<(Command, View), Refusal> {
     let mut scratch = Scratch { scene: scene.clone(), view: view.clone(), commands: Vec::new() };
     for id in scene.objects.ids() {
@@ -27,7 +28,7 @@ pub fn alone(scene: &Scene, view: &View, objects: Vec<Object>) -> Result<(Comman
     scratch.view.steps.by_size = true;
     match framing::models(&scratch.scene, &scratch.view, framing::MODELS_FROM) {
         Ok(framed) => scratch.change(framed)?,
-        // A model without vertices is in no need of a view.
+        // A model without vertices needs no view.
         Err(Refusal::NothingToFrame) => {}
         Err(refusal) => return Err(refusal),
     }
@@ -42,8 +43,9 @@ pub fn alone(scene: &Scene, view: &View, objects: Vec<Object>) -> Result<(Comman
     Ok((Command::Batch(scratch.commands), scratch.view))
 }
 
-/// Lets the camera orbit an object from where it is. Aiming it would move the object out of the
-/// middle of the picture, since the mean of its vertices is not the middle of its sphere.
+/// Lets the camera orbit an object from its current pose. Aiming the camera would move the object
+/// out of the middle of the picture, since the mean of its vertices is not the centre of its
+/// sphere.
 fn analysis(scene: &Scene, view: &View, id: ObjectId) -> Result<Command, Refusal> {
     let mut camera = scene.cameras.get(view.camera).ok_or(Refusal::Gone)?.clone();
     let mode = CameraMode::Analysis { target: id };
@@ -51,7 +53,7 @@ fn analysis(scene: &Scene, view: &View, id: ObjectId) -> Result<Command, Refusal
     Ok(Command::Replace(Item::Camera(view.camera, Box::new(camera))))
 }
 
-/// A copy of the scene, and what has been done to it.
+/// A copy of the scene, with the commands applied to it.
 struct Scratch {
     scene: Scene,
     view: View,

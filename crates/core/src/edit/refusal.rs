@@ -1,14 +1,14 @@
-//! Refusals: why a request cannot be done, worded for the status line.
+//! Refusals: the reasons why a request cannot be carried out, worded for the status line.
 
 use crate::scene::CommandError;
 
-/// Why a request is refused. Nothing has changed then.
+/// The reason why a request is refused. The scene is then unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
-    /// There is no object.
+    /// The scene has no objects.
     #[error("there is no object")]
     NoObject,
-    /// There is no light.
+    /// The scene has no lights.
     #[error("there is no light")]
     NoLight,
     /// Nothing can be framed.
@@ -17,13 +17,13 @@ pub enum Refusal {
     /// The item is not in the scene.
     #[error("it is no longer in the scene")]
     Gone,
-    /// It is locked.
+    /// The item is locked.
     #[error("{0} is locked: unlock it first (Ctrl+L, or the lock in the outline)")]
     Locked(String),
-    /// Nothing is selected beside it.
+    /// Only one item is selected.
     #[error("only one item is selected")]
     OneSelected,
-    /// There is no other item of its kind.
+    /// The item is the only one of its kind.
     #[error("there is only one of its kind")]
     OnlyOne,
     /// Cameras have no size.
@@ -41,13 +41,13 @@ pub enum Refusal {
     /// Ambient light comes from everywhere.
     #[error("ambient light has no position and no direction")]
     Ambient,
-    /// A sun has no place.
+    /// A sun has no position.
     #[error("the sun has a direction only: it can be turned, not moved")]
     SunMoved,
     /// A bulb has no direction.
     #[error("a bulb shines in all directions: it can be moved, not turned")]
     BulbTurned,
-    /// The spot shines from an object or a camera.
+    /// The spot follows an object or a camera.
     #[error("this spot follows its {0}: move that instead")]
     SpotFollows(&'static str),
     /// No program has left unsaved work behind.
@@ -56,7 +56,7 @@ pub enum Refusal {
     /// No work was discarded.
     #[error("no work was discarded in the last 30 days")]
     NothingDiscarded,
-    /// All files of the scene are there.
+    /// All files of the scene exist.
     #[error("no file of the scene is missing")]
     NothingMissing,
     /// The history is at its beginning.
@@ -68,13 +68,13 @@ pub enum Refusal {
     /// The item was never transformed.
     #[error("there is no transformation to undo")]
     NothingToTakeBack,
-    /// The object is where its file has it.
+    /// The object already has the placement of its file.
     #[error("it is where its file puts it already")]
     NotTransformed,
-    /// The object stands on the ground.
+    /// The object is already on the ground.
     #[error("it stands on the ground already")]
     OnGround,
-    /// Nothing is to be brought in line.
+    /// No selected object can be aligned.
     #[error("select further objects that are not in line yet: Shift + click")]
     NothingToAlign,
     /// The object would become flat.
@@ -83,16 +83,16 @@ pub enum Refusal {
     /// A number would be infinite or NaN.
     #[error("a number would become too large")]
     TooLarge,
-    /// A vector of length 0 points nowhere.
+    /// A vector of length 0 has no direction.
     #[error("a direction needs at least one number other than 0")]
     NoDirection,
-    /// The camera is as near as it may be.
+    /// The camera is at its nearest distance.
     #[error("the camera cannot come nearer to the object's centre")]
     Nearest,
-    /// The scene is seen from an object.
+    /// The observer is an object.
     #[error("the observer is an object: press C to look through the camera")]
     ObjectLooks,
-    /// A camera stands where the picture is seen from.
+    /// The picture is seen through the camera, so it has no handles.
     #[error("the picture is seen through this camera: drag the view itself")]
     SeenThrough,
     /// Lights have neither frames nor modes.
@@ -110,7 +110,7 @@ pub enum Refusal {
     /// The light cannot be aimed.
     #[error("only a spot or a sun can be aimed")]
     NotAimed,
-    /// The light stands in the point at which it is to be aimed.
+    /// The light is at the point at which it should be aimed.
     #[error("the light stands there itself")]
     AimedAtItself,
     /// The interface has the largest or the smallest size.
@@ -122,34 +122,34 @@ pub enum Refusal {
     /// No light has this key.
     #[error("no light has the key {0}")]
     EmptySlot(u32),
-    /// Two lights cannot have one key.
+    /// Another light has this key.
     #[error("the key {0} belongs to another light")]
     SlotTaken(u32),
-    /// Enter outside of polygon mode.
+    /// Enter was pressed outside polygon mode.
     #[error("press o first: Enter selects the next polygon in polygon mode")]
     NotInPolygonMode,
-    /// There is no polygon to show.
+    /// The object has no polygons.
     #[error("the object has no polygons")]
     NoPolygons,
-    /// Nothing to split.
+    /// The object has only one part.
     #[error("the object has only one part")]
     OnePart,
-    /// Splitting would flood the outline.
+    /// The object has too many parts for the outline.
     #[error("the object has {0} parts; at most {1} can be split at once")]
     TooManyParts(usize, usize),
-    /// There is no spin to apply.
+    /// The object does not spin.
     #[error("the object does not spin")]
     NotSpinning,
     /// The crease angle has no effect on the model.
     #[error("the crease angle has no effect: {0}")]
     NoCrease(&'static str),
-    /// Only a bulb orbits.
+    /// The light is not a bulb, and only bulbs orbit.
     #[error("only a bulb can orbit")]
     NotABulb,
-    /// A name of blanks.
+    /// The name is blank.
     #[error("a name needs at least one letter")]
     NoName,
-    /// The scene's own refusal.
+    /// The scene refuses the command.
     #[error(transparent)]
     Command(#[from] CommandError),
 }

@@ -1,7 +1,7 @@
-//! The selection around a step of the history.
+//! The selection before and after a step of the history.
 //!
-//! The view is not part of a step: undo and redo leave what is selected as it is. Only an item that
-//! they bring back is selected again if it was selected when it left.
+//! The view is not part of a step, so undo and redo keep the selection. The exception is an item
+//! that they bring back: it is selected again if it was selected when it left.
 
 use super::selection::{self, remain, select_object, set_subject};
 use super::several::Others;
@@ -18,14 +18,14 @@ pub struct Selected {
 }
 
 impl Selected {
-    /// What is selected in a view, with the items selected beside the one that the keys act on.
+    /// Records the selection of a view, with the other selected items.
     #[must_use]
     pub fn of(view: &View, others: &Others) -> Self {
         let View { subject, object, camera, light, .. } = *view;
         Self { subject, object, camera, light, others: others.clone() }
     }
 
-    /// The item that the keys acted on.
+    /// Returns the item that the keys acted on.
     fn item(&self) -> Option<ItemId> {
         match self.subject {
             Subject::Camera => Some(ItemId::Camera(self.camera)),
@@ -34,9 +34,9 @@ impl Selected {
         }
     }
 
-    /// Adapts the view to a scene that undo or redo has changed from `before`. What is selected
-    /// stays so, except that items that came back are selected as they are here. If the selected
-    /// item has left, the one here takes its place.
+    /// Adapts the view to a scene that undo or redo has changed from `before`. The selection stays,
+    /// except that items that came back are selected as recorded here. If the selected item has
+    /// left, the recorded item takes its place.
     pub fn restore(&self, before: &Scene, scene: &Scene, view: &mut View, others: &mut Others) {
         let came_back = |id: ItemId| scene.contains(id) && !before.contains(id);
         let has_left = |id: ItemId| !scene.contains(id);

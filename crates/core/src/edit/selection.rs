@@ -1,7 +1,7 @@
 //! The selection and the subject, and how they follow changes of the scene.
 //!
-//! Selections are not steps of undo, with one exception: while the selected camera is in analysis,
-//! selecting another object aims the camera at it. So a selection is a view and sometimes a
+//! Selections are not undo steps, with one exception: while the selected camera is in analysis,
+//! selecting another object aims the camera at it. A selection is therefore a view and sometimes a
 //! command.
 
 use super::set_transform;
@@ -11,7 +11,7 @@ use crate::scene::{
     Pose, Scene, Subject, Transformation, View,
 };
 
-/// A view after a selection, with the command that goes with it.
+/// A view after a selection, with the command that belongs to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Selection {
     /// The new view.
@@ -28,7 +28,7 @@ pub fn select(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refus
     select_in(scene, view, id, GesturePhase::First)
 }
 
-/// The same as part of a gesture: a held key pushes the pose of the camera once.
+/// Selects an item as part of a gesture: a held key pushes the camera's pose only once.
 fn select_in(
     scene: &Scene,
     view: &View,
@@ -47,6 +47,7 @@ fn select_in(
         ItemId::Object(id) => {
             next.object = Some(id);
             next.polygons = view.polygons.as_ref().map(|_| PolygonMode::begin());
+            // A camera in analysis turns to the new object, unless the camera is locked.
             let camera = scene.selected_camera(view);
             let mode = camera.pose.now().mode_with(view.object);
             let locked = scene.locked.contains(&ItemId::Camera(view.camera));
@@ -71,8 +72,9 @@ fn select_in(
     Ok(Selection { view: next, command })
 }
 
-/// Cameras that once were in analysis of an object and fell back to fly, because another was
-/// selected then, stay in fly when it is selected again: nothing has aimed them at it.
+/// Switches cameras to fly if their analysis of an object ended when another object was selected.
+/// Selecting the object again must not resume the analysis, since the cameras have not been aimed
+/// at it.
 fn left_in_fly(scene: &Scene, id: ObjectId) -> Vec<Command> {
     let fallen = scene
         .cameras
@@ -100,7 +102,7 @@ pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal
 /// Selects the next item of the subject, cyclically (key Tab).
 ///
 /// # Errors
-/// If there is no other item.
+/// If the list has no other item.
 pub fn next(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Selection, Refusal> {
     fn after<K: Copy + Ord, T, D>(list: &List<K, T, D>, id: Option<K>) -> Option<K> {
         list.after(id).filter(|next| Some(*next) != id)
@@ -115,7 +117,7 @@ pub fn next(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Selection
     select_in(scene, view, id.ok_or(Refusal::OnlyOne)?, phase)
 }
 
-/// The item that the subject's keys act on.
+/// Returns the item that the subject's keys act on.
 #[must_use]
 pub fn selected(view: &View) -> Option<ItemId> {
     match view.subject {
@@ -125,7 +127,7 @@ pub fn selected(view: &View) -> Option<ItemId> {
     }
 }
 
-/// The subject that has items of this kind.
+/// Returns the subject for items of this kind.
 #[must_use]
 pub const fn subject_of(id: ItemId) -> Subject {
     match id {
@@ -145,7 +147,7 @@ pub const fn cycle_subject(view: &mut View) {
     set_subject(view, next);
 }
 
-/// Chooses what the keys act on. Leaving objects while scaling is chosen returns to translation.
+/// Sets the subject of the keys. If scaling was chosen, leaving objects returns to translation.
 pub const fn set_subject(view: &mut View, subject: Subject) {
     view.subject = subject;
     if !matches!(subject, Subject::Object) && matches!(view.transformation, Transformation::Scaling)
@@ -154,10 +156,10 @@ pub const fn set_subject(view: &mut View, subject: Subject) {
     }
 }
 
-/// Chooses the transformation (keys `t`, `r` and `s`).
+/// Sets the transformation (keys `t`, `r` and `s`).
 ///
 /// # Errors
-/// Scaling, if the subject is not objects.
+/// If `to` is scaling and the subject is not objects.
 pub fn set_transformation(view: &mut View, to: Transformation) -> Result<(), Refusal> {
     if to == Transformation::Scaling && view.subject != Subject::Object {
         return Err(Refusal::OnlyObjectsScale);
@@ -169,7 +171,7 @@ pub fn set_transformation(view: &mut View, to: Transformation) -> Result<(), Ref
 /// Switches the observer between the selected camera and the selected object (key `C`).
 ///
 /// # Errors
-/// If there is no object.
+/// If the scene has no object.
 pub fn toggle_observer(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     view.observer = match view.observer {
         Observer::Object => Observer::Camera,
@@ -184,7 +186,7 @@ pub fn toggle_observer(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
 /// Switches polygon mode on, from polygon 0, or off (key `o`).
 ///
 /// # Errors
-/// If there is no object, or it has no polygons.
+/// If no object is selected, or it has no polygons.
 pub fn toggle_polygons(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     view.polygons = match view.polygons {
         Some(_) => None,
@@ -207,7 +209,7 @@ pub fn next_polygon(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Goes to a polygon of the selected object, as a click on it does.
+/// Selects a polygon of the selected object, as a click on it does.
 ///
 /// # Errors
 /// Outside polygon mode, and if the object has no such polygon.
@@ -221,10 +223,9 @@ pub fn go_to_polygon(scene: &Scene, view: &mut View, polygon: u32) -> Result<(),
     Ok(())
 }
 
-/// Adapts the view to a scene that has changed from `before`: new items are selected, and if the
-/// selected item is gone, the next in its list is, or else the one before.
-///
-/// After every command.
+/// Adapts the view to a scene that has changed from `before`, after each command. New items are
+/// selected. If the selected item is gone, the next one in its list is selected, or else the one
+/// before.
 pub fn follow(before: &Scene, scene: &Scene, view: &mut View) {
     view.light = scene.lights.first_since(&before.lights).or(view.light);
     view.camera = scene.cameras.first_since(&before.cameras).unwrap_or(view.camera);
@@ -233,8 +234,8 @@ pub fn follow(before: &Scene, scene: &Scene, view: &mut View) {
     remain(before, scene, view);
 }
 
-/// Adapts the view to a scene that has changed from `before`: what is selected stays so, and if it
-/// is gone, the next in its list is selected, or else the one before.
+/// Adapts the view to a scene that has changed from `before`, and keeps the selection. If the
+/// selected item is gone, the next one in its list is selected, or else the one before.
 pub(super) fn remain(before: &Scene, scene: &Scene, view: &mut View) {
     select_object(view, remaining(&before.objects, &scene.objects, view.object));
     view.light = remaining(&before.lights, &scene.lights, view.light);
@@ -243,7 +244,7 @@ pub(super) fn remain(before: &Scene, scene: &Scene, view: &mut View) {
     settle(scene, view);
 }
 
-/// Selects an object, or none; polygon mode begins anew for another one.
+/// Selects an object or no object. Polygon mode restarts if the object changes.
 pub(super) fn select_object(view: &mut View, object: Option<ObjectId>) {
     if object != view.object {
         view.object = object;
@@ -251,7 +252,7 @@ pub(super) fn select_object(view: &mut View, object: Option<ObjectId>) {
     }
 }
 
-/// Adapts the view to the scene: selected items and polygons exist.
+/// Adapts the view to the scene: selected items and polygons must exist.
 pub fn settle(scene: &Scene, view: &mut View) {
     if scene.cameras.get(view.camera).is_none() {
         view.camera = scene.cameras.first().unwrap_or(view.camera);
@@ -266,12 +267,12 @@ pub fn settle(scene: &Scene, view: &mut View) {
     if view.object.is_none() {
         view.observer = Observer::Camera;
     }
-    // A view from a file may scale what has no size.
+    // A view from a file may have scaling chosen for a camera or a light.
     set_subject(view, view.subject);
     keep_polygons(scene, view);
 }
 
-/// The selected item of a list after a change: the same, or one near to it.
+/// Returns the selected item of a list after a change: the same item, or the nearest remaining one.
 fn remaining<K: Copy + Ord, T, D>(
     before: &List<K, T, D>,
     after: &List<K, T, D>,
@@ -282,7 +283,7 @@ fn remaining<K: Copy + Ord, T, D>(
         return Some(kept);
     }
     let Some(at) = selected.and_then(|id| before.position(id)) else { return after.first() };
-    // Those after it, and then those before it from near to far.
+    // Search the items after it, then the items before it from near to far.
     let onwards = (at + 1..before.len()).map_while(|at| before.id_at(at));
     let back = (0..at).rev().map_while(|at| before.id_at(at));
     onwards.chain(back).find(is_there)
@@ -296,7 +297,7 @@ fn polygon_count(scene: &Scene, view: &View) -> Result<u32, Refusal> {
     }
 }
 
-/// Ends polygon mode if there is no polygon to show, and clamps the polygon to the range.
+/// Ends polygon mode if the object has no polygons, and restarts it if the polygon is out of range.
 fn keep_polygons(scene: &Scene, view: &mut View) {
     let count = polygon_count(scene, view).unwrap_or(0);
     match &mut view.polygons {
@@ -328,7 +329,7 @@ mod tests {
         };
         let same = || assert!(followed(&before, &before.clone(), selected) == selected);
         assert!(comparisons(same) < 200);
-        // Lists that share nothing are walked through once.
+        // Lists without shared nodes are walked through once.
         let without = list(&mut (0..9_999));
         let left = || assert!(followed(&before, &without, selected) == Some(Counted(9_998)));
         assert!(comparisons(left) < 40_000);

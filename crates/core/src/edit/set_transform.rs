@@ -1,7 +1,7 @@
-//! Sets transforms: pushes the old one once a gesture, and keeps cameras in analysis aimed.
+//! Sets transforms, and keeps cameras in analysis aimed.
 //!
-//! A transformation pushes the old transform of the item, once a gesture. A camera in analysis that
-//! looks at a moved object is aimed again in the same command; that pushes nothing on the camera.
+//! A transformation pushes the old transform of the item, once per gesture. If a camera in analysis
+//! looks at a moved object, the same command aims the camera again, without pushing its old pose.
 
 use glam::{DMat3, DMat4, DVec3};
 
@@ -12,7 +12,7 @@ use crate::scene::{
     LightId, Object, ObjectId, Pose, Scene, SpotOwner, Tracked, Transformation, View,
 };
 
-/// The selected object.
+/// Returns the selected object.
 pub(super) fn selected_object<'a>(
     scene: &'a Scene,
     view: &View,
@@ -21,7 +21,7 @@ pub(super) fn selected_object<'a>(
     Ok((id, scene.objects.get(id).ok_or(Refusal::NoObject)?))
 }
 
-/// The selected light.
+/// Returns the selected light.
 pub(super) fn selected_light<'a>(
     scene: &'a Scene,
     view: &View,
@@ -30,7 +30,7 @@ pub(super) fn selected_light<'a>(
     Ok((id, scene.lights.get(id).ok_or(Refusal::NoLight)?))
 }
 
-/// Refuses to move or delete an item that is locked.
+/// Returns an error if an item is locked, as it then may not be moved or deleted.
 pub(super) fn unlocked(scene: &Scene, id: ItemId) -> Result<(), Refusal> {
     if !scene.locked.contains(&id) {
         return Ok(());
@@ -38,7 +38,7 @@ pub(super) fn unlocked(scene: &Scene, id: ItemId) -> Result<(), Refusal> {
     Err(Refusal::Locked(scene.name(id).unwrap_or_default().to_owned()))
 }
 
-/// The object under `id` with another placement.
+/// Gives the object `id` another placement.
 pub(super) fn object(
     scene: &Scene,
     view: &View,
@@ -50,7 +50,7 @@ pub(super) fn object(
     object_placed(scene, view, id, phase.apply(&before.placement, placement))
 }
 
-/// The object under `id` with another placement and stack, and the cameras that look at it.
+/// Gives the object `id` another placement and stack, and aims the cameras that look at it.
 pub(super) fn object_placed(
     scene: &Scene,
     view: &View,
@@ -71,7 +71,7 @@ pub(super) fn object_placed(
             continue;
         }
         if pose.mode_with(view.object) == (CameraMode::Analysis { target: id }) {
-            // Its own Y stays up: a camera that has orbited over the pole does not turn over.
+            // The camera's Y stays up, so a camera that has orbited over the pole does not flip.
             let axes = math::look_at(pose.eye, centre, pose.axes.y_axis, pose.axes);
             let mut camera = camera.clone();
             camera.pose = camera.pose.replaced(Pose { axes, ..*camera.pose.now() });
@@ -81,7 +81,7 @@ pub(super) fn object_placed(
     Ok(if commands.len() == 1 { commands.remove(0) } else { Command::Batch(commands) })
 }
 
-/// The camera under `id` with another pose, its axes made orthonormal.
+/// Gives the camera `id` another pose, with its axes made orthonormal.
 pub(super) fn pose(
     scene: &Scene,
     id: CameraId,
@@ -92,7 +92,7 @@ pub(super) fn pose(
     pose_and_lens(scene, id, pose, lens, phase)
 }
 
-/// The camera under `id` with another pose, its axes made orthonormal, and another lens.
+/// Gives the camera `id` another lens and another pose, with its axes made orthonormal.
 pub(super) fn pose_and_lens(
     scene: &Scene,
     id: CameraId,
@@ -114,14 +114,14 @@ pub(super) fn pose_and_lens(
     Ok(Command::Replace(Item::Camera(id, Box::new(camera))))
 }
 
-/// A view within this sine of straight up or down keeps the camera's own Y up.
+/// Within this sine of straight up or down, the camera's Y stays up instead of the world's Y.
 ///
-/// Seen from above, the centre of an object is rarely exactly below the camera: with the world's Y
-/// up, the little that it is aside would turn the picture by any angle.
+/// Seen from above, the centre of an object is rarely exactly below the camera. With the world's Y
+/// up, a tiny horizontal offset would turn the picture by an arbitrary angle.
 const STEEP: f64 = 0.1;
 
 /// Aims the selected camera at the object that it orbits in analysis, after undo or redo has moved
-/// the object alone. `None` if it is aimed already, or locked.
+/// only the object. `None` if the camera is already aimed, or locked.
 #[must_use]
 pub fn aimed_again(scene: &Scene, view: &View) -> Option<Command> {
     let centre = analysis_centre(scene, view)?;
@@ -137,7 +137,7 @@ pub fn aimed_again(scene: &Scene, view: &View) -> Option<Command> {
     Some(Command::Replace(Item::Camera(view.camera, Box::new(camera))))
 }
 
-/// The upright pose in analysis that looks at the centre of the selected object.
+/// Returns the upright pose in analysis that looks at the centre of an object.
 pub(super) fn aimed(pose: &Pose, target: ObjectId, centre: DVec3) -> Pose {
     let steep = math::unit(pose.eye - centre)
         .is_some_and(|z| z.cross(DVec3::Y).length() < STEEP && z.dot(pose.axes.z_axis) > 0.9);
@@ -149,7 +149,7 @@ pub(super) fn aimed(pose: &Pose, target: ObjectId, centre: DVec3) -> Pose {
     }
 }
 
-/// The centre of the selected camera in analysis; `None` in fly.
+/// Returns the centre that the selected camera orbits in analysis; `None` in fly.
 pub(super) fn analysis_centre(scene: &Scene, view: &View) -> Option<DVec3> {
     match scene.selected_camera(view).pose.now().mode_with(view.object) {
         CameraMode::Fly => None,
@@ -165,7 +165,7 @@ pub(super) enum LightPlace {
     Aim(Aim),
 }
 
-/// The part of the light that can be transformed, or why none can.
+/// Returns the part of a light that can be transformed, or the reason why it cannot be transformed.
 pub(super) fn place_of(light: &Light) -> Result<LightPlace, Refusal> {
     match light.kind.anchor() {
         Anchor::Everywhere => Err(Refusal::Ambient),
@@ -179,11 +179,11 @@ pub(super) fn place_of(light: &Light) -> Result<LightPlace, Refusal> {
     }
 }
 
-/// What x, y and z do to a light if `chosen` is asked for: a sun can only be turned and a bulb only
-/// be moved, whatever is chosen.
+/// Returns the transformation of x, y and z for a light, if `chosen` is asked for. A sun can only
+/// be turned and a bulb only be moved, for any `chosen`.
 ///
 /// # Errors
-/// If the light has no position or direction of its own.
+/// If the light has neither a position nor a direction that can be set.
 pub fn transformation_of(light: &Light, chosen: Transformation) -> Result<Transformation, Refusal> {
     Ok(match place_of(light)? {
         LightPlace::Direction(_) => Transformation::Rotation,
@@ -192,7 +192,7 @@ pub fn transformation_of(light: &Light, chosen: Transformation) -> Result<Transf
     })
 }
 
-/// The light under `id` at another place of its own kind.
+/// Gives the light `id` another position or direction; `place` must suit the kind of light.
 pub(super) fn light(
     scene: &Scene,
     id: LightId,
@@ -201,7 +201,7 @@ pub(super) fn light(
 ) -> Result<Command, Refusal> {
     let mut light = scene.lights.get(id).ok_or(Refusal::NoLight)?.clone();
     unlocked(scene, ItemId::Light(id))?;
-    // Checked before anything is placed: directions have length 1, places are finite.
+    // Checked before the light is changed: directions have length 1, positions are finite.
     let direction = |v: DVec3| math::unit(v).ok_or(Refusal::TooLarge);
     let position = |v: DVec3| if v.is_finite() { Ok(v) } else { Err(Refusal::TooLarge) };
     match (light.kind.anchor_mut(), place) {
@@ -226,9 +226,9 @@ pub(super) fn light(
     Ok(Command::Replace(Item::Light(id, Box::new(light))))
 }
 
-/// The turn by `radians` about `axis`, of any length; none about an axis of no length.
+/// Returns the rotation by `radians` about an axis of any length; the identity if the length is 0.
 ///
-/// Whole turns are left to the sine: a remainder by the nearest number to 2 pi would lose 4e-11 at
+/// Full turns are left to the sine: a remainder by the nearest number to 2 pi would lose 4e-11 at
 /// an angle of 1e6.
 pub(super) fn turn(axis: DVec3, radians: f64) -> Result<DMat3, Refusal> {
     if !radians.is_finite() {

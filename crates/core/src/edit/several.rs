@@ -1,7 +1,8 @@
-//! Several selected items: what is asked for the selected one is done with all of them.
+//! Applies an action to all selected items.
 //!
-//! Each is asked in turn, as if it were the selected one, in the scene that those before it have
-//! left. What one of them refuses is done with the others; only if all refuse, nothing is.
+//! The action is applied to each item in turn, as if it were the selected one, in the scene that
+//! the earlier items have left. If some items refuse the action, it is done for the others; only if
+//! all refuse, the action is refused.
 
 use std::collections::BTreeSet;
 
@@ -11,9 +12,9 @@ use crate::scene::{
     Scene, SpotOwner, Subject, Tracked, View,
 };
 
-/// Items that are selected beside the one that the keys act on.
+/// The items that are selected in addition to the one that the keys act on.
 ///
-/// They belong to that one: once another is selected by itself, they are not selected any more.
+/// They belong to that item: once another item is selected alone, they are no longer selected.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Others {
     with: Option<ItemId>,
@@ -21,14 +22,14 @@ pub struct Others {
 }
 
 impl Others {
-    /// These beside the selected one.
+    /// Selects these items in addition to `with`.
     #[must_use]
     pub fn new(with: ItemId, items: impl IntoIterator<Item = ItemId>) -> Self {
         let items = items.into_iter().filter(|item| *item != with).collect();
         Self { with: Some(with), items }
     }
 
-    /// Those that are selected now beside the selected one.
+    /// Returns the items that are now selected in addition to the one that the keys act on.
     pub fn of<'a>(
         &'a self,
         scene: &'a Scene,
@@ -39,10 +40,10 @@ impl Others {
     }
 }
 
-/// The command that `act` gives for the selected item and for each of the others, as one.
+/// Combines the commands that `act` returns for the selected item and for each of the others.
 ///
 /// # Errors
-/// The reason of the selected item, if all of them refuse.
+/// The refusal for the selected item, if all items refuse.
 pub fn each(
     scene: &Scene,
     view: &View,
@@ -55,7 +56,7 @@ pub fn each(
     let mut after = scene.clone();
     let (mut commands, mut refused) = (Vec::new(), None);
     for id in selection::selected(view).into_iter().chain(others.iter().copied()) {
-        // It may have gone with the one before it.
+        // An earlier command may have removed this item, too.
         if !after.contains(id) {
             continue;
         }
@@ -73,7 +74,7 @@ pub fn each(
     }
 }
 
-/// The view in which this item is the one that the keys act on.
+/// Returns the view with this item as the selected one.
 fn as_if_selected(view: &View, id: ItemId) -> View {
     let mut view = view.clone();
     view.subject = selection::subject_of(id);
@@ -85,10 +86,10 @@ fn as_if_selected(view: &View, id: ItemId) -> View {
     view
 }
 
-/// Shows all of these items, or hides all, as is done with the selected one.
+/// Shows or hides all of these items, whichever the selected one does.
 ///
 /// # Errors
-/// If it is gone.
+/// If the selected item is gone.
 pub fn toggle_shown(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Command, Refusal> {
     let shown = |scene: &Scene, id| match id {
         ItemId::Object(id) => scene.objects.get(id).is_some_and(|object| object.visible),
@@ -104,10 +105,10 @@ pub fn toggle_shown(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Com
     })
 }
 
-/// Locks all of these items, or unlocks all, as is done with the selected one.
+/// Locks or unlocks all of these items, whichever the selected one does.
 ///
 /// # Errors
-/// If it is gone.
+/// If the selected item is gone.
 pub fn toggle_locked(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Command, Refusal> {
     let first = selection::selected(view).ok_or(Refusal::Gone)?;
     let before = scene.locked.contains(&first);
@@ -118,8 +119,8 @@ pub fn toggle_locked(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Co
     })
 }
 
-/// The command that makes the same change in all items of a kind: what it changes of the selected
-/// one, it changes of the others to the same value.
+/// Extends a command to all items of a kind: a value that it changes in the selected item is set in
+/// the others, too.
 #[must_use]
 pub fn spread(scene: &Scene, command: Command, others: &[ItemId]) -> Command {
     let Some(changed) = replaced(&command) else { return command };
@@ -134,7 +135,7 @@ pub fn spread(scene: &Scene, command: Command, others: &[ItemId]) -> Command {
     Command::Batch(commands)
 }
 
-/// The item that a command replaces first.
+/// Returns the first item that a command replaces.
 fn replaced(command: &Command) -> Option<&Item> {
     match command {
         Command::Replace(item) => Some(item),
@@ -148,12 +149,13 @@ fn replaced(command: &Command) -> Option<&Item> {
     }
 }
 
-/// Another item with what `changed` changes of its own.
+/// Returns another item of the same kind, with the values that `changed` changes.
 fn alike(scene: &Scene, changed: &Item, other: ItemId) -> Option<Item> {
     match (changed, other) {
         (Item::Object(id, to), ItemId::Object(other)) if *id != other => {
             let mut object = scene.objects.get(other)?.clone();
             let placement = object.placement.clone();
+            // A locked item takes all changes except the placement.
             object_alike(scene.objects.get(*id)?, to, &mut object)?;
             if scene.locked.contains(&ItemId::Object(other)) {
                 object.placement = placement;
@@ -182,14 +184,14 @@ fn alike(scene: &Scene, changed: &Item, other: ItemId) -> Option<Item> {
     }
 }
 
-/// Sets a field where it was changed.
+/// Sets a field if it was changed.
 fn set<T: PartialEq + Clone>(before: &T, after: &T, own: &mut T) {
     if before != after {
         own.clone_from(after);
     }
 }
 
-/// What of a placed thing was changed, number by number.
+/// Takes the coordinates that were changed, and keeps the others.
 fn vector(before: glam::DVec3, after: glam::DVec3, own: glam::DVec3) -> glam::DVec3 {
     glam::DVec3::select(before.cmpeq(after), own, after)
 }
@@ -205,6 +207,7 @@ fn object_alike(before: &Object, after: &Object, own: &mut Object) -> Option<()>
     set(&before.edge_color, &after.edge_color, &mut own.edge_color);
     set(&before.sides, &after.sides, &mut own.sides);
     set(&before.file_normals, &after.file_normals, &mut own.file_normals);
+    // Another model is not spread, but another crease angle of the same model is.
     if before.model != after.model && before.model.shares_file_with(&after.model) {
         let crease = after.model.options.crease;
         if items::why_no_crease(&own.model, own.file_normals).is_none() {
@@ -220,7 +223,7 @@ fn object_alike(before: &Object, after: &Object, own: &mut Object) -> Option<()>
     Some(())
 }
 
-/// Pushes what an item was if that was done with the selected one.
+/// Pushes the old value of an item if the command pushed the selected item's value.
 fn follow<T: Clone>(
     before: &Tracked<T>,
     after: &Tracked<T>,
@@ -266,7 +269,7 @@ fn light_alike(before: &Light, after: &Light, own: &mut Light) {
     }
 }
 
-/// What of a light was changed, in another of the same kind.
+/// Sets the changed values of a light in another light of the same kind.
 fn kind_alike(before: &LightKind, after: &LightKind, own: &mut LightKind) {
     for number in LIGHT_NUMBERS {
         let (old, new) = ((number.get)(before), (number.get)(after));
@@ -312,8 +315,8 @@ fn owner_alike(before: &SpotOwner, after: &SpotOwner, own: &mut SpotOwner) {
     }
 }
 
-/// The items of the subject's list that are `listed`; if all of them are selected already, those of
-/// all lists.
+/// Returns all listed items of the subject's list. If all of these are already selected, the listed
+/// items of all lists.
 #[must_use]
 pub fn all(
     scene: &Scene,

@@ -1,4 +1,4 @@
-//! Adds simple shapes, in a size that fits the scene.
+//! Adds built-in shapes, in a size that fits the scene.
 
 use glam::{DMat4, DVec3};
 
@@ -8,11 +8,11 @@ use crate::scene::{
     Bounds, Command, MaterialChoice, Object, PresetId, Scene, Shape, Sides, Tracked, View,
 };
 
-/// The size of a shape in a scene without objects, whose camera is made for ships of this size.
+/// The size of a shape in a scene without objects, since its camera is made for ships of this size.
 const ALONE: f64 = 100.0;
 
-/// Adds a shape: about a fifth as large as the scene, at the centre of the world. A plane is twice
-/// as large as the scene and the ground twenty times, and both touch its lowest point.
+/// Adds a shape at the centre of the world, about a fifth as large as the scene. A plane is twice
+/// as large as the scene and a ground twenty times; both touch the lowest point of the scene.
 #[must_use]
 pub fn insert(scene: &Scene, view: &View, shape: Shape) -> Command {
     let of_scene = match shape {
@@ -23,7 +23,7 @@ pub fn insert(scene: &Scene, view: &View, shape: Shape) -> Command {
     let extent = Some(extent(scene)).filter(|extent| *extent > 0.0).unwrap_or(ALONE / 0.2);
     let size = rounded(extent * of_scene).unwrap_or(ALONE);
     let place = if shape.is_ground() { ground(scene, view.time) } else { DVec3::ZERO };
-    // The ground fades by its own material.
+    // The ground fades out by its own material.
     let material = match shape {
         Shape::Ground => MaterialChoice::File,
         Shape::Plane | Shape::Cube | Shape::Sphere | Shape::Cylinder | Shape::Torus => {
@@ -37,7 +37,7 @@ pub fn insert(scene: &Scene, view: &View, shape: Shape) -> Command {
     insert_object(scene, object)
 }
 
-/// The middle of the box around all objects, at the height of its floor.
+/// Returns the centre of the bottom of the box around all objects.
 fn ground(scene: &Scene, time: f64) -> DVec3 {
     let vertices = scene.objects.iter().flat_map(|(_, object)| object.placed_vertices(time));
     Bounds::of(vertices).map_or(DVec3::ZERO, |bounds| {

@@ -1,28 +1,28 @@
-//! How far a press of x, y or z moves.
+//! The sizes of steps for the keys x, y and z.
 //!
-//! By size, a step is a hundredth of the scene's extent, rounded to 1, 2 or 5 times a power of 10,
-//! so that it has few digits and stays the same while objects are moved about.
+//! By size, a step is a hundredth of the scene's extent, rounded to 1, 2 or 5 times a power of 10.
+//! It then has few digits and stays the same while objects are moved about.
 
 use glam::DVec3;
 
 use crate::scene::{Object, Scene, Shape, Steps, View};
 
-/// The extent of the scene is this number of steps, before rounding.
+/// The number of steps across the extent of the scene, before rounding.
 const STEPS_ACROSS: f64 = 100.0;
 
-/// The length of a step of translation, in units of the world.
+/// Returns the length of a step of translation, in units of the world.
 #[must_use]
 pub fn length(scene: &Scene, view: &View) -> f64 {
     let by_size = || rounded(extent(scene) / STEPS_ACROSS);
     view.steps.by_size.then(by_size).flatten().unwrap_or(view.steps.translation)
 }
 
-/// The extent of a scene: of one object its largest, of several the largest side of the box around
-/// them. 0 if there are none.
+/// Returns the extent of a scene: the largest extent of a single object, or the largest side of the
+/// box around several. 0 for an empty scene.
 ///
-/// Each object counts as a cube as wide as its largest extent, so that turning it, or moving it if
-/// it is the only one, leaves the extent as it is. The ground and the plane of the menu of shapes
-/// do not count beside other objects: they are larger than what stands on them.
+/// Each object counts as a cube as wide as its largest extent, so turning it does not change the
+/// extent of the scene, nor does moving a single object. Ground and plane shapes do not count if
+/// there are other objects, because they are larger than the objects on them.
 #[must_use]
 pub fn extent(scene: &Scene) -> f64 {
     let cube = |object: &Object| {
@@ -40,20 +40,20 @@ pub fn extent(scene: &Scene) -> f64 {
     around(false).or_else(|| around(true)).map_or(0.0, |(min, max)| (max - min).max_element())
 }
 
-/// The distance between the lines of the ground's grid. Ten of them are about as long as the scene.
+/// Returns the spacing of the lines of the ground grid. Ten of them are about as long as the scene.
 #[must_use]
 pub fn of_grid(scene: &Scene) -> f64 {
     rounded(extent(scene) / 10.0).unwrap_or(Steps::DEFAULT.translation)
 }
 
-/// Whether an object is the ground or the plane of the menu of shapes.
+/// Returns whether an object is a ground or plane shape.
 pub(super) fn is_ground(object: &Object) -> bool {
     let shape = Shape::named(&object.model.name).filter(|_| object.model.source.is_none());
     shape.is_some_and(Shape::is_ground)
 }
 
-/// The nearest of 1, 2 and 5 times the powers of 10, by ratio; `None` if `length` is not a positive
-/// finite number.
+/// Rounds to 1, 2 or 5 times a power of 10, the nearest by ratio; `None` if `length` is not
+/// positive and finite.
 pub(super) fn rounded(length: f64) -> Option<f64> {
     if !(length.is_finite() && length > 0.0) {
         return None;
@@ -65,7 +65,7 @@ pub(super) fn rounded(length: f64) -> Option<f64> {
     steps.into_iter().filter(|step| *step > 0.0).min_by(|a, b| ratio(*a).total_cmp(&ratio(*b)))
 }
 
-/// The number nearest to `digit` times a power of 10, as if it had been typed.
+/// Returns the number nearest to `digit` times a power of 10, as if it were parsed from text.
 #[expect(clippy::cast_possible_truncation, reason = "the exponent of a double has three digits")]
 fn decimal(digit: u8, power: f64) -> f64 {
     format!("{digit}e{}", power as i32).parse().unwrap_or(0.0)

@@ -1,11 +1,11 @@
-//! Transformations of the selected item by a step or an amount, and undoing the last one.
+//! Transforms the selected item by a step or an amount, and undoes its last transformation.
 //!
-//! * An object, M its placement: M := M T in the local frame, M := T M in the global one.
-//! * A camera in fly moves and turns in its own frame: X yaws about its own Y, Y pitches about its
-//!   own X, whether translation or rotation is chosen; Z moves along its own Z, or rolls about it.
-//! * A camera in analysis does the same about the centre that it looks at: it orbits, comes nearer
-//!   or goes away but never past the centre, and rolls.
-//! * A sun is turned about the world's axes, a bulb moved along them, a spot of its own both.
+//! * An object with placement M: M := M T in the local frame, M := T M in the global frame.
+//! * A camera in fly moves and turns in its own frame. X yaws about its Y and Y pitches about its
+//!   X, for translation and for rotation; Z moves along its Z, or rolls about it.
+//! * A camera in analysis does the same about the centre that it looks at: it orbits, approaches or
+//!   moves away but never past the centre, and rolls.
+//! * A sun turns about the world's axes, a bulb moves along them, and a fixed spot does both.
 
 use glam::{DMat3, DMat4, DVec3};
 
@@ -18,7 +18,7 @@ use crate::scene::{
     Subject, Transformation, View,
 };
 
-/// The direction along or about an axis.
+/// The direction of a step along or about an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Sign {
     /// The lower-case key.
@@ -28,7 +28,7 @@ pub enum Sign {
 }
 
 impl Sign {
-    /// The amount with this sign.
+    /// Applies this sign to an amount.
     #[must_use]
     pub const fn of(self, amount: f64) -> f64 {
         match self {
@@ -70,7 +70,7 @@ pub fn step(
         },
         Subject::Light => {
             match set_transform::place_of(set_transform::selected_light(scene, view)?.1)? {
-                // A sun can only be turned and a bulb only be moved, whatever is chosen.
+                // A sun can only be turned and a bulb only be moved, for any transformation.
                 LightPlace::Direction(_) => rotate(scene, view, axis.unit(), radians, phase),
                 LightPlace::Position(_) => translate(scene, view, along(), phase),
                 LightPlace::Aim(_) => match view.transformation {
@@ -83,13 +83,13 @@ pub fn step(
     }
 }
 
-/// The distance of one step along `axis` for the selected item of the subject, in the units of the
-/// frame it is moved in.
+/// Returns the distance of one step along `axis` for the selected item of the subject, in the units
+/// of the item's frame.
 #[must_use]
 pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
     let length = steps::length(scene, view);
     match view.object.and_then(|id| scene.objects.get(id)) {
-        // A scaled object's own units are as long as its axes.
+        // In the local frame, the units are as long as the object's scaled axes.
         Some(object)
             if view.steps.by_size
                 && view.subject == Subject::Object
@@ -103,10 +103,10 @@ pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
 }
 
 /// Moves the selected item of the subject by `delta`: an object in the frame of the view, a camera
-/// in its own, a light in the world's.
+/// in its frame, a light in the world's frame.
 ///
 /// # Errors
-/// If it cannot be moved.
+/// If the item cannot be moved.
 pub fn translate(
     scene: &Scene,
     view: &View,
@@ -124,7 +124,7 @@ pub fn translate(
         }
         Subject::Light => {
             let (id, light) = set_transform::selected_light(scene, view)?;
-            // A bulb that circles is moved as it is seen: its place is turned before it is shown.
+            // The orbit turns a bulb's position before it is shown, so `delta` is turned back.
             let delta = light.kind.orbit().map_or(delta, |orbit| {
                 Orbit { speed: -orbit.speed, ..*orbit }.at(delta, view.time)
             });
@@ -140,12 +140,12 @@ pub fn translate(
     }
 }
 
-/// Rotates the selected item of the subject about `axis` by the right-hand rule: an object in the
-/// frame of the view (the global frame rotates about the origin), a camera in fly about its eye and
-/// in analysis about its centre, both in its own frame, a light in the world's.
+/// Rotates the selected item of the subject about `axis` by the right-hand rule. An object turns in
+/// the frame of the view (about the origin in the global frame). A camera turns in its frame, about
+/// its eye in fly and about its centre in analysis. A light turns in the world's frame.
 ///
 /// # Errors
-/// If it cannot be rotated.
+/// If the item cannot be rotated.
 pub fn rotate(
     scene: &Scene,
     view: &View,
@@ -191,8 +191,8 @@ pub fn scale(
     stretch(scene, view, DVec3::splat(factor), phase)
 }
 
-/// Scales the selected object by a factor for each axis of the frame of the view; negative factors
-/// mirror it.
+/// Scales the selected object by a factor for each axis of the view's frame. Negative factors
+/// mirror the object.
 ///
 /// # Errors
 /// If the subject is not objects, or the object would become flat.
@@ -212,7 +212,7 @@ pub fn stretch(
 /// Undoes the last transformation of the selected item of the subject (key `u`).
 ///
 /// # Errors
-/// If it was never transformed.
+/// If the item was never transformed.
 pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     let nothing = Refusal::NothingToTakeBack;
     match view.subject {
@@ -243,11 +243,11 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     }
 }
 
-/// Switches the selected camera from fly to analysis, which aims it at the centre of the selected
-/// object, or back, which moves and pushes nothing (key `g`).
+/// Switches the selected camera between fly and analysis (key `g`). Analysis aims it at the centre
+/// of the selected object. Returning to fly does not move it and pushes nothing.
 ///
 /// # Errors
-/// If there is no object to look at.
+/// If no object is selected.
 pub fn toggle_analysis(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     let pose = effective_pose(scene, view);
     match pose.mode {
@@ -263,7 +263,7 @@ pub fn toggle_analysis(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     }
 }
 
-/// The placement of the selected object, multiplied from the side of the frame.
+/// Multiplies the placement of the selected object by `t`, on the side that the frame requires.
 fn transform(
     scene: &Scene,
     view: &View,
@@ -279,7 +279,7 @@ fn transform(
     if !placement.is_finite() {
         return Err(Refusal::TooLarge);
     }
-    // Objects that are flat already, from a file, may be moved and turned.
+    // Objects from a file that are already flat may be moved and turned.
     let linear = |m: DMat4| DMat3::from_mat4(m);
     let was_whole = math::has_full_rank(linear(m));
     let is_whole = math::has_full_rank(linear(placement)) && math::has_full_rank(linear(t));
@@ -289,26 +289,28 @@ fn transform(
     set_transform::object(scene, view, id, placement, phase)
 }
 
-/// The selected camera's pose, in the mode in which it moves now.
+/// Returns the selected camera's pose, with its current mode.
 pub(super) fn effective_pose(scene: &Scene, view: &View) -> Pose {
     let pose = scene.selected_camera(view).pose.now();
     Pose { mode: pose.mode_with(view.object), ..*pose }
 }
 
-/// A pose in fly, moved in its own frame.
+/// Moves a pose in its frame.
 pub(super) fn moved(pose: &Pose, delta: DVec3) -> Pose {
     Pose { eye: pose.eye + pose.axes * delta, ..*pose }
 }
 
-/// A pose turned about a centre, and aimed as before, which keeps rounding errors from adding up.
+/// Turns a pose about a centre. The axes are aimed again, which keeps rounding errors from adding
+/// up.
 pub(super) fn orbited(pose: &Pose, turn: DMat3, centre: DVec3) -> Pose {
     let eye = centre + turn * (pose.eye - centre);
     let axes = aimed_as(pose, eye, turn * pose.axes, centre);
     Pose { eye, axes, mode: pose.mode }
 }
 
-/// The axes of a camera that has moved from `before` to `eye` and looks as far past the centre as
-/// it did before: not at all, unless it was framed before it began to orbit.
+/// Returns the axes of a camera that has moved from `before` to `eye`, with the same deviation from
+/// the centre as before. The deviation is zero, unless the camera was framed before it began to
+/// orbit.
 fn aimed_as(before: &Pose, eye: DVec3, axes: DMat3, centre: DVec3) -> DMat3 {
     let aimed = |eye: DVec3, axes: DMat3| math::look_at(eye, centre, axes.y_axis, axes);
     let aside = aimed(before.eye, before.axes).transpose() * before.axes;
@@ -317,7 +319,8 @@ fn aimed_as(before: &Pose, eye: DVec3, axes: DMat3, centre: DVec3) -> DMat3 {
     if is_aimed { aimed(eye, axes) } else { aimed(eye, axes) * aside }
 }
 
-/// The selected camera in analysis moved in its own frame: aimed again, and never past the centre.
+/// Moves the selected camera in analysis in its frame. It is aimed again, and never passes the
+/// centre.
 ///
 /// Towards the centre it stops at the near plane, where the object would vanish.
 pub(super) fn moved_about(

@@ -1,7 +1,7 @@
-//! A turntable: the scene as it looks after a part of a turn about the vertical.
+//! A turntable: the scene after a part of a turn about the vertical axis.
 //!
-//! Either the objects turn, under lights that stand still as in a photographer's studio, or the
-//! camera circles about them. The axis goes through the middle of everything visible.
+//! Either the objects turn under fixed lights, as in a photographer's studio, or the camera circles
+//! around them. The axis goes through the centre of everything visible.
 
 use glam::{DMat4, DVec3};
 
@@ -9,7 +9,7 @@ use super::{Refusal, framing, items};
 use crate::base::math;
 use crate::scene::{Command, Item, ObjectId, Pose, Scene, Tracked, View};
 
-/// What turns.
+/// The part of the scene that turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Turn {
     /// The objects.
@@ -19,8 +19,8 @@ pub enum Turn {
     Camera,
 }
 
-/// The scene after `part` of a whole turn, counter-clockwise seen from above. A part of 0 is the
-/// scene itself.
+/// Returns the scene after `part` of a full turn, counter-clockwise seen from above. A part of 0
+/// returns the scene unchanged.
 ///
 /// # Errors
 /// If nothing is visible.

@@ -1,4 +1,4 @@
-//! What gives a light its position and its direction.
+//! The anchor of a light: the source of its position and direction.
 
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -7,49 +7,49 @@ use super::tracked::Tracked;
 use super::{CameraId, ObjectId};
 use crate::base::math;
 
-/// What gives a light its position and direction; this is what can be moved, turned and aimed.
+/// The source of a light's position and direction, which can be moved, turned and aimed.
 #[derive(Clone, Copy, Debug)]
 pub enum Anchor<'a> {
-    /// Nothing: it has neither.
+    /// Neither position nor direction: ambient light.
     Everywhere,
-    /// A direction of its own; it is infinitely far away.
+    /// A direction; the light is infinitely far away.
     Direction(&'a Tracked<DVec3>),
-    /// A position of its own; it shines in all directions.
+    /// A position; the light shines in all directions.
     Position(&'a Tracked<DVec3>),
-    /// An item, or a position and a direction of its own.
+    /// An item, or a fixed position and direction.
     Owner(&'a SpotOwner),
 }
 
-/// An [`Anchor`] to change.
+/// A mutable [`Anchor`].
 #[derive(Debug)]
 pub enum AnchorMut<'a> {
-    /// Nothing.
+    /// Neither position nor direction.
     Everywhere,
     /// A direction.
     Direction(&'a mut Tracked<DVec3>),
     /// A position.
     Position(&'a mut Tracked<DVec3>),
-    /// An item, or both.
+    /// An item, or a fixed position and direction.
     Owner(&'a mut SpotOwner),
 }
 
-/// What a spot is attached to. It shines from there along -Z.
+/// The owner of a spot. The spot shines from there along -Z.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpotOwner {
-    /// The selected object, whichever it is.
+    /// The object that is currently selected.
     SelectedObject,
-    /// The selected camera, whichever it is.
+    /// The camera that is currently selected.
     SelectedCamera,
     /// This object.
     Object(ObjectId),
     /// This camera.
     Camera(CameraId),
-    /// Nothing: it has a position and a direction of its own.
+    /// A fixed position and direction, without an owner.
     Fixed(Tracked<Aim>),
 }
 
 impl SpotOwner {
-    /// The position and direction of a spot that has its own.
+    /// Returns the position and direction of a fixed spot; `None` if an item owns the spot.
     #[must_use]
     pub const fn fixed(&self) -> Option<&Tracked<Aim>> {
         match self {
@@ -59,7 +59,7 @@ impl SpotOwner {
     }
 }
 
-/// The position and the direction that a light has now.
+/// The current position and direction of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightOrigin {
     /// The position; `None` if the light is infinitely far away or everywhere.
@@ -77,15 +77,15 @@ pub struct Aim {
     pub direction: DVec3,
 }
 
-/// Circling the world's Y axis.
+/// A circular motion about the world's Y axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Orbit {
-    /// Whether it circles.
+    /// Whether the light circles.
     pub on: bool,
-    /// Degrees per second.
+    /// The speed in degrees per second.
     pub speed: f64,
-    /// When it began, in seconds of the scene's clock.
+    /// The start time, in seconds of the scene's clock.
     pub since: f64,
 }
 
@@ -96,7 +96,7 @@ impl Default for Orbit {
 }
 
 impl Orbit {
-    /// The position of a bulb at `time` (seconds of the scene's clock) if it is placed at
+    /// Returns the position of a bulb at `time` (seconds of the scene's clock) if it is placed at
     /// `position`.
     #[must_use]
     pub fn at(&self, position: DVec3, time: f64) -> DVec3 {

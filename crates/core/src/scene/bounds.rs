@@ -12,43 +12,43 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The extent of points; `None` if there are none.
+    /// Returns the extent of points; `None` if the list is empty.
     #[must_use]
     pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
         points.into_iter().map(Self::at).reduce(|all, p| all.around(&p))
     }
 
-    /// The box of one point.
+    /// Returns the box of one point.
     #[must_use]
     pub const fn at(point: DVec3) -> Self {
         Self { min: point, max: point }
     }
 
-    /// The box around two boxes.
+    /// Returns the box around two boxes.
     #[must_use]
     pub fn around(&self, other: &Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// The middle of the box.
+    /// Returns the middle of the box.
     #[must_use]
     pub fn centre(&self) -> DVec3 {
         (self.min + self.max) * 0.5
     }
 
-    /// Length, height and width of the box.
+    /// Returns length, height and width of the box.
     #[must_use]
     pub fn extent(&self) -> DVec3 {
         self.max - self.min
     }
 
-    /// The point of the box nearest to a point.
+    /// Returns the point of the box nearest to a point.
     #[must_use]
     pub fn nearest_to(&self, place: DVec3) -> DVec3 {
         place.max(self.min).min(self.max)
     }
 
-    /// Its eight corners.
+    /// Returns the eight corners of the box.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
         let pick = |i: usize, bit: usize, axis: usize| {

@@ -1,4 +1,4 @@
-//! A camera, its pose and its lens. It looks along its own -Z.
+//! A camera, its pose and its lens. It looks along -Z of its frame.
 
 use glam::{DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ use crate::base::{Shared, math};
 /// A camera, with the model that marks it for other observers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// Its name in the outline.
+    /// The name in the outline.
     pub name: String,
     /// Whether its marker is drawn.
     pub visible: bool,
@@ -18,30 +18,30 @@ pub struct Camera {
     pub model: Shared<Model>,
     /// The marker's material.
     pub material: MaterialChoice,
-    /// Its position, orientation and mode.
+    /// The position, orientation and mode.
     pub pose: Tracked<Pose>,
-    /// Its field of view and its planes.
+    /// The field of view and its planes.
     pub lens: Lens,
 }
 
 /// The position, orientation and mode of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Its position in the world.
+    /// The position in the world.
     pub eye: DVec3,
-    /// Its axes as columns, orthonormal and right-handed.
+    /// The axes as columns, orthonormal and right-handed.
     pub axes: DMat3,
-    /// How it moves.
+    /// The mode of movement.
     pub mode: CameraMode,
 }
 
-/// How a camera moves.
+/// A camera's mode of movement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CameraMode {
-    /// It moves in its own frame.
+    /// The camera moves in its own frame.
     #[default]
     Fly,
-    /// It orbits the centre of an object, which it looks at.
+    /// The camera orbits the centre of an object and looks at it (an orbit camera).
     Analysis {
         /// The object.
         target: ObjectId,
@@ -49,19 +49,19 @@ pub enum CameraMode {
 }
 
 impl Pose {
-    /// At `eye`, looking along -Z.
+    /// Creates a pose at `eye` that looks along -Z.
     #[must_use]
     pub const fn facing_minus_z(eye: DVec3) -> Self {
         Self { eye, axes: DMat3::IDENTITY, mode: CameraMode::Fly }
     }
 
-    /// `world_from_camera`.
+    /// Returns the matrix `world_from_camera`.
     #[must_use]
     pub fn world_from_camera(&self) -> DMat4 {
         math::placed(self.axes, self.eye)
     }
 
-    /// How the camera moves now: it orbits only while its target is the selected object.
+    /// Returns the current mode. The camera orbits only while its target is the selected object.
     #[must_use]
     pub fn mode_with(&self, selected: Option<ObjectId>) -> CameraMode {
         match self.mode {
@@ -103,7 +103,7 @@ impl Default for Lens {
 }
 
 impl Lens {
-    /// Whether it gives a valid projection.
+    /// Returns whether the lens gives a valid projection.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let Self { half_angle, near, far, half_size, parallel_near, parallel_far } = *self;
@@ -117,7 +117,7 @@ impl Lens {
             && parallel_far > parallel_near
     }
 
-    /// `clip_from_view` for a picture of this size.
+    /// Returns the matrix `clip_from_view` for a picture of this size.
     #[must_use]
     pub fn clip_from_view(&self, projection: Projection, size: Size) -> DMat4 {
         match projection {

@@ -1,8 +1,8 @@
 //! The changes that can be made to a scene.
 //!
-//! There is no code of its own for undo: [`Command::apply`] returns the inverse command, so a
-//! change and its undo cannot drift apart. Since everything large in a scene is shared, a change of
-//! an item holds the whole item as it will be, and its inverse holds the item as it was.
+//! Undo needs no separate code: [`Command::apply`] returns the inverse command, so a change and its
+//! undo cannot drift apart. Everything large in a scene is shared, so a change of an item holds the
+//! whole new item, and its inverse holds the whole old item.
 
 use super::{Camera, CameraId, ItemId, Light, LightId, Object, ObjectId, Scene};
 use crate::base::color::Color;
@@ -10,11 +10,11 @@ use crate::base::color::Color;
 /// One change to a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
-    /// Inserts an item into its list, before the one at `at`.
+    /// Inserts an item into its list, before the item at `at`.
     Insert {
-        /// Its place in the list; past the end means last.
+        /// The index in the list; past the end means last.
         at: usize,
-        /// The item, under an id that is not in use.
+        /// The item, under an unused id.
         item: Item,
     },
     /// Removes an item.
@@ -25,7 +25,7 @@ pub enum Command {
     Reorder {
         /// The item.
         id: ItemId,
-        /// Its place afterwards.
+        /// The index in the list afterwards.
         to: usize,
     },
     /// Locks an item, or unlocks it.
@@ -39,7 +39,7 @@ pub enum Command {
     Background(Color),
     /// Sets the id that the next new item gets.
     NextId(u32),
-    /// All of these, in order, or none of them.
+    /// Applies all of these commands in order, or none of them.
     Batch(Vec<Self>),
 }
 
@@ -55,7 +55,7 @@ pub enum Item {
 }
 
 impl Item {
-    /// Its id.
+    /// Returns the id.
     #[must_use]
     pub const fn id(&self) -> ItemId {
         match self {
@@ -65,7 +65,7 @@ impl Item {
         }
     }
 
-    /// Why it is not valid in a scene, if it is not.
+    /// Returns the reason why the item is invalid in a scene, or `None` if it is valid.
     fn fault(&self) -> Option<CommandError> {
         let finite = match self {
             Self::Object(_, object) => {
@@ -89,13 +89,13 @@ impl Item {
     }
 }
 
-/// Why a command could not be applied. The scene is unchanged then.
+/// The reasons why a command cannot be applied. The scene is then unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CommandError {
-    /// The item that the command names is not there.
+    /// The item to change is not in the scene.
     #[error("the item to change is no longer in the scene")]
     Missing(ItemId),
-    /// The item that the command would insert is already there.
+    /// The item to insert is already in the scene.
     #[error("the item to add is already in the scene")]
     AlreadyThere(ItemId),
     /// The last camera cannot be removed.
@@ -104,7 +104,7 @@ pub enum CommandError {
     /// A number would overflow.
     #[error("a number would become too large")]
     NotFinite,
-    /// The lens would give no valid projection.
+    /// The lens would give an invalid projection.
     #[error(
         "the lens needs an angle between 0 and 90 degrees, a size above 0, and near before far"
     )]
@@ -118,13 +118,15 @@ impl Command {
     /// Changes the scene, and returns the inverse command.
     ///
     /// # Errors
-    /// If the command does not fit the scene, which is unchanged then.
+    /// If the command does not fit the scene. The scene is then unchanged.
     pub fn apply(self, scene: &mut Scene) -> Result<Self, CommandError> {
         match self {
             Self::Insert { at, item } => insert(scene, at, item),
             Self::Remove(id) => remove(scene, id),
             Self::Replace(item) => replace(scene, item),
             Self::Reorder { id, to } => {
+                // A move is a removal and an insertion. `remove_any` allows this for the last
+                // camera, too.
                 let Self::Insert { at, item } = remove_any(scene, id)? else {
                     unreachable!("removing returns an insertion")
                 };
@@ -140,7 +142,8 @@ impl Command {
         }
     }
 
-    /// Whether `self`, applied right after `earlier`, overwrites everything that `earlier` set.
+    /// Returns whether `self`, applied right after `earlier`, overwrites everything that `earlier`
+    /// set.
     #[must_use]
     pub fn overwrites(&self, earlier: &Self) -> bool {
         match (self, earlier) {
@@ -230,6 +233,7 @@ fn batch(scene: &mut Scene, commands: Vec<Command>) -> Result<Command, CommandEr
         match command.apply(scene) {
             Ok(inverse) => back.push(inverse),
             Err(error) => {
+                // Undo the commands that succeeded, so a failed batch changes nothing.
                 for inverse in back.into_iter().rev() {
                     inverse.apply(scene).expect("a command that was just applied can be undone");
                 }

@@ -9,23 +9,23 @@ use crate::base::color::Color;
 /// A light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    /// Its name in the outline.
+    /// The name in the outline.
     pub name: String,
-    /// The number of its key: 0 to 9 have one. No two lights have the same.
+    /// The slot: the number of the light's key; 0 to 9 have a key. Each light has a different slot.
     pub slot: u32,
-    /// Whether it is on.
+    /// Whether the light is on.
     pub on: bool,
-    /// Its colour.
+    /// The colour.
     pub color: Color,
-    /// How its light fades; the sun's and ambient light do not.
+    /// The attenuation with distance; suns and ambient light ignore it.
     pub attenuation: Attenuation,
-    /// Whether objects cast shadows in its light; ambient light has none.
+    /// Whether objects cast shadows in this light; ambient light casts no shadows.
     pub shadows: bool,
-    /// Its kind, with what that kind needs.
+    /// The kind of light, with its parameters.
     pub kind: LightKind,
 }
 
-/// How light fades with the distance d: 1 / (constant + linear d + quadratic d^2).
+/// The attenuation at distance d: 1 / (constant + linear d + quadratic d^2).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Attenuation {
@@ -44,7 +44,7 @@ impl Default for Attenuation {
 }
 
 impl Attenuation {
-    /// Whether the light at every distance is finite and not negative.
+    /// Returns whether the light at every distance is finite and not negative.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let all = [self.constant, self.linear, self.quadratic];
@@ -53,13 +53,13 @@ impl Attenuation {
 }
 
 impl Light {
-    /// Whether it can cast shadows: it comes from somewhere.
+    /// Returns whether the light can cast shadows. Ambient light cannot.
     #[must_use]
     pub const fn can_cast_shadows(&self) -> bool {
         !matches!(self.kind.anchor(), Anchor::Everywhere)
     }
 
-    /// A white light that is on.
+    /// Creates a white light that is on.
     #[must_use]
     pub fn new(name: &str, slot: u32, kind: LightKind) -> Self {
         Self {
@@ -73,8 +73,8 @@ impl Light {
         }
     }
 
-    /// The five lights of the first scene: ambient, sun, bulb, and the spots of the selected object
-    /// and of the selected camera.
+    /// Returns the five lights of the first scene: ambient, sun, bulb, and the spots of the
+    /// selected object and of the selected camera.
     #[must_use]
     pub fn five() -> [Self; 5] {
         let spot = |owner| LightKind::Spot { owner, half_aperture: 22.5, exponent: 5.0 };

@@ -1,8 +1,8 @@
-//! The kinds of light, and what holds of each.
+//! The kinds of light, with the facts that the rest of the program needs.
 //!
-//! Keys, panels, marks, files and the renderer ask for a fact that stands here (what the light is
-//! anchored to, its numbers, its name), and not for the kind. So a new kind is a variant with its
-//! facts, beside its form in scene files, its shader, and the action that adds it.
+//! Keys, panels, marks, files and the renderer query these facts (a light's anchor, numbers and
+//! name) instead of matching on the kind. A new kind therefore needs a variant with its facts, a
+//! form in scene files, a shader, and an action that adds it.
 
 use glam::DVec3;
 
@@ -12,66 +12,66 @@ use super::tracked::Tracked;
 /// The kind of a light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightKind {
-    /// Ambient: from everywhere.
+    /// Ambient light, from everywhere.
     Ambient,
-    /// Directional: from infinitely far away.
+    /// Directional light, from infinitely far away.
     Sun {
-        /// The direction in which its light travels, of length 1.
+        /// The direction of the light's travel, of length 1.
         direction: Tracked<DVec3>,
     },
     /// A point light, in all directions.
     Bulb {
-        /// Its position.
+        /// The position.
         position: Tracked<DVec3>,
-        /// Circling the world's Y axis.
+        /// The circular motion about the world's Y axis.
         orbit: Orbit,
     },
     /// A point light with a cone.
     Spot {
-        /// What it is attached to.
+        /// The owner, or a fixed position and direction.
         owner: SpotOwner,
         /// Degrees from the axis to the edge of the cone: 0 to 90.
         half_aperture: f64,
-        /// How strongly its light is concentrated along the axis: at least 0.
+        /// The concentration of the light along the axis: at least 0.
         exponent: f64,
     },
 }
 
-/// What holds of every light of a kind.
+/// The facts about a kind of light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightKindInfo {
-    /// The name of new ones.
+    /// The name of new lights.
     pub name: &'static str,
     /// The code point of its icon in the font Material Symbols.
     pub icon: &'static str,
 }
 
-/// A number that kinds of light have beside their position and direction.
+/// A number of some kinds of light, apart from position and direction.
 #[derive(Debug)]
 pub struct LightNumber {
-    /// Beside its field.
+    /// The label next to the field.
     pub label: &'static str,
     /// The name of the field.
     pub name: &'static str,
-    /// Over the field: one sentence.
+    /// The hint shown over the field: one sentence.
     pub hint: &'static str,
-    /// What a step of the history that changes it is called, before the light's name.
+    /// The name of the undo step that changes the number, before the light's name.
     pub step: &'static str,
-    /// Its unit, behind the number.
+    /// The unit, shown after the number.
     pub suffix: &'static str,
-    /// How much a point of dragging changes it.
+    /// The change for each point of dragging.
     pub speed: f64,
-    /// The most that the field takes.
+    /// The largest number that the field accepts.
     pub most_typed: f64,
     /// The largest valid number; the smallest is 0.
     pub largest: f64,
-    /// The number of a light; `None` if its kind does not have it.
+    /// Reads the number of a light; `None` if the light's kind does not have it.
     pub get: fn(&LightKind) -> Option<f64>,
-    /// The number of a light, to change.
+    /// Returns the number of a light for changing it.
     pub get_mut: fn(&mut LightKind) -> Option<&mut f64>,
 }
 
-/// Degrees from the axis to the edge of the cone.
+/// The angle in degrees from the axis to the edge of the cone.
 pub static HALF_APERTURE: LightNumber = LightNumber {
     label: "Aperture",
     name: "Half-aperture",
@@ -91,7 +91,7 @@ pub static HALF_APERTURE: LightNumber = LightNumber {
     },
 };
 
-/// How strongly the light is concentrated along the axis.
+/// The concentration of the light along the axis.
 pub static CONCENTRATION: LightNumber = LightNumber {
     label: "Exponent",
     name: "Concentration",
@@ -111,11 +111,11 @@ pub static CONCENTRATION: LightNumber = LightNumber {
     },
 };
 
-/// All numbers of lights, in the order of the properties.
+/// All light numbers, in the order of the properties.
 pub static LIGHT_NUMBERS: [&LightNumber; 2] = [&HALF_APERTURE, &CONCENTRATION];
 
 impl LightNumber {
-    /// Whether a light may have this number.
+    /// Returns whether a light may have this value.
     #[must_use]
     pub fn is_valid(&self, number: f64) -> bool {
         (0.0..=self.largest).contains(&number)
@@ -123,7 +123,7 @@ impl LightNumber {
 }
 
 impl LightKind {
-    /// What holds of every light of this kind.
+    /// Returns the facts about this kind of light.
     #[must_use]
     pub const fn info(&self) -> LightKindInfo {
         match self {
@@ -134,7 +134,7 @@ impl LightKind {
         }
     }
 
-    /// What gives it its position and direction.
+    /// Returns the source of the light's position and direction.
     #[must_use]
     pub const fn anchor(&self) -> Anchor<'_> {
         match self {
@@ -145,7 +145,7 @@ impl LightKind {
         }
     }
 
-    /// What gives it its position and direction, to change.
+    /// Returns the source of the light's position and direction, for changing it.
     pub const fn anchor_mut(&mut self) -> AnchorMut<'_> {
         match self {
             Self::Ambient => AnchorMut::Everywhere,
@@ -155,7 +155,7 @@ impl LightKind {
         }
     }
 
-    /// How it circles, if lights of its kind can.
+    /// Returns the circular motion, if lights of this kind can circle.
     #[must_use]
     pub const fn orbit(&self) -> Option<&Orbit> {
         match self {
@@ -164,7 +164,7 @@ impl LightKind {
         }
     }
 
-    /// How it circles, to change.
+    /// Returns the circular motion, for changing it.
     pub const fn orbit_mut(&mut self) -> Option<&mut Orbit> {
         match self {
             Self::Bulb { orbit, .. } => Some(orbit),
@@ -172,12 +172,12 @@ impl LightKind {
         }
     }
 
-    /// Its numbers.
+    /// Returns the numbers of the light, each with its description.
     pub fn numbers(&self) -> impl Iterator<Item = (&'static LightNumber, f64)> {
         LIGHT_NUMBERS.iter().filter_map(|row| Some((*row, (row.get)(self)?)))
     }
 
-    /// What it is attached to, if lights of its kind can be.
+    /// Returns the owner, if lights of this kind have one.
     #[must_use]
     pub const fn owner(&self) -> Option<&SpotOwner> {
         match self.anchor() {
@@ -186,7 +186,7 @@ impl LightKind {
         }
     }
 
-    /// Whether it has a position, so that it fades with distance.
+    /// Returns whether the light has a position and thus fades with distance.
     #[must_use]
     pub const fn has_position(&self) -> bool {
         match self.anchor() {
@@ -195,7 +195,7 @@ impl LightKind {
         }
     }
 
-    /// Whether it has a direction, so that it can be aimed.
+    /// Returns whether the light has a direction and thus can be aimed.
     #[must_use]
     pub const fn has_direction(&self) -> bool {
         match self.anchor() {
@@ -204,13 +204,13 @@ impl LightKind {
         }
     }
 
-    /// Whether a diamond in the picture marks its position.
+    /// Returns whether a diamond marks the light's position in the picture.
     #[must_use]
     pub const fn has_diamond(&self) -> bool {
         matches!(self.anchor(), Anchor::Position(_))
     }
 
-    /// Whether its numbers are valid and its position and direction finite.
+    /// Returns whether the numbers are valid, and the position and direction finite.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let anchored = match self.anchor() {

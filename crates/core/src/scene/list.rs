@@ -1,13 +1,13 @@
-//! A list of items in the order that the user sees, each under an id that is never reused.
+//! A list of items in the user's order, each under an id that is never reused.
 //!
-//! A list is a persistent structure: a copy shares everything with its original, and a change
-//! copies only the few nodes that lead to it. Snapshots of lists of any length are therefore cheap,
-//! and every query takes at most logarithmic time.
+//! A list is a persistent data structure: a copy shares everything with its original, and a change
+//! copies only the few nodes on the path to it. Snapshots of lists of any length are therefore
+//! cheap, and every query takes at most logarithmic time.
 //!
-//! Each item has a label, a number that grows along the list. An id leads to its label, and a
-//! binary search for the label leads to the position. A new item gets a label between those of its
-//! neighbours; if no label is left, all items are relabelled: Dietz and Sleator, "Two Algorithms
-//! for Maintaining Order in a List", STOC 1987.
+//! Each item has a label, a number that increases along the list. An id maps to a label, and a
+//! binary search for the label finds the position. A new item gets a label between the labels of
+//! its neighbours. If all of these are taken, the whole list is relabelled: Dietz and Sleator, "Two
+//! Algorithms for Maintaining Order in a List", STOC 1987.
 
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -17,18 +17,18 @@ use imbl::{OrdMap, Vector};
 
 use crate::base::once::get_or_compute;
 
-/// How far apart the labels of neighbours are at first.
+/// The initial distance between the labels of neighbours.
 const STEP: i64 = 1 << 32;
 
-/// The largest distance of a new label from the one before it, which leaves room for items inserted
-/// one after the other.
+/// The largest distance of a new label from the previous label. It leaves room for items that are
+/// inserted one after the other.
 const NEAR: u64 = 1 << 16;
 
-/// A list of items under ids, and a value `D` that is computed from it when it is first needed.
+/// A list of items under ids, and a value `D` that is computed from the list on first use.
 pub struct List<K, T, D = ()> {
     entries: Vector<Entry<K, T>>,
     labels: OrdMap<K, i64>,
-    /// Shared by all copies until they change.
+    /// The derived value, shared by all copies until they change.
     derived: Arc<OnceLock<D>>,
 }
 
@@ -81,78 +81,79 @@ impl<K: PartialEq, T: PartialEq, D> PartialEq for List<K, T, D> {
 }
 
 impl<K: Copy + Ord, T, D> List<K, T, D> {
-    /// The number of items.
+    /// Returns the number of items.
     #[must_use]
     pub fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// Whether the list is empty.
+    /// Returns whether the list is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
 
-    /// The position of the item with this id.
+    /// Returns the position of the item with this id.
     #[must_use]
     pub fn position(&self, id: K) -> Option<usize> {
         let label = self.labels.get(&id)?;
         self.entries.binary_search_by_key(label, |entry| entry.label).ok()
     }
 
-    /// Whether there is an item with this id.
+    /// Returns whether the list has an item with this id.
     #[must_use]
     pub fn contains(&self, id: K) -> bool {
         self.labels.contains_key(&id)
     }
 
-    /// The item with this id.
+    /// Returns the item with this id.
     #[must_use]
     pub fn get(&self, id: K) -> Option<&T> {
         Some(&*self.entries.get(self.position(id)?)?.item)
     }
 
-    /// All items with their ids, first to last.
+    /// Returns all items with their ids, first to last.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = (K, &T)> + ExactSizeIterator {
         self.entries.iter().map(|entry| (entry.id, &*entry.item))
     }
 
-    /// The item at a position, counted from 0, with its id.
+    /// Returns the item at a position, counted from 0, with its id.
     #[must_use]
     pub fn at(&self, at: usize) -> Option<(K, &T)> {
         self.entries.get(at).map(|entry| (entry.id, &*entry.item))
     }
 
-    /// What `compute` makes of the list: computed once, and kept by all copies until they change.
+    /// Returns the value that `compute` derives from the list. It is computed once, and all copies
+    /// keep it until they change.
     pub(super) fn derived(&self, compute: impl FnOnce(&Self) -> D) -> &D {
         get_or_compute(&self.derived, || compute(self))
     }
 
-    /// All ids, first to last.
+    /// Returns all ids, first to last.
     pub fn ids(&self) -> impl DoubleEndedIterator<Item = K> + ExactSizeIterator {
         self.entries.iter().map(|entry| entry.id)
     }
 
-    /// The id of the first item.
+    /// Returns the id of the first item.
     #[must_use]
     pub fn first(&self) -> Option<K> {
         self.id_at(0)
     }
 
-    /// The id at a position, counted from 0.
+    /// Returns the id at a position, counted from 0.
     #[must_use]
     pub fn id_at(&self, at: usize) -> Option<K> {
         self.entries.get(at).map(|entry| entry.id)
     }
 
-    /// The id after `id`, wrapping at the end; the first if `id` is not in the list.
+    /// Returns the id after `id`, wrapping at the end; the first if `id` is not in the list.
     #[must_use]
     pub fn after(&self, id: Option<K>) -> Option<K> {
         let next = id.and_then(|id| self.position(id)).map_or(0, |at| at + 1);
         self.id_at(next).or_else(|| self.first())
     }
 
-    /// The first id that `before` does not have. Nodes that both lists share are skipped.
+    /// Returns the first id that is not in `before`. Nodes that both lists share are skipped.
     #[must_use]
     pub fn first_since(&self, before: &Self) -> Option<K> {
         let new = before.labels.diff(&self.labels).filter_map(|difference| match difference {
@@ -162,7 +163,7 @@ impl<K: Copy + Ord, T, D> List<K, T, D> {
         new.min_by_key(|(label, _)| *label).map(|(_, id)| id)
     }
 
-    /// Inserts an item before the one at `at`; past the end means last.
+    /// Inserts an item before the item at `at`; past the end means last.
     pub(super) fn insert(&mut self, at: usize, id: K, item: T) {
         self.derived = Arc::default();
         let at = at.min(self.len());
@@ -174,7 +175,8 @@ impl<K: Copy + Ord, T, D> List<K, T, D> {
         self.entries.insert(at, Entry { label, id, item: Arc::new(item) });
     }
 
-    /// A label between those of the items at `at` and before it; `None` if none is left.
+    /// Returns a free label between the previous item and the item at `at`; `None` if all are
+    /// taken.
     fn free_label(&self, at: usize) -> Option<i64> {
         let label = |at: usize| self.entries.get(at).map(|entry| entry.label);
         match (at.checked_sub(1).and_then(label), label(at)) {
@@ -182,6 +184,8 @@ impl<K: Copy + Ord, T, D> List<K, T, D> {
             (Some(before), None) => before.checked_add(STEP),
             (None, Some(after)) => after.checked_sub(STEP),
             (Some(before), Some(after)) => {
+                // The new label stays near the previous one, since the next item is often inserted
+                // after it.
                 let step = (before.abs_diff(after) / 2).min(NEAR);
                 (step > 0).then_some(before.checked_add_unsigned(step)?)
             }
@@ -215,7 +219,7 @@ impl<K: Copy + Ord, T: Clone, D> List<K, T, D> {
     }
 }
 
-/// The ids have to differ.
+/// The ids must differ.
 impl<K: Copy + Ord, T, D> FromIterator<(K, T)> for List<K, T, D> {
     fn from_iter<I: IntoIterator<Item = (K, T)>>(items: I) -> Self {
         let mut list = Self::default();
@@ -274,7 +278,7 @@ mod tests {
         assert!(expected.iter().enumerate().all(|(at, id)| list.position(*id) == Some(at)));
     }
 
-    /// A change of a list: its position and its kind.
+    /// Generates a change of a list: its position and its kind.
     fn change() -> impl Strategy<Value = (usize, u8)> {
         (0_usize..40, 0_u8..4)
     }

@@ -13,7 +13,7 @@ pub struct Material {
     pub specular: [f64; 3],
     /// The exponent of the highlight: Ns, at least 0.
     pub exponent: f64,
-    /// Light of its own, which no lamp changes: Ke. It may be more than 1.
+    /// The emitted light, which no other light changes: Ke. It may be more than 1.
     #[serde(default, skip_serializing_if = "is_dark")]
     pub emission: [f64; 3],
 }
@@ -25,20 +25,20 @@ fn is_dark(emission: &[f64; 3]) -> bool {
 /// A material with its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preset {
-    /// Its name in the picker and on the command line.
+    /// The name in the picker and on the command line.
     pub name: &'static str,
-    /// Its coefficients.
+    /// The coefficients.
     pub material: Material,
 }
 
-/// Which material an object has.
+/// The choice of an object's material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MaterialChoice {
     /// One of [`PRESETS`], by its index.
     Preset(PresetId),
-    /// The materials of the model's file, part by part; silver for parts without one.
+    /// The materials of the model's file, part by part; silver for parts without a material.
     File,
-    /// A material of the user's own.
+    /// A material that the user has defined.
     Own(Material),
 }
 
@@ -57,12 +57,12 @@ impl PresetId {
     /// See [`Self::EMERALD`].
     pub const SILVER: Self = Self(9);
 
-    /// All rows, in order.
+    /// Returns all rows, in order.
     pub fn all() -> impl ExactSizeIterator<Item = Self> {
         (0..PRESETS.len()).map(Self)
     }
 
-    /// The row with this name. Case, blanks, `-` and `_` are ignored.
+    /// Returns the row with this name. Case, blanks, `-` and `_` are ignored.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let plain = |text: &str| -> String {
@@ -72,7 +72,7 @@ impl PresetId {
         PRESETS.iter().position(|preset| plain(preset.name) == plain(name)).map(Self)
     }
 
-    /// The row.
+    /// Returns the row.
     #[must_use]
     pub const fn get(self) -> &'static Preset {
         &PRESETS[self.0]
@@ -98,10 +98,10 @@ const fn preset(name: &'static str, rows: [[f64; 3]; 3], exponent: f64) -> Prese
     Preset { name, material: Material { ambient, diffuse, specular, exponent, emission: [0.0; 3] } }
 }
 
-/// The nineteen materials, in the order of the picker.
+/// The nineteen preset materials, in the order of the picker.
 ///
-/// Their numbers are those of the well-known table of OpenGL materials, which goes back to the
-/// plate of teapots in the "OpenGL Programming Guide" (Neider, Davis, Woo).
+/// The numbers come from the well-known table of OpenGL materials, which goes back to the plate of
+/// teapots in the "OpenGL Programming Guide" (Neider, Davis, Woo).
 #[rustfmt::skip]
 pub const PRESETS: &[Preset] = &[
     preset("brass", [[0.329412, 0.223529, 0.027451], [0.780392, 0.568627, 0.113725],
@@ -142,7 +142,7 @@ pub const PRESETS: &[Preset] = &[
 ];
 
 impl Default for Material {
-    /// Silver, the material of files that name none.
+    /// Returns silver, the material for files without materials.
     fn default() -> Self {
         PresetId::SILVER.get().material
     }

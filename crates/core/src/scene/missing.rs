@@ -1,4 +1,4 @@
-//! The files that a scene names and that are missing.
+//! Lists the missing files of a scene.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use super::{Camera, Model, Object, Scene};
 
 impl Object {
-    /// The files of its model and its texture that are missing.
+    /// Returns the missing files of the object's model and texture.
     pub fn missing_files(&self) -> impl Iterator<Item = &Path> {
         let texture = self.texture.as_deref().filter(|texture| texture.is_placeholder());
         missing(&self.model).into_iter().chain(texture.map(|texture| &*texture.source))
@@ -14,7 +14,7 @@ impl Object {
 }
 
 impl Camera {
-    /// The file of its model, if it is missing.
+    /// Returns the file of the camera's model, if it is missing.
     #[must_use]
     pub fn missing_file(&self) -> Option<&Path> {
         missing(&self.model)
@@ -22,7 +22,7 @@ impl Camera {
 }
 
 impl Scene {
-    /// The files of models and textures that are missing.
+    /// Returns the missing files of all models and textures.
     #[must_use]
     pub fn missing_files(&self) -> BTreeSet<&Path> {
         let of_objects = self.objects.iter().flat_map(|(_, object)| object.missing_files());

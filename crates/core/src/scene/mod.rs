@@ -1,6 +1,6 @@
 //! The scene: objects, cameras and lights, the view, and the commands that change them.
 //!
-//! This is plain data: nothing here draws, reads files or knows of windows.
+//! This module is plain data: it does not draw, read files or use windows.
 
 mod anchor;
 mod bounds;
@@ -93,15 +93,15 @@ pub enum ItemId {
     Light(LightId),
 }
 
-/// The objects of a scene, and the spheres about them.
+/// The objects of a scene, and their bounding spheres.
 pub type Objects = List<ObjectId, Object, Spheres>;
 
-/// Everything that can be drawn. A clone is cheap, since everything large is shared.
+/// Everything that can be drawn. A clone is cheap, since all large data is shared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The objects, in the order that the user sees.
     pub objects: Objects,
-    /// The cameras; there is always one.
+    /// The cameras; there is always at least one.
     pub cameras: List<CameraId, Camera>,
     /// The lights.
     pub lights: List<LightId, Light>,
@@ -109,17 +109,18 @@ pub struct Scene {
     pub background: Color,
     /// The id that the next new item gets.
     pub next_id: u32,
-    /// The items that the picture does not select, that are not moved and not deleted.
+    /// The locked items. A click in the picture does not select them; they are not moved or
+    /// deleted.
     pub locked: BTreeSet<ItemId>,
 }
 
 impl Scene {
     /// The blue of the first scene.
     pub const BACKGROUND: Color = Color([0, 0, 179]);
-    /// Behind models that come without a scene: both black and white ones stand out from it.
+    /// The background for models without a scene. Both black and white models contrast with it.
     pub const NEUTRAL: Color = Color([88, 92, 98]);
 
-    /// A scene with one camera and nothing else.
+    /// Creates a scene with one camera and no other items.
     #[must_use]
     pub fn with_camera(camera: Camera) -> Self {
         Self {
@@ -132,7 +133,7 @@ impl Scene {
         }
     }
 
-    /// Whether there is an item with this id.
+    /// Returns whether the scene has an item with this id.
     #[must_use]
     pub fn contains(&self, id: ItemId) -> bool {
         match id {
@@ -142,7 +143,7 @@ impl Scene {
         }
     }
 
-    /// The name of an item.
+    /// Returns the name of an item.
     #[must_use]
     pub fn name(&self, id: ItemId) -> Option<&str> {
         Some(match id {
@@ -152,15 +153,15 @@ impl Scene {
         })
     }
 
-    /// The lowest slot that no light has.
+    /// Returns the lowest free slot.
     #[must_use]
     pub fn free_slot(&self) -> u32 {
         let taken: BTreeSet<u32> = self.lights.iter().map(|(_, light)| light.slot).collect();
         (0..).find(|slot| !taken.contains(slot)).unwrap_or(0)
     }
 
-    /// The first view of a scene. The first object, camera and light are selected; a sun comes
-    /// before other lights.
+    /// Returns the first view of a scene. It selects the first object, camera and light; suns
+    /// precede other lights.
     #[must_use]
     pub fn first_view(&self) -> View {
         let is_sun = |light: &Light| matches!(light.kind.anchor(), Anchor::Direction(_));
@@ -170,15 +171,15 @@ impl Scene {
         View::new(self.objects.first(), camera, light)
     }
 
-    /// The selected camera, or the first if that one is gone.
+    /// Returns the selected camera, or the first camera if the selected one is gone.
     #[must_use]
     pub fn selected_camera(&self, view: &View) -> &Camera {
         let first = || self.cameras.first().and_then(|id| self.cameras.get(id));
         self.cameras.get(view.camera).or_else(first).expect("a scene always has a camera")
     }
 
-    /// The frame of an object as an observer, and of its spot: its Z and Y columns by Gram-Schmidt,
-    /// never mirrored or scaled.
+    /// Returns the frame of an object as an observer, and of its spot. The axes come from the Z and
+    /// Y columns by Gram-Schmidt, so the frame is never mirrored or scaled.
     #[must_use]
     pub fn frame_of_object(object: &Object, time: f64) -> DMat4 {
         let m = object.world_from_object(time);
@@ -187,7 +188,7 @@ impl Scene {
         math::placed(axes, m.w_axis.truncate())
     }
 
-    /// The position and direction of a spot now; `None` if its owner is gone.
+    /// Returns the current position and direction of a spot; `None` if its owner is gone.
     #[must_use]
     pub fn aim(&self, view: &View, owner: &SpotOwner) -> Option<Aim> {
         let object = |id| self.objects.get(id).map(|o| Self::frame_of_object(o, view.time));
@@ -202,7 +203,7 @@ impl Scene {
         Some(Aim { position: frame.w_axis.truncate(), direction: -frame.z_axis.truncate() })
     }
 
-    /// The position and direction of a light now; `None` if its owner is gone.
+    /// Returns the current position and direction of a light; `None` if its owner is gone.
     #[must_use]
     pub fn light_origin(&self, view: &View, kind: &LightKind) -> Option<LightOrigin> {
         let circled = |at: DVec3| kind.orbit().map_or(at, |orbit| orbit.at(at, view.time));
@@ -218,8 +219,8 @@ impl Scene {
         Some(LightOrigin { position, direction })
     }
 
-    /// `world_from_view` of the observer: the selected object's frame if the view says so and there
-    /// is one, else the selected camera's.
+    /// Returns the matrix `world_from_view` of the observer: the frame of the selected object if
+    /// the view asks for it and an object is selected, else the frame of the selected camera.
     #[must_use]
     pub fn observer_frame(&self, view: &View) -> DMat4 {
         let object = match view.observer {

@@ -1,4 +1,4 @@
-//! A model: the shape, materials and textures of a file, and how the file is read.
+//! A model: the shape, materials and textures of a file, and the options for reading it.
 
 use std::collections::BTreeMap;
 use std::ops::Neg;
@@ -9,28 +9,28 @@ use serde::{Deserialize, Serialize};
 use super::{Crease, Material, Mesh, SurfaceMaps, Texture};
 use crate::base::{Shared, color::Color};
 
-/// The content of a file as it was loaded. Objects share it, and it never changes.
+/// The content of a loaded file. Objects share it, and it never changes.
 #[derive(Debug, PartialEq)]
 pub struct Model {
-    /// Its name in the outline: the file's, without folders and extension.
+    /// The name in the outline: the file name without folders and extension.
     pub name: String,
     /// The file; `None` for the three built-in models.
     pub source: Option<PathBuf>,
-    /// The further files that it was read from: MTL files and textures.
+    /// Further files of the model: MTL files and textures.
     pub companions: Vec<PathBuf>,
-    /// The options with which it was read.
+    /// The options with which the file was read.
     pub options: LoadOptions,
-    /// Its shape.
+    /// The shape.
     pub mesh: Mesh,
-    /// Its materials; the mesh's parts refer to them by index.
+    /// The materials; the mesh's parts refer to them by index.
     pub materials: Vec<FileMaterial>,
-    /// The colour of edges, from its line `c r g b` or `# color r g b`.
+    /// The colour of edges, from the file's line `c r g b` or `# color r g b`.
     pub edge_color: Option<Color>,
 }
 
 impl Model {
-    /// A box of this side in the place of a model whose file is missing or cannot be read. It keeps
-    /// the file's path and options, so that saving the scene loses neither.
+    /// Builds a box of this side that replaces a missing or unreadable model. The box keeps the
+    /// file's path and options, so saving the scene loses neither.
     #[must_use]
     pub fn placeholder(source: PathBuf, options: LoadOptions, side: f64) -> Self {
         let stem = source.file_stem().unwrap_or(source.as_os_str());
@@ -45,13 +45,13 @@ impl Model {
         }
     }
 
-    /// Whether it is a box in the place of a missing file.
+    /// Returns whether the model is a box that replaces a missing file.
     #[must_use]
     pub const fn is_placeholder(&self) -> bool {
         self.mesh.is_placeholder()
     }
 
-    /// The model with another crease angle; the file is not read again.
+    /// Copies the model with another crease angle, without reading the file again.
     #[must_use]
     pub fn with_crease(&self, crease: Crease) -> Self {
         Self {
@@ -65,7 +65,7 @@ impl Model {
         }
     }
 
-    /// Whether both come from one reading of a file, so that they differ at most in their crease
+    /// Returns whether both come from one reading of a file, and so differ at most in their crease
     /// angles.
     #[must_use]
     pub fn shares_file_with(&self, other: &Self) -> bool {
@@ -73,37 +73,37 @@ impl Model {
     }
 }
 
-/// How a file is read.
+/// The options for reading a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct LoadOptions {
-    /// Which of the file's axes points up.
+    /// The axis of the file that points up.
     pub up: UpAxis,
-    /// The factor of the file's coordinates.
+    /// The factor that multiplies the file's coordinates.
     pub scale: Scale,
-    /// Which way its polygons run, seen from outside.
+    /// The orientation of the file's polygons, seen from outside.
     pub winding: Winding,
-    /// The angle up to which its edges are smooth, if it has no smoothing groups.
+    /// The angle up to which edges are smooth, if the file has no smoothing groups.
     pub crease: Crease,
-    /// How its bump maps are read.
+    /// The interpretation of bump maps.
     pub bumps: BumpMaps,
 }
 
-/// How the pictures of `bump` and `map_Bump` are read.
+/// The interpretation of the pictures of `bump` and `map_Bump`.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
 pub enum BumpMaps {
-    /// A picture that shows normals in tangent space as normals, others as heights.
+    /// Pictures that show normals in tangent space are normals; other pictures are heights.
     #[default]
     Auto,
-    /// As heights.
+    /// All pictures are heights.
     Heights,
-    /// As normals in tangent space.
+    /// All pictures are normals in tangent space.
     Normals,
 }
 
-/// Which of a file's axes points up. The model is turned by the shortest rotation that brings that
+/// The axis of a file that points up. The model is turned by the shortest rotation that brings this
 /// axis to +Y, and never mirrored; for -Y it is half a turn about X.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
@@ -125,11 +125,11 @@ pub enum UpAxis {
 }
 
 impl UpAxis {
-    /// All of them.
+    /// All six axes.
     pub const ALL: [Self; 6] =
         [Self::X, Self::Y, Self::Z, Self::MinusX, Self::MinusY, Self::MinusZ];
 
-    /// Its word: "z", "-z".
+    /// Returns the axis as a word: "z", "-z".
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -142,7 +142,7 @@ impl UpAxis {
         }
     }
 
-    /// A position or direction of the file, turned so that this axis points up.
+    /// Turns a position or direction of the file so that this axis points up.
     #[must_use]
     pub fn upright<T: Copy + Neg<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match self {
@@ -162,13 +162,13 @@ impl UpAxis {
 pub struct Scale(f64);
 
 impl Scale {
-    /// `factor`, if it is finite and more than 0.
+    /// Returns `factor` as a scale if it is finite and more than 0.
     #[must_use]
     pub fn new(factor: f64) -> Option<Self> {
         (factor.is_finite() && factor > 0.0).then_some(Self(factor))
     }
 
-    /// The factor.
+    /// Returns the factor.
     #[must_use]
     pub const fn get(self) -> f64 {
         self.0
@@ -195,38 +195,38 @@ impl TryFrom<f64> for Scale {
     }
 }
 
-/// Which way a file's polygons run.
+/// The orientation of a file's polygons, seen from outside.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
 pub enum Winding {
-    /// Counter-clockwise seen from outside, as here.
+    /// Counter-clockwise, as here.
     #[default]
     Kept,
-    /// Clockwise: corners are taken in the opposite order, and normals turned.
+    /// Clockwise: the order of corners is reversed, and normals are flipped.
     Turned,
 }
 
 /// A material of an MTL file, with invalid values replaced.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileMaterial {
-    /// Its name, from `newmtl`.
+    /// The name, from `newmtl`.
     pub name: String,
-    /// Its coefficients.
+    /// The coefficients.
     pub material: Material,
-    /// `d`: how much it covers of what is behind it, from 0 to 1.
+    /// The opacity `d`: the fraction of the background that the surface covers, from 0 to 1.
     pub opacity: f64,
-    /// `map_Kd`, if its file was found.
+    /// The texture `map_Kd`, if its file was found.
     pub texture: Option<Shared<Texture>>,
-    /// Its other maps whose files were found.
+    /// The other maps, if their files were found.
     pub maps: SurfaceMaps,
-    /// Whether Kd alone is shown, whatever the light: `illum 0`.
+    /// Whether the surface shows Kd regardless of light: `illum 0`.
     pub unlit: bool,
-    /// The numbers of statements that pictures do not show, as `Ni` and `Pr`, for exports.
+    /// The numbers of statements that do not affect pictures, such as `Ni` and `Pr`, for exports.
     pub undrawn: Undrawn,
 }
 
-/// The numbers of statements that pictures do not show, by keyword as it is usually spelled.
+/// The numbers of statements that do not affect pictures, by the usual spelling of the keyword.
 pub type Undrawn = BTreeMap<&'static str, Vec<f64>>;
 
 #[cfg(test)]

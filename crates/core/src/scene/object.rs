@@ -12,33 +12,33 @@ use super::{
 use crate::base::math::{self, Axis};
 use crate::base::{Shared, color::Color};
 
-/// A model placed in the scene, and how its surface looks.
+/// A model placed in the scene, with the appearance of its surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// Its name in the outline.
+    /// The name in the outline.
     pub name: String,
-    /// Whether it is drawn.
+    /// Whether the object is drawn.
     pub visible: bool,
-    /// Its shape.
+    /// The shape.
     pub model: Shared<Model>,
-    /// The parts of the model that are not drawn, by their indices.
+    /// The indices of the model's parts that are not drawn.
     pub hidden_parts: BTreeSet<u32>,
-    /// `world_from_object`, without the spin. This is a matrix, since a step in the global frame on
-    /// a turned object need not be a product of one translation, rotation and scale.
+    /// The matrix `world_from_object`, without the spin. A step in the global frame on a turned
+    /// object need not be a product of one translation, rotation and scale, so a matrix is needed.
     pub placement: Tracked<DMat4>,
-    /// Its own rotation over time.
+    /// The object's rotation over time.
     pub spin: Spin,
-    /// Which material it has.
+    /// The choice of material.
     pub material: MaterialChoice,
-    /// Which of material, texture and light it shows.
+    /// The choice between material, texture and light.
     pub surface: Surface,
     /// A texture chosen by the user, instead of the file's.
     pub texture: Option<Shared<Texture>>,
-    /// The colour by which the texture is multiplied.
+    /// The colour that multiplies the texture.
     pub tint: Color,
-    /// Its opacity, from 0 (not drawn) to 1, by which those of the file's materials are multiplied.
+    /// The opacity, from 0 (not drawn) to 1. It multiplies the opacities of the file's materials.
     pub opacity: f64,
-    /// Which sides of its faces are drawn.
+    /// The sides of faces that are drawn.
     pub sides: Sides,
     /// Whether the file's normals are used for polygons that have them.
     pub file_normals: bool,
@@ -46,26 +46,26 @@ pub struct Object {
     pub edge_color: Color,
 }
 
-/// Which of material, texture and light it shows.
+/// The appearance of a surface: material, texture, or texture and light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Surface {
     /// The material, lit.
     Material,
     /// The texture, not lit.
     Texture,
-    /// The texture, lit; the material alone without a texture.
+    /// The texture, lit; without a texture, the material alone.
     #[default]
     TextureAndLight,
 }
 
-/// Which sides of an object's faces are drawn.
+/// The sides of an object's faces that are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Sides {
-    /// The front: back faces are culled.
+    /// The front side, with back-face culling.
     One,
-    /// Both: a back face is lit with its normal turned.
+    /// Both sides; a back face is lit with its normal flipped.
     Two,
-    /// Both of an open surface, the front of a closed one.
+    /// Both sides of an open surface, the front side of a closed one.
     #[default]
     Auto,
 }
@@ -74,11 +74,11 @@ pub enum Sides {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Spin {
-    /// Whether it turns about X, Y and Z.
+    /// Whether the object turns about X, Y and Z.
     pub axes: [bool; 3],
-    /// Degrees per second.
+    /// The speed in degrees per second.
     pub speed: f64,
-    /// When it began, in seconds of the scene's clock.
+    /// The start time, in seconds of the scene's clock.
     pub since: f64,
 }
 
@@ -89,16 +89,16 @@ impl Default for Spin {
 }
 
 impl Spin {
-    /// Whether it turns about any axis.
+    /// Returns whether the object turns about any axis.
     #[must_use]
     pub fn is_on(&self) -> bool {
         self.axes.contains(&true)
     }
 
-    /// The rotation at `time`, in seconds of the scene's clock.
+    /// Returns the rotation at `time`, in seconds of the scene's clock.
     #[must_use]
     pub fn at(&self, time: f64) -> DMat3 {
-        // A whole turn changes nothing, and a small angle keeps its digits.
+        // Whole turns are dropped, since a small angle keeps more digits.
         let degrees = (self.speed * (time - self.since)) % 360.0;
         Axis::ALL
             .into_iter()
@@ -110,8 +110,8 @@ impl Spin {
 }
 
 impl Object {
-    /// A model as oriented in its file, at the centre of the world. [`Sides::Auto`] if it is from a
-    /// file, else [`Sides::One`].
+    /// Places a model at the centre of the world, with the orientation of its file. A model from a
+    /// file gets [`Sides::Auto`], a built-in one [`Sides::One`].
     #[must_use]
     pub fn new(model: Shared<Model>, material: MaterialChoice) -> Self {
         Self {
@@ -132,7 +132,7 @@ impl Object {
         }
     }
 
-    /// Whether both sides of its faces are drawn and lit.
+    /// Returns whether both sides of the object's faces are drawn and lit.
     #[must_use]
     pub fn is_two_sided(&self) -> bool {
         match self.sides {
@@ -142,34 +142,34 @@ impl Object {
         }
     }
 
-    /// `world_from_object` at `time`, in seconds of the scene's clock.
+    /// Returns the matrix `world_from_object` at `time`, in seconds of the scene's clock.
     #[must_use]
     pub fn world_from_object(&self, time: f64) -> DMat4 {
         let placement = *self.placement.now();
         if self.spin.is_on() { placement * DMat4::from_mat3(self.spin.at(time)) } else { placement }
     }
 
-    /// `world_from_mesh` at `time`: it places the positions of the mesh, which are relative to
-    /// [`Mesh::offset`](super::Mesh::offset).
+    /// Returns the matrix `world_from_mesh` at `time`. It places the positions of the mesh, which
+    /// are relative to [`Mesh::offset`](super::Mesh::offset).
     #[must_use]
     pub fn world_from_mesh(&self, time: f64) -> DMat4 {
         self.world_from_object(time) * self.model.mesh.object_from_mesh()
     }
 
-    /// The positions of the vertices that a face uses, placed.
+    /// Returns the world positions of the vertices that a face uses.
     pub fn placed_vertices(&self, time: f64) -> impl Iterator<Item = DVec3> {
         let world_from_mesh = self.world_from_mesh(time);
         self.model.mesh.used_positions().map(move |p| world_from_mesh.transform_point3(p))
     }
 
-    /// The mean of its vertices, placed.
+    /// Returns the mean of the object's vertices in the world.
     #[must_use]
     pub fn centre(&self, time: f64) -> DVec3 {
         self.world_from_mesh(time).transform_point3(self.model.mesh.mean())
     }
 
-    /// The middle and the radius of a sphere about the object, placed: about the middle of the
-    /// model's box, through the vertex farthest from it. `None` if it has no vertices.
+    /// Returns the centre and radius of a bounding sphere in the world. The centre is the middle of
+    /// the model's box, and the sphere passes through the farthest vertex. `None` without vertices.
     #[must_use]
     pub fn bounding_sphere(&self, time: f64) -> Option<(DVec3, f64)> {
         let middle = self.model.mesh.bounds()?.centre();
@@ -178,7 +178,8 @@ impl Object {
         Some((centre, squares.fold(0.0, f64::max).sqrt()))
     }
 
-    /// The largest extent of its box in its own axes, placed; "by size" is measured by it.
+    /// Returns the largest side of the object's box along the object's axes, in world units. Steps
+    /// "by size" depend on it.
     #[must_use]
     pub fn largest_extent(&self) -> f64 {
         let Some(bounds) = self.model.mesh.bounds() else { return 0.0 };
@@ -188,21 +189,21 @@ impl Object {
         sides.into_iter().fold(0.0, f64::max)
     }
 
-    /// Whether one of the model's parts is drawn. A placeholder is drawn as a whole: the hidden
-    /// parts are those of the missing file.
+    /// Returns whether a part of the model is drawn. A placeholder is drawn as a whole, since the
+    /// hidden parts belong to the missing file.
     #[must_use]
     pub fn shows_part(&self, part: u32) -> bool {
         self.model.is_placeholder() || !self.hidden_parts.contains(&part)
     }
 
-    /// The coefficients, opacity and texture of one of the model's parts.
+    /// Returns the coefficients, opacity and texture of one of the model's parts.
     #[must_use]
     pub fn part_look(&self, part: u32) -> PartLook<'_> {
         let named = self.model.mesh.parts().get(part as usize).and_then(|part| part.material);
         self.material_look(named.and_then(|material| self.model.materials.get(material as usize)))
     }
 
-    /// The coefficients, opacity and texture of a part with this material of the model.
+    /// Returns the coefficients, opacity and texture of a part with this material of the model.
     #[must_use]
     pub fn material_look<'a>(&'a self, file: Option<&'a FileMaterial>) -> PartLook<'a> {
         let material = match &self.material {
@@ -229,26 +230,27 @@ impl Object {
     }
 }
 
-/// How one part of an object looks.
+/// The appearance of one part of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartLook<'a> {
-    /// Its coefficients.
+    /// The coefficients.
     pub material: super::Material,
-    /// The object's opacity, times `d` of the file's material if it has that.
+    /// The object's opacity, multiplied by `d` of the file's material if that material is used.
     pub opacity: f64,
-    /// Whether Kd alone is shown, whatever the light: `illum 0` of the file's material.
+    /// Whether the part shows Kd regardless of light: `illum 0` of the file's material.
     pub unlit: bool,
-    /// The texture that it shows, if it shows one.
+    /// The texture to show, if any.
     pub texture: Option<&'a Shared<Texture>>,
-    /// The maps that it shows.
+    /// The maps to show, if any.
     maps: Option<&'a SurfaceMaps>,
-    /// Whether the material is the file's, whose `d` its map goes with.
+    /// Whether the material is the file's. If so, its opacity map is used together with its `d`.
     of_file: bool,
 }
 
 impl<'a> PartLook<'a> {
-    /// A map that it shows. The file's maps lie over whatever material is chosen, as its texture
-    /// does, except for `map_d`, which goes with the `d` of the file's material.
+    /// Returns the map of this kind to show, if any. Like the file's texture, the file's maps apply
+    /// to any chosen material. The exception is `map_d`, which goes with the `d` of the file's
+    /// material.
     #[must_use]
     pub fn map(&self, kind: MapKind) -> Option<&'a SurfaceMap> {
         self.maps?.get(&kind).filter(|_| kind != MapKind::Opacity || self.of_file)

@@ -1,9 +1,9 @@
-//! Simple shapes, made here: ground, plane, cube, sphere, cylinder, torus.
+//! The built-in shapes: ground, plane, cube, sphere, cylinder, torus.
 //!
-//! Each is one unit wide and stands around the origin, so that an object's scale is its size. Their
-//! vertices lie on the surface that they stand for, and each corner has that surface's own normal,
-//! rounded to single precision: flat faces are exact, and a round one lies inside its surface by at
-//! most 1 - cos(pi / N) of its radius for N faces around.
+//! Each shape is one unit wide and centred at the origin, so an object's scale is its size.
+//! Vertices lie on the exact surface, and corners have the normals of that surface, rounded to
+//! single precision. Flat faces are exact. A round shape lies inside its surface by at most 1 -
+//! cos(pi / N) of the radius for N faces around.
 
 use std::sync::OnceLock;
 
@@ -15,31 +15,31 @@ use solids::Builder;
 mod ground;
 mod solids;
 
-/// A simple shape.
+/// A built-in shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
-    /// A disc of diameter 1 in the plane of X and Z, seen from above, which fades out towards its
-    /// rim: see `ground`.
+    /// A disc of diameter 1 in the XZ plane, seen from above, that fades out towards its rim: see
+    /// `ground`.
     Ground,
-    /// A square of side 1 in the plane of X and Z, seen from above.
+    /// A square of side 1 in the XZ plane, seen from above.
     Plane,
     /// A cube of side 1.
     Cube,
-    /// A ball of diameter 1, its poles along Y.
+    /// A sphere of diameter 1, with poles along Y.
     Sphere,
     /// A cylinder of diameter 1 and height 1, along Y.
     Cylinder,
-    /// A ring about Y of outer diameter 1, whose tube has a diameter of 1/4.
+    /// A ring about Y with outer diameter 1 and tube diameter 1/4.
     Torus,
 }
 
 impl Shape {
-    /// All of them, in the order of the menu.
+    /// All shapes, in the order of the menu.
     pub const ALL: [Self; 6] =
         [Self::Ground, Self::Plane, Self::Cube, Self::Sphere, Self::Cylinder, Self::Torus];
 
-    /// Whether it is what other objects stand on: it touches the lowest of them, and is as large as
-    /// the scene, or larger.
+    /// Returns whether the shape is a ground for other objects. A ground touches the lowest object,
+    /// and is at least as large as the scene.
     #[must_use]
     pub const fn is_ground(self) -> bool {
         match self {
@@ -48,7 +48,7 @@ impl Shape {
         }
     }
 
-    /// Its name, also in scene files.
+    /// Returns the name, which scene files use, too.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -61,13 +61,13 @@ impl Shape {
         }
     }
 
-    /// The shape with this name.
+    /// Returns the shape with this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|shape| shape.name() == name)
     }
 
-    /// Its model, which all objects of this shape share.
+    /// Returns the model, shared by all objects of this shape.
     #[must_use]
     pub fn model(self) -> Shared<Model> {
         static MODELS: [OnceLock<Shared<Model>>; 6] = [const { OnceLock::new() }; 6];
@@ -109,7 +109,7 @@ mod tests {
     use super::*;
     use crate::scene::{dvec3, newell};
 
-    /// The corners of each polygon: positions and normals.
+    /// Returns the position and normal of each corner, polygon by polygon.
     fn polygons(mesh: &Mesh) -> Vec<Vec<(DVec3, DVec3)>> {
         let count = u32::try_from(mesh.polygon_count()).unwrap();
         let corners = |i: u32| {
@@ -126,7 +126,7 @@ mod tests {
         polygon.iter().map(|(p, _)| *p)
     }
 
-    /// The volume, by the divergence theorem over fans, and the area.
+    /// Returns the volume, by the divergence theorem over fans, and the surface area.
     fn volume_and_area(mesh: &Mesh) -> (f64, f64) {
         let mut sums = (0.0, 0.0);
         for polygon in polygons(mesh) {
@@ -170,7 +170,7 @@ mod tests {
         let (volume, area) = of(Shape::Cylinder);
         close(volume, base, 1e-6);
         close(area, 2.0 * base + n * (PI / n).sin(), 1e-6);
-        // What is inscribed is smaller, by about (pi / N)^2.
+        // Inscribed solids are smaller, by about (pi / N)^2.
         let (volume, area) = of(Shape::Sphere);
         close(volume, PI / 6.0, 0.009);
         close(area, PI, 0.006);
@@ -211,7 +211,7 @@ mod tests {
                 assert_eq!(all.clone().fold(1.0, f32::min), 0.0, "{shape:?}");
                 assert_eq!(all.fold(0.0, f32::max), 1.0, "{shape:?}");
             }
-            // Seen from outside, the picture is not mirrored.
+            // Seen from outside, the texture is not mirrored.
             let corners: Vec<[f64; 2]> = mesh
                 .polygon(0)
                 .iter()

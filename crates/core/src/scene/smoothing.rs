@@ -1,4 +1,4 @@
-//! Which edges of a mesh are smooth.
+//! The rules for smooth edges of a mesh.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,16 +9,16 @@ use serde::{Deserialize, Serialize};
 pub struct Crease(f64);
 
 impl Crease {
-    /// All faces around a vertex are smooth with each other, whether they share edges or not.
+    /// All faces around a vertex are smooth with each other, even without a common edge.
     pub const SMOOTH: Self = Self(180.0);
 
-    /// `degrees`, if they are from 0 to 180.
+    /// Returns `degrees` as a crease angle if they are from 0 to 180.
     #[must_use]
     pub fn new(degrees: f64) -> Option<Self> {
         (0.0..=180.0).contains(&degrees).then_some(Self(degrees))
     }
 
-    /// The angle in degrees.
+    /// Returns the angle in degrees.
     #[must_use]
     pub const fn get(self) -> f64 {
         self.0
@@ -45,12 +45,13 @@ impl TryFrom<f64> for Crease {
     }
 }
 
-/// Which polygons share the normals that are computed for their corners.
+/// The rule for sharing computed normals between polygons.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Smoothing {
-    /// Those that are connected by edges no sharper than this.
+    /// Polygons share normals if edges no sharper than this angle connect them.
     Crease(Crease),
-    /// Those in the same smoothing group: the group of each polygon, 0 for none.
+    /// Polygons share normals if they share a smoothing group. Lists the group of each polygon, 0
+    /// for none.
     Groups(Vec<u32>),
 }
 

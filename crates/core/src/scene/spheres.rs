@@ -1,26 +1,26 @@
-//! Spheres about the objects of a scene in the world, side by side in memory: with thousands of
-//! objects, what is out of view is found without touching the objects themselves.
+//! The bounding spheres of a scene's objects in the world, in packed arrays. With thousands of
+//! objects, frustum culling reads these arrays and not the objects.
 
 use glam::{DMat3, DVec3};
 
 use super::{Object, ObjectId, Objects};
 
-/// A sphere about each object.
+/// A bounding sphere for each object.
 #[derive(Debug, Default)]
 pub struct Spheres {
-    /// The middles, as x, y and z; all of them sorted by the objects' ids.
+    /// The centres, as x, y and z. All arrays are sorted by the objects' ids.
     pub centres: [Vec<f64>; 3],
-    /// The radii; infinite for objects that turn with time.
+    /// The radii; infinite for objects that turn over time.
     pub radii: Vec<f64>,
-    /// The positions of the objects in the list.
+    /// The indices of the objects in the list.
     pub places: Vec<u32>,
 }
 
-/// Rounded up by more than the arithmetic of placing is inexact.
+/// Rounds radii up by more than the rounding error of the placement.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
 impl Objects {
-    /// A sphere about each object; computed once for as long as no object changes.
+    /// Returns a bounding sphere for each object. The result is kept until an object changes.
     #[must_use]
     pub fn spheres(&self) -> &Spheres {
         self.derived(Spheres::of)
@@ -45,8 +45,8 @@ impl Spheres {
     }
 }
 
-/// A sphere about the object's placed box. The Frobenius norm is at least the largest stretch of
-/// the placement.
+/// Bounds an object's placed box by a sphere. The Frobenius norm is an upper bound on the largest
+/// stretch of the placement.
 fn sphere(object: &Object) -> (DVec3, f64) {
     let Some(bounds) = object.model.mesh.bounds() else { return (DVec3::ZERO, f64::INFINITY) };
     let placement = object.placement.now();

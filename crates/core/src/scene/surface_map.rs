@@ -1,32 +1,32 @@
-//! Maps of a material beside its texture: pictures that change one of its coefficients, or the
-//! direction of its normals, from place to place.
+//! The maps of a material apart from its texture: pictures that vary a coefficient, or the
+//! direction of normals, over the surface.
 
 use std::collections::BTreeMap;
 
 use super::Texture;
 use crate::base::Shared;
 
-/// What a map changes.
+/// The property that a map changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MapKind {
-    /// `map_Ka`: multiplied with Ka, in place of the texture.
+    /// `map_Ka`: multiplies Ka, in place of the texture.
     Ambient,
-    /// `map_Ks`: multiplied with Ks.
+    /// `map_Ks`: multiplies Ks.
     Specular,
-    /// `map_Ns`: its brightness is multiplied with Ns.
+    /// `map_Ns`: its brightness multiplies Ns.
     Exponent,
-    /// `map_d`: its alpha is multiplied with d, or its brightness if all of it is opaque.
+    /// `map_d`: its alpha multiplies d, or its brightness if the picture is opaque.
     Opacity,
-    /// `map_Ke`: multiplied with Ke.
+    /// `map_Ke`: multiplies Ke.
     Emission,
-    /// `bump` and `map_bump`: heights, whose slopes tilt the normals.
+    /// `bump` and `map_bump`: heights. Their slopes tilt the normals.
     Bump,
     /// `norm`: normals in tangent space, green up.
     Normal,
 }
 
 impl MapKind {
-    /// All of them.
+    /// All kinds of maps.
     pub const ALL: [Self; 7] = [
         Self::Ambient,
         Self::Specular,
@@ -37,7 +37,7 @@ impl MapKind {
         Self::Normal,
     ];
 
-    /// Its statement in an MTL file.
+    /// Returns the statement of the map in an MTL file.
     #[must_use]
     pub const fn statement(self) -> &'static str {
         match self {
@@ -51,7 +51,7 @@ impl MapKind {
         }
     }
 
-    /// Its name in the interface.
+    /// Returns the name of the map in the interface.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -66,14 +66,15 @@ impl MapKind {
     }
 }
 
-/// A map, and how strong it is.
+/// A map and its strength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceMap {
-    /// The picture, and how it is laid over the surface.
+    /// The picture and its mapping onto the surface.
     pub texture: Shared<Texture>,
-    /// `-bm`: the factor of heights. A white texel is this many texels high, a black one 0.
+    /// The factor `-bm` of heights: the height of a white texel in texels. A black texel has height
+    /// 0.
     pub gain: f64,
 }
 
-/// The maps of a material, by what they change.
+/// The maps of a material, by kind.
 pub type SurfaceMaps = BTreeMap<MapKind, SurfaceMap>;

@@ -1,4 +1,4 @@
-//! A picture that is laid over a surface.
+//! A texture: a picture that is mapped onto a surface.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -9,23 +9,24 @@ use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::base::once::get_or_compute;
 
-/// A picture for a surface, and how it is laid over it.
+/// A picture and its mapping onto a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Its file.
+    /// The file.
     pub source: PathBuf,
-    /// Its texels, rows from the top, which other textures may share. The uv (0, 0) is the lower
-    /// left corner.
+    /// The texels, in rows from the top; textures may share them. The uv (0, 0) is the lower left
+    /// corner.
     pub picture: Shared<Picture>,
-    /// What a uv outside 0 to 1 shows: `-clamp on` is the border; otherwise the picture repeats.
+    /// The wrapping of uvs outside 0 to 1: `-clamp on` extends the border, else the picture
+    /// repeats.
     pub wrap: Wrap,
-    /// `-o u v`, added after scaling.
+    /// The offset `-o u v`, added after scaling.
     pub offset: [f64; 2],
-    /// `-s u v`, multiplied by the uv.
+    /// The scale `-s u v`, multiplied by the uv.
     pub scale: [f64; 2],
 }
 
-/// The picture of every placeholder: one white texel, which leaves the material as it is.
+/// The picture of every placeholder: one white texel, which does not change the material.
 static PLACEHOLDER: OnceLock<Shared<Picture>> = OnceLock::new();
 
 fn placeholder() -> &'static Shared<Picture> {
@@ -33,27 +34,27 @@ fn placeholder() -> &'static Shared<Picture> {
 }
 
 impl Texture {
-    /// A texture in the place of one whose file is missing or cannot be read. It keeps the file's
-    /// path, so that saving the scene does not lose it.
+    /// Builds a texture that replaces a missing or unreadable file. It keeps the file's path, so
+    /// saving the scene does not lose it.
     #[must_use]
     pub fn placeholder(source: PathBuf) -> Self {
         let (wrap, offset, scale) = (Wrap::default(), [0.0; 2], [1.0; 2]);
         Self { source, picture: placeholder().clone(), wrap, offset, scale }
     }
 
-    /// Whether it is in the place of a texture whose file is missing.
+    /// Returns whether the texture replaces a missing file.
     #[must_use]
     pub fn is_placeholder(&self) -> bool {
         Shared::same(&self.picture, placeholder())
     }
 }
 
-/// What a texture shows outside its borders.
+/// The wrapping of a texture outside its borders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Wrap {
-    /// Its repetitions.
+    /// The texture repeats.
     #[default]
     Repeat,
-    /// The texels of its border.
+    /// The border texels extend outwards.
     Clamp,
 }

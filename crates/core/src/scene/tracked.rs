@@ -1,7 +1,8 @@
-//! A value with the values that it had before.
+//! A value with its earlier values.
 //!
-//! Every transformation pushes the old value, so that `u` can walk back. The stack is a list whose
-//! tail is shared: a copy of a scene costs nothing, and old values come back bit for bit.
+//! Every transformation pushes the old value onto a stack, so `u` can walk back. The stack is a
+//! linked list with a shared tail: copying it takes constant time, and old values come back bit for
+//! bit.
 
 use std::sync::Arc;
 
@@ -12,23 +13,24 @@ pub struct Tracked<T> {
 }
 
 impl<T> Tracked<T> {
-    /// A value without earlier ones.
+    /// Creates a value without earlier values.
     pub const fn new(now: T) -> Self {
         Self { now, before: None }
     }
 
-    /// The current value.
+    /// Returns the current value.
     pub const fn now(&self) -> &T {
         &self.now
     }
 
-    /// The number of earlier values.
+    /// Returns the number of earlier values.
     #[must_use]
     pub fn depth(&self) -> usize {
         self.earlier().count()
     }
 
-    /// Whether both have the same earlier values, and one comes from the other without a push.
+    /// Returns whether both have the same earlier values, so one comes from the other without a
+    /// push.
     #[must_use]
     pub fn shares_stack_with(&self, other: &Self) -> bool {
         match (&self.before, &other.before) {
@@ -38,7 +40,7 @@ impl<T> Tracked<T> {
         }
     }
 
-    /// The earlier values, the latest first.
+    /// Returns the earlier values, the latest first.
     pub fn earlier(&self) -> impl Iterator<Item = &T> {
         std::iter::successors(self.before.as_deref(), |placed| placed.before.as_deref())
             .map(|placed| &placed.now)
@@ -58,7 +60,7 @@ impl<T: Clone> Tracked<T> {
         Self { now, before: self.before.clone() }
     }
 
-    /// The value before the last transformation; `None` before the first.
+    /// Returns the value before the last transformation; `None` before the first.
     #[must_use]
     pub fn undone(&self) -> Option<Self> {
         self.before.as_deref().cloned()
@@ -101,7 +103,7 @@ impl<T: std::fmt::Debug> std::fmt::Debug for Tracked<T> {
     }
 }
 
-/// Drops a long stack in a loop: the compiler's own code would recurse once for each value.
+/// Drops a long stack in a loop, since the generated code would recurse once for each value.
 impl<T> Drop for Tracked<T> {
     fn drop(&mut self) {
         let mut next = self.before.take();

@@ -1,20 +1,19 @@
 //! Cuts a polygon into triangles.
 //!
-//! If a fan is valid, which one pass over its triangles tells, it is used; else ears are cut off
-//! one by one. Every cut takes a triangle's signed area from the remaining ring, so the areas of
-//! the triangles sum to the polygon's whatever its shape; the choice of ears keeps triangles from
-//! lying outside.
+//! If one pass shows that a fan is valid, the fan is used; else ears are cut off one by one. Each
+//! cut takes a triangle's signed area from the remaining ring, so the areas of the triangles sum to
+//! the polygon's area for any shape. The choice of ears keeps triangles inside the polygon.
 //!
-//! Corners are taken relative to the first one, so that thin polygons far from the origin keep
-//! their shape, and projected along the normal, which keeps the order of the corners of a polygon
-//! that is not flat. Points closer together than the rounding error count as touching.
+//! Corners are stored relative to the first one, so thin polygons far from the origin keep their
+//! shape. They are projected along the normal, which keeps the order of the corners if the polygon
+//! is not flat. Points closer together than the rounding error count as touching.
 //!
 //! The search for ears may take quadratic time. For more than a thousand corners it is limited, and
-//! the rest is cut by a sweep line (`sweep`), into slimmer triangles.
+//! a sweep line (`sweep`) cuts the rest into slimmer triangles.
 //!
-//! Ear clipping is Meisters', "Polygons Have Ears", American Mathematical Monthly 1975. A hole
-//! joined to the outline by a bridge names positions twice, so a corner at the position of a corner
-//! of the ear does not block it.
+//! Ear clipping follows Meisters, "Polygons Have Ears", American Mathematical Monthly 1975. A
+//! bridge between a hole and the outline visits positions twice, so a corner at the position of a
+//! corner of the ear does not block it.
 
 mod grid;
 mod status;
@@ -29,28 +28,28 @@ use self::grid::Grid;
 /// The largest number of corners for which the search for ears is not limited.
 const FEW: usize = 1000;
 
-/// How many corners and cells are looked at for each corner beyond [`FEW`].
+/// The number of corners and cells that may be visited for each corner beyond [`FEW`].
 const LOOKS: usize = 16;
 
 /// Cuts a polygon into triangles, each as three indices into `outline`, with its orientation.
 ///
-/// `normal` is the polygon's normal; there are `outline.len() - 2` triangles. A polygon that
-/// crosses itself gets as many.
+/// `normal` is the polygon's normal. There are `outline.len() - 2` triangles, even if the polygon
+/// crosses itself.
 #[must_use]
 pub fn triangulate(outline: &[DVec3], normal: DVec3) -> Vec<[u32; 3]> {
     Triangulator::default().cut(outline.iter().copied(), normal).to_vec()
 }
 
-/// Cuts one polygon after the other, in the same memory.
+/// Cuts polygons one after the other, reusing memory.
 #[derive(Debug, Default)]
 pub(super) struct Triangulator {
-    /// The corners projected along the normal, counter-clockwise if they are so about it.
+    /// The corners projected along the normal. Their orientation about the normal is kept.
     flat: Vec<DVec2>,
     triangles: Vec<[u32; 3]>,
 }
 
 impl Triangulator {
-    /// As [`triangulate`].
+    /// Cuts a polygon like [`triangulate`].
     pub(super) fn cut(
         &mut self,
         mut outline: impl ExactSizeIterator<Item = DVec3>,
@@ -62,6 +61,7 @@ impl Triangulator {
             0..3 => {}
             3 => self.triangles.push([0, 1, 2]),
             _ => {
+                // Project the corners, relative to the first one, onto a plane across the normal.
                 let (x, y) = normal.any_orthonormal_pair();
                 let origin = outline.next().unwrap_or_default();
                 let flat = |p: DVec3| DVec2::new((p - origin).dot(x), (p - origin).dot(y));
@@ -79,13 +79,13 @@ impl Triangulator {
     }
 }
 
-/// Twice the area of a triangle, positive if it runs counter-clockwise.
+/// Returns twice the area of a triangle, positive if it runs counter-clockwise.
 fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Whether all triangles of the fan from the first corner have the right orientation. Seen from
-/// that corner, a simple polygon then turns one way only, and by less than a whole turn.
+/// Returns whether all triangles of the fan from the first corner have the right orientation. Seen
+/// from that corner, a simple polygon then turns one way only, and by less than a full turn.
 fn fan_is_right(flat: &[DVec2]) -> bool {
     let tolerance = tolerance(flat);
     flat[1..].windows(2).all(|side| {
@@ -94,10 +94,11 @@ fn fan_is_right(flat: &[DVec2]) -> bool {
     }) && turns_once(flat)
 }
 
-/// Whether no side turns back past a whole turn in all, as those of a star do.
+/// Returns whether the directions from the first corner span less than a full turn, unlike those of
+/// a star.
 fn turns_once(flat: &[DVec2]) -> bool {
-    // From the first corner, directions run through less than half a turn or come back to the
-    // first side's other half-plane once.
+    // In less than a full turn, directions enter the half-plane behind the first side once and stay
+    // there.
     let first = flat[1];
     let behind = |p: &DVec2| first.perp_dot(*p) < 0.0;
     flat[2..].iter().skip_while(|p| !behind(p)).all(behind)
@@ -107,41 +108,41 @@ fn number(corners: usize) -> u32 {
     u32::try_from(corners).expect("a mesh numbers its corners with 32 bits")
 }
 
-/// The error bound of a cross product with a vector of length 1.
+/// Returns the error bound of a cross product with a vector of length 1.
 fn tolerance(flat: &[DVec2]) -> f64 {
     let extent = flat.iter().fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
     8.0 * f64::EPSILON * extent
 }
 
-/// Which way the outline turns at a corner.
+/// The turn of the outline at a corner.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Turn {
-    /// To the left: the corner may be an ear.
+    /// A left turn: the corner may be an ear.
     Convex,
-    /// Not at all.
+    /// No turn.
     Straight,
-    /// To the right: the corner may stand in the way of ears.
+    /// A right turn: the corner may block ears.
     Reflex,
-    /// Back onto itself, or a side has no length: nothing is lost with the corner.
+    /// A turn back, or a side without length: the corner can be cut off without loss.
     Back,
 }
 
-/// Which corners block an ear.
+/// The corners that block an ear.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Blocked {
-    /// By corners inside it or on its border.
+    /// Corners inside the ear or on its border.
     Touching,
-    /// By corners inside it.
+    /// Corners inside the ear.
     Inside,
 }
 
-/// What is left of the outline.
+/// The remaining outline.
 struct Ring {
     flat: Vec<DVec2>,
     next: Vec<u32>,
     last: Vec<u32>,
     turn: Vec<Turn>,
-    /// Corners that are not convex, or were not at the last look.
+    /// Corners that are not convex, or were not at the last visit.
     inward: Grid,
     /// Corners that may be ears, in the order of the search.
     candidates: VecDeque<u32>,
@@ -149,7 +150,7 @@ struct Ring {
     left: usize,
     tolerance: f64,
     looked_at: usize,
-    /// How many corners and cells may be looked at.
+    /// The number of corners and cells that may be visited.
     budget: usize,
 }
 
@@ -174,15 +175,15 @@ impl Ring {
         }
         let inward = (0..corners).filter(|&i| ring.turn[i as usize] != Turn::Convex);
         ring.inward = Grid::new(inward.map(|i| (i, ring.flat[i as usize])).collect());
-        // Every other corner comes first, so that triangles grow evenly instead of as a fan of long
-        // ones.
+        // Every second corner comes first, so triangles grow evenly instead of forming a fan of
+        // long ones.
         for i in (0..corners).step_by(2).chain((1..corners).step_by(2)) {
             ring.queue(i);
         }
         ring
     }
 
-    /// Cuts ear after ear, and leaves the rest to a sweep if that takes too long.
+    /// Cuts off ears, and leaves the rest to a sweep if that takes too long.
     fn cut(&mut self) -> Vec<[u32; 3]> {
         let mut triangles = Vec::with_capacity(self.left - 2);
         while self.left > 3
@@ -201,7 +202,7 @@ impl Ring {
         triangles
     }
 
-    /// Cuts off corners without extent, which a sweep cannot tell from slits.
+    /// Cuts off corners without extent. A sweep cannot tell them from slits.
     fn cut_off_what_turns_back(&mut self, triangles: &mut Vec<[u32; 3]>) {
         let turns_back = |ring: &Self, corner: u32| ring.turn[corner as usize] == Turn::Back;
         self.candidates = self.corners_left().filter(|corner| turns_back(self, *corner)).collect();
@@ -230,7 +231,7 @@ impl Ring {
         for corner in [last, next] {
             let now = self.turn_at(corner);
             let before = std::mem::replace(&mut self.turn[corner as usize], now);
-            // Only where the outline crosses itself.
+            // This happens only if the outline crosses itself.
             if before == Turn::Convex && now != Turn::Convex {
                 self.inward.add(corner, self.flat[corner as usize]);
             }
@@ -243,6 +244,7 @@ impl Ring {
         let (come, go) = (b - a, c - b);
         let cross = come.perp_dot(go);
         let longest = come.abs().max_element() + go.abs().max_element();
+        // Turns within the rounding error are neither left nor right.
         let error = self.tolerance * longest;
         if cross > error {
             Turn::Convex
@@ -255,7 +257,7 @@ impl Ring {
         }
     }
 
-    /// The positions of a corner and its neighbours, in order.
+    /// Returns the positions of a corner and its neighbours, in order.
     fn triangle(&self, corner: u32) -> [DVec2; 3] {
         let at = |i: u32| self.flat[i as usize];
         [at(self.last[corner as usize]), at(corner), at(self.next[corner as usize])]
@@ -267,12 +269,12 @@ impl Ring {
         }
     }
 
-    /// Whether the search for ears has reached its limit.
+    /// Returns whether the search for ears has reached its limit.
     const fn is_spent(&self) -> bool {
         self.looked_at >= self.budget
     }
 
-    /// The next ear of those that are waiting.
+    /// Returns the next ear among the candidates.
     fn ear(&mut self) -> Option<u32> {
         while !self.is_spent() {
             let corner = self.candidates.pop_front()?;
@@ -289,8 +291,9 @@ impl Ring {
         None
     }
 
-    /// If no corner is queued: an ear that others merely touch. If there is none, the polygon
-    /// crosses itself, and any corner is taken. `None` if the search has reached its limit.
+    /// Finds an ear that other corners merely touch, after the candidates have run out. Without
+    /// such an ear, the polygon crosses itself, and any corner is returned. `None` if the search
+    /// has reached its limit.
     fn forced(&mut self) -> Option<u32> {
         let left: Vec<u32> = self.corners_left().collect();
         self.looked_at += left.len() * if self.flat.len() > FEW { 4 } else { 1 };
@@ -302,6 +305,7 @@ impl Ring {
                 return Some(i);
             }
         }
+        // The polygon crosses itself: prefer the corner with the smallest triangle.
         let least = |of: Turn| {
             let size = |i: &u32| {
                 let [a, b, c] = self.triangle(*i);
@@ -316,7 +320,7 @@ impl Ring {
             .or(left.first().copied())
     }
 
-    /// Whether no remaining corner blocks the ear at `corner`.
+    /// Returns whether the ear at `corner` is free of other remaining corners.
     fn is_free(&mut self, corner: u32, how: Blocked) -> bool {
         let own = [self.last[corner as usize], corner, self.next[corner as usize]];
         let ear = self.triangle(corner);
@@ -324,6 +328,7 @@ impl Ring {
         let mut looked_at = 0;
         let blocked = inward.any(self.reach(ear), &mut |other| {
             looked_at += 1;
+            // Removed and convex corners never block an ear, so they leave the grid.
             if self.gone[other as usize] || self.turn[other as usize] == Turn::Convex {
                 return None;
             }
@@ -334,22 +339,22 @@ impl Ring {
         !blocked
     }
 
-    /// A box that contains every corner that may block an ear, including rounding errors.
+    /// Returns a box that contains every corner that may block an ear, including rounding errors.
     ///
-    /// Each side of the ear is moved outwards by error / length at most, so the ear grows about the
-    /// middle of its inscribed circle by that over the circle's radius.
+    /// Each side of the ear moves outwards by at most error / length, so the ear grows about the
+    /// centre of its inscribed circle by that over the circle's radius.
     fn reach(&self, [a, b, c]: [DVec2; 3]) -> [DVec2; 2] {
         let lengths = [a.distance(b), b.distance(c), c.distance(a)];
         let shortest = lengths.into_iter().fold(f64::INFINITY, f64::min);
         let longest = lengths.into_iter().fold(0.0, f64::max);
         let radius = area(a, b, c) / (lengths[0] + lengths[1] + lengths[2]);
         let grown = 2.0 * longest * self.error([a, b, c]) / (shortest * radius);
-        // An ear without size may be touched from anywhere.
+        // An ear without area may be touched from anywhere.
         let grown = if grown.is_finite() { grown.abs() } else { f64::INFINITY };
         [a.min(b).min(c) - grown, a.max(b).max(c) + grown]
     }
 
-    /// The error bound of the area of a triangle with a side of the ear.
+    /// Returns the error bound of the area of a triangle with a side of the ear.
     fn error(&self, [a, b, c]: [DVec2; 3]) -> f64 {
         self.tolerance * ((b - a).abs() + (c - b).abs()).max_element()
     }
@@ -365,8 +370,9 @@ impl Ring {
         if !inside {
             return false;
         }
-        // It is at a corner of the ear: a bridge, or a point at which the outline touches itself.
-        // Its sides lead away from the ear, or to corners that block it themselves.
+        // A corner at the position of a corner of the ear belongs to a bridge, or the outline
+        // touches itself there. Its sides lead away from the ear, or to corners that block the ear
+        // themselves.
         p != a && p != b && p != c
     }
 }

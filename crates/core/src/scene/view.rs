@@ -1,5 +1,5 @@
-//! The view: what is selected, which switches are on. It is saved with the scene, but is no step of
-//! undo.
+//! The view: the selection and the display switches. It is saved with the scene, but its changes
+//! are not undo steps.
 
 use std::collections::BTreeSet;
 
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{CameraId, LightId, ObjectId};
 
-/// What is selected and what is shown.
+/// The selection and the display switches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    /// What the keys act on.
+    /// The kind of item that the keys act on.
     pub subject: Subject,
     /// The selected object; `None` only in a scene without objects.
     pub object: Option<ObjectId>,
@@ -18,9 +18,9 @@ pub struct View {
     pub camera: CameraId,
     /// The selected light; `None` only in a scene without lights.
     pub light: Option<LightId>,
-    /// What the keys x, y and z do.
+    /// The transformation that the keys x, y and z apply.
     pub transformation: Transformation,
-    /// In which frame objects are transformed.
+    /// The frame for transforming objects.
     pub frame: Frame,
     /// The sizes of steps.
     pub steps: Steps,
@@ -32,13 +32,13 @@ pub struct View {
     pub fill: Fill,
     /// Whether edges are drawn over filled polygons.
     pub edges_over_fill: bool,
-    /// The mode in which the selected object is drawn polygon by polygon, if it is on.
+    /// Polygon mode, which draws the selected object polygon by polygon, if it is on.
     pub polygons: Option<PolygonMode>,
     /// Whether earlier polygons stay drawn in that mode.
     pub polygons_stay: bool,
     /// Whether only the selected object is shown.
     pub only_selected: bool,
-    /// Which normals are lit.
+    /// The normals used for lighting.
     pub normals: Normals,
     /// Whether back faces are drawn, in red.
     pub back_faces: bool,
@@ -52,24 +52,23 @@ pub struct View {
     pub wide_lines: bool,
     /// Whether the markers of cameras and bulbs are drawn.
     pub marks: bool,
-    /// How much brighter the lit surfaces are drawn, in stops: each doubles the light. 0 leaves it
-    /// as it is.
+    /// The exposure of lit surfaces in stops: each stop doubles the light, and 0 changes nothing.
     pub exposure: f64,
-    /// Seconds of the scene's clock.
+    /// The time of the scene's clock, in seconds.
     pub time: f64,
 }
 
 impl View {
-    /// The largest exposure, up and down.
+    /// The largest exposure in both directions.
     pub const MOST_EXPOSURE: f64 = 10.0;
 
-    /// The factor of all light.
+    /// Returns the factor that the exposure gives to all light.
     #[must_use]
     pub fn light_factor(&self) -> f64 {
         self.exposure.exp2()
     }
 
-    /// The first view of a scene.
+    /// Returns the first view of a scene.
     #[must_use]
     pub const fn new(object: Option<ObjectId>, camera: CameraId, light: Option<LightId>) -> Self {
         Self {
@@ -100,7 +99,7 @@ impl View {
     }
 }
 
-/// What the keys act on.
+/// The kind of item that the keys act on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Subject {
     /// The selected camera.
@@ -111,43 +110,43 @@ pub enum Subject {
     Light,
 }
 
-/// What the keys x, y and z do.
+/// The transformation that the keys x, y and z apply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Transformation {
-    /// Move.
+    /// Translation.
     Translation,
-    /// Turn.
+    /// Rotation.
     Rotation,
-    /// Scale; objects only.
+    /// Scaling; objects only.
     Scaling,
 }
 
-/// In which frame objects are transformed.
+/// The frame for transforming objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Frame {
-    /// The object's own: M := M T.
+    /// The object's frame: M := M T.
     Local,
-    /// The world's: M := T M.
+    /// The world's frame: M := T M.
     Global,
 }
 
-/// The sizes of the steps of x, y and z.
+/// The step sizes of the keys x, y and z.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Steps {
-    /// Units of the world.
+    /// The translation, in units of the world.
     pub translation: f64,
     /// Whether a translation is a hundredth of the scene's extent instead, rounded to 1, 2 or 5
     /// times a power of 10.
     pub by_size: bool,
-    /// Degrees.
+    /// The rotation, in degrees.
     pub rotation: f64,
-    /// The factor of a step up; a step down divides by it. More than 1.
+    /// The factor of a step up, more than 1; a step down divides by it.
     pub scaling: f64,
 }
 
 impl Steps {
-    /// 10 units, 10 degrees, a factor of 1.2.
+    /// Steps of 10 units, 10 degrees and a factor of 1.2.
     pub const DEFAULT: Self =
         Self { translation: 10.0, by_size: false, rotation: 10.0, scaling: 1.2 };
 }
@@ -167,12 +166,12 @@ pub enum Observer {
     Object,
 }
 
-/// How the view is projected onto the picture.
+/// The projection of the view onto the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Projection {
-    /// In perspective.
+    /// Perspective projection.
     Perspective,
-    /// Orthographic.
+    /// Orthographic projection.
     Orthographic,
 }
 
@@ -185,12 +184,12 @@ pub enum Fill {
     Edges,
 }
 
-/// Which normals are lit.
+/// The normals used for lighting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Normals {
-    /// Those of vertices: smooth shading.
+    /// Vertex normals: smooth shading.
     Vertex,
-    /// Those of faces: flat shading.
+    /// Face normals: flat shading.
     Face,
 }
 
@@ -203,23 +202,23 @@ pub enum NormalLength {
     BySize,
 }
 
-/// The mode in which the selected object is drawn polygon by polygon.
+/// Polygon mode, which draws the selected object polygon by polygon.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PolygonMode {
     /// The selected polygon.
     pub current: u32,
-    /// The polygons shown since the mode began, the selected one among them.
+    /// The polygons shown since the mode began, including the selected one.
     pub shown: BTreeSet<u32>,
 }
 
 impl PolygonMode {
-    /// Begins at polygon 0.
+    /// Starts the mode at polygon 0.
     #[must_use]
     pub fn begin() -> Self {
         Self { current: 0, shown: BTreeSet::from([0]) }
     }
 
-    /// Goes to another polygon.
+    /// Selects another polygon and shows it.
     pub fn go_to(&mut self, polygon: u32) {
         self.current = polygon;
         self.shown.insert(polygon);

@@ -1,10 +1,9 @@
-//! A bounding volume hierarchy (BVH) of a mesh's triangles, in which rays find the few that they may
-//! meet.
+//! A BVH of a mesh's triangles for ray-triangle intersection.
 //!
-//! `obvhs` builds the tree from boxes that are brought to the unit cube, so that it meets no
-//! infinity. It needs quadratic time for boxes that coincide, so equal boxes become one leaf first.
-//! The boxes of the finished tree are those of the triangles themselves, exactly. The triangles of
-//! a leaf lie eight by eight, coordinate by coordinate, so that eight are prepared at once.
+//! `obvhs` builds the tree from boxes scaled to the unit cube, so it never meets infinities. It
+//! takes quadratic time for boxes that coincide, so equal boxes are merged into one leaf first. The
+//! boxes of the finished tree exactly bound the unscaled triangles. A leaf stores its triangles in
+//! blocks of eight, coordinate by coordinate, so SIMD code prepares eight at once.
 //!
 //! Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy
 //! Construction", 2018.
@@ -25,10 +24,10 @@ use marraztu_core::scene::{Accelerator, AcceleratorPlace, Mesh};
 
 use super::draw_order::index;
 
-/// The triangles of a mesh in a tree of boxes.
+/// A BVH of a mesh's triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bvh {
-    /// The root; it has no triangles and no node if the mesh has no triangle with an area.
+    /// The root. If no triangle of the mesh has an area, the tree has neither nodes nor triangles.
     pub root: BvhChild,
     /// The inner nodes.
     pub nodes: Vec<BvhNode>,
@@ -36,21 +35,21 @@ pub struct Bvh {
     pub blocks: Vec<BvhBlock>,
 }
 
-/// The triangles of a block.
+/// The number of triangles in a block.
 pub const BVH_BLOCK: usize = 8;
 
-/// Up to eight triangles of a leaf. The last is repeated in what is left of its block.
+/// Up to eight triangles of a leaf. The last triangle fills the rest of the block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(64))]
 pub struct BvhBlock {
-    /// For each corner and axis the coordinates in object space.
+    /// The coordinates in object space, for each corner and axis.
     pub corners: [[[f32; BVH_BLOCK]; 3]; 3],
-    /// Their indices in [`Mesh::triangles`].
+    /// The triangles' indices in [`Mesh::triangles`].
     pub numbers: [u32; BVH_BLOCK],
 }
 
 impl BvhBlock {
-    /// The block of some triangles, at least one.
+    /// Builds a block of one to eight triangles.
     fn of(triangles: &[BvhTriangle]) -> Self {
         let mut block = Self::default();
         for i in 0..BVH_BLOCK {
@@ -63,14 +62,15 @@ impl BvhBlock {
         block
     }
 
-    /// The triangles whose numbers are at least the first of two and less than the second.
+    /// Returns the mask of triangles with numbers in a range: from the first bound to below the
+    /// second.
     #[inline(always)]
     pub fn among<S: Simd>(&self, simd: S, [first, end]: [u32; 2]) -> u64 {
         let numbers = u32x8::from_slice(simd, &self.numbers);
         (numbers.simd_ge(first) & numbers.simd_lt(end)).to_bitmask()
     }
 
-    /// One of its triangles.
+    /// Returns one triangle of the block.
     #[must_use]
     pub fn triangle(&self, i: usize) -> BvhTriangle {
         BvhTriangle {
@@ -80,11 +80,11 @@ impl BvhBlock {
     }
 }
 
-/// The most children of a node.
+/// The largest number of children of a node.
 const WIDTH: usize = 8;
 
-/// An inner node: the boxes of up to eight children, in four lines of a cache. Large trees are
-/// bound by the latency of memory, and so have few levels.
+/// An inner node: the boxes of up to eight children, in four cache lines. Memory latency bounds the
+/// traversal of large trees, so wide nodes keep the number of levels low.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 pub struct BvhNode {
@@ -99,7 +99,7 @@ impl Default for BvhNode {
 }
 
 impl BvhNode {
-    /// The children, each with the least and the largest coordinates of its box.
+    /// Returns the children, each with the smallest and the largest coordinates of its box.
     #[inline(always)]
     pub fn children(&self) -> impl Iterator<Item = (&BvhChild, &[[f32; 3]; 2])> {
         let children = self.children.iter().take_while(|child| **child != BvhChild::NONE);
@@ -110,17 +110,18 @@ impl BvhNode {
 /// A child of a node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BvhChild {
-    /// The index of its node in [`Bvh::nodes`], or of its first block in [`Bvh::blocks`].
+    /// The index of the node in [`Bvh::nodes`], or of the leaf's first block in
+    /// [`Bvh::blocks`].
     pub first: u32,
-    /// The number of its triangles if it is a leaf, else 0.
+    /// The number of triangles of a leaf; 0 for an inner node.
     pub count: u32,
 }
 
 impl BvhChild {
-    /// No child.
+    /// Marks an unused child.
     const NONE: Self = Self { first: u32::MAX, count: 0 };
 
-    /// The blocks of a leaf.
+    /// Returns the blocks of a leaf.
     #[must_use]
     pub const fn blocks(self) -> Range<usize> {
         let first = self.first as usize;
@@ -131,29 +132,30 @@ impl BvhChild {
 /// A triangle of the tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhTriangle {
-    /// Its corners in object space.
+    /// The corners in object space.
     pub corners: [[f32; 3]; 3],
-    /// Its index in [`Mesh::triangles`].
+    /// The triangle's index in [`Mesh::triangles`].
     pub number: u32,
 }
 
-/// A box: its least and its largest coordinates.
+/// A box: its smallest and its largest coordinates.
 type Box3 = [[f32; 3]; 2];
 
-/// No point.
+/// A box without points.
 const EMPTY: Box3 = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
-/// The most boxes in a leaf, and the cost of a node relative to a box in it.
+/// The largest number of boxes in a leaf, and the cost of a node relative to a box in a leaf.
 const LEAF: u32 = 8;
 const NODE_COST: f32 = 4.0;
 
-/// The number of boxes up to which a tree is one leaf.
+/// A mesh with at most this number of boxes is a single leaf.
 const FEW: usize = 2;
 
 impl Accelerator for Bvh {
     const PLACE: AcceleratorPlace = AcceleratorPlace::Bvh;
 
-    /// Builds the tree of a mesh. A million triangles take a second, so drawing threads do it.
+    /// Builds the tree of a mesh. This takes a second for a million triangles, so drawing
+    /// threads do it.
     ///
     /// # Panics
     /// In builds with debug assertions, on a thread that does not draw, such as the window's.
@@ -171,6 +173,7 @@ impl Accelerator for Bvh {
             flat.root = flat.add_leaf(&groups.triangles);
             return flat;
         }
+        // Build a binary tree, improve it by reinsertion, and merge small subtrees into leaves.
         let unit = in_unit_cube(&groups.boxes);
         let numbers = (0..index(unit.len())).collect();
         let distance = PlocSearchDistance::Medium;
@@ -195,17 +198,17 @@ impl Bvh {
         child
     }
 
-    /// The triangles of a leaf.
+    /// Returns the triangles of a leaf.
     pub fn leaf(&self, child: BvhChild) -> impl Iterator<Item = BvhTriangle> + '_ {
         let place = move |i: usize| (child.first as usize + i / BVH_BLOCK, i % BVH_BLOCK);
         (0..child.count as usize).map(place).map(|(block, i)| self.blocks[block].triangle(i))
     }
 
-    /// Copies the nodes of a tree, up to eight children together and after their parents, and
-    /// computes their boxes.
+    /// Copies the nodes of a binary tree into wide nodes, parents before children, and computes the
+    /// boxes.
     fn flattened(tree: &Bvh2, groups: &Groups) -> Self {
         let mut flat = Self::default();
-        // The nodes that are still to be copied, with the places that refer to them.
+        // Nodes to be copied, each with the node and child slot that refers to it.
         let mut open = vec![(0, None::<(usize, usize)>)];
         let mut triangles = Vec::new();
         while let Some((place, parent)) = open.pop() {
@@ -217,6 +220,7 @@ impl Bvh {
                 open.extend(children.map(|(i, child)| (child, Some((at, i)))).rev());
                 BvhChild { first: index(at), count: 0 }
             } else {
+                // A leaf of the binary tree refers to groups; it gets the triangles of all of them.
                 let leaf = node.first_index as usize..(node.first_index + node.prim_count) as usize;
                 triangles.clear();
                 for group in &tree.primitive_indices[leaf] {
@@ -236,7 +240,7 @@ impl Bvh {
                 }
             }
         }
-        // Children have larger numbers than their parents.
+        // Children have larger numbers than their parents, so one backward pass computes all boxes.
         for at in (0..flat.nodes.len()).rev() {
             for child in 0..WIDTH {
                 let BvhChild { first, count } = flat.nodes[at].children[child];
@@ -250,8 +254,8 @@ impl Bvh {
     }
 }
 
-/// Up to eight nodes below one: its children. The largest is replaced by its own as long as there
-/// is room.
+/// Collects up to eight descendants of a node as its children. The inner node with the largest area
+/// is replaced by its two children while there is room.
 fn children_of(tree: &Bvh2, node: usize) -> Vec<usize> {
     let pair = |node: usize| {
         let first = tree.nodes[node].first_index as usize;
@@ -271,22 +275,22 @@ fn children_of(tree: &Bvh2, node: usize) -> Vec<usize> {
     children
 }
 
-/// Triangles in groups of equal boxes.
+/// Triangles, grouped by equal boxes.
 #[derive(Debug, Default)]
 struct Groups {
     boxes: Vec<Box3>,
     triangles: Vec<BvhTriangle>,
-    /// The first triangle of each group, and the end of the last.
+    /// The first triangle of each group, and the end of the last group.
     starts: Vec<usize>,
 }
 
 impl Groups {
-    /// Those of a mesh, without triangles that have lost an edge. Of triangles that coincide in one
-    /// part, the first is kept: they block the same rays.
+    /// Groups the triangles of a mesh; triangles with an edge of length 0 are left out. If
+    /// triangles of one part coincide, only the first is kept: they block the same rays.
     fn of(mesh: &Mesh) -> Self {
         let positions = mesh.positions();
         let corners = |number: u32| {
-            // 0 and -0 are one place.
+            // Adding 0 turns -0 into 0, so both have the same bits.
             let place =
                 |corner: usize| each(positions[mesh.vertex_of(corner) as usize], |x| x + 0.0);
             each(mesh.triangle(number as usize), place)
@@ -301,6 +305,7 @@ impl Groups {
             .collect();
         let part = |it: &BvhTriangle| mesh.polygon_parts()[mesh.polygon_of(it.number) as usize];
         let key = |it: &BvhTriangle| (bits(&box_of(&it.corners)), part(it), sorted(&it.corners));
+        // Sorting by box brings the triangles of a group together.
         all.par_sort_unstable_by_key(|it| (bits(&box_of(&it.corners)), it.number));
         let mut groups = Self::default();
         for own in all.chunk_by_mut(|a, b| box_of(&a.corners) == box_of(&b.corners)) {
@@ -309,6 +314,7 @@ impl Groups {
             }
             groups.boxes.push(box_of(&own[0].corners));
             groups.starts.push(groups.triangles.len());
+            // After sorting by key, triangles that coincide in one part follow each other.
             let mut last = None;
             for it in &*own {
                 let this = Some(key(it));
@@ -323,12 +329,13 @@ impl Groups {
     }
 }
 
-/// The bits of a box.
+/// Returns the bits of a box.
 fn bits(of: &Box3) -> [[u32; 3]; 2] {
     of.map(|corner| corner.map(f32::to_bits))
 }
 
-/// The bits of three corners in an order that does not depend on where the triangle begins.
+/// Returns the bits of three corners, in an order that does not depend on the triangle's first
+/// corner.
 fn sorted(corners: &[[f32; 3]; 3]) -> [[u32; 3]; 3] {
     let mut all = corners.map(|corner| corner.map(f32::to_bits));
     all.sort_unstable();
@@ -345,7 +352,7 @@ fn union([low, high]: Box3, [other_low, other_high]: Box3) -> Box3 {
     [std::array::from_fn(least), std::array::from_fn(largest)]
 }
 
-/// The boxes, moved and scaled into the unit cube: their order along each axis stays.
+/// Moves and scales boxes into the unit cube. Their order along each axis is kept.
 #[expect(clippy::cast_possible_truncation, reason = "the tree may be built from rounded boxes")]
 fn in_unit_cube(boxes: &[Box3]) -> Vec<Aabb> {
     let [low, high] = boxes.iter().fold(EMPTY, |around, own| union(around, *own));

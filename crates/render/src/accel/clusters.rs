@@ -1,24 +1,24 @@
-//! Bounds of neighbouring triangles, so that many can be culled at once.
+//! Bounds of groups of neighbouring triangles, for culling a whole group at once.
 //!
 //! A cluster has a bounding sphere of its corners and a cone of its normals: Shirman and Abi-Ezzi,
 //! "The Cone of Normals Technique for Fast Processing of Curved Patches", Eurographics 1993. It
-//! also has the thinness of its triangles, since snapping may turn round a triangle that is thinner
-//! than a fraction of a pixel. All bounds are rounded outwards.
+//! also has the thinness of its triangles, since snapping may flip a triangle that is thinner than
+//! a fraction of a pixel. All bounds are rounded outwards.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// A triangle as it is drawn.
+/// A triangle in draw order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawTriangle {
-    /// Its vertices, as indices into [`DrawOrder::x`](crate::accel::DrawOrder::x).
+    /// The vertices, as indices into [`DrawOrder::x`](crate::scene::DrawOrder::x).
     pub vertices: [u32; 3],
-    /// Its index in [`Mesh::triangles`](marraztu_core::scene::Mesh::triangles).
+    /// The triangle's index in [`Mesh::triangles`](crate::scene::Mesh::triangles).
     pub number: u32,
 }
 
 impl DrawTriangle {
-    /// Its numbers side by side.
+    /// Returns the vertices and the number as a row of four integers.
     #[inline(always)]
     #[must_use]
     pub const fn row(&self) -> [i32; 4] {
@@ -27,23 +27,23 @@ impl DrawTriangle {
     }
 }
 
-/// The triangles of a cluster; the last cluster may have fewer.
+/// The number of triangles in a cluster; the last cluster may have fewer.
 pub const CLUSTER: usize = 64;
 
-/// Some triangles of a [`DrawOrder`](crate::accel::DrawOrder), in object space.
+/// The bounds of some triangles of a [`DrawOrder`](crate::scene::DrawOrder), in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cluster {
     /// The centre of the bounding sphere.
     pub centre: [f32; 3],
-    /// Its radius.
+    /// The radius of the bounding sphere.
     pub radius: f32,
     /// The axis of the cone of all normals, of any length.
     pub axis: [f32; 3],
-    /// The cosine of its half-angle; -1 if a triangle has no normal.
+    /// The cosine of the cone's half-angle; -1 if a triangle has no normal.
     pub cosine: f32,
-    /// The least height of a triangle over its longest side.
+    /// The smallest height of a triangle over its longest side.
     pub least_height: f32,
-    /// The least doubled area.
+    /// The smallest doubled area of a triangle.
     pub least_area: f32,
 }
 
@@ -51,15 +51,17 @@ pub struct Cluster {
 const ROUNDING: f64 = 1e-6;
 
 impl Cluster {
-    /// The bounds of triangles; `place` gives the positions of their corners.
+    /// Computes the bounds of triangles; `place` gives the positions of their corners.
     #[expect(clippy::cast_possible_truncation, reason = "rounded outwards")]
     fn of(triangles: &[DrawTriangle], place: impl Fn(u32) -> DVec3) -> Self {
         let corners = || triangles.iter().flat_map(|triangle| triangle.vertices).map(&place);
+        // The sphere is centred in the bounding box of the corners.
         let low = corners().fold(DVec3::INFINITY, DVec3::min);
         let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
         let centre = ((low + high) / 2.0).as_vec3();
         let middle = centre.as_dvec3();
         let radius = corners().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
+        // The axis is the mean of unit normals, so a large triangle does not outweigh small ones.
         let (mut sum, mut least_height, mut least_area) = (DVec3::ZERO, f64::MAX, f64::MAX);
         let normal = |triangle: &DrawTriangle| {
             let [a, b, c] = triangle.vertices.map(&place);
@@ -74,6 +76,7 @@ impl Cluster {
         }
         let axis = sum.normalize_or_zero().as_vec3();
         let own = axis.as_dvec3().normalize_or_zero();
+        // The cone reaches to the normal that is farthest from the axis.
         let cosines = triangles.iter().map(|of| own.dot(normal(of).0.normalize_or_zero()));
         let cosine = cosines.fold(1.0, f64::min) - ROUNDING;
         Self {
@@ -87,7 +90,7 @@ impl Cluster {
     }
 }
 
-/// The clusters of some triangles; `place` gives the positions of their corners.
+/// Divides triangles into clusters; `place` gives the positions of their corners.
 pub(crate) fn clusters(
     triangles: &[DrawTriangle],
     place: impl Fn(u32) -> DVec3 + Sync,
@@ -99,7 +102,7 @@ pub(crate) fn clusters(
 mod tests {
     use super::*;
 
-    /// From -1 to 1, by Marsaglia's xorshift.
+    /// Returns a random number from -1 to 1, by Marsaglia's xorshift.
     fn real(state: &mut u64) -> f64 {
         *state ^= *state << 13;
         *state ^= *state >> 7;

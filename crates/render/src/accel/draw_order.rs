@@ -1,9 +1,9 @@
-//! A mesh in the order in which it is drawn fastest.
+//! The draw order of a mesh: the order of triangles and vertices that draws fastest.
 //!
 //! Triangles follow a Morton curve through the mesh's box, and vertices are numbered by first use,
-//! so that neighbours in space are neighbours in memory. Each triangle keeps its number in the
-//! file's order, which decides between equal depths; the order is therefore invisible. Morton, "A
-//! Computer Oriented Geodetic Data Base", IBM 1966.
+//! so neighbours in space are neighbours in memory. Each triangle keeps its number in the file's
+//! order, which decides between equal depths. The draw order therefore does not change the picture.
+//! Morton, "A Computer Oriented Geodetic Data Base", IBM 1966.
 
 use glam::DVec3;
 use prefetch_index::prefetch_index;
@@ -15,50 +15,52 @@ use marraztu_core::scene::{
     Accelerator, AcceleratorPlace, Bounds, Mesh, NONE, NormalSource, dvec3,
 };
 
-/// The triangles and vertices of a mesh in the order in which they are drawn fastest.
+/// The triangles and vertices of a mesh in their fastest draw order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DrawOrder {
     /// The x coordinates of the vertices that triangles use.
     pub x: Vec<f32>,
-    /// See [`Self::x`].
+    /// The y coordinates; see [`Self::x`].
     pub y: Vec<f32>,
-    /// See [`Self::x`].
+    /// The z coordinates; see [`Self::x`].
     pub z: Vec<f32>,
     /// The triangles.
     pub triangles: Vec<DrawTriangle>,
     /// The clusters of the triangles; empty if they were not computed.
     pub clusters: Vec<Cluster>,
-    /// For each triangle of the mesh its index in [`Self::triangles`]; empty if that is its number.
+    /// The index in [`Self::triangles`] of each triangle of the mesh; empty if it equals the
+    /// number.
     places: Vec<u32>,
-    /// The vertices of each triangle of the mesh, so that shading finds them at once: a million
+    /// The vertices of each triangle of the mesh, for direct access during shading: a million
     /// triangles, lit at vertices, take 0.93 of the time. Empty if [`Self::places`] is.
     vertices_by_number: Vec<[u32; 3]>,
     smooth: Points,
-    /// Empty if no polygon has normals of the file.
+    /// The points with normals of the file; empty if the file has no normals.
     filed: Points,
 }
 
 /// The points of a mesh with one kind of normals, numbered by first use.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Points {
-    /// The points of each triangle, in the order of [`DrawOrder::triangles`]; empty if they have
-    /// the numbers of its vertices, since each vertex has one normal.
+    /// The points of each triangle, in the order of [`DrawOrder::triangles`]. Empty if each vertex
+    /// has one normal: points and vertices then have the same numbers.
     of: Vec<[u32; 3]>,
-    /// Their normals, of length 1.
+    /// The unit normals of the points.
     pub normals: Vec<[f32; 3]>,
-    /// Their vertices, as indices into [`DrawOrder::x`]; empty if both have the same numbers.
+    /// The vertices of the points, as indices into [`DrawOrder::x`]; empty if both have the same
+    /// numbers.
     pub vertices: Vec<u32>,
 }
 
 impl Points {
-    /// The points of a triangle with these vertices, in the draw order `order`.
+    /// Returns the points of a triangle with these vertices, in the draw order `order`.
     #[inline(always)]
     #[must_use]
     pub fn of(&self, order: &DrawOrder, number: u32, vertices: [u32; 3]) -> [u32; 3] {
         if self.of.is_empty() { vertices } else { self.of[order.place(number) as usize] }
     }
 
-    /// Asks the cache for the normals at some vertices, if they have the numbers of these.
+    /// Prefetches the normals at some vertices, if points and vertices have the same numbers.
     #[inline(always)]
     pub fn prefetch(&self, vertices: [u32; 3]) {
         if self.of.is_empty() {
@@ -76,7 +78,7 @@ impl Accelerator for DrawOrder {
 }
 
 impl DrawOrder {
-    /// Along a Morton curve.
+    /// Sorts the triangles along a Morton curve.
     fn along_curve(mesh: &Mesh) -> Self {
         let Some(bounds) = mesh.bounds() else { return Self::default() };
         let count = mesh.triangle_count();
@@ -95,16 +97,17 @@ impl DrawOrder {
         Self { clusters: clusters(&order.triangles, place), ..order }
     }
 
-    /// In the order of the file.
+    /// Keeps the order of the file.
     pub(super) fn as_filed(mesh: &Mesh) -> Self {
         let triangle = |number| DrawTriangle { vertices: vertices(mesh, number as usize), number };
         let numbers = (0..index(mesh.triangle_count())).into_par_iter();
         Self::of(mesh, numbers.map(triangle).collect())
     }
 
-    /// Numbers the vertices of these triangles, which still refer to vertices of the mesh.
+    /// Numbers the vertices of these triangles by first use. On entry, `triangles` refer to
+    /// vertices of the mesh.
     fn of(mesh: &Mesh, mut triangles: Vec<DrawTriangle>) -> Self {
-        // Vertices by their first use.
+        // Each vertex gets the next number at its first use.
         let mut places = vec![NONE; mesh.positions().len()];
         let mut used = Vec::with_capacity(places.len());
         for vertex in triangles.iter_mut().flat_map(|triangle| &mut triangle.vertices) {
@@ -121,6 +124,7 @@ impl DrawOrder {
         };
         let [x, y, z] = [0, 1, 2].map(coordinate);
         let mut order = Self { x, y, z, triangles, ..Self::default() };
+        // With one normal at each vertex, points are vertices and need no separate numbers.
         order.smooth = if mesh.has_smooth_vertices() {
             let normal = |vertex: &u32| mesh.points()[*vertex as usize].normal;
             Points {
@@ -137,13 +141,13 @@ impl DrawOrder {
         order
     }
 
-    /// Asks the cache for what [`Self::vertices_of`] reads.
+    /// Prefetches the data that [`Self::vertices_of`] reads.
     #[inline(always)]
     pub fn prefetch(&self, number: u32) {
         prefetch_index(&self.vertices_by_number, number as usize);
     }
 
-    /// The vertices of a triangle of the mesh, as indices into [`Self::x`].
+    /// Returns the vertices of a triangle of the mesh, as indices into [`Self::x`].
     #[inline(always)]
     #[must_use]
     pub fn vertices_of(&self, number: u32) -> [u32; 3] {
@@ -153,13 +157,13 @@ impl DrawOrder {
         }
     }
 
-    /// The index of a triangle of the mesh in [`Self::triangles`].
+    /// Returns the index of a triangle of the mesh in [`Self::triangles`].
     #[inline(always)]
     fn place(&self, number: u32) -> u32 {
         if self.places.is_empty() { number } else { self.places[number as usize] }
     }
 
-    /// The points with one kind of normals.
+    /// Returns the points with one kind of normals.
     #[must_use]
     pub const fn points(&self, source: NormalSource) -> &Points {
         match source {
@@ -169,6 +173,7 @@ impl DrawOrder {
     }
 
     fn points_of(&self, mesh: &Mesh, source: NormalSource) -> Points {
+        // Points are numbered by first use, like vertices.
         let mut points = Points::default();
         let mut places = vec![NONE; mesh.points().len()];
         for triangle in &self.triangles {
@@ -186,13 +191,13 @@ impl DrawOrder {
         }
         let of_vertices = self.triangles.iter().map(|triangle| triangle.vertices);
         if points.of.iter().copied().eq(of_vertices) {
-            // Both are numbered by first use.
+            // Both are numbered by first use, so equal lists mean equal numbers.
             (points.of, points.vertices) = (Vec::new(), Vec::new());
         }
         points
     }
 
-    /// The position of a vertex.
+    /// Returns the position of a vertex.
     #[inline(always)]
     #[must_use]
     pub fn position(&self, vertex: u32) -> [f64; 3] {
@@ -201,12 +206,12 @@ impl DrawOrder {
     }
 }
 
-/// The vertices of a triangle, as the mesh numbers them.
+/// Returns the vertices of a triangle, by the mesh's numbers.
 fn vertices(mesh: &Mesh, number: usize) -> [u32; 3] {
     mesh.triangle(number).map(|corner| mesh.vertex_of(corner))
 }
 
-/// The position of a triangle's centre on the curve, with ten bits for each axis.
+/// Returns the position of a triangle's centre on the Morton curve, with ten bits for each axis.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -220,7 +225,7 @@ fn morton(mesh: &Mesh, bounds: Bounds, vertices: [u32; 3]) -> u32 {
     bits[0] | bits[1] << 1 | bits[2] << 2
 }
 
-/// The ten bits of a number, each followed by two zeros.
+/// Spreads the ten bits of a number to every third place.
 const fn spread(bits: u32) -> u32 {
     let bits = (bits | bits << 16) & 0x0300_00ff;
     let bits = (bits | bits << 8) & 0x0300_f00f;

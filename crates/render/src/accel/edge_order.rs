@@ -1,32 +1,33 @@
-//! The edges of a mesh in the order in which they are drawn fastest.
+//! The draw order of a mesh's edges.
 //!
-//! Edges follow the vertices as [`DrawOrder`](crate::accel::DrawOrder) numbers them, so that
-//! neighbours in space are neighbours in memory. Each edge keeps its number among the mesh's edges,
-//! which decides between equal depths; the order is therefore invisible.
+//! Edges follow the vertices as [`DrawOrder`](crate::scene::DrawOrder) numbers them, so neighbours
+//! in space are neighbours in memory. Each edge keeps its number among the mesh's edges, which
+//! decides between equal depths. The draw order therefore does not change the picture.
 
 use marraztu_core::scene::{Accelerator, AcceleratorPlace, Mesh, NONE};
 
 use super::Accelerated as _;
 use super::draw_order::index;
 
-/// An edge as it is drawn.
+/// An edge in draw order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawEdge {
-    /// The vertices at its ends, as indices into [`DrawOrder::x`](crate::accel::DrawOrder::x);
+    /// The vertices at the ends, as indices into [`DrawOrder::x`](crate::scene::DrawOrder::x);
     /// [`NONE`] if no triangle uses them.
     pub vertices: [u32; 2],
-    /// Its two polygons, or its only one twice; the second is [`NONE`] if it has more.
+    /// The two polygons at the edge, or its only polygon twice. If the edge has more than two, the
+    /// second entry is [`NONE`].
     pub polygons: [u32; 2],
-    /// Its index in [`Mesh::edges`].
+    /// The edge's index in [`Mesh::edges`].
     pub number: u32,
 }
 
-/// The edges of a mesh in the order in which they are drawn.
+/// The edges of a mesh in draw order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EdgeOrder {
     /// The edges.
     pub edges: Vec<DrawEdge>,
-    /// Whether each polygon is one triangle, with the polygon's number.
+    /// Whether each polygon is one triangle with the polygon's number.
     pub triangles: bool,
 }
 
@@ -34,6 +35,7 @@ impl Accelerator for EdgeOrder {
     const PLACE: AcceleratorPlace = AcceleratorPlace::EdgeOrder;
 
     fn build(mesh: &Mesh) -> Self {
+        // Translate vertices of the mesh to vertices of the draw order.
         let mut vertices = vec![NONE; mesh.positions().len()];
         for triangle in &mesh.draw_order().triangles {
             let corners = mesh.triangle(triangle.number as usize);
@@ -51,6 +53,7 @@ impl Accelerator for EdgeOrder {
             number: index(number),
         });
         let mut edges: Vec<DrawEdge> = edges.collect();
+        // The number makes the key unique, so an unstable sort is enough.
         let key = |edge: &DrawEdge| {
             let [a, b] = edge.vertices;
             (a.min(b), a.max(b), edge.number)

@@ -6,10 +6,10 @@ use rayon::prelude::*;
 use crate::scene::mesh::index;
 use crate::scene::mesh::outlines::Outlines;
 
-/// The corners around each vertex, vertex after vertex.
+/// The corners around each vertex, in the order of the vertices.
 #[derive(Debug)]
 pub(crate) struct Around {
-    /// The beginning of each vertex's corners, and the end of the last one's.
+    /// The start of each vertex's corners, and the end of the last vertex's corners.
     starts: Vec<u32>,
     /// The corners, in ascending order for each vertex.
     corners: Vec<u32>,
@@ -26,7 +26,8 @@ enum Polygons {
 
 impl Around {
     pub(crate) fn of(outlines: &Outlines<'_>, vertices: usize) -> Self {
-        // Every thread goes through all corners and takes those of its own vertices.
+        // Each thread scans all corners and counts those at its own vertices, so no two threads
+        // write to one count.
         let own = vertices.div_ceil(rayon::current_num_threads()).max(1 << 12);
         let mut starts = vec![0; vertices + 1];
         starts[1..].par_chunks_mut(own).enumerate().for_each(|(share, counts)| {
@@ -37,11 +38,13 @@ impl Around {
                 }
             }
         });
+        // A running sum turns the counts into starts.
         let mut sum = 0;
         for start in &mut starts {
             sum += *start;
             *start = sum;
         }
+        // Each thread gets the part of the list that belongs to its vertices.
         let mut corners = vec![0; outlines.corners.len()];
         let mut shares = Vec::new();
         let mut rest = &mut corners[..];
@@ -54,7 +57,7 @@ impl Around {
         }
         shares.into_par_iter().for_each(|(begin, starts, share)| {
             let mut places: Vec<u32> = starts.iter().map(|start| start - starts[0]).collect();
-            // The last one is the end of all corners.
+            // The last start is the end of all corners.
             places.pop();
             for (corner, vertex) in (0..).zip(outlines.corners) {
                 if let Some(place) = places.get_mut(vertex.wrapping_sub(begin) as usize) {
@@ -66,8 +69,8 @@ impl Around {
         Self { starts, corners, polygons: Polygons::of(outlines) }
     }
 
-    /// The normals of all polygons, if some are so large that one cannot be computed for each
-    /// corner.
+    /// Computes the normals of all polygons, unless all are triangles or all are quads: the normal
+    /// of a small polygon is quickly computed again for each corner.
     pub(crate) fn large_normals(&self, outlines: &Outlines<'_>) -> Option<Vec<Option<DVec3>>> {
         matches!(self.polygons, Polygons::Mixed(_)).then(|| {
             let polygons = 0..outlines.starts.len() - 1;
@@ -75,12 +78,12 @@ impl Around {
         })
     }
 
-    /// The corners around a vertex, ascending.
+    /// Returns the corners around a vertex, ascending.
     pub(crate) fn corners(&self, vertex: usize) -> &[u32] {
         &self.corners[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
     }
 
-    /// The polygon of a corner.
+    /// Returns the polygon of a corner.
     #[inline]
     pub(crate) fn polygon(&self, corner: u32) -> usize {
         let polygon = match &self.polygons {

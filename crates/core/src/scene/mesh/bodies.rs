@@ -1,14 +1,14 @@
-//! Finds closed bodies that are inside out, and normals of a file that point against their faces.
+//! Finds closed bodies that are inside out, and file normals that point against their faces.
 //!
-//! A body is a set of polygons that are connected by vertices. It is closed if the sum of its
-//! boundary's hashes is 0 ([`closed`](super::closed)). By the divergence theorem the sum over its
+//! A body is a set of polygons that are connected by vertices. It is closed if the hashes of its
+//! boundary sum to 0 ([`closed`](super::closed)). By the divergence theorem, the sum over its
 //! triangles
 //!
 //! ```text
 //!   V = sum  a . (b x c) / 6
 //! ```
 //!
-//! is its volume, and negative if its polygons run clockwise seen from outside.
+//! is its volume. The volume is negative if the polygons run clockwise seen from outside.
 
 use std::collections::HashMap;
 
@@ -19,10 +19,10 @@ use super::closed::{boundary, key};
 use super::{dvec3, index};
 use crate::scene::{Bounds, Mesh, NONE};
 
-/// A body with less volume than this part of its area times its length is a sheet.
+/// A body with less volume than this fraction of its area times its length is a sheet.
 const SHEET: f64 = 1e-5;
 
-/// The most bodies that are looked into for cavities: a file may have a hundred thousand.
+/// The most outer bodies that are searched for cavities: a file may have a hundred thousand.
 const MOST_OUTER: usize = 64;
 
 /// The closed bodies of a mesh.
@@ -30,7 +30,7 @@ const MOST_OUTER: usize = 64;
 pub struct ClosedBodies {
     /// The number of closed bodies with a volume.
     pub all: usize,
-    /// The number of bodies that are inside out. The inner surface of a hollow body is not.
+    /// The number of bodies that are inside out. The inner surface of a hollow body does not count.
     pub inside_out: usize,
 }
 
@@ -70,8 +70,9 @@ impl Mesh {
         let mut bodies = self.bodies(&mut sets, &keys);
         let boundary = bodies.iter().fold(0, |sum: u64, body| sum.wrapping_add(body.boundary));
         if boundary == 0 && bodies.iter().any(|body| body.boundary != 0) {
-            // All surfaces are closed, but a file that splits them at seams has several vertices at
-            // one position. Where some surface is open, such a body is not told from an open one.
+            // All surfaces together are closed, but single bodies are not: the file splits surfaces
+            // at seams and has several vertices at one position. These are joined. If some surface
+            // is open, they are not, and split bodies count as open.
             let mut first = HashMap::with_capacity(keys.len());
             for (vertex, key) in (0..).zip(&keys) {
                 let other = *first.entry(*key).or_insert(vertex);
@@ -80,7 +81,7 @@ impl Mesh {
             bodies = self.bodies(&mut sets, &keys);
         }
         let solid: Vec<Body> = bodies.into_iter().filter(Body::has_volume).collect();
-        // A cavity is in one of the largest bodies.
+        // A cavity lies in one of the largest bodies, so only these are searched.
         let mut outer: Vec<&Body> = solid.iter().filter(|body| body.volume > 0.0).collect();
         outer.sort_unstable_by(|a, b| b.volume.total_cmp(&a.volume));
         outer.truncate(MOST_OUTER);
@@ -89,7 +90,7 @@ impl Mesh {
         ClosedBodies { all: solid.len(), inside_out }
     }
 
-    /// The bodies of these sets of vertices.
+    /// Collects the bodies of these sets of vertices.
     fn bodies(&self, sets: &mut Sets, keys: &[u64]) -> Vec<Body> {
         let outlines = self.outlines();
         let mut numbers = vec![NONE; keys.len()];
@@ -108,7 +109,7 @@ impl Mesh {
         bodies
     }
 
-    /// The polygons with all of their normals in the file on the wrong side, ascending.
+    /// Finds the polygons with all of their file normals on the wrong side, in ascending order.
     #[must_use]
     pub fn polygons_against_normals(&self) -> Vec<u32> {
         if !self.has_file_normals() {
@@ -161,7 +162,7 @@ impl Sets {
             if parent == vertex {
                 return vertex;
             }
-            // Halving keeps the paths short.
+            // Path halving keeps the paths short.
             let next = self.parents[parent as usize];
             self.parents[vertex as usize] = next;
             vertex = next;
@@ -187,7 +188,7 @@ mod tests {
     struct Quads(MeshSource);
 
     impl Quads {
-        /// Adds a cube of this half-size about `x`.
+        /// Adds a cube with this half-size, centred at `x`.
         fn with_cube(mut self, x: f32, half: f32, outwards: bool) -> Self {
             let before = index(self.0.positions.len());
             for i in 0..8 {
@@ -210,7 +211,7 @@ mod tests {
             self.0.polygon_parts.push(0);
         }
 
-        /// The numbers of bodies, and of bodies inside out.
+        /// Returns the numbers of bodies, and of bodies inside out.
         fn bodies(mut self) -> [usize; 2] {
             self.0.parts = vec![Part { name: "it".to_owned(), material: None }];
             let ClosedBodies { all, inside_out } = Mesh::new(self.0).unwrap().closed_bodies();

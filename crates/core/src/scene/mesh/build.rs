@@ -1,7 +1,6 @@
 //! Builds a mesh from its source, and checks it.
 //!
-//! All threads work on every long list, each on its own range. The result is the same for any
-//! number of threads.
+//! Threads share each long list by ranges. The result does not depend on the number of threads.
 
 use rayon::prelude::*;
 
@@ -17,7 +16,7 @@ impl Mesh {
     /// Checks the parts, triangulates the polygons and computes their normals.
     ///
     /// # Errors
-    /// If a number is not finite, an index out of range, or a list of the wrong length.
+    /// If a number is not finite, an index is out of range, or a list has the wrong length.
     pub fn new(mut source: MeshSource) -> Result<Self, MeshError> {
         let corners = std::mem::take(&mut source.corners);
         let list = |some: fn(&SourceCorner) -> u32| -> Vec<u32> {
@@ -35,16 +34,17 @@ impl Mesh {
         Self::from_lists(source, corners)
     }
 
-    /// As [`Self::new`], with corners in lists, which take less memory; those of `source` are
-    /// ignored.
+    /// Builds a mesh like [`Self::new`], from corners in lists, which take less memory. The corners
+    /// of `source` are ignored.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// The same as [`Self::new`].
     pub fn from_lists(source: MeshSource, corners: CornerLists) -> Result<Self, MeshError> {
         check(&source, &corners)?;
         let starts = running_sum(&source.arities);
         let triangles_only = corners.positions.len() == 3 * source.arities.len();
-        // Two sums that depend on their order are computed while other threads do the rest.
+        // The mean depends on the order of its terms, so one thread computes it while others do the
+        // rest.
         let ((computed, corner_points), (unused, bounds, mean)) = rayon::join(
             || points_and_corners(&source, &corners, &starts),
             || {
@@ -82,8 +82,8 @@ impl Mesh {
         })
     }
 
-    /// The mesh with another crease angle, which shares everything but the normals with this one. A
-    /// mesh with smoothing groups stays as it is.
+    /// Copies the mesh with another crease angle. The copy shares everything but the normals. A
+    /// mesh with smoothing groups keeps them and ignores the angle.
     #[must_use]
     pub fn with_crease(&self, crease: Crease) -> Self {
         let smoothing = match &self.smoothing {
@@ -105,14 +105,14 @@ impl Mesh {
         }
     }
 
-    /// Whether the other is the same mesh up to the crease angle, by [`Self::with_crease`].
+    /// Returns whether `other` is the same mesh up to the crease angle; see [`Self::with_crease`].
     #[must_use]
     pub fn shares_shape_with(&self, other: &Self) -> bool {
         Shared::same(&self.shape, &other.shape)
     }
 }
 
-/// The vertices that no corner names, ascending.
+/// Finds the vertices that no corner refers to, in ascending order.
 fn unused(vertices: usize, corners: &[u32]) -> Vec<u32> {
     let mut is_used = vec![false; vertices];
     for vertex in corners {
@@ -121,7 +121,7 @@ fn unused(vertices: usize, corners: &[u32]) -> Vec<u32> {
     (0..).zip(is_used).filter(|(_, is_used)| !is_used).map(|(vertex, _)| vertex).collect()
 }
 
-/// The beginnings of consecutive lists with these lengths, and the end of the last one.
+/// Returns the starts of consecutive lists with these lengths, and the end of the last list.
 fn running_sum(counts: &[u32]) -> Vec<u32> {
     let mut sums = Vec::with_capacity(counts.len() + 1);
     let mut sum = 0;
@@ -152,7 +152,8 @@ fn check(source: &MeshSource, corners: &CornerLists) -> Result<(), MeshError> {
     }
     length("colours", [0, source.positions.len()].contains(&source.colors.len()))?;
     let finite = |what, right: bool| if right { Ok(()) } else { Err(MeshError::NotFinite(what)) };
-    // Parts, because asking all threads after each number takes longer than looking at it.
+    // Threads check numbers in parts: rayon looks for an early exit after each item, and that takes
+    // longer than checking one number.
     const PART: usize = 4096;
     let all =
         |numbers: &[f32]| numbers.par_chunks(PART).all(|part| part.iter().all(|x| x.is_finite()));

@@ -1,6 +1,6 @@
-//! The derived data of a mesh, computed when it is first needed.
+//! Derived data of a mesh, computed on first use.
 //!
-//! A picture needs only a part of it; computing and storing the rest would take longer than
+//! A picture needs only part of this data. Computing and storing all of it would take longer than
 //! drawing.
 
 use std::sync::OnceLock;
@@ -19,26 +19,26 @@ use crate::scene::mesh::outlines::{Outlines, triangles};
 use crate::scene::mesh::{Shape, index};
 use crate::scene::{Corner, Mesh, NONE, Triangle};
 
-/// The data for flat shading of a polygon, in one cache line.
+/// The data for flat shading of one polygon, within a cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
 pub struct Facet {
-    /// The mean of its corners.
+    /// The mean of the polygon's corners.
     pub centre: [f32; 3],
-    /// See [`Mesh::polygon_normals`].
+    /// The polygon's normal; see [`Mesh::polygon_normals`].
     pub normal: [f32; 3],
 }
 
-/// The normals of vertices that light uses.
+/// The source of vertex normals for lighting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NormalSource {
-    /// The means of the normals of the faces around each vertex.
+    /// The mean of the face normals around each vertex.
     Computed,
     /// The file's normals, for polygons that have them.
     File,
 }
 
-/// A kind of data that is derived from a mesh when it is first needed.
+/// A kind of data that is derived from a mesh on first use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Derived {
     /// [`Mesh::corners`].
@@ -51,22 +51,22 @@ pub enum Derived {
     PolygonNormals,
     /// [`Mesh::facets`].
     Facets,
-    /// The tangents of corners, beside one kind of normals.
+    /// The tangents of corners, for one kind of normals.
     Tangents(NormalSource),
     /// [`Mesh::edges`] and [`Mesh::edge_polygons`].
     Edges,
 }
 
-/// The data that has been computed.
+/// The derived data that has been computed so far.
 #[derive(Default)]
 pub(crate) struct Found {
     corners: OnceLock<Vec<Corner>>,
     pub(super) draw_order: AnyAccelerator,
-    /// With computed normals, and with those of the file.
+    /// The tangents for computed normals, and for the file's normals.
     pub(super) tangents: [OnceLock<Vec<CornerTangents>>; 2],
 }
 
-/// The data that has been computed and does not depend on the normals of vertices.
+/// The derived data that does not depend on vertex normals.
 #[derive(Default)]
 pub(crate) struct FoundOfShape {
     triangles: OnceLock<Vec<Triangle>>,
@@ -79,7 +79,7 @@ pub(crate) struct FoundOfShape {
 }
 
 impl Mesh {
-    /// The corners of all polygons, one after the other.
+    /// Returns the corners of all polygons, in the order of the polygons.
     #[must_use]
     pub fn corners(&self) -> &[Corner] {
         get_or_compute::<Vec<_>>(&self.found.corners, || {
@@ -94,13 +94,13 @@ impl Mesh {
         })
     }
 
-    /// The triangles of all polygons, in the order of the polygons.
+    /// Returns the triangles of all polygons, in the order of the polygons.
     #[must_use]
     pub fn triangles(&self) -> &[Triangle] {
         get_or_compute::<Vec<_>>(&self.shape.found.triangles, || triangles(&self.outlines()))
     }
 
-    /// The polygon that a triangle belongs to.
+    /// Returns the polygon that a triangle belongs to.
     #[inline(always)]
     #[must_use]
     pub fn polygon_of(&self, triangle: u32) -> u32 {
@@ -110,7 +110,7 @@ impl Mesh {
         self.triangles()[triangle as usize].polygon
     }
 
-    /// Computes some data of the mesh now, so that it can be read inside
+    /// Computes one kind of data now, so it can be read inside
     /// [`without_computing`](crate::base::once::without_computing).
     pub fn prepare(&self, what: Derived) {
         match what {
@@ -125,24 +125,24 @@ impl Mesh {
         }
     }
 
-    /// Whether each polygon is one triangle.
+    /// Returns whether each polygon is one triangle.
     #[inline(always)]
     const fn has_triangles_only(&self) -> bool {
         self.triangles_only
     }
 
-    /// The number of triangles.
+    /// Returns the number of triangles.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.shape.corners.len() - 2 * self.polygon_count()
     }
 
-    /// The position of a corner, by its place in [`Self::corners`].
+    /// Returns the position of a corner, by its index in [`Self::corners`].
     pub fn corner_position(&self, corner: usize) -> glam::DVec3 {
         super::dvec3(self.shape.positions[self.shape.corners[corner] as usize])
     }
 
-    /// The corners of a triangle, as places in [`Self::corners`].
+    /// Returns the corners of a triangle, as indices into [`Self::corners`].
     #[inline(always)]
     pub fn triangle(&self, number: usize) -> [usize; 3] {
         if self.has_triangles_only() {
@@ -151,7 +151,7 @@ impl Mesh {
         each(self.triangles()[number].corners, |corner| corner as usize)
     }
 
-    /// The vertex of a corner, as an index into [`Self::positions`].
+    /// Returns the vertex of a corner.
     #[inline(always)]
     #[must_use]
     pub fn vertex_of(&self, corner: usize) -> u32 {
@@ -174,21 +174,21 @@ impl Mesh {
         self.corners.are_vertices()
     }
 
-    /// The uv coordinates of a triangle's corners; `None` if one has none.
+    /// Returns the uv coordinates of a triangle's corners; `None` if a corner lacks them.
     #[inline(always)]
     #[must_use]
     pub fn triangle_uvs(&self, number: u32) -> Option<[[f32; 2]; 3]> {
         self.uvs_at(self.uv_places(number)?)
     }
 
-    /// Asks the cache for what [`Self::uv_places`] reads.
+    /// Prefetches the data that [`Self::uv_places`] reads.
     #[inline(always)]
     pub fn prefetch_uv_places(&self, number: u32) {
         let [first, ..] = self.triangle(number as usize);
         prefetch_index(&self.shape.corner_uvs, first);
     }
 
-    /// The places of the uv coordinates of a triangle's corners, for [`Self::uvs_at`].
+    /// Returns the indices of the uv coordinates of a triangle's corners, for [`Self::uvs_at`].
     #[inline(always)]
     pub fn uv_places(&self, number: u32) -> Option<[u32; 3]> {
         let [a, b, c] = self.triangle(number as usize);
@@ -196,20 +196,20 @@ impl Mesh {
         Some([of(a)?, of(b)?, of(c)?])
     }
 
-    /// Asks the cache for what [`Self::uvs_at`] reads.
+    /// Prefetches the data that [`Self::uvs_at`] reads.
     #[inline(always)]
     pub fn prefetch_uvs(&self, places: [u32; 3]) {
         places.iter().for_each(|place| prefetch_index(&self.shape.uvs, *place as usize));
     }
 
-    /// The uv coordinates at three places; `None` if a place has none.
+    /// Returns the uv coordinates at three indices; `None` if a corner lacks them.
     #[inline(always)]
     pub fn uvs_at(&self, [a, b, c]: [u32; 3]) -> Option<[[f32; 2]; 3]> {
         let of = |place: u32| self.shape.uvs.get(place as usize).copied();
         Some([of(a)?, of(b)?, of(c)?])
     }
 
-    /// The colours of a triangle's corners, which the mesh must have.
+    /// Returns the colours of a triangle's corners. The mesh must have colours.
     #[inline(always)]
     #[must_use]
     pub fn triangle_colors(&self, number: u32) -> [[f32; 3]; 3] {
@@ -218,7 +218,8 @@ impl Mesh {
         })
     }
 
-    /// The normal of each polygon by Newell's method, of length 1; (0, 0, 1) for one without area.
+    /// Returns the unit normal of each polygon, by Newell's method; (0, 0, 1) for a polygon without
+    /// area.
     #[must_use]
     pub fn polygon_normals(&self) -> &[[f32; 3]] {
         get_or_compute::<Vec<_>>(&self.shape.found.normals, || {
@@ -228,7 +229,7 @@ impl Mesh {
         })
     }
 
-    /// The data for flat shading of each polygon.
+    /// Returns the data for flat shading of each polygon.
     #[must_use]
     pub fn facets(&self) -> &[Facet] {
         get_or_compute::<Vec<_>>(&self.shape.found.facets, || {
@@ -241,20 +242,20 @@ impl Mesh {
         })
     }
 
-    /// Whether the polygons form closed surfaces: every edge is traversed as often in one direction
-    /// as in the other.
+    /// Returns whether the polygons form closed surfaces: every edge is traversed as often in one
+    /// direction as in the other.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         *get_or_compute(&self.shape.found.closed, || is_closed(&self.outlines()))
     }
 
-    /// The sides of all polygons, each once.
+    /// Returns the edges of the mesh: the sides of all polygons, each listed once.
     #[must_use]
     pub fn edges(&self) -> &[Edge] {
         self.edge_table().edges()
     }
 
-    /// The polygons that have this edge as a side.
+    /// Returns the polygons that have this edge as a side.
     #[must_use]
     pub fn edge_polygons(&self, edge: &Edge) -> &[u32] {
         self.edge_table().polygons(edge)
@@ -264,14 +265,14 @@ impl Mesh {
         get_or_compute(&self.shape.found.edges, || Edges::of(self))
     }
 
-    /// The outlines of all polygons.
+    /// Returns the outlines of all polygons.
     pub(crate) fn outlines(&self) -> Outlines<'_> {
         self.shape.outlines()
     }
 }
 
 impl Shape {
-    /// The outlines of all polygons.
+    /// Returns the outlines of all polygons.
     pub(crate) fn outlines(&self) -> Outlines<'_> {
         Outlines { places: &self.positions, corners: &self.corners, starts: &self.starts }
     }

@@ -1,25 +1,25 @@
-//! Whether a mesh is a closed surface.
+//! Decides whether a mesh is a closed surface.
 //!
-//! A surface without boundary traverses each of its edges as often in one direction as in the
-//! other. The sum over all sides (p, q) of polygons
+//! A closed surface traverses each of its edges as often in one direction as in the other.
+//! Therefore the sum over all sides (p, q) of polygons
 //!
 //! ```text
 //!   S = sum  h(p, q),   h(p, q) = -h(q, p)
 //! ```
 //!
-//! is then 0 for any such h. With h a hash of 64 bits, S of an open surface is 0 with a chance of
-//! 2^-64. This takes one pass and no table of edges. Corners are compared by their positions, so a
-//! surface that a file splits at seams is closed nevertheless.
+//! is 0 for any such h. If h is a hash of 64 bits, S of an open surface is 0 with a probability of
+//! 2^-64. This takes one pass and no table of edges. Corners are compared by position, so a surface
+//! that a file splits at seams still counts as closed.
 
 use rayon::prelude::*;
 
 use crate::scene::mesh::outlines::Outlines;
 
-/// Polygons that a thread takes at a time.
+/// The number of polygons that a thread takes at a time.
 const SHARE: usize = 4096;
 
-/// Whether the polygons form closed surfaces, each with one side outside. A polygon whose
-/// orientation differs from its neighbours' leaves an edge that is traversed twice in one
+/// Returns whether the polygons form closed surfaces, each with one side outside. If the
+/// orientation of a polygon differs from its neighbour's, their edge is traversed twice in one
 /// direction, so the surface is open.
 pub(crate) fn is_closed(outlines: &Outlines<'_>) -> bool {
     let keys: Vec<u64> = outlines.places.par_iter().map(|place| key(*place)).collect();
@@ -28,13 +28,14 @@ pub(crate) fn is_closed(outlines: &Outlines<'_>) -> bool {
     sum.reduce(|| 0, u64::wrapping_add) == 0
 }
 
-/// The sum of the hashes of a polygon's sides.
+/// Returns the sum of the hashes of a polygon's sides.
 pub(super) fn boundary(vertices: &[u32], keys: &[u64]) -> u64 {
     let Some(mut from) = vertices.last().map(|last| keys[*last as usize]) else { return 0 };
     let mut sum = 0_u64;
     for vertex in vertices {
         let to = keys[*vertex as usize];
         let side = mixed(from.min(to).wrapping_add(from.max(to).rotate_left(32)));
+        // The direction of the side decides the sign, so that h(p, q) = -h(q, p).
         sum = match from.cmp(&to) {
             std::cmp::Ordering::Less => sum.wrapping_add(side),
             std::cmp::Ordering::Greater => sum.wrapping_sub(side),
@@ -45,13 +46,13 @@ pub(super) fn boundary(vertices: &[u32], keys: &[u64]) -> u64 {
     sum
 }
 
-/// A hash of a position, the same for 0 and -0.
+/// Hashes a position. 0 and -0 have the same hash.
 pub(super) fn key([x, y, z]: [f32; 3]) -> u64 {
     let bits = |x: f32| u64::from((x + 0.0).to_bits());
     mixed(mixed(bits(x) << 32 | bits(y)) ^ bits(z))
 }
 
-/// The mixing function of SplitMix64, a permutation of the 64-bit numbers: Steele, Lea and
+/// Applies the mixing function of SplitMix64, a permutation of the 64-bit numbers: Steele, Lea and
 /// Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014.
 const fn mixed(x: u64) -> u64 {
     let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);

@@ -1,4 +1,4 @@
-//! The sides of a mesh's polygons, each once.
+//! The edges of a mesh: the sides of its polygons, each listed once.
 
 use rayon::prelude::*;
 
@@ -9,12 +9,12 @@ use crate::scene::mesh::{Mesh, index};
 pub struct Edge {
     /// The vertices at its ends, the smaller index first.
     pub ends: [u32; 2],
-    /// The beginning of its polygons in the list that [`Mesh::edge_polygons`] reads.
+    /// The start of the edge's polygons in the list that [`Mesh::edge_polygons`] reads.
     first: u32,
     count: u32,
 }
 
-/// The sides of a mesh's polygons, each once, sorted by their ends.
+/// The edges of a mesh, sorted by their ends.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Edges {
     edges: Vec<Edge>,
@@ -23,7 +23,7 @@ pub(crate) struct Edges {
 
 impl Edges {
     pub(crate) fn of(mesh: &Mesh) -> Self {
-        // Sides as (ends, polygon), sorted so that those with equal ends stand together.
+        // Sides as (ends, polygon). Sorting brings equal ends together.
         let outlines = mesh.outlines();
         let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(outlines.corners.len());
         for polygon in 0..mesh.polygon_count() {
@@ -52,7 +52,7 @@ impl Edges {
         &self.edges
     }
 
-    /// The polygons that have this edge as a side.
+    /// Returns the polygons that have this edge as a side.
     pub(crate) fn polygons(&self, edge: &Edge) -> &[u32] {
         &self.polygons[edge.first as usize..(edge.first + edge.count) as usize]
     }

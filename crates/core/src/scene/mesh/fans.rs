@@ -1,18 +1,17 @@
-//! The computed normals of corners if some edges stay sharp.
+//! Computes the normals of corners if some edges stay sharp.
 //!
-//! The faces around a vertex fall into fans: the faces of a fan are smooth with each other,
+//! The faces around a vertex fall into fans. The faces of a fan are smooth with each other,
 //! directly or through other faces of the fan, and their corners have the mean of the fan's unit
-//! normals. The first fan has the point with the vertex's own number, the others have further
-//! points.
+//! normals. The first fan uses the point with the vertex's number; the others have further points.
 //!
-//! In a fine model nearly every vertex has one fan, which is found without looking at its edges: if
+//! In a fine model nearly every vertex has one fan. This case is found without looking at edges: if
 //! the unit normals n_i of k faces have the sum S, then |S| = sum of n_i . S/|S|, so
 //!
 //!   |S| >= k - 1 + cos(crease / 2)
 //!
-//! holds only if no n_i is farther from S than half the crease, and no two are farther apart than
-//! the crease. It remains to check that the faces are connected. At all other vertices, faces are
-//! joined edge by edge, in time k log k.
+//! holds only if no n_i is farther from S than half the crease, and so no two are farther apart
+//! than the crease. The faces must also be connected. At all other vertices, faces are joined edge
+//! by edge, in time k log k.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -24,22 +23,23 @@ use crate::scene::mesh::normals::{cancels, narrow, shown_normal};
 use crate::scene::mesh::outlines::Outlines;
 use crate::scene::{Crease, NONE, Point, dvec3};
 
-/// How much sharper than the crease angle a smooth edge may be, in degrees. Numbers in files have
-/// some six digits, so a right angle is exact only up to that.
+/// A smooth edge may exceed the crease angle by this angle, in degrees. Numbers in files have about
+/// six digits, so right angles are only that exact.
 const TOLERANCE: f64 = 1e-4;
 
-/// More faces than this around a vertex or an edge are sorted before they are compared.
+/// The most faces around a vertex or an edge that are compared pair by pair; more are sorted first.
 const FEW: usize = 16;
 
-/// Vertices that a thread takes at a time.
+/// The number of vertices that a thread takes at a time.
 const BLOCK: usize = 4096;
 
-/// Which faces around a vertex are smooth with each other.
+/// The rule that makes faces around a vertex smooth with each other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Rule<'a> {
-    /// Those that share a smooth edge at the vertex.
+    /// Faces are smooth if they share a smooth edge at the vertex.
     Crease(Limit),
-    /// Those in the same smoothing group: the group of each polygon, 0 for none.
+    /// Faces are smooth if they share a smoothing group. Lists the group of each polygon, 0 for
+    /// none.
     Groups(&'a [u32]),
 }
 
@@ -63,19 +63,20 @@ impl Limit {
         Self { cos2: cos * cos, sin2: sin * sin, slack }
     }
 
-    /// Whether two unit vectors are no farther apart than the crease.
+    /// Returns whether the angle between two unit vectors is at most the crease angle:
     ///
     ///   tan(angle / 2) = |a - b| / |a + b|
     ///
-    /// Exact for small and for large angles; Kahan, "How Futile are Mindless Assessments of
-    /// Roundoff in Floating-Point Computation?", 2006.
+    /// The formula is accurate for small and for large angles; Kahan, "How Futile are Mindless
+    /// Assessments of Roundoff in Floating-Point Computation?", 2006.
     fn joins(&self, a: DVec3, b: DVec3) -> bool {
         (a - b).length_squared() * self.cos2 <= (a + b).length_squared() * self.sin2
     }
 }
 
-/// The points of all corners, beginning with one for each vertex, and the point of each corner, or
-/// nothing if each has its vertex's. `sums` are the sums of the unit normals around each vertex.
+/// Returns the points of all corners, beginning with one for each vertex, and the point of each
+/// corner. The second list is empty if each corner has its vertex's point. `sums` are the sums of
+/// the unit normals around each vertex.
 pub(crate) fn fan_points(
     outlines: &Outlines<'_>,
     sums: &[DVec3],
@@ -83,6 +84,7 @@ pub(crate) fn fan_points(
 ) -> (Vec<Point>, Vec<u32>) {
     let around = Around::of(outlines, sums.len());
     let sorter = Sorter { outlines, sums, normals: around.large_normals(outlines), around, rule };
+    // Blocks of vertices are computed in parallel. The first points have the numbers of vertices.
     let mut points = vec![Point { position: 0, normal: [0.0; 3] }; sums.len()];
     let blocks = points.par_chunks_mut(BLOCK).enumerate();
     let blocks: Vec<Block> = blocks.map(|(i, own)| sorter.block(i * BLOCK, own)).collect();
@@ -91,6 +93,7 @@ pub(crate) fn fan_points(
     if blocks.iter().any(|block| !block.corners.is_empty()) {
         of_corners = outlines.corners.to_vec();
     }
+    // Further points follow block by block, so the result does not depend on the threads.
     points.reserve_exact(blocks.iter().map(|block| block.points.len()).sum());
     for block in blocks {
         let first = index(points.len());
@@ -102,39 +105,40 @@ pub(crate) fn fan_points(
     (points, of_corners)
 }
 
-/// The points of a block of vertices beyond one for each vertex.
+/// The further points of a block of vertices.
 #[derive(Debug, Default)]
 struct Block {
     points: Vec<Point>,
-    /// Corners whose point is one of these.
+    /// Corners with further points, each with the point's index in the block.
     corners: Vec<(u32, u32)>,
 }
 
-/// The faces around one vertex, while they are sorted into fans. Faces are indexed in the order of
-/// the polygons; those without area are left out.
+/// The faces around one vertex while they are sorted into fans. Faces have the order of their
+/// polygons; faces without area are left out.
 #[derive(Debug, Default)]
 struct Fans {
     polygons: Vec<u32>,
     normals: Vec<DVec3>,
     /// Each corner with the index of its face.
     corners: Vec<(u32, u32)>,
-    /// An earlier face of the same fan; the first one names itself.
+    /// For each face an earlier face of the same fan; the first face refers to itself.
     earlier: Vec<u32>,
     sums: Vec<DVec3>,
-    /// The index of each face's point among those of the block; [`NONE`] for the vertex's own.
+    /// The index of each face's point in the block; [`NONE`] for the vertex's point.
     points: Vec<u32>,
-    /// The other ends of edges, or smoothing groups, each with a face.
+    /// The other ends of edges, or smoothing groups, each paired with a face.
     keys: Vec<(u32, u32)>,
 }
 
 impl Fans {
-    /// The first face of a face's fan.
+    /// Returns the first face of a face's fan.
     fn first(&mut self, mut face: u32) -> u32 {
         loop {
             let earlier = self.earlier[face as usize];
             if earlier == face {
                 return face;
             }
+            // Path halving keeps the paths short.
             let before = self.earlier[earlier as usize];
             self.earlier[face as usize] = before;
             face = before;
@@ -150,14 +154,14 @@ impl Fans {
 struct Sorter<'a> {
     outlines: &'a Outlines<'a>,
     sums: &'a [DVec3],
-    /// The normals of polygons, if they take long to compute again.
+    /// The normals of polygons, if computing them again is slow.
     normals: Option<Vec<Option<DVec3>>>,
     around: Around,
     rule: Rule<'a>,
 }
 
 impl Sorter<'_> {
-    /// Fills the points of the vertices from `first` on.
+    /// Fills in the points of the vertices from `first` on.
     fn block(&self, first: usize, points: &mut [Point]) -> Block {
         let mut block = Block::default();
         let mut fans = Fans::default();
@@ -175,7 +179,7 @@ impl Sorter<'_> {
         block
     }
 
-    /// The normal of a polygon; `None` for one without area.
+    /// Returns the normal of a polygon; `None` for one without area.
     fn normal(&self, polygon: usize) -> Option<DVec3> {
         match &self.normals {
             Some(normals) => normals[polygon],
@@ -183,9 +187,9 @@ impl Sorter<'_> {
         }
     }
 
-    /// Whether all faces around a vertex are one fan, as far as a quick check can tell. Faces
-    /// without area, and those that name the vertex twice, make the sum of the normals too short
-    /// for it.
+    /// Returns whether a quick check shows that all faces around a vertex form one fan. Faces
+    /// without area, and faces that use the vertex twice, make the sum of the normals too short to
+    /// pass.
     #[expect(clippy::cast_precision_loss, reason = "few faces")]
     fn is_one_fan(&self, corners: &[u32], sum: DVec3) -> bool {
         if corners.len() < 2 {
@@ -205,14 +209,14 @@ impl Sorter<'_> {
         }
     }
 
-    /// Whether a few faces around a vertex follow each other from edge to edge.
+    /// Returns whether at most `FEW` faces around a vertex are connected edge by edge.
     fn is_connected(&self, corners: &[u32]) -> bool {
         let mut sides = [[NONE; 2]; FEW];
         for (sides, corner) in sides.iter_mut().zip(corners) {
             *sides = self.neighbours(*corner);
         }
         let sides = &mut sides[..corners.len()];
-        // The ends of a row of faces, to which the others are appended.
+        // The two ends of a chain of faces, to which the other faces are appended.
         let [mut a, mut b] = sides[0];
         for done in 1..sides.len() {
             let meets = |[p, q]: &[u32; 2]| [a, b].contains(p) || [a, b].contains(q);
@@ -228,7 +232,7 @@ impl Sorter<'_> {
         true
     }
 
-    /// The vertices before and after a corner of a polygon.
+    /// Returns the vertices before and after a corner of a polygon.
     #[inline]
     fn neighbours(&self, corner: u32) -> [u32; 2] {
         let own = self.around.polygon(corner);
@@ -243,6 +247,7 @@ impl Sorter<'_> {
         fans.polygons.clear();
         fans.normals.clear();
         fans.corners.clear();
+        // A polygon that uses the vertex twice is one face with two corners.
         for corner in corners {
             let polygon = self.around.polygon(*corner);
             if fans.polygons.last() != Some(&index(polygon)) {
@@ -258,6 +263,7 @@ impl Sorter<'_> {
         keys.clear();
         match self.rule {
             Rule::Crease(limit) => {
+                // Faces at one edge have the same other end, so sorting brings them together.
                 for (corner, face) in &fans.corners {
                     let others = self.neighbours(*corner).into_iter();
                     keys.extend(
@@ -272,6 +278,7 @@ impl Sorter<'_> {
             }
             Rule::Groups(groups) => {
                 let group = |(face, polygon): (u32, &u32)| (groups[*polygon as usize], face);
+                // After sorting, faces of one group follow each other.
                 keys.extend((0..).zip(&fans.polygons).map(group).filter(|(group, _)| *group != 0));
                 keys.sort_unstable();
                 for two in keys.windows(2).filter(|two| two[0].0 == two[1].0) {
@@ -282,8 +289,8 @@ impl Sorter<'_> {
         fans.keys = keys;
     }
 
-    /// Joins the faces at one edge that are smooth with each other. `edge` has the other end of the
-    /// edge with each of them.
+    /// Joins the faces at one edge that are smooth with each other. Each entry of `edge` is the
+    /// other end of the edge and a face.
     fn join_at_edge(&self, edge: &[(u32, u32)], vertex: u32, limit: Limit, fans: &mut Fans) {
         if edge.len() <= FEW {
             for (i, (_, a)) in edge.iter().enumerate() {
@@ -293,8 +300,8 @@ impl Sorter<'_> {
             }
             return;
         }
-        // The normals of flat faces at an edge are on a circle about it: faces that are smooth with
-        // each other are so from neighbour to neighbour.
+        // The normals of flat faces at an edge lie on a circle about it. If two faces are smooth
+        // with each other, so are all neighbours between them: comparing neighbours is enough.
         let sorted = self.sorted_about_edge(edge, vertex, fans);
         for (a, b) in sorted.iter().zip(sorted.iter().cycle().skip(1)) {
             Self::join_two(*a, *b, limit, fans);
@@ -307,7 +314,7 @@ impl Sorter<'_> {
         }
     }
 
-    /// The faces at an edge by the angles of their normals about it.
+    /// Sorts the faces at an edge by the angles of their normals about it.
     fn sorted_about_edge(&self, edge: &[(u32, u32)], vertex: u32, fans: &Fans) -> Vec<u32> {
         let place = |vertex: u32| dvec3(self.outlines.places[vertex as usize]);
         let along = math::unit(place(edge[0].0) - place(vertex)).unwrap_or(DVec3::Z);
@@ -321,9 +328,10 @@ impl Sorter<'_> {
         sorted.into_iter().map(|(_, face)| face).collect()
     }
 
-    /// Gives each fan around a vertex a point: the first one the vertex's own. The faces of a fan
-    /// whose normals cancel out have a point each.
+    /// Gives each fan around a vertex a point; the first fan gets the vertex's point. If the
+    /// normals of a fan cancel out, each of its faces gets a point.
     fn add_points(fans: &mut Fans, own: &mut Point, block: &mut Block) {
+        // The sum of a fan's normals is kept at its first face.
         let faces = 0..index(fans.polygons.len());
         fans.sums.clear();
         fans.sums.resize(fans.polygons.len(), DVec3::ZERO);
@@ -331,6 +339,7 @@ impl Sorter<'_> {
             let first = fans.first(face);
             fans.sums[first as usize] += fans.normals[face as usize];
         }
+        // The first face of a fan adds its point. Later faces of the fan find it there.
         fans.points.clear();
         for face in faces {
             let first = fans.first(face);
@@ -352,6 +361,7 @@ impl Sorter<'_> {
                 block.points.push(Point { normal: of_fan, ..*own });
             }
         }
+        // Corners without an entry have their vertex's point.
         let moved =
             fans.corners.iter().map(|(corner, face)| (*corner, fans.points[*face as usize]));
         block.corners.extend(moved.filter(|(_, point)| *point != NONE));

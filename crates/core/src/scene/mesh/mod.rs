@@ -1,11 +1,11 @@
 //! The shape of a model: polygons of any size over shared vertices.
 //!
-//! A vertex is a `v` of the file; polygons that name the same `v` share it, in whatever group they
-//! are. For light, a vertex and a normal make a [`Point`]; each corner of a polygon has one point
-//! with computed normals and one with the file's.
+//! A vertex is a `v` statement of the file. Polygons that refer to the same `v` share it, even
+//! across groups. For lighting, a vertex and a normal make a [`Point`]; each corner of a polygon
+//! has one point with the computed normal and one with the file's normal.
 //!
-//! Data that not every picture needs is computed when it is first needed (`cache`). Meshes that
-//! differ only in their computed normals share everything else.
+//! Data that few pictures need is computed on first use (`cache`). Meshes that differ only in their
+//! computed normals share everything else.
 //!
 //! The fields are private and the constructor checks them, so no index is ever out of range.
 
@@ -35,78 +35,79 @@ use crate::base::Shared;
 use crate::scene::mesh::cache::{Found, FoundOfShape};
 use crate::scene::mesh::points::CornerPoints;
 
-/// Stands for a missing index.
+/// Marks a missing index.
 pub const NONE: u32 = u32::MAX;
 
 /// The source of a mesh. Indices count from 0.
 #[derive(Clone, Debug, Default)]
 pub struct MeshSource {
-    /// The place in object space that positions are relative to; finite.
+    /// The origin of the positions in object space; finite.
     pub offset: DVec3,
     /// The positions of vertices, relative to the offset; all finite.
     pub positions: Vec<[f32; 3]>,
-    /// Red, green and blue of each vertex, 0 to 1; empty if the file has none.
+    /// Red, green and blue of each vertex, 0 to 1; empty if the file has no colours.
     pub colors: Vec<[f32; 3]>,
     /// Texture coordinates, with (0, 0) at the lower left; all finite.
     pub uvs: Vec<[f32; 2]>,
     /// Normals of the file, of any length; all finite.
     pub normals: Vec<[f32; 3]>,
-    /// Corners of all polygons, one after the other.
+    /// The corners of all polygons, in the order of the polygons.
     pub corners: Vec<SourceCorner>,
-    /// How many corners each polygon has: 3 or more.
+    /// The number of corners of each polygon: 3 or more.
     pub arities: Vec<u32>,
     /// The part that each polygon belongs to.
     pub polygon_parts: Vec<u32>,
     /// The parts; at least one if there is a polygon.
     pub parts: Vec<Part>,
-    /// What the file calls each part; empty if the mesh is not from a file.
+    /// The file's names for each part; empty if the mesh is not from a file.
     pub part_names: Vec<PartNames>,
-    /// Which polygons share computed normals.
+    /// The rule for sharing computed normals between polygons.
     pub smoothing: Smoothing,
 }
 
-/// A corner of a polygon as the file names it.
+/// A corner of a polygon in the file's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SourceCorner {
-    /// Its vertex.
+    /// The corner's vertex.
     pub position: u32,
-    /// Its texture coordinates, or [`NONE`].
+    /// The corner's texture coordinates, or [`NONE`].
     pub uv: u32,
-    /// Its normal, or [`NONE`].
+    /// The corner's normal, or [`NONE`].
     pub normal: u32,
 }
 
-/// A run of a file's `o`, `g` and `usemtl`.
+/// A run of polygons with the same `o`, `g` and `usemtl` in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// Its name in the file.
+    /// The part's name in the file.
     pub name: String,
-    /// Its material, as an index into the model's list; `None` if the file names none that exists.
+    /// The part's material, as an index into the model's list; `None` if the file's material is
+    /// missing.
     pub material: Option<u32>,
 }
 
-/// What a file calls a part, statement by statement; each name is `None` before the first statement
-/// of its kind. Exports keep them apart, while the outline shows [`Part::name`].
+/// The file's names for a part, by statement; each is `None` before the first statement of its
+/// kind. Exports keep them apart, while the outline shows [`Part::name`].
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct PartNames {
     /// The last `o`.
     pub object: Option<String>,
-    /// The last `g` since then.
+    /// The last `g` after that `o`.
     pub group: Option<String>,
-    /// The last `usemtl`, whether the material exists or not.
+    /// The last `usemtl`, even if the material does not exist.
     pub material: Option<String>,
 }
 
 /// A corner of a polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Corner {
-    /// Its vertex.
+    /// The corner's vertex.
     pub position: u32,
-    /// Its texture coordinates, or [`NONE`].
+    /// The corner's texture coordinates, or [`NONE`].
     pub uv: u32,
-    /// Its point with the computed normal.
+    /// The point with the computed normal.
     pub smooth: u32,
-    /// Its point with the file's normal if every corner of the polygon has one, else `smooth`.
+    /// The point with the file's normal if every corner of the polygon has one, else `smooth`.
     pub filed: u32,
 }
 
@@ -122,7 +123,7 @@ pub struct Point {
 /// A triangle of a polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Triangle {
-    /// Its corners, as indices into [`Mesh::corners`], with the orientation of the polygon.
+    /// The corners, as indices into [`Mesh::corners`], with the orientation of the polygon.
     pub corners: [u32; 3],
     /// The polygon.
     pub polygon: u32,
@@ -136,7 +137,7 @@ pub struct Mesh {
     pub(super) corners: CornerPoints,
     /// Whether each polygon is one triangle.
     pub(super) triangles_only: bool,
-    /// Whether it is a box in the place of a missing shape.
+    /// Whether the mesh is a box that replaces a missing shape.
     pub(super) is_placeholder: bool,
     pub(super) found: Found,
 }
@@ -178,7 +179,7 @@ impl PartialEq for Shape {
     }
 }
 
-/// Derived data is not compared: it follows from the rest.
+/// Shows the source data only; derived data follows from it.
 impl std::fmt::Debug for Mesh {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Mesh")
@@ -190,7 +191,7 @@ impl std::fmt::Debug for Mesh {
     }
 }
 
-/// Why a mesh cannot be made.
+/// The reasons why a mesh cannot be built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MeshError {
     /// A list has the wrong length.
@@ -221,155 +222,155 @@ impl PartialEq for Mesh {
 }
 
 impl Mesh {
-    /// The place in object space that positions, bounds and mean are relative to. It is 0 unless
-    /// the model is far from its origin.
+    /// Returns the origin of positions, bounds and mean in object space. It is 0 unless the model
+    /// is far from its origin.
     #[must_use]
     pub fn offset(&self) -> DVec3 {
         self.shape.offset
     }
 
-    /// The transformation from the mesh's own space, that of its positions, to object space.
+    /// Returns the transformation from the space of the positions to object space.
     #[must_use]
     pub fn object_from_mesh(&self) -> DMat4 {
         DMat4::from_translation(self.shape.offset)
     }
 
-    /// The positions of all vertices, relative to [`Self::offset`].
+    /// Returns the positions of all vertices, relative to [`Self::offset`].
     #[must_use]
     pub fn positions(&self) -> &[[f32; 3]] {
         &self.shape.positions
     }
 
-    /// The positions of the vertices that a face uses, relative to [`Self::offset`]; all positions
-    /// if there is no face.
+    /// Returns the positions of the vertices that a face uses, relative to [`Self::offset`]; all
+    /// positions if the mesh has no faces.
     pub fn used_positions(&self) -> impl Iterator<Item = DVec3> {
         used(&self.shape.positions, &self.shape.unused)
     }
 
-    /// The vertices that no face uses, ascending.
+    /// Returns the vertices that no face uses, ascending.
     #[must_use]
     pub fn unused_vertices(&self) -> &[u32] {
         &self.shape.unused
     }
 
-    /// Red, green and blue of each vertex; empty if the file has no colours.
+    /// Returns red, green and blue of each vertex; empty if the file has no colours.
     #[must_use]
     pub fn colors(&self) -> &[[f32; 3]] {
         &self.shape.colors
     }
 
-    /// Texture coordinates.
+    /// Returns all texture coordinates.
     #[must_use]
     pub fn uvs(&self) -> &[[f32; 2]] {
         &self.shape.uvs
     }
 
-    /// Vertices with their normals. The first ones are one for each vertex, with a computed normal,
-    /// in the order of [`Self::positions`]; further computed normals follow, then those of the
-    /// file.
+    /// Returns the vertices with their normals. The first points have the order of
+    /// [`Self::positions`] and computed normals, one for each vertex. Further computed normals
+    /// follow, then the file's normals.
     #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
-    /// The number of polygons.
+    /// Returns the number of polygons.
     #[must_use]
     pub fn polygon_count(&self) -> usize {
         self.shape.polygon_parts.len()
     }
 
-    /// The corners of one polygon.
+    /// Returns the corners of one polygon.
     #[must_use]
     pub fn polygon(&self, polygon: u32) -> &[Corner] {
         &self.corners()[self.corners_of(polygon)]
     }
 
-    /// The range of one polygon's corners in [`Self::corners`].
+    /// Returns the range of one polygon's corners in [`Self::corners`].
     #[must_use]
     pub fn corners_of(&self, polygon: u32) -> std::ops::Range<usize> {
         self.shape.starts[polygon as usize] as usize
             ..self.shape.starts[polygon as usize + 1] as usize
     }
 
-    /// Whether a corner of a polygon has texture coordinates.
+    /// Returns whether a corner of a polygon has texture coordinates.
     #[must_use]
     pub fn has_uvs(&self, polygon: u32) -> bool {
         let uvs = self.shape.corner_uvs.get(self.corners_of(polygon));
         uvs.is_some_and(|uvs| uvs.iter().any(|uv| *uv != NONE))
     }
 
-    /// The part that each polygon belongs to.
+    /// Returns the part that each polygon belongs to.
     #[must_use]
     pub fn polygon_parts(&self) -> &[u32] {
         &self.shape.polygon_parts
     }
 
-    /// The polygons without area, which have no normal of their own; ascending.
+    /// Returns the polygons without area, in ascending order; they have no normal.
     #[must_use]
     pub fn without_area(&self) -> &[u32] {
         &self.shape.without_area
     }
 
-    /// The mean of a polygon's corners.
+    /// Returns the mean of a polygon's corners.
     #[must_use]
     pub fn polygon_centre(&self, polygon: u32) -> DVec3 {
         mean(self.outlines().of(polygon as usize))
     }
 
-    /// The range of one polygon's triangles in [`Self::triangles`].
+    /// Returns the range of one polygon's triangles in [`Self::triangles`].
     #[must_use]
     pub fn triangles_of(&self, polygon: u32) -> std::ops::Range<usize> {
-        // Every polygon before this one has two triangles less than it has corners.
+        // Every earlier polygon has two triangles less than it has corners.
         let corners = self.corners_of(polygon);
         let before = 2 * polygon as usize;
         corners.start - before..corners.end - before - 2
     }
 
-    /// The runs of the file's `o`, `g` and `usemtl`.
+    /// Returns the runs of the file's `o`, `g` and `usemtl`.
     #[must_use]
     pub fn parts(&self) -> &[Part] {
         &self.shape.parts
     }
 
-    /// What the file calls a part; nothing if the mesh is not from a file.
+    /// Returns the file's names for a part; all `None` if the mesh is not from a file.
     #[must_use]
     pub fn part_names(&self, part: u32) -> &PartNames {
         const NAMELESS: &PartNames = &PartNames { object: None, group: None, material: None };
         self.shape.part_names.get(part as usize).unwrap_or(NAMELESS)
     }
 
-    /// Whether any polygon has normals of the file.
+    /// Returns whether any polygon has normals of the file.
     #[must_use]
     pub const fn has_file_normals(&self) -> bool {
         !self.corners.filed.is_empty()
     }
 
-    /// Whether every polygon has normals of the file.
+    /// Returns whether every polygon has normals of the file.
     #[must_use]
     pub const fn has_file_normals_only(&self) -> bool {
         self.has_file_normals() && self.corners.filed_only
     }
 
-    /// Which polygons share computed normals.
+    /// Returns the rule for sharing computed normals between polygons.
     #[must_use]
     pub const fn smoothing(&self) -> &Smoothing {
         &self.smoothing
     }
 
-    /// The extent of [`Self::used_positions`]; `None` if there are none.
+    /// Returns the extent of [`Self::used_positions`]; `None` without vertices.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         self.shape.bounds
     }
 
-    /// The mean of [`Self::used_positions`], which orbiting cameras look at.
+    /// Returns the mean of [`Self::used_positions`], the target of orbit cameras.
     #[must_use]
     pub fn mean(&self) -> DVec3 {
         self.shape.mean
     }
 }
 
-/// Positions without the unused ones, unless all are unused; `unused` is ascending.
+/// Leaves out the unused positions, unless all are unused; `unused` is ascending.
 fn used<'a>(positions: &'a [[f32; 3]], unused: &'a [u32]) -> impl Iterator<Item = DVec3> {
     let mut unused = if unused.len() == positions.len() { &[] } else { unused };
     let is_used = move |(vertex, _): &(u32, &[f32; 3])| match unused {
@@ -382,13 +383,13 @@ fn used<'a>(positions: &'a [[f32; 3]], unused: &'a [u32]) -> impl Iterator<Item 
     (0..).zip(positions).filter(is_used).map(|(_, p)| dvec3(*p))
 }
 
-/// The normal of a polygon, as long as twice its area.
+/// Returns the normal of a polygon, with twice its area as length:
 ///
 ///   n = sum over sides p, q of (p - o) x (q - o),   o the first corner
 ///
-/// This is Newell's method, with corners relative to the first one, which keeps small polygons far
-/// from the origin exact. Sutherland, Sproull and Schumacker, "A Characterization of Ten
-/// Hidden-Surface Algorithms", ACM Computing Surveys 1974.
+/// This is Newell's method with corners relative to the first one, so small polygons far from the
+/// origin stay exact. Sutherland, Sproull and Schumacker, "A Characterization of Ten Hidden-Surface
+/// Algorithms", ACM Computing Surveys 1974.
 pub fn newell(corners: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
     let Some(origin) = corners.clone().next() else { return DVec3::ZERO };
     let from = corners.clone().map(|p| p - origin);
@@ -396,7 +397,7 @@ pub fn newell(corners: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
     from.zip(to).fold(DVec3::ZERO, |sum, (p, q)| sum + p.cross(q))
 }
 
-/// Three numbers of a file in double precision.
+/// Converts three numbers of a file to double precision.
 #[must_use]
 pub fn dvec3(v: [f32; 3]) -> DVec3 {
     DVec3::from_array(v.map(f64::from))
@@ -408,7 +409,7 @@ pub(super) fn mean(points: impl Iterator<Item = DVec3>) -> DVec3 {
     sum / count.max(1) as f64
 }
 
-/// An index of 32 bits. `check` has made sure that it fits.
+/// Converts an index to 32 bits. `check` has made sure that it fits.
 pub(super) fn index(i: usize) -> u32 {
     u32::try_from(i).expect("the constructor has checked that everything can be numbered")
 }
@@ -421,7 +422,8 @@ mod tests {
         SourceCorner { position, uv: NONE, normal: NONE }
     }
 
-    /// A roof: two squares that meet at a right angle along the side from vertex 0 to vertex 1.
+    /// Builds a roof: two squares that meet at a right angle along the side from vertex 0 to
+    /// vertex 1.
     fn roof() -> MeshSource {
         MeshSource {
             positions: vec![
@@ -459,7 +461,7 @@ mod tests {
     #[test]
     fn opposite_normals_give_each_corner_its_own_polygons_normal() {
         let mut source = roof();
-        // The same square twice, once from each side.
+        // The same square twice, seen from opposite sides.
         source.corners = [0, 3, 2, 1, 1, 2, 3, 0].map(corner).to_vec();
         let mesh = Mesh::new(source).unwrap();
         for polygon in 0..2 {

@@ -1,16 +1,16 @@
-//! Normals as they are summed and shown.
+//! Stored normals, and tests for sums that cancel out.
 
 use glam::DVec3;
 
-/// The sum of unit normals that cancel out is shorter than this: only rounding errors.
+/// Unit normals cancel out if their sum is at most this long, since the rest is rounding error.
 const CANCELLED: f64 = 1e-9;
 
-/// Whether the unit normals with this sum cancel out.
+/// Returns whether the unit normals with this sum cancel out.
 pub(crate) fn cancels(sum: DVec3) -> bool {
     sum.length() <= CANCELLED
 }
 
-/// A normal as it is shown: (0, 0, 1) if it has no length.
+/// Rounds a normal to f32; `None` becomes (0, 0, 1).
 pub(crate) fn shown_normal(normal: Option<DVec3>) -> [f32; 3] {
     narrow(normal.unwrap_or(DVec3::Z))
 }

@@ -1,23 +1,23 @@
 //! Splits positions into an offset and small differences.
 //!
-//! A file of a map counts metres from far away: (500000, 5400000, 300). An f32 keeps half a metre
-//! of such a number, so positions are stored relative to an offset in f64 that is near them. Models
-//! near their origin have the offset 0, and their positions are the numbers of the file.
+//! A map file counts metres from a distant origin: (500000, 5400000, 300). An f32 resolves such a
+//! number to half a metre, so positions are stored relative to a nearby offset in f64. Models near
+//! their origin have the offset 0, and their positions are the numbers of the file.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::scene::Bounds;
 
-/// A model that is farther from its origin than this many times its size gets an offset. An f32 has
-/// 24 bits, so at least 20 bits of the size are kept without one.
+/// A model gets an offset if its distance from the origin exceeds this multiple of its size. An f32
+/// has 24 bits, so without an offset at least 20 bits of the size are kept.
 const FAR: f64 = 16.0;
 
-/// The offset of positions, and the positions relative to it; `corners` names the vertices that
-/// faces use.
+/// Returns the offset of positions, and the positions relative to it. `corners` lists the vertices
+/// that faces use.
 ///
-/// The offset is a multiple of a power of ten, so that the differences of numbers with few decimals
-/// have few decimals, too.
+/// The offset is a multiple of a power of ten, so differences of numbers with few decimals have few
+/// decimals, too.
 #[must_use]
 pub fn split_positions(positions: &[[f64; 3]], corners: &[u32]) -> (DVec3, Vec<[f32; 3]>) {
     let offset = offset(bounds(positions, corners));
@@ -26,7 +26,7 @@ pub fn split_positions(positions: &[[f64; 3]], corners: &[u32]) -> (DVec3, Vec<[
     (offset, positions.par_iter().map(relative).collect())
 }
 
-/// The extent of the positions that faces use; of all positions if there is no face.
+/// Bounds the positions that faces use, or all positions without faces.
 fn bounds(positions: &[[f64; 3]], corners: &[u32]) -> Option<Bounds> {
     let at = |p: &[f64; 3]| Some(Bounds::at(DVec3::from_array(*p)));
     let used = corners.par_iter().filter_map(|vertex| positions.get(*vertex as usize));
@@ -44,6 +44,7 @@ fn offset(bounds: Option<Bounds>) -> DVec3 {
     if size <= 0.0 || centre.abs().max_element() <= FAR * size {
         return DVec3::ZERO;
     }
+    // A multiple of a power of ten keeps the decimals of the file short.
     let step = 10_f64.powf(size.log10().floor());
     let offset = (centre / step).round() * step;
     if offset.is_finite() { offset } else { DVec3::ZERO }
@@ -58,7 +59,7 @@ mod tests {
         let local = [[-1.25, 3.5, 0.1], [40.0, 60.75, 2.0], [12.5, 0.0, 7.3], [0.0; 3]];
         let far = DVec3::new(500_000.0, 5_400_000.0, 300.0);
         let moved = local.map(|p| (DVec3::from_array(p) + far).to_array());
-        // The last position is not used; neither is it far away.
+        // The last position is not used, so its distance does not count.
         let mut moved = moved.to_vec();
         moved[3] = [0.0; 3];
         let (offset, positions) = split_positions(&moved, &[0, 1, 2]);

@@ -1,4 +1,4 @@
-//! The outlines of polygons, and the triangles that they are cut into.
+//! The outlines of polygons, and their triangulation.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,28 +9,28 @@ use crate::scene::mesh::index;
 use crate::scene::triangulate::Triangulator;
 use crate::scene::{NONE, Triangle, dvec3, newell};
 
-/// Polygons that a thread takes at a time.
+/// The number of polygons that a thread takes at a time.
 const SHARE: usize = 4096;
 
-/// The corners of all polygons, as one list for each of their attributes.
+/// The corners of all polygons, with one list for each attribute.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CornerLists {
     /// The vertex of each corner.
     pub positions: Vec<u32>,
-    /// The uv of each corner, or [`NONE`]; empty if no corner has one.
+    /// The uv of each corner, or [`NONE`]; empty if no corner has uv coordinates.
     pub uvs: Vec<u32>,
-    /// The normal of each corner, or [`NONE`]; empty if no corner has one.
+    /// The normal of each corner, or [`NONE`]; empty if no corner has a normal.
     pub normals: Vec<u32>,
 }
 
 impl CornerLists {
-    /// The uv of a corner, or [`NONE`].
+    /// Returns the uv of a corner, or [`NONE`].
     #[must_use]
     pub fn uv(&self, corner: usize) -> u32 {
         self.uvs.get(corner).copied().unwrap_or(NONE)
     }
 
-    /// The normal of a corner, or [`NONE`].
+    /// Returns the normal of a corner, or [`NONE`].
     #[must_use]
     pub fn normal(&self, corner: usize) -> u32 {
         self.normals.get(corner).copied().unwrap_or(NONE)
@@ -43,29 +43,29 @@ pub(crate) struct Outlines<'a> {
     pub(crate) places: &'a [[f32; 3]],
     /// The vertices of all corners.
     pub(crate) corners: &'a [u32],
-    /// The beginning of each polygon's corners, and the end of the last one's.
+    /// The start of each polygon's corners, and the end of the last polygon's corners.
     pub(crate) starts: &'a [u32],
 }
 
 impl<'a> Outlines<'a> {
-    /// The vertices of a polygon's corners.
+    /// Returns the vertices of a polygon's corners.
     pub(crate) fn vertices(&self, polygon: usize) -> &'a [u32] {
         &self.corners[self.starts[polygon] as usize..self.starts[polygon + 1] as usize]
     }
 
-    /// The positions of a polygon's corners.
+    /// Returns the positions of a polygon's corners.
     pub(crate) fn of(&self, polygon: usize) -> impl ExactSizeIterator<Item = DVec3> + Clone + 'a {
         let places = self.places;
         self.vertices(polygon).iter().map(|vertex| dvec3(places[*vertex as usize]))
     }
 
-    /// The normal of a polygon by Newell's method, of length 1; `None` for one without area.
+    /// Returns the unit normal of a polygon by Newell's method; `None` for a polygon without area.
     pub(crate) fn normal(&self, polygon: usize) -> Option<DVec3> {
         math::unit(newell(self.of(polygon)))
     }
 }
 
-/// The triangles of all polygons, in their order.
+/// Cuts all polygons into triangles, in the order of the polygons.
 pub(crate) fn triangles(outlines: &Outlines<'_>) -> Vec<Triangle> {
     let count = outlines.starts.len() - 1;
     if outlines.corners.len() == 3 * count {
@@ -75,12 +75,14 @@ pub(crate) fn triangles(outlines: &Outlines<'_>) -> Vec<Triangle> {
         };
         return (0..count).into_par_iter().map(own).collect();
     }
+    // Threads take shares of polygons, so each triangulator reuses its memory.
     let share = |share: usize| {
         let mut triangles = Vec::new();
         let mut triangulator = Triangulator::default();
         for polygon in share * SHARE..count.min((share + 1) * SHARE) {
             let begin = outlines.starts[polygon];
-            // The normal keeps all its digits, since they decide how the polygon is cut.
+            // The normal is not rounded to f32, since its last digits decide how the polygon is
+            // cut.
             let normal = outlines.normal(polygon).unwrap_or(DVec3::Z);
             let cut = triangulator.cut(outlines.of(polygon), normal);
             let polygon = index(polygon);

@@ -1,19 +1,19 @@
-//! A box in the place of a shape with a missing file.
+//! A box that replaces a shape with a missing file.
 //!
-//! It has neither texture coordinates nor normals of a file, so the object's material shows.
+//! The box has no texture coordinates and no file normals, so the object's material shows.
 
 use crate::scene::{Mesh, MeshSource, NONE, Part, SourceCorner};
 
 /// The sides of the box that single precision can draw.
 const SIDES: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
-/// The corners of each face, counter-clockwise seen from outside. Of a corner's number, bit 0 is X,
+/// The corners of each face, counter-clockwise seen from outside. In a corner's number, bit 0 is X,
 /// bit 1 is Y and bit 2 is Z.
 const FACES: [[u32; 4]; 6] =
     [[4, 5, 7, 6], [1, 0, 2, 3], [5, 1, 3, 7], [0, 4, 6, 2], [6, 7, 3, 2], [0, 1, 5, 4]];
 
 impl Mesh {
-    /// A cube of this side around the origin, in the place of a missing file.
+    /// Builds a cube of this side around the origin, as a replacement for a missing file.
     #[must_use]
     pub fn placeholder(side: f64) -> Self {
         let half = side.clamp(*SIDES.start(), *SIDES.end()) / 2.0;
@@ -36,7 +36,7 @@ impl Mesh {
         Self { is_placeholder: true, ..mesh }
     }
 
-    /// Whether it is a box in the place of a missing file.
+    /// Returns whether the mesh is a box that replaces a missing file.
     #[must_use]
     pub const fn is_placeholder(&self) -> bool {
         self.is_placeholder

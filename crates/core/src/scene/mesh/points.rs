@@ -1,4 +1,4 @@
-//! The normals of a mesh's polygons and vertices, and the corners that name them.
+//! Computes the normals of a mesh's polygons and vertices, and assigns them to corners.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -10,10 +10,10 @@ use crate::scene::mesh::normals::{cancels, narrow, shown_normal};
 use crate::scene::mesh::outlines::Outlines;
 use crate::scene::{CornerLists, Crease, MeshSource, NONE, Point, Smoothing, dvec3};
 
-/// How many normals of a vertex are compared; a vertex with more may have a point twice.
+/// The most normals of a vertex that are compared; a vertex with more may get equal points.
 const LONGEST: usize = 64;
 
-/// How many polygons' normals are held in f64 at a time: few enough to stay in a cache.
+/// The number of polygons with normals held in f64 at a time: they must stay in a cache.
 const BLOCK: usize = 1 << 15;
 
 /// The data computed from the normals of polygons.
@@ -23,7 +23,7 @@ pub(crate) struct Computed {
     pub(crate) without_area: Vec<u32>,
     /// The points of corners, beginning with one for each vertex.
     pub(crate) points: Vec<Point>,
-    /// The point of each corner; empty if each has its vertex's.
+    /// The point of each corner; empty if each corner has its vertex's point.
     of_corners: Vec<u32>,
 }
 
@@ -45,18 +45,18 @@ impl Computed {
     }
 }
 
-/// The normals of the polygons around each vertex.
+/// The unit normals of polygons, summed at each vertex.
 #[derive(Debug)]
 struct Normals {
     /// The polygons without area; ascending.
     without_area: Vec<u32>,
-    /// For each vertex the sum of the unit normals of the polygons around it; a polygon that names
-    /// the vertex twice is around it once.
+    /// The sum of the unit normals of the polygons around each vertex. A polygon counts once, even
+    /// if it refers to the vertex twice.
     sums: Vec<DVec3>,
 }
 
 impl Normals {
-    /// The points of corners, each with the mean of all faces around its vertex.
+    /// Returns the points of corners, each with the mean normal of all faces around its vertex.
     fn points(self, outlines: &Outlines<'_>) -> Computed {
         let smooth = |vertex: u32| {
             let sum = self.sums[vertex as usize];
@@ -77,6 +77,7 @@ impl Normals {
         let mut normals = Self { without_area: Vec::new(), sums: vec![DVec3::ZERO; vertices] };
         let mut last_polygon = vec![NONE; vertices];
         let mut block: Vec<Option<DVec3>> = Vec::new();
+        // Normals are computed in parallel and added block by block, while they are in the cache.
         for first in (0..count).step_by(BLOCK) {
             let own = first..count.min(first + BLOCK);
             let normal = |polygon: usize| outlines.normal(polygon);
@@ -88,9 +89,9 @@ impl Normals {
         normals
     }
 
-    /// Adds the normals of polygons from `first` on to those of their vertices. Every thread goes
-    /// through all of them and adds to its own vertices, so the order of a sum does not depend on
-    /// the number of threads.
+    /// Adds the normals of the polygons from `first` on to their vertices. Each thread scans all of
+    /// them and adds to its own vertices, so the order of a sum does not depend on the number of
+    /// threads.
     fn add(
         &mut self,
         outlines: &Outlines<'_>,
@@ -107,6 +108,7 @@ impl Normals {
                 for vertex in outlines.vertices(polygon) {
                     let place = vertex.wrapping_sub(begin) as usize;
                     let Some(last) = last_polygon.get_mut(place) else { continue };
+                    // Skips a polygon that has already been added to this vertex.
                     if std::mem::replace(last, index(polygon)) != index(polygon) {
                         sums[place] += *normal;
                     }
@@ -119,40 +121,43 @@ impl Normals {
 /// The points of a mesh's corners.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct CornerPoints {
-    /// The point of each corner with the computed normal; empty if each has its vertex's.
+    /// The point of each corner with the computed normal; empty if each has its vertex's point.
     smooth: Vec<u32>,
-    /// The point of each corner with the file's normal; empty if no corner has one.
+    /// The point of each corner with the file's normal; empty if the file has no normals.
     pub(crate) filed: Vec<u32>,
-    /// The points from here on have normals of the file.
+    /// The first point with a normal of the file; all later ones have them, too.
     first_filed: u32,
     /// Whether all corners have normals of the file.
     pub(crate) filed_only: bool,
 }
 
 impl CornerPoints {
-    /// The point of a corner with the computed normal; `vertices` are those of all corners.
+    /// Returns the point of a corner with the computed normal; `vertices` lists the vertices of all
+    /// corners.
     pub(crate) fn smooth(&self, vertices: &[u32], corner: usize) -> u32 {
         let list = if self.smooth.is_empty() { vertices } else { &self.smooth };
         list[corner]
     }
 
-    /// Its point with the file's normal, or else with the computed one.
+    /// Returns the point of a corner with the file's normal, or else with the computed normal.
     pub(crate) fn filed(&self, vertices: &[u32], corner: usize) -> u32 {
         if self.filed.is_empty() { self.smooth(vertices, corner) } else { self.filed[corner] }
     }
 
-    /// The point of a corner with the file's normal, if its polygon has normals of the file.
+    /// Returns the point of a corner with the file's normal, if its polygon has normals of the
+    /// file.
     pub(crate) fn of_file(&self, corner: usize) -> Option<u32> {
         self.filed.get(corner).copied().filter(|point| *point >= self.first_filed)
     }
 
-    /// Whether the points of all corners with computed normals are numbered as the vertices.
+    /// Returns whether points with computed normals have the numbers of their vertices, at all
+    /// corners.
     pub(crate) const fn are_vertices(&self) -> bool {
         self.smooth.is_empty()
     }
 
-    /// The points and those of the corners, with other computed normals and the same ones of the
-    /// file.
+    /// Replaces the computed normals and keeps the file's normals. Returns all points and the
+    /// points of the corners.
     pub(crate) fn with_computed(
         &self,
         points: &[Point],
@@ -163,6 +168,7 @@ impl CornerPoints {
         let mut corners =
             Self { smooth: of_corners, first_filed: index(all.len()), ..Self::default() };
         if !self.filed.is_empty() {
+            // The file's points move behind the new computed points.
             let filed = |corner: usize| match self.filed[corner].checked_sub(self.first_filed) {
                 Some(place) => corners.first_filed + place,
                 None => corners.smooth(vertices, corner),
@@ -175,8 +181,8 @@ impl CornerPoints {
     }
 }
 
-/// The computed points of a mesh, followed by those with the file's normals, and the points of its
-/// corners.
+/// Computes the points of a mesh and the points of its corners. Points with the file's normals
+/// follow the points with computed normals.
 pub(crate) fn points_and_corners(
     source: &MeshSource,
     lists: &CornerLists,
@@ -194,15 +200,15 @@ pub(crate) fn points_and_corners(
     (computed, corners)
 }
 
-/// Gives each corner its polygon's normal if those around its vertex cancel out; empty if that is
-/// so at no vertex of a polygon that has a normal.
+/// Gives each corner its polygon's normal if the normals around its vertex cancel out. Returns an
+/// empty list if no corner needs this.
 fn alone(outlines: &Outlines<'_>, normals: &Normals, points: &mut Vec<Point>) -> Vec<u32> {
     let cancelled: Vec<bool> = normals.sums.par_iter().map(|sum| cancels(*sum)).collect();
     let vertices = outlines.corners;
     let alone = |i: &u32| cancelled[vertices[*i as usize] as usize];
     let alone: Vec<u32> = (0..index(vertices.len())).into_par_iter().filter(alone).collect();
     let mut smooth = Vec::new();
-    // A polygon's corners follow each other: its normal is computed once for all of them.
+    // The corners of a polygon follow each other, so its normal is computed once for all of them.
     let mut last = (usize::MAX, None);
     for i in alone {
         let polygon = outlines.starts.partition_point(|start| *start <= i) - 1;
@@ -220,8 +226,8 @@ fn alone(outlines: &Outlines<'_>, normals: &Normals, points: &mut Vec<Point>) ->
     smooth
 }
 
-/// Gives corners the file's normals if every corner of the polygon has one; empty if no polygon
-/// has.
+/// Gives corners the file's normals if every corner of the polygon has one. Returns an empty list
+/// if this holds for no polygon.
 fn filed_points(
     source: &MeshSource,
     lists: &CornerLists,
@@ -233,8 +239,8 @@ fn filed_points(
     let unit = |normal: &[f32; 3]| math::unit(dvec3(*normal)).map(narrow);
     let units: Vec<Option<[f32; 3]>> = source.normals.par_iter().map(unit).collect();
     let unit = |i: usize| *units.get(normals[i] as usize)?;
-    // The points of a vertex that have normals of the file are a chain: the last one, and for each
-    // the one before.
+    // The points with file normals form a chain at each vertex: `last` is its end, and each entry
+    // of `chained` refers to the one before.
     let mut last = vec![NONE; source.positions.len()];
     let mut chained: Vec<(u32, u32)> = Vec::new();
     let first = points.len();
@@ -246,6 +252,8 @@ fn filed_points(
             continue;
         }
         for i in own {
+            // Corners of a vertex with equal normals share a point, so search the chain for this
+            // normal.
             let (vertex, normal) = (vertices[i], normals[i]);
             let mut at = last[vertex as usize];
             let mut looked_at = 0;

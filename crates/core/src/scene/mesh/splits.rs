@@ -1,8 +1,8 @@
 //! Finds edges that a corner of another face lies on (T-junctions).
 //!
-//! Such a corner belongs to one face and not to the other, so rounding separates the two edges and
-//! pixels between them may be missed. Only edges with a face on one side can be split, and only by
-//! ends of such edges. They are found by a grid whose cells are as wide as the mean length of these
+//! Rounding separates such a corner from the edge, because it belongs to one face only, and pixels
+//! in the gap may be missed. Only an edge with a face on one side can be split, and only by an end
+//! of another such edge. A grid finds these ends; its cells are as wide as the mean length of these
 //! edges.
 
 use std::collections::HashMap;
@@ -14,12 +14,12 @@ use crate::scene::{Edge, Mesh, dvec3};
 /// A corner lies on an edge if its distance is less than this fraction of the edge's length.
 const NEAR: f64 = 1e-6;
 
-/// How many pairs of edge and corner are looked at: a few seconds' worth.
+/// The number of edge-corner pairs that are tested: a few seconds of work.
 const BUDGET: usize = 50_000_000;
 
 impl Mesh {
-    /// How many edges are split by corners of other faces. In meshes with very many edges that have
-    /// a face on one side only, some may be overlooked.
+    /// Counts the edges that corners of other faces split. The count may be too low in meshes with
+    /// very many edges that have a face on one side only.
     #[must_use]
     pub fn split_edges(&self) -> usize {
         let open: Vec<&Edge> =
@@ -31,6 +31,7 @@ impl Mesh {
         #[expect(clippy::cast_possible_truncation, reason = "what is beyond is held to the border")]
         let cells = |p: DVec3| (p / cell).floor().to_array().map(|x| x as i64);
 
+        // Sort the ends of open edges into the cells of the grid.
         let mut corners: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
         let mut ends: Vec<u32> = open.iter().flat_map(|edge| edge.ends).collect();
         ends.sort_unstable();
@@ -39,6 +40,7 @@ impl Mesh {
             corners.entry(cells(place(vertex))).or_default().push(vertex);
         }
 
+        // An edge is compared with the corners in all cells that its box overlaps.
         let mut budget = BUDGET;
         let mut splits = |edge: &&&Edge| {
             let [a, b] = edge.ends.map(place);
@@ -62,11 +64,11 @@ impl Mesh {
     }
 }
 
-/// Whether a point lies on the segment from `a` to `b`, but at neither end.
+/// Returns whether a point lies on the segment from `a` to `b`, but not at an end.
 fn stands_on(p: DVec3, a: DVec3, b: DVec3) -> bool {
     let along = b - a;
     let square = along.length_squared();
     let t = (p - a).dot(along) / square;
-    // A point as near to an end as to the edge is at the end.
+    // A point as near to an end as to the edge counts as the end.
     t > NEAR && t < 1.0 - NEAR && (p - a - along * t).length_squared() < square * NEAR * NEAR
 }

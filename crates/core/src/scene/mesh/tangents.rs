@@ -1,8 +1,8 @@
-//! The tangents of a mesh's corners, along which maps of bumps are laid.
+//! The tangents of a mesh's corners, which orient normal and bump maps.
 //!
-//! Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008: MikkTSpace, the convention that
-//! normal maps are made with, by `bevy_mikktspace`. Its arc cosine is that of `libm`, so that
-//! tangents are the same on every processor.
+//! These are the tangents of MikkTSpace, the convention that normal maps are made with, computed by
+//! `bevy_mikktspace`: Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008. The arc cosine
+//! comes from `libm`, so tangents are the same on every processor.
 
 use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 
@@ -10,8 +10,8 @@ use crate::base::once::get_or_compute;
 use crate::scene::mesh::index;
 use crate::scene::{Corner, Mesh, NormalSource};
 
-/// The tangents of a triangle's corners, each of length 1, with the sign s of the bitangent
-/// s N x T; all 0 without texture coordinates.
+/// The unit tangents T of a triangle's corners, each with the sign s of the bitangent s N x T; all
+/// 0 without texture coordinates.
 pub(crate) type CornerTangents = [[f32; 4]; 3];
 
 struct LibmOps;
@@ -27,11 +27,11 @@ impl Ops for LibmOps {
     }
 }
 
-/// The triangles with texture coordinates, as MikkTSpace reads them.
+/// The triangles with texture coordinates, as the input of MikkTSpace.
 struct WithUvs<'a> {
     mesh: &'a Mesh,
     source: NormalSource,
-    /// Their numbers.
+    /// The triangles' numbers.
     numbers: Vec<u32>,
     tangents: Vec<CornerTangents>,
 }
@@ -71,7 +71,7 @@ impl Geometry<LibmOps> for WithUvs<'_> {
 
     fn set_tangent(&mut self, found: Option<TangentSpace>, face: usize, vertex: usize) {
         let number = self.numbers[face] as usize;
-        // Without a tangent, as for texture coordinates without area, there is no bump.
+        // Without a tangent, for example if texture coordinates have no area, the bump is dropped.
         let encoded = found.map_or([0.0; 4], |it| it.tangent_encoded());
         let finite = encoded.iter().all(|x| x.is_finite());
         self.tangents[number][vertex] = if finite { encoded } else { [0.0; 4] };
@@ -79,7 +79,7 @@ impl Geometry<LibmOps> for WithUvs<'_> {
 }
 
 impl Mesh {
-    /// The tangents of each triangle's corners, beside one kind of normals.
+    /// Returns the tangents of each triangle's corners, for one kind of normals.
     #[must_use]
     pub fn tangents(&self, source: NormalSource) -> &[CornerTangents] {
         let cell = match source {
@@ -91,7 +91,7 @@ impl Mesh {
             let numbers = (0..index(count)).filter(|number| self.triangle_uvs(*number).is_some());
             let tangents = vec![[[0.0; 4]; 3]; count];
             let mut with_uvs = WithUvs { mesh: self, source, numbers: numbers.collect(), tangents };
-            // Its error has no cases.
+            // The error type is an enum without variants.
             let _done = generate_tangents(&mut with_uvs);
             with_uvs.tangents
         })
@@ -103,7 +103,7 @@ mod tests {
     use super::*;
     use crate::scene::{MeshSource, Part, SourceCorner};
 
-    /// A square in the plane z = 0 whose second triangle is mirrored on the texture.
+    /// Builds a square in the plane z = 0. Its second triangle is mirrored on the texture.
     fn square() -> Mesh {
         let corner = |(position, uv)| SourceCorner { position, uv, normal: crate::scene::NONE };
         Mesh::new(MeshSource {

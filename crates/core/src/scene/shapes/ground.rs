@@ -1,14 +1,15 @@
-//! The ground: a disc that fades out towards its rim, so that no edge shows where it ends.
+//! The ground: a disc that fades out towards its rim, so its edge is invisible.
 //!
-//! With the distance r from its middle and its radius R, its opacity is 1 up to R/2, and from there
+//! With the distance r from the centre and the radius R, the opacity is 1 up to R/2; beyond that it
+//! is
 //!
 //! ```text
 //! 1 - s^2 (3 - 2 s)   with s = 2 r / R - 1
 //! ```
 //!
-//! The inner half is opaque and costs what any opaque surface does. The rest has a map of opacity
-//! with [`SIDE`] texels a side, so its opacity is that of the formula to 1/255: half a step of a
-//! byte by rounding, and 0.05 by interpolation, since the curve bends by at most 6 / (R/2)^2.
+//! The inner half is opaque and costs no more than any opaque surface. The rest has an opacity map
+//! with [`SIDE`] texels a side. It follows the formula to 1/255: rounding adds half a step of a
+//! byte, and interpolation 0.05 steps, since the second derivative is at most 6 / (R/2)^2.
 
 use std::path::PathBuf;
 
@@ -22,16 +23,16 @@ use crate::scene::{
     FileMaterial, MapKind, Material, Part, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
 };
 
-/// The texels of a row of the map.
+/// The number of texels in a row of the map.
 const SIDE: usize = 256;
 
-/// The opacity at a distance from the middle, relative to the radius.
+/// Returns the opacity at a distance from the centre, relative to the radius.
 fn opacity(r: f64) -> f64 {
     let s = (2.0 * r - 1.0).clamp(0.0, 1.0);
     1.0 - s * s * (3.0 - 2.0 * s)
 }
 
-/// The inner disc, and the ring that fades.
+/// Builds the inner disc and the ring that fades out.
 pub(super) fn build(builder: &mut Builder) {
     let normal = builder.normal(DVec3::Y);
     let mut corner = |i: u32, radius: f64| {
@@ -54,7 +55,7 @@ pub(super) fn build(builder: &mut Builder) {
     builder.source.parts = vec![part("ground", 0), part("rim", 1)];
 }
 
-/// Its materials: the same grey, opaque and fading.
+/// Returns the ground's materials: the same grey, once opaque and once fading.
 pub(super) fn materials() -> Vec<FileMaterial> {
     let mut picture = Picture::filled(Size::new(SIDE, SIDE), [0, 0, 0, 255]);
     #[expect(clippy::cast_precision_loss, reason = "few texels")]
@@ -71,7 +72,7 @@ pub(super) fn materials() -> Vec<FileMaterial> {
         scale: [1.0; 2],
     });
     let fading = SurfaceMaps::from([(MapKind::Opacity, SurfaceMap { texture, gain: 1.0 })]);
-    // Under the five lights of the first scene it is a medium grey.
+    // Under the five lights of the first scene, this is a medium grey.
     let material = Material {
         ambient: [0.1; 3],
         diffuse: [0.25; 3],
@@ -100,7 +101,7 @@ mod tests {
         assert_eq!([0.0, 0.5, 0.75, 1.0, 2.0].map(opacity), [1.0, 1.0, 0.5, 0.0, 0.0]);
         let materials = materials();
         let map = &materials[1].maps[&MapKind::Opacity].texture;
-        // Between texels, too, it is the formula's to half a step of a byte and a twentieth.
+        // Between texels the error is at most half a step of a byte and a twentieth, too.
         for (i, j) in [(140, 131), (200, 131), (230, 60), (250, 128)] {
             let at = |i: usize| (i as f64 + 1.0) / SIDE as f64 * 2.0 - 1.0;
             let texels = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];

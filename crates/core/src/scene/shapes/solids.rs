@@ -1,7 +1,7 @@
 //! The polygons of plane, cube, sphere, cylinder and torus.
 //!
-//! A polygon is listed counter-clockwise as seen from outside. Every round shape has its texture
-//! once around.
+//! Polygons are counter-clockwise as seen from outside. The texture wraps once around each round
+//! shape.
 
 use std::f64::consts::TAU;
 
@@ -15,10 +15,10 @@ pub(super) const AROUND: u32 = 64;
 /// The number of faces from pole to pole of a sphere, and around the tube of a torus.
 const ALONG: u32 = 32;
 
-/// The distance of the middle of a torus's tube from its axis, and the radius of the tube.
+/// The distance from a torus's axis to the centre of its tube, and the radius of the tube.
 pub(super) const TORUS: [f64; 2] = [0.375, 0.125];
 
-/// Vertices, texture coordinates, normals and polygons as they are made.
+/// Vertices, texture coordinates, normals and polygons under construction.
 #[derive(Default)]
 pub(super) struct Builder {
     pub(super) source: MeshSource,
@@ -40,7 +40,7 @@ impl Builder {
         last(self.source.normals.len())
     }
 
-    /// A polygon of corners (vertex, uv, normal), counter-clockwise as seen from outside.
+    /// Adds a polygon of corners (vertex, uv, normal), counter-clockwise as seen from outside.
     pub(super) fn polygon(&mut self, corners: &[[u32; 3]]) {
         self.source.corners.extend(corners.iter().map(|&[position, uv, normal]| SourceCorner {
             position,
@@ -60,23 +60,23 @@ impl Builder {
     }
 }
 
-/// The index of the last of `len` items.
+/// Returns the index of the last of `len` items.
 fn last(len: usize) -> u32 {
     u32::try_from(len - 1).expect("a shape has few vertices")
 }
 
-/// Sine and cosine of `i` of `n` parts of a turn; exactly 0 where they are.
+/// Returns sine and cosine of `i` / `n` of a turn; zeros are exact.
 pub(super) fn turn(i: u32, n: u32) -> [f64; 2] {
     let angle = TAU * f64::from(i) / f64::from(n);
     [libm::sin(angle), libm::cos(angle)].map(|x| if x.abs() < 1e-15 { 0.0 } else { x })
 }
 
-/// `i` of `n` as a fraction.
+/// Returns `i` / `n` as a number.
 fn share(i: u32, n: u32) -> f64 {
     f64::from(i) / f64::from(n)
 }
 
-/// A square with this middle, whose sides lead from the middle to the right and up.
+/// Adds a square; `corners` run counter-clockwise from the lower left corner of the texture.
 fn square(builder: &mut Builder, corners: [u32; 4], normal: DVec3) {
     let normal = builder.normal(normal);
     let uvs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[u, v]| builder.uv(u, v));
@@ -108,13 +108,13 @@ pub(super) fn cube(builder: &mut Builder) {
     }
 }
 
-/// The direction at this longitude and latitude, given by their sines and cosines.
+/// Returns the direction at a longitude and a latitude, given by their sines and cosines.
 fn direction([east_sin, east_cos]: [f64; 2], [up_sin, up_cos]: [f64; 2]) -> DVec3 {
     DVec3::new(up_cos * east_sin, up_sin, up_cos * east_cos)
 }
 
 pub(super) fn sphere(builder: &mut Builder) {
-    // Row 0 is the south pole. Half a turn leads from pole to pole.
+    // Row 0 is the south pole; half a turn leads to the north pole.
     let latitude = |row: u32| {
         let [sin, cos] = turn(row, 2 * ALONG);
         [-cos, sin]
@@ -127,6 +127,7 @@ pub(super) fn sphere(builder: &mut Builder) {
             builder.normal(normal);
         }
     }
+    // A pole is one vertex, shared by all columns.
     let vertex = |row: u32, column: u32| match row {
         0 => 0,
         ALONG => 1 + (ALONG - 1) * AROUND,
@@ -141,6 +142,7 @@ pub(super) fn sphere(builder: &mut Builder) {
                 let vertex = vertex(row, column);
                 [vertex, builder.uv(u, v), vertex]
             };
+            // The rows at the poles are triangles, with u at the middle of the column.
             let corners = match row {
                 0 => vec![
                     corner(0, 0, middle, v[0]),
@@ -186,13 +188,13 @@ pub(super) fn cylinder(builder: &mut Builder) {
         let normal = builder.normal(normal);
         let mut corners: Vec<[u32; 3]> = (0..AROUND)
             .map(|column| {
-                // The disc as it is seen from outside, with +X to the right.
+                // The disc seen from outside, with +X to the right.
                 let [x, z] = turn(column, AROUND).map(|x| x * 0.5);
                 let up = if top == 1 { -z } else { z };
                 [2 * column + top, builder.uv(0.5 + x, 0.5 + up), normal]
             })
             .collect();
-        // From +Z towards +X is counter-clockwise as seen from above.
+        // From +Z towards +X is counter-clockwise seen from above.
         if top == 0 {
             corners.reverse();
         }

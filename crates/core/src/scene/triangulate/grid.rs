@@ -1,12 +1,12 @@
-//! A uniform grid of corners, so that few have to be looked at.
+//! A uniform grid of corners, so a search for blocking corners visits only a few.
 //!
-//! The cells are as square as possible, with about four corners in each; a corner that is no longer
-//! needed is removed when it is met. Akman, Franklin, Kankanhalli and Narayanaswami, "Geometric
+//! The cells are as square as possible, with about four corners each. Corners that are no longer
+//! needed are removed during the search. Akman, Franklin, Kankanhalli and Narayanaswami, "Geometric
 //! Computing and Uniform Grid Technique", Computer-Aided Design 1989.
 
 use glam::DVec2;
 
-/// Corners, by the cell that they lie in.
+/// Corners, grouped by grid cell.
 #[derive(Debug, Default)]
 pub(super) struct Grid {
     origin: DVec2,
@@ -48,7 +48,7 @@ impl Grid {
         self.cells[row * self.columns + column].push(corner);
     }
 
-    /// Whether one of the corners in a box matches; `None` says that a corner is no longer needed.
+    /// Returns whether any corner in a box matches. If `is` returns `None`, the corner is removed.
     pub(super) fn any(
         &mut self,
         [min, max]: [DVec2; 2],
@@ -73,12 +73,12 @@ impl Grid {
         false
     }
 
-    /// The number of cells looked at since the last call.
+    /// Returns the number of cells visited since the last call.
     pub(super) fn cells_looked_at(&mut self) -> usize {
         std::mem::take(&mut self.looked_at)
     }
 
-    /// The cell of a place, or the nearest one.
+    /// Returns the cell of a position, or the nearest cell.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

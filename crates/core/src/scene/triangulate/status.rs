@@ -1,25 +1,26 @@
 //! The edges that a sweep line crosses, from left to right.
 //!
-//! A list in chunks: inserting or removing an edge takes time in proportion to a chunk. Edges are
-//! compared only when one is inserted, so the list stays valid even if edges cross.
+//! The list is divided into chunks, so inserting or removing an edge takes time in proportion to
+//! the size of a chunk. Edges are compared only on insertion, so the list stays valid even if edges
+//! cross.
 
-/// The most edges of a chunk.
+/// The largest number of edges in a chunk.
 const CHUNK: usize = 512;
 
 /// Edges from left to right.
 #[derive(Debug)]
 pub(super) struct Status {
-    /// The chunks that have edges, from left to right, as indices into `chunks`.
+    /// The chunks with edges, from left to right, as indices into `chunks`.
     order: Vec<u32>,
     chunks: Vec<Vec<u32>>,
-    /// The chunk of each edge, or [`NOWHERE`].
+    /// The chunk of each edge; [`NOWHERE`] if the edge is not in the list.
     home: Vec<u32>,
 }
 
 const NOWHERE: u32 = u32::MAX;
 
 impl Status {
-    /// An empty list for this number of edges.
+    /// Creates an empty list for this number of edges.
     pub(super) fn new(edges: usize) -> Self {
         Self { order: Vec::new(), chunks: Vec::new(), home: vec![NOWHERE; edges] }
     }
@@ -28,13 +29,13 @@ impl Status {
         self.home[edge as usize] != NOWHERE
     }
 
-    /// The last edge for which `is` holds; such edges come first.
+    /// Returns the last edge for which `is` holds. The edges for which it holds must come first.
     pub(super) fn last_of(&self, is: impl Fn(u32) -> bool) -> Option<u32> {
         let (chunk, place) = self.place(is)?;
         place.checked_sub(1).map(|place| self.chunks[chunk as usize][place])
     }
 
-    /// Inserts an edge after those on its left.
+    /// Inserts an edge after all edges on its left.
     pub(super) fn insert(&mut self, edge: u32, is_left: impl Fn(u32) -> bool) {
         let (chunk, place) = self.place(is_left).unwrap_or_else(|| {
             self.order.push(super::number(self.chunks.len()));
@@ -44,6 +45,7 @@ impl Status {
         self.home[edge as usize] = chunk;
         let edges = &mut self.chunks[chunk as usize];
         edges.insert(place, edge);
+        // A full chunk is split in half, so insertion stays cheap.
         if edges.len() > CHUNK {
             let behind = edges.split_off(CHUNK / 2);
             let new = super::number(self.chunks.len());
@@ -76,7 +78,7 @@ impl Status {
         }
     }
 
-    /// The chunk, and the index in it, after the edges for which `is` holds.
+    /// Returns the position behind the edges for which `is` holds: a chunk, and an index in it.
     fn place(&self, is: impl Fn(u32) -> bool) -> Option<(u32, usize)> {
         let first = |chunk: &u32| is(self.chunks[*chunk as usize][0]);
         let chunk = *self.order.get(self.order.partition_point(first).saturating_sub(1))?;

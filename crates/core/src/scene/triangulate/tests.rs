@@ -1,5 +1,4 @@
-//! Polygons from the hard places: notches, bridges, corners in a row, outlines that touch
-//! themselves.
+//! Hard cases: notches, bridges, corners in a row, outlines that touch themselves.
 
 use proptest::prelude::*;
 
@@ -11,13 +10,13 @@ fn outline(places: &[(f64, f64)]) -> Vec<DVec3> {
     places.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect()
 }
 
-/// Twice the signed areas of the triangles about `normal`.
+/// Returns twice the signed areas of the triangles about `normal`.
 fn areas(outline: &[DVec3], normal: DVec3, triangles: &[[u32; 3]]) -> Vec<f64> {
     let area = |t: &[u32; 3]| newell(t.iter().map(|&i| outline[i as usize])).dot(normal);
     triangles.iter().map(area).collect()
 }
 
-/// Triangles of a polygon that is seen from +Z, cut by the sweep alone.
+/// Cuts a polygon, seen from +Z, with the sweep alone.
 fn swept(outline: &[DVec3]) -> Vec<[u32; 3]> {
     let flat: Vec<DVec2> = outline.iter().map(|p| p.truncate()).collect();
     let mut triangles = Vec::new();
@@ -26,7 +25,7 @@ fn swept(outline: &[DVec3]) -> Vec<[u32; 3]> {
     triangles
 }
 
-/// Checks that the sweep cuts a polygon into triangles inside of it.
+/// Checks that the sweep cuts a polygon into triangles inside it.
 fn is_swept_rightly(outline: &[DVec3]) {
     let triangles = swept(outline);
     assert_eq!(triangles.len(), outline.len() - 2);
@@ -37,7 +36,8 @@ fn is_swept_rightly(outline: &[DVec3]) {
     assert!(worst >= -1e-9 * sum, "a triangle of {worst} in a polygon of {sum}");
 }
 
-/// The areas of the triangles, all of them checked to be positive and to sum to the polygon's.
+/// Returns the areas of the triangles, after checking that they are positive and sum to the
+/// polygon's area.
 fn sound(outline: &[DVec3]) -> Vec<f64> {
     let twice = newell(outline.iter().copied());
     let normal = math::unit(twice).unwrap();
@@ -51,7 +51,7 @@ fn sound(outline: &[DVec3]) -> Vec<f64> {
     areas
 }
 
-/// A square with a square hole, joined by a bridge from the one's first corner to the other's.
+/// Returns a square with a square hole. A bridge joins the first corner of each.
 fn square_with_a_hole() -> Vec<DVec3> {
     outline(&[
         (0.0, 0.0),
@@ -87,8 +87,8 @@ fn a_hole_joined_by_a_bridge_stays_a_hole_seen_from_any_side() {
     }
 }
 
-/// The outline of an island of 6 x 6 cells, one side of a cell after the other: the cells that
-/// hang together by sides with the first, and what they shut in.
+/// Returns the outline of an island of 6 x 6 cells, one cell side after the other. The island
+/// consists of the cells that are connected to the first by sides, and of enclosed cells.
 fn island(cells: &[bool; 36]) -> Vec<DVec3> {
     type Cell = (i32, i32);
     let land = |(x, y): Cell| {
@@ -111,8 +111,8 @@ fn island(cells: &[bool; 36]) -> Vec<DVec3> {
     let island = flood((0, 0), &sides, &land);
     let near = |(x, y): Cell| (-1..7).contains(&x) && (-1..7).contains(&y);
     let sea = flood((-1, -1), &around, &|cell| near(cell) && !island.contains(&cell));
-    // Along the cells' sides with the island to the left; at a corner where two cells touch the
-    // way stays at the same cell.
+    // Walk along cell sides with the island to the left. At a corner where two cells touch, the
+    // path stays at the same cell.
     let ahead_left = |(x, y): Cell, (dx, dy): Cell| match (dx, dy) {
         (1, 0) => (x, y),
         (0, 1) => (x - 1, y),
@@ -140,7 +140,7 @@ fn island(cells: &[bool; 36]) -> Vec<DVec3> {
     }
 }
 
-/// A plate with square holes in a row, each joined to the one before it.
+/// Returns a plate with square holes in a row, each joined to the previous one.
 fn plate(holes: u8) -> Vec<DVec3> {
     let x = |i: u8| f64::from(i) * 4.0;
     let mut places = vec![(0.0, 0.0), (x(holes), 0.0), (x(holes), 4.0), (0.0, 4.0), (0.0, 0.0)];
@@ -212,8 +212,7 @@ fn a_polygon_that_crosses_itself_has_as_many_triangles_as_any_other() {
     }
 }
 
-/// Polygons of this number of corners in which ears are rare or hard to find, and whether each is
-/// simple.
+/// Polygons with this number of corners and few or hidden ears, and whether each is simple.
 fn hard_shapes(corners: u32) -> Vec<(&'static str, bool, Vec<DVec3>)> {
     let n = f64::from(corners);
     let round = |i: u32, radius: f64, turns: f64| {
@@ -276,8 +275,8 @@ fn polygons_of_many_corners_are_cut_correctly_whatever_their_shape() {
     }
 }
 
-/// The number of corners that are looked at grows no faster than the polygon, in shapes in which
-/// each corner blocks many ears.
+/// The number of visited corners grows no faster than the polygon, even if each corner blocks many
+/// ears.
 #[test]
 fn the_work_on_a_polygon_grows_with_its_corners_whatever_its_shape() {
     for corners in [10_000, 100_000] {
@@ -291,7 +290,7 @@ fn the_work_on_a_polygon_grows_with_its_corners_whatever_its_shape() {
 }
 
 proptest! {
-    /// Polygons that are stars about the origin: simple, and as concave as can be.
+    /// Star-shaped polygons about the origin: simple, and very concave.
     #[test]
     fn simple_polygons_are_cut_into_triangles_inside_them(
         radii in prop::collection::vec(1_u8..=10, 4..80),
@@ -309,8 +308,8 @@ proptest! {
         sound(&corners);
     }
 
-    /// Islands of cells: outlines that touch themselves at corners, around bays that are closed
-    /// but for such a corner, with or without the corners inside their straight sides.
+    /// Islands of cells: outlines that touch themselves at corners, also around bays that only such
+    /// a corner closes, with or without corners on straight sides.
     #[test]
     fn islands_that_touch_themselves_are_cut_into_triangles_inside_them(
         cells in prop::array::uniform::<_, 36>(prop::bool::weighted(0.65)),
@@ -332,7 +331,7 @@ proptest! {
         prop_assert!(areas.iter().all(|area| *area > 0.5), "{areas:?}");
     }
 
-    /// Stairs on a grid: many corners in a row, many that touch the ears' borders.
+    /// Stairs on a grid: many corners in a row, and many on the borders of ears.
     #[test]
     fn stairs_are_cut_into_triangles_inside_them(
         heights in prop::collection::vec(1_u8..6, 2..30),
@@ -347,7 +346,7 @@ proptest! {
         is_swept_rightly(&outline(&places));
     }
 
-    /// Any corners at all on a small grid: many fall together, most outlines cross themselves.
+    /// Random corners on a small grid: many coincide, and most outlines cross themselves.
     #[test]
     fn areas_sum_to_the_polygons_whatever_its_shape(
         places in prop::collection::vec((0_u8..4, 0_u8..4), 3..24),
