@@ -13,7 +13,7 @@ use marraztu_render::{Part, Renderer, plan_frame};
 
 const SIZE: Size = Size::new(320, 240);
 
-/// The bytes of a colour, as pictures are rounded.
+/// Quantises a colour to bytes as pictures are quantised.
 fn rounded(color: [f64; 3], arithmetic: Arithmetic) -> [u8; 3] {
     color.map(|x| match arithmetic {
         Arithmetic::F32 => ((x as f32).clamp(0.0, 1.0) * 255.0 + 0.5) as u8,
@@ -21,7 +21,7 @@ fn rounded(color: [f64; 3], arithmetic: Arithmetic) -> [u8; 3] {
     })
 }
 
-/// Explains pixels of a picture, and returns how many showed a surface.
+/// Checks the explanations of pixels, and returns the number of pixels that showed a surface.
 fn adds_up(scene: &Scene, view: &View, settings: &Settings, pixels: &[[usize; 2]]) -> usize {
     let mut renderer = Renderer::default();
     let picture = renderer.render(&plan_frame(&Shot::new(scene, view, settings, SIZE))).clone();
@@ -54,7 +54,7 @@ fn adds_up(scene: &Scene, view: &View, settings: &Settings, pixels: &[[usize; 2]
     surfaces
 }
 
-/// Random pixels, most of them in the middle, where things are seen.
+/// Random pixels, concentrated near the middle, where the objects are.
 fn random_pixels(seed: u64, count: usize) -> Vec<[usize; 2]> {
     let mut rng = Rng::new(seed);
     let mut near = |most: usize| (rng.index(most) + rng.index(most)) / 2;
