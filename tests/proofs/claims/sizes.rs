@@ -1,5 +1,5 @@
-//! The largest and the smallest: pictures of 1 x 1 and of 16,384 x 16,384 pixels, meshes without a
-//! face and with ten million.
+//! Extreme sizes: pictures of 1 x 1 and of 16,384 x 16,384 pixels, meshes without faces and with
+//! ten million.
 
 use super::fans::seen;
 use super::{Proof, Tally};
@@ -25,7 +25,7 @@ pub(crate) const PROOF: Proof = Proof {
     check,
 };
 
-/// The side of the picture and the number of triangles; the quick round draws the first ones.
+/// Side of the picture and number of triangles; the quick round draws the first ones.
 const SIZES: [(usize, usize); 9] = [
     (1, 0),
     (1, 1),
@@ -73,7 +73,7 @@ fn check(batch: u64) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// Pictures of one row and of one column, covered by one triangle.
+/// Draws pictures with one row and with one column, covered by one triangle.
 fn narrow(tally: &mut Tally) -> Result<(), String> {
     let at = |x: i32, y: i32| Snapped { x: x * SUBPIXELS, y: y * SUBPIXELS };
     let whole = [at(-20_000, -20_000), at(60_000, -20_000), at(-20_000, 60_000)];
