@@ -270,7 +270,7 @@ fn nearer_surfaces_hide_farther_ones_in_any_order() {
 
 #[test]
 fn a_wall_looks_the_same_whether_or_not_there_is_something_behind_it() {
-    // If a triangle fills a tile alone, the renderer skips the visibility buffer.
+    // A triangle that fills a block alone is recorded as a whole, without an entry per pixel.
     let wall = (square(), at(400.0, 3.0, -7.0, 0.0));
     let (alone, view) = scene(std::slice::from_ref(&wall));
     let (both, _) = scene(&[wall, (ball(6), at(100.0, 0.0, 0.0, -300.0))]);

@@ -1,4 +1,4 @@
-//! Scene files: a saved scene opens as it was, and nothing is lost if it cannot be saved.
+//! Scene files: a saved scene opens unchanged, and a failed save loses nothing.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -32,7 +32,7 @@ use proptest::prelude::*;
 const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
                     g a\nf 4 3 2 1\nf 5 6 7 8\ng b\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
 
-/// A folder with a model `models/cube.obj` and a picture `chess.png`.
+/// A folder with the model `models/cube.obj` and the picture `chess.png`.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("models")).unwrap();
@@ -46,7 +46,7 @@ fn insert(scene: &mut Scene, at: usize, item: Item) {
     Command::Insert { at, item }.apply(scene).unwrap();
 }
 
-/// A scene in which nothing is as it is at first.
+/// A scene in which every value differs from its default.
 fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     let [a, b, c, d] = numbers;
     let (mut scene, _) = default_scene();
@@ -182,7 +182,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     (scene, view, settings)
 }
 
-/// The scene without what could be undone.
+/// The scene without its undo stacks.
 fn without_stacks(scene: &Scene) -> Scene {
     let mut plain = scene.clone();
     for (id, object) in scene.objects.iter() {
@@ -227,7 +227,7 @@ proptest! {
     }
 }
 
-/// The text of the first scene, with one thing in it changed, opened.
+/// Opens the first scene's text with one replacement.
 fn changed(from: &str, to: &str) -> Result<marraztu_io::Opened, SceneFileError> {
     let folder = folder();
     let (scene, view) = default_scene();
@@ -304,7 +304,7 @@ fn text_that_cannot_be_parsed_is_refused_with_its_position_in_plain_words() {
     assert_eq!(wrong, [""; 0]);
 }
 
-/// Words of the parser and of Rust are of no use to a person.
+/// Users cannot interpret messages of the parser or of Rust.
 #[test]
 fn no_error_speaks_of_the_parser() {
     let folder = folder();
@@ -511,7 +511,7 @@ fn a_scene_opens_without_its_files_and_is_saved_as_it_was() {
 
     let again = to_text(&path, &opened.scene, &opened.view, &opened.settings).unwrap();
     assert_eq!(again, text, "nothing of the scene is lost");
-    // From another folder, the path leads to the same file.
+    // Saved in another folder, the path still leads to the same file.
     let elsewhere = tempfile::tempdir().unwrap();
     let moved = elsewhere.path().join("b.marraztu");
     save(&moved, &opened.scene, &opened.view, &opened.settings).unwrap();
@@ -523,7 +523,7 @@ fn a_scene_opens_without_its_files_and_is_saved_as_it_was() {
     assert_eq!(mesh(&opened.scene), mesh(&scene));
 }
 
-/// The scene of a text beside the folder's files.
+/// Opens a scene text next to the folder's files.
 fn opened_text(folder: &Path, text: &str) -> marraztu_io::Opened {
     let path = folder.join("a.marraztu");
     std::fs::write(&path, text).unwrap();
@@ -609,7 +609,7 @@ fn objects_of_one_file_keep_their_crease_angles() {
     assert_eq!([20, 21].map(|id| model(id).options.crease.get()), [180.0, 90.0]);
     assert!(model(20).shares_file_with(model(21)), "the file is read once");
 
-    // Files from before there were creases have the default.
+    // Files from before the crease setting get the default.
     let text = std::fs::read_to_string(&path).unwrap();
     std::fs::write(&path, text.replace("crease: 180.0,", "").replace("crease: 90.0,", "")).unwrap();
     let opened = open(&path, &Progress::new()).unwrap().scene;

@@ -1,4 +1,4 @@
-//! Shadows after a change: what is drawn again, what is traced again, and what is kept.
+//! Shadows after a change: which parts are redrawn, traced again, or kept.
 
 use super::*;
 
@@ -57,7 +57,7 @@ fn shaded_stage() -> (Scene, View) {
     (scene, View { marks: false, ..view })
 }
 
-/// Changes the first light for which this is true.
+/// Changes the first light for which `change` returns true.
 fn change_light(scene: &mut Scene, mut change: impl FnMut(&mut Light) -> bool) {
     let all: Vec<_> = scene.lights.iter().map(|(id, light)| (id, light.clone())).collect();
     for (id, mut light) in all {
@@ -70,7 +70,7 @@ fn change_light(scene: &mut Scene, mut change: impl FnMut(&mut Light) -> bool) {
     panic!("no light is changed");
 }
 
-/// Redraws a changed scene. Returns how many per cent of a whole picture's rays it traced.
+/// Redraws a changed scene, and returns the rays it traced in percent of a full picture.
 fn rays_again(
     (scene, view): (&mut Scene, &View),
     settings: &Settings,
@@ -88,7 +88,7 @@ fn rays_again(
     renderer.rays().traced * 100 / fresh.rays().traced
 }
 
-/// Catches: shadows of a picture that are kept for one of another size.
+/// Catches: shadows kept for a picture of another size.
 #[test]
 fn shadows_are_not_kept_for_a_picture_of_another_size() {
     let (mut scene, view) = shaded_stage();
@@ -106,9 +106,9 @@ fn shadows_are_not_kept_for_a_picture_of_another_size() {
     }
 }
 
-/// Catches: a light that is traced because another one moved, or because its colour changed; rays
-/// of a whole picture for an object that moves; shadows that stay where their caster was, their
-/// light was, or another surface was seen.
+/// Catches: a light traced again because another one moved or its own colour changed; rays for the
+/// whole picture when one object moves; shadows kept after their caster, their light or the visible
+/// surface has changed.
 #[test]
 fn only_what_changed_is_traced_again() {
     let settings = Settings::default();
@@ -159,7 +159,7 @@ fn only_what_changed_is_traced_again() {
     assert!((1..70).contains(&hidden), "{hidden}% for an object that goes");
 }
 
-/// Nothing that casts shadows changes, but other surfaces show.
+/// The shadow casters stay the same, but other surfaces become visible.
 #[test]
 fn a_back_that_is_shown_has_shadows_of_its_own() {
     let (mut scene, view) = shaded_stage();
