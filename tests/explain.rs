@@ -27,6 +27,8 @@ fn adds_up(scene: &Scene, view: &View, settings: &Settings, pixels: &[[usize; 2]
     let picture = renderer.render(&plan_frame(&Shot::new(scene, view, settings, SIZE))).clone();
     let mut surfaces = 0;
     for [x, y] in pixels.iter().copied() {
+        // The explained bytes are the drawn ones. In linear light they are encoded, so their colour
+        // is not compared here.
         let explained = renderer.explain(x, y).unwrap();
         let [r, g, b, _] = picture.pixel(x, y);
         let of = format!("{settings:?} {:?} pixel {x},{y}: {explained:?}", view.projection);
@@ -34,6 +36,7 @@ fn adds_up(scene: &Scene, view: &View, settings: &Settings, pixels: &[[usize; 2]
         if !explained.linear {
             assert_eq!(rounded(explained.color, settings.arithmetic), [r, g, b], "{of}");
         }
+        // The terms and the rounding error add up to the colour.
         let mut sum = explained.rounding;
         for term in &explained.terms {
             for (sum, part) in sum.iter_mut().zip(term.value) {
@@ -44,6 +47,7 @@ fn adds_up(scene: &Scene, view: &View, settings: &Settings, pixels: &[[usize; 2]
             assert!((sum - color).abs() < 1e-14, "{of}");
             assert!(rounding.abs() < 1e-6, "{of}");
         }
+        // The named surface is the one that is drawn there, with sound weights and directions.
         if let Some(point) = explained.surface {
             assert_eq!(renderer.hit(x, y).map(|hit| hit.item), Some(point.item), "{of}");
             surfaces += 1;

@@ -95,6 +95,7 @@ proptest! {
             open: Gesture::Whole,
             saved: scene.clone(),
         };
+        // Each step acts on both; afterwards scene, position and length must agree.
         for step in script {
             match step {
                 Step::Perform(command, gesture) => {

@@ -707,6 +707,7 @@ proptest! {
             1..30,
         ),
     ) {
+        // Writes the file; some corners have no texture coordinates.
         let mut text = String::new();
         for [x, y, z] in &vertices {
             text += &format!("v {x} {y} {z}\n");
@@ -725,6 +726,7 @@ proptest! {
             text.push('\n');
         }
         let mesh = read(&text).model.mesh;
+        // Positions and indices are those that were written.
         prop_assert_eq!(mesh.positions(), &vertices[..]);
         for (polygon, face) in faces.iter().enumerate() {
             let corners = mesh.polygon(u32::try_from(polygon).unwrap());

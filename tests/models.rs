@@ -117,6 +117,7 @@ fn every_model_has_as_much_in_it_as_the_table_says() {
     let Some(sweep) = sweep() else { return };
     assert!(sweep.len() > 70, "the table has only {} rows", sweep.len());
     for (row, loaded) in sweep {
+        // Files with an unreadable number or without a triangle must be rejected.
         let refused = row.broken("number") > 0 || (row.faces > 0 && row.triangles == 0);
         let loaded = match loaded {
             Err(error) if refused => {
@@ -129,6 +130,7 @@ fn every_model_has_as_much_in_it_as_the_table_says() {
         };
         let (mesh, findings) = (&loaded.model.mesh, &loaded.findings);
         let found = |kind| count(findings, kind);
+        // Counts and findings, as in the table.
         assert_eq!(mesh.positions().len(), row.vertices, "vertices of {}", row.file);
         assert_eq!(found(FindingKind::FaceShort), row.broken("face_short"), "{}", row.file);
         assert_eq!(found(FindingKind::FaceRange), row.broken("face_range"), "{}", row.file);
@@ -139,6 +141,7 @@ fn every_model_has_as_much_in_it_as_the_table_says() {
         let kinds = [FindingKind::UvRange, FindingKind::NormalRange];
         let attributes = kinds.map(found).into_iter().max();
         assert_eq!(attributes, Some(row.broken("attr_range")), "{}: {findings:?}", row.file);
+        // The bounding box, to the digits of the table.
         let vertices = mesh.positions().iter().map(|place| dvec3(*place) + mesh.offset());
         if let Some(bounds) = Bounds::of(vertices) {
             let ours = [bounds.min.to_array(), bounds.max.to_array()].concat();
@@ -247,6 +250,7 @@ fn no_polygon_is_cut_outside_its_outline_unless_it_crosses_itself() {
         let mesh = &loaded.model.mesh;
         let mut crossing = 0;
         for (polygon, corners, normal) in polygons(mesh) {
+            // Triangles cannot be cut wrongly, and self-crossing polygons have no right cut.
             if corners.len() == 3 {
                 continue;
             }
@@ -255,6 +259,7 @@ fn no_polygon_is_cut_outside_its_outline_unless_it_crosses_itself() {
                 continue;
             }
             checked += 1;
+            // A triangle outside the outline would have a negative area.
             let begin = mesh.corners_of(polygon).start;
             for triangle in &mesh.triangles()[mesh.triangles_of(polygon)] {
                 let at = |corner: u32| corners[corner as usize - begin];

@@ -257,6 +257,7 @@ fn holds_object(json: &Value, buffer: &[u8], node: &Value, object: &Object) {
     }
     let mut found = std::collections::BTreeSet::new();
     let mut triangles = 0;
+    // Every primitive is valid: indices in range, exact bounds, normals of length 1.
     for primitive in primitives(json, node) {
         assert!(whole(&primitive["material"]) < json["materials"].as_array().unwrap().len());
         let attributes = &primitive["attributes"];
@@ -280,6 +281,7 @@ fn holds_object(json: &Value, buffer: &[u8], node: &Value, object: &Object) {
         }
         found.extend(positions);
     }
+    // Together they have all triangles, and every used position bit for bit.
     assert_eq!(triangles, mesh.triangle_count());
     let used = (0..).take(mesh.polygon_count()).flat_map(|polygon| mesh.polygon(polygon));
     let bits = |corner: &marraztu_core::scene::Corner| {

@@ -145,6 +145,7 @@ fn shiny(triangles: &[Flat], side: usize) -> (Scene, View) {
         uvs: vec![[0.0, 0.0], [2.0, 0.0], [0.0, 3.0]],
         ..MeshSource::default()
     };
+    // Random normals and repeated texture coordinates, so each position has its own light.
     for triangle in triangles {
         for (corner, distance) in triangle.corners.into_iter().zip(triangle.distances) {
             let i = source.positions.len() as u32;

@@ -50,6 +50,8 @@ fn insert(scene: &mut Scene, at: usize, item: Item) {
 fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     let [a, b, c, d] = numbers;
     let (mut scene, _) = default_scene();
+    // An object with odd loading options, texture, placement and name, and a copy with other
+    // choices.
     let options = LoadOptions {
         up: UpAxis::Z,
         scale: Scale::new(2.5).unwrap(),
@@ -92,6 +94,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     insert(&mut scene, 0, Item::Object(ObjectId(20), Box::new(object)));
     insert(&mut scene, 3, Item::Object(ObjectId(21), Box::new(second)));
 
+    // A camera that orbits the object.
     let axes = math::rotation(math::unit(DVec3::new(1.0, 2.0, 3.0)).unwrap(), a);
     let pose = Pose {
         eye: DVec3::new(b, c, d),
@@ -108,6 +111,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     };
     insert(&mut scene, 0, Item::Camera(CameraId(22), Box::new(camera)));
 
+    // One light of each kind, with each kind of owner.
     let direction = math::unit(DVec3::new(a, b, 1.0)).unwrap();
     let aim = Tracked::new(Aim { position: DVec3::new(a, b, c), direction });
     let bulb = LightKind::Bulb {
@@ -131,6 +135,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     scene.background = Color([10, 11, 12]);
     scene.next_id = 99;
 
+    // A view and settings without any default.
     let view = View {
         exposure: 0.75,
         subject: Subject::Light,
@@ -315,9 +320,11 @@ fn no_error_speaks_of_the_parser() {
         std::fs::write(&path, text).unwrap();
         open(&path, &Progress::new()).err().map(|error| error.to_string())
     };
+    // Deep nesting must not overflow the parser's stack.
     let nested = format!("(a: {}", "[".repeat(5000));
     let mut refusals: Vec<String> = refusal(&nested).into_iter().collect();
     assert!(refusals[0].contains("nested too deeply"), "{refusals:?}");
+    // Replaces or inserts a character, and truncates the text, at every 17th position.
     let places: Vec<usize> = whole.char_indices().map(|(place, _)| place).collect();
     for place in places.iter().step_by(17) {
         for change in ["", "'", "?", "\"", "(", "_", "/*"] {

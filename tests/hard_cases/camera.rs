@@ -107,6 +107,7 @@ fn case_56_looking_straight_down_or_at_ones_own_eye_is_finite_and_does_not_jump(
 fn case_57_a_million_turns_of_one_degree_end_where_280_degrees_do() {
     let one = 1.0_f64.to_radians();
     let (mut off, mut skewed) = (0.0_f64, 0.0_f64);
+    // Objects, in both frames.
     for frame in [Frame::Local, Frame::Global] {
         let (mut scene, mut view) = desk(Subject::Object, Transformation::Rotation);
         view.frame = frame;
@@ -120,6 +121,7 @@ fn case_57_a_million_turns_of_one_degree_end_where_280_degrees_do() {
         off = off.max(between(m, expected));
         skewed = skewed.max(skew(m));
     }
+    // The camera, with steps of one degree.
     let (mut scene, mut view) = desk(Subject::Camera, Transformation::Rotation);
     view.steps.rotation = 1.0;
     for _ in 0..1_000_000 {

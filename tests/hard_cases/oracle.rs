@@ -83,6 +83,7 @@ pub(crate) fn light(
 ) -> f64 {
     let mut sum = 0.0;
     for lamp in lamps {
+        // Direction to the light and its attenuation; ambient light needs neither.
         let (to_light, strength) = match *lamp {
             OracleLight::Ambient => {
                 sum += matter.ambient;
@@ -94,6 +95,7 @@ pub(crate) fn light(
                 ((at - place) / d, 1.0 / (1.0 + 5e-6 * d + 5e-6 * d * d))
             }
         };
+        // The falloff of a spot inside its cone.
         let gathered = match *lamp {
             OracleLight::Spot(_, axis, half_aperture, exponent) => {
                 let c = axis.dot(-to_light).min(1.0);
@@ -101,6 +103,7 @@ pub(crate) fn light(
             }
             _ => 1.0,
         };
+        // Phong: diffuse by N.L; specular by R.V, only on the lit side.
         let n_l = n.dot(to_light);
         let mirrored = n * (2.0 * n_l) - to_light;
         let mut reflected = matter.diffuse * n_l.max(0.0);

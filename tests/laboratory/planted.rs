@@ -146,6 +146,7 @@ fn the_verdict_tells_what_samples_buy_and_that_64_bits_are_not_worth_it() {
         (axis, axis.choice(word).unwrap())
     };
     let mut findings = found(&mut FakeClock::new(None), &mut FakeSource::new(None, None));
+    // Replaces the measured figures of a choice by exact ones.
     let mut edit = |(_, chosen): (&Axis, &Choice), ratio: f64, rmse: f64, largest: u8| {
         let default = chosen.is(&Settings::default());
         let points = findings.points.iter_mut();

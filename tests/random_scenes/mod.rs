@@ -193,6 +193,8 @@ fn lights(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> List<LightId, Light>
             },
             _ => spot(rng, objects),
         };
+        // Dark and black lights, and attenuations that nearly vanish, test the rules for leaving
+        // out.
         let levels = [0, 1, 128, 255];
         let color = if rng.percent(15) { [0; 3] } else { [0; 3].map(|_| rng.one_of(&levels)) };
         let attenuation = |constant, linear, quadratic| Attenuation { constant, linear, quadratic };

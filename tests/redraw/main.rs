@@ -424,6 +424,8 @@ fn triangles_of_all_sizes_have_the_same_colors_whenever_they_are_colored() {
         }
         let plan =
             |scene: &Scene| plan_frame(&Shot::new(scene, &view, &settings, Size::new(330, 260)));
+        // The first picture colours triangles during setup. Then only materials change: the
+        // geometry is reused, and colours are computed after visibility.
         let mut renderer = Renderer::default();
         renderer.render(&plan(&scene));
         for name in ["ruby", "jade", "brass"] {

@@ -9,6 +9,7 @@ fn a_moved_object_takes_the_tiles_of_its_shadow_and_no_others() {
     let (mut scene, view) = scene(&[(square(), floor), (ball(6), at(15.0, -60.0, -20.0, 0.0))]);
     let view = View { marks: false, ..view };
     let size = Size::new(640, 640);
+    // Sun and bulb cast shadows; spots are removed, because they follow the selection.
     for (id, light) in
         scene.lights.iter().map(|(id, light)| (id, light.clone())).collect::<Vec<_>>()
     {
@@ -25,6 +26,7 @@ fn a_moved_object_takes_the_tiles_of_its_shadow_and_no_others() {
     let mut renderer = Renderer::default();
     let mut last = renderer.render(&plan(&scene)).clone();
     let mut least = usize::MAX;
+    // The ball moves twice, then out of view.
     for place in [DVec3::new(-50.0, -20.0, 5.0), DVec3::new(40.0, 10.0, -60.0), DVec3::Y * 300.0] {
         edit(&mut scene, ObjectId(11), |object| {
             let placement = DMat4::from_translation(place) * at(15.0, 0.0, 0.0, 0.0);
@@ -116,6 +118,7 @@ fn only_what_changed_is_traced_again() {
         let (mut scene, view) = shaded_stage();
         rays_again((&mut scene, &view), &settings, change)
     };
+    // A colour, a light switched off and a material need no rays.
     let recoloured = again(&mut |scene| {
         change_light(scene, |light| {
             light.color = Color([90, 200, 30]);
@@ -136,6 +139,7 @@ fn only_what_changed_is_traced_again() {
         });
     });
     assert_eq!(dressed, 0, "a material");
+    // A moved light is traced again alone; a moved object, where its shadow was or is.
     let bulb = again(&mut |scene| {
         change_light(scene, |light| match &mut light.kind {
             LightKind::Bulb { position, .. } => {

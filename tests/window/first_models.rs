@@ -132,6 +132,7 @@ fn the_first_drag_orbits_a_model_that_opened_alone_and_does_not_jump() {
         let target = view.object.unwrap();
         let before = pose(&editor);
         assert_eq!(before.mode, CameraMode::Analysis { target });
+        // The mean of the vertices is the centre of the orbit, and not the centre of the picture.
         let centre = editor.scene().objects.get(target).unwrap().centre(0.0);
         let aside = |pose: &Pose| {
             let ahead = centre - pose.eye;
@@ -140,6 +141,7 @@ fn the_first_drag_orbits_a_model_that_opened_alone_and_does_not_jump() {
         assert!(aside(&before) > 0.02, "it is framed by its box: {}", aside(&before));
         let [from, to] = [editor.at(0.5, 0.9), editor.at(0.52, 0.9)];
         editor.drag(egui::PointerButton::Primary, &[from, to]);
+        // After the drag: same distance, another position, same offset from the centre.
         let after = pose(&editor);
         let distance = |pose: &Pose| pose.eye.distance(centre);
         assert!((distance(&after) - distance(&before)).abs() < 1e-9, "it orbits");

@@ -157,6 +157,7 @@ fn two_running_programs_do_not_take_each_others_work() {
 fn what_is_saved_undone_or_discarded_is_not_offered() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("my.marraztu");
+    // Saved work.
     let mut saved = Editor::keeping(folder.path());
     saved.press(Lower(Key::Z));
     saved.press(Command(Key::S));
@@ -165,12 +166,14 @@ fn what_is_saved_undone_or_discarded_is_not_offered() {
     saved.settle();
     saved.harness.state().wait_for_journal();
     drop(saved);
+    // Undone work.
     let mut undone = Editor::keeping(folder.path());
     assert_eq!(undone.is_offered(), 0, "it was saved");
     undone.press(Lower(Key::Z));
     undone.press(Command(Key::Z));
     undone.harness.state().wait_for_journal();
     drop(undone);
+    // Discarded work.
     let mut discarded = Editor::keeping(folder.path());
     assert_eq!(discarded.is_offered(), 0, "it was undone");
     discarded.press(Lower(Key::Z));

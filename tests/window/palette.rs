@@ -286,6 +286,7 @@ fn each_of_two_notices_frames_its_own_object() {
     let mut editor = Editor::new();
     let ids: Vec<_> = editor.scene().objects.ids().collect();
     let far = glam::DMat4::from_translation(glam::DVec3::X * 4000.0);
+    // Moves two ships out of view and asks for each why it is unseen.
     for id in &ids[..2] {
         let mut object = editor.scene().objects.get(*id).unwrap().clone();
         object.placement = marraztu_core::scene::Tracked::new(far * *object.placement.now());
@@ -311,6 +312,7 @@ fn each_of_two_notices_frames_its_own_object() {
         buttons.map(|button| format!("{:?}", button.rect())).collect()
     };
     assert_eq!(names(&editor).len(), 2);
+    // The button of the first notice frames the first ship.
     let first = editor.scene().objects.get(ids[0]).unwrap().name.clone();
     let top = editor.harness.query_all(By::new().role(Role::Button).label("Frame")).next();
     top.unwrap().click();

@@ -561,6 +561,7 @@ fn rotations_go_on_over_a_quarter_turn_and_open_with_the_plainest_angles() {
         })
     };
     editor.perform(Action::Rotate);
+    // Steps beyond 90 degrees continue in the same angle.
     for step in 1..=20 {
         editor.perform(Action::StepYUp);
         let degrees = 10 * step;
@@ -573,6 +574,7 @@ fn rotations_go_on_over_a_quarter_turn_and_open_with_the_plainest_angles() {
     for _ in 0..10 {
         editor.perform(Action::StepYUp);
     }
+    // A reopened scene has lost its history, so the angles come from the matrix alone.
     editor.press(Command(Key::S));
     editor.type_path(&file);
     editor.wait_until(|_| file.is_file());

@@ -56,6 +56,7 @@ fn every_command_acts_on_all_in_one_step() {
         Action::Duplicate,
         Action::Delete,
     ];
+    // Each action is one step for both ships, and one undo reverts it.
     for action in acts {
         editor.perform(action);
         assert!(editor.scene() != before, "{action:?}");
@@ -67,6 +68,7 @@ fn every_command_acts_on_all_in_one_step() {
         let both = vec![object(&editor, "x_wing"), object(&editor, "r_falke")];
         editor.ask(Request::SelectAlso(both, Also::Only));
     }
+    // Both ships move, the third object stays.
     editor.press(Lower(Key::X));
     let moved: Vec<DVec3> = places(&editor);
     assert!(moved.contains(&DVec3::new(110.0, 0.0, 0.0)), "{moved:?}");

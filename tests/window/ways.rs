@@ -70,6 +70,7 @@ fn every_action_is_in_a_menu_and_does_there_what_it_does_anywhere() {
     for path in PATHS {
         let mut editor = Editor::of_size(900.0, 640.0);
         open(&mut editor, path);
+        // The actions in this menu. A label that names a submenu is not an action.
         let here = entries(&editor);
         let is_menu = |label: &str| {
             PATHS.iter().any(|it| it.len() > 1 && it[0] == path[0] && it.last() == Some(&label))
@@ -80,6 +81,7 @@ fn every_action_is_in_a_menu_and_does_there_what_it_does_anywhere() {
         };
         missing.retain(|action| !is_here(&action));
         for action in Action::ALL.iter().filter(is_here).filter(|it| !LEFT_OUT.contains(it)) {
+            // Performs the action directly.
             let subject = SUBJECTS[0];
             let mut asked = Editor::of_size(900.0, 300.0);
             asked.perform(subject);
@@ -87,6 +89,7 @@ fn every_action_is_in_a_menu_and_does_there_what_it_does_anywhere() {
                 continue;
             }
             asked.perform(*action);
+            // Performs it by a click in the menu, in a second editor.
             let mut clicked = Editor::of_size(900.0, 640.0);
             clicked.perform(subject);
             open(&mut clicked, path);

@@ -94,6 +94,7 @@ fn count(fan: &[[Snapped; 3]], outline: &[Snapped], side: i32) -> Result<(), Str
     let square = PixelBox { left: 0, top: 0, right: side, bottom: side };
     let width = usize::try_from(side).expect("positive");
     let mut signed = vec![0; width * width];
+    // Each triangle by itself: its pixels per row are one span, the exact one.
     for corners in fan {
         let mut rows = vec![0..0_i64; width];
         if let Some(triangle) = Triangle::new(*corners) {
@@ -120,6 +121,7 @@ fn count(fan: &[[Snapped; 3]], outline: &[Snapped], side: i32) -> Result<(), Str
             }
         }
     }
+    // All triangles together: signed counts equal the winding numbers.
     let mut windings = vec![0; width];
     for (y, counted) in (0..).zip(signed.chunks(width)) {
         wind(outline, y, &mut windings);

@@ -171,6 +171,7 @@ impl Hostile {
         if self.bool() {
             source.colors = (0..vertices).map(|_| self.narrow(1.0)).collect();
         }
+        // Indices are valid, because meshes with others are rejected at once.
         let index = |rng: &mut Rng, n: usize| match n {
             0 => NONE,
             n => u32::try_from(rng.index(n)).unwrap_or(NONE),

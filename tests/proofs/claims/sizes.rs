@@ -42,6 +42,7 @@ fn check(batch: u64) -> Result<Tally, String> {
     let count = usize::try_from(batch).map_err(|_large| "there is no such size")? % SIZES.len();
     let (side, count) = SIZES[count];
     let mut rng = Rng::new(batch);
+    // Large meshes have small triangles, or drawing them would take too long.
     let far = i32::try_from(side).expect("small") * SUBPIXELS;
     let size = (far / if count > 10_000 { 64 } else { 1 }).max(SUBPIXELS);
     let triangles: Vec<Flat> = (0..count)
@@ -57,6 +58,7 @@ fn check(batch: u64) -> Result<Tally, String> {
         .collect();
     let picture = flat::draw_triangles(&triangles, side, &mut Renderer::default());
     let expected = seen(&triangles, side);
+    // The largest mesh has ten million triangles, so its memory is released early.
     drop(triangles);
     for (i, (pixel, expected)) in picture.pixels().iter().zip(&expected).enumerate() {
         if flat::number_of(*pixel) != *expected {
