@@ -324,7 +324,7 @@ fn no_error_speaks_of_the_parser() {
     let nested = format!("(a: {}", "[".repeat(5000));
     let mut refusals: Vec<String> = refusal(&nested).into_iter().collect();
     assert!(refusals[0].contains("nested too deeply"), "{refusals:?}");
-    // Replaces or inserts a character, and truncates the text, at every 17th position.
+    // Replaces or deletes a character, or truncates the text, at every 17th position.
     let places: Vec<usize> = whole.char_indices().map(|(place, _)| place).collect();
     for place in places.iter().step_by(17) {
         for change in ["", "'", "?", "\"", "(", "_", "/*"] {

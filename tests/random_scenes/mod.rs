@@ -193,8 +193,7 @@ fn lights(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> List<LightId, Light>
             },
             _ => spot(rng, objects),
         };
-        // Dark and black lights, and attenuations that nearly vanish, test the rules for leaving
-        // out.
+        // Dark lights and extreme attenuations test the rules for leaving lights out.
         let levels = [0, 1, 128, 255];
         let color = if rng.percent(15) { [0; 3] } else { [0; 3].map(|_| rng.one_of(&levels)) };
         let attenuation = |constant, linear, quadratic| Attenuation { constant, linear, quadratic };

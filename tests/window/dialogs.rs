@@ -88,7 +88,7 @@ fn esc_asks_while_something_is_unsaved_and_cancel_keeps_everything() {
         assert!(editor.shows("Save the scene?"));
         editor.press(Lower(Key::Z));
         assert!(editor.scene() == scene, "keys do not act behind a question");
-        // After Cancel, both the same chord and Esc ask again.
+        // After Cancel the chord asks again. Within the question, Esc means Cancel.
         editor.click_label("Cancel");
         assert!(!editor.shows("Save the scene?"));
         assert!(!editor.leaves_by(chord), "and it asks again");
