@@ -96,8 +96,8 @@ fn a_camera_in_analysis_orbits_by_x_and_y_about_axes_parallel_to_its_own() {
             let (before, centre) = (desk.pose(), desk.object().centre(0.0));
             desk.press(axis, sign);
             let after = desk.pose();
-            // Rotation about an axis k of the camera: the rotation in the camera's frame, conjugated into
-            // the world.
+            // Rotation about an axis k of the camera: the rotation in the camera's frame,
+            // conjugated into the world.
             let turn = before.axes * turned(about, 10.0 * s) * before.axes.transpose();
             close(after.eye, centre + turn * (before.eye - centre));
             close(after.axes.x_axis, turn * before.axes.x_axis);

@@ -182,7 +182,7 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
             (0..64).map(|i| face(i % 8 * 4, i / 8 * 4)).collect::<Vec<_>>()
         };
         let (one, other) = (shown([&[0, 1, 3], &[1, 2, 3]]), shown([&[1, 2, 3], &[0, 1, 3]]));
-        // Reversing the order of the faces changes only their numbers. Where the faces overlap, the
+        // Reversing the order of the faces changes only their numbers. If faces overlap, the
         // nearer one is seen in both orders.
         let turned = |face: Option<u32>| face.map(|face| 1 - face);
         wrong += one.iter().zip(&other).filter(|(a, b)| **a != turned(**b)).count();
