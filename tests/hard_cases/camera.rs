@@ -68,6 +68,7 @@ fn case_56_looking_straight_down_or_at_ones_own_eye_is_finite_and_does_not_jump(
             apply(&mut scene, command);
             let command = placement::camera_eye(&scene, &view, camera, eye, GesturePhase::First);
             apply(&mut scene, command);
+            // `before` already looks straight down, so aiming at the object should hardly turn it.
             let before = pose(&scene, &view).axes;
             let command = transform::toggle_analysis(&scene, &view);
             apply(&mut scene, command);
@@ -91,6 +92,7 @@ fn case_56_looking_straight_down_or_at_ones_own_eye_is_finite_and_does_not_jump(
         assert!(skew(pose(&scene, &view).axes) < 1e-12);
     }
     assert!((pose(&scene, &view).eye.distance(middle) - 10.0).abs() < 1e-9);
+    // The naive camera normalises up x z, which is 0 here.
     let across = DVec3::Y.cross(DVec3::Y);
     Figure {
         case: 56,
@@ -189,6 +191,7 @@ fn case_58_an_angle_of_a_million_radians_is_that_angle() {
         unit: "of the radius",
     }
     .hold();
+    // Angles without a finite sine are rejected.
     for radians in [f64::INFINITY, f64::NAN] {
         let refused = transform::rotate(&scene, &view, DVec3::Z, radians, GesturePhase::First);
         assert_eq!(refused, Err(Refusal::TooLarge));
@@ -254,6 +257,7 @@ fn case_60_the_radius_of_an_orbit_is_kept_through_36000_steps() {
         let id = view.object.unwrap();
         let command = placement::object_translation(&scene, &view, id, away, GesturePhase::First);
         apply(&mut scene, command);
+        // The camera orbits the object in steps of 0.7 degrees, by turns about X and Y.
         let eye = away + DVec3::new(100.0, 200.0, 300.0);
         let command = placement::camera_eye(&scene, &view, view.camera, eye, GesturePhase::First);
         apply(&mut scene, command);
@@ -309,6 +313,7 @@ fn case_61_a_million_steps_of_a_tenth_are_a_hundred_thousand() {
             let bulb = |light: &Light| matches!(light.kind, LightKind::Bulb { .. });
             view.light = scene.lights.iter().find(|(_, light)| bulb(light)).map(|(id, _)| id);
         }
+        // The stepped coordinate of the subject.
         let place = |scene: &Scene| match subject {
             Subject::Object => {
                 scene.objects.get(view.object.unwrap()).unwrap().placement.now().w_axis.z

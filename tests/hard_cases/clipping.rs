@@ -45,6 +45,7 @@ fn wrong_pixels(corners: [DVec3; 3], picture: &Picture, seen: &[bool]) -> usize 
             let ray = eye.ray(x, y) + DVec3::new(dx * step, dy * step, 0.0);
             meet(eye.at, ray, corners).is_some_and(|(t, _)| (1.0..=2000.0).contains(&t))
         };
+        // The rays around the centre agree with it only away from the border.
         let around = [(0.0, 0.0), (0.01, 0.0), (-0.01, 0.0), (0.0, 0.01), (0.0, -0.01)]
             .map(|(dx, dy)| within(dx, dy));
         let sure = around.iter().all(|other| *other == around[0]);
@@ -79,6 +80,7 @@ fn case_11_corners_in_the_observers_plane_harm_nothing() {
                 assert!((0.0..=1.0).contains(&depth), "a depth of {depth} at w {w}");
             }
         }
+        // The naive projection divides a corner's x by w.
         naive = naive.max((-30.0 / (w as f32)).abs().into());
     }
     Figure {
@@ -119,6 +121,7 @@ fn case_12_a_line_through_the_observers_plane_stays_on_its_side() {
         draw(&scene, &view, &Settings::default(), SIDE)
     });
     let eye = Eye { side: SIDE, at: DVec3::ZERO, tangent: 3.0_f64.sqrt() };
+    // The visible part runs from the front end to the near plane.
     let cut = DVec3::new(0.5, -0.3, -0.5);
     let ([x0, y0], [x1, y1]) = (eye.pixel(front), eye.pixel(cut));
     let [wrong_x, wrong_y] = eye.pixel(behind);
@@ -169,6 +172,7 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
         };
         let quad = [corner(-30.0), corner(0.0), corner(30.0), corner(0.0)];
         let positions = quad.map(|corner| corner.as_vec3().to_array());
+        // Draws both faces and samples the visible polygon on an 8 x 8 grid.
         let shown = |faces: [&[u32]; 2]| {
             let both = model("pair", &positions, &faces);
             let (mut scene, view) = scene(&[(both, DMat4::IDENTITY)]);
@@ -213,6 +217,7 @@ fn case_13_a_face_is_cut_at_the_same_places_from_both_sides() {
         let mut beside =
             |wide: f64| DVec3::new(rng.real(-wide, wide), rng.real(-wide, wide), 399.0);
         let corners = [beside(0.8), beside(9.0 * long), beside(0.8)];
+        // Two corners just in front of the near plane, the third far behind it.
         let [near, far] = [rng.real(0.05, 0.9), long * rng.real(1.0, 30.0)];
         let corners = [
             corners[0] - DVec3::Z * near,
@@ -357,6 +362,7 @@ fn case_16_triangles_beyond_the_range_of_integers_are_clipped() {
         let covered = covered(&picture, &scene);
         seen += covered.iter().filter(|seen| **seen).count();
         wrong += wrong_pixels(corners, &picture, &covered);
+        // Counts corners with subpixel coordinates beyond i32.
         let beyond = |x: &f64| (x * f64::from(SUBPIXELS)).abs() > f64::from(i32::MAX);
         let eye = Eye::first(SIDE);
         naive += corners.iter().filter(|corner| eye.pixel(**corner).iter().any(beyond)).count();
@@ -393,6 +399,7 @@ fn case_16_corners_a_million_pixels_off_leave_no_hole_and_no_double() {
         let outline = [(a, -far), (far, b), (c, far), (-far, d)].map(|(x, y)| Snapped { x, y });
         let fan: Vec<Flat> =
             (0..4).map(|i| Flat::new([hub, outline[i], outline[(i + 1) % 4]])).collect();
+        // The same fan in both orders.
         let back: Vec<Flat> = fan.iter().rev().copied().collect();
         let draw = |fan: &[Flat]| flat::draw_triangles(fan, SIDE, &mut Renderer::default());
         let (forth, back) = (draw(&fan), draw(&back));
@@ -549,6 +556,7 @@ fn case_19_a_cut_does_not_move_what_is_painted_on_a_face() {
                 .as_vec3()
                 .as_dvec3()
         };
+        // The first corner is behind the eye, so the near plane cuts the face.
         let corners = [corner(430.0), corner(100.0), corner(-200.0)];
         let (scene, view) = textured(corners, [0.0, 0.25, 1.0], &ruler(scale));
         let picture = draw(&scene, &view, &settings, SIDE);
@@ -594,6 +602,7 @@ fn single_cut(corners: [DVec3; 3], eye: Eye, [x, y]: [usize; 2]) -> f64 {
     let ray = eye.ray(x, y).as_vec3();
     let b = (b.as_vec3(), 0.25_f32);
     let c = (c.as_vec3(), 1.0_f32);
+    // The cut leaves a quad, interpolated as two triangles.
     for [(k, uk), (l, ul), (m, um)] in [[(p, up), b, c], [(p, up), c, (q, uq)]] {
         let (e, f) = (l - k, m - k);
         let h = ray.cross(f);

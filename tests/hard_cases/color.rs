@@ -57,6 +57,7 @@ fn case_52_light_is_rounded_to_the_nearest_byte() {
                 assert_eq!(got, want, "{steps} in {arithmetic:?}");
                 ours = ours.max((f64::from(got) - steps).abs());
             }
+            // The naive conversion truncates.
             let cut_off = (factor * 255.0) as u8;
             naive = naive.max((f64::from(cut_off) - steps).abs());
             bias += f64::from(cut_off) - steps;
@@ -90,6 +91,7 @@ fn case_53_eight_lights_are_summed_before_they_are_rounded() {
                 let sum: i32 = colors.iter().map(|color| i32::from(color.0[i])).sum();
                 let exact = (f64::from(sum * thousandths[i]) / 1000.0).min(255.0);
                 ours = ours.max((f64::from(got[i]) - exact).abs());
+                // The naive sum truncates each light to a byte.
                 let one_by_one: i32 =
                     colors.iter().map(|c| i32::from(c.0[i]) * thousandths[i] / 1000).sum();
                 naive = naive.max((f64::from(one_by_one.min(255)) - exact).abs());

@@ -44,6 +44,7 @@ fn case_20_corners_on_the_middles_of_pixels_leave_no_hole_and_no_double() {
         let hub = Snapped { x: middle(), y: middle() };
         let far = (SIDE - 1) * SUBPIXELS + 128;
         let (a, b, c, d) = (middle(), middle(), middle(), middle());
+        // The outline follows the centres of the border pixels, with a random point on each side.
         let outline = [
             (128, 128),
             (a, 128),
@@ -57,6 +58,7 @@ fn case_20_corners_on_the_middles_of_pixels_leave_no_hole_and_no_double() {
         .map(|(x, y)| Snapped { x, y });
         let fan: Vec<[Snapped; 3]> =
             (0..8).map(|i| [hub, outline[i], outline[(i + 1) % 8]]).collect();
+        // Counts the triangles over each pixel; every inner pixel has exactly one.
         let mut counts = vec![0; (SIDE * SIDE) as usize];
         for corners in &fan {
             if let Some(triangle) = Triangle::new(*corners) {
@@ -149,6 +151,7 @@ fn case_22_slivers_that_snapping_turns_round_are_counted_by_their_sign() {
         };
         let outline = if area > 0.0 { [p, q, r] } else { [p, r, q] }.map(snap);
         let hub = snap(hub);
+        // Counts with the sign of the area, and without it.
         let mut signed = [0; (SIDE * SIDE) as usize];
         let mut unsigned = signed;
         let mut any_turned = false;
@@ -266,6 +269,7 @@ fn case_23_the_fronts_of_a_closed_body_are_seen_where_its_backs_are() {
                 parts: body.mesh.parts().to_vec(),
                 ..MeshSource::default()
             };
+            // Copies the polygons, reversed for the second body.
             for polygon in 0..body.mesh.polygon_count() as u32 {
                 let mut corners: Vec<u32> =
                     body.mesh.polygon(polygon).iter().map(|corner| corner.position).collect();
@@ -304,6 +308,7 @@ fn case_24_an_edge_that_a_corner_of_another_face_splits_is_found_and_said() {
     let said = marraztu_io::describe(&split);
     assert_eq!(split.model.mesh.split_edges(), 1);
     assert!(said.contains("1 edge is split by corners of other faces: gaps may show"), "{said}");
+    // With the corner in both faces nothing is reported.
     let whole = read(&text.replace("f 1 2 3 4", "f 1 2 7 3 4"));
     assert_eq!(whole.model.mesh.split_edges(), 0);
     assert!(!marraztu_io::describe(&whole).contains("split"));
@@ -379,6 +384,7 @@ fn case_25_moved_by_whole_pixels_a_picture_is_the_same_but_moved() {
             object.placement = object.placement.replaced(place);
         });
         let moved = flat::draw(&(scene, view.clone()), SIDE, &mut renderer);
+        // Compares the pixels that are in both pictures.
         let whole = i32::try_from(SIDE).unwrap();
         for (x, y) in (0..whole).flat_map(|y| (0..whole).map(move |x| (x, y))) {
             let (tx, ty) = (x + right, y + down);
@@ -537,6 +543,7 @@ fn case_28_each_four_bits_of_the_subpixel_grid_leave_a_sixteenth_of_the_wrong_pi
     };
     let exact = seen(20);
     let covered = exact.iter().filter(|number| **number != usize::MAX).count() as f64;
+    // The share of pixels with another triangle than on the finest grid.
     let wrong = |bits: i32| {
         let differ = seen(bits).iter().zip(&exact).filter(|(a, b)| a != b).count();
         100.0 * differ as f64 / covered
@@ -588,6 +595,7 @@ fn case_29_points_every_tenth_of_a_unit_are_too_few_near_by_and_too_many_far_off
     };
     let (at_400, no_holes) = counted(400.0);
     let (at_966, _) = counted(966.0);
+    // Average points per pixel at two distances.
     assert!((at_400 - 17.2).abs() < 1.0 && (at_966 - 100.0).abs() < 3.0, "{at_400} {at_966}");
     assert_eq!(no_holes, 0);
     // Below a distance of 96.6 a pixel is narrower than the step.

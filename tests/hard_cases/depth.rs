@@ -123,6 +123,7 @@ fn case_32_of_the_same_plane_cut_otherwise_the_older_is_seen() {
             corners: of.map(|i| corners[i]),
             distances: of.map(|i| distances[i]),
         };
+        // The two ways to cut a quad along a diagonal.
         let old = vec![triangle([0, 1, 2]), triangle([0, 2, 3])];
         let new = vec![triangle([1, 2, 3]), triangle([1, 3, 0])];
         let picture = flat::draw(&flat::scene(&[old, new], SIDE), SIDE, &mut Renderer::default());
@@ -224,6 +225,7 @@ fn case_33_on_slivers_depth_is_right_to_two_last_places_and_within_the_corners()
                 .checked_sub(1)
                 .map_or(f32::MIN_POSITIVE, |bits| largest as f32 - f32::from_bits(bits)),
         );
+        // Compares some 30 pixels per sliver.
         for i in seen.into_iter().step_by(step) {
             let (x, y) = (i % SIDE, i / SIDE);
             let got = f64::from(renderer.hit(x, y).unwrap().depth);
@@ -271,6 +273,7 @@ fn case_33_no_depth_of_a_small_triangle_is_beyond_those_of_its_corners() {
         let Some(hit) = renderer.hit(x, y) else { continue };
         let flat = &flats[y / 8 * 64 + x / 8];
         let depths = flat.distances.map(|d| 1.0 - d / FAR);
+        // Interpolation must not leave the range of the corners.
         let (least, most) =
             depths.iter().fold((1.0_f64, 0.0_f64), |(a, b), d| (a.min(*d), b.max(*d)));
         let beyond = |depth: f64| usize::from(!(least..=most).contains(&depth));

@@ -127,6 +127,7 @@ fn case_65_faces_are_kept_mended_or_left_out_and_concave_ones_are_filled_rightly
         // Absolute areas, which count a triangle outside the star as an excess.
         let area = |[a, b, c]: [DVec3; 3]| newell([a, b, c].into_iter()).z.abs() / 2.0;
         let filled: f64 = mesh.triangles().iter().map(|t| area(t.corners.map(at))).sum();
+        // The shoelace formula, and the naive fan from the first corner.
         let star: f64 = (0..outline.len())
             .map(|i| {
                 let (p, q) = (outline[i], outline[(i + 1) % outline.len()]);
@@ -196,6 +197,7 @@ fn case_66_a_scene_of_another_size_is_the_same_picture() {
                 let (scene, view) = scaled(by, projection);
                 draw(&scene, &view, &settings, 128)
             };
+            // Powers of two change no mantissa, so the pictures must be equal.
             let first = picture(1.0);
             for exponent in [-90, -40, -20, -10, -1, 1, 10, 20, 40, 90] {
                 let other = picture(2.0_f64.powi(exponent));

@@ -155,6 +155,7 @@ fn case_3_the_screen_stands_still_however_far_from_the_origin_the_scene_is() {
         let away = DVec3::new(far, -far, far) * (1.0 + 1.0 / 3e3);
         let (mut scene, view) =
             scene(&[(strips.clone(), DMat4::from_translation(away + DVec3::Z * 300.0))]);
+        // Camera and scene move together, so the picture must not change.
         let mut camera = scene.selected_camera(&view).clone();
         camera.pose =
             Tracked::new(marraztu_core::scene::Pose::facing_minus_z(away + DVec3::Z * 400.0));
@@ -287,6 +288,7 @@ fn case_6_a_mirrored_scene_gives_the_mirrored_picture() {
         let view = View { marks: false, light: None, ..view };
         draw(&scene, &view, &Settings::default(), SIDE)
     };
+    // The mirrored picture, read from right to left, equals the plain one.
     let (plain, mirrored) = (picture(1.0), picture(-1.0));
     let mut differ = 0;
     let mut drawn = 0;

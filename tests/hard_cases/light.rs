@@ -271,6 +271,7 @@ fn case_44_small_angles_are_shown_as_they_were_typed() {
                 placement::object_turn(&scene, &view, id, typed, GesturePhase::First).unwrap();
             command.apply(&mut scene).unwrap();
             let m = *scene.objects.get(id).unwrap().placement.now();
+            // The placement's matrix gives the angle back.
             let shown = placement::turn_degrees(&m).dot(axis);
             ours = ours.max((shown - degrees).abs() / (degrees * f64::EPSILON));
             // From the trace: the cosine of the angle is (trace - 1) / 2.
@@ -372,6 +373,7 @@ fn case_47_a_lamp_on_a_surface_is_the_same_on_all_instructions_and_spoils_nothin
             for light in [LightAt::Pixel, LightAt::Vertex, LightAt::Face] {
                 let settings = Settings { light, ..Settings::default() };
                 let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(65, 65)));
+                // Every instruction set draws the same bytes.
                 let pictures: Vec<Picture> = levels()
                     .into_iter()
                     .map(|level| Renderer::new(level).render(&plan).clone())
@@ -429,6 +431,7 @@ fn case_48_a_highlight_ends_where_a_round_surface_turns_away() {
             // The polygons of the ball differ from its surface by at most 0.03 in N.L.
             let Some(n) = normal(i).filter(|n| n.dot(to_light) < -0.05) else { continue };
             differ += usize::from(lit.pixels()[i] != dark.pixels()[i]);
+            // The naive highlight ignores the sign of N.L.
             let mirrored = n * (2.0 * n.dot(to_light)) - to_light;
             let v = unit(-eye.ray(i % SIDE, i / SIDE));
             naive += usize::from(0.5 * mirrored.dot(v).max(0.0).powi(2) > 1.0 / 255.0);
@@ -501,6 +504,7 @@ fn case_49_a_wider_cone_lights_no_pixel_less() {
         let lamps = [OracleLight::Spot(from, axis, half_aperture, 5.0)];
         let (scene, view) = lit_square(&lamps);
         let picture = draw(&scene, &view, &Settings::default(), SIDE);
+        // A wider cone may only add light.
         if let Some(before) = &before {
             let pairs = before.pixels().iter().zip(picture.pixels());
             less += pairs.filter(|(a, b)| b[0] < a[0]).count();

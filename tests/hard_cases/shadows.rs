@@ -319,6 +319,7 @@ fn case_71_a_gap_of_a_thousandth_far_from_the_origin_casts_its_shadow() {
     let sheet = DMat4::from_translation(DVec3::new(0.0, 1e-3, 0.0))
         * floor().1
         * DMat4::from_scale(DVec3::splat(0.2));
+    // A grazing light, almost parallel to the sheet.
     let light = tilted(40.0).transform_vector3(DVec3::new(0.7, 0.01, 0.2));
     let stage = Shade {
         models: vec![(square(), moved(floor().1)), (square(), moved(sheet))],
@@ -430,6 +431,7 @@ fn case_75_shadows_of_a_scene_2_to_the_k_times_as_large_are_the_same() {
             eye: DVec3::Z * 400.0 * 2.0_f64.powi(k),
         }
     };
+    // Powers of two change no mantissa, so the pictures must be equal.
     let own = stage(0).draw();
     assert!(own.shaded.iter().filter(|s| **s).count() > 200);
     let mut unlike = 0;

@@ -154,6 +154,7 @@ fn case_91_bumps_run_on_across_a_seam() {
         let (scene, view) = lit(sheet(uvs, bump(hills(wrap), 6.0), dull()), Some(sun));
         draw(&scene, &view, settings, SIDE)
     };
+    // The same texture, once with a seam in the middle and once continuous.
     let (seam, whole) = ([across(0.0, 1.0); 2], [across(0.0, 1.0), across(1.0, 2.0)]);
     let difference = |a: &Picture, b: &Picture| {
         let pairs = a.pixels().iter().zip(b.pixels());

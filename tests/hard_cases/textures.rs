@@ -267,6 +267,7 @@ fn case_39_no_texel_of_the_other_side_shows_at_a_seam() {
         let picture = picture.clone().into();
         let texture = Shared::new(Texture { picture, wrap, ..Texture::clone(&noise) });
         for k in 0..40 {
+            // An odd width in pixels puts the sides on pixel centres.
             let half = (f64::from(k) + 20.5) * 400.0 * (2.0_f64.sqrt() - 1.0) * 2.0 / SIDE as f64;
             let corners = [(-half, -half), (half, -half), (half, half), (-half, half)]
                 .map(|(x, y)| DVec3::new(x, y, 0.0));

@@ -171,6 +171,7 @@ fn case_81_sheets_that_cut_through_each_other_change_places_where_they_meet() {
     let picture = draw(&scene, &view, &Settings::default(), SIDE);
     let (ours, judged) = wrong(&picture, &sheets, &scene);
     assert!(judged > 3000, "{judged}");
+    // The naive renderer sorts whole objects.
     let by_object = Settings {
         transparency: marraztu_core::accuracy::Transparency::Objects,
         ..Settings::default()
@@ -230,6 +231,7 @@ fn case_83_a_thousand_layers_are_as_right_as_one() {
     let (scene, view) = stage(&in_order(&sheets));
     let picture = draw(&scene, &view, &Settings::default(), 16);
     let want = seen(&sheets, &scene, [3, 9], 16).unwrap();
+    // The naive blend rounds to bytes after each layer.
     let bytes = sheets.iter().fold(scene.background.0, |under, sheet| {
         over(under.map(f64::from), sheet.color, sheet.opacity).map(|x| x.round() as u8)
     });
@@ -268,6 +270,7 @@ fn case_84_the_order_of_the_list_does_not_show() {
         let picture = draw(&scene, &view, &Settings::default(), SIDE);
         ours += first.pixels().iter().zip(picture.pixels()).filter(|(a, b)| a != b).count();
         let behind = scene.background.0.map(f64::from);
+        // The naive blend follows the order of the list.
         let blend = |all: &mut dyn Iterator<Item = &Sheet>| {
             all.fold(behind, |under, sheet| over(under, sheet.color, sheet.opacity))
         };
