@@ -71,6 +71,7 @@ fn is_within_a_step(batch: u64) -> Result<Tally, String> {
     let mut tally = Tally::default();
     for it in seeds(batch).map(random_scene) {
         let expected = exact.render(&it.plan());
+        // The same scene without light below half a step.
         let settings = Settings { leave_out: LeaveOut::HalfStep, ..it.settings };
         let got = thinned.render(&RandomScene { settings, ..it.clone() }.plan());
         let pairs = got.pixels().as_flattened().iter().zip(expected.pixels().as_flattened());

@@ -82,6 +82,7 @@ fn object_turned(rng: &mut Rng, frame: Frame, presses: u64) -> (f64, f64) {
     for _ in 0..presses {
         let key = key(rng);
         press(&mut scene, &view, key);
+        // Local rotations multiply from the right, global ones from the left.
         exact = match frame {
             Frame::Local => product(&exact, &step(key)),
             Frame::Global => product(&step(key), &exact),
@@ -118,6 +119,7 @@ fn object_moved(rng: &mut Rng, presses: u64) -> f64 {
         object.placement.now().w_axis.truncate()
     };
     let start: DVec3 = place(&scene);
+    // The exact position follows from the net number of steps per axis.
     let mut steps = [0_i32; 3];
     for _ in 0..presses {
         let (axis, sign) = key(rng);

@@ -40,11 +40,13 @@ fn check(batch: u64) -> Result<Tally, String> {
         let settings = hostile.settings();
         let size = Size::new(1 + hostile.rng.index(40), 1 + hostile.rng.index(40));
         let plan = plan_frame(&Shot::new(&scene, &view, &settings, size));
+        // The baseline and the best instruction set draw the same bytes.
         let first = plain.render(&plan).clone();
         let fail = |what: String| Err(format!("scene {i}: {what}"));
         if let Some(at) = difference(&first, best.render(&plan)) {
             return fail(format!("instructions show at {at:?}"));
         }
+        // Depths stay in range at two random pixels.
         for _ in 0..2 {
             let (x, y) = (hostile.rng.index(size.width), hostile.rng.index(size.height));
             if let Some(hit) = best.hit(x, y)
@@ -53,6 +55,7 @@ fn check(batch: u64) -> Result<Tally, String> {
                 return fail(format!("a depth of {}", hit.depth));
             }
         }
+        // No pixel that f64 lights is dark in f32.
         if settings.arithmetic == Arithmetic::F32 {
             let settings = Settings { arithmetic: Arithmetic::F64, ..settings };
             let mut in_f64 = |scene: &Scene| {

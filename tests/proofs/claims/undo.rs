@@ -53,6 +53,7 @@ fn check(batch: u64) -> Result<Tally, String> {
             }
             continue;
         };
+        // One command in four belongs to one of two drags.
         let before = scene.clone();
         let gesture = match rng.below(4) {
             0 => Gesture::Part(rng.below(2)),
@@ -71,6 +72,7 @@ fn check(batch: u64) -> Result<Tally, String> {
             saved.push((history.position(), text(&scene)?));
         }
     }
+    // Undo, redo and every saved file restore all bits.
     let end = every_bit(&scene);
     let steps = history.steps().len();
     walk(&mut scene, &mut history, [&start, &end], &saved)?;
@@ -92,6 +94,7 @@ fn walk(
     [start, end]: [&str; 2],
     saved: &[(usize, String)],
 ) -> Result<(), String> {
+    // At a saved position the scene must equal the saved file.
     let at = |scene: &Scene, history: &History| match saved
         .iter()
         .find(|(position, _)| *position == history.position())
