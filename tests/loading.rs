@@ -726,7 +726,7 @@ proptest! {
             text.push('\n');
         }
         let mesh = read(&text).model.mesh;
-        // Positions and indices are those that were written.
+        // Positions and indices equal the written ones.
         prop_assert_eq!(mesh.positions(), &vertices[..]);
         for (polygon, face) in faces.iter().enumerate() {
             let corners = mesh.polygon(u32::try_from(polygon).unwrap());

@@ -1,4 +1,4 @@
-//! Output besides pictures of scenes: turntables, transparent pictures, exports.
+//! Other output than pictures of scenes: turntables, transparent pictures, exports.
 //!
 //! Catches: a first frame that differs from the picture, a file left behind by a failure, an export
 //! that other readers reject, positions that lose bits.

@@ -46,7 +46,7 @@ fn insert(scene: &mut Scene, at: usize, item: Item) {
     Command::Insert { at, item }.apply(scene).unwrap();
 }
 
-/// A scene in which every value differs from its default.
+/// A scene without default values.
 fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     let [a, b, c, d] = numbers;
     let (mut scene, _) = default_scene();

@@ -116,7 +116,7 @@ impl Shade {
     }
 
     /// Compares the drawn shadows with rays, at pixels where the rays are reliable. Counts the
-    /// wrong pixels, and those that `naive` gets wrong.
+    /// wrong pixels, and the wrong ones of `naive`.
     fn judge(&self, naive: &Naive<'_>) -> Judged {
         let (drawn, all) = (self.draw(), self.triangles());
         let eye = Eye { side: SIDE, at: self.eye, tangent: 2.0_f64.sqrt() - 1.0 };

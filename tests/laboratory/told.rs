@@ -9,7 +9,7 @@ use marraztu_lab::sweep::{Against, Verdict};
 
 use crate::bench::{FakeClock, FakeSource, found};
 
-/// A report in which f32 is wrong and f64 is slow.
+/// A report with wrong f32 light and slow f64 light.
 fn report() -> Report {
     let arithmetic = Axis::named("arithmetic").unwrap();
     let planted = |word: &str| arithmetic.choice(word).map(|choice| (arithmetic, choice));

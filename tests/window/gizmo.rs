@@ -32,7 +32,7 @@ fn middle(editor: &Editor) -> Pos2 {
     rect.center() + vec2(-100.0 / 400.0 / 22.5_f32.to_radians().tan(), 0.0) * half
 }
 
-/// An editor in which the keys act on the selected ship.
+/// An editor with the keys set to act on the selected ship.
 fn with_ship() -> Editor {
     let mut editor = Editor::new();
     editor.perform(Action::SubjectObject);

@@ -18,7 +18,7 @@ use marraztu_core::scene::{Item, ItemId, LightKind, Subject};
 
 use crate::editor::Editor;
 
-/// Situations in which an action may have different effects.
+/// Situations that may change the effect of an action.
 const SITUATIONS: &[&[Action]] = &[
     &[],
     &[Action::SubjectObject],

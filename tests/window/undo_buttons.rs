@@ -1,6 +1,6 @@
 //! The Undo and Redo buttons in the menu bar, and their lists of steps.
 //!
-//! Catches: a press that undoes one step besides those chosen from the list, a list that undoes one
+//! Catches: a press that undoes a further step after a choice from the list, a list that undoes one
 //! step too many, a list that stays open or undoes anything after the pointer has left.
 
 use egui::accesskit::Role;

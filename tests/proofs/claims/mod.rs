@@ -45,7 +45,7 @@ pub(crate) struct Proof {
     pub(crate) whole: u64,
     /// The least number of events per thousand cases, which keeps the check from being vacuous.
     pub(crate) shows: &'static [(&'static str, u64)],
-    /// Batches in which the claim once failed.
+    /// Batches that once contradicted the claim.
     pub(crate) regressions: &'static [u64],
     /// Checks the cases of a batch.
     pub(crate) check: fn(u64) -> Result<Tally, String>,
@@ -106,7 +106,7 @@ impl std::fmt::Display for Tally {
     }
 }
 
-/// A batch in which a claim fails.
+/// A batch that contradicts a claim.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("batch {batch}: {what}")]
 pub(crate) struct Counterexample {
@@ -126,7 +126,7 @@ impl Proof {
     /// Checks batches on all threads, and calls `checked` after each.
     ///
     /// # Errors
-    /// A batch in which the claim fails or the code panics.
+    /// A batch that contradicts the claim or panics.
     pub(crate) fn run(
         &self,
         batches: Range<u64>,
