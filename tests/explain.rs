@@ -13,7 +13,7 @@ use marraztu_render::{Part, Renderer, plan_frame};
 
 const SIZE: Size = Size::new(320, 240);
 
-/// The bytes of a colour, as pictures are rounded.
+/// Quantises a colour to bytes as pictures are quantised.
 fn rounded(color: [f64; 3], arithmetic: Arithmetic) -> [u8; 3] {
     color.map(|x| match arithmetic {
         Arithmetic::F32 => ((x as f32).clamp(0.0, 1.0) * 255.0 + 0.5) as u8,
@@ -21,12 +21,14 @@ fn rounded(color: [f64; 3], arithmetic: Arithmetic) -> [u8; 3] {
     })
 }
 
-/// Explains pixels of a picture, and returns how many showed a surface.
+/// Checks the explanations of pixels, and returns the number of pixels that showed a surface.
 fn adds_up(scene: &Scene, view: &View, settings: &Settings, pixels: &[[usize; 2]]) -> usize {
     let mut renderer = Renderer::default();
     let picture = renderer.render(&plan_frame(&Shot::new(scene, view, settings, SIZE))).clone();
     let mut surfaces = 0;
     for [x, y] in pixels.iter().copied() {
+        // The explained bytes are the drawn ones. In linear light they are encoded, so their colour
+        // is not compared here.
         let explained = renderer.explain(x, y).unwrap();
         let [r, g, b, _] = picture.pixel(x, y);
         let of = format!("{settings:?} {:?} pixel {x},{y}: {explained:?}", view.projection);
@@ -34,6 +36,7 @@ fn adds_up(scene: &Scene, view: &View, settings: &Settings, pixels: &[[usize; 2]
         if !explained.linear {
             assert_eq!(rounded(explained.color, settings.arithmetic), [r, g, b], "{of}");
         }
+        // The terms and the rounding error add up to the colour.
         let mut sum = explained.rounding;
         for term in &explained.terms {
             for (sum, part) in sum.iter_mut().zip(term.value) {
@@ -44,6 +47,7 @@ fn adds_up(scene: &Scene, view: &View, settings: &Settings, pixels: &[[usize; 2]
             assert!((sum - color).abs() < 1e-14, "{of}");
             assert!(rounding.abs() < 1e-6, "{of}");
         }
+        // The named surface is the one that is drawn there, with sound weights and directions.
         if let Some(point) = explained.surface {
             assert_eq!(renderer.hit(x, y).map(|hit| hit.item), Some(point.item), "{of}");
             surfaces += 1;
@@ -54,7 +58,7 @@ fn adds_up(scene: &Scene, view: &View, settings: &Settings, pixels: &[[usize; 2]
     surfaces
 }
 
-/// Random pixels, most of them in the middle, where things are seen.
+/// Random pixels, concentrated near the middle, where the objects are.
 fn random_pixels(seed: u64, count: usize) -> Vec<[usize; 2]> {
     let mut rng = Rng::new(seed);
     let mut near = |most: usize| (rng.index(most) + rng.index(most)) / 2;

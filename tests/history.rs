@@ -1,4 +1,4 @@
-//! The history, compared with a simple model: a list of all earlier scenes.
+//! The undo stack, compared with a simple model: a list of all earlier scenes.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -57,8 +57,7 @@ fn step() -> impl Strategy<Value = Step> {
     ]
 }
 
-/// The scenes before and after each step, where we are among them, and which of them is on the
-/// disk.
+/// A trivial undo stack: the scene after each step, the current position, and the saved scene.
 struct Model {
     scenes: Vec<Scene>,
     now: usize,
@@ -96,6 +95,7 @@ proptest! {
             open: Gesture::Whole,
             saved: scene.clone(),
         };
+        // Each step acts on both; afterwards scene, position and length must agree.
         for step in script {
             match step {
                 Step::Perform(command, gesture) => {
@@ -134,7 +134,7 @@ proptest! {
             prop_assert_eq!(&scene, &model.scenes[model.now]);
             prop_assert_eq!(history.position(), model.now);
             prop_assert_eq!(history.steps().len(), model.scenes.len() - 1);
-            // It may ask once too often, but never once too little.
+            // The history may ask about saving once too often, but never once too rarely.
             prop_assert!(!history.is_saved() || scene == model.saved);
         }
     }

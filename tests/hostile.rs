@@ -1,5 +1,5 @@
-//! Files that once broke the program, or were made to break it: each is read or refused, quickly
-//! and with a short message, and a scene that is read can be drawn. Fuzzing adds to them; see
+//! Files that once broke the program, or were made to break it. Each is read or rejected quickly,
+//! with a short message, and a scene that is read can be drawn. Fuzzing adds files; see
 //! `fuzz/README.md`.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
@@ -18,7 +18,7 @@ use marraztu_io::{Loaded, Progress, describe, load, load_picture, open, to_text}
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
 
-/// The files of a kind, each with its content.
+/// The paths of the hostile files of a kind, sorted.
 fn files(kind: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/hostile").join(kind);
     let mut files: Vec<_> =
@@ -28,7 +28,7 @@ fn files(kind: &str) -> Vec<PathBuf> {
     files
 }
 
-/// A message that a person can read.
+/// Checks that a message has a length that users can read.
 fn check(path: &Path, message: &str) {
     assert!((1..600).contains(&message.len()), "{}: {message}", path.display());
 }

@@ -1,4 +1,4 @@
-//! The program from outside: standard input and output, names of pictures, messages.
+//! Standard input and output, default names of pictures, and messages of the program.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -13,7 +13,7 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_io as io;
 use tempfile::TempDir;
 
-/// A square of one unit on a side, its corners counter-clockwise seen from +Z, far from the origin.
+/// A unit square far from the origin, with its corners counter-clockwise as seen from +Z.
 const SQUARE: &str = "v 5 5 5\nv 6 5 5\nv 6 6 5\nv 5 6 5\nf 1 2 3 4\n";
 
 /// Runs the program with some bytes as standard input.
@@ -25,12 +25,12 @@ fn run(folder: &Path, arguments: &[&str], input: &[u8]) -> Output {
     }
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
-    // Whoever does not read it is not to be told of it.
+    // A program that does not read its input closes the pipe, which is not an error here.
     let _ = child.stdin.take().unwrap().write_all(input);
     child.wait_with_output().unwrap()
 }
 
-/// Standard output and standard error of a run that ends with `status`.
+/// Runs the program, checks its exit status, and returns standard output and standard error.
 #[track_caller]
 fn ends_with(status: i32, folder: &Path, arguments: &[&str], input: &[u8]) -> (Vec<u8>, String) {
     let output = run(folder, arguments, input);
@@ -45,7 +45,7 @@ fn folder() -> TempDir {
     folder
 }
 
-/// The picture that `render` draws with these arguments and a small size.
+/// Returns the picture that `render` draws with these arguments at a small size.
 #[track_caller]
 fn drawn(folder: &Path, arguments: &[&str], input: &[u8]) -> Picture {
     let all = [&["render", "--out", "drawn.png", "--size", "96x64", "--samples", "1"], arguments]
@@ -70,7 +70,7 @@ fn a_picture_is_named_after_its_file_and_lies_in_the_current_folder() {
     assert_eq!(err, "note: the picture is in pot.png\n");
     let size = io::load_picture(&folder.path().join("pot.png")).unwrap().size();
     assert_eq!(size, Size::new(32, 32), "one number is a square");
-    // A picture that is there already is replaced.
+    // An existing picture is replaced.
     ends_with(0, folder.path(), &render, b"");
     let (_, err) = ends_with(0, folder.path(), &[&render[..], &["--quiet"]].concat(), b"");
     assert_eq!(err, "");
@@ -90,7 +90,7 @@ fn a_picture_replaces_neither_a_file_of_another_kind_nor_its_own_source() {
         assert!(err.contains("it is not a picture"), "{err}");
         assert_eq!(std::fs::read_to_string(at("poem.png")).unwrap(), "Roses are red");
     }
-    // The texture that the model's material names, and the one that is given.
+    // Neither the texture named by the material nor the texture option may be overwritten.
     let texture = Picture::filled(Size::new(2, 2), [255, 0, 0, 255]);
     io::save_picture(&at("wood.png"), &texture).unwrap();
     let text = SQUARE.replace("f 1 2 3 4", "vt 0 0\nusemtl wood\nf 1/1 2/1 3/1 4/1");
@@ -192,7 +192,7 @@ fn colours_of_the_background_threads_and_axes_that_point_up_are_taken_as_people_
         assert!(drawn(folder.path(), &["--threads", threads], b"") == plain, "{threads}");
     }
     ends_with(2, folder.path(), &["render", "--threads", "0"], b"");
-    // The square faces +Z: with -Z up it lies on its face.
+    // The square faces +Z: with -Z up it lies face down.
     let seen = |up: &str, from: &str| {
         let all = ["square.obj", "--sides", "one", "--up", up, "--from", from];
         let picture = drawn(folder.path(), &all, b"");
@@ -251,13 +251,13 @@ fn a_missing_file_is_reported_before_a_display_or_another_file_is_looked_for() {
 #[test]
 fn many_models_are_drawn_and_one_that_is_named_twice_is_read_once() {
     let folder = folder();
-    // A fault of a file is reported each time that it is read.
+    // Each reading reports the fault in the file once.
     let text = format!("{SQUARE}f 1 2 99\n");
     std::fs::write(folder.path().join("square.obj"), text).unwrap();
     let mut all = vec!["render", "--size", "64", "--out", "a.png"];
     all.extend(["square.obj", "./square.obj"].iter().cycle().take(2_000));
     let (_, err) = ends_with(0, folder.path(), &all, b"");
     assert_eq!(err.matches("a face refers to a vertex").count(), 1, "{err}");
-    // All but one are behind the one that is seen: that is a few lines, however many they are.
+    // All but one are hidden. The notes summarise them in a few lines.
     assert!(err.lines().count() <= 3, "{err}");
 }

@@ -1,8 +1,8 @@
-//! OBJ files as people and programs write them: how each is read.
+//! Reading OBJ files as users and programs write them.
 //!
-//! Each test is a small file. `tobj` alone reads those of the first part wrongly, or not at all:
-//! the program hands it only what it reads rightly. On files that it reads rightly by itself
-//! `tests/models.rs` holds the program against it.
+//! Each test is a small file. `tobj` alone fails on the files of the first part or misreads them,
+//! because the program passes it only input that it reads correctly. For other files
+//! `tests/models.rs` compares the program with `tobj`.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -23,7 +23,7 @@ fn read(text: &str) -> Loaded {
     read_bytes(text.as_bytes()).unwrap()
 }
 
-/// The mesh of a file in which nothing is to be found.
+/// The mesh of a file without findings.
 fn clean(text: &str) -> Mesh {
     let loaded = read(text);
     assert_eq!(loaded.findings, []);
@@ -34,7 +34,7 @@ fn refusal(text: &str) -> String {
     read_bytes(text.as_bytes()).unwrap_err().to_string()
 }
 
-/// The only finding of a file, as text, with its kind.
+/// Kind and text of the only finding of a file.
 fn only(loaded: &Loaded) -> (FindingKind, &str) {
     let [finding] = &loaded.findings[..] else { panic!("{:?}", loaded.findings) };
     (finding.kind, &finding.text)
@@ -54,7 +54,7 @@ fn triangle_and(rest: &str) -> String {
     format!("{TRIANGLE}{rest}")
 }
 
-// Text that `tobj` alone refuses or reads wrongly.
+// Text that `tobj` alone rejects or misreads.
 
 #[test]
 fn a_mark_of_the_byte_order_hides_no_vertex() {
@@ -100,7 +100,7 @@ fn numbers_that_tobj_passes_over_are_found_all_the_same() {
         ("vn 0 0 1 x\n", FindingKind::NormalUnreadable, "(line 1)"),
         ("v 0 0 0 . 0 0\n", FindingKind::VertexUnreadable, "\".\" is not a number"),
         ("v 0 0 0 1 1 -\n", FindingKind::VertexUnreadable, "\"-\" is not a number"),
-        // The first fault is named, whichever thread finds it.
+        // The first fault is reported, on whichever thread it is found.
         ("v 0 0 --1\nv 0 0\n", FindingKind::VertexUnreadable, "\"--1\" is not a number"),
         ("v 0 0 1..\nv 0 x 0\n", FindingKind::VertexUnreadable, "\"1..\" is not a number"),
     ] {
@@ -322,7 +322,7 @@ fn the_axes_the_scale_and_the_winding_are_as_asked_for() {
     assert_eq!(error.to_string(), "a.obj: the coordinates are too large at this scale");
 }
 
-// Refusals, with line and reason.
+// Rejected files: line and reason.
 
 #[test]
 fn a_file_without_a_usable_vertex_is_refused_by_its_first_bad_line() {
@@ -444,7 +444,7 @@ fn a_text_of_utf_16_is_read_in_either_order_of_bytes() {
     }
 }
 
-// Faults that are mended and listed.
+// Faults that are repaired and listed.
 
 #[test]
 fn faces_that_cannot_be_are_left_out_and_the_others_stay() {
@@ -510,10 +510,10 @@ fn work_is_watched_and_cancelled() {
     assert_eq!(error, LoadError::Cancelled);
 }
 
-// However a file is cut into chunks that are read apart, and whichever way its lines are read.
+// The result does not depend on how a file is split into chunks and which reading path is taken.
 
-/// A file of many chunks with something of everything: a strip of squares; some of them count
-/// back, with places on the texture and normals here and there, parts and faults.
+/// A file of many chunks with every kind of statement: a strip of squares, some with relative
+/// indices, some with texture coordinates and normals, and parts and faults in between.
 fn long(lines: u32) -> String {
     let mut text = String::new();
     let mut vertices = 0;
@@ -570,7 +570,7 @@ fn a_file_says_the_same_however_many_threads_read_it() {
 #[test]
 fn the_quick_way_reads_a_line_like_the_tolerant_way() {
     let text = long(4000);
-    // A blank at the beginning of a line is not for the quick way.
+    // A leading blank sends a line to the tolerant path.
     let slow: String = text.split_inclusive('\n').map(|line| format!(" {line}")).collect();
     let (quick, slow) = (described(&text), described(&slow));
     assert_eq!(quick.1, slow.1);
@@ -590,7 +590,7 @@ fn a_line_that_cannot_be_read_is_named_by_its_number_wherever_it_is() {
     assert!(finding.text.contains("\"x\" is not a number"), "{}", finding.text);
 }
 
-// Files that claim more than any machine has memory or time for.
+// Files that claim more elements than memory or time allow.
 
 #[test]
 fn an_index_promises_nothing() {
@@ -604,7 +604,7 @@ fn an_index_promises_nothing() {
 
 #[test]
 fn a_face_of_a_million_corners_is_cut_up() {
-    // A comb: every other corner is a tooth.
+    // A comb: every second corner is a tooth.
     let corners = 1_000_000_u32;
     let mut text = String::from("v 0 -1 0\nv 1000000 -1 0\n");
     for i in (2..corners).rev() {
@@ -619,7 +619,7 @@ fn a_face_of_a_million_corners_is_cut_up() {
     assert_eq!(findings, []);
 }
 
-/// Each corner of a face without area has the face's normal, which is computed once.
+/// The corners of a face without area share the face's normal, which is computed once.
 #[test]
 fn a_face_of_many_corners_without_area_is_read_as_quickly_as_others() {
     let corners = 200_000_u32;
@@ -669,7 +669,7 @@ fn a_vertex_with_a_hundred_thousand_normals_keeps_them_all() {
 }
 
 proptest! {
-    /// Files of statements, half of them nonsense: refused or loaded, and never a panic.
+    /// Random statements, half of them nonsense, are rejected or loaded without a panic.
     #[test]
     fn no_text_breaks_the_reader(
         lines in prop::collection::vec(
@@ -697,7 +697,7 @@ proptest! {
         }
     }
 
-    /// Every number of a file comes out as it went in, under the index it had.
+    /// Every element of a file keeps its value and its index.
     #[test]
     fn whatever_the_faces_use_everything_keeps_its_number(
         vertices in prop::collection::vec(prop::array::uniform3(-1e3..1e3_f32), 3..30),
@@ -707,6 +707,7 @@ proptest! {
             1..30,
         ),
     ) {
+        // Writes the file; some corners have no texture coordinates.
         let mut text = String::new();
         for [x, y, z] in &vertices {
             text += &format!("v {x} {y} {z}\n");
@@ -725,6 +726,7 @@ proptest! {
             text.push('\n');
         }
         let mesh = read(&text).model.mesh;
+        // Positions and indices equal the written ones.
         prop_assert_eq!(mesh.positions(), &vertices[..]);
         for (polygon, face) in faces.iter().enumerate() {
             let corners = mesh.polygon(u32::try_from(polygon).unwrap());

@@ -1,5 +1,5 @@
-//! The material files and textures that an OBJ file names: whether they are found, and what is
-//! reported if they are not.
+//! MTL files and textures that an OBJ file names: how they are found, and the report if they are
+//! missing.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -8,7 +8,7 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{LoadOptions, MapKind, Wrap};
 use marraztu_io::{Finding, FindingKind, Loaded, Progress, load, save_picture};
 
-/// The only finding of a file, as text, with its kind.
+/// Kind and text of the only finding of a file.
 fn only(loaded: &Loaded) -> (FindingKind, &str) {
     let [finding] = &loaded.findings[..] else { panic!("{:?}", loaded.findings) };
     (finding.kind, &finding.text)
@@ -18,7 +18,7 @@ fn kinds(findings: &[Finding]) -> Vec<FindingKind> {
     findings.iter().map(|finding| finding.kind).collect()
 }
 
-/// A folder with an OBJ file of this text, an MTL file, and a texture in a folder of its own.
+/// Loads an OBJ file with this text, next to an MTL file and a texture in a subfolder.
 fn with_files(obj: &str, mtl: (&str, &str)) -> Loaded {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.obj");
@@ -104,8 +104,8 @@ fn a_texture_that_is_missing_or_broken_is_listed_and_the_model_stays() {
     assert_eq!(text, format!("the texture cannot be read: {path}: {reason}"));
 }
 
-/// The `Tr` of each of a file's materials, two of them used; the opacity of the first
-/// and what was found.
+/// Loads three materials with these `Tr` statements, two of them used. Returns the opacity of the
+/// first, and the findings.
 fn with_tr(tr: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
     let material = |(name, tr): (&str, &str)| format!("{}{tr}\n", RED.replace("red", name));
     let mtl: String = ["a", "b", "c"].into_iter().zip(tr).map(material).collect();
@@ -119,7 +119,7 @@ fn with_tr(tr: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
 fn tr_1_in_all_materials_that_are_used_is_opaque_and_else_transparent() {
     use FindingKind::{MendedTransparency, Transparent};
     assert_eq!(with_tr(["Tr 1.0", "Tr 1", "Tr 1.0"]), (1.0, vec![(MendedTransparency, 3)]));
-    // Unused materials say nothing of the convention.
+    // Unused materials do not count as evidence for a convention.
     let unused = vec![(MendedTransparency, 2)];
     assert_eq!(with_tr(["Tr 1.0", "Tr 1", "d 0.5"]), (1.0, unused));
     assert_eq!(with_tr(["Tr 1.0", "Tr 0", "Tr 0"]), (0.0, vec![(Transparent, 1)]));
@@ -240,7 +240,7 @@ fn maps_are_read_with_their_options_and_one_picture_is_held_once() {
     assert_eq!(kinds(&loaded.findings), expected, "{:?}", loaded.findings);
     let material = &loaded.model.materials[0];
     assert_eq!((material.material.emission, material.unlit), ([0.5, 2.0, 0.0], true));
-    // A picture is heights or normals, not both: the statement that says which is used.
+    // A texture is a height map or a normal map, not both; the statement decides.
     let kinds = MapKind::ALL.into_iter().filter(|kind| *kind != MapKind::Bump);
     assert!(material.maps.keys().copied().eq(kinds));
     let texture = material.texture.as_ref().unwrap();

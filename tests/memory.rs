@@ -1,7 +1,7 @@
-//! How much memory loading and drawing take, measured by a counting allocator.
+//! Memory for loading and drawing, measured by a counting allocator.
 //!
-//! They run on one thread, so that every run counts the same: with more threads, each has memory
-//! for its own tile, and which of them gets the fullest tile first is random.
+//! Everything runs on one thread, which makes the counts reproducible: each further thread has
+//! memory for its own tile, and chance decides which one gets the fullest tile first.
 
 #![expect(clippy::cast_precision_loss, reason = "small whole numbers")]
 #![expect(clippy::print_stdout, reason = "what was counted is to be read")]
@@ -24,7 +24,7 @@ use marraztu_render::plan_frame;
 #[global_allocator]
 static COUNTING: dhat::Alloc = dhat::Alloc;
 
-/// A wavy sheet of 2 x 256 x 256 triangles as a file has it.
+/// An OBJ file with a wavy sheet of 2 x 256 x 256 triangles.
 fn sheet() -> String {
     const SIDE: usize = 256;
     let mut text = String::new();
@@ -66,7 +66,7 @@ fn measure(path: &std::path::Path, file: usize) {
     let (scene, view) = common::scene(&[(Shared::new(loaded.model), DMat4::IDENTITY)]);
     let size = Size::new(800, 600);
     let settings = Settings::default();
-    // Data that drawing derives from the mesh and keeps there counts as the mesh's.
+    // Data that drawing derives and caches in the mesh counts as part of the mesh.
     drop(plan_frame(&Shot::new(&scene, &view, &settings, size)));
     scene.objects.iter().for_each(|(_, object)| assert!(!object.model.mesh.facets().is_empty()));
     let mesh = HeapStats::get().curr_bytes;
@@ -96,7 +96,7 @@ fn measure(path: &std::path::Path, file: usize) {
         println!("{light:?}, {samples:?}: {own} bytes; 20 frames ask {blocks} times for {bytes}");
         let picture = size.area() * 4 * samples.count() as usize;
         assert!(own + mesh <= 2 * (mesh + picture), "a steady frame takes {own} bytes");
-        // The harness may ask for a little on a thread of its own.
+        // The test harness may allocate a little on its own thread.
         assert!(after.curr_bytes <= before.curr_bytes + 4096, "a steady frame grows");
         assert!(bytes < 20 * 16_384, "20 frames ask {blocks} times for {bytes} bytes");
     }

@@ -1,6 +1,6 @@
-//! Reads every public model that was gathered, and compares it with a table of their contents.
+//! Reads every collected public model and compares it with a table of contents.
 //!
-//! The models are the work of others and are not in the project. If they are missing, the test is
+//! The models belong to others and are not part of the project. If they are missing, the test is
 //! skipped with a message; `MARRAZTU_REQUIRE_SHARED=1` makes that a failure, and `MARRAZTU_SHARED`
 //! names their folder.
 
@@ -51,7 +51,7 @@ struct Row {
 }
 
 impl Row {
-    /// How many of something are wrong with the file.
+    /// The number of faults of a kind that the table lists for the file.
     fn broken(&self, what: &str) -> usize {
         let Some((_, broken)) = self.features.split_once("BROKEN: ") else { return 0 };
         let words: Vec<&str> = broken.split([' ', ',', ';']).collect();
@@ -73,7 +73,7 @@ fn table(models: &Path) -> Vec<Row> {
     text.lines().filter_map(row).collect()
 }
 
-/// Every file of the table with what became of it.
+/// Loads every file of the table.
 fn sweep() -> Option<Vec<(Row, Result<marraztu_io::Loaded, LoadError>)>> {
     let models = models()?;
     let load = |row: Row| {
@@ -87,13 +87,13 @@ fn count(findings: &[Finding], kind: FindingKind) -> usize {
     findings.iter().filter(|finding| finding.kind == kind).map(|finding| finding.count).sum()
 }
 
-/// The numbers of "(x, y, z) to (x, y, z)".
+/// Parses the numbers of "(x, y, z) to (x, y, z)".
 fn numbers(bounds: &str) -> Vec<f64> {
     let sign = |c: char| !(c.is_ascii_digit() || "-+.e".contains(c));
     bounds.split(sign).filter_map(|word| word.parse().ok()).collect()
 }
 
-/// Whether two sides of a polygon cross, seen along its normal; sides that touch do not.
+/// Whether two sides of a polygon cross as seen along its normal. Sides that touch do not count.
 fn crosses_itself(corners: &[DVec3], normal: DVec3) -> bool {
     let side = |i: usize| (corners[i], corners[(i + 1) % corners.len()]);
     let turn = |a: DVec3, b: DVec3, c: DVec3| (b - a).cross(c - a).dot(normal);
@@ -104,7 +104,7 @@ fn crosses_itself(corners: &[DVec3], normal: DVec3) -> bool {
     (0..corners.len()).any(|j| (0..j).any(|i| cross(i, j)))
 }
 
-/// The polygons of a mesh, each with its corners' places and its normal.
+/// The polygons of a mesh: index, positions of the corners, normal.
 fn polygons(mesh: &Mesh) -> impl Iterator<Item = (u32, Vec<DVec3>, DVec3)> {
     let at = |corner: &Corner| dvec3(mesh.positions()[corner.position as usize]);
     mesh.polygon_normals().iter().zip(0..).map(move |(normal, polygon)| {
@@ -117,6 +117,7 @@ fn every_model_has_as_much_in_it_as_the_table_says() {
     let Some(sweep) = sweep() else { return };
     assert!(sweep.len() > 70, "the table has only {} rows", sweep.len());
     for (row, loaded) in sweep {
+        // Files with an unreadable number or without a triangle must be rejected.
         let refused = row.broken("number") > 0 || (row.faces > 0 && row.triangles == 0);
         let loaded = match loaded {
             Err(error) if refused => {
@@ -129,6 +130,7 @@ fn every_model_has_as_much_in_it_as_the_table_says() {
         };
         let (mesh, findings) = (&loaded.model.mesh, &loaded.findings);
         let found = |kind| count(findings, kind);
+        // Counts and findings, as in the table.
         assert_eq!(mesh.positions().len(), row.vertices, "vertices of {}", row.file);
         assert_eq!(found(FindingKind::FaceShort), row.broken("face_short"), "{}", row.file);
         assert_eq!(found(FindingKind::FaceRange), row.broken("face_range"), "{}", row.file);
@@ -139,6 +141,7 @@ fn every_model_has_as_much_in_it_as_the_table_says() {
         let kinds = [FindingKind::UvRange, FindingKind::NormalRange];
         let attributes = kinds.map(found).into_iter().max();
         assert_eq!(attributes, Some(row.broken("attr_range")), "{}: {findings:?}", row.file);
+        // The bounding box, to the digits of the table.
         let vertices = mesh.positions().iter().map(|place| dvec3(*place) + mesh.offset());
         if let Some(bounds) = Bounds::of(vertices) {
             let ours = [bounds.min.to_array(), bounds.max.to_array()].concat();
@@ -149,7 +152,7 @@ fn every_model_has_as_much_in_it_as_the_table_says() {
     }
 }
 
-/// The positions, normals and texture coordinates of each corner that `tobj` reads, as bits.
+/// The position, normal and texture coordinates of each corner as `tobj` reads them, as bits.
 #[expect(clippy::cast_possible_truncation, reason = "the rounding that is meant")]
 fn by_tobj(path: &Path) -> Option<Vec<Vec<[Vec<u32>; 3]>>> {
     let (models, _) = tobj::load_obj(path, &tobj::LoadOptions::default()).ok()?;
@@ -186,17 +189,17 @@ fn models_are_read_as_tobj_reads_them_bit_for_bit() {
     for row in table(&models) {
         let path = models.join(&row.file);
         let text = String::from_utf8_lossy(&std::fs::read(&path).unwrap()).into_owned();
-        // tobj reads lines and points as faces, and counts corners wrongly if only some have all
+        // tobj reads lines and points as faces, and miscounts corners if only some have all
         // indices.
         let statement = |word: &str| text.lines().any(|line| line.starts_with(word));
         let loaded = load(&path, &LoadOptions::default(), &Progress::new());
         let (Ok(loaded), false) = (loaded, statement("l ") || statement("p ")) else { continue };
-        // It gives the first place on the texture to faces that name none.
+        // tobj assigns the first texture coordinates to faces without any.
         let named = text.lines().any(|line| line.starts_with('f') && line.contains('/'));
         let count = |kind| count(&loaded.findings, kind);
         let mixed = count(FindingKind::UvMixed) + count(FindingKind::NormalMixed);
         let short = count(FindingKind::FaceShort) + count(FindingKind::FaceRange);
-        // It divides by weights, which are here passed over and listed.
+        // tobj divides positions by their weights; this program ignores weights and reports them.
         let other = mixed + short + count(FindingKind::Weight);
         let Some(theirs) = by_tobj(&path).filter(|_| other == 0) else { continue };
         let mesh = &loaded.model.mesh;
@@ -211,7 +214,7 @@ fn models_are_read_as_tobj_reads_them_bit_for_bit() {
                 if mesh.offset() == DVec3::ZERO {
                     assert_eq!(row_of(Some(&ours)), position, "{}: {polygon}", row.file);
                 } else {
-                    // It rounds what ours keeps.
+                    // tobj rounds positions that this program keeps as an offset and differences.
                     let ours = (dvec3(ours) + mesh.offset()).as_vec3().to_array();
                     let theirs = position.iter().map(|bits| f32::from_bits(*bits));
                     let is_near = |(a, b): (f32, f32)| (a - b).abs() <= 2e-7 * b.abs().max(1.0);
@@ -221,7 +224,7 @@ fn models_are_read_as_tobj_reads_them_bit_for_bit() {
                 if named {
                     assert_eq!(row_of(ours), uv, "{}: {polygon}", row.file);
                 }
-                // Ours are brought to length 1, theirs are as they stand in the file.
+                // This program normalises normals; tobj keeps them as written.
                 let theirs = normal.iter().map(|bits| f64::from(f32::from_bits(*bits)));
                 let theirs = DVec3::from_slice(&theirs.chain([0.0; 3]).collect::<Vec<_>>());
                 if let Some(unit) = math::unit(theirs).filter(|_| corner.filed != corner.smooth) {
@@ -247,6 +250,7 @@ fn no_polygon_is_cut_outside_its_outline_unless_it_crosses_itself() {
         let mesh = &loaded.model.mesh;
         let mut crossing = 0;
         for (polygon, corners, normal) in polygons(mesh) {
+            // Triangles cannot be cut wrongly, and self-crossing polygons have no right cut.
             if corners.len() == 3 {
                 continue;
             }
@@ -255,6 +259,7 @@ fn no_polygon_is_cut_outside_its_outline_unless_it_crosses_itself() {
                 continue;
             }
             checked += 1;
+            // A triangle outside the outline would have a negative area.
             let begin = mesh.corners_of(polygon).start;
             for triangle in &mesh.triangles()[mesh.triangles_of(polygon)] {
                 let at = |corner: u32| corners[corner as usize - begin];
@@ -284,7 +289,7 @@ fn textures_that_lie_beside_a_model_are_found() {
     }
 }
 
-/// A model alone among the first scene's lights, seen whole from `side`.
+/// Builds a scene with a model alone under the first scene's lights, framed from `side`.
 fn staged(model: &Shared<Model>, side: DVec3) -> (Scene, View) {
     let (mut scene, mut view) = default_scene();
     let objects: Vec<_> = scene.objects.ids().map(ItemId::Object).map(Command::Remove).collect();
@@ -298,14 +303,14 @@ fn staged(model: &Shared<Model>, side: DVec3) -> (Scene, View) {
         camera.pose = Tracked::new(Pose { axes, ..*camera.pose.now() });
     };
     items::change_camera(&scene, view.camera, turned).unwrap().apply(&mut scene).unwrap();
-    // A file without vertices has nothing to be framed.
+    // A file without vertices cannot be framed.
     if let Ok(framed) = framing::all(&scene, &view) {
         framed.apply(&mut scene).unwrap();
     }
     (scene, view)
 }
 
-/// The largest difference of two pictures in byte steps, and its position.
+/// The largest difference between two pictures in byte steps, and the index of its byte.
 fn farthest_bytes(a: &Picture, b: &Picture) -> (u8, usize) {
     let pairs = a.pixels().as_flattened().iter().zip(b.pixels().as_flattened());
     pairs.map(|(a, b)| a.abs_diff(*b)).zip(0..).max().unwrap()
@@ -324,7 +329,7 @@ fn every_model_is_seen_and_drawn_alike_to_a_step_in_both_arithmetics() {
         let shown = loaded.model.materials.iter().all(|material| material.opacity >= 0.5);
         let model = Shared::new(loaded.model);
         let mut seen = false;
-        // A flat model is seen from one of two opposite sides.
+        // Two opposite directions, because a flat model is visible from one side only.
         for from in [DVec3::new(-0.5, 0.4, 1.0), DVec3::new(0.5, -0.4, -1.0)] {
             let (scene, view) = staged(&model, from);
             for light in [LightAt::Face, LightAt::Vertex, LightAt::Pixel] {
@@ -341,11 +346,11 @@ fn every_model_is_seen_and_drawn_alike_to_a_step_in_both_arithmetics() {
     }
 }
 
-/// The pictures of a model in every shading, drawn by the present threads as soon as it is loaded.
+/// Draws a model with every shading, on the current thread pool, directly after loading.
 fn pictures_of(file: &Path) -> Vec<Picture> {
     let shadings = [LightAt::Face, LightAt::Vertex, LightAt::Pixel, LightAt::Sample];
     let draw = |light: LightAt| {
-        // Each anew, so that each has to find what it needs of the mesh.
+        // A fresh mesh each time, so every picture has to derive its data itself.
         let loaded = load(file, &LoadOptions::default(), &Progress::new()).ok()?;
         let (scene, view) = staged(&Shared::new(loaded.model), DVec3::new(3.0, 2.0, 5.0));
         let settings = Settings { light, samples: Samples::Four, ..Settings::default() };

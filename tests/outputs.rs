@@ -1,7 +1,7 @@
-//! What goes out of the program besides pictures: turntables, pictures without ground, exports.
+//! Other output than pictures of scenes: turntables, transparent pictures, exports.
 //!
-//! Catches: a first picture of a turn that is not the picture, a file that is left behind by what
-//! failed, an export that another reader would refuse, positions that lose bits on their way.
+//! Catches: a first frame that differs from the picture, a file left behind by a failure, an export
+//! that other readers reject, positions that lose bits.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -48,7 +48,7 @@ fn a_whole_turn_comes_back_and_the_first_picture_is_the_picture() {
         assert_eq!(at(0.0), scene);
         assert_eq!(at(1.0), scene);
         assert!(drawn(&at(0.25), &view) != drawn(&scene, &view), "{turn:?}");
-        // Twice half a turn is a turn, but for rounding.
+        // Two half turns are a full turn, apart from rounding.
         let half = turned(&at(0.5), &view, turn, 0.5).unwrap();
         for ((_, a), (_, b)) in half.objects.iter().zip(scene.objects.iter()) {
             assert!(a.placement.now().abs_diff_eq(*b.placement.now(), 1e-9));
@@ -102,7 +102,7 @@ fn laid_over_its_own_ground_a_picture_without_is_the_one_with() {
     assert!(io::load_picture(&folder.path().join("cut.png")).unwrap() == cut);
 }
 
-/// The first scene without the spot that follows the selected object.
+/// The first scene without the spot of the selected object.
 fn scene() -> (Scene, View) {
     let (mut scene, view) = io::default_scene();
     let spot = scene.lights.iter().find(|(_, light)| light.slot == 3).map(|(id, _)| id).unwrap();
@@ -111,7 +111,7 @@ fn scene() -> (Scene, View) {
     (scene, view)
 }
 
-/// How many pixels differ by more than a few steps.
+/// The number of pixels that differ by more than 3 steps.
 fn apart(a: &Picture, b: &Picture) -> usize {
     let differs = |(a, b): (&[u8; 4], &[u8; 4])| (0..3).any(|i| a[i].abs_diff(b[i]) > 3);
     a.pixels().iter().zip(b.pixels()).filter(|pair| differs(*pair)).count()
@@ -157,7 +157,7 @@ fn positions_of_what_is_not_moved_keep_every_bit_in_obj() {
     assert_eq!(replaced.status.code(), Some(1), "what is read is not replaced");
 }
 
-/// The JSON and the buffer of a glTF file.
+/// Reads the JSON and the buffer of a glTF file.
 fn gltf(path: &Path) -> (Value, Vec<u8>) {
     let bytes = std::fs::read(path).unwrap();
     if path.extension().unwrap() == "gltf" {
@@ -179,7 +179,7 @@ fn whole(value: &Value) -> usize {
     usize::try_from(value.as_u64().unwrap()).unwrap()
 }
 
-/// The numbers of an accessor, after its bounds were checked.
+/// Reads the numbers of an accessor, and checks its bounds.
 fn numbers(json: &Value, buffer: &[u8], accessor: &Value) -> Vec<Vec<u32>> {
     let accessor = &json["accessors"][whole(accessor)];
     let view = &json["bufferViews"][whole(&accessor["bufferView"])];
@@ -208,7 +208,7 @@ fn an_exported_gltf_is_sound_and_has_every_position_bit_for_bit() {
         let path = folder.path().join(name);
         let exported = io::export(&path, &scene, &view, &Sources::default()).unwrap();
         assert!(exported.notes.iter().any(|note| note.contains("everywhere")));
-        // The name of a buffer beside it is escaped: the file has the plain name.
+        // The URI of the buffer is escaped; the file has the plain name.
         let (json, buffer) = if name.ends_with("gltf") {
             let bytes = std::fs::read(&path).unwrap();
             let json: Value = serde_json::from_slice(&bytes).unwrap();
@@ -236,7 +236,7 @@ fn an_exported_gltf_is_sound_and_has_every_position_bit_for_bit() {
     }
 }
 
-/// The primitives of a node and of those below it, which are not moved.
+/// The primitives of a node and its descendants, which must not have transforms.
 fn primitives<'a>(json: &'a Value, node: &'a Value) -> Vec<&'a Value> {
     let own = node.get("mesh").map(|mesh| &json["meshes"][whole(mesh)]["primitives"]);
     let children = node["children"].as_array().into_iter().flatten();
@@ -248,7 +248,7 @@ fn primitives<'a>(json: &'a Value, node: &'a Value) -> Vec<&'a Value> {
     own.into_iter().flat_map(|own| own.as_array().unwrap()).chain(below).collect()
 }
 
-/// The meshes of a node have the positions and the triangles of an object, and is sound.
+/// Checks that a node is valid, and that its meshes have the positions and triangles of an object.
 fn holds_object(json: &Value, buffer: &[u8], node: &Value, object: &Object) {
     let mesh = &object.model.mesh;
     let placement = object.placement.now().to_cols_array();
@@ -257,6 +257,7 @@ fn holds_object(json: &Value, buffer: &[u8], node: &Value, object: &Object) {
     }
     let mut found = std::collections::BTreeSet::new();
     let mut triangles = 0;
+    // Every primitive is valid: indices in range, exact bounds, normals of length 1.
     for primitive in primitives(json, node) {
         assert!(whole(&primitive["material"]) < json["materials"].as_array().unwrap().len());
         let attributes = &primitive["attributes"];
@@ -280,6 +281,7 @@ fn holds_object(json: &Value, buffer: &[u8], node: &Value, object: &Object) {
         }
         found.extend(positions);
     }
+    // Together they have all triangles, and every used position bit for bit.
     assert_eq!(triangles, mesh.triangle_count());
     let used = (0..).take(mesh.polygon_count()).flat_map(|polygon| mesh.polygon(polygon));
     let bits = |corner: &marraztu_core::scene::Corner| {

@@ -1,7 +1,7 @@
-//! The pages are true: their lists are the program's tables, their links lead to files, and every
-//! command that they show runs in a plain clone.
+//! Documentation is checked against the program: lists equal its tables, links lead to files, and
+//! every command shown runs in a fresh clone.
 //!
-//! `tools/pages.sh` runs this test with `MARRAZTU_WRITE_PAGES=1`: then the lists are written.
+//! `tools/pages.sh` sets `MARRAZTU_WRITE_PAGES=1`, with which this test writes the lists.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -14,7 +14,7 @@ use marraztu_io as io;
 use marraztu_lab::suite::SUITE;
 use tempfile::TempDir;
 
-/// Pages for people who use the program or work on it.
+/// Pages for users and contributors.
 const PAGES: &[&str] = &[
     "README.md",
     "ARCHITECTURE.md",
@@ -40,7 +40,7 @@ fn page(name: &str) -> String {
     text.unwrap_or_else(|error| panic!("{name}: {error}")).replace("\r\n", "\n")
 }
 
-/// Compares a page with what it should be, or writes it if that was asked for.
+/// Compares a page with its expected text, or writes it if requested.
 #[track_caller]
 fn holds(name: &str, expected: &str) {
     if std::env::var_os("MARRAZTU_WRITE_PAGES").is_some() {
@@ -49,7 +49,7 @@ fn holds(name: &str, expected: &str) {
     assert!(page(name) == expected, "{name} is not current: run tools/pages.sh\n{expected}");
 }
 
-/// A folder with the files that a clone has, as far as commands read them.
+/// A folder with the part of a clone that the commands read.
 fn clone() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     copy(&root().join("assets"), &folder.path().join("assets"));
@@ -69,7 +69,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// Runs a line of a shell in `folder`, with the program on the path.
+/// Runs a shell command in `folder` with the program on the path.
 fn shell(folder: &Path, line: &str) -> Output {
     let program = Path::new(env!("CARGO_BIN_EXE_marraztu"));
     let mut path = program.parent().unwrap().as_os_str().to_owned();
@@ -83,7 +83,7 @@ fn shell(folder: &Path, line: &str) -> Output {
     command.stdin(Stdio::null()).output().unwrap()
 }
 
-/// The lines of all blocks of this kind in a page; a line that ends in `\` goes on in the next.
+/// The lines of all code blocks of a kind; lines that end in `\` are joined with the next one.
 fn lines_of(kind: &str, text: &str) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let mut inside = false;
@@ -140,7 +140,7 @@ fn the_page_of_accuracy_lists_every_scene_of_the_suite() {
     holds_part("suite", &table);
 }
 
-/// Compares a part of the page of accuracy with what it should be, or writes it.
+/// Compares a generated part of docs/accuracy.md with its expected text, or writes it.
 #[track_caller]
 fn holds_part(part: &str, expected: &str) {
     let text = page("docs/accuracy.md");
@@ -247,7 +247,7 @@ fn every_mistake_of_the_mutation_tests_can_be_made_in_the_sources_as_they_are() 
 #[test]
 fn every_path_that_a_page_names_is_there() {
     let is_part = |letter: char| letter.is_alphanumeric() || "/._-".contains(letter);
-    // Pages leave out `crates/`, the `src` of a crate, and the crates that most paths are in.
+    // Pages omit `crates/`, the `src` of a crate, and the crates that most paths are in.
     let roots = ["", "src/", "crates/", "crates/core/src/", "crates/render/src/"];
     let in_crate = |path: &str| {
         let (name, rest) = path.split_once('/').unwrap_or((path, ""));
@@ -258,8 +258,8 @@ fn every_path_that_a_page_names_is_there() {
         let text = page(name);
         for quoted in text.split('`').skip(1).step_by(2) {
             let is_path = quoted.contains('/') && quoted.chars().all(is_part);
-            // A folder of the user's, a group of benchmarks, or a stand-in is no path; what a build
-            // makes need not be there yet.
+            // Skips folders of the user, groups of benchmarks and placeholders, which are not paths
+            // of the project, and build output, which may not exist yet.
             let is_made = quoted.starts_with("target/");
             if !is_path || is_made || quoted.contains("..") || quoted.contains("TARGET") {
                 continue;

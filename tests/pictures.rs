@@ -1,4 +1,4 @@
-//! Pictures of scenes so small that the right result is known.
+//! Pictures of scenes small enough that the right result is known.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 #![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small numbers")]
@@ -27,7 +27,7 @@ use marraztu_render::{EffectUse, Renderer};
 const FIRST: ObjectId = ObjectId(10);
 const SECOND: ObjectId = ObjectId(11);
 
-/// The bulb's mark would stand in the picture.
+/// Hides marks; the bulb's would cover part of the picture.
 fn without_marks(view: View) -> View {
     View { marks: false, ..view }
 }
@@ -59,7 +59,7 @@ fn every_way_of_lighting_is_the_same_to_a_step_in_both_arithmetics() {
     }
 }
 
-/// A mesh with one corner far beyond all others: what is seen of it is lit as if it were not there.
+/// A mesh with corners far away from the rest: the visible part is lit as if they were missing.
 #[test]
 fn a_stray_corner_takes_no_light_from_the_rest_in_either_arithmetic() {
     let far = [1e15_f32, 1e15, -1e15];
@@ -115,7 +115,7 @@ fn threads_and_instructions_do_not_show() {
 
 #[test]
 fn a_square_that_faces_the_camera_covers_the_pixels_that_the_lens_says() {
-    // 400 away, 45 degrees: 2 tan(22.5) 400 = 331.37 units across 100 pixels.
+    // At a distance of 400 and 45 degrees, 100 pixels show 2 tan(22.5) 400 = 331.37 units.
     let (scene, view) = scene(&[(square(), at(50.0, 0.0, 0.0, 0.0))]);
     let picture = draw(&scene, &without_marks(view), &Settings::default(), 100);
     let side = (100.0 / (800.0 * 22.5_f64.to_radians().tan()) * 100.0).round() as usize;
@@ -125,8 +125,8 @@ fn a_square_that_faces_the_camera_covers_the_pixels_that_the_lens_says() {
 #[test]
 fn a_surface_lit_by_the_sun_alone_has_the_colour_of_the_equation() {
     let (mut scene, view) = scene(&[(square(), at(50.0, 0.0, 0.0, 0.0))]);
-    // The ground, seen from above by a camera at (0, 0, 400): the square lies in y = 0 and is
-    // turned to face up and towards the camera by 45 degrees.
+    // Ground seen obliquely by a camera at (0, 0, 400): the square is turned by 45 degrees, to face
+    // up and towards the camera.
     edit(&mut scene, FIRST, |object| {
         let turn =
             DMat4::from_rotation_x(-45_f64.to_radians()) * DMat4::from_scale(DVec3::splat(50.0));
@@ -137,8 +137,8 @@ fn a_surface_lit_by_the_sun_alone_has_the_colour_of_the_equation() {
         switch(&mut scene, slot, false);
     }
     let picture = draw(&scene, &without_marks(view), &Settings::default(), 99);
-    // N.L = cos 45, L straight up; V along +Z at the middle: R = 2 (N.L) N - L = (0, 0, 1), R.V =
-    // 1.
+    // N.L = cos 45 with L straight up. At the centre V is along +Z, R = 2 (N.L) N - L = (0, 0, 1),
+    // and R.V = 1.
     let half = 0.5_f64.sqrt();
     let expected =
         [0.54, 0.89, 0.63].map(|kd: f64| ((kd * half + 0.316_228).min(1.0) * 255.0).round());
@@ -172,7 +172,7 @@ fn back_faces_are_left_out_or_red_or_lit() {
         object.sides = Sides::One;
         object.placement = object.placement.replaced(at(50.0, 0.0, 0.0, 0.0));
     });
-    // The object's own spot turned with it: without it, front and turned back look alike.
+    // The object's own spot turned with it. Without the spot, front and turned back look alike.
     switch(&mut scene, 3, false);
     let front = draw(&scene, &view, &settings, 50).pixel(25, 25);
     edit(&mut scene, FIRST, |object| {
@@ -184,7 +184,7 @@ fn back_faces_are_left_out_or_red_or_lit() {
     assert_ne!(lit, scene.background.opaque());
 }
 
-/// A waved sheet of 80,000 triangles that faces +Z, and perhaps one triangle more.
+/// A wavy sheet of 80,000 triangles that faces +Z, optionally with one more triangle.
 fn fine_sheet(another: Option<[[f32; 3]; 3]>) -> Shared<Model> {
     const SIDE: u32 = 200;
     let mut positions = Vec::new();
@@ -209,7 +209,7 @@ fn fine_sheet(another: Option<[[f32; 3]; 3]>) -> Shared<Model> {
 #[test]
 fn pixels_that_show_a_triangle_each_have_the_colors_of_triangles_on_many_pixels() {
     let place = at(60.0, 0.0, 0.0, 0.0);
-    // A floor that reaches behind the camera. With it, vertices are lit when they are drawn.
+    // A floor that reaches behind the camera makes the renderer light vertices while drawing.
     let floor = [[-90.0, -0.9, 30.0], [90.0, -0.9, 30.0], [0.0, -0.9, -5.0]];
     for (light, floor) in [(LightAt::Pixel, Some(floor)), (LightAt::Vertex, None)] {
         let (mut scene, view) = scene(&[(fine_sheet(floor), place)]);
@@ -222,7 +222,7 @@ fn pixels_that_show_a_triangle_each_have_the_colors_of_triangles_on_many_pixels(
                 object.placement = object.placement.replaced(place);
             });
             let front = draw(&scene, &view, &settings, 200);
-            // Where back faces would be red, triangles are listed with slots.
+            // With red back faces, triangles are listed with slots.
             let red = View { back_faces: true, ..view.clone() };
             assert!(front == draw(&scene, &red, &settings, 200), "{light:?} {normals:?}");
             edit(&mut scene, FIRST, |object| object.sides = Sides::Two);
@@ -271,7 +271,7 @@ fn nearer_surfaces_hide_farther_ones_in_any_order() {
 
 #[test]
 fn a_wall_looks_the_same_whether_or_not_there_is_something_behind_it() {
-    // If a triangle is alone in a tile, what is seen at its pixels is known without asking.
+    // A triangle that fills a block alone is recorded as a whole, without an entry per pixel.
     let wall = (square(), at(400.0, 3.0, -7.0, 0.0));
     let (alone, view) = scene(std::slice::from_ref(&wall));
     let (both, _) = scene(&[wall, (ball(6), at(100.0, 0.0, 0.0, -300.0))]);
@@ -308,8 +308,8 @@ fn a_renderer_that_has_drawn_other_pictures_draws_the_same() {
     }
 }
 
-/// Triangles and squares between the points of a small grid: many cut through each other, many fall
-/// together.
+/// Random triangles and quads between the points of a small grid, with many intersections and
+/// coincident faces.
 fn heap() -> Shared<Model> {
     let mut rng = Rng::new(1);
     let mut next = |bound: u64| rng.below(bound) as u32;
@@ -356,7 +356,7 @@ fn among_equal_depths_the_older_object_wins() {
 
 #[test]
 fn a_ground_that_runs_through_the_camera_is_cut_at_the_near_plane() {
-    // A floor of 1000 units, 10 below the camera: without clipping its rear corners would fold
+    // A floor of 1000 units, 10 below the camera. Without clipping its rear corners would fold
     // over.
     let floor = at(1000.0, 0.0, -10.0, 400.0) * DMat4::from_rotation_x(-90_f64.to_radians());
     let (scene, view) = scene(&[(square(), floor)]);
@@ -376,7 +376,7 @@ fn edges_are_the_outlines_of_polygons_that_face_the_camera() {
     let picture = draw(&scene, &view, &Settings::default(), 101);
     let colored = |color: [u8; 4]| picture.pixels().iter().filter(|pixel| **pixel == color).count();
     let front = colored([1, 200, 3, 255]);
-    // The front square alone faces a camera in front of its middle: four sides of some 34 pixels.
+    // Only the front square faces a camera in front of its centre: four sides of about 34 pixels.
     let side = 100.0 / (700.0 * 22.5_f64.to_radians().tan()) * 101.0;
     assert!((front as f64 - 4.0 * side).abs() <= 6.0, "{front} for {}", 4.0 * side);
     assert_eq!(colored(Color::BACK_FACE.opaque()), 0);
@@ -400,7 +400,7 @@ fn one_polygon_is_shown_alone_or_with_the_earlier_ones() {
         let picture = draw(&scene, &view, &Settings::default(), 64);
         covered(&picture, &scene).iter().filter(|seen| **seen).count()
     };
-    // Polygon 0 is the back of the cube, polygon 1 its front; 2 is the bottom, seen from inside.
+    // Polygon 0 is the cube's back, 1 its front, and 2 the bottom, seen from inside.
     assert!(count(1, false) > count(0, false));
     assert_eq!(count(1, true), count(1, false), "the front hides the back");
     assert!(count(2, true) > count(2, false));

@@ -1,5 +1,5 @@
-//! Pictures with several samples per pixel, compared with pictures with one sample at each
-//! position, and with pictures that are eight times as large.
+//! Pictures with several samples per pixel, compared with one-sample pictures at each sample
+//! position and with pictures eight times as large.
 
 #![expect(clippy::cast_possible_truncation, reason = "small numbers")]
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
@@ -27,7 +27,7 @@ use marraztu_render::screen::coverage::Snapped;
 
 const SIDE: usize = 128;
 
-/// The places of samples as Vulkan's specification has them, in pixels from the upper left corner.
+/// The sample positions of the Vulkan specification, in pixels from the upper left corner.
 const FOUR: [[f64; 2]; 4] = [[0.375, 0.125], [0.875, 0.375], [0.125, 0.625], [0.625, 0.875]];
 const SIXTEEN: [[f64; 2]; 16] = [
     [0.5625, 0.5625],
@@ -59,7 +59,7 @@ fn places(samples: Samples) -> Vec<[f64; 2]> {
     }
 }
 
-/// Triangles of all sizes, half of their coordinates on sixteenths of a pixel.
+/// Triangles of all sizes, with half of the coordinates on sixteenths of a pixel.
 fn scattered(count: usize, seed: u64) -> Vec<Flat> {
     let mut rng = Rng::new(seed);
     let mut random = |below: i32| rng.between(0, below - 1);
@@ -83,7 +83,7 @@ fn scattered(count: usize, seed: u64) -> Vec<Flat> {
     triangles
 }
 
-/// The triangles as they are seen from a place in a pixel.
+/// Moves triangles so that a sample position comes to the pixel centre.
 fn seen_from(triangles: &[Flat], [x, y]: [f64; 2]) -> Vec<Flat> {
     let [x, y] = [x, y].map(|place| (place * 256.0) as i32 - 128);
     let moved = |corner: Snapped| Snapped { x: corner.x - x, y: corner.y - y };
@@ -97,7 +97,8 @@ fn drawn(triangles: &[Flat], view: impl Fn(View) -> View, settings: &Settings) -
     Renderer::default().render(&plan).clone()
 }
 
-/// Wants each byte of a picture to be the mean of some pixels, with halves to either side.
+/// Checks that each byte of a picture is the rounded mean of some pixels; halves may round either
+/// way.
 #[track_caller]
 fn wants_means(picture: &Picture, pixels: &[Vec<[u8; 4]>], what: &str) {
     assert_eq!(picture.pixels().len(), pixels.len());
@@ -111,7 +112,7 @@ fn wants_means(picture: &Picture, pixels: &[Vec<[u8; 4]>], what: &str) {
     }
 }
 
-/// Sum by sum against one picture for each place, drawn with all corners moved the other way.
+/// Compares sums with one picture per sample position, with all corners moved the other way.
 #[test]
 fn a_pixel_is_the_mean_of_its_samples() {
     let with_edges = |view: View| View { edges_over_fill: true, ..view };
@@ -133,8 +134,8 @@ fn a_pixel_is_the_mean_of_its_samples() {
     }
 }
 
-/// Triangles with a normal and a place on a texture at each corner, lit by a sun alone: what is
-/// seen of them depends on where in them it is looked, and on nothing else.
+/// Triangles with a normal and a texture coordinate at each corner, lit by a sun alone: their light
+/// depends only on the position within the triangle.
 fn shiny(triangles: &[Flat], side: usize) -> (Scene, View) {
     let (mut scene, view) = flat::scene(&[triangles.to_vec()], side);
     let mut rng = Rng::new(5);
@@ -144,6 +145,7 @@ fn shiny(triangles: &[Flat], side: usize) -> (Scene, View) {
         uvs: vec![[0.0, 0.0], [2.0, 0.0], [0.0, 3.0]],
         ..MeshSource::default()
     };
+    // Random normals and repeated texture coordinates, so each position has its own light.
     for triangle in triangles {
         for (corner, distance) in triangle.corners.into_iter().zip(triangle.distances) {
             let i = source.positions.len() as u32;
@@ -188,7 +190,7 @@ fn rendered((scene, view): &(Scene, View), settings: &Settings, side: usize) -> 
     draw(scene, view, settings, side)
 }
 
-/// The pixels of a picture that is eight times as large which lie in each of a small one.
+/// Groups the pixels of a picture eight times as large by the pixel of the small one.
 fn in_boxes(large: &Picture, side: usize) -> Vec<Vec<[u8; 4]>> {
     let of = |i: usize| {
         let place = move |k: usize| (i % side * 8 + k % 8, i / side * 8 + k / 8);
@@ -197,7 +199,7 @@ fn in_boxes(large: &Picture, side: usize) -> Vec<Vec<[u8; 4]>> {
     (0..side * side).map(of).collect()
 }
 
-/// Sum by sum, as above; and for the grid of sixty-four against the pixels of a larger picture.
+/// Compares sums as above, and the grid of 64 samples also with the pixels of a larger picture.
 #[test]
 fn each_sample_is_lit_at_its_own_position() {
     let with_edges = |view: View| View { edges_over_fill: true, ..view };
@@ -225,7 +227,7 @@ fn each_sample_is_lit_at_its_own_position() {
             assert!(apart > 500, "light is evaluated once a pixel: but for {apart}");
         }
     }
-    // Without lines, which are a pixel wide whatever its size.
+    // Without lines, which are one pixel wide at any size.
     let triangles = scattered(60, 11);
     let larger = |corner: Snapped| Snapped { x: 8 * corner.x, y: 8 * corner.y };
     let large: Vec<Flat> =
@@ -236,14 +238,14 @@ fn each_sample_is_lit_at_its_own_position() {
     wants_means(&small, &in_boxes(&large, SIDE), "eight times as large");
 }
 
-/// In perspective corners of the larger picture are snapped eight times as finely, so that samples
-/// next to an edge may show its other side: at most 4 steps at a pixel, and 0.05 of a step on the
-/// whole. If one triangle is seen, at most one.
+/// In perspective, the larger picture snaps corners eight times as finely, so samples next to an
+/// edge may show its other side: up to 4 steps per pixel, and 0.05 steps RMS. Pixels that show one
+/// triangle differ by at most one step.
 #[test]
 fn sixty_four_lit_samples_are_the_mean_of_a_picture_eight_times_as_large() {
     const SMALL: usize = 48;
     let leaning = at(60.0, 20.0, 8.0, 20.0) * DMat4::from_rotation_y(0.7);
-    // Something of it is behind the observer.
+    // Part of this square is behind the observer.
     let cut = at(40.0, -8.0, -20.0, 390.0) * DMat4::from_rotation_x(-1.2);
     let models = [(square(), leaning), (ball(5), at(50.0, -30.0, 10.0, 60.0)), (square(), cut)];
     let (scene, view) = scene(&models);
@@ -268,7 +270,7 @@ fn sixty_four_lit_samples_are_the_mean_of_a_picture_eight_times_as_large() {
             for channel in 0..3 {
                 let mean = all.iter().map(|it| f64::from(it[channel])).sum::<f64>() / 64.0;
                 let off = (f64::from(pixel[channel]) - mean).abs();
-                // Half a step is rounding.
+                // Half a step is allowed for rounding.
                 let most = if alone { 1.0 } else { 4.0 };
                 assert!(off <= most + 0.5, "{arithmetic:?} {i}: {} for {mean}", pixel[channel]);
                 squares += (off - 0.5).max(0.0).powi(2);
@@ -279,8 +281,8 @@ fn sixty_four_lit_samples_are_the_mean_of_a_picture_eight_times_as_large() {
     }
 }
 
-/// A cone without falloff ends at once: a pixel on its border is as bright as the part of its
-/// samples that lie in it. Two of 64 may be rounded to the other side.
+/// A cone without falloff has a sharp border: a pixel on it is as bright as the share of its
+/// samples inside. Rounding may put two of 64 on the other side.
 #[test]
 fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
     const SMALL: usize = 48;
@@ -309,7 +311,7 @@ fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
         let mut border = 0;
         for (i, (pixel, all)) in small.pixels().iter().zip(&large).enumerate() {
             let lit = all.iter().filter(|it| it[0] > 0).count();
-            // All of the pixel's samples are of the square.
+            // Only pixels with all samples on the square.
             if all.iter().any(|it| *it == scene.background.opaque()) {
                 continue;
             }
@@ -322,8 +324,8 @@ fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
     }
 }
 
-/// On a stage all of these put every corner where it belongs, so what is lit there is the same but
-/// for the rounding of numbers.
+/// On the test stage these choices place every corner exactly, so lit samples are equal apart from
+/// rounding.
 #[test]
 fn finer_and_coarser_corners_light_samples_alike_if_both_are_exact() {
     let (scene, view) = shiny(&scattered(40, 31), SIDE);
@@ -340,8 +342,8 @@ fn finer_and_coarser_corners_light_samples_alike_if_both_are_exact() {
     }
 }
 
-/// Where colours change with primitives alone, each sample shows the same whether it is lit or not:
-/// by every way of bringing things onto the screen, lines among them, and what is cut.
+/// If colours depend on primitives only, lit and unlit samples show the same, with every choice
+/// that places primitives on the screen, and with lines and clipped triangles.
 #[test]
 fn lit_samples_see_the_primitives_that_others_see() {
     let leaning = at(60.0, 20.0, 8.0, 20.0) * DMat4::from_rotation_y(0.7);
@@ -367,9 +369,9 @@ fn lit_samples_see_the_primitives_that_others_see() {
             let lit = Settings { light: LightAt::Sample, ..others };
             let [others, lit] = [others, lit].map(|settings| draw(&scene, &view, &settings, 80));
             let pairs = others.pixels().as_flattened().iter().zip(lit.pixels().as_flattened());
-            // A mean half-way between two bytes may be rounded either way.
+            // A mean half-way between two bytes may round either way.
             let apart = pairs.filter(|(a, b)| a.abs_diff(**b) > 1).count();
-            // Edge functions in f32 round otherwise if the triangle is moved instead of the sample.
+            // f32 edge functions round differently if the triangle moves instead of the sample.
             let allowed = if choice.word == "f32-edges" { 40 } else { 0 };
             assert!(apart <= allowed, "{key} {}: {apart} bytes", choice.word);
             let mixed = |pixel: &&[u8; 4]| pixel[2] != 0 && pixel[2] != 255;
@@ -408,7 +410,7 @@ fn lit_samples_are_drawn_again_given_up_and_picked_as_others_are() {
     let seen = picked(&mut other);
     assert_eq!(picked(&mut renderer), seen);
     assert_eq!(renderer.primitives(), other.primitives());
-    // A look, drawn again in the tiles that it reaches.
+    // A new material, redrawn in the tiles that show the object.
     edit(&mut scene, ObjectId(10), |object| {
         object.material = MaterialChoice::Preset(marraztu_core::scene::PresetId::EMERALD);
     });
@@ -416,7 +418,7 @@ fn lit_samples_are_drawn_again_given_up_and_picked_as_others_are() {
     let changes = renderer.redraw(&planned(&scene, LightAt::Sample), &|| true).unwrap();
     assert!(changes.tiles() > 0 && changes.tiles() < changes.tiles_in_all());
     assert!(*renderer.picture() == wanted);
-    // Whenever it is given up, what is picked is of the last picture, and the next one is right.
+    // After any cancelled redraw, picking uses the last picture, and the next redraw is right.
     edit(&mut scene, ObjectId(10), |object| {
         object.placement = Tracked::new(at(50.0, 0.0, 0.0, 30.0));
     });
@@ -453,7 +455,7 @@ fn lit_samples_are_the_same_on_all_instructions_and_by_any_number_of_threads() {
     }
 }
 
-/// All pixels around one of a picture.
+/// The indices of a pixel and its neighbours.
 fn around(i: usize, side: usize) -> impl Iterator<Item = usize> {
     let (x, y) = (i % side, i / side);
     let near = move |i: usize| i.saturating_sub(1)..(i + 2).min(side);
@@ -484,7 +486,7 @@ fn away_from_edges_a_picture_is_the_same_with_any_number_of_samples() {
     }
 }
 
-/// A fan of triangles thinner than a pixel, with colours from 80 to 160 at its corners.
+/// A fan of triangles thinner than a pixel, with corner colours from 80 to 160.
 fn fan() -> (Scene, View) {
     let mut source = MeshSource {
         parts: vec![Part { name: "fan".to_owned(), material: None }],
@@ -552,8 +554,8 @@ fn the_more_samples_the_nearer_to_the_reference() {
     assert!(one > 1.8 * four && four > 1.8 * sixteen, "{one} {four} {sixteen}");
 }
 
-/// Sum by sum against one picture for each of the 256 positions, drawn with all corners moved the
-/// other way: in whole subpixels, so that the mean is exact.
+/// Compares sums with one picture for each of the 256 positions, with all corners moved the other
+/// way by whole subpixels, which keeps the mean exact.
 #[test]
 fn the_reference_of_samples_is_the_mean_of_256_positions() {
     let triangles = scattered(60, 256);
@@ -575,7 +577,7 @@ fn the_reference_of_samples_is_the_mean_of_256_positions() {
 
 #[test]
 fn picking_takes_the_polygon_that_most_samples_show() {
-    // The right border of the square stands a quarter, then three quarters into a pixel.
+    // The right border of the square is 1/4, then 3/4 of a pixel into its pixel.
     for (part, seen) in [(0.25, false), (0.75, true)] {
         let border = Snapped { x: 64 * 256 + (part * 256.0) as i32, y: 0 };
         let below = Snapped { y: 128 * 256, ..border };

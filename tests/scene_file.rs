@@ -1,4 +1,4 @@
-//! Scene files: a saved scene opens as it was, and nothing is lost if it cannot be saved.
+//! Scene files: a saved scene opens unchanged, and a failed save loses nothing.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -32,7 +32,7 @@ use proptest::prelude::*;
 const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
                     g a\nf 4 3 2 1\nf 5 6 7 8\ng b\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
 
-/// A folder with a model `models/cube.obj` and a picture `chess.png`.
+/// A folder with the model `models/cube.obj` and the picture `chess.png`.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("models")).unwrap();
@@ -46,10 +46,12 @@ fn insert(scene: &mut Scene, at: usize, item: Item) {
     Command::Insert { at, item }.apply(scene).unwrap();
 }
 
-/// A scene in which nothing is as it is at first.
+/// A scene without default values.
 fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     let [a, b, c, d] = numbers;
     let (mut scene, _) = default_scene();
+    // An object with odd loading options, texture, placement and name, and a copy with other
+    // choices.
     let options = LoadOptions {
         up: UpAxis::Z,
         scale: Scale::new(2.5).unwrap(),
@@ -92,6 +94,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     insert(&mut scene, 0, Item::Object(ObjectId(20), Box::new(object)));
     insert(&mut scene, 3, Item::Object(ObjectId(21), Box::new(second)));
 
+    // A camera that orbits the object.
     let axes = math::rotation(math::unit(DVec3::new(1.0, 2.0, 3.0)).unwrap(), a);
     let pose = Pose {
         eye: DVec3::new(b, c, d),
@@ -108,6 +111,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     };
     insert(&mut scene, 0, Item::Camera(CameraId(22), Box::new(camera)));
 
+    // One light of each kind, with each kind of owner.
     let direction = math::unit(DVec3::new(a, b, 1.0)).unwrap();
     let aim = Tracked::new(Aim { position: DVec3::new(a, b, c), direction });
     let bulb = LightKind::Bulb {
@@ -131,6 +135,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     scene.background = Color([10, 11, 12]);
     scene.next_id = 99;
 
+    // A view and settings without any default.
     let view = View {
         exposure: 0.75,
         subject: Subject::Light,
@@ -182,7 +187,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     (scene, view, settings)
 }
 
-/// The scene without what could be undone.
+/// The scene without its undo stacks.
 fn without_stacks(scene: &Scene) -> Scene {
     let mut plain = scene.clone();
     for (id, object) in scene.objects.iter() {
@@ -227,7 +232,7 @@ proptest! {
     }
 }
 
-/// The text of the first scene, with one thing in it changed, opened.
+/// Opens the first scene's text with one replacement.
 fn changed(from: &str, to: &str) -> Result<marraztu_io::Opened, SceneFileError> {
     let folder = folder();
     let (scene, view) = default_scene();
@@ -320,7 +325,7 @@ fn text_that_cannot_be_parsed_is_refused_with_its_position_in_plain_words() {
     assert_eq!(wrong, [""; 0]);
 }
 
-/// Words of the parser and of Rust are of no use to a person.
+/// Users cannot interpret messages of the parser or of Rust.
 #[test]
 fn no_error_speaks_of_the_parser() {
     let folder = folder();
@@ -331,9 +336,11 @@ fn no_error_speaks_of_the_parser() {
         std::fs::write(&path, text).unwrap();
         open(&path, &Progress::new()).err().map(|error| error.to_string())
     };
+    // Deep nesting must not overflow the parser's stack.
     let nested = format!("(a: {}", "[".repeat(5000));
     let mut refusals: Vec<String> = refusal(&nested).into_iter().collect();
     assert!(refusals[0].contains("nested too deeply"), "{refusals:?}");
+    // Replaces or deletes a character, or truncates the text, at every 17th position.
     let places: Vec<usize> = whole.char_indices().map(|(place, _)| place).collect();
     for place in places.iter().step_by(17) {
         for change in ["", "'", "?", "\"", "(", "_", "/*"] {
@@ -527,7 +534,7 @@ fn a_scene_opens_without_its_files_and_is_saved_as_it_was() {
 
     let again = to_text(&path, &opened.scene, &opened.view, &opened.settings).unwrap();
     assert_eq!(again, text, "nothing of the scene is lost");
-    // From another folder, the path leads to the same file.
+    // Saved in another folder, the path still leads to the same file.
     let elsewhere = tempfile::tempdir().unwrap();
     let moved = elsewhere.path().join("b.marraztu");
     save(&moved, &opened.scene, &opened.view, &opened.settings).unwrap();
@@ -539,7 +546,7 @@ fn a_scene_opens_without_its_files_and_is_saved_as_it_was() {
     assert_eq!(mesh(&opened.scene), mesh(&scene));
 }
 
-/// The scene of a text beside the folder's files.
+/// Opens a scene text next to the folder's files.
 fn opened_text(folder: &Path, text: &str) -> marraztu_io::Opened {
     let path = folder.join("a.marraztu");
     std::fs::write(&path, text).unwrap();
@@ -625,7 +632,7 @@ fn objects_of_one_file_keep_their_crease_angles() {
     assert_eq!([20, 21].map(|id| model(id).options.crease.get()), [180.0, 90.0]);
     assert!(model(20).shares_file_with(model(21)), "the file is read once");
 
-    // Files from before there were creases have the default.
+    // Files from before the crease setting get the default.
     let text = std::fs::read_to_string(&path).unwrap();
     std::fs::write(&path, text.replace("crease: 180.0,", "").replace("crease: 90.0,", "")).unwrap();
     let opened = open(&path, &Progress::new()).unwrap().scene;

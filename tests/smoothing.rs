@@ -1,7 +1,7 @@
-//! Which polygons share the normals that are computed: creases and smoothing groups.
+//! Sharing of computed normals between polygons: creases and smoothing groups.
 //!
-//! Catches: cubes like pillows, facetted cylinders, groups that are read over or end with a chunk,
-//! faces that are joined across a corner, work that grows with the square of the faces at a vertex.
+//! Catches: cubes shaded like pillows, faceted cylinders, groups that are ignored or end with a
+//! chunk, faces joined across a corner, work quadratic in the faces at a vertex.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -31,7 +31,7 @@ fn computed(mesh: &Mesh, polygon: usize) -> Vec<[f32; 3]> {
     corners.map(|corner| mesh.points()[corner.smooth as usize].normal).collect()
 }
 
-/// The polygons all of whose corners have the polygon's own normal.
+/// The polygons with the face normal at every corner.
 fn flat(mesh: &Mesh) -> Vec<usize> {
     let own = |polygon: &usize| {
         let normal = dvec3(mesh.polygon_normals()[*polygon]);
@@ -43,7 +43,7 @@ fn flat(mesh: &Mesh) -> Vec<usize> {
 const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
     f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
-/// The same cube of triangles, turned about an axis askew, with numbers of six decimals.
+/// The same triangulated cube, rotated about an oblique axis, with six decimals.
 fn turned_cube() -> String {
     let turn = glam::DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize_or_zero(), 1.0);
     let mut text = String::new();
@@ -59,7 +59,7 @@ fn turned_cube() -> String {
     text
 }
 
-/// Around +Y from y = 0 to y = 1: `sides` quads, then the top and the bottom.
+/// A cylinder around +Y from y = 0 to y = 1: `sides` quads, then the top and the bottom.
 fn cylinder(sides: u32) -> String {
     let mut text = String::new();
     for i in 0..sides {
@@ -128,7 +128,7 @@ fn a_cylinder_is_smooth_around_and_sharp_at_its_caps() {
 #[test]
 fn a_fine_mesh_has_the_same_points_at_any_crease_above_its_angles() {
     let ball = {
-        // A torus: smooth everywhere, closed, its faces in no order.
+        // A torus: closed and smooth everywhere, with faces in mixed order.
         let (rings, sides) = (60_u32, 40_u32);
         let mut text = String::new();
         for i in 0..rings {
@@ -191,7 +191,7 @@ fn turned_polygons_have_the_opposite_normals() {
     }
 }
 
-/// A row of squares in steps: square i has the group `groups[i]`.
+/// A staircase of squares: square i is in the group `groups[i]`.
 fn stairs(groups: &[&str]) -> String {
     let mut text = String::from("v 0 0 0\nv 0 0 1\n");
     for (i, group) in (1..).zip(groups) {
@@ -215,7 +215,7 @@ fn faces_of_one_group_are_smooth_and_faces_without_one_are_flat() {
     let mesh = &loaded.model.mesh;
     let right = vec![0, 1, 1, 2, 2, 0, 0, 1, 0, 0];
     assert_eq!(mesh.smoothing(), &Smoothing::Groups(right));
-    // The first is before any group; the eighth has neighbours of none.
+    // The first square comes before any group, the eighth has neighbours without a group.
     assert_eq!(flat(mesh), [0, 5, 6, 7, 8, 9]);
     // Squares 1 and 2 share vertices 4 and 5, at a right angle.
     let half = std::f32::consts::FRAC_1_SQRT_2;
@@ -268,7 +268,7 @@ fn normals_of_the_file_are_used_where_they_are_and_the_others_are_computed() {
     assert!(mesh.has_file_normals() && !mesh.has_file_normals_only());
 }
 
-/// Bumpy ground of squares, and groups of faces that hold over hundreds of lines.
+/// Bumpy ground of squares, optionally with smoothing groups that last for hundreds of lines.
 fn ground(side: u32, groups: bool) -> String {
     let mut text = String::new();
     for i in 0..side * side {
@@ -340,7 +340,7 @@ fn a_hundred_thousand_faces_around_one_vertex_or_edge_take_no_longer_than_separa
     assert_eq!(fan.points().len(), count as usize + 1);
     let tip = dvec3(fan.points()[0].normal);
     assert!(tip.distance(DVec3::Y) < 1e-4, "{tip}");
-    // All pages are joined, and their normals cancel out.
+    // All pages are joined, so their normals cancel, and the face normals remain.
     let pages = mesh(&book, 1.0);
     assert_eq!(flat(&pages).len(), count as usize);
     assert_eq!(pages.points().len(), 3 * count as usize);
@@ -370,7 +370,7 @@ fn another_crease_gives_the_mesh_that_loading_with_it_gives() {
     assert_eq!(groups.with_crease(Crease::SMOOTH).mesh, groups.mesh);
 }
 
-/// The normal of each corner by definition, without regard to time.
+/// The normal of each corner straight from the definition, at any cost in time.
 fn by_definition(mesh: &Mesh, crease: f64) -> Vec<Vec<DVec3>> {
     let count = mesh.polygon_count();
     let vertices: Vec<Vec<u32>> = (0..u32::try_from(count).unwrap())
@@ -381,7 +381,7 @@ fn by_definition(mesh: &Mesh, crease: f64) -> Vec<Vec<DVec3>> {
         sum.try_normalize()
     };
     let normals: Vec<Option<DVec3>> = vertices.iter().map(normal).collect();
-    // The vertices next to one in a polygon.
+    // The neighbours of a vertex along a polygon's outline.
     let beside = |polygon: usize, vertex: u32| -> Vec<u32> {
         let own = &vertices[polygon];
         let n = own.len();
@@ -420,8 +420,7 @@ fn by_definition(mesh: &Mesh, crease: f64) -> Vec<Vec<DVec3>> {
 }
 
 proptest! {
-    /// Faces of any shape over a few vertices: many around each, many at each edge, some without
-    /// area.
+    /// Faces of any shape over a few vertices: many per vertex, many per edge, some without area.
     #[test]
     fn normals_are_as_defined(
         places in prop::collection::vec([0..4_i32, 0..4_i32, 0..4_i32], 4..9),
@@ -443,7 +442,7 @@ proptest! {
         let mesh = mesh(&text, crease);
         for (polygon, right) in by_definition(&mesh, crease).into_iter().enumerate() {
             for (normal, right) in computed(&mesh, polygon).into_iter().zip(right) {
-                // A face without area has no normal of its own.
+                // A face without area has no normal.
                 prop_assert!(
                     right == DVec3::ZERO || dvec3(normal).distance(right) < 1e-6,
                     "polygon {polygon}: {normal:?} is not {right}\n{text}"

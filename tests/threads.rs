@@ -1,9 +1,8 @@
-//! Pictures drawn by 1 to 64 threads: none hangs, and all are the same.
+//! Pictures on 1 to 64 threads: none hangs, and all have the same bytes.
 //!
-//! A hang shows only in some of the runs, and only with three threads or more, so each test repeats
-//! its pictures a thousand times, on new meshes, whose normals, edges and orders are all still to
-//! be computed. A test that does not end in time prints the stacks of all threads (if `gdb` is
-//! installed) and fails.
+//! A hang occurs in some runs only, and with three threads or more. Each test therefore repeats its
+//! pictures a thousand times, on fresh meshes without computed normals, edges and orders. A test
+//! that exceeds its time prints the stacks of all threads (if `gdb` is installed) and fails.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -25,13 +24,13 @@ use marraztu_render::plan_frame;
 
 use common::{ball, edit, scene};
 
-/// How long a test may take: many times what it takes on a slow machine.
+/// The time limit of a test: many times the duration on a slow machine.
 const LIMIT: Duration = Duration::from_secs(600);
 
-/// How often each number of threads draws.
+/// The number of pictures for each number of threads.
 const RUNS: usize = 1000;
 
-/// Fails with the stacks of all threads unless it is dropped in time.
+/// Prints the stacks of all threads and fails unless it is dropped in time.
 struct Watchdog(Arc<AtomicBool>);
 
 impl Watchdog {
@@ -66,7 +65,7 @@ impl Drop for Watchdog {
     }
 }
 
-/// The ways of drawing that compute different parts of a mesh.
+/// Combinations of view and settings that compute different parts of a mesh.
 fn ways() -> Vec<(View, Settings, Sides)> {
     let (_, view) = scene(&[]);
     let mut ways = Vec::new();
@@ -96,7 +95,7 @@ fn ways() -> Vec<(View, Settings, Sides)> {
     ways
 }
 
-/// Two balls whose meshes are new: nothing about them has been computed.
+/// Two balls with fresh meshes, for which nothing has been computed.
 fn new_scene(sides: Sides) -> Scene {
     let near = DMat4::from_translation(glam::dvec3(0.0, 0.0, 340.0))
         * DMat4::from_scale(glam::DVec3::splat(20.0));
@@ -154,7 +153,7 @@ fn pictures_drawn_at_the_same_time_by_the_same_threads_do_not_wait_for_each_othe
     }
 }
 
-/// Each of these is a new process, in which everything is computed anew.
+/// Each run is a new process, which computes everything again.
 #[test]
 fn a_thousand_runs_of_the_program_come_to_their_end() {
     let _watchdog = Watchdog::new("a thousand runs of the program");

@@ -1,4 +1,4 @@
-//! Transparent surfaces: colour over colour, pixel by pixel, whatever the order of objects and
+//! Transparent surfaces: alpha blending per pixel, independent of the order of objects and
 //! triangles.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
@@ -16,7 +16,7 @@ use marraztu_render::{Renderer, plan_frame};
 
 const SIDE: usize = 64;
 
-/// A colour that does not depend on any light but the ambient one.
+/// A material with ambient light only, so other lights do not change its colour.
 fn plain(color: [f64; 3]) -> MaterialChoice {
     let material = Material {
         ambient: color,
@@ -28,7 +28,7 @@ fn plain(color: [f64; 3]) -> MaterialChoice {
     MaterialChoice::Own(material)
 }
 
-/// Squares that face the eye, the first the oldest: z, colour and opacity.
+/// Squares that face the eye, oldest first: z, colour and opacity.
 fn sheets(all: &[(f64, [f64; 3], f64)]) -> (Scene, View) {
     let models: Vec<_> = all.iter().map(|(z, ..)| (square(), at(900.0, 0.0, 0.0, *z))).collect();
     let (mut scene, view) = scene(&models);
@@ -42,7 +42,7 @@ fn sheets(all: &[(f64, [f64; 3], f64)]) -> (Scene, View) {
     (scene, view)
 }
 
-/// The bytes of layers over a background, each a colour and its opacity, the farthest first.
+/// Blends layers of colour and opacity over a background, farthest first, into bytes.
 fn over(background: [u8; 3], layers: &[([f64; 3], f64)]) -> [u8; 4] {
     let channel = |i: usize| {
         let under = f64::from(background[i]);
@@ -122,7 +122,7 @@ fn sheets_that_cut_through_each_other_change_places_at_the_line_where_they_meet(
         });
     }
     let picture = draw(&scene, &view, &Settings::default(), SIDE);
-    // The first one's right side leans away from the eye.
+    // The right side of the first sheet leans away from the eye.
     let background = scene.background.0;
     let (left, right) = (
         over(background, &[(BLUE, 0.5), (RED, 0.5)]),

@@ -24,7 +24,7 @@ use marraztu_render::plan_frame;
 const FIRST: ObjectId = ObjectId(10);
 const SECOND: ObjectId = ObjectId(11);
 
-/// Light alone, which every surface sends back as it is.
+/// A matt material with an ambient colour only.
 fn matt(color: [f64; 3]) -> MaterialChoice {
     let [diffuse, specular] = [[0.0; 3]; 2];
     MaterialChoice::Own(Material {
@@ -40,26 +40,26 @@ fn unmarked(view: View) -> View {
     View { marks: false, ..view }
 }
 
-/// The primitive that each pixel of a picture shows.
+/// The primitive at each pixel of a picture.
 fn primitives(scene: &Scene, view: &View, settings: &Settings, side: usize) -> Vec<u32> {
     let mut renderer = Renderer::default();
     renderer.render(&plan_frame(&Shot::new(scene, view, settings, Size::new(side, side))));
     renderer.primitives()
 }
 
-/// How many of two pictures' pixels show something else, of those that show anything.
+/// The share of covered pixels that show different primitives.
 fn differing(a: &[u32], b: &[u32]) -> f64 {
     let covered = b.iter().filter(|seen| **seen != 0).count();
     a.iter().zip(b).filter(|(a, b)| a != b).count() as f64 / covered as f64
 }
 
-/// The largest difference of two pictures in steps of a byte.
+/// The largest difference between two pictures in byte steps.
 fn steps_apart(a: &Picture, b: &Picture) -> u8 {
     let pairs = a.pixels().as_flattened().iter().zip(b.pixels().as_flattened());
     pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
 }
 
-/// A square from -1 to 1 of `side` x `side` squares, with the whole of a texture on it.
+/// A square from -1 to 1 of `side` x `side` quads, covered by one texture.
 fn chart(side: u32) -> Shared<Model> {
     let row = side + 1;
     let at = |i: u32| [i % row, i / row].map(|i| i as f32 / side as f32);
@@ -86,7 +86,7 @@ fn chart(side: u32) -> Shared<Model> {
     )
 }
 
-/// Fields of this many texels, every second one a hole.
+/// A checkerboard with fields of this many texels, alternately opaque and holes.
 fn fields(texels: usize, wrap: Wrap) -> Shared<Texture> {
     let size = Size::new(200, 136);
     let texel = |i: usize| {
@@ -103,9 +103,8 @@ fn fields(texels: usize, wrap: Wrap) -> Shared<Texture> {
     })
 }
 
-/// Catches: holes of a block, or of a triangle, that are taken from a part of it; texels that lie
-/// elsewhere than the bounds that are read. The other coverage tests each pixel of two triangles by
-/// itself.
+/// Catches: holes of a block or a triangle judged by only a part of it; texels outside the range
+/// that is examined. The other kind of coverage tests each pixel of two triangles separately.
 #[test]
 fn what_is_known_of_the_holes_of_blocks_and_triangles_is_what_each_pixel_says() {
     let turn = DMat4::from_rotation_y(0.5) * DMat4::from_rotation_x(0.3);
@@ -129,7 +128,8 @@ fn what_is_known_of_the_holes_of_blocks_and_triangles_is_what_each_pixel_says() 
             for side in [1, 9, 60] {
                 let own = shown(side, Coverage::Exact);
                 let apart = own.iter().zip(&each).filter(|(a, b)| (**a == 0) != (**b == 0)).count();
-                // Corners are snapped to a 256th of a pixel, so borders of texels move by less.
+                // Corners are snapped to 1/256 pixel, which moves the borders of texels by less
+                // than that.
                 assert!(
                     apart * 1000 <= count,
                     "{side}, {texels}, {wrap:?}, {filter:?}: {apart} of {count}"
@@ -141,7 +141,7 @@ fn what_is_known_of_the_holes_of_blocks_and_triangles_is_what_each_pixel_says() 
 
 #[test]
 fn every_choice_of_every_axis_changes_its_lesson_or_says_why_not() {
-    // At a size at which lessons are looked at, the coarsest choice is seen.
+    // At the size of a lesson, the coarsest choice is visible.
     for axis in AXES {
         let opened = lesson_scene(axis.lesson.scene).unwrap();
         let picture = |settings: &Settings| draw(&opened.scene, &opened.view, settings, 300);
@@ -180,7 +180,7 @@ fn highlights_are_as_wrong_as_their_powers() {
     }
 }
 
-/// A floor that leans by 45 degrees, pressed to a tenth: it nearly lies, and the sun is overhead.
+/// A floor that leans by 45 degrees, flattened to a tenth: almost horizontal under an overhead sun.
 #[test]
 fn normals_transformed_by_the_objects_own_matrix_lean_by_79_degrees() {
     let press = DMat4::from_scale(DVec3::new(1.0, 0.1, 1.0))
@@ -281,7 +281,7 @@ fn far_from_the_origin_32_bits_lose_the_shape_of_things() {
     assert!(throughout > 0.02, "{throughout}");
 }
 
-/// Case 29, drawn.
+/// Hard case 29, in a picture.
 #[test]
 fn points_every_tenth_of_a_unit_leave_holes_nearer_than_97_units_and_none_beyond() {
     let pixel = |distance: f64| 2.0 * (2.0_f64.sqrt() - 1.0) * distance / 800.0;
@@ -315,7 +315,7 @@ fn rounded_rows_and_32_bit_edges_cover_every_covered_pixel_and_a_few_more() {
     for (coverage, most) in [(Coverage::ScanLines, 1.06), (Coverage::F32Edges, 1.0005)] {
         let other = seen(coverage);
         let lost = exact.iter().zip(&other).filter(|(exact, other)| **exact && !**other).count();
-        // Rounding removes at one side what it adds at the other.
+        // Rounding removes on one side what it adds on the other.
         assert!(lost as f64 <= 0.01 * count(&exact), "{coverage:?}: {lost}");
         let ratio = count(&other) / count(&exact);
         assert!((0.9995..most).contains(&ratio), "{coverage:?}: {ratio}");
@@ -336,7 +336,7 @@ fn if_surfaces_are_far_apart_every_depth_format_shows_the_same() {
     }
 }
 
-/// Two squares that face the eye about 1000 away, the newer a little nearer.
+/// Two squares that face the eye at about 1000, the newer one slightly nearer.
 #[test]
 fn a_format_tells_surfaces_apart_that_are_farther_apart_than_its_step() {
     let is_right = |apart: f64, depth| {
@@ -377,7 +377,7 @@ fn a_floor_bends_without_perspective() {
     let affine = wrong(&picture(Interpolation::Affine));
     let sixteen = wrong(&picture(Interpolation::EverySixteen));
     assert!(affine * 5 > shown, "{affine} of {shown}");
-    // Rows of this floor are all at one distance: sixteen pixels at a time lose nothing.
+    // Each row of this floor has constant distance, so interpolating sixteen pixels loses nothing.
     assert!(sixteen * 100 < shown, "{sixteen} of {shown}");
 }
 
@@ -387,7 +387,7 @@ fn seen_from_afar_a_texture_is_its_mean() {
     let row = |filter| {
         let settings = Settings { filter, ..Settings::default() };
         let picture = draw(&opened.scene, &opened.view, &settings, 200);
-        // Two rows below the far end of the floor, where a pixel covers many texels.
+        // Two rows below the floor's far end, where a pixel covers many texels.
         let first = (0..200).find(|y| picture.pixel(100, *y) != opened.scene.background.opaque());
         let y = first.unwrap() + 1;
         let spread: Vec<u8> = (95..105).map(|x| picture.pixel(x, y)[0]).collect();

@@ -1,4 +1,4 @@
-//! The program from outside: arguments, files, exit status.
+//! Runs the program as a user does: arguments, files and exit status.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -18,7 +18,7 @@ use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
 use tempfile::TempDir;
 
-/// A square of one unit on a side, its corners counter-clockwise seen from +Z, far from the origin.
+/// A unit square far from the origin, with its corners counter-clockwise as seen from +Z.
 const SQUARE: &str = "v 5 5 5\nv 6 5 5\nv 6 6 5\nv 5 6 5\nf 1 2 3 4\n";
 
 fn run(folder: &Path, arguments: &[&str]) -> Output {
@@ -30,7 +30,7 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     command.output().unwrap()
 }
 
-/// Standard output and standard error of a run that ends with `status`.
+/// Runs the program, checks its exit status, and returns standard output and standard error.
 #[track_caller]
 fn ends_with(status: i32, folder: &Path, arguments: &[&str]) -> (String, String) {
     let output = run(folder, arguments);
@@ -47,7 +47,7 @@ fn folder() -> TempDir {
     folder
 }
 
-/// The picture that `render` draws with these arguments and a small size.
+/// Returns the picture that `render` draws with these arguments at a small size.
 #[track_caller]
 fn drawn(folder: &Path, arguments: &[&str]) -> Picture {
     let mut all = vec!["render", "--out", "drawn.png", "--size", "160x120"];
@@ -151,7 +151,7 @@ fn every_option_of_the_view_changes_the_picture() {
         &["--vertex-normals"],
     ];
     for change in changes {
-        // Not `assert_ne`, which would print two pictures as numbers.
+        // `assert_ne` would print both pictures as numbers.
         assert!(drawn(folder.path(), change) != plain, "{change:?} changes nothing");
     }
     let settings =

@@ -1,4 +1,4 @@
-//! Models without a scene: how they are framed, and which options apply to them.
+//! Rendering a model without a scene: its framing, and the options that apply.
 
 use std::path::Path;
 
@@ -70,7 +70,8 @@ fn both_sides_of_an_open_surface_are_drawn_and_the_front_of_a_closed_one() {
     assert!(
         drawn(folder.path(), &["square.obj", "--from", "180,0", "--lights", "0"]) == back("two")
     );
-    // A closed surface inside out shows its far inner side from one side, its outside from two.
+    // A closed surface that is inside out: with one side drawn it shows the inside of its far wall,
+    // with two sides its outside.
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n";
     std::fs::write(folder.path().join("inside_out.obj"), text).unwrap();
     let closed = |sides| drawn(folder.path(), &["inside_out.obj", "--sides", sides]);
@@ -78,7 +79,7 @@ fn both_sides_of_an_open_surface_are_drawn_and_the_front_of_a_closed_one() {
     assert!(closed("two") != closed("one"));
 }
 
-/// The notes of `render` on standard error.
+/// Returns the notes that `render` prints on standard error.
 fn notes(folder: &Path, arguments: &[&str]) -> String {
     let all =
         [&["render", "--out", "x.png", "--size", "160x120", "--samples", "1"], arguments].concat();
@@ -162,7 +163,7 @@ fn edges_sharper_than_the_given_crease_angle_are_sharp() {
 #[test]
 fn models_without_a_scene_are_seen_from_the_side_that_is_asked_for() {
     let folder = folder();
-    // A square that faces +Z, in a box so long that the camera is far from its plane.
+    // A square that faces +Z, in a bounding box so deep that the camera is far from its plane.
     let seen = |from: &str| {
         let picture = drawn(
             folder.path(),

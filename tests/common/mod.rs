@@ -1,4 +1,4 @@
-//! Small scenes for tests, made without any file.
+//! Small scenes for tests, built without files.
 
 #![allow(dead_code, reason = "each test uses its own part of it")]
 #![allow(clippy::cast_possible_truncation, reason = "small numbers")]
@@ -16,7 +16,7 @@ use marraztu_core::scene::{
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
 
-/// A model of polygons that name vertices.
+/// Builds a model from polygons of vertex indices.
 pub(crate) fn model(name: &str, positions: &[[f32; 3]], polygons: &[&[u32]]) -> Shared<Model> {
     model_of(
         name,
@@ -35,7 +35,7 @@ pub(crate) fn model(name: &str, positions: &[[f32; 3]], polygons: &[&[u32]]) -> 
     )
 }
 
-/// A model of a mesh.
+/// Builds a model from a mesh source.
 pub(crate) fn model_of(name: &str, source: MeshSource) -> Shared<Model> {
     Shared::new(Model {
         name: name.to_owned(),
@@ -48,7 +48,7 @@ pub(crate) fn model_of(name: &str, source: MeshSource) -> Shared<Model> {
     })
 }
 
-/// A cube from -1 to 1, its six squares seen from outside.
+/// A cube from -1 to 1, with outward faces.
 pub(crate) fn cube() -> Shared<Model> {
     let positions: Vec<[f32; 3]> =
         (0..8).map(|i| [1, 2, 4].map(|bit| if i & bit == 0 { -1.0 } else { 1.0 })).collect();
@@ -57,13 +57,13 @@ pub(crate) fn cube() -> Shared<Model> {
     model("cube", &positions, &polygons)
 }
 
-/// A square from -1 to 1 in the plane z = 0 that faces +Z.
+/// A square from -1 to 1 in the plane z = 0, facing +Z.
 pub(crate) fn square() -> Shared<Model> {
     let positions = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
     model("square", &positions, &[&[0, 1, 2, 3]])
 }
 
-/// A ball of radius 1, of quads and of triangles at its poles.
+/// A UV sphere of radius 1: quads, and triangles at the poles.
 pub(crate) fn ball(rings: u32) -> Shared<Model> {
     let segments = 2 * rings;
     let mut positions = vec![[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]];
@@ -90,7 +90,7 @@ pub(crate) fn ball(rings: u32) -> Shared<Model> {
     model("ball", &positions, &polygons)
 }
 
-/// A camera at (0, 0, 400) that looks along -Z.
+/// A camera at (0, 0, 400), looking along -Z.
 pub(crate) fn camera() -> Camera {
     Camera {
         name: "camera 1".to_owned(),
@@ -102,7 +102,7 @@ pub(crate) fn camera() -> Camera {
     }
 }
 
-/// A scene with the five lights and these models, each placed; the first is the oldest.
+/// Builds a scene with the five lights and these models at their placements, oldest first.
 pub(crate) fn scene(models: &[(Shared<Model>, DMat4)]) -> (Scene, View) {
     let mut scene = Scene::with_camera(camera());
     let insert = |scene: &mut Scene, item| {
@@ -122,25 +122,25 @@ pub(crate) fn scene(models: &[(Shared<Model>, DMat4)]) -> (Scene, View) {
     (scene, view)
 }
 
-/// Changes an object of a scene.
+/// Edits an object of a scene.
 pub(crate) fn edit(scene: &mut Scene, id: ObjectId, change: impl FnOnce(&mut Object)) {
     let mut object = scene.objects.get(id).expect("there").clone();
     change(&mut object);
     Command::Replace(Item::Object(id, Box::new(object))).apply(scene).expect("fits");
 }
 
-/// Draws a scene.
+/// Draws a scene into a square picture.
 pub(crate) fn draw(scene: &Scene, view: &View, settings: &Settings, side: usize) -> Picture {
     let plan = plan_frame(&Shot::new(scene, view, settings, Size::new(side, side)));
     Renderer::default().render(&plan).clone()
 }
 
-/// A placement by scale and position.
+/// A placement from a uniform scale and a position.
 pub(crate) fn at(scale: f64, x: f64, y: f64, z: f64) -> DMat4 {
     DMat4::from_translation(DVec3::new(x, y, z)) * DMat4::from_scale(DVec3::splat(scale))
 }
 
-/// Pixels of a picture that are not background.
+/// Marks the pixels that differ from the background.
 pub(crate) fn covered(picture: &Picture, scene: &Scene) -> Vec<bool> {
     picture.pixels().iter().map(|pixel| *pixel != scene.background.opaque()).collect()
 }

@@ -1,4 +1,4 @@
-//! A scene like the first one, with shapes so simple that their numbers can be computed by hand.
+//! A variant of the first scene with shapes simple enough to check by hand.
 
 use glam::{DMat4, DVec3};
 use marraztu_core::base::Shared;
@@ -8,8 +8,8 @@ use marraztu_core::scene::{
     View,
 };
 
-/// Two triangles, each a part, whose vertices have their mean at (1, 2, 3), and all of whose
-/// distances from the middle of their box are 5.
+/// Two triangles, each its own part. The mean of the vertices is (1, 2, 3), and every vertex is 5
+/// from the centre of the bounding box.
 pub(crate) fn model() -> Shared<Model> {
     let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
     let part = |name: &str| Part { name: name.to_owned(), material: None };

@@ -1,6 +1,6 @@
 //! Aiming lights at points and at the selection.
 //!
-//! Catches: a spot that jumps when it is aimed, a direction to another point, a direction of NaN.
+//! Catches: a spot that jumps when it is aimed, a wrong target, a direction of NaN.
 
 use glam::DVec3;
 use marraztu_core::base::math;
@@ -45,6 +45,6 @@ fn a_light_is_aimed_at_the_selection_but_not_at_the_point_where_it_stands() {
     assert_eq!(refused, Err(Refusal::AimedAtItself));
     let command = aiming::aim_at_selection(&scene, &view, GesturePhase::First).unwrap();
     command.apply(&mut scene).unwrap();
-    // The selected object stands at the left.
+    // The selected object is on the left.
     assert!(aiming::stands(&scene, &view, id).unwrap().direction.x < -0.99);
 }

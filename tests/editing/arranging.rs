@@ -1,7 +1,7 @@
-//! Objects on the ground, in line, and back where their files have them.
+//! Dropping objects to the ground, aligning them, and moving them back to their place in the file.
 //!
-//! Catches: an object that hangs above the ground or in it, a plane on its edge that counts as
-//! ground, an object that moves along another axis, too.
+//! Catches: an object above or below the ground, a vertical plane taken for the ground, an object
+//! that also moves along another axis.
 
 use glam::{DMat4, DVec3};
 use marraztu_core::base::math::Axis;
@@ -33,7 +33,7 @@ fn an_object_comes_to_stand_on_the_ground_and_on_a_plane_that_is_one() {
     let height = scene.objects.get(ObjectId(plane)).unwrap().placement.now().w_axis.y;
     drop_to_ground(&scene, &view, first).unwrap().apply(&mut scene).unwrap();
     assert!((lowest(&scene, id) - height).abs() < 1e-9, "{height}");
-    // A plane that stands on its edge is no ground.
+    // A vertical plane does not count as ground.
     let turn = DMat4::from_rotation_x(1.0);
     let tilt = |object: &mut Object| {
         object.placement = object.placement.replaced(*object.placement.now() * turn);

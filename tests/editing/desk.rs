@@ -1,4 +1,4 @@
-//! A scene with its view, as the window holds them.
+//! A scene and its view, as the window holds them.
 
 use glam::{DMat3, DMat4, DVec3};
 use marraztu_core::base::math::Axis;
@@ -23,7 +23,7 @@ impl Desk {
         Self { scene, view }
     }
 
-    /// Applies a decided command, and returns its inverse.
+    /// Applies a command, and returns its inverse.
     pub(crate) fn perform(&mut self, command: Result<Command, Refusal>) -> Command {
         let before = self.scene.clone();
         let back = command.unwrap().apply(&mut self.scene).unwrap();
@@ -75,7 +75,7 @@ impl Desk {
         self.pose().mode_with(self.view.object)
     }
 
-    /// The position and the direction of the selected light, if it has them.
+    /// Returns position and direction of the selected light; zero if the light has no such value.
     pub(crate) fn light(&self) -> (DVec3, DVec3) {
         match &self.scene.lights.get(self.view.light.unwrap()).unwrap().kind {
             LightKind::Sun { direction } => (DVec3::ZERO, *direction.now()),
@@ -87,7 +87,7 @@ impl Desk {
         }
     }
 
-    /// How far, in radians, the camera looks past the selected object's centre.
+    /// The angle in radians between the camera's axis and the centre of the selected object.
     pub(crate) fn off_aim(&self) -> f64 {
         let pose = self.pose();
         let to_eye = pose.eye - self.object().centre(self.view.time);
@@ -95,7 +95,7 @@ impl Desk {
     }
 }
 
-/// The turn by a number of degrees about an axis, written out for each axis by itself.
+/// The rotation matrix about one axis, written out per axis independently of glam.
 pub(crate) fn turned(axis: Axis, degrees: f64) -> DMat3 {
     let (s, c) = degrees.to_radians().sin_cos();
     let rows = match axis {

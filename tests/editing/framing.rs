@@ -1,4 +1,4 @@
-//! Framing: the camera moves so that objects are visible as a whole.
+//! Framing: the camera moves until whole objects are in view.
 
 use glam::DVec3;
 use marraztu_core::base::image::Size;
@@ -18,8 +18,8 @@ fn desk() -> Desk {
 fn the_object_is_seen_from_r_through_the_sine_of_the_half_angle() {
     let mut desk = desk();
     desk.perform(framing::selection(&desk.scene, &desk.view));
-    // The box of the plate has its middle at (1, 2, 3) and corners 5 from there; 5 / sin 22.5 is
-    // 13.0656...
+    // The bounding box of the plate has its centre at (1, 2, 3) and its corners 5 from there;
+    // 5 / sin 22.5 is 13.0656...
     let distance = 13.065_629_648_763_766;
     close(desk.pose().eye, DVec3::new(-99.0, 2.0, 3.0 + distance));
     close(desk.pose().axes.z_axis, DVec3::Z);
@@ -39,7 +39,7 @@ fn models_alone_are_seen_from_the_right_and_above_with_a_margin() {
     close(desk.pose().axes.z_axis, z);
     let [x, y] = [desk.pose().axes.x_axis, desk.pose().axes.y_axis];
     assert!(x.y.abs() < 1e-12 && y.y > 0.9, "it is upright: {x} {y}");
-    // 1.05 times as far as without a margin.
+    // The margin makes the distance 1.05 times as large.
     close(desk.pose().eye, DVec3::new(-99.0, 2.0, 3.0) + z * (1.05 * 13.065_629_648_763_766));
     let lens = desk.scene.selected_camera(&desk.view).lens;
     assert!((lens.half_size - 5.5).abs() < 1e-12, "{}", lens.half_size);
@@ -107,7 +107,7 @@ fn the_sides_look_along_the_axes_of_the_world() {
 #[test]
 fn analysis_from_above_does_not_turn_the_picture() {
     for side in [Side::Top, Side::Bottom] {
-        // The centre is rarely exactly below the camera.
+        // In practice the centre is never exactly below the camera.
         for aside in [DVec3::new(0.1, 0.0, 0.1), DVec3::new(-0.1, 0.0, -0.2)] {
             let mut desk = desk();
             desk.perform(framing::side(&desk.scene, &desk.view, side));

@@ -233,7 +233,7 @@ fn a_bulb_that_circles_is_moved_along_the_worlds_axes_as_it_is_seen() {
     let mut desk = desk(Subject::Light);
     desk.perform(motion::toggle_orbit(&desk.scene, LightId(6), 1.0));
     desk.view.light = Some(LightId(6));
-    // A quarter turn later it is seen at (-200, 0, 0); it goes 10 on along X, and stops there.
+    // A quarter turn later the light is seen at (-200, 0, 0). It moves 10 along X and stops there.
     desk.view.time = 4.0;
     desk.press(Axis::X, Sign::Positive);
     desk.perform(motion::toggle_orbit(&desk.scene, LightId(6), 4.0));

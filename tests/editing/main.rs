@@ -1,4 +1,4 @@
-//! Editing a scene: what keys, mouse and panels do to it.
+//! Editing a scene: the commands behind keys, mouse and panels.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 

@@ -1,4 +1,4 @@
-//! Navigation: what the mouse does to the camera.
+//! Navigation: the mouse moves the camera.
 
 use glam::{DVec2, DVec3};
 use marraztu_core::base::image::Size;
@@ -15,7 +15,7 @@ fn desk() -> Desk {
     Desk::new(Subject::Camera, Transformation::Translation)
 }
 
-/// The position of a point of the world in the picture, in pixels from the upper left.
+/// Projects a world position into the picture, in pixels from the upper left.
 fn pixel(desk: &Desk, point: DVec3) -> DVec2 {
     let lens = desk.scene.selected_camera(&desk.view).lens;
     let view_from_world = desk.pose().world_from_camera().inverse();

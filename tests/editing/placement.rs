@@ -1,4 +1,4 @@
-//! Placements that are typed as numbers, and the numbers that are shown for them.
+//! Placements typed as numbers, and the numbers displayed for them.
 
 use glam::{DMat3, DMat4, DVec3};
 use marraztu_core::base::math::Axis;
@@ -18,7 +18,7 @@ fn typed(desk: &mut Desk, m: DMat4) {
     desk.perform(placement::object(&desk.scene, &desk.view, ID, m, GesturePhase::First));
 }
 
-/// Numbers as people type them: many round ones, and the corners of what angles can be.
+/// Angles as users type them: many round ones, and values near gimbal lock.
 fn degrees() -> impl Strategy<Value = f64> {
     prop_oneof![
         prop::sample::select(vec![0.0, 90.0, -90.0, 180.0, 45.0, 89.9999999]),
@@ -44,7 +44,7 @@ proptest! {
         prop_assert!(DMat3::from_mat4(m).abs_diff_eq(expected, 1e-9));
         let shown = placement::turn_degrees(&m);
         desk.perform(placement::object_turn(&desk.scene, &desk.view, ID, shown, first));
-        // At 90 degrees about Y, half of the digits of the other two are lost.
+        // At 90 degrees about Y (gimbal lock), the other two angles lose half of their digits.
         prop_assert!(desk.placement().abs_diff_eq(m, 1e-6));
         prop_assert!((placement::scale(&m) - scale).length() < 1e-9);
     }

@@ -1,4 +1,4 @@
-//! Which item is selected after each change.
+//! The selection after each change.
 
 use marraztu_core::edit::selection::{self, cycle_subject};
 use marraztu_core::edit::{GesturePhase, Refusal, items};

@@ -1,4 +1,4 @@
-//! What x, y, z, g and u do to objects, cameras and lights.
+//! The effect of the keys x, y, z, g and u on objects, cameras and lights.
 
 use glam::{DMat3, DMat4, DVec3};
 use marraztu_core::base::math::Axis;
@@ -28,7 +28,7 @@ fn an_object_takes_a_step_from_the_right_in_its_own_frame_and_from_the_left_in_t
                 for frame in [Frame::Local, Frame::Global] {
                     let mut desk = Desk::new(Subject::Object, kind);
                     desk.view.frame = frame;
-                    // A turned object, so that the frames differ.
+                    // A rotated object, for which the frames differ.
                     let view = desk.view.clone();
                     desk.view.transformation = Rotation;
                     desk.press(Axis::Y, Sign::Positive);
@@ -96,7 +96,8 @@ fn a_camera_in_analysis_orbits_by_x_and_y_about_axes_parallel_to_its_own() {
             let (before, centre) = (desk.pose(), desk.object().centre(0.0));
             desk.press(axis, sign);
             let after = desk.pose();
-            // The turn about an axis k of the camera is the turn in its own frame, brought there.
+            // Rotation about an axis k of the camera: the rotation in the camera's frame,
+            // conjugated into the world.
             let turn = before.axes * turned(about, 10.0 * s) * before.axes.transpose();
             close(after.eye, centre + turn * (before.eye - centre));
             close(after.axes.x_axis, turn * before.axes.x_axis);
@@ -165,7 +166,7 @@ fn a_camera_that_fell_back_to_fly_stays_there_when_its_target_is_selected_again(
     desk.analyse();
     let target = desk.view.object.map(ItemId::Object).unwrap();
     desk.choose(selection::select(&desk.scene, &desk.view, ItemId::Object(ObjectId(2))));
-    // The key u: the camera is as it was while it looked at the first, which is not selected now.
+    // The key u restores the camera that looked at the first object, which is not selected now.
     let back = transform::take_back(&desk.scene, &desk.view);
     desk.perform(back);
     assert_eq!(desk.mode(), CameraMode::Fly);
@@ -270,7 +271,7 @@ fn by_size_a_step_is_a_rounded_hundredth_of_the_scenes_extent() {
         desk.view.transformation = Transformation::Translation;
         let before = desk.placement();
         desk.press(Axis::X, Sign::Positive);
-        // From -404 to 4.8 along Z, in whichever frame it is moved.
+        // The scene reaches from -404 to 4.8 along Z, so a step by size is 5, in every frame.
         let moved = (desk.placement().w_axis - before.w_axis).truncate();
         close(moved, DVec3::X * 5.0);
     }

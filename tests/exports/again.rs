@@ -1,4 +1,4 @@
-//! What is exported as OBJ is read again as it was.
+//! OBJ exports are read again and compared with the original.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -21,7 +21,7 @@ fn load(folder: &Path, name: &str) -> Loaded {
     io::load(&folder.join(name), &LoadOptions::default(), &Progress::new()).unwrap()
 }
 
-/// The first scene's lights and a model.
+/// Draws a model alone under the first scene's lights, framed.
 fn picture(model: Model) -> Picture {
     let (mut scene, view) = io::default_scene();
     let ids: Vec<_> = scene.objects.ids().collect();
@@ -37,16 +37,16 @@ fn picture(model: Model) -> Picture {
     Renderer::default().render(&plan_frame(&shot)).clone()
 }
 
-/// What the faces of a model are called, by polygon.
+/// Names of object, group and material per polygon.
 fn called(model: &Model) -> Vec<&PartNames> {
     model.mesh.polygon_parts().iter().map(|part| model.mesh.part_names(*part)).collect()
 }
 
-/// A file with materials, exported and read again, has the same names, numbers and picture.
+/// Checks that a file with materials keeps names, numbers and picture through export and import.
 #[track_caller]
 fn comes_back(folder: &Path, obj: &str, mtl: &str) {
     put(folder, &[("a.obj", obj), ("a.mtl", mtl)]);
-    // What an earlier row left is not replaced.
+    // An export does not replace the files of an earlier row.
     for left in ["b.obj", "b.mtl", "b-texture-1.png", "b-texture-2.png"] {
         let _absent = std::fs::remove_file(folder.join(left));
     }

@@ -1,4 +1,4 @@
-//! What an exported glTF file says: colours, opacity, textures and names.
+//! Content of exported glTF files: colours, opacity, textures and names.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use super::{grey, image, json as read, put, put_picture, runs};
 const SQUARE: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n\
                       vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
-/// A square with a material of these statements, as glTF.
+/// Exports a square with a material of these statements as glTF.
 fn exported(folder: &Path, statements: &str) -> Value {
     let text = format!("{SQUARE}usemtl m\nf 1/1 2/2 3/3 4/4\n");
     put(folder, &[("a.obj", &text), ("a.mtl", &format!("newmtl m\n{statements}\n"))]);
@@ -37,7 +37,7 @@ fn the_colour_of_a_textured_material_is_its_factor() {
     let material = &gltf["materials"][0];
     assert_eq!(material["name"], "m");
     let surface = &material["pbrMetallicRoughness"];
-    // ((s + 0.055) / 1.055)^2.4 of a half and a quarter.
+    // The sRGB decoding ((s + 0.055) / 1.055)^2.4 of 1/2 and 1/4.
     near(&surface["baseColorFactor"], &[0.214_041_14, 0.050_876_09, 1.0, 1.0]);
     assert_eq!(surface["baseColorTexture"]["index"], 0);
     assert!(material.get("alphaMode").is_none_or(|mode| mode == "OPAQUE"));
@@ -86,7 +86,7 @@ fn a_map_of_opacity_is_in_the_alpha_of_the_texture() {
     put_picture(folder.path(), "map.png", 4, map);
     put_picture(folder.path(), "large.png", 8, |x, y| map(x / 2, y / 2));
 
-    // Of the same size, each texel keeps its colour and gets the brightness of the map.
+    // At equal sizes each texel keeps its colour, and the brightness of the map becomes its alpha.
     let gltf = exported(folder.path(), "Kd 1 1 1\nKs 0 0 0\nmap_Kd color.png\nmap_d map.png");
     let merged = image(&path, &gltf, 0);
     for (i, pixel) in merged.pixels().iter().enumerate() {
@@ -94,16 +94,16 @@ fn a_map_of_opacity_is_in_the_alpha_of_the_texture() {
         let ([r, g, b, _], [alpha, ..]) = (color(x, y), map(x, y));
         assert_eq!(*pixel, [r, g, b, alpha]);
     }
-    // Without a texture it is white.
+    // Without a colour texture the colour is white.
     let gltf = exported(folder.path(), "Kd 1 1 1\nKs 0 0 0\nmap_d map.png");
     let merged = image(&path, &gltf, 0);
     assert_eq!(merged.pixel(2, 3), [255, 255, 255, 123]);
-    // The larger size is kept: in the middle of four equal texels nothing is mixed.
+    // The larger size wins; in the middle of four equal texels interpolation changes nothing.
     let gltf = exported(folder.path(), "Kd 1 1 1\nKs 0 0 0\nmap_Kd map.png\nmap_d large.png");
     let merged = image(&path, &gltf, 0);
     assert_eq!(merged.size(), marraztu_core::base::image::Size::new(8, 8));
     assert_eq!(merged.pixel(4, 2)[3], map(2, 1)[0]);
-    // Laid out otherwise: a map at twice the scale repeats twice.
+    // The layouts differ: a map at twice the scale repeats twice.
     let gltf =
         exported(folder.path(), "Kd 1 1 1\nKs 0 0 0\nmap_Kd large.png\nmap_d -s 2 2 1 map.png");
     let merged = image(&path, &gltf, 0);
@@ -162,7 +162,7 @@ fn roughness_and_metalness_of_the_file_are_kept() {
     near(&material["emissiveFactor"], &[1.0, 0.0, 0.214_041_14 / strength]);
 }
 
-/// The tree of nodes with meshes, as names.
+/// The hierarchy of nodes with meshes, as names.
 fn tree(gltf: &Value, node: &Value) -> Value {
     let node = &gltf["nodes"][usize::try_from(node.as_u64().unwrap()).unwrap()];
     let children = node["children"].as_array().cloned().unwrap_or_default();

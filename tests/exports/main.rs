@@ -1,7 +1,7 @@
-//! Exports as other programs read them.
+//! Exports, read as other programs read them.
 //!
-//! Catches: glTF that Khronos' validator refuses, names and numbers that get lost, colours and
-//! opacity that other programs show differently.
+//! Catches: glTF that Khronos' validator rejects, lost names and numbers, colours and opacity that
+//! other programs display differently.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -22,7 +22,7 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     Process::new(program).current_dir(folder).args(arguments).output().unwrap()
 }
 
-/// Runs the program in a folder, and gives what it says.
+/// Runs the program in a folder, checks that it succeeds, and returns its output.
 #[track_caller]
 fn runs(folder: &Path, arguments: &[&str]) -> String {
     let output = run(folder, arguments);
@@ -38,7 +38,7 @@ fn put(folder: &Path, files: &[(&str, &str)]) {
     }
 }
 
-/// Writes a picture of `side` texels each way.
+/// Writes a square picture of `side` texels on a side.
 fn put_picture(folder: &Path, name: &str, side: usize, texel: impl Fn(usize, usize) -> [u8; 4]) {
     let pixels = (0..side * side).map(|i| texel(i % side, i / side)).collect();
     let picture = Picture::from_pixels(Size::new(side, side), pixels).unwrap();
@@ -54,7 +54,7 @@ fn json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
-/// The bytes of the buffer view of an image of a .gltf file.
+/// Decodes an image of a .gltf file from its buffer view.
 fn image(path: &Path, json: &Value, image: usize) -> Picture {
     let number = |value: &Value| usize::try_from(value.as_u64().unwrap()).unwrap();
     let view = &json["bufferViews"][number(&json["images"][image]["bufferView"])];

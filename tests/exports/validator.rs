@@ -1,14 +1,14 @@
-//! Khronos' validator has nothing against any glTF file.
+//! Khronos' validator accepts every exported glTF file.
 
 use std::path::{Path, PathBuf};
 use std::process::Command as Process;
 
 use super::{grey, put, put_picture, run};
 
-/// The version of npm's package.
+/// The npm package of the validator, with its version.
 const PACKAGE: &str = "gltf-validator@2.0.0-dev.3.10";
 
-/// Whether nothing may be left out.
+/// Whether skipping the test counts as a failure.
 fn is_required() -> bool {
     std::env::var_os("MARRAZTU_REQUIRE_SHARED").is_some_and(|value| value == "1")
 }
@@ -19,7 +19,7 @@ fn left_out(reason: &str) {
     eprintln!("LEFT OUT: {reason}");
 }
 
-/// The folder of the validator, which npm installs if it is not there.
+/// The folder of the validator; npm installs it on first use.
 fn validator() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gltf-validator");
     let module = folder.join("node_modules/gltf-validator");
@@ -35,7 +35,7 @@ fn validator() -> Option<PathBuf> {
     Some(module)
 }
 
-/// All files below a folder with one of these endings, in order.
+/// All files below a folder with one of these endings.
 fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let Ok(entries) = std::fs::read_dir(folder) else { return found };
@@ -50,8 +50,8 @@ fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
     found
 }
 
-/// Inputs that are easily exported wrongly: no faces, huge numbers, odd normals, odd names, all
-/// kinds of opacity.
+/// Inputs that are easy to export wrongly: no faces, huge numbers, odd normals, odd names, every
+/// kind of opacity.
 fn odd(folder: &Path) {
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
     let mapped = format!("{square}vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n");
@@ -104,7 +104,7 @@ fn the_validator_finds_no_error_and_no_warning_in_any_export() {
         inputs.extend(found);
     }
 
-    // Two processes: most of the time goes into starting and reading.
+    // Two processes at a time, because most of the time is start-up and reading.
     let numbered: Vec<(usize, &PathBuf)> = inputs.iter().enumerate().collect();
     let export = |(i, input): &(usize, &PathBuf)| {
         let ending = if i.is_multiple_of(4) { "gltf" } else { "glb" };

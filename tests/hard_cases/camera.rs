@@ -1,4 +1,4 @@
-//! Placements after a million steps, and cameras over the pole.
+//! Rotations after a million steps, and cameras above the pole.
 
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use marraztu_core::base::math::Axis;
@@ -40,7 +40,7 @@ fn skew(m: DMat3) -> f64 {
     rest.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max)
 }
 
-/// How far, in radians, the camera looks past the selected object's centre.
+/// The angle in radians between the camera's axis and the centre of the selected object.
 fn off_aim(scene: &Scene, view: &View) -> f64 {
     let pose = pose(scene, view);
     let to_eye = pose.eye - centre(scene, view);
@@ -68,6 +68,7 @@ fn case_56_looking_straight_down_or_at_ones_own_eye_is_finite_and_does_not_jump(
             apply(&mut scene, command);
             let command = placement::camera_eye(&scene, &view, camera, eye, GesturePhase::First);
             apply(&mut scene, command);
+            // `before` already looks straight down, so aiming at the object should hardly turn it.
             let before = pose(&scene, &view).axes;
             let command = transform::toggle_analysis(&scene, &view);
             apply(&mut scene, command);
@@ -76,6 +77,7 @@ fn case_56_looking_straight_down_or_at_ones_own_eye_is_finite_and_does_not_jump(
             assert!(skew(after) < 1e-12);
         }
     }
+    // The eye at the target: there is no direction to look along, so the axes stay as they are.
     let mut scene = scene;
     let command = placement::camera_eye(&scene, &view, view.camera, middle, GesturePhase::First);
     apply(&mut scene, command);
@@ -83,13 +85,14 @@ fn case_56_looking_straight_down_or_at_ones_own_eye_is_finite_and_does_not_jump(
     let command = transform::toggle_analysis(&scene, &view);
     apply(&mut scene, command);
     assert_eq!(pose(&scene, &view).axes, before);
-    // From there, turning and going away still works.
+    // From there the camera still rotates and moves away.
     for axis in Axis::ALL {
         let command = transform::step(&scene, &view, axis, Sign::Positive, GesturePhase::First);
         apply(&mut scene, command);
         assert!(skew(pose(&scene, &view).axes) < 1e-12);
     }
     assert!((pose(&scene, &view).eye.distance(middle) - 10.0).abs() < 1e-9);
+    // The naive camera normalises up x z, which is 0 here.
     let across = DVec3::Y.cross(DVec3::Y);
     Figure {
         case: 56,
@@ -106,6 +109,7 @@ fn case_56_looking_straight_down_or_at_ones_own_eye_is_finite_and_does_not_jump(
 fn case_57_a_million_turns_of_one_degree_end_where_280_degrees_do() {
     let one = 1.0_f64.to_radians();
     let (mut off, mut skewed) = (0.0_f64, 0.0_f64);
+    // Objects, in both frames.
     for frame in [Frame::Local, Frame::Global] {
         let (mut scene, mut view) = desk(Subject::Object, Transformation::Rotation);
         view.frame = frame;
@@ -119,6 +123,7 @@ fn case_57_a_million_turns_of_one_degree_end_where_280_degrees_do() {
         off = off.max(between(m, expected));
         skewed = skewed.max(skew(m));
     }
+    // The camera, with steps of one degree.
     let (mut scene, mut view) = desk(Subject::Camera, Transformation::Rotation);
     view.steps.rotation = 1.0;
     for _ in 0..1_000_000 {
@@ -140,7 +145,8 @@ fn case_57_a_million_turns_of_one_degree_end_where_280_degrees_do() {
     }
 }
 
-/// How far a million turns of one degree end from 280 degrees in f32, and how skewed.
+/// Error in angle and orthogonality after a million rotations of one degree in f32, which should
+/// end at 280 degrees.
 fn single_turns() -> (f64, f64) {
     let axis = Vec3::new(1.0, 2.0, 3.0) / 14.0_f32.sqrt();
     let turn = Mat3::from_axis_angle(axis, 1.0_f32.to_radians());
@@ -168,13 +174,13 @@ fn case_57_a_million_presses_of_any_turning_key_end_where_twice_the_digits_do() 
 
 #[test]
 fn case_58_an_angle_of_a_million_radians_is_that_angle() {
-    // cos and sin of 1e6, to 16 and 17 digits, from arithmetic of many digits.
+    // cos and sin of 1e6, to 16 and 17 digits, from multiple-precision arithmetic.
     let (cos, sin) = (0.936_752_127_533_144_8, -0.349_993_502_171_292_94);
     let (mut scene, view) = desk(Subject::Object, Transformation::Rotation);
     let command = transform::rotate(&scene, &view, DVec3::Z, 1e6, GesturePhase::First);
     apply(&mut scene, command);
     let x = linear(&scene, &view).x_axis;
-    // Whole turns taken off in f32.
+    // Argument reduction in f32.
     let single = 1e6_f32 % std::f32::consts::TAU;
     Figure {
         case: 58,
@@ -185,6 +191,7 @@ fn case_58_an_angle_of_a_million_radians_is_that_angle() {
         unit: "of the radius",
     }
     .hold();
+    // Angles without a finite sine are rejected.
     for radians in [f64::INFINITY, f64::NAN] {
         let refused = transform::rotate(&scene, &view, DVec3::Z, radians, GesturePhase::First);
         assert_eq!(refused, Err(Refusal::TooLarge));
@@ -215,6 +222,7 @@ fn case_59_an_orbit_over_the_pole_is_continuous() {
             let after = pose(&scene, &view);
             let angle = between(before.axes, after.axes).to_degrees();
             uneven = uneven.max((angle - 1.0).abs());
+            // The naive camera rebuilds its frame from the world's Y at each step.
             let upright = |pose: &Pose| {
                 let z = pose.axes.z_axis;
                 let x = DVec3::Y.cross(z) / DVec3::Y.cross(z).length();
@@ -249,6 +257,7 @@ fn case_60_the_radius_of_an_orbit_is_kept_through_36000_steps() {
         let id = view.object.unwrap();
         let command = placement::object_translation(&scene, &view, id, away, GesturePhase::First);
         apply(&mut scene, command);
+        // The camera orbits the object in steps of 0.7 degrees, by turns about X and Y.
         let eye = away + DVec3::new(100.0, 200.0, 300.0);
         let command = placement::camera_eye(&scene, &view, view.camera, eye, GesturePhase::First);
         apply(&mut scene, command);
@@ -278,7 +287,7 @@ fn case_60_the_radius_of_an_orbit_is_kept_through_36000_steps() {
     }
 }
 
-/// The drift of as many steps in f32 about a centre, as a share of distance and centre.
+/// The drift of the same steps in f32 about a centre, relative to distance plus centre.
 fn single_drift(centre: DVec3, distance: f64) -> f64 {
     let middle = centre.as_vec3();
     let step = 0.7_f32.to_radians();
@@ -304,6 +313,7 @@ fn case_61_a_million_steps_of_a_tenth_are_a_hundred_thousand() {
             let bulb = |light: &Light| matches!(light.kind, LightKind::Bulb { .. });
             view.light = scene.lights.iter().find(|(_, light)| bulb(light)).map(|(id, _)| id);
         }
+        // The stepped coordinate of the subject.
         let place = |scene: &Scene| match subject {
             Subject::Object => {
                 scene.objects.get(view.object.unwrap()).unwrap().placement.now().w_axis.z

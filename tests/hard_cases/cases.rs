@@ -1,4 +1,4 @@
-//! The hard cases by their numbers, and that each of them is tested.
+//! The table of hard cases by number, and a test that each one is tested.
 
 use crate::claims::{Proof, Tally};
 
@@ -6,10 +6,10 @@ use crate::claims::{Proof, Tally};
 pub(crate) struct Case {
     pub(crate) number: u8,
     pub(crate) group: &'static str,
-    /// The kind of its oracle: Z whole numbers or fractions, D twice the digits or f64 along
-    /// another way, I something that always holds, R two runs that must agree.
+    /// The kind of oracle. Z: integers or fractions. D: double-double, or f64 along another path.
+    /// I: an invariant. R: two runs that must agree.
     pub(crate) oracle: &'static str,
-    /// What goes wrong in a naive program.
+    /// The failure of a naive program.
     pub(crate) wrong: &'static str,
 }
 
@@ -31,7 +31,7 @@ const SURFACES: &str = "Surfaces";
 const FILES: &str = "Files and scale";
 const TRANSPARENCY: &str = "Transparency";
 
-/// Checks the quick round of a claim; `cargo test --test proofs` checks any number of cases.
+/// Runs the quick round of a claim; `cargo test --test proofs` checks any number of cases.
 #[track_caller]
 pub(crate) fn quick_round(name: &str) -> Tally {
     let proof = Proof::named(name).unwrap();
@@ -41,7 +41,7 @@ pub(crate) fn quick_round(name: &str) -> Tally {
     }
 }
 
-/// All of them.
+/// The cases, by number.
 #[rustfmt::skip]
 pub(crate) static CASES: &[Case] = &[
     case(1, GEOMETRY, "D", "the normal of a small face far from the origin is noise"),

@@ -1,4 +1,4 @@
-//! Clipping: triangles that reach beyond the view, or behind the observer.
+//! Clipping: triangles that reach beyond the view or behind the observer.
 
 use crate::claims::exact::span;
 use glam::{DMat4, DVec3};
@@ -23,8 +23,7 @@ use super::oracle::{Eye, inside_by, meet};
 
 const SIDE: usize = 128;
 
-/// A triangle of the world as the only thing to be seen, from both sides, by the eye at (0, 0,
-/// 400).
+/// Builds a scene with one double-sided triangle, seen by the eye at (0, 0, 400).
 fn alone(corners: [DVec3; 3]) -> (marraztu_core::scene::Scene, View) {
     let positions = corners.map(|corner| corner.as_vec3().to_array());
     let (mut scene, view) =
@@ -33,9 +32,9 @@ fn alone(corners: [DVec3; 3]) -> (marraztu_core::scene::Scene, View) {
     (scene, View { marks: false, ..view })
 }
 
-/// How many pixels of a picture of one triangle are not as rays say: those that meet it between 1
-/// and 2000 before the eye. Pixels whose ray passes within a hundredth of a pixel of its border are
-/// left out: they are other cases.
+/// Counts the pixels of a picture of one triangle that contradict ray casting with a depth range
+/// from 1 to 2000. Pixels within a hundredth of a pixel of its border are skipped, because other
+/// cases test them.
 fn wrong_pixels(corners: [DVec3; 3], picture: &Picture, seen: &[bool]) -> usize {
     let eye = Eye::first(picture.size().width);
     let mut wrong = 0;
@@ -46,6 +45,7 @@ fn wrong_pixels(corners: [DVec3; 3], picture: &Picture, seen: &[bool]) -> usize 
             let ray = eye.ray(x, y) + DVec3::new(dx * step, dy * step, 0.0);
             meet(eye.at, ray, corners).is_some_and(|(t, _)| (1.0..=2000.0).contains(&t))
         };
+        // The rays around the centre agree with it only away from the border.
         let around = [(0.0, 0.0), (0.01, 0.0), (-0.01, 0.0), (0.0, 0.01), (0.0, -0.01)]
             .map(|(dx, dy)| within(dx, dy));
         let sure = around.iter().all(|other| *other == around[0]);
@@ -59,7 +59,7 @@ fn case_11_corners_in_the_observers_plane_harm_nothing() {
     let mut wrong = 0;
     let mut naive = 0.0_f64;
     for w in [0.0, -0.0, 1e-39, -1e-39, 1e-45, 1e-300, 1e-7, -1.0] {
-        // The placement brings z = 0 of the file to the eye's plane, w in front of it.
+        // The placement moves z = 0 of the file to a distance of w in front of the eye's plane.
         let corners = [[-30.0, -20.0, 0.0], [35.0, -25.0, 0.0], [2.0, 10.0, -300.0]];
         let (mut scene, view) = alone(corners.map(DVec3::from_array));
         let front = DMat4::from_translation(DVec3::new(0.0, 0.0, 400.0 - w));
@@ -80,6 +80,7 @@ fn case_11_corners_in_the_observers_plane_harm_nothing() {
                 assert!((0.0..=1.0).contains(&depth), "a depth of {depth} at w {w}");
             }
         }
+        // The naive projection divides a corner's x by w.
         naive = naive.max((-30.0 / (w as f32)).abs().into());
     }
     Figure {
@@ -102,10 +103,10 @@ fn case_11_scenes_of_absurd_numbers_are_refused_or_drawn() {
 #[test]
 fn case_12_a_line_through_the_observers_plane_stays_on_its_side() {
     // The line of ancestor A's fault, seen from the origin: one end is 2 behind the eye, the other
-    // 1 in front of it. At the near plane, 1/2 in front, it is at y = -0.3: 1/6 of the way.
+    // 1 in front. It meets the near plane, 1/2 in front, at y = -0.3, 1/6 of its length.
     let (behind, front) = (DVec3::new(0.5, 0.2, 2.0), DVec3::new(0.5, -0.4, -1.0));
     let third = DVec3::new(0.5, -2.0, -1.0);
-    // Whichever end comes first.
+    // Both orders of the ends.
     let pictures = [[behind, front, third], [front, behind, third]].map(|corners| {
         let positions = corners.map(|corner| corner.as_vec3().to_array());
         let line = model("line", &positions, &[&[0, 1, 2], &[2, 1, 0]]);
@@ -120,10 +121,11 @@ fn case_12_a_line_through_the_observers_plane_stays_on_its_side() {
         draw(&scene, &view, &Settings::default(), SIDE)
     });
     let eye = Eye { side: SIDE, at: DVec3::ZERO, tangent: 3.0_f64.sqrt() };
+    // The visible part runs from the front end to the near plane.
     let cut = DVec3::new(0.5, -0.3, -0.5);
     let ([x0, y0], [x1, y1]) = (eye.pixel(front), eye.pixel(cut));
     let [wrong_x, wrong_y] = eye.pixel(behind);
-    // How far a pixel is from the line that there is.
+    // The distance of a pixel from the visible part of the line, in pixels.
     let off = |x: usize, y: usize| {
         let (px, py) = (x as f64 + 0.5 - x0, y as f64 + 0.5 - y0);
         let (dx, dy) = (x1 - x0, y1 - y0);
@@ -135,7 +137,7 @@ fn case_12_a_line_through_the_observers_plane_stays_on_its_side() {
         let drawn = (0..SIDE * SIDE)
             .filter(|i| picture.pixels()[*i] == [255; 4])
             .map(|i| (i % SIDE, i / SIDE))
-            // The edge to the third corner goes down from the front one.
+            // Excludes the edge to the third corner, which goes down from the front end.
             .filter(|(x, _)| *x as f64 > x0 + 1.0);
         let (count, worst) =
             drawn.fold((0, 0.0_f64), |(n, worst), (x, y)| (n + 1, worst.max(off(x, y))));
@@ -162,7 +164,7 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
     let (mut wrong, mut parted) = (0, 0);
     let pairs = 400;
     for _ in 0..pairs {
-        // Two triangles over a shared edge through the near plane, 1 before the eye.
+        // Two triangles with a shared edge through the near plane, at distance 1.
         let depth = |rng: &mut Rng| rng.real(-30.0, 30.0) + 399.0;
         let mut corner = |side: f64| {
             let z = depth(&mut rng);
@@ -170,6 +172,7 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
         };
         let quad = [corner(-30.0), corner(0.0), corner(30.0), corner(0.0)];
         let positions = quad.map(|corner| corner.as_vec3().to_array());
+        // Draws both faces and samples the visible polygon on an 8 x 8 grid.
         let shown = |faces: [&[u32]; 2]| {
             let both = model("pair", &positions, &faces);
             let (mut scene, view) = scene(&[(both, DMat4::IDENTITY)]);
@@ -183,8 +186,8 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
             (0..64).map(|i| face(i % 8 * 4, i / 8 * 4)).collect::<Vec<_>>()
         };
         let (one, other) = (shown([&[0, 1, 3], &[1, 2, 3]]), shown([&[1, 2, 3], &[0, 1, 3]]));
-        // Whichever is first, the same face is seen, or in both cases none: but for faces that lie
-        // one over the other, and then the nearer one is.
+        // Reversing the order of the faces changes only their numbers. If faces overlap, the
+        // nearer one is seen in both orders.
         let turned = |face: Option<u32>| face.map(|face| 1 - face);
         wrong += one.iter().zip(&other).filter(|(a, b)| **a != turned(**b)).count();
         parted += usize::from(parts_where_cut_by_direction(quad[1], quad[3]));
@@ -205,8 +208,8 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
 
 #[test]
 fn case_13_a_face_is_cut_at_the_same_places_from_both_sides() {
-    // The near plane cuts edges off within the view that come from up to 10^13 behind it, where the
-    // last place of their length is a pixel: the same face, as it is and the other way round.
+    // A face, and the same face with reversed winding. The near plane cuts its edges inside the
+    // view; they begin up to 10^13 behind it, where one ulp of their length is as large as a pixel.
     let mut rng = Rng::new(131);
     let (mut wrong, mut parted, mut pixels) = (0, 0, 0);
     for _ in 0..400 {
@@ -214,6 +217,7 @@ fn case_13_a_face_is_cut_at_the_same_places_from_both_sides() {
         let mut beside =
             |wide: f64| DVec3::new(rng.real(-wide, wide), rng.real(-wide, wide), 399.0);
         let corners = [beside(0.8), beside(9.0 * long), beside(0.8)];
+        // Two corners just in front of the near plane, the third far behind it.
         let [near, far] = [rng.real(0.05, 0.9), long * rng.real(1.0, 30.0)];
         let corners = [
             corners[0] - DVec3::Z * near,
@@ -253,7 +257,7 @@ fn case_13_a_face_is_cut_at_the_same_places_from_both_sides() {
     .hold();
 }
 
-/// Whether the place where an edge is cut has other bits when it is computed from its other end.
+/// Whether the cut of an edge has other bits if it is computed from the other end.
 fn parts_where_cut_by_direction(a: DVec3, b: DVec3) -> bool {
     let (da, db) = (399.0 - a.z, 399.0 - b.z);
     if (da > 0.0) == (db > 0.0) {
@@ -330,7 +334,7 @@ fn case_15_a_triangle_through_all_six_planes_is_seen_where_it_is() {
     .hold();
 }
 
-/// How many pixels differ if corners are divided by their w, even behind the eye.
+/// Counts the wrong pixels if corners are divided by w even behind the eye.
 fn folded(corners: [DVec3; 3], covered: &[bool]) -> usize {
     let eye = Eye::first(SIDE);
     let snapped = corners.map(|corner| {
@@ -349,7 +353,7 @@ fn case_16_triangles_beyond_the_range_of_integers_are_clipped() {
     let mut rng = Rng::new(116);
     let (mut wrong, mut seen, mut naive) = (0, 0, 0);
     for _ in 0..60 {
-        // One corner in view, the others some ten million pixels off.
+        // One corner in view, the others about ten million pixels away.
         let off = |rng: &mut Rng| rng.vector(1.0) * DVec3::new(7e6, 7e6, 50.0);
         let corners = [rng.vector(30.0), off(&mut rng), off(&mut rng)];
         let corners = corners.map(|c| (c + DVec3::Z * 300.0).as_vec3().as_dvec3());
@@ -358,6 +362,7 @@ fn case_16_triangles_beyond_the_range_of_integers_are_clipped() {
         let covered = covered(&picture, &scene);
         seen += covered.iter().filter(|seen| **seen).count();
         wrong += wrong_pixels(corners, &picture, &covered);
+        // Counts corners with subpixel coordinates beyond i32.
         let beyond = |x: &f64| (x * f64::from(SUBPIXELS)).abs() > f64::from(i32::MAX);
         let eye = Eye::first(SIDE);
         naive += corners.iter().filter(|corner| eye.pixel(**corner).iter().any(beyond)).count();
@@ -380,7 +385,7 @@ fn case_16_corners_a_million_pixels_off_leave_no_hole_and_no_double() {
     let mut rng = Rng::new(16);
     let (mut wrong, mut naive) = (0, 0);
     for _ in 0..40 {
-        // A fan about a hub in the picture whose outline is a million pixels away.
+        // A fan with its hub in the picture and its outline a million pixels away.
         let far = 1_000_000 * SUBPIXELS;
         let coordinate = |rng: &mut Rng, reach: i32| rng.between(-reach, reach) / 16 * 16;
         let hub =
@@ -394,12 +399,14 @@ fn case_16_corners_a_million_pixels_off_leave_no_hole_and_no_double() {
         let outline = [(a, -far), (far, b), (c, far), (-far, d)].map(|(x, y)| Snapped { x, y });
         let fan: Vec<Flat> =
             (0..4).map(|i| Flat::new([hub, outline[i], outline[(i + 1) % 4]])).collect();
+        // The same fan in both orders.
         let back: Vec<Flat> = fan.iter().rev().copied().collect();
         let draw = |fan: &[Flat]| flat::draw_triangles(fan, SIDE, &mut Renderer::default());
         let (forth, back) = (draw(&fan), draw(&back));
         for (i, (a, b)) in forth.pixels().iter().zip(back.pixels()).enumerate() {
             let [a, b] = [a, b].map(|pixel| flat::number_of(*pixel));
-            // The first of those that cover it is the last too, and the one that crossings say.
+            // Exactly one triangle covers each pixel, the one that integer crossings find; so the
+            // first and the last that was drawn are the same.
             let exact = (0..4)
                 .find(|n| span(fan[*n].corners, (i / SIDE) as i32).contains(&((i % SIDE) as i64)));
             wrong += usize::from(a != exact || b.map(|b| 3 - b) != exact);
@@ -417,7 +424,7 @@ fn case_16_corners_a_million_pixels_off_leave_no_hole_and_no_double() {
     .hold();
 }
 
-/// How many triangles of a fan cover a pixel by edge functions in f32.
+/// Counts the triangles of a fan that cover a pixel, by edge functions in f32.
 fn single_counts(fan: &[Flat], x: usize, y: usize) -> usize {
     let (cx, cy) = (x as f32 + 0.5, y as f32 + 0.5);
     let single = |corner: Snapped| (corner.x as f32 / 256.0, corner.y as f32 / 256.0);
@@ -459,7 +466,7 @@ fn case_17_triangles_larger_than_32_bits_of_edge_are_filled_rightly() {
     .hold();
 }
 
-/// Whether a pixel is covered by edge functions of 32 bits that overflow.
+/// Whether edge functions of 32 bits, which overflow, cover a pixel.
 fn wrapping_covers([p, q, r]: [Snapped; 3], x: usize, y: usize) -> bool {
     let (cx, cy) = (x as i32 * 256 + 128, y as i32 * 256 + 128);
     let edge = |p: Snapped, q: Snapped| {
@@ -497,7 +504,7 @@ fn case_18_objects_behind_the_observer_are_invisible() {
     .hold();
 }
 
-/// A picture of 256 texels in a row, each with its place as its colour.
+/// A texture with 256 texels in a row. The colour of a texel is its index.
 pub(super) fn ruler(scale: f64) -> marraztu_core::base::Shared<marraztu_core::scene::Texture> {
     let texels = (0..=255).map(|i| [i, i, i, 255]).collect();
     marraztu_core::base::Shared::new(marraztu_core::scene::Texture {
@@ -509,7 +516,7 @@ pub(super) fn ruler(scale: f64) -> marraztu_core::base::Shared<marraztu_core::sc
     })
 }
 
-/// A triangle of the world with a place on the texture at each corner.
+/// A triangle with a texture coordinate u at each corner.
 pub(super) fn textured(
     corners: [DVec3; 3],
     u: [f32; 3],
@@ -538,7 +545,7 @@ pub(super) fn textured(
 #[test]
 fn case_19_a_cut_does_not_move_what_is_painted_on_a_face() {
     let mut rng = Rng::new(19);
-    // One texel is 2^-22, about four units in the last place of f32 at 1.
+    // One texel is 2^-22, twice the f32 epsilon.
     let scale = f64::from(1 << 14);
     let ulp = f64::from(f32::EPSILON);
     let settings = Settings { filter: Filter::Nearest, ..Settings::default() };
@@ -549,6 +556,7 @@ fn case_19_a_cut_does_not_move_what_is_painted_on_a_face() {
                 .as_vec3()
                 .as_dvec3()
         };
+        // The first corner is behind the eye, so the near plane cuts the face.
         let corners = [corner(430.0), corner(100.0), corner(-200.0)];
         let (scene, view) = textured(corners, [0.0, 0.25, 1.0], &ruler(scale));
         let picture = draw(&scene, &view, &settings, SIDE);
@@ -561,10 +569,10 @@ fn case_19_a_cut_does_not_move_what_is_painted_on_a_face() {
                 continue;
             }
             let u = parts[1] * 0.25 + parts[2];
-            // Round the texture, the shorter way.
+            // The shorter distance around the repeating texture.
             let texels = (u * scale).fract() * 256.0 - (f64::from(r) + 0.5);
             let off = (texels.rem_euclid(256.0)).min((-texels).rem_euclid(256.0));
-            // Half a texel is not seen.
+            // Errors below half a texel are invisible.
             ours = ours.max((off - 0.5).max(0.0) / 256.0 / scale / ulp);
             pixels += 1;
             naive = naive.max((single_cut(corners, eye, [x, y]) - u).abs() / ulp);
@@ -582,7 +590,7 @@ fn case_19_a_cut_does_not_move_what_is_painted_on_a_face() {
     .hold();
 }
 
-/// The texture coordinates if the corners of the cut are f32 and are interpolated as other corners.
+/// Interpolates u as if the corners of the cut were ordinary corners in f32.
 fn single_cut(corners: [DVec3; 3], eye: Eye, [x, y]: [usize; 2]) -> f64 {
     let [a, b, c] = corners;
     let cut = |to: DVec3, u: f64| {
@@ -594,6 +602,7 @@ fn single_cut(corners: [DVec3; 3], eye: Eye, [x, y]: [usize; 2]) -> f64 {
     let ray = eye.ray(x, y).as_vec3();
     let b = (b.as_vec3(), 0.25_f32);
     let c = (c.as_vec3(), 1.0_f32);
+    // The cut leaves a quad, interpolated as two triangles.
     for [(k, uk), (l, ul), (m, um)] in [[(p, up), b, c], [(p, up), c, (q, uq)]] {
         let (e, f) = (l - k, m - k);
         let h = ray.cross(f);

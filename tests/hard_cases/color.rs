@@ -10,7 +10,7 @@ use marraztu_core::scene::{
 use super::common::{at, draw, edit, scene, square};
 use super::figures::Figure;
 
-/// A square over the view that reflects ambient light alone, and the lights given.
+/// A square that fills the view, reflects ambient light only, and is lit by these lights.
 fn glowing(ambient: [f64; 3], lights: &[Color]) -> (Scene, View) {
     let (mut scene, view) = scene(&[(square(), at(300.0, 0.0, 0.0, 0.0))]);
     edit(&mut scene, ObjectId(10), |object| {
@@ -39,8 +39,8 @@ fn shown(ambient: [f64; 3], lights: &[Color], arithmetic: Arithmetic) -> [u8; 3]
 
 #[test]
 fn case_52_light_is_rounded_to_the_nearest_byte() {
-    // A little below and above the middle between two bytes, and on a byte: whole numbers say
-    // which.
+    // Light just below and above the midpoint between two bytes, and on a byte. The expected byte
+    // follows from integers.
     let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
     let mut bias = 0.0;
     for k in 0..=254_u8 {
@@ -57,6 +57,7 @@ fn case_52_light_is_rounded_to_the_nearest_byte() {
                 assert_eq!(got, want, "{steps} in {arithmetic:?}");
                 ours = ours.max((f64::from(got) - steps).abs());
             }
+            // The naive conversion truncates.
             let cut_off = (factor * 255.0) as u8;
             naive = naive.max((f64::from(cut_off) - steps).abs());
             bias += f64::from(cut_off) - steps;
@@ -81,7 +82,7 @@ fn case_53_eight_lights_are_summed_before_they_are_rounded() {
     for _ in 0..200 {
         let colors: Vec<Color> =
             (0..8).map(|_| Color([0, 1, 2].map(|_| rng.between(0, 60) as u8))).collect();
-        // Thousandths, so that the sum is a whole number of 255000ths.
+        // The ambient factors are thousandths, which makes the exact sum a multiple of 1/255000.
         let thousandths = [0, 1, 2].map(|_| rng.between(0, 500));
         let ambient = thousandths.map(|n| f64::from(n) / 1000.0);
         for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
@@ -90,6 +91,7 @@ fn case_53_eight_lights_are_summed_before_they_are_rounded() {
                 let sum: i32 = colors.iter().map(|color| i32::from(color.0[i])).sum();
                 let exact = (f64::from(sum * thousandths[i]) / 1000.0).min(255.0);
                 ours = ours.max((f64::from(got[i]) - exact).abs());
+                // The naive sum truncates each light to a byte.
                 let one_by_one: i32 =
                     colors.iter().map(|c| i32::from(c.0[i]) * thousandths[i] / 1000).sum();
                 naive = naive.max((f64::from(one_by_one.min(255)) - exact).abs());
@@ -101,7 +103,7 @@ fn case_53_eight_lights_are_summed_before_they_are_rounded() {
         what: "the sum of 8 lights",
         naive: Some(("each a byte, then summed", naive)),
         ours,
-        // Half a step, and what f32 takes from a sum of eight.
+        // Half a step, plus the rounding errors of a sum of eight in f32.
         bound: 0.501,
         unit: "byte steps",
     }
@@ -121,7 +123,7 @@ fn case_54_nan_is_black_and_infinity_is_full() {
         }
     }
     assert_eq!([byte(none), byte(all), byte(-all)], [0, 255, 0]);
-    // The result of a cast by way of int in C: the low byte, or that of the smallest int.
+    // A cast through int in C: the low byte, or that of the smallest int.
     let cast = |x: f64| (x * 255.0 + 0.5) as i64 as i32 & 255;
     let naive = [(all, 255), (1e39, 255), (1.2, 255), (-0.01, 0), (f64::MAX, 255)]
         .into_iter()
@@ -163,7 +165,7 @@ fn case_55_every_byte_survives_the_way_through_the_renderer() {
 
 #[test]
 fn case_55_a_pictures_pixels_do_not_depend_on_their_position() {
-    // The same byte at every pixel, wherever in a tile or a group of lanes it stands.
+    // Every pixel has the same byte, at any position in a tile or a group of lanes.
     let (scene, view) = glowing([0.3, 0.6, 0.9], &[Color::WHITE]);
     let picture = draw(&scene, &view, &Settings::default(), 131);
     assert!(picture.pixels().iter().all(|pixel| *pixel == picture.pixel(0, 0)));

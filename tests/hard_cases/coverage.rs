@@ -1,4 +1,4 @@
-//! Coverage, checked by integer crossings and never by an edge function.
+//! Coverage, checked by integer crossings, without edge functions.
 
 use crate::claims::exact::{span, wind};
 use glam::{DMat4, DVec3};
@@ -19,7 +19,7 @@ use super::common::{at, ball, covered, draw, edit, model_of, scene};
 use super::figures::Figure;
 use super::oracle::Eye;
 
-/// How many triangles of a fan cover a pixel by edge functions in f32, ties taken by both.
+/// Counts the triangles of a fan that cover a pixel if both sides of an edge own its centres.
 fn greedy(fan: &[[Snapped; 3]], x: i32, y: i32) -> usize {
     let (cx, cy) = (i64::from(x) * 256 + 128, i64::from(y) * 256 + 128);
     let edge = |p: Snapped, q: Snapped| {
@@ -44,6 +44,7 @@ fn case_20_corners_on_the_middles_of_pixels_leave_no_hole_and_no_double() {
         let hub = Snapped { x: middle(), y: middle() };
         let far = (SIDE - 1) * SUBPIXELS + 128;
         let (a, b, c, d) = (middle(), middle(), middle(), middle());
+        // The outline follows the centres of the border pixels, with a random point on each side.
         let outline = [
             (128, 128),
             (a, 128),
@@ -57,6 +58,7 @@ fn case_20_corners_on_the_middles_of_pixels_leave_no_hole_and_no_double() {
         .map(|(x, y)| Snapped { x, y });
         let fan: Vec<[Snapped; 3]> =
             (0..8).map(|i| [hub, outline[i], outline[(i + 1) % 8]]).collect();
+        // Counts the triangles over each pixel; every inner pixel has exactly one.
         let mut counts = vec![0; (SIDE * SIDE) as usize];
         for corners in &fan {
             if let Some(triangle) = Triangle::new(*corners) {
@@ -65,7 +67,8 @@ fn case_20_corners_on_the_middles_of_pixels_leave_no_hole_and_no_double() {
         }
         for (i, count) in (0..).zip(&counts) {
             let (x, y) = (i % SIDE, i / SIDE);
-            // The last row and the last column lie on the right and the lower side.
+            // By the top-left rule the last row and column are outside: they lie on the right and
+            // lower sides.
             let inside = i32::from(x < SIDE - 1 && y < SIDE - 1);
             wrong += usize::from(*count != inside);
             naive += usize::from(inside == 1 && greedy(&fan, x, y) != 1);
@@ -86,7 +89,7 @@ fn case_20_corners_on_the_middles_of_pixels_leave_no_hole_and_no_double() {
 fn case_21_signed_coverage_is_the_winding_number_of_the_snapped_outline() {
     let tally = quick_round("fans");
     assert!(tally.counts["samples"] > 10_000_000, "{tally}");
-    // The same fans if both sides covered shared edges.
+    // The same fans if both sides of a shared edge owned its centres.
     let mut rng = Rng::new(21);
     let mut naive = 0;
     for _ in 0..500 {
@@ -100,7 +103,8 @@ fn case_21_signed_coverage_is_the_winding_number_of_the_snapped_outline() {
             wind(&outline, y, &mut row);
             for (x, winding) in (0..).zip(&row) {
                 let count = i32::try_from(greedy(&fan, x, y)).unwrap();
-                // At least of the same parity, if some run the other way.
+                // Triangles of both windings may overlap, so only the parity of the count is
+                // compared.
                 naive += usize::from((count - winding) % 2 != 0);
             }
         }
@@ -129,7 +133,7 @@ fn case_22_slivers_that_snapping_turns_round_are_counted_by_their_sign() {
     let square = PixelBox { left: 0, top: 0, right: SIDE, bottom: SIDE };
     let (mut turned, mut wrong, mut naive) = (0, 0, 0);
     for _ in 0..20_000 {
-        // A hub that is closer to a side of its outline than a part of a pixel, always inside.
+        // A hub inside the outline, less than 1/100 pixel from one side: snapping may move it out.
         let places = |rng: &mut Rng| [rng.real(0.5, 7.5), rng.real(0.5, 7.5)];
         let [p, q, r] = [places(&mut rng), places(&mut rng), places(&mut rng)];
         let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
@@ -147,6 +151,7 @@ fn case_22_slivers_that_snapping_turns_round_are_counted_by_their_sign() {
         };
         let outline = if area > 0.0 { [p, q, r] } else { [p, r, q] }.map(snap);
         let hub = snap(hub);
+        // Counts with the sign of the area, and without it.
         let mut signed = [0; (SIDE * SIDE) as usize];
         let mut unsigned = signed;
         let mut any_turned = false;
@@ -185,7 +190,7 @@ fn case_22_slivers_that_snapping_turns_round_are_counted_by_their_sign() {
 
 #[test]
 fn case_23_a_closed_body_has_as_many_fronts_as_backs_at_every_sample() {
-    // By snapped triangles, seen by a lens: the signed sum is 0 everywhere.
+    // Fronts count +1 and backs -1 over snapped triangles: the sum is 0 at every sample.
     const SIDE: i32 = 128;
     let body = ball(24);
     let eye = Eye::first(SIDE as usize);
@@ -197,7 +202,7 @@ fn case_23_a_closed_body_has_as_many_fronts_as_backs_at_every_sample() {
         let turn = DMat4::from_translation(rng.vector(30.0))
             * DMat4::from_axis_angle(axis, rng.real(0.0, 6.0))
             * DMat4::from_scale(DVec3::new(110.0, 60.0, 90.0));
-        // Every other time with all corners on the middles of pixels.
+        // In every second round all corners are on pixel centres.
         let on_middles = i % 2 == 1;
         let places: Vec<[f64; 2]> = body
             .mesh
@@ -219,7 +224,7 @@ fn case_23_a_closed_body_has_as_many_fronts_as_backs_at_every_sample() {
             if let Some(triangle) = Triangle::new(corners) {
                 triangle.covered(square, |p| sums[(p.y * SIDE + p.x) as usize] += sign);
             }
-            // Not snapped, in f32, a centre on an edge taken by both.
+            // The naive count: unsnapped f32 corners, and both sides own a centre on an edge.
             let [p, q, r] = places.map(|p| p.map(|x| x as f32));
             let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
             let edge = |p: [f32; 2], q: [f32; 2], x: f32, y: f32| {
@@ -264,6 +269,7 @@ fn case_23_the_fronts_of_a_closed_body_are_seen_where_its_backs_are() {
                 parts: body.mesh.parts().to_vec(),
                 ..MeshSource::default()
             };
+            // Copies the polygons, reversed for the second body.
             for polygon in 0..body.mesh.polygon_count() as u32 {
                 let mut corners: Vec<u32> =
                     body.mesh.polygon(polygon).iter().map(|corner| corner.position).collect();
@@ -290,7 +296,7 @@ fn case_23_the_fronts_of_a_closed_body_are_seen_where_its_backs_are() {
 
 #[test]
 fn case_24_an_edge_that_a_corner_of_another_face_splits_is_found_and_said() {
-    // A quad beside two quads that share its side, whose middle they have a corner on.
+    // A T-junction: two quads have a corner in the middle of a side of the first quad.
     let text = "v 0 0 0\nv 3 0 0\nv 3 2 0\nv 0 2 0\nv 5 0 0\nv 5 2 0\nv 3 0.7 0\nv 5 0.7 0\n\
                 f 1 2 3 4\nf 2 5 8 7\nf 7 8 6 3\n";
     let read = |text: &str| {
@@ -302,10 +308,11 @@ fn case_24_an_edge_that_a_corner_of_another_face_splits_is_found_and_said() {
     let said = marraztu_io::describe(&split);
     assert_eq!(split.model.mesh.split_edges(), 1);
     assert!(said.contains("1 edge is split by corners of other faces: gaps may show"), "{said}");
+    // With the corner in both faces nothing is reported.
     let whole = read(&text.replace("f 1 2 3 4", "f 1 2 7 3 4"));
     assert_eq!(whole.model.mesh.split_edges(), 0);
     assert!(!marraztu_io::describe(&whole).contains("split"));
-    // Seen by many eyes, the gap shows; without the split it never does.
+    // From 400 angles the gap shows; once the corner is in both faces it never does.
     let gaps = |loaded: &marraztu_io::Loaded| {
         let mesh = &loaded.model.mesh;
         let mut source = MeshSource {
@@ -332,7 +339,7 @@ fn case_24_an_edge_that_a_corner_of_another_face_splits_is_found_and_said() {
             let view = View { marks: false, ..view };
             let picture = draw(&scene, &view, &Settings::default(), 128);
             let seen = covered(&picture, &scene);
-            // A hole is a background pixel with plate on both sides of it.
+            // A gap is a background pixel between two pixels of the plate.
             let row = |y: usize| (1..127).map(move |x| y * 128 + x);
             gaps += (0..128)
                 .flat_map(row)
@@ -353,7 +360,7 @@ fn case_24_an_edge_that_a_corner_of_another_face_splits_is_found_and_said() {
     .hold();
 }
 
-/// Some triangles of all sizes in a picture of 256 pixels.
+/// Random triangles of all sizes for a picture of 256 pixels.
 fn scattered(seed: u64, step: i32, first: i32) -> Vec<Flat> {
     let mut rng = Rng::new(seed);
     let mut corner = || {
@@ -377,6 +384,7 @@ fn case_25_moved_by_whole_pixels_a_picture_is_the_same_but_moved() {
             object.placement = object.placement.replaced(place);
         });
         let moved = flat::draw(&(scene, view.clone()), SIDE, &mut renderer);
+        // Compares the pixels that are in both pictures.
         let whole = i32::try_from(SIDE).unwrap();
         for (x, y) in (0..whole).flat_map(|y| (0..whole).map(move |x| (x, y))) {
             let (tx, ty) = (x + right, y + down);
@@ -385,7 +393,7 @@ fn case_25_moved_by_whole_pixels_a_picture_is_the_same_but_moved() {
                 differ += usize::from(from != moved.pixel(tx as usize, ty as usize));
             }
         }
-        // In f32, the edge functions of a moved triangle round differently.
+        // In f32 the edge functions of a moved triangle round differently.
         for flat in scattered(25, 1, 0).iter().take(20) {
             let [p, q, _] =
                 flat.corners.map(|c| [c.x as f32 / 256.0 - 0.3, c.y as f32 / 256.0 - 0.3]);
@@ -412,8 +420,8 @@ fn case_25_moved_by_whole_pixels_a_picture_is_the_same_but_moved() {
 #[test]
 fn case_26_mirrored_and_turned_by_a_quarter_a_picture_is_the_same() {
     const SIDE: usize = 256;
-    // Odd multiples of a part of a pixel on a grid of 32: no centre lies on an edge but where three
-    // corners say so, and no corner on a centre.
+    // All coordinates are odd multiples of 1/256 pixel. Pixel centres are even multiples, so no
+    // corner is on a centre, and a centre is on an edge only by coincidence.
     let triangles = scattered(26, 2, 1);
     let side = SIDE as i32 * SUBPIXELS;
     let draw = |change: &dyn Fn(Snapped) -> Snapped| {
@@ -424,7 +432,7 @@ fn case_26_mirrored_and_turned_by_a_quarter_a_picture_is_the_same() {
     let plain = draw(&|c| c);
     let mirrored = draw(&|c| Snapped { x: side - c.x, ..c });
     let turned = draw(&|c| Snapped { x: side - c.y, y: c.x });
-    // Ties are where the rule prefers a side: pixels whose centre lies on an edge.
+    // Ties, where the rule prefers a side: pixels with their centre on an edge.
     let tie = |x: usize, y: usize| {
         let (cx, cy) = (x as i64 * 256 + 128, y as i64 * 256 + 128);
         triangles.iter().any(|flat| {
@@ -492,9 +500,8 @@ fn case_27_threads_and_instructions_do_not_show_in_a_dozen_pictures() {
 
 #[test]
 fn case_28_each_four_bits_of_the_subpixel_grid_leave_a_sixteenth_of_the_wrong_pixels() {
-    // By number: the grid is the renderer's own, 8 bits. A ball of 4600 triangles across 400
-    // pixels, by exact crossings of corners snapped to each grid against those of a grid of 20
-    // bits.
+    // Computed here, because the renderer's grid is fixed at 8 bits: a ball of 4600 triangles
+    // across 400 pixels, by exact crossings, on grids of several sizes against a grid of 20 bits.
     const SIDE: usize = 512;
     let body = ball(48);
     let eye = Eye::first(SIDE);
@@ -505,8 +512,8 @@ fn case_28_each_four_bits_of_the_subpixel_grid_leave_a_sixteenth_of_the_wrong_pi
         .iter()
         .map(|p| eye.pixel(turn.transform_point3(DVec3::from_array(p.map(f64::from)))))
         .collect();
-    // Which triangle that faces the eye is seen where: with no depth, fronts of a ball lie side by
-    // side.
+    // The front-facing triangle at each pixel. No depth is needed: the fronts of a ball do not
+    // overlap.
     let seen = |bits: i32| {
         let mut seen = vec![usize::MAX; SIDE * SIDE];
         let grid = f64::from(1 << bits);
@@ -536,6 +543,7 @@ fn case_28_each_four_bits_of_the_subpixel_grid_leave_a_sixteenth_of_the_wrong_pi
     };
     let exact = seen(20);
     let covered = exact.iter().filter(|number| **number != usize::MAX).count() as f64;
+    // The share of pixels with another triangle than on the finest grid.
     let wrong = |bits: i32| {
         let differ = seen(bits).iter().zip(&exact).filter(|(a, b)| a != b).count();
         100.0 * differ as f64 / covered
@@ -564,12 +572,12 @@ fn case_28_each_four_bits_of_the_subpixel_grid_leave_a_sixteenth_of_the_wrong_pi
 
 #[test]
 fn case_29_points_every_tenth_of_a_unit_are_too_few_near_by_and_too_many_far_off() {
-    // By number: ancestor A's way of filling, points in the observer's space, 800 pixels for 45
-    // degrees.
+    // Computed here: the fill of ancestor A, which sets points in the observer's space, for 800
+    // pixels across 45 degrees.
     let tangent = 2.0_f64.sqrt() - 1.0;
     let pixel = |distance: f64| 2.0 * tangent * distance / 800.0;
     let counted = |distance: f64| {
-        // A square of 20 x 20 pixels that faces the eye: points in each of the inner 18 x 18.
+        // A square of 20 x 20 pixels that faces the eye; the inner 18 x 18 are counted.
         let (unit, mut counts) = (pixel(distance), vec![0_u32; 400]);
         let steps = (20.0 * unit / 0.1) as usize;
         for (i, j) in (0..=steps).flat_map(|i| (0..=steps).map(move |j| (i, j))) {
@@ -587,11 +595,12 @@ fn case_29_points_every_tenth_of_a_unit_are_too_few_near_by_and_too_many_far_off
     };
     let (at_400, no_holes) = counted(400.0);
     let (at_966, _) = counted(966.0);
+    // Average points per pixel at two distances.
     assert!((at_400 - 17.2).abs() < 1.0 && (at_966 - 100.0).abs() < 3.0, "{at_400} {at_966}");
     assert_eq!(no_holes, 0);
-    // Nearer than 96.6 a pixel is narrower than the step.
+    // Below a distance of 96.6 a pixel is narrower than the step.
     assert!(counted(80.0).1 > 0 && counted(98.0).1 == 0);
-    // Ours: one write a pixel, no hole, at any distance.
+    // The renderer leaves no hole at any distance.
     let unit = pixel(60.0);
     let square = super::common::square();
     let (scene, view) = scene(&[(square, at(10.0 * unit, 0.0, 0.0, 340.0))]);
@@ -608,6 +617,6 @@ fn case_29_points_every_tenth_of_a_unit_are_too_few_near_by_and_too_many_far_off
         unit: "pixels",
     }
     .hold();
-    // Whether any span of a row is written twice is the business of case 21.
+    // Case 21 tests that no pixel is written twice.
     assert_eq!(span([Snapped { x: 0, y: 0 }; 3], 0), 0..0);
 }

@@ -20,13 +20,13 @@ use super::oracle::{Eye, meet};
 
 const SIDE: usize = 64;
 
-/// The depth of perspective from 1 to 2000 at a distance: from 0 at the near plane to 1.
+/// Perspective depth at a distance, with planes at 1 and 2000: 0 near, 1 far.
 fn usual(z: f64) -> f64 {
     2000.0 / 1999.0 * (1.0 - 1.0 / z)
 }
 
-/// Two squares over the whole view, one behind the other by `gap`, the older one behind: how many
-/// pixels show it. Nothing else would make it seen but a tie or worse.
+/// Counts the pixels that show the farther of two squares, `gap` apart, that fill the view. The
+/// farther one is older and wins ties, so it is seen exactly if the depths merge or swap.
 fn hidden_ones(z: f64, gap: f64, projection: Projection) -> usize {
     let place = |z: f64| at(z.max(600.0), 0.0, 0.0, 400.0 - z);
     let (mut scene, view) = scene(&[(square(), place(z + gap)), (square(), place(z))]);
@@ -42,12 +42,13 @@ fn hidden_ones(z: f64, gap: f64, projection: Projection) -> usize {
 
 #[test]
 fn case_30_at_a_thousand_units_a_ten_thousandth_is_told_apart() {
-    // The step of reversed f32 at z = 1000 is 5.8e-5; two roundings make it two steps.
+    // One step of reversed f32 at z = 1000 is 5.8e-5; two roundings can add up to two steps.
     let separated = |gap: f64| hidden_ones(1000.0, gap, Projection::Perspective) == 0;
     let mut gap = 1e-6;
     while !separated(gap) {
         gap *= 1.1;
     }
+    // The least gap that other depth formats separate, computed from the formula alone.
     let naive = |merged: &dyn Fn(f64) -> bool| {
         let mut gap = 1e-6;
         while merged(gap) {
@@ -107,7 +108,7 @@ fn case_31_surfaces_a_thousandth_apart_are_told_apart_as_far_as_one_sees() {
 
 #[test]
 fn case_32_of_the_same_plane_cut_otherwise_the_older_is_seen() {
-    // By the stage: corners and depths without any rounding, so that both are the same plane.
+    // Drawn on the test stage, where corners and depths are exact: both cuts lie in the same plane.
     const SIDE: usize = 256;
     let mut rng = Rng::new(32);
     let (mut level, mut leaning, mut pixels) = (0, 0, 0);
@@ -122,6 +123,7 @@ fn case_32_of_the_same_plane_cut_otherwise_the_older_is_seen() {
             corners: of.map(|i| corners[i]),
             distances: of.map(|i| distances[i]),
         };
+        // The two ways to cut a quad along a diagonal.
         let old = vec![triangle([0, 1, 2]), triangle([0, 2, 3])];
         let new = vec![triangle([1, 2, 3]), triangle([1, 3, 0])];
         let picture = flat::draw(&flat::scene(&[old, new], SIDE), SIDE, &mut Renderer::default());
@@ -142,8 +144,8 @@ fn case_32_of_the_same_plane_cut_otherwise_the_older_is_seen() {
         unit: "pixels",
     }
     .hold();
-    // If it leans, the depth of each cut is rounded from its own corners, once; so either may be a
-    // last place nearer. It is a share of pixels that is stated, not hidden.
+    // On a leaning plane each cut rounds its depth once, from its own corners, so either may be one
+    // ulp nearer. The figure states the share of such pixels.
     Figure {
         case: 32,
         what: "pixels of a leaning plane that show the younger, by the last place of depth",
@@ -155,8 +157,7 @@ fn case_32_of_the_same_plane_cut_otherwise_the_older_is_seen() {
     .hold();
 }
 
-/// A depth at a pixel's middle with twice the digits: edge functions of whole numbers over their
-/// sum.
+/// Depth at a pixel centre in double-double: integer edge functions divided by their sum.
 fn exact_depth(flat: &Flat, x: i32, y: i32) -> f64 {
     let [p, q, r] = flat.corners;
     let edge = |p: Snapped, q: Snapped| {
@@ -171,12 +172,12 @@ fn exact_depth(flat: &Flat, x: i32, y: i32) -> f64 {
     ((parts[0] * depth(0) + parts[1] * depth(1) + parts[2] * depth(2)) / sum).nearest()
 }
 
-/// The same by a plane through the corners, in f32.
+/// The same depth by a plane equation through the corners, in f32.
 fn planar_depth(flat: &Flat, x: i32, y: i32) -> f64 {
     planar(flat.corners, flat.distances.map(|d| (1.0 - d / FAR) as f32), x, y)
 }
 
-/// The value at a pixel's centre, by a plane in f32 through the values at a triangle's corners.
+/// The value at a pixel centre, by a plane equation in f32 through the values at the corners.
 pub(super) fn planar(corners: [Snapped; 3], values: [f32; 3], x: i32, y: i32) -> f64 {
     let [p, q, r] = corners.map(|c| [c.x as f32 / 256.0, c.y as f32 / 256.0]);
     let [a, b, c] = values;
@@ -194,7 +195,7 @@ fn case_33_on_slivers_depth_is_right_to_two_last_places_and_within_the_corners()
     let mut rng = Rng::new(33);
     let (mut ours, mut naive, mut pixels, mut outside) = (0.0_f64, 0.0_f64, 0, 0);
     for _ in 0..300 {
-        // As long as the picture and a few parts of a pixel wide.
+        // Slivers: as long as the picture and a few 1/256 pixel wide.
         let along = |rng: &mut Rng| rng.between(0, SIDE as i32 * SUBPIXELS);
         let (x, y) = (along(&mut rng), along(&mut rng));
         let (tx, ty) = (along(&mut rng), along(&mut rng));
@@ -217,13 +218,14 @@ fn case_33_on_slivers_depth_is_right_to_two_last_places_and_within_the_corners()
         let depths = distances.map(|d| 1.0 - d / FAR);
         let largest = depths.into_iter().fold(0.0, f64::max);
         let least = depths.into_iter().fold(1.0, f64::min);
-        // The last place of the largest depth, as f32 has it.
+        // One ulp of the largest depth, as f32.
         let ulp = f64::from(
             (largest as f32)
                 .to_bits()
                 .checked_sub(1)
                 .map_or(f32::MIN_POSITIVE, |bits| largest as f32 - f32::from_bits(bits)),
         );
+        // Compares some 30 pixels per sliver.
         for i in seen.into_iter().step_by(step) {
             let (x, y) = (i % SIDE, i / SIDE);
             let got = f64::from(renderer.hit(x, y).unwrap().depth);
@@ -249,8 +251,8 @@ fn case_33_on_slivers_depth_is_right_to_two_last_places_and_within_the_corners()
 
 #[test]
 fn case_33_no_depth_of_a_small_triangle_is_beyond_those_of_its_corners() {
-    // In each field of eight pixels a triangle with its corners on the middles of pixels, where two
-    // edge functions are 0 and the third is the whole area.
+    // One triangle in each field of eight pixels, with its corners on pixel centres. At a corner
+    // two edge functions are 0 and the third is the whole area, so rounding shows at once.
     const SIDE: usize = 512;
     let mut rng = Rng::new(330);
     let mut flats = Vec::new();
@@ -271,6 +273,7 @@ fn case_33_no_depth_of_a_small_triangle_is_beyond_those_of_its_corners() {
         let Some(hit) = renderer.hit(x, y) else { continue };
         let flat = &flats[y / 8 * 64 + x / 8];
         let depths = flat.distances.map(|d| 1.0 - d / FAR);
+        // Interpolation must not leave the range of the corners.
         let (least, most) =
             depths.iter().fold((1.0_f64, 0.0_f64), |(a, b), d| (a.min(*d), b.max(*d)));
         let beyond = |depth: f64| usize::from(!(least..=most).contains(&depth));
@@ -313,7 +316,7 @@ fn case_34_two_faces_that_meet_in_a_line_meet_in_that_line() {
         renderer.render(&plan);
         let first = renderer.pixels_of(ItemId::Object(ObjectId(10)));
         let second = renderer.pixels_of(ItemId::Object(ObjectId(11)));
-        // Both turn about the same line through the middle of the world.
+        // Both planes turn about the same line through the origin.
         let line = DMat4::from_rotation_z(0.4 * i as f64).transform_vector3(DVec3::Y);
         let [lx, ly] = eye.pixel(line * 50.0);
         let (dx, dy) = (lx - SIDE as f64 / 2.0, ly - SIDE as f64 / 2.0);
@@ -321,11 +324,13 @@ fn case_34_two_faces_that_meet_in_a_line_meet_in_that_line() {
             [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
                 .map(|(x, y)| placement.transform_point3(DVec3::new(x, y, 0.0)))
         };
+        // The oracle: distance along a ray through the pixel centre.
         let distance = |placement: DMat4, x: usize, y: usize| {
             let [a, b, c, d] = corners(placement);
             let ray = eye.ray(x, y);
             [[a, b, c], [a, c, d]].into_iter().find_map(|t| meet(eye.at, ray, t)).map(|m| m.0)
         };
+        // A wrong pixel counts by its distance from the line on the screen.
         for j in 0..SIDE * SIDE {
             let (x, y) = (j % SIDE, j / SIDE);
             let both = [distance(placements[0], x, y), distance(placements[1], x, y)];
@@ -338,7 +343,7 @@ fn case_34_two_faces_that_meet_in_a_line_meet_in_that_line() {
             }
         }
     }
-    // With 16 bits, as deep as the step of depth at this distance lets the faces reach through.
+    // 16 bits of depth let a face show through up to one depth step at this distance.
     let slope = f64::abs(0.3_f64.tan() - 0.9_f64.tan());
     let step = 400.0 * 400.0 / 65536.0 * 1999.0 / 2000.0;
     let naive = step / slope / (2.0 * eye.tangent * 400.0 / SIDE as f64);
@@ -357,7 +362,7 @@ fn case_34_two_faces_that_meet_in_a_line_meet_in_that_line() {
 fn case_35_in_parallel_projection_depth_is_as_fine_far_off_as_near_by() {
     let (mut wrong, mut naive) = (0, 0);
     for i in 0..200 {
-        // A hundredth apart; 16 bits from 0 to 2000 have steps of 0.03.
+        // A gap of 0.01; 16 bits from 0 to 2000 have steps of 0.03.
         let z = 5.0 + 1990.0 * f64::from(i) / 200.0;
         wrong += hidden_ones(z, 1e-2, Projection::Orthographic);
         let fixed = |z: f64| (z / 2000.0 * 65535.0).round() as i64;
@@ -376,7 +381,7 @@ fn case_35_in_parallel_projection_depth_is_as_fine_far_off_as_near_by() {
 
 #[test]
 fn case_36_the_order_of_drawing_does_not_show() {
-    // Squares through each other, some of them in the same place.
+    // Squares that intersect, in pairs at the same place.
     let placements: Vec<_> = (0..12)
         .map(|i| {
             let same = f64::from(i / 2);
@@ -401,7 +406,7 @@ fn case_36_the_order_of_drawing_does_not_show() {
         let now = picture(&scene);
         differ += first.pixels().iter().zip(now.pixels()).filter(|(a, b)| a != b).count();
     }
-    // The result if the last one drawn were visible: the younger of each pair.
+    // The picture if the last one drawn were visible: the younger of each pair.
     let mut younger = scene.clone();
     for id in (10..22).step_by(2) {
         edit(&mut younger, ObjectId(id), |object| object.visible = false);
@@ -421,7 +426,7 @@ fn case_36_the_order_of_drawing_does_not_show() {
 
 #[test]
 fn case_36_the_order_of_faces_shows_by_their_numbers_alone() {
-    // One mesh of two faces in one place: the lower number is seen, whichever that is.
+    // A mesh of two coincident faces: the lower number wins.
     let square = [[-60.0, -60.0, 0.0], [60.0, -60.0, 0.0], [60.0, 60.0, 0.0], [-60.0, 60.0, 0.0]];
     let twice = model("twice", &square, &[&[0, 1, 2, 3], &[0, 1, 2, 3]]);
     let (mut scene, view) = scene(&[(twice, DMat4::IDENTITY)]);

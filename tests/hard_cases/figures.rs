@@ -1,7 +1,7 @@
-//! The figures of a case: the number of a naive program, ours, and the bound that ours must keep.
+//! The figures of a case: the result of a naive program, ours, and the bound for ours.
 //!
-//! Each is printed as one line and, if `MARRAZTU_FIGURES` names a folder, written into a file
-//! there. `tools/stability.sh` makes its page of them.
+//! Each figure is printed as one line and, if `MARRAZTU_FIGURES` names a folder, written to a file
+//! there. `tools/stability.sh` makes its page from these files.
 
 use super::cases::CASES;
 
@@ -9,21 +9,21 @@ use super::cases::CASES;
 pub(crate) struct Figure {
     /// The case's number.
     pub(crate) case: u8,
-    /// The quantity that is measured.
+    /// The measured quantity.
     pub(crate) what: &'static str,
-    /// A way in which it is done elsewhere, and what comes of it. It has to be worse than the
-    /// bound: else the case would be an easy one.
+    /// A method used by other programs, with its result. The result has to exceed the bound,
+    /// because a case that the naive method passes is not hard.
     pub(crate) naive: Option<(&'static str, f64)>,
-    /// Our number.
+    /// Our result.
     pub(crate) ours: f64,
-    /// The bound of our number.
+    /// The largest result that passes.
     pub(crate) bound: f64,
     /// The unit of all three numbers.
     pub(crate) unit: &'static str,
 }
 
 impl Figure {
-    /// Writes the figure down and holds it to its bound.
+    /// Records the figure, and checks it against its bound.
     #[track_caller]
     pub(crate) fn hold(self) {
         let Self { case, what, naive, ours, bound, unit } = self;
@@ -60,12 +60,12 @@ impl Figure {
     }
 }
 
-/// A number in a few letters.
+/// Formats a number in a few characters.
 fn short(x: f64) -> String {
     if x == 0.0 || (1e-3..1e6).contains(&x.abs()) {
         let text = format!("{x:.4}");
         let text = text.trim_end_matches('0').trim_end_matches('.').to_owned();
-        // Large numbers need no digits behind the point.
+        // Large numbers need no decimals.
         if x.abs() >= 1000.0 { format!("{x:.0}") } else { text }
     } else {
         format!("{x:.1e}")

@@ -1,4 +1,4 @@
-//! Odd numbers and faces in files, scenes of other scales, empty scenes and huge ones.
+//! Odd numbers and faces in files, scenes at other scales, empty scenes and huge ones.
 
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::Shot;
@@ -27,7 +27,7 @@ fn with_first_number(number: &str) -> Result<Loaded, LoadError> {
 #[test]
 fn case_64_numbers_are_read_to_the_nearest_f64_or_skipped() {
     let mut wrong = 0;
-    // The f32 nearest to the f64 nearest to these digits, computed from the decimals in integers.
+    // Digits are rounded to f64, then to f32. The expected bits were computed in integers.
     for (text, bits) in [
         ("1e-46", 0x0000_0000_u32),
         ("-1e-46", 0x8000_0000),
@@ -35,10 +35,10 @@ fn case_64_numbers_are_read_to_the_nearest_f64_or_skipped() {
         ("7.0064923216240854e-46", 0x0000_0000),
         ("1.1754942e-38", 0x007f_ffff),
         ("0.30000000000000000000000001", 0x3e99_999a),
-        // Half-way between 1 and the next, and more by a step of an f64.
+        // Half-way between 1 and the next f32, and one f64 step above half-way.
         ("1.00000005960464477539", 0x3f80_0000),
         ("1.00000005960464500", 0x3f80_0001),
-        // The nearest f64 of these digits is half-way, and is rounded to even.
+        // The nearest f64 of these digits is exactly half-way, and ties go to even.
         ("1.0000000596046448", 0x3f80_0000),
         ("1.00000005960464477", 0x3f80_0000),
         ("16777217", 0x4b80_0000),
@@ -59,7 +59,8 @@ fn case_64_numbers_are_read_to_the_nearest_f64_or_skipped() {
         wrong += usize::from(kinds != [FindingKind::VertexNotFinite]);
         wrong += usize::from(loaded.model.mesh.positions().len() != 3);
     }
-    // Two points, a word, hexadecimal: the vertex is skipped, and line and text are named.
+    // Two decimal points, a word, hexadecimal: the vertex is skipped, and the finding names its
+    // line and text.
     for text in ["1.2.3", "one", "0x10", "1e", "--1"] {
         let loaded = with_first_number(text).unwrap();
         let named = matches!(&loaded.findings[..], [only]
@@ -70,7 +71,7 @@ fn case_64_numbers_are_read_to_the_nearest_f64_or_skipped() {
     }
     let loaded = with_first_number("0,5").unwrap();
     wrong += usize::from(loaded.model.mesh.positions()[0][0] != 0.5);
-    // atof stops at a comma and keeps the digits before it.
+    // atof stops at the comma and keeps the digits before it.
     let comma = "0,5".split(',').next().unwrap().parse::<f64>().unwrap();
     Figure {
         case: 64,
@@ -92,7 +93,7 @@ fn case_65_faces_are_kept_mended_or_left_out_and_concave_ones_are_filled_rightly
         ("f 1 2 4\nf 1 2 3\n", FindingKind::FaceRange, 1),
         ("f -4 -2 -1\nf -3 -2 -1\n", FindingKind::FaceRange, 1),
         ("f 1 2 99999999999\nf 1 2 3\n", FindingKind::FaceRange, 1),
-        // Counted back by 0 it would name the vertex that follows.
+        // An index of -0, read as relative, would refer to the next vertex.
         ("f -0 1 2\nv 1 1 0\nf 1 2 3\n", FindingKind::FaceRange, 1),
         ("f 1 2\nf 1 2 3\n", FindingKind::FaceShort, 1),
         ("f 1 x 2\nf 1 2 3\n", FindingKind::FaceUnreadable, 1),
@@ -104,7 +105,7 @@ fn case_65_faces_are_kept_mended_or_left_out_and_concave_ones_are_filled_rightly
     }
     assert!(read(&format!("{three}f 0 1 2\n")).is_err(), "a file without a usable face");
     assert_eq!(wrong, 0);
-    // A star of many points: what its triangles cover is the outline's own area.
+    // A star with many points: its triangles have to cover exactly the area of its outline.
     let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
     for points in [4, 5, 12, 100, 1001] {
         let place = |i: usize| {
@@ -123,9 +124,10 @@ fn case_65_faces_are_kept_mended_or_left_out_and_concave_ones_are_filled_rightly
             let position = mesh.corners()[corner as usize].position as usize;
             DVec3::from_array(mesh.positions()[position].map(f64::from))
         };
-        // Absolute areas: a triangle outside of the star would be counted twice.
+        // Absolute areas, which count a triangle outside the star as an excess.
         let area = |[a, b, c]: [DVec3; 3]| newell([a, b, c].into_iter()).z.abs() / 2.0;
         let filled: f64 = mesh.triangles().iter().map(|t| area(t.corners.map(at))).sum();
+        // The shoelace formula, and the naive fan from the first corner.
         let star: f64 = (0..outline.len())
             .map(|i| {
                 let (p, q) = (outline[i], outline[(i + 1) % outline.len()]);
@@ -148,7 +150,7 @@ fn case_65_faces_are_kept_mended_or_left_out_and_concave_ones_are_filled_rightly
     .hold();
 }
 
-/// A scene with all its lengths multiplied.
+/// A scene with all its lengths multiplied by a factor.
 fn scaled(by: f64, projection: Projection) -> (Scene, View) {
     let turn = DMat4::from_rotation_y(0.6) * DMat4::from_rotation_x(0.3);
     let place = |scale: DVec3, to: DVec3| {
@@ -195,6 +197,7 @@ fn case_66_a_scene_of_another_size_is_the_same_picture() {
                 let (scene, view) = scaled(by, projection);
                 draw(&scene, &view, &settings, 128)
             };
+            // Powers of two change no mantissa, so the pictures must be equal.
             let first = picture(1.0);
             for exponent in [-90, -40, -20, -10, -1, 1, 10, 20, 40, 90] {
                 let other = picture(2.0_f64.powi(exponent));
@@ -207,7 +210,7 @@ fn case_66_a_scene_of_another_size_is_the_same_picture() {
             }
         }
     }
-    // A lens that reaches so far that what is near has no square in f32, in the unit of the lens.
+    // With a far plane at 1e39, squares of near distances underflow in f32 in units of the lens.
     let (mut far, view) = scaled(1.0, Projection::Perspective);
     let mut camera = far.selected_camera(&view).clone();
     camera.lens.far = 1e39;
@@ -216,7 +219,7 @@ fn case_66_a_scene_of_another_size_is_the_same_picture() {
         .map(|arithmetic| draw(&far, &view, &Settings { arithmetic, ..Settings::default() }, 128));
     let step = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
     differ += fast.pixels().iter().zip(exact.pixels()).filter(|pair| step(*pair)).count();
-    // A length brought to 1 in f32: at 2^-80 its square is 0.
+    // Normalisation in f32: at a length of 2^-80 the square is 0.
     let tiny = 2.0_f32.powi(-80);
     Figure {
         case: 66,
@@ -234,7 +237,7 @@ fn case_66_a_scene_of_another_size_is_the_same_picture() {
 
 #[test]
 fn case_67_nothing_and_very_much_are_drawn() {
-    // No face at all.
+    // A mesh without faces, and a cube scaled to a point.
     let empty =
         model_of("empty", MeshSource { positions: vec![[0.0; 3]; 3], ..MeshSource::default() });
     let (mut scene, view) =
@@ -243,7 +246,7 @@ fn case_67_nothing_and_very_much_are_drawn() {
     let picture = draw(&scene, &view, &Settings::default(), 32);
     let seen = covered(&picture, &scene).iter().filter(|seen| **seen).count();
     edit(&mut scene, ObjectId(10), |object| object.visible = false);
-    // Pictures of one pixel, one row and one column of what a tile is not.
+    // Pictures of one pixel, one row, one column, and one size that is not a multiple of the tile.
     for size in [Size::new(1, 1), Size::new(1, 130), Size::new(130, 1), Size::new(65, 63)] {
         let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), size));
         assert_eq!(Renderer::default().render(&plan).size(), size);

@@ -1,4 +1,4 @@
-//! Normals, placements, mirrors, and shapes without a size.
+//! Normals, placements, mirrored scenes, and degenerate shapes.
 
 use crate::claims::double_double::Double;
 use glam::{DMat3, DMat4, DVec3};
@@ -18,12 +18,12 @@ use super::common::{at, ball, covered, cube, draw, edit, model, scene};
 use super::figures::Figure;
 use super::oracle::angle;
 
-/// a b - c d with twice the digits.
+/// a b - c d in double-double.
 fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
     (Double::from(a) * Double::from(b) - Double::from(c) * Double::from(d)).nearest()
 }
 
-/// The normal of a triangle of f32 corners: their differences are exact in f64.
+/// The exact normal of a triangle: differences of f32 corners are exact in f64.
 fn exact_normal([p, q, r]: [[f32; 3]; 3]) -> DVec3 {
     let from = |a: [f32; 3], b: [f32; 3], i: usize| f64::from(b[i]) - f64::from(a[i]);
     let axis = |i: usize, j: usize| {
@@ -32,7 +32,7 @@ fn exact_normal([p, q, r]: [[f32; 3]; 3]) -> DVec3 {
     DVec3::new(axis(1, 2), axis(2, 0), axis(0, 1))
 }
 
-/// The sum of p x q over the sides, as it stands in books, in f32.
+/// Newell's sum of p x q over the sides, as textbooks have it, in f32.
 fn naive_normal(corners: [[f32; 3]; 3]) -> DVec3 {
     let mut sum = [0.0_f32; 3];
     for i in 0..3 {
@@ -53,7 +53,7 @@ fn case_1_a_triangle_of_two_millimetres_half_a_kilometre_away_keeps_its_normal()
         let middle = DVec3::splat(500.0) + rng.vector(1.0);
         let corners = [0, 1, 2].map(|_| (middle + rng.vector(0.001)).as_vec3().to_array());
         let exact = exact_normal(corners);
-        // Twice the area: slivers are another case.
+        // Twice the area. Slivers are tested by another case.
         if exact.length() < 5e-7 {
             continue;
         }
@@ -78,7 +78,7 @@ fn case_2_a_difference_of_products_keeps_its_digits() {
     let mut rng = Rng::new(2);
     let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
     for _ in 0..10_000 {
-        // Whole numbers of 23 bits, so that i64 has the answer.
+        // Integers of 23 bits, for which i64 has the exact result.
         let [a, b] = [0, 1].map(|_| rng.between(1 << 22, 1 << 23));
         let (c, d) = (a + rng.between(-2, 2), b + rng.between(-2, 2));
         let exact = (i64::from(a) * i64::from(d) - i64::from(b) * i64::from(c)) as f64;
@@ -104,11 +104,11 @@ fn case_2_a_difference_of_products_keeps_its_digits() {
     .hold();
 }
 
-/// Strips one row high whose left sides stand about the middles of pixels, some to the left, some
-/// to the right, a ten-thousandth of a pixel apart: a vernier that shows where the screen is.
+/// A vernier that locates the screen to 1/10,000 pixel: strips of one row each, with left sides at
+/// offsets around a pixel centre that grow by 1/10,000 pixel per row.
 struct Vernier {
     corners: Vec<[f32; 3]>,
-    /// How far to the right of the pixel's middle each strip begins.
+    /// The offset of each strip's left side from the pixel centre, to the right.
     offsets: Vec<f64>,
 }
 
@@ -116,7 +116,7 @@ const ROWS: usize = 256;
 const COLUMN: f64 = 140.5;
 
 impl Vernier {
-    /// `unit` is the size of a pixel at the distance where the strips stand.
+    /// Builds the strips; `unit` is the size of a pixel at their distance.
     fn new(unit: f64) -> Self {
         let (mut corners, mut offsets) = (Vec::new(), Vec::new());
         for row in 0..ROWS {
@@ -124,12 +124,12 @@ impl Vernier {
             let x = |pixels: f64| ((pixels - 128.0) * unit) as f32;
             let y = |pixels: f64| ((128.0 - pixels) * unit) as f32;
             let (left, right) = (x(COLUMN + offset), x(COLUMN + 3.0));
-            // A quarter above and below the middles of its row.
+            // From a quarter row above the row's centre to a quarter below.
             let (top, bottom) = (y(row as f64 + 0.25), y(row as f64 + 0.75));
             for (x, y) in [(left, bottom), (right, bottom), (right, top), (left, top)] {
                 corners.push([x, y, 0.0]);
             }
-            // As it is in f32.
+            // The offset after rounding to f32.
             offsets.push(f64::from(left) / unit + 128.0 - COLUMN);
         }
         Self { corners, offsets }
@@ -138,7 +138,7 @@ impl Vernier {
 
 #[test]
 fn case_3_the_screen_stands_still_however_far_from_the_origin_the_scene_is() {
-    // 100 away, 45 degrees across 256 pixels.
+    // At a distance of 100, with 45 degrees across 256 pixels.
     let tangent = 2.0_f64.sqrt() - 1.0;
     let vernier = Vernier::new(200.0 * tangent / ROWS as f64);
     let polygons: Vec<[u32; 4]> =
@@ -151,10 +151,11 @@ fn case_3_the_screen_stands_still_however_far_from_the_origin_the_scene_is() {
         (5e3, "screen position, camera at 5e3"),
         (1e5, "screen position, camera at 1e5"),
     ] {
-        // No numbers that f32 has.
+        // Positions that f32 cannot represent.
         let away = DVec3::new(far, -far, far) * (1.0 + 1.0 / 3e3);
         let (mut scene, view) =
             scene(&[(strips.clone(), DMat4::from_translation(away + DVec3::Z * 300.0))]);
+        // Camera and scene move together, so the picture must not change.
         let mut camera = scene.selected_camera(&view).clone();
         camera.pose =
             Tracked::new(marraztu_core::scene::Pose::facing_minus_z(away + DVec3::Z * 400.0));
@@ -162,7 +163,8 @@ fn case_3_the_screen_stands_still_however_far_from_the_origin_the_scene_is() {
         let view = View { marks: false, ..view };
         let picture = draw(&scene, &view, &Settings::default(), ROWS);
         let seen = covered(&picture, &scene);
-        // A corner up to 1/512 to the right is snapped to the middle, and the strip has it.
+        // Snapping moves corners up to 1/512 pixel right of the centre onto it; those still cover
+        // it.
         let mut ours = 0.0_f64;
         for (row, offset) in vernier.offsets.iter().enumerate() {
             let past = offset - 1.0 / 512.0;
@@ -183,7 +185,7 @@ fn case_3_the_screen_stands_still_however_far_from_the_origin_the_scene_is() {
     }
 }
 
-/// How far the left sides of the strips move if positions in the world are f32.
+/// The largest shift of the strips' left sides if world positions are f32.
 fn naive_shift(vernier: &Vernier, away: DVec3, tangent: f64) -> f64 {
     let mut worst = 0.0_f64;
     let single = |x: f64| x as f32;
@@ -207,8 +209,7 @@ fn case_4_normals_of_stretched_objects_stay_across_their_surfaces() {
             let m = math::rotation(super::oracle::unit(rng.vector(1.0)), rng.real(0.0, 6.0))
                 * DMat3::from_diagonal(DVec3::new(1.0, stretch, 1.0));
             let (p, q) = (rng.vector(1.0), rng.vector(1.0));
-            // A normal is perpendicular to two directions along the surface, and these move with
-            // it.
+            // The expected normal is perpendicular to two transformed tangents.
             let (n, exact) = (p.cross(q), (m * p).cross(m * q));
             if n.length() < 0.1 {
                 continue;
@@ -238,7 +239,7 @@ fn case_5_an_object_made_smaller_329_times_is_still_an_object() {
         single *= 0.9;
     }
     let m = linear(&scene, &view);
-    // The power with twice the digits.
+    // The expected size, in double-double.
     let nine_tenths = Double::from(0.9);
     let exact = (0..329).fold(Double::ONE, |power, _| power * nine_tenths).nearest();
     assert!(m.is_finite() && math::has_full_rank(m));
@@ -287,6 +288,7 @@ fn case_6_a_mirrored_scene_gives_the_mirrored_picture() {
         let view = View { marks: false, light: None, ..view };
         draw(&scene, &view, &Settings::default(), SIDE)
     };
+    // The mirrored picture, read from right to left, equals the plain one.
     let (plain, mirrored) = (picture(1.0), picture(-1.0));
     let mut differ = 0;
     let mut drawn = 0;
@@ -296,7 +298,8 @@ fn case_6_a_mirrored_scene_gives_the_mirrored_picture() {
         differ += usize::from(plain.pixel(x, y) != mirrored.pixel(SIDE - 1 - x, y));
     }
     assert!(drawn > 5000, "there is something to see");
-    // The naive way: fronts by the sign of the area alone, so that all that is seen is missing.
+    // The naive renderer takes front faces from the sign of the area alone and culls every visible
+    // face.
     Figure {
         case: 6,
         what: "pixels that are not those of the mirrored picture",
@@ -364,13 +367,13 @@ fn case_8_vectors_of_any_length_are_brought_to_length_one() {
     let mut naive = 0.0_f64;
     let mut rng = Rng::new(8);
     for exponent in [-1030, -700, -150, -76, 0, 67, 700, 1020] {
-        // In two steps: the smallest powers of two are no normal numbers.
+        // In two steps, because the smallest powers of two are subnormal.
         let size = 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2);
         for _ in 0..500 {
             let v = rng.vector(1.0);
             let got = math::unit(v * size).unwrap();
-            // With twice the digits, of the vector before it was scaled: it has the same direction,
-            // but for subnormal numbers, which have few digits.
+            // The oracle normalises the unscaled vector in double-double. Both have the same
+            // direction, except that subnormal numbers lose digits; hence the wider bound.
             let square = |x: f64| Double::from(x) * Double::from(x);
             let length = (square(v.x) + square(v.y) + square(v.z)).sqrt();
             for i in 0..3 {
@@ -435,7 +438,8 @@ fn case_9_shapes_without_area_have_no_pixel() {
 
 #[test]
 fn case_10_normals_that_cancel_out_give_way_to_the_faces() {
-    // One triangle, from both sides: at each vertex the two normals are opposite, but for rounding.
+    // A triangle with both windings: at each vertex the two face normals cancel except for
+    // rounding.
     let picture = |model| {
         let (scene, view) = scene(&[(model, at(60.0, 20.0, -10.0, 0.0))]);
         draw(&scene, &View { marks: false, ..view }, &Settings::default(), 64)
@@ -446,7 +450,7 @@ fn case_10_normals_that_cancel_out_give_way_to_the_faces() {
         let corners = [0, 1, 2].map(|_| rng.vector(1.0).as_vec3().to_array());
         let one = picture(model("side", &corners, &[&[0, 1, 2]]));
         let two = picture(model("leaf", &corners, &[&[0, 1, 2], &[2, 1, 0]]));
-        // If one side is seen from behind, the leaf shows its other one.
+        // If the single face is seen from behind, the leaf shows its other side.
         let background = Scene::BACKGROUND.opaque();
         let both = one.pixels().iter().zip(two.pixels());
         differ += both.filter(|(one, two)| **one != background && one != two).count();

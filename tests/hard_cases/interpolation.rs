@@ -1,4 +1,4 @@
-//! Interpolation: the values between corners.
+//! Interpolation of values between corners.
 
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::{Arithmetic, Filter, LightAt, Settings};
@@ -21,8 +21,8 @@ use super::oracle::{Eye, inside_by, meet};
 
 const SIDE: usize = 256;
 
-/// How far a shown texel is from a place on the ruler, in texels, round it the shorter way; half a
-/// texel is not seen.
+/// Distance in texels between a shown texel and a position on the repeating ruler. Errors below
+/// half a texel are invisible and count as 0.
 fn texels_off(u: f64, scale: f64, shown: u8) -> f64 {
     let off = (u * scale).fract() * 256.0 - (f64::from(shown) + 0.5);
     (off.rem_euclid(256.0).min((-off).rem_euclid(256.0)) - 0.5).max(0.0)
@@ -30,7 +30,7 @@ fn texels_off(u: f64, scale: f64, shown: u8) -> f64 {
 
 #[test]
 fn case_37_a_texture_lies_still_on_a_wall_that_runs_away() {
-    // From 2.2 to 100 before the eye, 1024 texels long.
+    // A wall from 2.2 to 100 in front of the eye, 1024 texels long.
     let wall = |x: f64, y: f64, z: f64| DVec3::new(x, y, 400.0 - z).as_vec3().as_dvec3();
     let corners = [wall(-0.9, -0.8, 2.2), wall(30.0, -9.0, 100.0), wall(-0.9, 0.9, 2.2)];
     let u = [0.0_f32, 1.0, 0.0];
@@ -40,7 +40,7 @@ fn case_37_a_texture_lies_still_on_a_wall_that_runs_away() {
     let eye = Eye::first(SIDE);
     let places = corners.map(|corner| eye.pixel(corner));
     let (mut ours, mut affine, mut every_16, mut pixels) = (0.0_f64, 0.0_f64, 0.0_f64, 0);
-    // u at a pixel by a ray, and by the shares of the area on the screen.
+    // u at a pixel, by ray casting and by areas on the screen (affine).
     let exact = |x: usize, y: usize| meet(eye.at, eye.ray(x, y), corners);
     let by_area = |x: usize, y: usize| {
         let area = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
@@ -57,7 +57,7 @@ fn case_37_a_texture_lies_still_on_a_wall_that_runs_away() {
         pixels += 1;
         ours = ours.max(texels_off(parts[1], 64.0, picture.pixel(x, y)[0]) / 16.0);
         affine = affine.max((by_area(x, y) - parts[1]).abs() * 1024.0);
-        // Exact at every 16th pixel, straight between.
+        // Exact at every 16th pixel, linear between them.
         let (first, last) = (x / 16 * 16, x / 16 * 16 + 16);
         if let (Some(a), Some(b)) = (exact(first, y), exact(last.min(SIDE - 1), y)) {
             let t = (x - first) as f64 / (last.min(SIDE - 1) - first).max(1) as f64;
@@ -66,8 +66,8 @@ fn case_37_a_texture_lies_still_on_a_wall_that_runs_away() {
         }
     }
     assert!(pixels > 100, "{pixels}");
-    // Corners are on 1/256 pixel, which moves a texture by up to 1/512 pixel: at the far end of the
-    // wall a pixel is this many texels wide.
+    // Corners are snapped to 1/256 pixel, which moves the texture by up to 1/512 pixel. The bound
+    // is that shift at the far end of the wall, in texels.
     let bound = 0.5;
     for (what, how, naive) in [
         ("texture on a wall from z 2.2 to 100, against affine", "affine", affine),
@@ -86,6 +86,8 @@ fn case_38_no_colour_is_beyond_those_of_the_corners() {
         let side = SIDE as i32 * SUBPIXELS;
         let mut corner = || Snapped { x: rng.between(-999, side), y: rng.between(-999, side) };
         let (p, q) = (corner(), corner());
+        // A third corner next to the first makes a sliver, and colours one byte apart leave no
+        // slack.
         let beside = Snapped { x: p.x + rng.between(-2, 2), y: p.y + rng.between(-2, 2) };
         let corners = [p, q, beside];
         let bytes = [0, 1, 2].map(|_| rng.between(100, 101));
@@ -117,7 +119,7 @@ fn case_38_no_colour_is_beyond_those_of_the_corners() {
     .hold();
 }
 
-/// A triangle of the stage with a colour at each corner.
+/// Draws a triangle on the test stage with a colour at each corner.
 fn painted(corners: [Snapped; 3], colors: [[f32; 3]; 3], side: usize) -> Picture {
     let (mut scene, view) = flat::scene(&[vec![Flat::new(corners)]], side);
     let source = MeshSource {
@@ -135,7 +137,7 @@ fn painted(corners: [Snapped; 3], colors: [[f32; 3]; 3], side: usize) -> Picture
 
 #[test]
 fn case_39_places_beyond_the_texture_are_brought_back_into_it() {
-    // Two texels: what is shown tells which half of the texture a place falls into.
+    // Two texels: the shown colour tells which half of the texture was sampled.
     let texture = |wrap: Wrap| {
         Shared::new(Texture {
             source: std::path::PathBuf::new(),
@@ -167,17 +169,17 @@ fn case_39_places_beyond_the_texture_are_brought_back_into_it() {
                 let (scene, view) = textured(corners, [u; 3], &texture(wrap));
                 let settings = Settings { filter, ..Settings::default() };
                 let byte = draw(&scene, &view, &settings, 32).pixel(16, 16)[0];
-                // Between texels, anything from one to the other.
+                // Filters may return any mixture of the two texels.
                 let right = match filter {
                     Filter::Nearest => byte == expected,
                     Filter::Bilinear | Filter::Trilinear => (10..=20).contains(&byte),
                 };
-                // -1e-45 of a texture is 1 less nothing: the border, which either texel may have.
+                // -1e-45 is indistinguishable from the border at 1, where either texel is right.
                 wrong += usize::from(!right && u != -1e-45);
             }
         }
     }
-    // In 32-bit integers, which overflow: the texel is arbitrary then.
+    // 32-bit integers overflow, and the texel is arbitrary.
     let by_i32 = |u: f32| 10 + 10 * ((u * 2.0) as i32 & 1);
     let naive = [(-0.25_f32, 20), (-3.75, 10), (-1e4 - 0.25, 20), (1e30, 10), (f32::MAX, 10)]
         .into_iter()
@@ -213,7 +215,7 @@ fn case_40_one_colour_at_all_corners_stays_that_colour() {
         let picture = painted(corners, [[factor, 1.0, 1.0]; 3], 64);
         let shown = picture.pixels().iter().filter(|pixel| pixel[1] == 255);
         wrong += shown.filter(|pixel| pixel[0] != byte).count();
-        // Weights of f32 that were each divided by their sum, cut off to a byte.
+        // Normalised weights in f32, with the product truncated to a byte.
         for _ in 0..200 {
             let [a, b, c] = [0, 1, 2].map(|_| rng.unit() as f32);
             let sum = a + b + c;
@@ -260,7 +262,7 @@ fn case_40_the_same_light_at_all_corners_stays_that_light() {
     let mut rng = Rng::new(42);
     let (mut uneven, mut naive) = (0, 0);
     for byte in 0..255_u8 {
-        // On the border between two bytes, where the last place decides.
+        // Light on the border between two bytes, where the last bit decides.
         let factor = (f64::from(byte) + 0.5) / 255.0;
         let corners =
             [0, 1, 2].map(|_| (rng.vector(1.0) * DVec3::new(90.0, 90.0, 300.0)).as_vec3());
@@ -303,7 +305,7 @@ fn case_40_the_same_light_at_all_corners_stays_that_light() {
 
 #[test]
 fn case_41_a_quad_is_cut_from_its_first_corner_to_its_third() {
-    // The middle of a quad shows the mean of the two corners that its diagonal ends at.
+    // The middle of a quad shows the mean of the two corners on its diagonal.
     let corners = [(-60.0, -60.0), (60.0, -60.0), (60.0, 60.0), (-60.0, 60.0)];
     let shown = |turned: usize| {
         let source = MeshSource {
@@ -341,8 +343,8 @@ fn case_41_a_quad_is_cut_from_its_first_corner_to_its_third() {
 
 #[test]
 fn case_33_what_is_painted_on_slivers_is_right_to_two_last_places() {
-    // Seen in parallel and by the lens; the place on the texture is read off a ruler whose texels
-    // are a last place of 1 wide.
+    // Drawn in orthographic projection, with light in f32 and in f64. Texture coordinates are read
+    // off a ruler with texels one f32 epsilon wide.
     const SIDE: usize = 512;
     let mut rng = Rng::new(330);
     let scale = f64::from(1 << 15);
@@ -397,7 +399,7 @@ fn case_33_what_is_painted_on_slivers_is_right_to_two_last_places() {
     }
 }
 
-/// The value at the centre of a pixel, by integer edge functions in f64.
+/// The value at a pixel centre, by integer edge functions and f64 weights.
 fn between([p, q, r]: [Snapped; 3], u: [f32; 3], x: i32, y: i32) -> f64 {
     let edge = |p: Snapped, q: Snapped| {
         let (cx, cy) = (i64::from(x) * 256 + 128, i64::from(y) * 256 + 128);

@@ -1,4 +1,4 @@
-//! Checks the oracles themselves on cases whose answers are known.
+//! Tests the oracles themselves on cases with known answers.
 
 use marraztu_render::screen::coverage::Snapped;
 
@@ -12,7 +12,7 @@ fn at(x: i32, y: i32) -> Snapped {
 
 #[test]
 fn a_square_from_centre_to_centre_has_its_upper_and_left_pixels() {
-    // From the centre of pixel (0, 0) to that of pixel (2, 2).
+    // A square from the centre of pixel (0, 0) to that of pixel (2, 2).
     let [a, b, c, d] = [at(128, 128), at(640, 128), at(640, 640), at(128, 640)];
     for y in 0..2 {
         let (upper, lower) = (span([a, b, c], y), span([a, c, d], y));

@@ -1,4 +1,4 @@
-//! Light, compared with the equation of the oracle along rays.
+//! Light, compared with the lighting equation of the oracle along rays.
 
 use glam::{DMat4, DQuat, DVec3};
 use marraztu_core::accuracy::Shot;
@@ -21,7 +21,7 @@ use super::oracle::{self, Eye, OracleLight, OracleMaterial, meet, unit};
 
 const SIDE: usize = 96;
 
-/// White lights of these kinds and no other.
+/// Replaces the lights of a scene by white lights of these kinds.
 fn with_lamps(scene: &mut Scene, lamps: &[OracleLight]) {
     let kind = |lamp: &OracleLight| match *lamp {
         OracleLight::Ambient => LightKind::Ambient,
@@ -38,7 +38,7 @@ fn with_lamps(scene: &mut Scene, lamps: &[OracleLight]) {
     scene.lights = lamps.iter().zip(1..).map(light).collect();
 }
 
-/// Grey stuff.
+/// A grey material.
 fn stuff(matter: &OracleMaterial) -> MaterialChoice {
     MaterialChoice::Own(Material {
         ambient: [matter.ambient; 3],
@@ -49,7 +49,7 @@ fn stuff(matter: &OracleMaterial) -> MaterialChoice {
     })
 }
 
-/// A triangle over the whole view, each corner with a normal of its own: a bent mirror.
+/// A curved mirror: a triangle that fills the view, with a different normal at each corner.
 struct Bent {
     corners: [DVec3; 3],
     normals: [DVec3; 3],
@@ -59,7 +59,7 @@ struct Bent {
 
 impl Bent {
     fn random(rng: &mut Rng) -> Self {
-        // In front of the eye at (0, 0, 400); the numbers are those of f32.
+        // In front of the eye at (0, 0, 400). All numbers are exact in f32.
         let mut leaning = || rng.real(-60.0, 60.0);
         let corners = [
             DVec3::new(-600.0, -500.0, leaning()),
@@ -99,7 +99,7 @@ impl Bent {
         (scene, View { marks: false, light: None, ..view })
     }
 
-    /// Light at the middle of a pixel, along its ray.
+    /// The exact light at a pixel centre, along its ray.
     fn exact(&self, x: usize, y: usize, power: &dyn Fn(f64, f64) -> f64) -> f64 {
         let eye = Eye::first(SIDE);
         let ray = eye.ray(x, y);
@@ -113,9 +113,9 @@ impl Bent {
         draw(&scene, &view, &Settings { arithmetic, ..Settings::default() }, SIDE)
     }
 
-    /// Light at every pixel before it is rounded, in byte steps and to 1/64 of one: read off the
-    /// bytes of pictures that are each a little brighter than the one before. When the byte
-    /// changes, the light has come half-way to the next.
+    /// Measures the light at each pixel before rounding, in byte steps, to 1/64. The ambient light
+    /// rises in 64 parts of a step; where the byte changes, the light has reached the next
+    /// midpoint.
     fn before_rounding(&self, arithmetic: Arithmetic) -> Vec<f64> {
         const PARTS: u32 = 64;
         let picture = |part: u32| {
@@ -134,7 +134,7 @@ impl Bent {
             }
         }
         let light = |(byte, turned): (&u8, Option<u32>)| {
-            // Between this part and the one before.
+            // The change happened between the previous part and this one.
             let part = f64::from(turned.unwrap_or(PARTS)) - 0.5;
             f64::from(*byte) + 0.5 - part / f64::from(PARTS)
         };
@@ -144,11 +144,11 @@ impl Bent {
 
 #[test]
 fn case_42_a_reciprocal_root_of_twelve_bits_is_what_highlights_are_spared() {
-    // The editor's own light, before it is rounded, and that of a table of 256 powers and of
-    // normals brought to length 1 by a root of 12 bits.
+    // Compares three results before rounding: the renderer's, a table of 256 powers, and normals
+    // normalised by a reciprocal square root of 12 bits.
     let mut rng = Rng::new(42);
     let table = |x: f64, n: f64| ((x * 255.0).floor() / 255.0).powf(n);
-    // A relative error of 1.5 2^-12, as rsqrtps may have, squares in N.L and N.V of R.V.
+    // rsqrtps has a relative error of up to 1.5 2^-12, which enters R.V twice, by N.L and N.V.
     let rough = |x: f64, n: f64| (x * (1.0 - 2.0 * 1.5 / 4096.0)).powf(n);
     let exact = |x: f64, n: f64| x.powf(n);
     let (mut ours, mut reference, mut by_table, mut by_root) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
@@ -162,7 +162,7 @@ fn case_42_a_reciprocal_root_of_twelve_bits_is_what_highlights_are_spared() {
         for (j, light) in light.iter().enumerate() {
             let (x, y) = (j % SIDE, j / SIDE);
             let right = bent.exact(x, y, &exact) * 255.0;
-            // Half of a 64th is not seen.
+            // Half of a 64th is below the resolution.
             let off = |light: f64| ((light - right).abs() - 0.5 / 64.0).max(0.0);
             ours = ours.max(off(*light));
             if let Some(light) = &in_f64 {
@@ -204,8 +204,8 @@ fn case_43_a_cosine_above_one_does_no_harm() {
         v.dot(v).acos().is_nan()
     });
     let naive = above.count();
-    // A spot from the eye along the ray of a pixel, straight at a square, and its highlight: both
-    // cosines are 1 there, or a little more.
+    // A spot light at the eye that shines along a pixel's ray, perpendicular to a square. The
+    // cosines of cone and highlight are 1 there, or slightly above 1 by rounding.
     const PICTURE: usize = 33;
     let eye = Eye::first(PICTURE);
     let mut dark = 0;
@@ -221,15 +221,15 @@ fn case_43_a_cosine_above_one_does_no_harm() {
         edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
         with_lamps(&mut scene, &[OracleLight::Spot(eye.at, ray, 1.0, 1000.0)]);
         let view = View { marks: false, light: None, ..view };
-        // With an exponent of 10^7 a cosine of a last place above 1 is light three times too
-        // bright.
+        // With an exponent of 10^7, a cosine one ulp above 1 would make the highlight three times
+        // as bright.
         let mut piercing = scene.clone();
         let sharp = stuff(&OracleMaterial { exponent: 1e7, ..matter });
         edit(&mut piercing, ObjectId(10), |object| object.material = sharp.clone());
         for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
             let settings = Settings { arithmetic, ..Settings::default() };
             let middle = draw(&scene, &view, &settings, PICTURE).pixel(x, y)[0];
-            // 1 / (1 + 5e-6 300 + 5e-6 300^2) = 0.689 of 255 is 175.7.
+            // Attenuation: 1 / (1 + 5e-6 300 + 5e-6 300^2) = 0.689, and 0.689 of 255 is 175.7.
             dark += usize::from(!(170..=178).contains(&middle));
             pixels += 1;
             let shown = draw(&piercing, &view, &settings, PICTURE);
@@ -271,9 +271,10 @@ fn case_44_small_angles_are_shown_as_they_were_typed() {
                 placement::object_turn(&scene, &view, id, typed, GesturePhase::First).unwrap();
             command.apply(&mut scene).unwrap();
             let m = *scene.objects.get(id).unwrap().placement.now();
+            // The placement's matrix gives the angle back.
             let shown = placement::turn_degrees(&m).dot(axis);
             ours = ours.max((shown - degrees).abs() / (degrees * f64::EPSILON));
-            // By the trace: cos of the angle is (trace - 1) / 2.
+            // From the trace: the cosine of the angle is (trace - 1) / 2.
             let by_trace = ((m.x_axis.x + m.y_axis.y + m.z_axis.z - 1.0) / 2.0).acos().to_degrees();
             naive = naive.max((by_trace - degrees).abs() / (degrees * f64::EPSILON));
         }
@@ -295,12 +296,12 @@ fn case_45_powers_of_numbers_that_have_none_are_zero() {
     for exponent in [0.0, 0.5, 5.0, 76.8, 1000.0] {
         for x in [0.0_f32, -0.0, -1e-45, -0.5, -1.0, f32::NAN, f32::NEG_INFINITY] {
             wrong += usize::from(x.power(&Power::new(exponent, -24.0)) != 0.0);
-            // The reference is clamped after it: NaN is no light.
+            // The f64 kernel clamps afterwards, which turns NaN into 0.
             wrong += usize::from(f64::from(x).power(&Power::new(exponent, -24.0)).max(0.0) != 0.0);
         }
     }
-    // In a picture: Ns of 0 is a highlight of one strength wherever R.V is above 0, and none where
-    // a light is behind.
+    // In a picture: Ns 0 makes a highlight of constant strength wherever R.V is positive, and no
+    // highlight if the light is behind the surface.
     let (mut scene, view) = scene(&[(square(), at(90.0, 0.0, 0.0, 0.0))]);
     let matter = OracleMaterial { ambient: 0.0, diffuse: 0.0, specular: 0.5, exponent: 0.0 };
     edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
@@ -333,7 +334,7 @@ fn case_46_no_power_is_subnormal() {
         for i in 0..=20_000_u16 {
             let x = f32::from(i) / 20_000.0;
             let power = x.power(&Power::new(exponent, -10.0));
-            // 0, or above the floor but for rounding.
+            // 0, or above the floor, apart from rounding.
             small += usize::from(power != 0.0 && power < 0.999 * 2.0_f32.powi(-10));
             naive += usize::from(x.powf(exponent as f32).is_subnormal());
         }
@@ -349,7 +350,7 @@ fn case_46_no_power_is_subnormal() {
     .hold();
 }
 
-/// A lit square over the view, with these lights.
+/// A square that fills the view, lit by these lights.
 fn lit_square(lamps: &[OracleLight]) -> (Scene, View) {
     let (mut scene, view) = scene(&[(square(), at(170.0, 0.0, 0.0, 0.0))]);
     let matter = OracleMaterial { ambient: 0.1, diffuse: 0.6, specular: 0.5, exponent: 20.0 };
@@ -360,7 +361,7 @@ fn lit_square(lamps: &[OracleLight]) -> (Scene, View) {
 
 #[test]
 fn case_47_a_lamp_on_a_surface_is_the_same_on_all_instructions_and_spoils_nothing() {
-    // On the surface, at the very middle of a pixel, and a hair above and below it.
+    // On the surface at a pixel centre, and slightly above and below it.
     let eye = Eye::first(65);
     let ray = eye.ray(32, 32);
     let touching = eye.at + ray * 400.0;
@@ -372,12 +373,13 @@ fn case_47_a_lamp_on_a_surface_is_the_same_on_all_instructions_and_spoils_nothin
             for light in [LightAt::Pixel, LightAt::Vertex, LightAt::Face] {
                 let settings = Settings { light, ..Settings::default() };
                 let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(65, 65)));
+                // Every instruction set draws the same bytes.
                 let pictures: Vec<Picture> = levels()
                     .into_iter()
                     .map(|level| Renderer::new(level).render(&plan).clone())
                     .collect();
                 differ += pictures.windows(2).filter(|pair| pair[0] != pair[1]).count();
-                // Ambient light is everywhere: 0.1 is 26 steps.
+                // Ambient light of 0.1, or 26 steps, reaches every pixel.
                 let dark = |pixel: &&[u8; 4]| pixel[0] < 25 && **pixel != [0, 0, 179, 255];
                 black += pictures[0].pixels().iter().filter(dark).count();
             }
@@ -394,7 +396,7 @@ fn case_47_a_lamp_on_a_surface_is_the_same_on_all_instructions_and_spoils_nothin
     .hold();
 }
 
-/// A wide highlight, which reaches where a narrow one does not.
+/// Widens the highlight, which then reaches where a narrow one ends.
 fn soften(scene: &mut Scene) {
     let matter = OracleMaterial { ambient: 0.1, diffuse: 0.6, specular: 0.5, exponent: 2.0 };
     edit(scene, ObjectId(10), |object| object.material = stuff(&matter));
@@ -412,7 +414,7 @@ fn case_48_a_highlight_ends_where_a_round_surface_turns_away() {
     };
     let dark = picture(&[OracleLight::Ambient]);
     let eye = Eye::first(SIDE);
-    // The normal where a ray meets the ball.
+    // The normal where a pixel's ray meets the ball.
     let normal = |i: usize| {
         let ray = unit(eye.ray(i % SIDE, i / SIDE));
         let along = -eye.at.dot(ray);
@@ -426,9 +428,10 @@ fn case_48_a_highlight_ends_where_a_round_surface_turns_away() {
             unit(DVec3::new(rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(-0.9, 0.3)));
         let lit = picture(&[OracleLight::Ambient, OracleLight::Sun(-to_light)]);
         for i in 0..SIDE * SIDE {
-            // A polygon of the ball leans from its surface by 0.03 at most.
+            // The polygons of the ball differ from its surface by at most 0.03 in N.L.
             let Some(n) = normal(i).filter(|n| n.dot(to_light) < -0.05) else { continue };
             differ += usize::from(lit.pixels()[i] != dark.pixels()[i]);
+            // The naive highlight ignores the sign of N.L.
             let mirrored = n * (2.0 * n.dot(to_light)) - to_light;
             let v = unit(-eye.ray(i % SIDE, i / SIDE));
             naive += usize::from(0.5 * mirrored.dot(v).max(0.0).powi(2) > 1.0 / 255.0);
@@ -469,7 +472,7 @@ fn case_48_a_lamp_behind_a_surface_leaves_it_as_it_is() {
         soften(&mut scene);
         let picture = draw(&scene, &view, &Settings::default(), SIDE);
         differ += picture.pixels().iter().zip(dark.pixels()).filter(|(a, b)| a != b).count();
-        // Without the condition on N.L: R.V of a light behind may well be positive.
+        // Without the condition on N.L: R.V can be positive even if the light is behind.
         let eye = Eye::first(SIDE);
         for i in 0..SIDE * SIDE {
             let v = unit(-eye.ray(i % SIDE, i / SIDE));
@@ -501,6 +504,7 @@ fn case_49_a_wider_cone_lights_no_pixel_less() {
         let lamps = [OracleLight::Spot(from, axis, half_aperture, 5.0)];
         let (scene, view) = lit_square(&lamps);
         let picture = draw(&scene, &view, &Settings::default(), SIDE);
+        // A wider cone may only add light.
         if let Some(before) = &before {
             let pairs = before.pixels().iter().zip(picture.pixels());
             less += pairs.filter(|(a, b)| b[0] < a[0]).count();
@@ -508,7 +512,7 @@ fn case_49_a_wider_cone_lights_no_pixel_less() {
             lit_by_none =
                 picture.pixels().iter().filter(|pixel| pixel[0] > 0 && pixel[2] != 179).count();
         }
-        // The border is where the equation has it, but for a hundredth of a degree.
+        // The border of the cone is where the equation has it, to 0.01 degrees.
         let eye = Eye::first(SIDE);
         for i in 0..SIDE * SIDE {
             let ray = eye.ray(i % SIDE, i / SIDE);
@@ -543,8 +547,8 @@ fn case_50_the_order_of_lights_does_not_show() {
         lamps.push(OracleLight::Bulb(DVec3::Z * 150.0 + rng.vector(120.0)));
     }
     let (mut scene, view) = scene(&[(ball(16), at(120.0, 0.0, 0.0, 0.0))]);
-    // Three channels with their own digits: one in a hundred thousand bytes stands so near to the
-    // border of the next that the last place of a sum decides.
+    // Three channels with different digits: about one byte in 100,000 is so close to a rounding
+    // border that the last bit of a sum decides.
     let material = Material {
         ambient: [0.03, 0.041, 0.023],
         diffuse: [0.11, 0.13, 0.17],
@@ -563,7 +567,7 @@ fn case_50_the_order_of_lights_does_not_show() {
         let now = draw(&scene, &view, &Settings::default(), 512);
         differ += first.pixels().iter().zip(now.pixels()).filter(|(a, b)| a != b).count();
     }
-    // Sums of ten numbers of f32, in two orders.
+    // Sums of ten f32 numbers in two orders.
     let sums = (0..10_000).filter(|_| {
         let parts: Vec<f32> = (0..10).map(|_| rng.unit() as f32).collect();
         parts.iter().sum::<f32>() != parts.iter().rev().sum::<f32>()
@@ -584,7 +588,8 @@ fn case_50_the_order_of_lights_does_not_show() {
 
 #[test]
 fn case_51_light_is_held_to_full_once_and_after_the_texture() {
-    // Two suns at 1 each on a surface of 1, under a tint of a half: 2 times 1/2 is full.
+    // Two suns of 1 each on a surface of 1, times a texel of 1/2: the product 2 x 1/2 is full
+    // light.
     let (mut scene, view) =
         lit_square(&[OracleLight::Sun(DVec3::NEG_Z), OracleLight::Sun(DVec3::NEG_Z)]);
     let matter = OracleMaterial { ambient: 0.0, diffuse: 1.0, specular: 0.0, exponent: 1.0 };

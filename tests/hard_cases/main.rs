@@ -1,5 +1,5 @@
-//! The hard cases, in which programs of this kind go wrong, by their numbers. Each measures a naive
-//! program, too.
+//! The hard cases, numbered: inputs at which renderers and editors commonly fail. Each case also
+//! measures a naive program.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 #![expect(clippy::print_stdout, reason = "what was measured is shown")]

@@ -1,9 +1,9 @@
-//! The oracle of pictures: ray casting and the equation of light, in f64 and without any of our
-//! code.
+//! The oracle of pictures: ray casting and the lighting equation in f64, independent of the
+//! renderer's code.
 
 use glam::DVec3;
 
-/// Pixels to a side, and the tangent of the half-angle that is seen.
+/// A pinhole camera: pixels per side, position, and tangent of the half-angle of view.
 #[derive(Clone, Copy)]
 pub(crate) struct Eye {
     pub(crate) side: usize,
@@ -12,18 +12,18 @@ pub(crate) struct Eye {
 }
 
 impl Eye {
-    /// The eye of the scenes of `common`: at (0, 0, 400), looking along -Z.
+    /// The camera of the scenes of `common`: at (0, 0, 400), looking along -Z.
     pub(crate) fn first(side: usize) -> Self {
         Self { side, at: DVec3::Z * 400.0, tangent: (2.0_f64.sqrt() - 1.0) }
     }
 
-    /// The way from the eye through the middle of a pixel.
+    /// The ray from the eye through a pixel centre.
     pub(crate) fn ray(&self, x: usize, y: usize) -> DVec3 {
         let across = |i: usize| ((i as f64 + 0.5) * 2.0 / self.side as f64 - 1.0) * self.tangent;
         DVec3::new(across(x), -across(y), -1.0)
     }
 
-    /// The position of a point of the world in the picture, in pixels.
+    /// Projects a world position into the picture, in pixels.
     pub(crate) fn pixel(&self, place: DVec3) -> [f64; 2] {
         let p = place - self.at;
         let half = self.side as f64 / 2.0;
@@ -32,7 +32,7 @@ impl Eye {
     }
 }
 
-/// How far along a ray a triangle is met, and the parts that its corners have there.
+/// Intersects a ray with a triangle: distance along the ray and barycentric coordinates.
 ///
 /// Cramer's rule: Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
 pub(crate) fn meet(origin: DVec3, ray: DVec3, [a, b, c]: [DVec3; 3]) -> Option<(f64, [f64; 3])> {
@@ -47,7 +47,8 @@ pub(crate) fn meet(origin: DVec3, ray: DVec3, [a, b, c]: [DVec3; 3]) -> Option<(
     (parts.iter().all(|part| *part >= 0.0) && t > 0.0).then_some((t, parts))
 }
 
-/// How far a ray's meeting with a triangle is from its nearest side, as a part of the triangle.
+/// The smallest barycentric coordinate: the distance from the nearest side, relative to the size
+/// of the triangle.
 pub(crate) fn inside_by(parts: [f64; 3]) -> f64 {
     parts.into_iter().fold(f64::INFINITY, f64::min)
 }
@@ -56,10 +57,10 @@ pub(crate) fn inside_by(parts: [f64; 3]) -> f64 {
 #[derive(Clone, Copy)]
 pub(crate) enum OracleLight {
     Ambient,
-    /// The way its light goes.
+    /// The direction of travel.
     Sun(DVec3),
     Bulb(DVec3),
-    /// Place, axis, half-aperture in degrees, exponent.
+    /// Position, axis, half-aperture in degrees, exponent.
     Spot(DVec3, DVec3, f64, f64),
 }
 
@@ -72,8 +73,8 @@ pub(crate) struct OracleMaterial {
     pub(crate) exponent: f64,
 }
 
-/// The light of white lamps from a place with the normal `n` towards `v`, not clamped; `power`
-/// raises cosines, so that ways of doing it can be compared.
+/// Light from white lights at a position with the normal `n` towards `v`, not clamped. `power`
+/// raises cosines to the exponent, so variants of it can be compared.
 pub(crate) fn light(
     lamps: &[OracleLight],
     matter: &OracleMaterial,
@@ -82,6 +83,7 @@ pub(crate) fn light(
 ) -> f64 {
     let mut sum = 0.0;
     for lamp in lamps {
+        // Direction to the light and its attenuation; ambient light needs neither.
         let (to_light, strength) = match *lamp {
             OracleLight::Ambient => {
                 sum += matter.ambient;
@@ -93,6 +95,7 @@ pub(crate) fn light(
                 ((at - place) / d, 1.0 / (1.0 + 5e-6 * d + 5e-6 * d * d))
             }
         };
+        // The falloff of a spot inside its cone.
         let gathered = match *lamp {
             OracleLight::Spot(_, axis, half_aperture, exponent) => {
                 let c = axis.dot(-to_light).min(1.0);
@@ -100,6 +103,7 @@ pub(crate) fn light(
             }
             _ => 1.0,
         };
+        // Phong: diffuse by N.L; specular by R.V, only on the lit side.
         let n_l = n.dot(to_light);
         let mirrored = n * (2.0 * n_l) - to_light;
         let mut reflected = matter.diffuse * n_l.max(0.0);
@@ -111,12 +115,12 @@ pub(crate) fn light(
     sum
 }
 
-/// At length 1; for vectors of ordinary length.
+/// Normalises a vector of ordinary length.
 pub(crate) fn unit(v: DVec3) -> DVec3 {
     v / v.length()
 }
 
-/// The angle between two directions, right for small ones too.
+/// The angle between two directions, accurate for small angles too.
 pub(crate) fn angle(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b))
 }

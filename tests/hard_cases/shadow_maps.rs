@@ -1,4 +1,4 @@
-//! Shadow maps beside exact shadows, holes of maps of opacity, and the shadow terminator.
+//! Shadow maps against exact shadows, holes of opacity maps, and the shadow terminator.
 
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::{AXES, Filter, Settings, ShadowMethod, Terminator};
@@ -14,20 +14,20 @@ use super::figures::Figure;
 use super::oracle::{Eye, meet, unit};
 use super::shadows::{SIDE, Shade, floor, sun, tilted};
 
-/// The settings with each kind of shadow map.
+/// The default settings with each kind of shadow map.
 fn maps() -> impl Iterator<Item = Settings> {
     let axis = AXES.iter().find(|axis| axis.key == "shadow-method").expect("the axis of shadows");
     let all = axis.choices.iter().filter(|choice| choice.word != "exact");
     all.map(|choice| choice.of(&Settings::default()))
 }
 
-/// Whether a texel of a map without a bias, whose centre is this far from the point, shades it.
+/// Whether a shadow map without bias shades the point, by the depth at the centre of its texel.
 fn has_acne(p: DVec3, normal: DVec3, travels: DVec3, texel: f64) -> bool {
     let right = travels.any_orthonormal_vector();
     let up = right.cross(travels);
     let centre = |axis: DVec3| ((p.dot(axis) / texel).floor() + 0.5) * texel - p.dot(axis);
     let aside = right * centre(right) + up * centre(up);
-    // The plane's depth at the centre, relative to that of the point.
+    // Depth of the plane at the texel centre, relative to that of the point.
     -normal.dot(aside) / normal.dot(travels) < -1e-9
 }
 
@@ -44,6 +44,7 @@ fn case_78_a_plane_does_not_shade_itself_in_a_shadow_map_with_a_bias() {
         let eye = DVec3::Z * 400.0;
         let bare = Shade { models: vec![(square(), plane)], light: sun(towards), eye };
         for settings in maps() {
+            // The bare plane must not be shaded by any map.
             shaded += bare.draw_by(&settings).shaded.iter().filter(|s| **s).count();
         }
         let normal = unit(plane.transform_vector3(DVec3::Z));
@@ -54,7 +55,8 @@ fn case_78_a_plane_does_not_shade_itself_in_a_shadow_map_with_a_bias() {
             eye - ray * normal.dot(eye - plane.w_axis.truncate()) / normal.dot(ray)
         });
         naive += points.filter(|p| has_acne(*p, normal, -unit(towards), 2.0)).count();
-        // What stands on it is shaded as rays say, but for the stairs along borders.
+        // With objects on the plane, the maps agree with exact shadows except for stairs at the
+        // borders.
         let things = [
             (ball(16), turn * at(50.0, 50.0, 50.0, -20.0)),
             (cube(), turn * at(30.0, -60.0, 30.0, 40.0)),
@@ -92,9 +94,9 @@ fn case_78_a_plane_does_not_shade_itself_in_a_shadow_map_with_a_bias() {
 
 #[test]
 fn case_78_a_convex_edge_shades_few_pixels_of_its_steep_side() {
-    // A texel over the edge has the depth of the side that faces the light. A point of the other
-    // side that is compared with it lies deeper, by more than the bias of that texel's own slope:
-    // with it alone, 372 pixels are shaded.
+    // A texel across the edge has the depth of the lit side. A point on the other side that is
+    // compared with it is deeper by more than the bias for that texel's slope. With that bias
+    // alone, 372 pixels are shaded.
     let (eye, turn) = (DVec3::Z * 400.0, tilted(30.0));
     let mut shaded = 0;
     for elevation in [60.0, 70.0, 80.0] {
@@ -119,7 +121,7 @@ fn case_78_a_convex_edge_shades_few_pixels_of_its_steep_side() {
     .hold();
 }
 
-/// A sheet from -1 to 1 whose map of opacity, black and white, is 8 x 8 fields.
+/// A sheet from -1 to 1 with a black-and-white opacity map of 8 x 8 fields.
 fn stencil() -> Shared<Model> {
     let field = |i: usize| if (i % 8 + i / 8).is_multiple_of(2) { 255 } else { 0 };
     let texels = (0..64).map(|i| [field(i), field(i), field(i), 255]).collect();
@@ -167,7 +169,7 @@ fn stencil() -> Shared<Model> {
 
 #[test]
 fn case_79_light_comes_through_the_holes_of_a_map_of_opacity() {
-    // Behind the eye, so that only its shadow is seen.
+    // The sheet is behind the eye, and only its shadow is visible.
     let sheet = at(60.0, 0.0, 0.0, 450.0);
     let eye = DVec3::Z * 400.0;
     let towards = DVec3::new(0.1, 0.07, 1.0);
@@ -188,6 +190,8 @@ fn case_79_light_comes_through_the_holes_of_a_map_of_opacity() {
         let (own, bright) = (picture(true), picture(false));
         let (mut wrong, mut whole, mut shaded, mut open) = (0, 0, 0, 0);
         for i in 0..SIDE * SIDE {
+            // The oracle: a ray from the wall to the light meets a field of the sheet. Rays within
+            // 0.04 of a field's border are skipped.
             let ray = seen.ray(i % SIDE, i / SIDE);
             let p = eye + ray * (400.0 / -ray.z);
             let hit =
@@ -201,7 +205,7 @@ fn case_79_light_comes_through_the_holes_of_a_map_of_opacity() {
                 continue;
             }
             let covers = |[u, v]: [f64; 2]| {
-                // Rows of a picture run down.
+                // Rows of a picture run down, v runs up.
                 let (column, row) = (u as usize, 7 - v as usize);
                 (column + row).is_multiple_of(2)
             };
@@ -239,7 +243,7 @@ fn case_87_rays_that_begin_on_the_curved_surface_leave_the_light_of_normals() {
         let settings = Settings { terminator, ..Settings::default() };
         stage.draw_by(&settings).shaded.iter().filter(|s| **s).count()
     };
-    // A ball is convex: what it lights by its normals, it should not shade.
+    // A ball is convex: a pixel that its normals light must not be in its own shadow.
     Figure {
         case: 87,
         what: "pixels of a smooth ball that its own triangles shade",

@@ -1,4 +1,4 @@
-//! Shadows, compared with rays that are cast one by one in f64 against every triangle.
+//! Shadows, compared with f64 rays against every triangle.
 
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::{Samples, Settings};
@@ -19,7 +19,7 @@ pub(crate) const SIDE: usize = 96;
 pub(crate) struct Shade {
     pub(crate) models: Vec<(Shared<Model>, DMat4)>,
     pub(crate) light: LightKind,
-    /// The eye's place; it looks along -Z.
+    /// The position of the eye, which looks along -Z.
     pub(crate) eye: DVec3,
 }
 
@@ -31,11 +31,11 @@ fn bulb(at: DVec3) -> LightKind {
     LightKind::Bulb { position: Tracked::new(at), orbit: Orbit::default() }
 }
 
-/// What a picture shows of its shadows.
+/// The shadows of a picture.
 pub(crate) struct Shaded {
-    /// Whether each pixel is reached by the light, if nothing stands between.
+    /// Whether the light reaches each pixel if shadows are off.
     pub(crate) lit: Vec<bool>,
-    /// Whether it is in shadow.
+    /// Whether each pixel is in shadow.
     pub(crate) shaded: Vec<bool>,
     pub(crate) picture: Picture,
 }
@@ -64,6 +64,7 @@ impl Shade {
         let mut pose = *camera.pose.now();
         pose.eye = self.eye;
         camera.pose = Tracked::new(pose);
+        // A scene scaled by a power of two gets planes scaled alike.
         let scale = self.eye.z.abs() / 400.0;
         camera.lens.near *= if scale.log2().fract() == 0.0 { scale } else { 1.0 };
         camera.lens.far *= if scale.log2().fract() == 0.0 { scale } else { 1.0 };
@@ -89,7 +90,7 @@ impl Shade {
         Shaded { lit: unlike(&bright, &dark), shaded: unlike(&bright, &own), picture: own }
     }
 
-    /// All triangles in the world.
+    /// The triangles of all objects, in world space.
     pub(crate) fn triangles(&self) -> Vec<[DVec3; 3]> {
         let mut all = Vec::new();
         for (model, placement) in &self.models {
@@ -105,7 +106,7 @@ impl Shade {
         all
     }
 
-    /// The way to the light from a point.
+    /// The vector from a point to the light.
     fn to_light(&self, from: DVec3) -> DVec3 {
         match &self.light {
             LightKind::Sun { direction } => -*direction.now() * 1e9,
@@ -114,14 +115,14 @@ impl Shade {
         }
     }
 
-    /// The pixels whose shadow is not as rays say, of those at which rays are sure; and with
-    /// `naive`, which gets a point, the way to the light and all triangles, those that it gets
-    /// wrong.
+    /// Compares the drawn shadows with rays, at pixels where the rays are reliable. Counts the
+    /// wrong pixels, and the wrong ones of `naive`.
     fn judge(&self, naive: &Naive<'_>) -> Judged {
         let (drawn, all) = (self.draw(), self.triangles());
         let eye = Eye { side: SIDE, at: self.eye, tangent: 2.0_f64.sqrt() - 1.0 };
         let mut judged = Judged::default();
         for i in (0..SIDE * SIDE).filter(|i| drawn.lit[*i]) {
+            // The visible point, by the nearest front face along the pixel's ray.
             let ray = eye.ray(i % SIDE, i / SIDE);
             let hits = all.iter().enumerate().filter_map(|(n, triangle)| {
                 let (t, parts) = meet(eye.at, ray, *triangle)?;
@@ -135,10 +136,12 @@ impl Shade {
                 continue;
             }
             let p = eye.at + ray * t;
+            // A shadow is certain if the ray passes well inside a triangle, and unreliable if it
+            // only grazes one or meets one at either end.
             let way = self.to_light(p);
             let (mut shaded, mut sure) = (false, true);
             for (n, triangle) in all.iter().enumerate().filter(|(n, _)| *n != own) {
-                // What the light lies on shades nothing.
+                // A triangle in the light's plane casts no shadow.
                 let normal = unit((triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]));
                 if normal.dot(p + way - triangle[0]).abs() < 1e-9 {
                     continue;
@@ -166,7 +169,7 @@ impl Shade {
     }
 }
 
-/// A triangle a little larger, so that what passes near its border is found.
+/// Enlarges a triangle slightly, so grazing rays are found.
 fn widened([a, b, c]: [DVec3; 3]) -> [DVec3; 3] {
     let middle = (a + b + c) / 3.0;
     [a, b, c].map(|p| middle + (p - middle) * 1.0001)
@@ -177,7 +180,7 @@ fn coplanar(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     b.iter().all(|p| n.dot(*p - a[0]).abs() < 1e-9 * (1.0 + p.length()))
 }
 
-/// Says of a point, the way to the light and all triangles whether the point is lit.
+/// A shadow test under comparison: point, vector to the light, all triangles.
 type Naive<'a> = dyn Fn(DVec3, DVec3, &[[DVec3; 3]]) -> bool + 'a;
 
 #[derive(Default)]
@@ -188,7 +191,7 @@ struct Judged {
     naive_wrong: usize,
 }
 
-/// A ray in f32 against every triangle, from the point itself.
+/// Casts a ray in f32 from the point itself, against every triangle.
 fn in_single(p: DVec3, way: DVec3, all: &[[DVec3; 3]]) -> bool {
     all.iter().any(|triangle| meets_in_single(p, way, *triangle))
 }
@@ -206,7 +209,7 @@ fn meets_in_single(p: DVec3, way: DVec3, triangle: [DVec3; 3]) -> bool {
     v >= 0.0 && w >= 0.0 && v + w <= 1.0 && t > 0.0 && t < 1.0
 }
 
-/// The floor y = 0 and what stands on it, seen from above: turned towards the eye.
+/// A rotation that tilts the floor y = 0 towards the eye, which then sees it from above.
 pub(crate) fn tilted(degrees: f64) -> DMat4 {
     DMat4::from_rotation_x(degrees.to_radians())
 }
@@ -250,7 +253,7 @@ fn case_68_a_cube_on_a_plane_leaks_no_light_and_speckles_nothing() {
     .hold();
 }
 
-/// A closed body with a bulb at its middle, and a wall around both.
+/// A closed body around a bulb, in front of a wall.
 fn lamp_inside(body: Shared<Model>, scale: f64) -> Shade {
     Shade {
         models: vec![(square(), at(300.0, 0.0, 0.0, -120.0)), (body, at(scale, 0.0, 0.0, 0.0))],
@@ -267,7 +270,7 @@ fn case_69_no_light_comes_through_the_edges_and_corners_of_a_ball() {
     let lit = drawn.lit.iter().zip(&drawn.shaded).filter(|(lit, shaded)| **lit && !**shaded);
     let through = lit.count();
     assert!(drawn.lit.iter().filter(|lit| **lit).count() > 1000);
-    // Rays aimed at the corners and at the middles of edges.
+    // Rays through the vertices and the midpoints of edges.
     let all = stage.triangles();
     let own = &all[2..];
     let aims = own.iter().flat_map(|t| [t[0], (t[0] + t[1]) / 2.0]);
@@ -285,7 +288,7 @@ fn case_69_no_light_comes_through_the_edges_and_corners_of_a_ball() {
 
 #[test]
 fn case_70_a_lamp_on_a_surface_is_not_shaded_by_it() {
-    // On the face that looks to the wall, exactly.
+    // Exactly on the face towards the wall.
     let lamp = DVec3::new(3.0, 5.0, -30.0);
     let stage = Shade {
         models: vec![(square(), at(300.0, 0.0, 0.0, -120.0)), (cube(), at(30.0, 0.0, 0.0, 0.0))],
@@ -316,6 +319,7 @@ fn case_71_a_gap_of_a_thousandth_far_from_the_origin_casts_its_shadow() {
     let sheet = DMat4::from_translation(DVec3::new(0.0, 1e-3, 0.0))
         * floor().1
         * DMat4::from_scale(DVec3::splat(0.2));
+    // A grazing light, almost parallel to the sheet.
     let light = tilted(40.0).transform_vector3(DVec3::new(0.7, 0.01, 0.2));
     let stage = Shade {
         models: vec![(square(), moved(floor().1)), (square(), moved(sheet))],
@@ -383,7 +387,7 @@ fn case_73_a_mirrored_scene_has_mirrored_shadows() {
     let unlike = unlike.count();
     let shaded = own.shaded.iter().filter(|s| **s).count();
     assert!(shaded > 200, "{shaded} in shadow");
-    // Whoever takes a mirrored body to be inside out sees no faces that could cast a shadow.
+    // A program that takes a mirrored body for inside out finds no faces that cast a shadow.
     Figure {
         case: 73,
         what: "pixels in shadow in one of a scene and its mirror image",
@@ -427,6 +431,7 @@ fn case_75_shadows_of_a_scene_2_to_the_k_times_as_large_are_the_same() {
             eye: DVec3::Z * 400.0 * 2.0_f64.powi(k),
         }
     };
+    // Powers of two change no mantissa, so the pictures must be equal.
     let own = stage(0).draw();
     assert!(own.shaded.iter().filter(|s| **s).count() > 200);
     let mut unlike = 0;
@@ -448,7 +453,7 @@ fn case_75_shadows_of_a_scene_2_to_the_k_times_as_large_are_the_same() {
 
 #[test]
 fn case_76_triangles_of_one_plane_do_not_shade_each_other() {
-    // Thin strips that meet in no common grid.
+    // Thin strips, rotated so that their corners share no grid.
     let mut positions = Vec::new();
     let mut polygons: Vec<[u32; 4]> = Vec::new();
     for i in 0..40_u32 {

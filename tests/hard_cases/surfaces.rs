@@ -1,4 +1,4 @@
-//! Surfaces: bumps, light of their own, and light in linear values.
+//! Surfaces: bump mapping, emission, and lighting in linear values.
 
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::{Arithmetic, Filter, LightValues, Samples, Settings, Shot, Tangents};
@@ -18,7 +18,7 @@ use super::figures::Figure;
 const SIDE: usize = 33;
 const DIFFUSE: f64 = 0.8;
 
-/// A picture of greys, by column and row from the top.
+/// A grey texture, by column and by row from the top.
 fn greys(width: usize, height: usize, of: impl Fn(usize, usize) -> u8) -> Shared<Texture> {
     let texel = |i: usize| {
         let grey = of(i % width, i / width);
@@ -34,8 +34,8 @@ fn picture(picture: Picture, wrap: Wrap) -> Shared<Texture> {
     Shared::new(Texture { source, picture: picture.into(), wrap, offset, scale })
 }
 
-/// A sheet of two squares in the plane z = 0, one on the left and one on the right, with places on
-/// the texture at their corners, lower left first and counter-clockwise.
+/// A sheet of two squares in the plane z = 0, side by side, with texture coordinates at their
+/// corners: lower left first, then counter-clockwise.
 fn sheet(uvs: [[[f32; 2]; 4]; 2], maps: SurfaceMaps, material: Material) -> Shared<Model> {
     let positions = [[-1.0, -1.0], [0.0, -1.0], [0.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
     let positions = positions.map(|[x, y]: [f32; 2]| [x * 300.0, y * 300.0, 0.0]).to_vec();
@@ -79,7 +79,7 @@ fn dull() -> Material {
     }
 }
 
-/// The sheet before the camera, with a sun whose light travels in this direction, or in the dark.
+/// The sheet in front of the camera, lit by a sun with this direction of travel or unlit.
 fn lit(model: Shared<Model>, sun: Option<DVec3>) -> (Scene, View) {
     let (mut scene, view) = scene(&[(model, DMat4::IDENTITY)]);
     edit(&mut scene, ObjectId(10), |object| object.material = MaterialChoice::File);
@@ -89,7 +89,7 @@ fn lit(model: Shared<Model>, sun: Option<DVec3>) -> (Scene, View) {
     (scene, View { marks: false, light: None, ..view })
 }
 
-/// The texture from edge to edge of a square, between these u.
+/// Texture coordinates across a square, from `left` to `right` in u.
 const fn across(left: f32, right: f32) -> [[f32; 2]; 4] {
     [[left, 0.0], [right, 0.0], [right, 1.0], [left, 1.0]]
 }
@@ -98,7 +98,7 @@ fn bump(texture: Shared<Texture>, gain: f64) -> SurfaceMaps {
     SurfaceMaps::from([(MapKind::Bump, SurfaceMap { texture, gain })])
 }
 
-/// Every arithmetic with every kind of tangents.
+/// Every combination of arithmetic and tangents.
 fn ways() -> impl Iterator<Item = Settings> {
     let tangents = [Tangents::Vertex, Tangents::Pixel];
     let all = [Arithmetic::F32, Arithmetic::F64].into_iter().flat_map(move |arithmetic| {
@@ -109,14 +109,14 @@ fn ways() -> impl Iterator<Item = Settings> {
 
 #[test]
 fn case_90_a_bump_on_the_mirrored_half_is_still_a_bump() {
-    // 16 grey steps of 16 from column to column: a slope of 16 / 255 per texel.
+    // Grey rises by 16 from column to column: a slope of 16 / 255 per texel.
     let gain = 8.0;
     let slope = gain * 16.0 / 255.0;
     let ramp = greys(16, 16, |column, _| 16 * column as u8);
     let model = sheet([across(0.0, 1.0), across(1.0, 0.0)], bump(ramp, gain), dull());
     let sun = DVec3::new(-0.48, -0.36, -0.8);
     let (scene, view) = lit(model, Some(sun));
-    // Heights rise to the right on the left half, and to the left on the right half.
+    // Heights rise to the right on the left half, and to the left on the mirrored half.
     let light = |slope: f64| {
         let normal = DVec3::new(-slope, 0.0, 1.0) / (1.0 + slope * slope).sqrt();
         255.0 * DIFFUSE * normal.dot(-sun)
@@ -154,6 +154,7 @@ fn case_91_bumps_run_on_across_a_seam() {
         let (scene, view) = lit(sheet(uvs, bump(hills(wrap), 6.0), dull()), Some(sun));
         draw(&scene, &view, settings, SIDE)
     };
+    // The same texture, once with a seam in the middle and once continuous.
     let (seam, whole) = ([across(0.0, 1.0); 2], [across(0.0, 1.0), across(1.0, 2.0)]);
     let difference = |a: &Picture, b: &Picture| {
         let pairs = a.pixels().iter().zip(b.pixels());
@@ -176,7 +177,7 @@ fn case_91_bumps_run_on_across_a_seam() {
     .hold();
 }
 
-/// The pixels that two pictures differ in.
+/// The number of pixels that differ between two pictures.
 fn differing(a: &Picture, b: &Picture) -> f64 {
     a.pixels().iter().zip(b.pixels()).filter(|(a, b)| a != b).count() as f64
 }
@@ -192,7 +193,7 @@ fn case_92_without_area_on_the_texture_there_is_no_bump_and_no_nan() {
         let plain = draw(&scene, &view, &settings, SIDE);
         let (scene, view) = lit(sheet(flat, bump(noise.clone(), 5.0), dull()), sun);
         ours += differing(&plain, &draw(&scene, &view, &settings, SIDE));
-        // The naive tangent divides by the area on the texture, 0: NaN, which is black.
+        // The naive tangent divides by the area in texture space, which is 0: NaN, drawn black.
         let nan = Picture::filled(Size::new(SIDE, SIDE), [0, 0, 0, 255]);
         naive += differing(&plain, &nan);
     }
@@ -241,7 +242,7 @@ fn case_94_a_flat_map_of_normals_changes_no_byte() {
     };
     let uvs = [across(0.0, 1.0), across(1.0, 0.0)];
     let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
-    // 128 as 2 x 128 / 255 - 1.
+    // 128 decoded as 2 x 128 / 255 - 1.
     let tilted = DVec3::new(1.0 / 255.0, 1.0 / 255.0, 1.0).normalize_or_zero();
     for sun in [DVec3::new(-0.48, -0.36, -0.8), DVec3::new(-0.7, -0.7, -0.141)] {
         let sun = sun.normalize_or_zero();
@@ -276,7 +277,7 @@ fn case_95_what_shines_by_itself_is_as_bright_in_the_dark() {
             ours = ours.max((f64::from(got) - f64::from(want)).abs());
         }
     }
-    // With light it is added: 255 x (0.2 + 0.8 x 0.5).
+    // Emission is added to reflected light: 255 x (0.2 + 0.8 x 0.5).
     let model = sheet(uvs, SurfaceMaps::new(), Material { emission: [0.2; 3], ..dull() });
     let (scene, view) = lit(model, Some(DVec3::new(0.0, -0.75_f64.sqrt(), -0.5)));
     let [got, ..] = draw(&scene, &view, &Settings::default(), SIDE).pixel(16, 16);
@@ -292,7 +293,7 @@ fn case_95_what_shines_by_itself_is_as_bright_in_the_dark() {
     .hold();
 }
 
-/// The bytes that a sheet shows whose unlit texture is this grey, in linear light.
+/// The byte shown for an unlit texture of this grey.
 fn shown(grey: u8, settings: &Settings) -> u8 {
     let (mut scene, view) = lit(sheet([across(0.0, 1.0); 2], SurfaceMaps::new(), dull()), None);
     edit(&mut scene, ObjectId(10), |object| {
@@ -317,7 +318,7 @@ fn case_96_every_byte_comes_back_from_linear_light() {
             }
         }
     }
-    // Decoded into bytes by the power 2.2, and encoded by its inverse.
+    // Decoded to bytes by the power 2.2, and encoded by its inverse.
     let power = |byte: u8, by: f64| (255.0 * (f64::from(byte) / 255.0).powf(by)).round() as u8;
     let naive = (0..=255).filter(|byte| power(power(*byte, 2.2), 1.0 / 2.2) != *byte).count();
     Figure {
@@ -335,7 +336,7 @@ fn case_96_every_byte_comes_back_from_linear_light() {
 fn case_97_half_of_the_light_is_the_byte_188() {
     let linear = Settings { light_values: LightValues::Linear, ..Settings::default() };
     let mut ours = 0.0_f64;
-    // A chequered texture from afar.
+    // A minified checkerboard.
     let chess = greys(64, 64, |column, row| if (column + row) % 2 == 0 { 255 } else { 0 });
     let (mut scene, view) = lit(sheet([across(0.0, 16.0); 2], SurfaceMaps::new(), dull()), None);
     edit(&mut scene, ObjectId(10), |object| {
@@ -347,7 +348,7 @@ fn case_97_half_of_the_light_is_the_byte_188() {
         let [got, ..] = draw(&scene, &view, &settings, 9).pixel(2, 4);
         ours = ours.max((f64::from(got) - 188.0).abs());
     }
-    // A white sheet that covers half of the samples of the middle column, before black.
+    // A white sheet covers half of the samples in the middle column, against black.
     let white = Material { emission: [1.0; 3], ..dull() };
     let (mut scene, view) = lit(sheet([across(0.0, 1.0); 2], SurfaceMaps::new(), white), None);
     scene.background = Color::BLACK;

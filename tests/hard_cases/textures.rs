@@ -1,5 +1,5 @@
-//! Textures: texels by an oracle in f64 that shares none of our code, for shapes, coordinates and
-//! distances at which lanes of f32 could go wrong.
+//! Texture sampling, compared with an independent oracle in f64, for shapes, coordinates and
+//! distances that are hard for f32 lanes.
 
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::{Arithmetic, Filter, Settings, Transparency};
@@ -16,7 +16,7 @@ use super::oracle::{Eye, meet};
 
 const SIDE: usize = 128;
 
-/// A texture of random grey texels.
+/// A texture of random greys.
 fn noise(width: usize, height: usize, wrap: Wrap, scale: [f64; 2]) -> Shared<Texture> {
     let mut rng = Rng::new((width * 31 + height) as u64);
     let texels = (0..width * height).map(|_| {
@@ -28,7 +28,7 @@ fn noise(width: usize, height: usize, wrap: Wrap, scale: [f64; 2]) -> Shared<Tex
     Shared::new(Texture { source, picture: picture.into(), wrap, offset: [0.0; 2], scale })
 }
 
-/// A quad with a place on the texture at each corner, unlit.
+/// An unlit quad with texture coordinates at its corners.
 fn quad(corners: [DVec3; 4], uvs: [[f32; 2]; 4], texture: &Shared<Texture>) -> (Scene, View) {
     let source = MeshSource {
         positions: corners.map(|corner| corner.as_vec3().to_array()).to_vec(),
@@ -50,7 +50,7 @@ fn quad(corners: [DVec3; 4], uvs: [[f32; 2]; 4], texture: &Shared<Texture>) -> (
     (scene, View { marks: false, ..view })
 }
 
-/// A texel, by column and row from the lower left corner, anywhere.
+/// The texel at any column and row, counted from the lower left corner, after wrapping.
 fn texel(texture: &Texture, column: f64, row: f64) -> f64 {
     let Size { width, height } = texture.picture.size();
     let inside = |i: f64, side: usize| match texture.wrap {
@@ -61,7 +61,7 @@ fn texel(texture: &Texture, column: f64, row: f64) -> f64 {
     f64::from(texture.picture.pixel(column, height - 1 - row)[0])
 }
 
-/// The grey at a place of the texture, from 0 to 255.
+/// The filtered grey at texture coordinates, from 0 to 255.
 fn grey(texture: &Texture, [u, v]: [f64; 2], filter: Filter) -> f64 {
     let Size { width, height } = texture.picture.size();
     let x = (u * texture.scale[0] + texture.offset[0]) * width as f64;
@@ -77,7 +77,7 @@ fn grey(texture: &Texture, [u, v]: [f64; 2], filter: Filter) -> f64 {
     along(row) * (1.0 - t) + along(row + 1.0) * t
 }
 
-/// The place on the texture at a pixel of a quad, by a ray.
+/// The texture coordinates of a quad at a pixel, by ray casting.
 fn place(corners: [DVec3; 4], uvs: [[f32; 2]; 4], x: usize, y: usize) -> Option<[f64; 2]> {
     let eye = Eye::first(SIDE);
     [[0, 1, 2], [0, 2, 3]].into_iter().find_map(|ids: [usize; 3]| {
@@ -86,18 +86,18 @@ fn place(corners: [DVec3; 4], uvs: [[f32; 2]; 4], x: usize, y: usize) -> Option<
     })
 }
 
-/// A wall that runs away to the right, seen large.
+/// A close-up of a wall that recedes to the right.
 fn wall() -> [DVec3; 4] {
     [(-20.0, -18.0, 350.0), (25.0, -20.0, 320.0), (25.0, 22.0, 320.0), (-20.0, 19.0, 350.0)]
         .map(|(x, y, z)| DVec3::new(x, y, z))
 }
 
-/// The coordinates of a square's corners from (u, v) on.
+/// The texture coordinates of a rectangle that begins at (u, v).
 fn square(u: f32, v: f32, width: f32, height: f32) -> [[f32; 2]; 4] {
     [[u, v], [u + width, v], [u + width, v + height], [u, v + height]]
 }
 
-/// The largest difference from the oracle, in steps of 255, of a quad's pixels.
+/// Draws a quad, and returns the largest difference from the oracle in byte steps.
 fn farthest_off(
     (corners, uvs): ([DVec3; 4], [[f32; 2]; 4]),
     texture: &Shared<Texture>,
@@ -137,7 +137,7 @@ fn case_37_bilinear_texels_of_every_shape_are_right_to_a_step() {
             ours = ours.max(farthest_off((wall(), uvs), &texture, Filter::Bilinear));
         }
     }
-    // Corners lie on 1/256 pixel, which moves a texture by up to 1/512 pixel.
+    // The bound includes snapping to 1/256 pixel, which moves the texture by up to 1/512 pixel.
     Figure {
         case: 37,
         what: "bilinear texels of textures of 1 x 1 to 16384 x 1, odd sides among them",
@@ -151,11 +151,11 @@ fn case_37_bilinear_texels_of_every_shape_are_right_to_a_step() {
 
 #[test]
 fn case_39_texels_far_from_the_origin_of_the_texture_are_right_to_a_step() {
-    // Whole numbers up to 2^24 are exact in f32; the texture has 1/1024 of a repetition for each.
+    // Integers up to 2^24 are exact in f32; the texture repeats every 1024 units.
     let texture = noise(32, 32, Wrap::Repeat, [1.0 / 1024.0; 2]);
     let uvs = square(1e7, -1e7, 500.0, 400.0);
     let ours = farthest_off((wall(), uvs), &texture, Filter::Bilinear);
-    // In f32, coordinates at 1e7 are whole numbers: the nearest of them is shown.
+    // At 1e7, f32 coordinates are integers, so the naive texel jumps.
     let naive = {
         let (mut off, at) = (0.0_f64, |x, y| place(wall(), uvs, x, y));
         for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
@@ -194,7 +194,8 @@ fn case_39_a_pixel_is_a_hole_exactly_if_its_alpha_is_below_one_half() {
         for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
             let Some(at) = place(wall(), uvs, x, y) else { continue };
             let alpha = grey(&texture, at, filter) - 127.5;
-            // Corners lie on 1/256 pixel, which moves a texel, or an alpha by some steps.
+            // Snapping to 1/256 pixel can change the nearest texel, or a filtered alpha by some
+            // steps; such pixels are skipped.
             let is_clear = match filter {
                 Filter::Nearest => {
                     let moved = |by: f64| grey(&texture, [at[0] + by, at[1] + by], filter) - 127.5;
@@ -222,7 +223,7 @@ fn case_39_a_pixel_is_a_hole_exactly_if_its_alpha_is_below_one_half() {
     .hold();
 }
 
-/// Whether the wall covers a pixel and all of its neighbours.
+/// Whether the wall covers a pixel and all its neighbours.
 fn inside(x: usize, y: usize) -> bool {
     let uvs = square(0.0, 0.0, 1.0, 1.0);
     let beside = |i: usize| i.saturating_sub(1)..(i + 2).min(SIDE);
@@ -257,7 +258,7 @@ fn case_39_minified_a_thousand_times_a_texture_is_its_mean() {
 
 #[test]
 fn case_39_no_texel_of_the_other_side_shows_at_a_seam() {
-    // Corners at the centres of pixels: there, u is 0 or 1 to the last digit.
+    // Corners on pixel centres, where u is exactly 0 or 1.
     let texels = (0..8).map(|i| if i < 4 { [10, 10, 10, 255] } else { [200, 200, 200, 255] });
     let picture = Picture::from_pixels(Size::new(8, 1), texels.collect()).unwrap();
     let noise = noise(1, 1, Wrap::Repeat, [1.0; 2]);
@@ -266,6 +267,7 @@ fn case_39_no_texel_of_the_other_side_shows_at_a_seam() {
         let picture = picture.clone().into();
         let texture = Shared::new(Texture { picture, wrap, ..Texture::clone(&noise) });
         for k in 0..40 {
+            // An odd width in pixels puts the sides on pixel centres.
             let half = (f64::from(k) + 20.5) * 400.0 * (2.0_f64.sqrt() - 1.0) * 2.0 / SIDE as f64;
             let corners = [(-half, -half), (half, -half), (half, half), (-half, half)]
                 .map(|(x, y)| DVec3::new(x, y, 0.0));
@@ -294,8 +296,8 @@ fn case_39_no_texel_of_the_other_side_shows_at_a_seam() {
 
 #[test]
 fn case_37_a_floor_is_right_up_to_its_horizon() {
-    // A plane that the near plane cuts, 60 repetitions deep: the lanes against one pixel at a time
-    // in f64.
+    // A floor through the near plane, 60 repetitions deep: f32 lanes against the f64 kernel, which
+    // samples one pixel at a time.
     let corners = [(-3e3, -20.0, 500.0), (3e3, -20.0, 500.0), (3e3, -20.0, -1500.0)]
         .map(|(x, y, z)| DVec3::new(x, y, z));
     let corners = [corners[0], corners[1], corners[2], DVec3::new(-3e3, -20.0, -1500.0)];

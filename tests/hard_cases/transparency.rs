@@ -1,4 +1,4 @@
-//! Transparency: sheets of one colour each, against ray casting and blending in f64.
+//! Transparency: sheets of constant colour against ray casting and alpha blending in f64.
 
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::Settings;
@@ -16,7 +16,7 @@ use super::oracle::{Eye, inside_by, meet};
 
 const SIDE: usize = 64;
 
-/// A sheet with four corners, of one colour.
+/// A quadrilateral of one colour and opacity.
 #[derive(Clone, Copy)]
 struct Sheet {
     corners: [DVec3; 4],
@@ -28,7 +28,7 @@ const RED: [f64; 3] = [0.85, 0.15, 0.2];
 const GREEN: [f64; 3] = [0.15, 0.8, 0.35];
 const BLUE: [f64; 3] = [0.2, 0.3, 0.75];
 
-/// A square of 600 units about a place, turned about Y by an angle in radians.
+/// A square of 600 units around a position, rotated about Y by an angle in radians.
 fn turned(at: DVec3, angle: f64, color: [f64; 3], opacity: f64) -> Sheet {
     let corner = |x: f64, y: f64| {
         at + DVec3::new(300.0 * x * angle.cos(), 300.0 * y, -300.0 * x * angle.sin())
@@ -37,7 +37,7 @@ fn turned(at: DVec3, angle: f64, color: [f64; 3], opacity: f64) -> Sheet {
     Sheet { corners, color, opacity }
 }
 
-/// A scene of sheets with these ages, in the order of its list.
+/// A scene of sheets, in list order, with ages.
 fn stage(sheets: &[(u32, Sheet)]) -> (Scene, View) {
     let models: Vec<_> = sheets
         .iter()
@@ -71,6 +71,7 @@ fn stage(sheets: &[(u32, Sheet)]) -> (Scene, View) {
             });
         });
     }
+    // Ids give the ages: an object with a smaller id is older.
     let aged = scene.objects.iter().zip(sheets);
     let aged = aged.map(|((_, object), (age, _))| (ObjectId(10 + age), object.clone()));
     scene.objects = List::from_iter(aged.collect::<Vec<_>>());
@@ -81,8 +82,8 @@ fn in_order(sheets: &[Sheet]) -> Vec<(u32, Sheet)> {
     (0..).zip(sheets.iter().copied()).collect()
 }
 
-/// What a pixel shows of sheets, by casting a ray; `None` too near to a border, or to where two
-/// sheets meet, to say: within a hundredth of a pixel.
+/// Casts a ray through a pixel centre and blends the layers. Returns `None` close to a border (1e-3
+/// in barycentric coordinates) or an intersection (0.1 in depth), where the result is uncertain.
 fn seen(sheets: &[Sheet], scene: &Scene, [x, y]: [usize; 2], side: usize) -> Option<[f64; 3]> {
     let eye = Eye::first(side);
     let near = Lens::default().near;
@@ -110,13 +111,13 @@ fn over(under: [f64; 3], color: [f64; 3], opacity: f64) -> [f64; 3] {
     [0, 1, 2].map(|i: usize| opacity * color[i] * 255.0 + (1.0 - opacity) * under[i])
 }
 
-/// The largest difference of a channel, in steps of a byte before rounding.
+/// The largest difference of a channel, in byte steps, without rounding the expected value.
 fn off(pixel: [u8; 4], want: [f64; 3]) -> f64 {
     let channels = pixel.iter().zip(want).map(|(byte, want)| (f64::from(*byte) - want).abs());
     channels.fold(0.0, f64::max)
 }
 
-/// The pixels of a picture that are off by more than rounding, and how many were judged.
+/// Counts the pixels with an error beyond rounding, and the pixels that were compared.
 fn wrong(picture: &Picture, sheets: &[Sheet], scene: &Scene) -> (usize, usize) {
     let (mut wrong, mut judged) = (0, 0);
     for y in 0..SIDE {
@@ -145,7 +146,7 @@ fn case_80_the_older_of_two_sheets_in_one_plane_is_in_front() {
     let want = blend([BLUE, RED]);
     let all = one.pixels().iter().chain(other.pixels());
     let ours = all.filter(|pixel| off(**pixel, want) > 0.51).count();
-    // The list's order decides: one of both pictures has the younger in front.
+    // If the list order decided, one of the two pictures would show the younger in front.
     let last = blend([RED, BLUE]);
     let differs = last.iter().zip(want).any(|(a, b)| (a - b).abs() > 1.0);
     Figure {
@@ -170,6 +171,7 @@ fn case_81_sheets_that_cut_through_each_other_change_places_where_they_meet() {
     let picture = draw(&scene, &view, &Settings::default(), SIDE);
     let (ours, judged) = wrong(&picture, &sheets, &scene);
     assert!(judged > 3000, "{judged}");
+    // The naive renderer sorts whole objects.
     let by_object = Settings {
         transparency: marraztu_core::accuracy::Transparency::Objects,
         ..Settings::default()
@@ -203,7 +205,7 @@ fn case_82_opacity_0_is_nothing_and_1_is_all() {
     let ours = differ(&drawn(&[back, front(0.0)]), &without)
         + differ(&drawn(&[back, front(nearly)]), &whole)
         + differ(&drawn(&[back, front(2.0_f64.powi(-24))]), &without);
-    // In bytes of opacity, 255/256 of a colour is left of it.
+    // Opacity as byte / 256 lets 1/256 of the background through.
     let opacity = 255.0 / 256.0;
     let naive = off([217, 38, 51, 0], over([38.0, 204.0, 89.0], RED, opacity));
     Figure {
@@ -229,6 +231,7 @@ fn case_83_a_thousand_layers_are_as_right_as_one() {
     let (scene, view) = stage(&in_order(&sheets));
     let picture = draw(&scene, &view, &Settings::default(), 16);
     let want = seen(&sheets, &scene, [3, 9], 16).unwrap();
+    // The naive blend rounds to bytes after each layer.
     let bytes = sheets.iter().fold(scene.background.0, |under, sheet| {
         over(under.map(f64::from), sheet.color, sheet.opacity).map(|x| x.round() as u8)
     });
@@ -267,6 +270,7 @@ fn case_84_the_order_of_the_list_does_not_show() {
         let picture = draw(&scene, &view, &Settings::default(), SIDE);
         ours += first.pixels().iter().zip(picture.pixels()).filter(|(a, b)| a != b).count();
         let behind = scene.background.0.map(f64::from);
+        // The naive blend follows the order of the list.
         let blend = |all: &mut dyn Iterator<Item = &Sheet>| {
             all.fold(behind, |under, sheet| over(under, sheet.color, sheet.opacity))
         };
@@ -336,7 +340,8 @@ fn case_86_a_texture_fades_evenly() {
     for y in 0..SIDE {
         for x in 0..SIDE {
             let [a, b, _, d] = sheet.corners;
-            // u along a side of the sheet's plane.
+            // Intersects the sheet's plane, as a triangle that contains the sheet; u follows its
+            // first side.
             let Some((t, _)) =
                 meet(eye.at, eye.ray(x, y), [a, a + (b - a) * 3.0, a + (d - a) * 3.0])
             else {

@@ -1,4 +1,4 @@
-//! Undo and saving: everything comes back as it was.
+//! Undo and saving restore every bit.
 
 use marraztu_core::accuracy::Settings;
 use marraztu_core::base::math::{self, Axis};
@@ -17,7 +17,7 @@ use super::figures::Figure;
 fn case_62_a_hundred_thousand_commands_are_undone_and_redone_bit_for_bit() {
     let tally = quick_round("undo");
     assert!(tally.counts["steps"] > 80_000 && tally.counts["files"] >= 40, "{tally}");
-    // The naive way: as many turns, and the inverse of each.
+    // The naive way: 50,000 rotations, then the inverse of each.
     let turn = math::rotation(DVec3::new(0.6, 0.0, 0.8), 0.1);
     let mut m = DMat3::IDENTITY;
     for _ in 0..50_000 {
@@ -56,7 +56,7 @@ fn case_63_deletion_and_return_and_joined_drags_bring_back_every_stack() {
     for number in 0..5 {
         let still = stack(&scene, &view);
         drag(&mut history, &mut scene, &view, number);
-        // A hundred parts are one step, and under it lies what was there before.
+        // A drag of a hundred parts is one step, on top of the previous state.
         assert!(stack(&scene, &view).undone() == Some(still), "drag {number}");
         seen.push(scene.clone());
         let before = scene.clone();
@@ -108,7 +108,7 @@ fn case_63_a_scene_saved_on_the_way_is_the_one_that_redo_comes_back_to() {
 
 #[test]
 fn case_63_numbers_are_saved_with_enough_digits() {
-    // 15 digits, as many formats have them, lose the last bits of a placement.
+    // 15 digits, common in file formats, lose the last bits of a placement.
     let (mut scene, view) = io::default_scene();
     let view = View { subject: Subject::Object, transformation: Transformation::Rotation, ..view };
     let mut naive = 0;

@@ -1,4 +1,4 @@
-//! A fake clock and a fake source, in which slowdowns and errors are planted.
+//! A fake clock and a fake picture source, with planted slowdowns and errors.
 
 use std::time::Duration;
 
@@ -11,10 +11,10 @@ use marraztu_lab::picture_source::PictureSource;
 use marraztu_lab::sweep::{Bench, Findings, Question};
 use marraztu_lab::timing::{Clock, Work};
 
-/// A choice in which something is planted.
+/// The choice with the planted effect.
 pub(crate) type Planted = Option<(&'static Axis, &'static Choice)>;
 
-/// Every choice that is not the default, and something of its own beside it.
+/// Every choice except the defaults that changes the default settings.
 pub(crate) fn plantable() -> impl Iterator<Item = (&'static Axis, &'static Choice)> {
     let all = AXES.iter().flat_map(|axis| axis.choices.iter().map(move |choice| (axis, choice)));
     let default = Settings::default();
@@ -23,12 +23,12 @@ pub(crate) fn plantable() -> impl Iterator<Item = (&'static Axis, &'static Choic
     })
 }
 
-/// A clock on which every picture takes a millisecond, and three with the planted choice.
+/// A clock with 1 ms per picture, and 3 ms for pictures with the planted choice.
 pub(crate) struct FakeClock {
     pub(crate) slow: Planted,
-    /// A choice whose pictures take from a quarter to four times as long as they would, in turn.
+    /// A choice with times that alternate between a quarter and four times the real one.
     pub(crate) disturbed: Planted,
-    /// The pictures of the disturbed choice.
+    /// The number of pictures drawn with the disturbed choice.
     turns: usize,
     now: Duration,
 }
@@ -49,7 +49,7 @@ impl Clock for FakeClock {
         let mut time = Duration::from_millis(if slow { 3 } else { 1 });
         let disturbed = |settings| self.disturbed.is_some_and(|(_, choice)| choice.is(settings));
         if matches!(work, Work::Picture(settings) if disturbed(settings)) {
-            // The first is not counted; then both pictures of a pair alike, pair by pair.
+            // The first picture is a warm-up. After that the factor changes from pair to pair.
             let part = [1, 4, 16][(self.turns.div_ceil(2) + 2) % 3];
             self.turns += 1;
             time = time * part / 4;
@@ -63,12 +63,12 @@ impl Clock for FakeClock {
     }
 }
 
-/// A source whose picture is grey. With the planted choice one pixel is 9 steps lighter, and with
-/// `coverage` it is covered by another triangle.
+/// A source of grey pictures. With the planted choice one pixel is 9 steps lighter, and with
+/// `coverage` one pixel shows another triangle.
 pub(crate) struct FakeSource {
     pub(crate) wrong: Planted,
     pub(crate) coverage: Planted,
-    /// Whether both are in one pixel.
+    /// Whether the error and the coverage change are in one pixel.
     pub(crate) same_pixel: bool,
     picture: Picture,
     primitives: Vec<u32>,
@@ -105,7 +105,7 @@ impl PictureSource for FakeSource {
     }
 }
 
-/// The findings of a sweep over all axes, which all apply.
+/// Sweeps all axes on a scene to which all of them apply.
 pub(crate) fn found(clock: &mut FakeClock, source: &mut FakeSource) -> Findings {
     let limits = Limits { pairs: 3, least: 3, time: Duration::from_secs(1) };
     let thoroughness =
@@ -123,8 +123,8 @@ pub(crate) fn found(clock: &mut FakeClock, source: &mut FakeSource) -> Findings 
     bench.run(candidates, &mut |_| {}).unwrap()
 }
 
-/// The first scene with shadows, a ball that has bumps, and a stretched triangle that is
-/// transparent and has a texture and an exponent of 32.
+/// The first scene with shadows, a ball with bumps, and a stretched, transparent, textured triangle
+/// with an exponent of 32.
 fn textured_scene() -> (marraztu_core::scene::Scene, marraztu_core::scene::View) {
     use marraztu_core::base::Shared;
     use marraztu_core::scene::*;

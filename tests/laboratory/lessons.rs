@@ -1,8 +1,8 @@
-//! Each lesson shows what it teaches: its scene, drawn with the choice that it opens with, differs
-//! visibly from the reference that it is compared with.
+//! Each lesson shows its topic: its scene, drawn with its opening choice, differs visibly from the
+//! reference.
 //!
-//! Catches: a scene in which the choice makes no difference, and a reference that has the same
-//! fault as the picture.
+//! Catches: a scene in which the choice makes no difference, and a reference with the same fault as
+//! the picture.
 
 use marraztu_core::accuracy::{AXES, Settings, Shot};
 use marraztu_core::base::image::Size;
@@ -18,8 +18,8 @@ fn every_lesson_opens_on_an_error_that_can_be_seen() {
         let mut studio = Studio::new(Shot::new(&opened.scene, &opened.view, &settings, size));
         let exact = studio.reference(&settings, Reference::of(axis));
         let error = studio.rendering(&settings).error(&exact);
-        // Rounding is a step off at most: there the error is shown amplified, and has to be in many
-        // bytes.
+        // Faint lights and rounding promise at most one step. Their lessons show the error
+        // amplified, so it has to affect many bytes.
         let (largest, differing) = match axis.key {
             "rounding" => (1, 0.02),
             _ => (4, 0.0002),

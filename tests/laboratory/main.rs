@@ -1,8 +1,8 @@
-//! The laboratory: whether its times and errors are true.
+//! The laboratory reports true times and errors.
 //!
-//! Catches: a slowdown or an error that is attributed to the wrong axis, or on none; an axis that
-//! the scene file or the command line does not know; a table, a plot or a file of results that
-//! lacks a choice.
+//! Catches: a slowdown or an error attributed to the wrong axis or to none; an axis unknown to
+//! scene files or the command line; a table, a plot or a file of results without one of the
+//! choices.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
 

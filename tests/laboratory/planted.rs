@@ -1,4 +1,4 @@
-//! Planted slowdowns and errors are attributed to the right choice, and to no other.
+//! Planted slowdowns and errors are attributed to the right choice only.
 
 use marraztu_core::accuracy::{Axis, AxisKind, Choice, LightAt, Settings};
 use marraztu_lab::attribution::attribute;
@@ -10,7 +10,7 @@ use marraztu_lab::sweep::{Findings, Measured, Verdict};
 
 use crate::bench::{FakeClock, FakeSource, Planted, found, plantable};
 
-/// The rows of single axes, with whether the planted choice is theirs.
+/// The rows of single axes: name, measurement, and whether it is the planted choice.
 fn rows<'a>(
     findings: &'a Findings,
     planted: &(&'static Axis, &'static Choice),
@@ -79,7 +79,7 @@ fn a_planted_error_shows_in_its_own_row_and_in_no_other() {
 fn the_error_of_a_pixel_is_attributed_to_the_axis_that_causes_it() {
     let face: Planted = plantable().find(|(_, choice)| choice.word == "face");
     let coarse = Settings { light: LightAt::Face, ..Settings::default() };
-    // Column 3 of row 3 is the pixel in which the error is planted.
+    // The error is planted in column 3 of row 3.
     let attribution_at = |at| attribute(&mut FakeSource::new(face, None), &coarse, at).unwrap();
     let found = attribution_at([3, 3]);
     assert_eq!((found.exact, found.ours, found.steps()), ([100; 3], [109, 100, 100], 9));
@@ -101,7 +101,7 @@ fn report_on(findings: Findings) -> Report {
     }
 }
 
-/// The verdict on a scene with something planted, in one string.
+/// Returns the verdict on a scene with a planted slowdown or error.
 fn verdict(slow: Planted, wrong: Planted) -> String {
     let findings = found(&mut FakeClock::new(slow), &mut FakeSource::new(wrong, None));
     report_on(findings).verdict().join(" ")
@@ -128,7 +128,7 @@ fn the_verdict_names_a_planted_error_and_what_it_costs() {
         let text = verdict(None, Some(planted));
         let name = planted.0.in_words(planted.1).to_lowercase();
         let exact = planted.1.word == planted.0.most_exact(&Settings::default()).word;
-        // The most exact choice is part of the reference, and every other choice is then wrong.
+        // The most exact choice is part of the reference, so an error in it appears in all others.
         let named = text.to_lowercase().contains(&name);
         assert!(named || (exact && planted.0.kind == AxisKind::Scored), "{name}: {text}");
         if !exact {
@@ -138,7 +138,7 @@ fn the_verdict_names_a_planted_error_and_what_it_costs() {
     }
 }
 
-/// The figures of a page that everybody may read: what is told of them is told by rule.
+/// Figures as a published page has them: each sentence follows from a rule.
 #[test]
 fn the_verdict_tells_what_samples_buy_and_that_64_bits_are_not_worth_it() {
     let choice = |key: &str, word: &str| {
@@ -146,6 +146,7 @@ fn the_verdict_tells_what_samples_buy_and_that_64_bits_are_not_worth_it() {
         (axis, axis.choice(word).unwrap())
     };
     let mut findings = found(&mut FakeClock::new(None), &mut FakeSource::new(None, None));
+    // Replaces the measured figures of a choice by exact ones.
     let mut edit = |(_, chosen): (&Axis, &Choice), ratio: f64, rmse: f64, largest: u8| {
         let default = chosen.is(&Settings::default());
         let points = findings.points.iter_mut();
@@ -191,7 +192,7 @@ fn the_verdict_tells_what_samples_buy_and_that_64_bits_are_not_worth_it() {
     assert!(text.ends_with("Nothing saves more than the noise (6%)."), "{text}");
 }
 
-/// A machine that does something else while one choice is measured: the control says nothing of it.
+/// The machine is busy while one choice is measured, which the control measurement cannot show.
 #[test]
 fn what_disturbs_one_choice_alone_is_no_verdict_and_no_reason() {
     let power = Axis::named("power").unwrap();
@@ -206,7 +207,8 @@ fn what_disturbs_one_choice_alone_is_no_verdict_and_no_reason() {
         let report = report_on(findings.clone());
         (point.verdict, report.verdict_on(power), report)
     };
-    // The slow choice itself: three times as long in the mean, and at times less than the default.
+    // The slow choice is disturbed: three times slower on average, at times faster than the
+    // default.
     let (verdict, told, report) = verdict_with(slow);
     assert_eq!(verdict, Verdict::Alike, "{told}");
     assert!(!told.contains(slow.slower_because.unwrap()), "{told}");
@@ -215,7 +217,7 @@ fn what_disturbs_one_choice_alone_is_no_verdict_and_no_reason() {
     let [from, to] = mark.unwrap().noise;
     assert!(from < 0.0 && to > libm::log10(3.0), "{from} to {to}");
     assert!(told.contains("noise 0.1 to "), "{told}");
-    // Every other choice: the slow one takes longer than the default all the same.
+    // The exact choice is disturbed; the slow one is still reported as slower.
     let exact = power.most_exact(&Settings::default());
     let (verdict, told, _) = verdict_with(exact);
     assert_eq!(verdict, Verdict::Alike, "{told}");

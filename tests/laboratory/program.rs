@@ -1,4 +1,4 @@
-//! `marraztu lab` from outside, on the first scene, small.
+//! The command `marraztu lab` on the first scene at a small size.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -51,7 +51,7 @@ fn a_sweep_prints_its_table_and_leaves_everything_in_its_folder() {
     ] {
         assert!(out.contains(part), "{part}\n{out}");
     }
-    // The current settings are marked, and have no separate row if they are a choice of an axis.
+    // The current settings are marked, and share a row with the choice that equals them.
     assert!(out.lines().any(|line| line.contains('>') && line.contains("Flat")), "{out}");
     let found = folder.path().join("found");
     let read = |name: &str| std::fs::read_to_string(found.join(name)).unwrap();

@@ -3,8 +3,8 @@
 //! Exact is compared with the laboratory's reference, Default with Exact. The reference uses
 //! mipmaps, which no preset promises; here it filters textures as the presets do.
 //!
-//! Catches: a preset that names too coarse a choice; light in 32 bits that strays by more than is
-//! promised; a reference that is not where the presets lead.
+//! Catches: a preset with too coarse a choice, f32 light with larger errors than promised, a
+//! reference that differs from the presets.
 
 use marraztu_core::accuracy::Shot;
 use marraztu_core::accuracy::{AccuracyPreset, Filter, Settings};
@@ -18,10 +18,9 @@ use marraztu_render::plan_frame;
 
 use crate::random_scenes::random_scene;
 
-/// Scenes of the plan's proof: of the first 140 those that show most colours. Left out are scenes
-/// in which a light stands in the very surface that it lights, or a cone ends without fading (scene
-/// 6): on which side of such a border a pixel lies is a matter of rounding, and its light is all or
-/// nothing.
+/// The most colourful of the first 140 scenes of the plan's proof. Scenes with a light in the plane
+/// of a lit surface, or with a cone without falloff (scene 6), are excluded: there, rounding
+/// decides whether a pixel is lit or dark.
 const SEEDS: [u64; 10] = [13, 28, 43, 48, 78, 88, 104, 107, 113, 134];
 
 const SIZE: Size = Size::new(256, 192);
@@ -44,8 +43,7 @@ fn studios() -> Vec<(String, Studio)> {
     std::iter::once(("the first scene".to_owned(), first)).chain(random).collect()
 }
 
-/// How far the pictures of some settings are from those of others: scene by scene, and the part of
-/// all bytes that differ.
+/// Compares pictures with two settings: the error per scene, and the share of bytes that differ.
 fn apart(ours: &Settings, exact: &Settings) -> (Vec<(String, Error)>, f64) {
     let (mut errors, mut differing, mut bytes) = (Vec::new(), 0.0, 0.0);
     for (name, mut studio) in studios() {
@@ -77,11 +75,11 @@ fn the_default_is_a_byte_step_off_exact_at_most_and_hardly_ever_that() {
     assert!(differing <= 0.0005, "{differing}");
 }
 
-/// Parts of a byte step to which light is known before it is rounded.
+/// The resolution of light before rounding, in parts of a byte step.
 const PARTS: u32 = 64;
 
-/// Light before it is rounded at every byte, in steps: read off pictures that are each a little
-/// brighter than the one before, as hard case 42 does.
+/// Measures the light at each byte before rounding, in byte steps, from a series of pictures that
+/// grow brighter in 64 parts of a step, as hard case 42 does.
 fn before_rounding(scene: &Scene, view: &View, settings: &Settings) -> Vec<f64> {
     let mut renderer = Renderer::default();
     let mut picture = |part: u32| -> Picture {
@@ -109,7 +107,8 @@ fn before_rounding(scene: &Scene, view: &View, settings: &Settings) -> Vec<f64> 
         }
     }
     let light = |(byte, turned): (&u8, Option<u32>)| {
-        // Between this part and the one before. What does not turn is white, or no object.
+        // The change lies between the previous part and this one. A byte that never changes is
+        // white or background.
         f64::from(*byte) + 0.5 - (f64::from(turned.unwrap_or(PARTS)) - 0.5) / f64::from(PARTS)
     };
     first.pixels().as_flattened().iter().zip(turned).map(light).collect()
@@ -122,7 +121,7 @@ fn light_of_the_default_is_within_a_quarter_of_a_byte_step_before_it_is_rounded(
     let [ours, exact] =
         ["default", "exact"].map(|word| before_rounding(&scene, &view, &preset(word)));
     let turned = exact.iter().filter(|light| (0.1..254.0).contains(*light)).count();
-    // Each is known to half of a part to either side.
+    // Both values have an uncertainty of half a part.
     let off = ours.iter().zip(&exact).map(|(a, b)| (a - b).abs() - 1.0 / f64::from(PARTS));
     let worst = off.fold(0.0_f64, f64::max);
     assert!(turned > 1000 && worst <= 0.25, "{worst} {turned}");

@@ -1,4 +1,4 @@
-//! The suite measures every axis, and its page has a section for each.
+//! The suite measures every axis, and its page has a section for each axis.
 
 use marraztu_core::accuracy::{AXES, Axis};
 use marraztu_lab::pairs::Watch;
@@ -43,7 +43,7 @@ fn a_tiny_suite_gives_a_page_with_a_section_for_every_axis() {
     let panels: usize = SUITE.iter().map(|suite| suite.axes.len()).sum();
     assert_eq!(html.matches("<svg").count(), 2 * panels);
     assert!(png(&reports[0], Look::Dark).is_ok());
-    // Each scene is bound by what it is made for: here the errors, which need no clock.
+    // Each scene shows its topic in the errors, which need no clock.
     let rmse = |scene: &str, key: &str, label: &str| {
         let place = SUITE.iter().position(|suite| suite.word == scene).unwrap();
         let findings = &reports[place].findings;

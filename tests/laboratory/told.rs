@@ -1,4 +1,4 @@
-//! Tables, data and plots hold every choice.
+//! Tables, data files and plots contain every choice.
 
 use marraztu_core::accuracy::{AXES, Axis, Choice, Samples, Settings};
 use marraztu_lab::candidates::Group;
@@ -9,7 +9,7 @@ use marraztu_lab::sweep::{Against, Verdict};
 
 use crate::bench::{FakeClock, FakeSource, found};
 
-/// A report in which 32 bits are wrong and 64 bits are slow.
+/// A report with wrong f32 light and slow f64 light.
 fn report() -> Report {
     let arithmetic = Axis::named("arithmetic").unwrap();
     let planted = |word: &str| arithmetic.choice(word).map(|choice| (arithmetic, choice));
@@ -59,7 +59,7 @@ fn the_table_has_a_row_for_every_choice_of_every_axis() {
         let quotes = line.split('"').step_by(2).map(|plain| plain.matches(',').count());
         assert_eq!(quotes.sum::<usize>() + 1, columns, "{line}");
     }
-    // The same fields with tabs between; none has a comma outside of quotes.
+    // The tabular form has the same fields. Commas occur inside quotes only.
     for (line, of_csv) in tabs(&report).lines().zip(csv.lines()) {
         assert_eq!(line.split('\t').count(), columns, "{line}");
         assert_eq!(line.replace('\t', ","), of_csv.replace('"', ""));
@@ -81,7 +81,7 @@ fn json_holds_what_the_table_holds() {
 #[test]
 fn budgets_are_answered_or_said_to_be_too_small() {
     let mut report = report();
-    // Nothing takes half a millisecond, and 64 bits are exact.
+    // No choice fits into half a millisecond; f64 light is exact.
     let exact = report.findings.points.iter().position(|point| point.name == "light in 64 bits");
     assert_eq!((report.fastest().flatten(), report.most_exact()), (exact, Some(None)));
     let answers = report.answers();
@@ -155,12 +155,12 @@ fn samples_are_judged_against_256_and_everything_else_against_one_reference() {
     );
 }
 
-/// In a plot with as many choices on the front as there can be.
+/// Uses a plot with a Pareto front as long as possible.
 #[test]
 fn the_overview_names_at_most_ten_and_no_two_names_overlap() {
     let mut report = report();
-    // Each choice takes a little longer and errs a little less than the one before; the first ones
-    // stand in one place.
+    // In steps of three, choices take a little longer and have a slightly smaller error. The first
+    // ones share one position.
     for (i, point) in report.findings.points.iter_mut().enumerate() {
         let step = (i / 3) as f64;
         point.ratio.quartiles.median = 1.0 + 0.02 * step;
@@ -185,7 +185,7 @@ fn the_overview_names_at_most_ten_and_no_two_names_overlap() {
 fn figures_are_of_all_pixels_or_on_request_of_those_covered_alike() {
     let subpixels = Axis::named("subpixels").unwrap();
     let coarse = subpixels.choice("bits-0").map(|choice| (subpixels, choice));
-    // The pixel that is covered differently is wrong as well.
+    // The pixel with other coverage has the wrong colour too.
     let mut source = FakeSource::new(coarse, coarse);
     source.same_pixel = true;
     let findings = found(&mut FakeClock::new(None), &mut source);

@@ -1,11 +1,11 @@
-//! The words of the table of axes are those of scene files.
+//! Scene files use the words of the table of axes.
 
 use std::path::Path;
 
 use marraztu_core::accuracy::{AXES, Settings};
 use marraztu_io as io;
 
-/// "half-vector" as a scene file writes it: `HalfVector`.
+/// Converts "half-vector" to the form in scene files, `HalfVector`.
 fn camel(word: &str) -> String {
     let upper = |part: &str| part[..1].to_uppercase() + &part[1..];
     word.split('-').map(upper).collect()
@@ -18,7 +18,7 @@ fn settings_text(settings: &Settings) -> String {
     settings.split(')').next().unwrap().to_owned()
 }
 
-/// A setting that is in no row of the table would be offered nowhere and measured nowhere.
+/// A setting without a row in the table would be neither offered nor measured.
 #[test]
 fn a_scene_file_says_each_axis_by_its_key_and_each_choice_by_its_word() {
     let fields = settings_text(&Settings::default()).matches(':').count();

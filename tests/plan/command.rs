@@ -1,4 +1,4 @@
-//! `marraztu plan`, from outside.
+//! The command `marraztu plan`.
 
 use std::process::{Command, Output};
 
@@ -41,7 +41,7 @@ fn every_line_for_machines_has_every_cell() {
     let mut measured = 0;
     for line in lines {
         let cells: Vec<&str> = line.split(',').collect();
-        // A reason may hold a comma, and then stands in quotes.
+        // A reason with a comma is quoted.
         assert!(cells.len() == head.len() || line.contains('"'), "{line}");
         if cells.len() == head.len() {
             assert_eq!(cells[at("state")] == "on", !cells[at("pixels")].is_empty(), "{line}");

@@ -1,4 +1,4 @@
-//! The list of a frame's effects is what the frame does.
+//! The list of a frame's effects agrees with the frame.
 
 use glam::{DMat4, DQuat, DVec3};
 use marraztu_core::accuracy::Settings;
@@ -25,7 +25,8 @@ fn first() -> (Scene, View) {
 fn every_pixel_that_shows_something_is_counted_once_under_surfaces() {
     for seed in 0..300 {
         let it = random_scene(seed);
-        // Lines are counted elsewhere, and on black ground nothing black would be seen.
+        // Lines are counted by other tests, and black objects would be invisible on a black
+        // background.
         let view = View { marks: true, fill: Fill::Filled, ..it.view.clone() };
         let explained = cost::explain(&Shot::new(&it.scene, &view, &it.settings, it.size));
         let present = |effect: Effect| matches!(effect, Effect::Surfaces | Effect::Marks);
@@ -80,7 +81,7 @@ fn of_many_objects_about_the_observer_exactly_those_in_view_are_planned() {
     };
     let before = drawn(&scene);
     assert!((20..200).contains(&before), "{before}");
-    // What was out of view comes into it: nothing of what was computed before is used.
+    // An object that was outside the view moves into it: the kept data has no entry for it.
     let id = scene.objects.ids().last().expect("there is one");
     let mut moved = scene.objects.get(id).expect("it is there").clone();
     let far = DVec3::new(0.0, 5_000.0, 0.0);
@@ -112,7 +113,7 @@ fn an_effect_can_be_removed_from_a_plan_exactly_if_it_is_on() {
 #[test]
 fn a_light_that_reaches_one_object_of_three_is_on_there_and_nowhere_else() {
     let (scene, view) = first();
-    // The spot of the selected object shines along -Z: past the one beside it.
+    // The spot of the selected object shines along -Z, past the object next to it.
     let uses = cost::explain(&Shot::new(&scene, &view, &Settings::default(), SIZE)).uses;
     let spot = scene.lights.iter().find_map(|(id, light)| {
         (light.name == "object spot" && matches!(light.kind, LightKind::Spot { .. })).then_some(id)

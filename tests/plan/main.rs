@@ -1,5 +1,5 @@
-//! The reports of what a frame leaves out are true. `tests/proofs` shows that leaving it out
-//! changes nothing, and `tests/breakages` that each rule is needed.
+//! The reports on effects that a frame leaves out are true. `tests/proofs` shows that leaving them
+//! out changes no pixel, and `tests/breakages` that each rule is needed.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
 

@@ -1,5 +1,5 @@
-//! Checks the program's guarantees on randomly generated cases: a quick round of each proof in
-//! every run of the tests, and any number of cases on request.
+//! Checks the program's guarantees on random cases: a quick round of each proof in every test run,
+//! and any number of cases on request.
 //!
 //! ```text
 //! cargo test --test proofs                                      a quick round of each
@@ -23,13 +23,14 @@ use self::claims::choices;
 use self::claims::instructions::{self, Frame};
 use self::claims::{PROOFS, Proof, Tally};
 
-/// Checks the program's guarantees on randomly generated cases.
+/// Checks the program's guarantees on random cases.
 #[derive(Debug, Parser)]
 #[command(after_help = "\
 Cases come in batches; the number of a batch alone decides what is in it. A counterexample is named
 by its batch, and --from BATCH --count 1 checks it again.")]
 struct Arguments {
-    /// The proofs whose names contain this, \"instructions\" or \"choices\" [default: all proofs]
+    /// The proofs with this text in their name, \"instructions\" or \"choices\" [default: all
+    /// proofs]
     name: Option<String>,
     /// The number of cases to check [default: a quick round]
     #[arg(long, value_name = "N", conflicts_with = "whole")]
@@ -43,19 +44,19 @@ struct Arguments {
     /// List the proofs
     #[arg(long)]
     list: bool,
-    /// Also write the result of each proof into a file in this folder, for docs/stability.sh
+    /// Also write the result of each proof into a file in this folder, for tools/stability.sh
     #[arg(long, value_name = "FOLDER")]
     figures: Option<PathBuf>,
-    /// Draw one of the frames whose instructions are counted, and nothing else
+    /// Draw one of the counted frames, then exit
     #[arg(long, hide = true, value_enum)]
     draw_counted: Option<Frame>,
-    /// Draw a scene of the laboratory's suite with one of the choices that are counted
+    /// Draw a scene of the laboratory's suite with one of the counted choices
     #[arg(long, hide = true)]
     draw_choice: Option<String>,
     /// The number of that choice
     #[arg(long, hide = true, default_value_t = 0)]
     which: usize,
-    /// Count the choices of the scenes whose words contain this
+    /// Count the choices of the scenes with this text in their name
     #[arg(long, value_name = "SCENE", default_value = "", hide_default_value = true)]
     scene: String,
     #[command(flatten)]
@@ -83,7 +84,7 @@ struct Libtest {
     color: Option<String>,
 }
 
-/// Why a run ends with an error.
+/// The reason for a failed run.
 #[derive(Debug, thiserror::Error)]
 enum Failure {
     #[error("{0}")]
@@ -146,7 +147,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.name.is_none() && !at_length {
         begins_on_many_threads()?;
     }
-    // A name of a test of another target selects none here, which is no error.
+    // A test name of another target selects no proof, which is not an error.
     tell(&format!("{} of {} proofs checked", chosen.len(), PROOFS.len()))
 }
 
@@ -158,7 +159,7 @@ fn list() -> Result<(), Failure> {
     tell("choices       a coarser choice takes no more instructions, unless its axis says why")
 }
 
-/// Checks cases of one proof, and prints what was counted.
+/// Checks cases of one proof, and prints its counts.
 fn check(proof: &Proof, from: u64, cases: u64) -> Result<Tally, Failure> {
     let batches = proof.batches(cases);
     let bar = indicatif::ProgressBar::new(batches);
@@ -183,7 +184,7 @@ fn check(proof: &Proof, from: u64, cases: u64) -> Result<Tally, Failure> {
     Ok(tally)
 }
 
-/// Writes what was counted as a line of a table.
+/// Writes the counts of a proof as one line of a table.
 fn write(folder: &Path, proof: &Proof, tally: &Tally) -> Result<(), Failure> {
     let row = format!("{}\t{}\t{tally}\n", proof.name, proof.claim);
     Ok(std::fs::write(folder.join(format!("proof-{}.tsv", proof.name)), row)?)
@@ -193,14 +194,14 @@ fn tell(text: &str) -> Result<(), Failure> {
     Ok(writeln!(std::io::stdout().lock(), "{text}")?)
 }
 
-/// The number of processes that begin on many threads.
+/// The number of processes started on many threads.
 const PROCESSES: usize = 100;
 
-/// A process that takes longer than this hangs.
+/// The time limit of a process; a longer run counts as a hang.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Runs a few cases in new processes: what is computed once in a process is asked for by many
-/// threads at the same time.
+/// Runs a few cases in new processes, in which many threads request every cached value at the same
+/// time.
 fn begins_on_many_threads() -> Result<(), Failure> {
     for process in 0..PROCESSES {
         let mut child = Command::new(std::env::current_exe()?)
@@ -220,7 +221,7 @@ fn begins_on_many_threads() -> Result<(), Failure> {
     tell(&format!("{PROCESSES} processes began on 8 threads and came to their end"))
 }
 
-/// Ends a process if it still runs, and says whether it succeeded.
+/// Kills a process if it still runs, and returns whether it succeeded.
 fn succeeded(child: &mut Child) -> Result<bool, Failure> {
     if child.try_wait()?.is_none() {
         child.kill()?;
@@ -228,11 +229,11 @@ fn succeeded(child: &mut Child) -> Result<bool, Failure> {
     Ok(child.wait()?.success())
 }
 
-/// How often each frame is counted: memory lies elsewhere in every process, and copying from there
+/// The number of runs per frame. Memory has other addresses in every process, and copying from them
 /// takes a few instructions more or less.
 const COUNTS: usize = 5;
 
-/// The number of instructions that this makes at most: less than one in a hundred pixels.
+/// The largest difference from that: less than one instruction per hundred pixels.
 const SPREAD: u64 = 160;
 
 /// Counts the instructions of each choice of accuracy on the laboratory's suite.

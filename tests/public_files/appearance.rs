@@ -1,4 +1,4 @@
-//! Materials, maps and colours as exporters mean them.
+//! Materials, maps and colours as exporters intend them.
 
 use super::*;
 
@@ -43,7 +43,7 @@ fn colours_above_one_are_clamped_and_bytes_are_divided() {
     }
     let (bytes, info) = plain(["255", "255", "255"]);
     assert!(bytes == white && info.contains("0 to 255"), "{info}");
-    // One bright vertex does not darken the others.
+    // One overbright vertex does not darken the others.
     let one = with(&["0.5", "0.5", "0.5"]).replacen("0.5 0.5 0.5", "1.05 0.5 0.5", 1);
     let folder = Folder::with(&[("a.obj", &one), ("b.obj", &with(&["0.5", "0.5", "0.5"]))]);
     let [a, b] = ["a.obj", "b.obj"].map(|name| middle(&folder.drawn(&[name])));

@@ -1,8 +1,8 @@
-//! Models far from their origin, and vertices that no face uses.
+//! Models far from the origin, and unused vertices.
 
 use super::*;
 
-/// A wave over a grid, moved by an offset.
+/// A wavy grid, moved by an offset.
 fn wave(offset: [f64; 3]) -> String {
     const SIDE: u32 = 24;
     let mut text = String::new();
@@ -66,7 +66,7 @@ fn vertices_without_a_face_do_not_count_for_the_size() {
         assert!(folder.drawn(&[name]) == right, "{name}");
         assert!(folder.info(name).contains("a vertex is not used by any face"), "{name}");
     }
-    // An unused vertex at the origin of a model far away leaves it its offset.
+    // An unused vertex at the origin does not change the offset of a distant model.
     let mut text = wave([500_000.0, 0.0, 0.0]);
     let right = Folder::with(&[("a.obj", &text)]).drawn(&["a.obj"]);
     text += "v 0 0 0\n";

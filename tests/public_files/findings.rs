@@ -1,4 +1,4 @@
-//! Whatever a file asks for and does not get is among the findings.
+//! Every unsupported or missing feature of a file is among the findings.
 
 use super::*;
 

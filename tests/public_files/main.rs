@@ -1,9 +1,8 @@
-//! Files as people and programs write them, after public reports of bugs: nothing is lost, and
-//! nothing wrong is shown.
+//! Files as users and programs write them, after public bug reports: nothing is lost or shown
+//! wrong.
 //!
-//! Catches: an input that is replaced by an output, a whole file that is refused for one odd word,
-//! a fault of a file that shows on the picture but not among the findings, a picture of another
-//! format than its name promises.
+//! Catches: an input replaced by an output, a whole file rejected for one odd word, a fault that is
+//! visible in the picture but not among the findings, a picture with another format than its name.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -20,15 +19,15 @@ mod findings;
 mod outputs;
 mod spelling;
 
-/// A square of one unit a side in the plane z = 0, with texture coordinates, in material `m`.
+/// A unit square in the plane z = 0, with texture coordinates and the material `m`.
 const SQUARE: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n\
                       vt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n";
 
-/// A cube from -1 to 1 whose faces run counter-clockwise seen from outside.
+/// A cube from -1 to 1 with counter-clockwise faces as seen from outside.
 const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 1\nv 1 -1 1\nv -1 1 1\n\
                     v 1 1 1\nf 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
 
-/// A folder in which the program runs.
+/// A temporary folder, the program's working directory.
 struct Folder(TempDir);
 
 impl Folder {
@@ -52,7 +51,7 @@ impl Folder {
         std::fs::read(self.at(name)).unwrap()
     }
 
-    /// Writes a square picture; a texel is computed from its column and row.
+    /// Writes a square picture with texels computed from column and row.
     fn picture(&self, name: &str, side: usize, texel: impl Fn(usize, usize) -> [u8; 4]) {
         let texels = (0..side * side).map(|i| texel(i % side, i / side)).collect();
         let picture = Picture::from_pixels(Size::new(side, side), texels).unwrap();
@@ -64,7 +63,7 @@ impl Folder {
         Command::new(program).current_dir(self.path()).args(arguments).output().unwrap()
     }
 
-    /// Standard output and standard error of a run that ends with `status`.
+    /// Runs the program, checks its exit status, and returns standard output and standard error.
     #[track_caller]
     fn ends(&self, status: i32, arguments: &[&str]) -> String {
         let output = self.run(arguments);
@@ -74,13 +73,13 @@ impl Folder {
         told
     }
 
-    /// What `info` says of a file.
+    /// Returns the output of `info` for a file.
     #[track_caller]
     fn info(&self, name: &str) -> String {
         self.ends(0, &["info", name])
     }
 
-    /// The small picture that `render` draws, one sample per pixel.
+    /// Returns a small picture drawn by `render` with one sample per pixel.
     #[track_caller]
     fn drawn(&self, arguments: &[&str]) -> Picture {
         let render = ["render", "--size", "64", "--samples", "1", "--out", "drawn.png"];
@@ -89,7 +88,7 @@ impl Folder {
     }
 }
 
-/// The pixel in the middle of a picture.
+/// The pixel at the centre of a picture.
 fn middle(picture: &Picture) -> [u8; 4] {
     let Size { width, height } = picture.size();
     picture.pixel(width / 2, height / 2)

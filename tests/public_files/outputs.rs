@@ -1,10 +1,10 @@
-//! Written files: nothing that was read is replaced, and formats keep their promises.
+//! Written files: no input is replaced, and formats keep their promises.
 
 use std::fs;
 
 use super::*;
 
-/// A folder full of the inputs of a scene: scene, models, MTL files, and a texture.
+/// A folder with the inputs of a scene: scene file, models, MTL files and a texture.
 fn inputs() -> (Folder, Vec<String>) {
     let folder = Folder::with(&[
         ("room.obj", &SQUARE.replace("a.mtl", "room.mtl")),
@@ -40,7 +40,7 @@ fn no_command_replaces_a_file_that_it_has_read() {
         &["render", "a.obj", "--texture", "t.png", "--out", "t.png"],
         &["lab", "room.marraztu", "--quick", "--size", "8x8", "--out", "lab"],
     ];
-    // The laboratory writes into a folder: one of its files is read by the scene.
+    // The laboratory writes into a folder that contains a file of the scene.
     fs::create_dir(folder.at("lab")).unwrap();
     fs::rename(folder.at("s.png"), folder.at("lab/exact.png")).unwrap();
     fs::write(folder.at("room.mtl"), "newmtl m\nKd 1 1 1\nmap_Kd t.png\nmap_Ks lab/exact.png\n")
@@ -89,7 +89,7 @@ fn an_export_replaces_its_own_companion_files_but_no_others() {
             let told = folder.ends(0, &["export", "a.obj", "--out", out]);
             assert!(folder.at(companion).exists(), "{again}: {told}");
         }
-        // Without the main file, too, the texts and textures of an earlier export are known.
+        // Texts and textures of an earlier export are recognised even without its main file.
         if out == "ship.obj" {
             fs::remove_file(folder.at(out)).unwrap();
             folder.ends(0, &["export", "a.obj", "--out", out]);
@@ -189,7 +189,7 @@ fn a_gif_has_no_delay_that_browsers_stretch() {
     }
 }
 
-/// The delays of a GIF in hundredths of a second, from its graphic control extensions.
+/// The frame delays of a GIF in 1/100 s, from its graphic control extensions.
 fn delays(gif: &[u8]) -> Vec<u16> {
     let controls = gif.windows(8).filter(|it| it[..3] == [0x21, 0xF9, 4] && it[7] == 0);
     controls.map(|it| u16::from_le_bytes([it[4], it[5]])).collect()

@@ -65,7 +65,7 @@ fn a_backslash_does_not_swallow_a_statement() {
         assert!(info.contains("ends in a backslash"), "{info}");
         assert!(folder.drawn(&["a.obj"]) == folder.drawn(&["plain.obj"]), "{statement}");
     }
-    // Statements that go on are one.
+    // Continued lines form one statement.
     let long = CUBE.replace("f 1 3 4 2", "f 1 3 \\\n4 2").replace("v 1 1 1", "v 1 \\\n1 \\\n1");
     let folder = Folder::with(&[("a.obj", &long), ("plain.obj", CUBE)]);
     assert!(folder.drawn(&["a.obj"]) == folder.drawn(&["plain.obj"]));

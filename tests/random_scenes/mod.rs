@@ -1,5 +1,5 @@
-//! Small randomly generated scenes that prefer borders: a light on a surface, a cone that touches a
-//! box, a face that ends at the border of a tile, coefficients of 0, -0 and the smallest number,
+//! Small random scenes that favour border cases: a light on a surface, a cone that touches a
+//! bounding box, a face that ends at a tile border, coefficients of 0, -0 and the smallest number,
 //! apertures of 0 and 90 degrees.
 
 #![allow(dead_code, reason = "each test uses its own part of it")]
@@ -28,7 +28,7 @@ use marraztu_render::plan_frame;
 
 use self::shapes::shapes;
 
-/// A scene with everything that its picture depends on.
+/// A scene with view, settings and size: everything its picture depends on.
 #[derive(Clone, Debug)]
 pub(crate) struct RandomScene {
     pub(crate) seed: u64,
@@ -39,22 +39,22 @@ pub(crate) struct RandomScene {
 }
 
 impl RandomScene {
-    /// The plan of its picture.
+    /// The plan of the scene's picture.
     pub(crate) fn plan(&self) -> FramePlan {
         plan_frame(&Shot::new(&self.scene, &self.view, &self.settings, self.size))
     }
 }
 
-/// Objects have ids from here on, so that lower ones are free.
+/// The first id of objects; lower ids stay free.
 const FIRST_OBJECT: u32 = 100;
 
-/// An id that nothing has.
+/// An id without an item.
 const UNUSED: u32 = 99;
 
-/// The scene of a seed.
+/// Generates the scene of a seed.
 pub(crate) fn random_scene(seed: u64) -> RandomScene {
     let rng = &mut Rng::new(seed);
-    // One tile, or four whose borders are in the middle of things.
+    // One tile, or four with borders in the middle of the scene.
     let size = if rng.percent(75) { Size::new(32, 32) } else { Size::new(96, 72) };
     let cameras = cameras(rng, size);
     let count = 1 + rng.index(3);
@@ -77,7 +77,7 @@ pub(crate) fn random_scene(seed: u64) -> RandomScene {
     RandomScene { seed, view, settings: settings(rng), scene, size }
 }
 
-/// One unit is one pixel in orthographic projection.
+/// Cameras with one unit per pixel in orthographic projection.
 fn cameras(rng: &mut Rng, size: Size) -> List<CameraId, Camera> {
     #[expect(clippy::cast_precision_loss, reason = "a small picture")]
     let half_size = size.width.min(size.height) as f64 / 2.0;
@@ -107,7 +107,7 @@ fn cameras(rng: &mut Rng, size: Size) -> List<CameraId, Camera> {
     all.into_iter().take(count).collect()
 }
 
-/// A position in the world. At integers, faces end at borders of pixels and tiles.
+/// A random position. Integers put faces on borders of pixels and tiles.
 fn place(rng: &mut Rng) -> DVec3 {
     if rng.percent(40) {
         let whole = |rng: &mut Rng| rng.real(-40.0, 40.0).round();
@@ -152,7 +152,7 @@ fn object(rng: &mut Rng) -> Object {
         model = shapes::mapped(rng);
     }
     let scale = match rng.index(10) {
-        // Around the camera: its faces are clipped.
+        // A box around the camera, so its faces are clipped.
         0 => DVec3::splat(400.0),
         1 => DVec3::new(-6.0, 9.0, 3.0),
         2..5 => DVec3::splat(rng.one_of(&[1.0, 4.0, 16.0, 32.0])),
@@ -193,6 +193,7 @@ fn lights(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> List<LightId, Light>
             },
             _ => spot(rng, objects),
         };
+        // Dark lights and extreme attenuations test the rules for leaving lights out.
         let levels = [0, 1, 128, 255];
         let color = if rng.percent(15) { [0; 3] } else { [0; 3].map(|_| rng.one_of(&levels)) };
         let attenuation = |constant, linear, quadratic| Attenuation { constant, linear, quadratic };
@@ -213,7 +214,7 @@ fn lights(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> List<LightId, Light>
     (10..).zip((0..count).map(|_| ())).map(|(id, ())| (LightId(id), light(rng, id))).collect()
 }
 
-/// The position of a light: anywhere, or exactly on the surface of an object.
+/// The position of a light: anywhere, or exactly on an object's surface.
 fn lamp_place(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> DVec3 {
     match rng.index(3) {
         0 => {
@@ -247,7 +248,7 @@ fn spot(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> LightKind {
     let (position, direction) = (lamp_place(rng, objects), direction(rng));
     let mut half_aperture = aperture(rng);
     if rng.percent(40) {
-        // It touches, or nearly touches, a corner of an object's box.
+        // The cone touches, or nearly touches, a corner of an object's bounding box.
         let (_, object) = &objects[rng.index(objects.len())];
         let corners = object.model.mesh.bounds().map(|bounds| bounds.corners());
         let corner = corners.map_or(DVec3::ZERO, |corners| rng.one_of(&corners));
@@ -285,7 +286,7 @@ fn view(rng: &mut Rng, scene: &Scene) -> View {
     }
 }
 
-/// Mostly one, since more take longer.
+/// Usually one sample, because more take longer.
 fn samples(rng: &mut Rng) -> Samples {
     match rng.percent(25) {
         true if rng.percent(10) => rng.one_of(&[Samples::Sixteen, Samples::SixtyFour]),
@@ -317,7 +318,7 @@ fn settings(rng: &mut Rng) -> Settings {
         terminator: rng.one_of(&[Terminator::Triangles, Terminator::Smooth]),
         ..Settings::default()
     };
-    // Rarely, since it shades every sample.
+    // Rare, because every sample is shaded.
     let several = [Samples::Four, Samples::Sixteen].contains(&settings.samples);
     let each = several && settings.light == LightAt::Pixel && rng.percent(30);
     if each { Settings { light: LightAt::Sample, ..settings } } else { settings }

@@ -1,4 +1,4 @@
-//! The shapes, materials and textures of randomly generated scenes.
+//! Shapes, materials and textures for random scenes.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -12,7 +12,7 @@ use marraztu_core::scene::{
     SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
 };
 
-/// Coefficients on both sides of what can be left out.
+/// Coefficients on both sides of the thresholds for leaving terms out.
 const COEFFICIENTS: [f64; 8] =
     [0.0, -0.0, 5e-324, 1e-45, f32::MIN_POSITIVE as f64, 1.0 / 255.0, 0.4, 1.0];
 
@@ -123,7 +123,7 @@ fn ball(rings: u32) -> Shared<Model> {
     model("ball", source, Vec::new())
 }
 
-/// Two squares, one in front of the other, of two materials: one dull, one half transparent.
+/// Two squares, one behind the other, with two materials: one dull, one half transparent.
 fn two_parts() -> Shared<Model> {
     let one = square_source();
     let behind = one.positions.iter().map(|[x, y, z]| [x + 0.5, y + 0.25, z - 0.5]);
@@ -178,7 +178,7 @@ fn colored() -> Shared<Model> {
     model("tetrahedron", source, Vec::new())
 }
 
-/// A material; often some of its coefficients are 0.
+/// A random material; coefficients of 0 are frequent.
 pub(crate) fn material(rng: &mut Rng) -> Material {
     let mut row = || match rng.index(4) {
         0 => [0.0; 3],
@@ -192,7 +192,7 @@ pub(crate) fn material(rng: &mut Rng) -> Material {
     Material { ambient, diffuse, specular, exponent, emission }
 }
 
-/// Random maps, each with a random chance.
+/// Random maps, each present with a random probability.
 pub(crate) fn maps(rng: &mut Rng) -> SurfaceMaps {
     let mut maps = SurfaceMaps::new();
     for kind in MapKind::ALL {
@@ -204,7 +204,7 @@ pub(crate) fn maps(rng: &mut Rng) -> SurfaceMaps {
     maps
 }
 
-/// A sheet of two squares, one of them mirrored on the texture, with random maps.
+/// A sheet of two squares, one with mirrored texture coordinates, with random maps.
 pub(crate) fn mapped(rng: &mut Rng) -> Shared<Model> {
     let one = square_source();
     let behind = one.positions.iter().map(|[x, y, z]| [x + 0.5, y + 0.25, z - 0.5]);
@@ -230,7 +230,7 @@ pub(crate) fn mapped(rng: &mut Rng) -> Shared<Model> {
     model("mapped", source, vec![file])
 }
 
-/// A texture of a few texels, with holes or without.
+/// A texture of a few texels, with or without holes.
 pub(crate) fn texture(rng: &mut Rng) -> Shared<Texture> {
     let side = rng.one_of(&[1, 2, 5]);
     let alphas: &[u8] = if rng.percent(50) { &[255] } else { &[0, 127, 128, 255] };

@@ -1,9 +1,9 @@
 //! A partial redraw gives the same bytes as drawing everything.
 //!
-//! Catches: the old place of moved or removed objects that is forgotten; reaches that are too
-//! small, behind the camera, or without drawn normals; a comparison that forgets lights, material,
-//! tint, the choice of normals, polygons, parts with holes, the width of lines, drawn normals or
-//! the order; stale vertices and bins; a cancelled picture that is taken for finished.
+//! Catches: forgotten old positions of moved or removed objects; bounds that are too small, behind
+//! the camera, or without drawn normals; a comparison that ignores lights, material, tint, the
+//! choice of normals, polygons, parts with holes, line width, drawn normals or the order; stale
+//! vertices and bins; a cancelled picture taken for finished.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -43,7 +43,7 @@ fn random_color(rng: &mut Rng) -> Color {
     Color([0; 3].map(|_| rng.one_of(&[0, 1, 90, 255])))
 }
 
-/// Two squares with a texture, each a part, whose own normals are not theirs.
+/// Two textured squares, each its own part, with normals that differ from the faces' normals.
 fn plates() -> Shared<Model> {
     let corner = |(position, uv): (u32, u32)| SourceCorner { position, uv, normal: 0 };
     let part = |name: &str| Part { name: name.to_owned(), material: None };
@@ -71,7 +71,7 @@ fn plates() -> Shared<Model> {
     )
 }
 
-/// Two by two texels, one perhaps a hole.
+/// A texture of 2 x 2 texels, in one case of three with a hole.
 fn texture(rng: &mut Rng) -> Shared<Texture> {
     let hole = rng.one_of(&[255, 255, 20]);
     let texel = |rng: &mut Rng, alpha| {
@@ -88,7 +88,7 @@ fn texture(rng: &mut Rng) -> Shared<Texture> {
     })
 }
 
-/// The scene that is edited, and its view.
+/// The edited scene, its view and settings.
 struct Desk {
     scene: Scene,
     view: View,
@@ -118,7 +118,7 @@ impl Desk {
         plan_frame(&Shot::new(&self.scene, &self.view, &self.settings, self.size))
     }
 
-    /// Changes anything: mostly the scene, now and then how it is looked at.
+    /// Changes anything, mostly the scene, sometimes the view.
     fn change(&mut self, rng: &mut Rng) {
         self.stays = self.stays.saturating_sub(1);
         match rng.index(20) {
@@ -146,7 +146,7 @@ impl Desk {
         selection::follow(&before, &self.scene, &mut self.view);
     }
 
-    /// Another camera, size or setting: then all is drawn. Afterwards it stays so for a while.
+    /// Changes camera, size or a setting, which damages everything, then keeps it for 12 changes.
     fn stand_elsewhere(&mut self, rng: &mut Rng) {
         self.stays = 12;
         let settings = &mut self.settings;
@@ -185,7 +185,7 @@ impl Desk {
         }
     }
 
-    /// Another view through the same camera.
+    /// Changes the view of the same camera.
     fn look(&mut self, rng: &mut Rng) {
         let view = &mut self.view;
         match rng.index(12) {
@@ -209,7 +209,7 @@ impl Desk {
             }
         }
         if self.view.face_normals || self.view.vertex_normals || self.view.polygons.is_some() {
-            // Those leave little to keep, or to see: not for long.
+            // Such views have little to keep or show, so they end soon.
             if rng.index(2) == 0 {
                 (self.view.face_normals, self.view.vertex_normals) = (false, false);
                 self.view.polygons = None;
@@ -272,7 +272,7 @@ impl Desk {
         }
     }
 
-    /// A step of x, y or z.
+    /// A step of the keys x, y or z.
     fn step(&mut self, rng: &mut Rng) -> Result<Command, Refusal> {
         use Transformation::{Rotation, Scaling, Translation};
         let subjects = [Subject::Object, Subject::Object, Subject::Object, Subject::Light];
@@ -288,7 +288,7 @@ impl Desk {
     }
 }
 
-/// Changes the appearance of an object, or moves it.
+/// Changes the appearance or the position of an object.
 fn dress(object: &mut Object, rng: &mut Rng) {
     match rng.index(10) {
         0 => {
@@ -308,7 +308,7 @@ fn dress(object: &mut Object, rng: &mut Rng) {
             object.hidden_parts.insert(0);
         }
         _ => {
-            // Anywhere, at times near the camera or right behind it.
+            // Anywhere; sometimes near the camera or directly behind it.
             let near = rng.one_of(&[0.0, 0.0, 0.0, 330.0, 395.0]);
             let across = if near > 0.0 { 20.0 } else { 150.0 };
             let place = rng.vector(1.0) * DVec3::new(across, across, 80.0) + DVec3::Z * near;
@@ -320,14 +320,14 @@ fn dress(object: &mut Object, rng: &mut Rng) {
     }
 }
 
-/// The items visible at some pixels.
+/// The items shown at a grid of pixels.
 fn seen(renderer: &mut Renderer, size: Size) -> Vec<Option<Hit>> {
     let steps = |length: usize| (3..length).step_by(length / 5);
     let places = steps(size.height).flat_map(|y| steps(size.width).map(move |x| (x, y)));
     places.map(|(x, y)| renderer.hit(x, y)).collect()
 }
 
-/// A frame that is given up after `patience` questions whether it is still wanted.
+/// Redraws a frame that is cancelled after `patience` checks.
 fn impatient(
     renderer: &mut Renderer,
     plan: &FramePlan,
@@ -352,13 +352,13 @@ fn after_any_commands_a_partial_redraw_gives_the_same_bytes_as_a_full_one() {
             let plan = desk.plan();
             if rng.index(4) == 0 && impatient(&mut renderer, &plan, rng.index(30)).is_err() {
                 given_up += 1;
-                // The picture that was finished last is the one that is seen, and asked.
+                // Until the next picture is finished, picking uses the previous one.
                 let mut other = Renderer::default();
                 other.render(&last);
                 let size = last.size();
                 assert_eq!(seen(&mut renderer, size), seen(&mut other, size), "step {step}");
                 match rng.index(3) {
-                    // It is wanted again as it was, or something else, or what was given up.
+                    // Next comes the previous plan, another change, or the cancelled plan again.
                     0 => agrees(&mut renderer, &last),
                     1 => desk.change(&mut rng),
                     _ => {}
@@ -385,21 +385,21 @@ fn after_any_commands_a_partial_redraw_gives_the_same_bytes_as_a_full_one() {
             last = plan;
         }
     }
-    // Otherwise nothing would have been tried.
+    // Makes sure that the random changes tested enough.
     assert!(given_up > 50 && partial > 250, "{given_up}, {partial} of {frames} {kinds:?}");
     for kind in ["Came", "Went", "Moved", "Shape", "Look", "First", "Size", "Camera", "Settings"] {
         assert!(kinds.get(kind).is_some_and(|count| *count > 1), "{kind}: {kinds:?}");
     }
 }
 
-/// Changed parts are drawn again, and the picture is as if everything were drawn.
+/// Redraws the damage, and checks that the picture equals a full redraw.
 fn agrees(renderer: &mut Renderer, plan: &FramePlan) {
     let changes = renderer.redraw(plan, &|| true).unwrap();
     assert!(Renderer::default().render(plan) == renderer.picture(), "{changes:?}");
 }
 
-/// With light at vertices, small triangles are coloured when they are set up, or once it is known
-/// which are visible, if geometry is kept or most of the picture is.
+/// With light at vertices, small triangles are coloured during setup, or after visibility is known
+/// if geometry is reused or most of the picture is kept.
 #[test]
 fn triangles_of_all_sizes_have_the_same_colors_whenever_they_are_colored() {
     let (mut scene, view) = scene(&[
@@ -424,6 +424,8 @@ fn triangles_of_all_sizes_have_the_same_colors_whenever_they_are_colored() {
         }
         let plan =
             |scene: &Scene| plan_frame(&Shot::new(scene, &view, &settings, Size::new(330, 260)));
+        // The first picture colours triangles during setup. Then only materials change: the
+        // geometry is reused, and colours are computed after visibility.
         let mut renderer = Renderer::default();
         renderer.render(&plan(&scene));
         for name in ["ruby", "jade", "brass"] {
@@ -475,7 +477,7 @@ fn objects_that_reach_behind_the_camera_are_redrawn_wherever_they_are_visible() 
     };
     let mut renderer = Renderer::default();
     renderer.render(&plan(&scene));
-    // A floor under the camera, from behind it to far before it.
+    // A floor below the camera, from behind it to far in front.
     let flat = DMat4::from_rotation_x(-90_f64.to_radians()) * at(300.0, 0.0, 0.0, 0.0);
     for x in [0.0, 40.0, -500.0, 0.0] {
         edit(&mut scene, ObjectId(10), |object| {
@@ -493,7 +495,7 @@ fn a_moved_object_takes_the_tiles_of_its_old_and_its_new_place_and_no_others() {
     let view = View { marks: false, ..view };
     let size = Size::new(640, 640);
     let plan = |scene: &Scene| plan_frame(&Shot::new(scene, &view, &Settings::default(), size));
-    // The spots of the selected object and camera follow it, and the diamond is a mark.
+    // Removes the spots of the selected object and camera, which follow it, and the diamond mark.
     for (id, light) in
         scene.lights.iter().map(|(id, light)| (id, light.clone())).collect::<Vec<_>>()
     {
@@ -507,8 +509,8 @@ fn a_moved_object_takes_the_tiles_of_its_old_and_its_new_place_and_no_others() {
         object.placement = object.placement.replaced(at(20.0, -125.0, -125.0, 0.0));
     });
     let changes = renderer.redraw(&plan(&scene), &|| true).unwrap();
-    // 640 pixels show 331 units: the square is 77 pixels wide and its middle at (79, 79): columns 0
-    // and 1, rows 0 and 1, and as many at the bottom.
+    // 640 pixels show 331 units. The square is 77 pixels wide with its centre at (79, 79), in
+    // columns 0 and 1 and rows 0 and 1; at the bottom it touches four tiles as well.
     assert_eq!((changes.tiles(), changes.tiles_in_all()), (8, 100));
     let moved = vec![(ItemId::Object(ObjectId(10)), Change::Moved)];
     assert_eq!(*changes.cause(), DamageCause::Items(moved));
@@ -529,7 +531,7 @@ fn an_invisible_change_paints_no_tile() {
 
 #[test]
 fn edges_that_stand_over_the_border_of_a_tile_are_drawn_again_on_both_sides() {
-    // In parallel projection a pixel is 1000 / 128 units wide; the border of the tiles is at 0.
+    // In orthographic projection a pixel is 1000 / 128 units wide. The border of the tiles is at 0.
     let pixel = 1000.0 / 128.0;
     for offset in [-1.5, -1.0, -0.5, -0.01, 0.0, 0.01, 0.5, 1.0] {
         for wide_lines in [false, true] {

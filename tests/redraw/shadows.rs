@@ -1,4 +1,4 @@
-//! Shadows after a change: what is drawn again, what is traced again, and what is kept.
+//! Shadows after a change: which parts are redrawn, traced again, or kept.
 
 use super::*;
 
@@ -9,6 +9,7 @@ fn a_moved_object_takes_the_tiles_of_its_shadow_and_no_others() {
     let (mut scene, view) = scene(&[(square(), floor), (ball(6), at(15.0, -60.0, -20.0, 0.0))]);
     let view = View { marks: false, ..view };
     let size = Size::new(640, 640);
+    // Sun and bulb cast shadows; spots are removed, because they follow the selection.
     for (id, light) in
         scene.lights.iter().map(|(id, light)| (id, light.clone())).collect::<Vec<_>>()
     {
@@ -25,6 +26,7 @@ fn a_moved_object_takes_the_tiles_of_its_shadow_and_no_others() {
     let mut renderer = Renderer::default();
     let mut last = renderer.render(&plan(&scene)).clone();
     let mut least = usize::MAX;
+    // The ball moves twice, then out of view.
     for place in [DVec3::new(-50.0, -20.0, 5.0), DVec3::new(40.0, 10.0, -60.0), DVec3::Y * 300.0] {
         edit(&mut scene, ObjectId(11), |object| {
             let placement = DMat4::from_translation(place) * at(15.0, 0.0, 0.0, 0.0);
@@ -57,7 +59,7 @@ fn shaded_stage() -> (Scene, View) {
     (scene, View { marks: false, ..view })
 }
 
-/// Changes the first light for which this is true.
+/// Changes the first light for which `change` returns true.
 fn change_light(scene: &mut Scene, mut change: impl FnMut(&mut Light) -> bool) {
     let all: Vec<_> = scene.lights.iter().map(|(id, light)| (id, light.clone())).collect();
     for (id, mut light) in all {
@@ -70,7 +72,7 @@ fn change_light(scene: &mut Scene, mut change: impl FnMut(&mut Light) -> bool) {
     panic!("no light is changed");
 }
 
-/// Redraws a changed scene. Returns how many per cent of a whole picture's rays it traced.
+/// Redraws a changed scene, and returns the rays it traced in percent of a full picture.
 fn rays_again(
     (scene, view): (&mut Scene, &View),
     settings: &Settings,
@@ -88,7 +90,7 @@ fn rays_again(
     renderer.rays().traced * 100 / fresh.rays().traced
 }
 
-/// Catches: shadows of a picture that are kept for one of another size.
+/// Catches: shadows kept for a picture of another size.
 #[test]
 fn shadows_are_not_kept_for_a_picture_of_another_size() {
     let (mut scene, view) = shaded_stage();
@@ -106,9 +108,9 @@ fn shadows_are_not_kept_for_a_picture_of_another_size() {
     }
 }
 
-/// Catches: a light that is traced because another one moved, or because its colour changed; rays
-/// of a whole picture for an object that moves; shadows that stay where their caster was, their
-/// light was, or another surface was seen.
+/// Catches: a light traced again because another one moved or its own colour changed; rays for the
+/// whole picture when one object moves; shadows kept after their caster, their light or the visible
+/// surface has changed.
 #[test]
 fn only_what_changed_is_traced_again() {
     let settings = Settings::default();
@@ -116,6 +118,7 @@ fn only_what_changed_is_traced_again() {
         let (mut scene, view) = shaded_stage();
         rays_again((&mut scene, &view), &settings, change)
     };
+    // A colour, a light switched off and a material need no rays.
     let recoloured = again(&mut |scene| {
         change_light(scene, |light| {
             light.color = Color([90, 200, 30]);
@@ -136,6 +139,7 @@ fn only_what_changed_is_traced_again() {
         });
     });
     assert_eq!(dressed, 0, "a material");
+    // A moved light is traced again alone; a moved object, where its shadow was or is.
     let bulb = again(&mut |scene| {
         change_light(scene, |light| match &mut light.kind {
             LightKind::Bulb { position, .. } => {
@@ -159,7 +163,7 @@ fn only_what_changed_is_traced_again() {
     assert!((1..70).contains(&hidden), "{hidden}% for an object that goes");
 }
 
-/// Nothing that casts shadows changes, but other surfaces show.
+/// The shadow casters stay the same, but other surfaces become visible.
 #[test]
 fn a_back_that_is_shown_has_shadows_of_its_own() {
     let (mut scene, view) = shaded_stage();

@@ -1,8 +1,7 @@
 //! Copy, cut and paste.
 //!
-//! Catches: keys of the clipboard that the window system sends as other events, text fields that
-//! lose them, a copy that lies exactly on the original, items that come back otherwise than they
-//! were, text of other programs.
+//! Catches: clipboard keys that the window system sends as other events, text fields that lose
+//! them, a copy exactly on top of its original, pasted items that differ, text of other programs.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -20,7 +19,7 @@ use crate::editor::Editor;
 use crate::panels::{click, type_text};
 
 impl Editor {
-    /// Sends an event, and gives the text that was copied.
+    /// Sends an event, and returns the text it copied.
     fn copied(&mut self, event: Event) -> Option<String> {
         self.harness.event(event);
         let mut text = None;

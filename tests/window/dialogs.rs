@@ -1,7 +1,7 @@
 //! Dialogs: files, materials, unsaved work, errors.
 //!
-//! Catches: work that is lost without a question, questions that are not needed, a bad file that
-//! changes the scene, keys that act behind a dialog.
+//! Catches: work lost without a question, needless questions, a bad file that changes the scene,
+//! keys that act behind a dialog.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -30,13 +30,13 @@ pub(crate) fn folder_with(name: &str, text: &str) -> (tempfile::TempDir, PathBuf
 }
 
 impl Editor {
-    /// Whether the window was told to close in the last frame.
+    /// Whether the program asked the window to close in the last frame.
     fn leaves(&self) -> bool {
         let commands = self.harness.output().viewport_output.get(&ViewportId::ROOT);
         commands.is_some_and(|output| output.commands.contains(&ViewportCommand::Close))
     }
 
-    /// Presses a key, and says whether the program then leaves.
+    /// Presses a key, and returns whether the program then quits.
     pub(crate) fn leaves_by(&mut self, chord: marraztu::app::actions::Chord) -> bool {
         let (key, modifiers, _) = crate::editor::events_of(chord);
         let mut leaves = false;
@@ -51,7 +51,7 @@ impl Editor {
         leaves
     }
 
-    /// Waits for threads that load.
+    /// Runs frames until a loading thread has finished.
     pub(crate) fn wait_until(&mut self, done: impl Fn(&Self) -> bool) {
         let begun = Instant::now();
         while !done(self) {
@@ -61,9 +61,9 @@ impl Editor {
         }
     }
 
-    /// Types a path into the own choice of files.
+    /// Types a path into the program's own file dialog.
     pub(crate) fn type_path(&mut self, path: &Path) {
-        // The whole field is chosen and written over.
+        // Selects the whole field and replaces it.
         self.press(Command(Key::A));
         self.harness.event(egui::Event::Text(path.display().to_string()));
         self.settle();
@@ -88,6 +88,7 @@ fn esc_asks_while_something_is_unsaved_and_cancel_keeps_everything() {
         assert!(editor.shows("Save the scene?"));
         editor.press(Lower(Key::Z));
         assert!(editor.scene() == scene, "keys do not act behind a question");
+        // After Cancel the chord asks again. Within the question, Esc means Cancel.
         editor.click_label("Cancel");
         assert!(!editor.shows("Save the scene?"));
         assert!(!editor.leaves_by(chord), "and it asks again");
@@ -97,6 +98,7 @@ fn esc_asks_while_something_is_unsaved_and_cancel_keeps_everything() {
             assert!(!editor.leaves_by(chord), "after a dialog, it warns first");
             assert!(editor.shows("Esc once more leaves the program"));
         }
+        // Discard leaves the program.
         assert!(!editor.leaves_by(chord));
         editor.harness.step();
         let left = {
@@ -320,7 +322,7 @@ fn a_scene_is_saved_and_opened_again_and_a_lost_model_can_be_found() {
     editor.click_label("Load");
     assert!(!editor.state().history.is_saved());
     editor.press(Command(Key::S));
-    // The ending is added.
+    // The dialog adds the file name extension.
     editor.type_path(&folder.path().join("my"));
     editor.wait_until(|_| file.is_file());
     assert!(editor.state().history.is_saved());
@@ -464,7 +466,7 @@ fn a_path_that_was_refused_is_typed_on() {
     type_text(&mut editor, &folder.path().join("nothing").display().to_string());
     editor.press(Named(Key::Enter));
     assert!(editor.shows("There is no such file."));
-    // What is typed now is behind the refused path, and may begin anew there.
+    // New text goes after the rejected path, and may begin a new path there.
     type_text(&mut editor, &format!("/{}", path.with_extension("").display()));
     editor.press(Named(Key::Enter));
     editor.wait_until(|editor| editor.shows("Material of cube.obj"));

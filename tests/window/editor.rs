@@ -1,4 +1,4 @@
-//! An editor to press keys in, with events as the window system sends them.
+//! An editor under test, driven by the events that a window system sends.
 
 use std::cell::RefCell;
 
@@ -12,7 +12,7 @@ use marraztu_core::edit::Gesture;
 use marraztu_core::scene::{Scene, View};
 use marraztu_io as io;
 
-/// An editor of the first scene.
+/// An editor with the first scene.
 pub(crate) struct Editor {
     pub(crate) harness: Harness<'static, App>,
     modifiers: RefCell<Modifiers>,
@@ -23,12 +23,12 @@ impl Editor {
         Self::showing(|ui, app| app.editor_ui(ui))
     }
 
-    /// An editor in a small window, whose pictures are soon drawn.
+    /// An editor in a small window, which draws its pictures quickly.
     pub(crate) fn small() -> Self {
         Self::sized(egui::vec2(640.0, 240.0), |ui, app| app.editor_ui(ui))
     }
 
-    /// An editor in a window so high that nothing in its panels has to be scrolled to.
+    /// An editor in a window so tall that its panels need no scrolling.
     pub(crate) fn tall() -> Self {
         Self::sized(egui::vec2(1200.0, 1600.0), |ui, app| app.editor_ui(ui))
     }
@@ -37,7 +37,7 @@ impl Editor {
         Self::sized(egui::vec2(width, height), |ui, app| app.editor_ui(ui))
     }
 
-    /// An editor with a further panel in which these actions are buttons.
+    /// An editor with an extra panel of buttons for these actions.
     pub(crate) fn with_buttons(actions: &'static [Action]) -> Self {
         Self::sized(egui::vec2(640.0, 240.0), move |ui, app| {
             let mut clicked = None;
@@ -74,7 +74,7 @@ impl Editor {
         editor
     }
 
-    /// Lets frames go by until everything that was asked for is done and shown.
+    /// Runs frames until everything requested is done and shown.
     pub(crate) fn settle(&mut self) {
         for _ in 0..2 {
             self.harness.step();
@@ -95,7 +95,7 @@ impl Editor {
         self.state().view.clone()
     }
 
-    /// Number of steps that can be undone.
+    /// The number of steps that can be undone.
     pub(crate) fn steps(&self) -> usize {
         self.state().history.position()
     }
@@ -118,12 +118,12 @@ impl Editor {
         self.settle();
     }
 
-    /// Presses a key and lets it go, as a keyboard of the United States does.
+    /// Presses and releases a key, with the events of a US keyboard.
     pub(crate) fn press(&mut self, chord: Chord) {
         self.hold(chord, 0);
     }
 
-    /// Presses a key, holds it until it has repeated `repeats` times, and lets it go.
+    /// Presses a key, holds it for `repeats` repetitions, and releases it.
     pub(crate) fn hold(&mut self, chord: Chord, repeats: usize) {
         let (key, modifiers, text) = events_of(chord);
         self.set_modifiers(modifiers);
@@ -156,7 +156,7 @@ impl Editor {
         self.harness.get_by_label("Viewport").rect()
     }
 
-    /// A place in the picture, from (0, 0) upper left to (1, 1) lower right.
+    /// A position in the picture, from (0, 0) upper left to (1, 1) lower right.
     pub(crate) fn at(&self, x: f32, y: f32) -> Pos2 {
         let rect = self.picture();
         pos2(rect.left() + x * rect.width(), rect.top() + y * rect.height())
@@ -190,14 +190,14 @@ impl Editor {
         self.button(places[places.len() - 1], button, false);
     }
 
-    /// Clicks the control with this label; if several have it, the topmost.
+    /// Clicks the control with this label, the topmost if there are several.
     pub(crate) fn click_label(&mut self, label: &str) {
         let found = self.harness.query_all_by_label(label).last();
         found.unwrap_or_else(|| panic!("nothing is called {label}")).click();
         self.settle();
     }
 
-    /// Clicks a button of the further panel.
+    /// Clicks a button of the extra panel.
     pub(crate) fn click_button(&mut self, action: Action) {
         let place = self.harness.ctx.data(|data| data.get_temp(egui::Id::unique(action)));
         self.click(place.expect("the panel has this button"), PointerButton::Primary);
@@ -208,7 +208,7 @@ impl Editor {
     }
 }
 
-/// The key, the modifiers and the text that a keyboard sends for it.
+/// The key, modifiers and text of a chord, as a keyboard sends them.
 pub(crate) fn events_of(chord: Chord) -> (Key, Modifiers, Option<String>) {
     let command = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
     match chord {

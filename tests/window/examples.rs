@@ -1,7 +1,7 @@
-//! The menu of examples: each is opened whole, and saved under a name of its own.
+//! The menu of examples: each one opens complete, and is saved under a new name.
 //!
-//! Catches: an example whose files the program does not carry, one that takes unsaved work away,
-//! one that Ctrl+S would write back to.
+//! Catches: an example with files that the program lacks, one that discards unsaved work, one that
+//! Ctrl+S would overwrite.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use marraztu_io::{self as io, EXAMPLES, Progress};
 use crate::editor::Editor;
 use crate::panels::click;
 
-/// Lets the window run until the scene has been read.
+/// Runs frames until the scene has been read.
 #[track_caller]
 fn until_opened(editor: &mut Editor, title: &str) {
     let path = EXAMPLES.iter().find(|example| example.title == title).unwrap().path;

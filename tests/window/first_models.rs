@@ -1,8 +1,8 @@
-//! Models that open alone: from the command line, and dropped on the untouched first scene.
+//! Models that open alone: from the command line, or dropped on the unchanged first scene.
 //!
-//! Catches: ships beside the model, a model that is too small or too large in the picture or burnt
-//! out, steps that do not fit it, a window that shows something else than `render`, a drop that
-//! cannot be undone, a key `f` that replaces the scene.
+//! Catches: ships next to the model, a model that is too small, too large or overexposed, steps of
+//! the wrong size, a window that differs from `render`, a drop without undo, a key `f` that
+//! replaces the scene.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -68,7 +68,7 @@ fn picture(scene: &Scene, view: &View, size: Size) -> marraztu_core::base::image
     Renderer::default().render(&plan_frame(&shot)).clone()
 }
 
-/// The first scene's cameras and lights with these objects, as they open.
+/// The first scene's cameras and lights with these objects, as the program opens them.
 fn alone(objects: Vec<Object>) -> (Scene, View) {
     let (mut scene, view) = io::empty_scene();
     let (command, view) = presenting::alone(&scene, &view, objects).unwrap();
@@ -108,7 +108,7 @@ fn a_model_of_the_command_line_opens_alone_framed_and_with_steps_that_fit() {
     assert!((moved - 0.01).abs() < 1e-12, "the model is selected: {moved}");
 }
 
-/// A cube with many vertices at one corner: their mean is far from the middle of its box.
+/// A cube with many vertices at one corner, so their mean is far from the centre of its box.
 fn lopsided() -> String {
     let more = (0..40).map(|i| format!("v 1 1 {}\n", 0.9 + f64::from(i) / 400.0));
     let faces = (9..47).map(|i| format!("f {i} {} {}\n", i + 1, i + 2));
@@ -132,6 +132,7 @@ fn the_first_drag_orbits_a_model_that_opened_alone_and_does_not_jump() {
         let target = view.object.unwrap();
         let before = pose(&editor);
         assert_eq!(before.mode, CameraMode::Analysis { target });
+        // The mean of the vertices is the centre of the orbit, and not the centre of the picture.
         let centre = editor.scene().objects.get(target).unwrap().centre(0.0);
         let aside = |pose: &Pose| {
             let ahead = centre - pose.eye;
@@ -140,6 +141,7 @@ fn the_first_drag_orbits_a_model_that_opened_alone_and_does_not_jump() {
         assert!(aside(&before) > 0.02, "it is framed by its box: {}", aside(&before));
         let [from, to] = [editor.at(0.5, 0.9), editor.at(0.52, 0.9)];
         editor.drag(egui::PointerButton::Primary, &[from, to]);
+        // After the drag: same distance, another position, same offset from the centre.
         let after = pose(&editor);
         let distance = |pose: &Pose| pose.eye.distance(centre);
         assert!((distance(&after) - distance(&before)).abs() < 1e-9, "it orbits");
@@ -192,7 +194,7 @@ fn a_scene_of_the_command_line_keeps_its_objects_beside_models() {
     let (scene, view) = io::default_scene();
     io::save(&file, &scene, &view, &Settings::default()).unwrap();
     let mut editor = Editor::new();
-    // The scene comes first, in whichever order they are named.
+    // The scene comes first in either order of the arguments.
     editor.open_at_start(&[&path, &file]);
     editor.wait_until(|editor| editor.names().len() == 4);
     assert_eq!(editor.names()[0], "cube");
@@ -271,7 +273,7 @@ fn only_highlights_reach_white_from_wherever_models_are_seen() {
                 .collect();
             let most = shown.iter().copied().max().unwrap();
             assert!(most < 255, "{name} is burnt out: {most}");
-            // And it is not dark either: what is balanced comes near to white somewhere.
+            // Balanced light also comes near to white somewhere.
             assert!(most > 120, "{name} is dark: {most}");
             let share = shown.len() as f64 / picture.pixels().len() as f64;
             assert!(share > 0.05, "{name} fills {share} of the picture");

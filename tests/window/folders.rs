@@ -1,7 +1,7 @@
-//! The program's own file dialog: where it begins, and its list.
+//! The program's own file dialog: its first folder, and its list.
 //!
-//! Catches: pictures in the folder of the last texture, textures that are looked for elsewhere than
-//! in the folder of the model, a list that the keyboard cannot reach.
+//! Catches: pictures saved in the folder of the last texture, textures not looked for next to the
+//! model, a list out of reach of the keyboard.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use crate::editor::Editor;
 use crate::panels::{click, control, type_text};
 
 impl Editor {
-    /// The path in the field of the dialog.
+    /// The path in the dialog's field.
     fn path(&self) -> String {
         control(self, Role::TextInput, "Path").value().unwrap_or_default()
     }

@@ -1,8 +1,8 @@
 //! The handles over the picture, and the explanation of a pixel.
 //!
-//! Catches: a drag of a handle that is many steps, moves along another axis or takes a click that
-//! was meant for the picture; numbers that step instead of being typed; a handle that cannot be let
-//! go.
+//! Catches: a drag of a handle that becomes several steps, moves along another axis or takes a
+//! click meant for the picture; numbers that act as steps instead of being typed; a handle that
+//! cannot be released.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::{DMat4, DVec3};
@@ -25,14 +25,14 @@ fn place(editor: &Editor) -> DVec3 {
     placement(editor).w_axis.truncate()
 }
 
-/// The place in the window of the selected ship's origin: (-100, 0, 0) seen from (0, 0, 400).
+/// The window position of the selected ship's origin: (-100, 0, 0) seen from (0, 0, 400).
 fn middle(editor: &Editor) -> Pos2 {
     let rect = editor.picture();
     let half = rect.size().min_elem() / 2.0;
     rect.center() + vec2(-100.0 / 400.0 / 22.5_f32.to_radians().tan(), 0.0) * half
 }
 
-/// An editor whose keys act on the selected ship.
+/// An editor with the keys set to act on the selected ship.
 fn with_ship() -> Editor {
     let mut editor = Editor::new();
     editor.perform(Action::SubjectObject);
@@ -93,7 +93,7 @@ fn numbers_are_typed_while_a_handle_is_held_and_enter_takes_them() {
     assert_eq!(editor.steps(), steps + 1);
     let label = editor.state().history.steps().last().unwrap().to_owned();
     assert_eq!(label, "Move r_falke 17 along y");
-    // The keys are the actions' again.
+    // The keys trigger actions again.
     editor.press(Lower(Key::X));
     assert_eq!(place(&editor), DVec3::new(-90.0, 17.0, 0.0));
 }
@@ -171,7 +171,7 @@ fn rings_turn_and_squares_scale_in_the_frame_that_holds() {
     let turned = placement(&editor);
     assert!(turned.x_axis.x < 0.999 && place(&editor) == DVec3::new(-100.0, 0.0, 0.0));
     editor.press(Command(Key::Z));
-    // The global frame turns about the world's origin, and there the handles stand.
+    // In the global frame objects turn about the world's origin, so the handles are there.
     let mut view = editor.view();
     view.frame = Frame::Global;
     editor.ask(Request::View(Box::new(view)));
@@ -195,7 +195,7 @@ fn a_bulb_is_moved_and_the_camera_that_is_looked_through_has_no_handles() {
     let found = bulbs.find(|(_, light)| matches!(light.kind, LightKind::Bulb { .. }));
     editor.ask(Request::Select(ItemId::Light(found.unwrap().0)));
     assert_eq!(editor.view().subject, Subject::Light);
-    // It stands in (0, 0, -200), in the middle of the picture.
+    // The object is at (0, 0, -200), in the middle of the picture.
     let at = editor.picture().center() + vec2(60.0, 0.0);
     editor.drag(LEFT, &[at, at + vec2(20.0, 0.0), at + vec2(40.0, 0.0)]);
     let scene = editor.scene();
@@ -208,7 +208,7 @@ fn a_bulb_is_moved_and_the_camera_that_is_looked_through_has_no_handles() {
     assert!(Action::TypeAmount.availability(editor.state()).is_err());
 }
 
-/// Waits until the pixel is explained.
+/// Runs frames until the pixel is explained.
 fn until_explained(editor: &mut Editor) {
     for _ in 0..2000 {
         editor.settle();
@@ -232,7 +232,7 @@ fn e_and_a_click_explain_a_pixel_and_esc_closes_it() {
     assert!(editor.shows("r_falke, front"));
     assert!(editor.shows("sun, diffuse") && editor.shows("ambient, ambient"));
     let pixel = editor.state().explained.clone().unwrap();
-    // It follows the picture.
+    // The explanation follows the picture.
     editor.press(Lower(Key::Num1));
     for _ in 0..100 {
         editor.settle();

@@ -1,6 +1,6 @@
-//! The strip of the first minute.
+//! The strip with suggestions over the first picture.
 //!
-//! Catches: a strip that stays, that takes keys, or that lies over the picture that is saved.
+//! Catches: a strip that stays, that takes keys, or that appears in saved pictures.
 
 use egui::Key;
 use marraztu::app::actions::Action;

@@ -1,7 +1,7 @@
-//! Helpers over the picture, arranging, and models that are read again.
+//! Helpers over the picture, arranging, and reloading models.
 //!
-//! Catches: a grid that lies over objects or gets into files, sizes that are wrong, a change of
-//! several that leaves some, a model that stays old or comes back half.
+//! Catches: a grid over objects or in files, wrong sizes, a change of several items that misses
+//! some, a model that stays old or reloads in part.
 
 use egui::Shape;
 use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
@@ -16,7 +16,7 @@ use marraztu_io as io;
 
 use crate::editor::Editor;
 
-/// The thin lines that lie over the picture.
+/// The thin lines over the picture.
 fn lines(editor: &Editor) -> Vec<[egui::Pos2; 2]> {
     let rect = editor.picture();
     let mut lines = Vec::new();
@@ -35,7 +35,7 @@ fn lines(editor: &Editor) -> Vec<[egui::Pos2; 2]> {
 #[expect(clippy::cast_possible_truncation, reason = "places within the picture")]
 fn the_grid_lies_behind_everything_and_in_no_file() {
     let mut editor = Editor::new();
-    // From above, so that the ships stand before the ground.
+    // Seen from above, the ships are in front of the ground.
     editor.perform_all(&[Action::ToggleGizmo, Action::LookTop, Action::FrameAll]);
     let (before, picture) = (lines(&editor).len(), editor.harness.state().shown_picture().unwrap());
     editor.perform(Action::ToggleGrid);
@@ -136,7 +136,7 @@ fn several_cameras_and_lights_show_mixed_numbers_and_are_set_together() {
     editor.ask(Request::SelectAlso(both, Also::Only));
     let field = editor.harness.query_all(By::new().label("Half-aperture")).next().unwrap();
     assert_eq!(field.value().as_deref().map(|it| it.contains("mixed")), Some(true));
-    // Shadows of one are the shadows of both.
+    // Shadows switched on for one light are switched on for both.
     let on = marraztu_core::edit::lights::toggle_shadows(&editor.scene(), second).unwrap();
     let all = marraztu_core::edit::several::spread(&editor.scene(), on, &[ItemId::Light(first)]);
     change(&mut editor, all);
@@ -144,7 +144,7 @@ fn several_cameras_and_lights_show_mixed_numbers_and_are_set_together() {
     let casts = |id| scene.lights.get(id).unwrap().shadows;
     assert!(casts(first) && casts(second));
     assert!(matches!(scene.lights.get(second).unwrap().kind, LightKind::Spot { .. }));
-    // So is the opacity of objects.
+    // The same holds for the opacity of objects.
     let ids: Vec<_> = scene.objects.ids().collect();
     let half = items::change_object(&scene, ids[0], |object| object.opacity = 0.5).unwrap();
     let all = marraztu_core::edit::several::spread(&scene, half, &[ItemId::Object(ids[1])]);
@@ -161,7 +161,7 @@ fn change(editor: &mut Editor, command: marraztu_core::scene::Command) {
 const ONE: &str = "v 0 0 0\nv 60 0 0\nv 0 60 0\nf 1 2 3\n";
 const TWO: &str = "v 0 0 0\nv 60 0 0\nv 0 60 0\nv 60 60 0\nf 1 2 3\nf 2 4 3\n";
 
-/// An editor with a model of a file of one triangle.
+/// An editor with a model file of one triangle.
 fn with_file(path: &std::path::Path) -> Editor {
     std::fs::write(path, ONE).unwrap();
     let loaded = io::load(path, &LoadOptions::default(), &io::Progress::new()).unwrap();
@@ -174,7 +174,7 @@ fn with_file(path: &std::path::Path) -> Editor {
     editor
 }
 
-/// The polygons of the object that is first in the list.
+/// The number of polygons of the first object.
 fn polygons(scene: &Scene) -> usize {
     scene.objects.iter().next().unwrap().1.model.mesh.polygon_count()
 }
@@ -206,7 +206,7 @@ fn models_are_read_again_in_one_step_and_a_broken_file_changes_nothing() {
     editor.perform(Action::ReloadModels);
     until(&mut editor, |editor| editor.shows("The model stays as it was"));
     assert!(editor.scene() == before);
-    // Without files there is nothing to read.
+    // Without model files there is nothing to reload.
     let mut editor = Editor::new();
     editor.perform(Action::ReloadModels);
     let told = editor.harness.get_by_role(egui::accesskit::Role::Alert).accesskit_node().label();

@@ -1,11 +1,10 @@
 //! Unsaved work, preferences and recent files.
 //!
-//! Catches: work that is lost when the program is killed, work that is offered although it was
-//! saved or discarded, one program that takes the work of another that still runs, preferences that
-//! are forgotten.
+//! Catches: work lost when the program is killed, work offered although it was saved or discarded,
+//! a program that takes over the work of a running one, forgotten preferences.
 //!
-//! The test of kills starts itself again as a program of its own, which changes a scene without
-//! pause, and kills it at random moments: 20 times, or as often as `MARRAZTU_KILLS` says.
+//! The kill test starts its own executable again, which changes a scene without pause, and kills it
+//! at random moments: 20 times, or `MARRAZTU_KILLS` times.
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
@@ -27,17 +26,17 @@ use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;
 use crate::panels::click;
 
-/// The names of the folder of the program that is killed.
+/// The environment variable with the folder of the program to be killed.
 const FOLDER: &str = "MARRAZTU_KILLED_IN";
 
-/// The number of programs that run at a time, each in a folder of its own.
+/// The number of programs that run at a time, each in a separate folder.
 const AT_ONCE: u64 = 4;
 
-/// What a kill may lose: what was done in the last second, and what a busy machine adds.
+/// The work that a kill may lose: the last second, plus delays of a busy machine.
 const LOST_AT_MOST: Duration = Duration::from_secs(2);
 
 impl Editor {
-    /// An editor that keeps its own files in this folder.
+    /// An editor with its own files in this folder.
     pub(crate) fn keeping(folder: &Path) -> Self {
         Self::small().kept_in(folder)
     }
@@ -59,7 +58,7 @@ impl Editor {
         self.state().recoverable.len()
     }
 
-    /// How far the camera has gone along Z: one step of `z` each.
+    /// The distance of the camera along Z, in steps of the key `z`.
     #[expect(clippy::cast_possible_truncation, reason = "a test makes few steps")]
     fn steps_of_camera(&self) -> u64 {
         let (scene, view) = (self.scene(), self.view());
@@ -95,7 +94,7 @@ fn work_of_a_program_that_ended_is_offered_and_recovered_as_unsaved() {
     assert!(!editor.state().history.is_saved());
     assert!(editor.state().panels.has(Panel::Statistics) && !editor.state().coarse_while_moving);
     editor.harness.state().wait_for_journal();
-    // It is the work of this program now: killed at once, it is offered again.
+    // Recovered work belongs to this program: killed at once, it is offered again.
     drop(editor);
     let mut editor = Editor::keeping(folder.path());
     assert_eq!(editor.is_offered(), 1);
@@ -103,7 +102,7 @@ fn work_of_a_program_that_ended_is_offered_and_recovered_as_unsaved() {
     drop(editor);
     let mut editor = Editor::keeping(folder.path());
     assert_eq!(editor.is_offered(), 0);
-    // It was moved aside, and comes back.
+    // Discarded work was moved aside, and can be restored.
     editor.perform(Action::RecoverDiscarded);
     editor.wait_until(|editor| !editor.state().history.is_saved());
     assert_eq!(camera(&editor.scene()), camera(&scene));
@@ -148,7 +147,7 @@ fn two_running_programs_do_not_take_each_others_work() {
     drop(first);
     let third = Editor::keeping(folder.path());
     assert_eq!(third.is_offered(), 1, "that of the one that has ended");
-    // What one program offers, another does not offer too.
+    // Work offered by one program is not offered by another.
     assert_eq!(Editor::keeping(folder.path()).is_offered(), 0);
     drop((second, third));
     assert_eq!(Editor::keeping(folder.path()).is_offered(), 2);
@@ -158,6 +157,7 @@ fn two_running_programs_do_not_take_each_others_work() {
 fn what_is_saved_undone_or_discarded_is_not_offered() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("my.marraztu");
+    // Saved work.
     let mut saved = Editor::keeping(folder.path());
     saved.press(Lower(Key::Z));
     saved.press(Command(Key::S));
@@ -166,12 +166,14 @@ fn what_is_saved_undone_or_discarded_is_not_offered() {
     saved.settle();
     saved.harness.state().wait_for_journal();
     drop(saved);
+    // Undone work.
     let mut undone = Editor::keeping(folder.path());
     assert_eq!(undone.is_offered(), 0, "it was saved");
     undone.press(Lower(Key::Z));
     undone.press(Command(Key::Z));
     undone.harness.state().wait_for_journal();
     drop(undone);
+    // Discarded work.
     let mut discarded = Editor::keeping(folder.path());
     assert_eq!(discarded.is_offered(), 0, "it was undone");
     discarded.press(Lower(Key::Z));
@@ -258,7 +260,7 @@ fn a_broken_file_of_preferences_is_set_aside_and_said() {
     assert!(config.join("preferences.broken-1.ron").is_file());
 }
 
-/// The program that is killed; does nothing unless it is started by the test below.
+/// The program to be killed. Does nothing unless the test below starts it.
 #[test]
 fn changes_a_scene_until_it_is_killed() {
     let Some(folder) = std::env::var_os(FOLDER) else { return };
@@ -269,7 +271,7 @@ fn changes_a_scene_until_it_is_killed() {
     let mut rng = Rng::new(number);
     let mut out = std::io::stdout();
     for step in 1_u64.. {
-        // A gesture of many changes, a step, or a scene saved and opened again.
+        // A gesture of several changes, a single step, or saving and reopening the scene.
         match rng.below(12) {
             0 => {
                 editor.press(Command(Key::S));
@@ -287,7 +289,7 @@ fn changes_a_scene_until_it_is_killed() {
     }
 }
 
-/// A running program, and when it told of each step.
+/// A running program, with the time at which it reported each step.
 struct Running {
     child: Child,
     steps: Arc<Mutex<Vec<(u64, Instant)>>>,
@@ -316,7 +318,7 @@ impl Running {
         Self { child, steps }
     }
 
-    /// Kills it, and returns the last step that must not be lost.
+    /// Kills the program, and returns the last step that must survive.
     fn kill(mut self) -> u64 {
         let killed = Instant::now();
         self.child.kill().unwrap();
@@ -350,7 +352,7 @@ fn a_program_killed_at_any_moment_loses_at_most_the_last_seconds() {
     assert!(most_wanted > 0, "no program was killed after its first seconds");
 }
 
-/// The steps of the camera in the work that is offered, or else in the scene file.
+/// The camera's steps in the recovered work, or in the scene file if none is offered.
 fn recovered(own: &Path, file: &Path) -> u64 {
     let mut editor = Editor::keeping(own);
     if editor.is_offered() > 0 {
@@ -362,7 +364,7 @@ fn recovered(own: &Path, file: &Path) -> u64 {
         editor.wait_until(|editor| editor.state().path.as_deref() == Some(file));
     }
     let steps = editor.steps_of_camera();
-    // Left properly, so that the next program finds nothing.
+    // A regular exit, after which the next program has nothing to recover.
     editor.leaves_by(Named(Key::Escape));
     if editor.shows("Save the scene?") {
         editor.click_label("Discard");

@@ -1,6 +1,6 @@
-//! Keys that the user chooses.
+//! Keys changed by the user.
 //!
-//! Catches: a key that presses two actions, a clash that is not told, a choice that is forgotten.
+//! Catches: a key with two actions, a clash without a message, a forgotten choice.
 
 use egui::Key;
 use egui::accesskit::Role;

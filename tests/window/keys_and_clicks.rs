@@ -1,7 +1,7 @@
-//! Keys and clicks for the same action do the same, and keys act only where they should.
+//! Keys and clicks of an action have the same effect, and keys act only in the right place.
 //!
-//! Catches: an action that a key reaches differently, toggles that repeat, steps of undo
-//! that a held key leaves behind, Caps Lock, signs on other layouts, keys that a text field loses.
+//! Catches: an action that behaves differently by key, toggles that repeat, undo steps left by a
+//! held key, Caps Lock, signs on other layouts, keys that a text field loses.
 
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
@@ -18,7 +18,7 @@ use marraztu_core::scene::{Item, ItemId, LightKind, Subject};
 
 use crate::editor::Editor;
 
-/// Situations in which an action may mean different things.
+/// Situations that may change the effect of an action.
 const SITUATIONS: &[&[Action]] = &[
     &[],
     &[Action::SubjectObject],
@@ -30,7 +30,7 @@ const SITUATIONS: &[&[Action]] = &[
     &[Action::ToggleObserver, Action::AddBulb, Action::AddCameraSpot, Action::Delete],
 ];
 
-/// Not to be done in a test that goes on, and with a dialog that is tested elsewhere.
+/// Actions that would end the test; other tests cover their dialogs.
 const LEFT_OUT: &[Action] = &[Action::Quit];
 
 #[test]
@@ -127,7 +127,7 @@ fn caps_lock_has_no_say() {
     let eye = |editor: &Editor| editor.scene().selected_camera(&editor.view()).pose.now().eye;
     let (mut plain, mut capital) = (Editor::new(), Editor::new());
     plain.press(Lower(Key::Z));
-    // With Caps Lock on, only the text differs.
+    // With Caps Lock on, only the text event differs.
     capital.key(Key::Z, true, Modifiers::NONE);
     capital.harness.event(Event::Text("Z".to_owned()));
     capital.key(Key::Z, false, Modifiers::NONE);
@@ -137,8 +137,8 @@ fn caps_lock_has_no_say() {
 
 #[test]
 fn plus_and_minus_go_by_the_text_on_every_layout() {
-    // On a German keyboard + has a key of its own, which egui calls Plus or by another name; and
-    // the key that egui calls Minus there types a sharp s.
+    // A German keyboard has a separate + key, which egui reports as Plus or another key. The key
+    // that egui calls Minus types a sharp s there.
     let spot = |editor: &Editor| {
         let lights = editor.scene().lights;
         lights.iter().find_map(|(_, light)| match light.kind {
@@ -214,7 +214,7 @@ fn tab_enter_and_arrows_stay_in_the_viewport_from_the_first_frame_on() {
     assert_eq!(editor.state().panels, shown);
 }
 
-/// An editor with a text field beside it.
+/// An editor next to a text field.
 fn with_text_field() -> Editor {
     let mut text = String::new();
     Editor::showing(move |ui, app| {
@@ -364,7 +364,7 @@ fn a_slider_changed_by_a_drag_is_one_step_of_undo_with_the_frame_in_which_it_is_
             editor.harness.hover_at(at(part));
             editor.harness.step();
         }
-        // Let go on the way, as hands do.
+        // The pointer still moves while the button is released, as it does in practice.
         editor.harness.drop_at(at(0.3));
         editor.settle();
         assert_eq!(editor.steps(), round, "a second drag is a second step");

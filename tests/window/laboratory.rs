@@ -1,7 +1,7 @@
-//! The panel of the laboratory: measuring, choosing, comparing, explaining, lessons.
+//! The laboratory panel: measuring, choosing, comparing, explaining, lessons.
 //!
-//! Catches: a measurement that blocks the window or is of another scene, a mark or a row that draws
-//! something else, a comparison of two different moments, a click for a pixel that selects.
+//! Catches: a measurement that blocks the window or uses another scene, a mark or a row that draws
+//! something else, a comparison of two different moments, a click on a pixel that selects.
 
 use std::time::Duration;
 
@@ -36,7 +36,7 @@ fn lab(editor: &Editor) -> &Laboratory {
     &editor.state().lab
 }
 
-/// Lets the window rest and be drawn by turns until it is so.
+/// Lets the window alternately rest and draw until a condition holds.
 #[track_caller]
 fn until(editor: &mut Editor, what: &str, done: impl Fn(&Editor) -> bool) {
     for _ in 0..600 {
@@ -59,7 +59,7 @@ fn measured() -> Editor {
 
 #[track_caller]
 fn until_measured(editor: &mut Editor) {
-    // Whoever looks too often disturbs what is measured.
+    // Frequent checks would disturb the measurement.
     for _ in 0..120 {
         std::thread::sleep(Duration::from_secs(2));
         editor.harness.step();
@@ -107,7 +107,7 @@ fn a_measurement_is_chosen_from_by_its_marks_its_rows_and_its_budgets() {
         for mark in &panels.of(panel).marks {
             let point = &report.findings.points[mark.point];
             let name = format!("Draw with {}", point.name);
-            // Marks may lie over one another.
+            // Marks may overlap.
             control(&editor, Role::RadioButton, &name).click_accesskit();
             editor.settle();
             assert_eq!(editor.state().settings, point.settings, "{name}");
@@ -120,7 +120,7 @@ fn a_measurement_is_chosen_from_by_its_marks_its_rows_and_its_budgets() {
     click(&mut editor, Role::RadioButton, "presets: Default");
     assert_eq!(editor.state().settings, Settings::default());
     assert_eq!(editor.steps(), 0, "accuracy is no step");
-    // Another scene has another picture.
+    // A change of the scene makes the measurement stale.
     editor.perform_all(&[Action::SubjectObject, Action::StepXUp]);
     assert!(lab(&editor).is_stale(editor.state()));
     assert!(editor.shows("What is shown has changed since"));
@@ -197,7 +197,7 @@ fn every_lesson_is_read_and_shown_in_a_scene_in_which_it_can_be_seen() {
         assert_eq!((axis.sense)(&editor.scene(), &editor.view()), Ok(()));
         until(&mut editor, "the comparison", |e| lab(e).judged.is_some());
         let error = lab(&editor).judged.unwrap().error.whole;
-        // Rounding is a step off at most, and is shown amplified.
+        // Rounding promises at most one step, so the error is shown amplified.
         let small = axis.key == "rounding";
         assert_eq!(lab(&editor).compare == Compare::Error(256), small, "{}", axis.key);
         assert!(error.largest >= if small { 1 } else { 4 }, "{}: {error:?}", axis.key);
@@ -216,14 +216,14 @@ fn a_half_that_is_not_of_this_moment_says_so_and_one_of_another_scene_is_not_sho
     editor.ask(Request::Lab(LabRequest::ShowLesson("depth")));
     assert!(says(&editor, "exact: drawing"));
     editor.ask(Request::Lab(LabRequest::Back));
-    // The view waits for the user's own comparison.
+    // The view waits for the comparison of the user's scene.
     assert!(says(&editor, "exact: drawing"));
     until(&mut editor, "the comparison of the own scene", |editor| says(editor, "exact"));
     let judged = lab(&editor).judged.unwrap();
     assert!(judged.error.coverage < 20, "{judged:?}");
 }
 
-/// A few axes from one lesson to the next, and back.
+/// Goes from lesson to lesson through a few axes, and back.
 #[test]
 fn the_way_back_from_a_lesson_restores_scene_view_settings_selection_and_history() {
     let mut editor = editor();
@@ -336,8 +336,8 @@ fn the_help_menu_leads_to_every_lesson() {
     assert!(editor.shows("Nothing is measured yet."));
 }
 
-/// The compare line cuts the bright spot in half: light at vertices misses the one half, and the
-/// other is the exact picture's.
+/// The compare line cuts the bright spot in half: light at vertices misses one half, and the exact
+/// picture shows the other.
 #[test]
 fn the_bright_spot_of_the_first_lesson_lies_on_the_compare_line() {
     let mut editor = editor();
@@ -370,7 +370,7 @@ fn every_axis_and_every_preset_is_a_choice_among_the_switches_of_the_view() {
     for axis in AXES {
         for choice in axis.choices.iter().chain(&axis.choices[..1]) {
             let label = format!("{}: {}", axis.label, choice.label);
-            // Some of the panel is scrolled out of sight.
+            // Part of the panel is scrolled out of view.
             control(&editor, Role::RadioButton, &label).click_accesskit();
             editor.settle();
             assert_eq!(Axis::chosen(axis, &editor.state().settings).word, choice.word, "{label}");

@@ -1,7 +1,7 @@
-//! The division of the window: nothing lies over anything else, no text is cut off.
+//! The layout of the window: nothing overlaps, and no text is cut off.
 //!
-//! Catches: a panel that draws beyond its place, a label without room, a panel that stays small
-//! when its window has grown again, a long name that pushes something aside.
+//! Catches: a panel that draws outside its area, a label without room, a panel that stays small
+//! when its window grows again, a long name that displaces controls.
 
 use egui::{Rect, Shape};
 use egui_kittest::kittest::Queryable as _;
@@ -12,8 +12,8 @@ use marraztu_core::scene::ItemId;
 
 use crate::editor::Editor;
 
-/// The sizes of windows in points: 640 x 400, 1024 x 640, 1280 x 800 and 1920 x 1080 pixels at
-/// 100%, 150% and 200%.
+/// Window sizes in points: 640 x 400, 1024 x 640, 1280 x 800 and 1920 x 1080 pixels at 100%, 150%
+/// and 200%.
 const SIZES: [[f32; 2]; 11] = [
     [1920.0, 1080.0],
     [1280.0, 720.0],
@@ -31,7 +31,7 @@ const SIZES: [[f32; 2]; 11] = [
 /// A text on the screen.
 struct Text {
     text: String,
-    /// Its place, and how much of it is seen.
+    /// The area of the text, and the visible part of the window around it.
     rect: Rect,
     clip: Rect,
     elided: bool,
@@ -50,7 +50,7 @@ fn collect(shape: &Shape, clip: Rect, texts: &mut Vec<Text>) {
     }
 }
 
-/// The texts beside the picture.
+/// The texts outside the picture.
 fn texts(editor: &Editor) -> Vec<Text> {
     let picture = editor.picture();
     let mut texts = Vec::new();
@@ -64,8 +64,7 @@ fn texts(editor: &Editor) -> Vec<Text> {
     texts
 }
 
-/// What is wrong with the window: texts that are cut off or lie over one another. A name that the
-/// user gave may end in dots.
+/// Lists texts that are cut off or overlap. Names given by the user may end in an ellipsis.
 fn faults(editor: &Editor, names: &[&str], sideways: bool) -> Vec<String> {
     let all = texts(editor);
     let is_name = |text: &str| {
@@ -100,12 +99,12 @@ fn resize(editor: &mut Editor, [width, height]: [f32; 2]) {
 
 fn check(editor: &Editor, names: &[&str], what: &str) {
     let [width, height] = editor.harness.ctx.content_rect().size().into();
-    // Tables that have no room are scrolled sideways.
+    // Tables without room scroll sideways.
     let found = faults(editor, names, width < 900.0);
     assert!(found.is_empty(), "{what} in {width} x {height}:\n{}", found.join("\n"));
 }
 
-/// Every panel that a narrow window shows one at a time.
+/// The panels that a narrow window shows one at a time.
 const COLUMNS: [Action; 3] =
     [Action::Panel(Panel::Outline), Action::Panel(Panel::View), Action::Panel(Panel::Properties)];
 

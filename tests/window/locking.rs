@@ -1,7 +1,7 @@
-//! Items that are locked, and lights and objects that are left alone.
+//! Locked items, and lights and objects that are shown alone.
 //!
-//! Catches: a locked item that a key, a handle, a click or a change of several moves or removes, a
-//! lock that a file forgets, a light that does not come back.
+//! Catches: a locked item moved or removed by a key, a handle, a click or a change of several
+//! items, a lock missing from the file, a light that stays off.
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, vec2};
@@ -17,7 +17,7 @@ use crate::panels::{click, middle};
 
 const LEFT: PointerButton = PointerButton::Primary;
 
-/// The ship at the left is selected and locked.
+/// An editor with the left ship selected and locked.
 fn locked() -> Editor {
     let mut editor = Editor::new();
     editor.perform(Action::SubjectObject);
@@ -45,7 +45,7 @@ fn a_locked_object_is_not_moved_and_not_deleted_and_undo_unlocks() {
     for action in [Action::DropToGround, Action::ResetPlacement, Action::TypeAmount] {
         assert!(action.availability(editor.state()).is_err(), "{action:?}");
     }
-    // The handles are gone: a drag there looks around.
+    // Without handles, a drag there looks around.
     let steps = editor.steps();
     editor.press(Command(Key::Z));
     assert_eq!(editor.steps(), steps - 1);
@@ -64,7 +64,7 @@ fn a_locked_camera_keeps_its_view() {
     assert!(refused(&editor).starts_with("camera 1 is locked"));
     editor.perform(Action::FrameSelection);
     assert!(editor.scene() == before);
-    // Objects can still be moved, also while it orbits one.
+    // Objects can still be moved, even while the camera orbits one.
     editor.perform_all(&[Action::SubjectObject, Action::StepXUp]);
     assert!(editor.scene() != before);
 }
@@ -148,7 +148,7 @@ fn a_light_is_alone_and_those_that_were_on_come_back() {
     assert_eq!(Action::SoloLight.is_on(editor.state()), Some(true));
     editor.perform(Action::SoloLight);
     assert_eq!(on(&editor), before);
-    // By the outline: Alt and a click on the switch.
+    // In the outline: Alt and a click on the switch.
     let mut editor = Editor::tall();
     let at = middle(&editor, Role::Button, "Switch off bulb");
     editor.set_modifiers(Modifiers::ALT);

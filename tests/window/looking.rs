@@ -1,7 +1,7 @@
-//! Looking around, which is no step of the history.
+//! Looking around, which is not a step of the history.
 //!
-//! Catches: Ctrl+Z that turns the view back, a view that jumps when something else is undone or
-//! redone, undone steps that are lost by looking around, a question about saving after a look.
+//! Catches: Ctrl+Z that moves the view, a view that jumps on undo or redo of something else, undone
+//! steps lost by looking around, a question about saving after looking around.
 
 use egui::{Key, Modifiers, PointerButton, Vec2};
 use marraztu::app::actions::Action;
@@ -48,7 +48,7 @@ fn ctrl_z_undoes_what_was_done_before_and_the_view_stays() {
 #[test]
 fn steps_that_change_the_camera_otherwise_leave_its_view_alone() {
     let mut editor = Editor::new();
-    // Visible is of the same camera that looks around.
+    // Visibility belongs to the camera that looks around.
     editor.perform_all(&[Action::ToggleVisible, Action::ToggleLocked, Action::ToggleLocked]);
     editor.look_around();
     let seen = editor.pose();

@@ -1,6 +1,6 @@
-//! The window without a window: keys, mouse and dialogs, event by event.
+//! The window's behaviour without a display: keys, mouse and dialogs, event by event.
 //!
-//! Each file says at its top what it catches.
+//! The top of each file says which faults it catches.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
 

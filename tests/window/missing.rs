@@ -1,7 +1,7 @@
 //! Scenes with missing files.
 //!
-//! Catches: a scene that is refused, a placeholder that looks like a model, a file that
-//! is found for one object and not for another, a path that is lost by saving.
+//! Catches: a rejected scene, a placeholder that looks like a model, a file found for one object
+//! but not for another, a path lost by saving.
 
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,7 @@ const SCENE: &str = r#"(
     view: (subject: Object, object: Some(1), camera: 4),
 )"#;
 
-/// An editor with a scene that lacks its files, and the folder of the scene.
+/// An editor with a scene that lacks its files, and the scene's folder.
 fn opened() -> (Editor, tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("boat.marraztu");
@@ -41,7 +41,7 @@ fn is_box(editor: &Editor, id: u32) -> bool {
     editor.scene().objects.get(ObjectId(id)).unwrap().model.is_placeholder()
 }
 
-/// A folder elsewhere with both models.
+/// Another folder that has both models.
 fn elsewhere() -> (tempfile::TempDir, [PathBuf; 2]) {
     let folder = tempfile::tempdir().unwrap();
     let paths = ["bow.obj", "sail.obj"].map(|name| folder.path().join(name));

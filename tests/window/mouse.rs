@@ -1,7 +1,7 @@
 //! The mouse over the picture.
 //!
-//! Catches: drags that are many steps, drags that cannot be taken back, clicks taken for drags,
-//! wheels whose notches are lost or doubled, keys that act while the right button steers.
+//! Catches: drags that become several steps or cannot be undone, clicks taken for drags, wheel
+//! notches lost or counted twice, keys that act while the right button steers.
 
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Vec2, vec2};
 use marraztu::app::actions::Action;
@@ -24,16 +24,16 @@ fn pose(editor: &Editor) -> marraztu_core::scene::Pose {
     *editor.scene().selected_camera(&editor.view()).pose.now()
 }
 
-/// How far to the right the ships are, in units of half of the picture's shorter side.
+/// The horizontal positions of the ships, in units of half of the picture's shorter side.
 const X_WING: f32 = 0.6;
 const R_FALKE: f32 = -0.6;
 
-/// A place in the picture at which this object is seen.
+/// A position in the picture that shows this object.
 fn place_of(editor: &mut Editor, name: &str, aside: f32) -> egui::Pos2 {
     let rect = editor.picture();
     let half = rect.size().min_elem() / 2.0;
     for step in -10..10_i8 {
-        // Far enough from the last click in time not to be its second half.
+        // Waits until the next click cannot count as a double click.
         editor.harness.run_steps(30);
         let at = rect.center() + vec2(aside, 0.02 * f32::from(step)) * half;
         editor.click(at, LEFT);
@@ -61,7 +61,7 @@ fn a_click_in_polygon_mode_selects_the_polygon_that_is_seen() {
     let mut editor = Editor::new();
     let at = place_of(&mut editor, "r_falke", R_FALKE);
     editor.press(Either(Key::O));
-    // All polygons of the object are shown, so that one of them is seen there.
+    // Shows all polygons of the object, so one of them is visible there.
     let mut view = editor.view();
     let object = editor.scene().objects.get(view.object.unwrap()).unwrap().clone();
     let count = u32::try_from(object.model.mesh.polygon_count()).unwrap();
@@ -157,7 +157,7 @@ fn an_orbit_keeps_the_distance_and_goes_the_way_that_turns_the_object_with_the_h
     editor.drag(LEFT, &places);
     let after = pose(&editor);
     assert!(((after.eye - centre(&editor)).length() - distance).abs() < 1e-9 * distance);
-    // The hand goes right and down: the camera goes left and up.
+    // The pointer goes right and down, the camera left and up.
     let way = after.eye - before.eye;
     assert!(way.dot(before.axes.x_axis) < -1.0 && way.dot(before.axes.y_axis) > 1.0, "{way}");
     assert!(matches!(after.mode, CameraMode::Analysis { .. }));
@@ -259,7 +259,7 @@ fn esc_closes_the_menu_and_no_more() {
 fn a_double_click_frames_the_object_and_one_on_nothing_frames_all() {
     let mut editor = Editor::new();
     let at = place_of(&mut editor, "x_wing", X_WING);
-    // Far enough from the last click in time not to be its second half.
+    // Waits until the next click cannot count as a double click.
     editor.harness.run_steps(60);
     let before = pose(&editor).eye;
     for _ in 0..2 {
@@ -315,7 +315,7 @@ fn a_click_that_begins_and_ends_in_one_frame_is_a_click() {
 #[test]
 fn clicking_again_selects_the_object_behind_and_wraps_around() {
     let mut editor = Editor::new();
-    // From the right, one ship stands before the other.
+    // Seen from the right, one ship is in front of the other.
     editor.perform(Action::FrameAll);
     editor.perform(Action::LookRight);
     let mut view = editor.view();

@@ -1,7 +1,7 @@
-//! Notices, and the up axis that those of opened models offer.
+//! Notices, and the up axis that the notice of an opened model offers.
 //!
-//! Catches: notices that stay over the picture, that vanish under the pointer, or that are lost;
-//! harmless findings that sound like faults; models that lie on their side.
+//! Catches: notices that stay over the picture, vanish under the pointer or get lost; harmless
+//! findings worded like faults; models that lie on their side.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ use crate::editor::Editor;
 use crate::panels::{click, control};
 
 impl Editor {
-    /// Opens a model in place of the first scene.
+    /// Replaces the first scene by a model that opens alone.
     fn open_alone(&mut self, path: &Path) {
         let count = self.state().notices.len() + self.state().past_notices.len();
         self.drop_files(&[path]);
@@ -34,7 +34,7 @@ impl Editor {
         object.model.options.up
     }
 
-    /// The height of the first object.
+    /// The maximum y of the first object.
     fn top(&self) -> f64 {
         let scene = self.scene();
         let (_, object) = scene.objects.iter().next().unwrap();
@@ -76,7 +76,7 @@ fn a_notice_stays_while_the_pointer_is_over_it_and_one_that_asks_stays() {
     editor.hover(away);
     editor.harness.run_steps(520);
     assert!(editor.state().notices.is_empty());
-    // An object far away: its notice offers to frame it.
+    // The notice about a distant object offers to frame it.
     editor.perform_all(&[Action::SubjectObject, Action::ToggleVisible, Action::WhyUnseen]);
     editor.harness.run_steps(700);
     assert_eq!(editor.state().notices.len(), 1, "it offers to show it");
@@ -103,7 +103,7 @@ fn a_file_without_losses_is_said_to_be_opened_and_one_with_losses_what_it_lacks(
 fn why_outside_the_view_offers_to_frame() {
     let mut editor = Editor::of_size(1280.0, 800.0);
     editor.perform_all(&[Action::SubjectObject, Action::LookTop, Action::SubjectCamera]);
-    // The camera looks the other way.
+    // Turns the camera away.
     for _ in 0..18 {
         editor.perform(Action::StepXUp);
     }
@@ -129,7 +129,7 @@ fn the_up_axis_is_switched_in_the_notice_as_one_step_and_remembered() {
     assert_eq!((editor.up(), editor.top()), (UpAxis::Y, 1.0));
     editor.press(Command(Key::Y));
     assert_eq!(editor.top(), 5.0);
-    // The next model is opened in the same way, and says so.
+    // The next model opens with the same axis, and its notice says so.
     let next = folder.path().join("next.obj");
     std::fs::write(&next, TOWER).unwrap();
     editor.perform(Action::New);
@@ -146,7 +146,7 @@ fn an_axis_that_the_file_states_is_used_and_said() {
     editor.open_alone(&path);
     assert_eq!((editor.up(), editor.top()), (UpAxis::Z, 5.0));
     assert!(editor.shows("Z is up: its file says \"up axis: Z\"."));
-    // A statement of the file counts more than the choice for another one.
+    // A statement in the file takes precedence over the remembered choice.
     let y = folder.path().join("y.obj");
     std::fs::write(&y, format!("# Y-up\n{TOWER}")).unwrap();
     let mut editor = Editor::of_size(1280.0, 800.0);

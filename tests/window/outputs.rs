@@ -1,7 +1,7 @@
-//! Pictures with options, turntables and exports from the window.
+//! Pictures with options, turntables and exports, saved from the window.
 //!
-//! Catches: options that are not those of the file, a file that is left behind by what was
-//! cancelled, a window that waits.
+//! Catches: options that differ from the saved file, a file left behind by a cancelled export, a
+//! window that blocks.
 
 use std::path::PathBuf;
 
@@ -67,7 +67,7 @@ fn a_turntable_is_drawn_while_the_window_answers_and_a_cancelled_one_leaves_noth
         &editor.state().settings,
         editor.state().statistics.size,
     );
-    // A name without an ending has the first one: that of a GIF.
+    // A name without an extension gets the first one, GIF.
     let gif = std::fs::read(folder.path().join("frames.gif")).unwrap();
     assert!(gif.starts_with(b"GIF89a"));
     assert!(Renderer::default().render(&plan_frame(&shot)).size() == shot.size);

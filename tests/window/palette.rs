@@ -1,8 +1,8 @@
-//! The palette, and what lies over the picture.
+//! The palette, and the marks over the picture.
 //!
-//! Catches: a palette that keeps an old query or does another thing than it shows, a mark that
-//! cannot be clicked or hides what is under it, a light that is aimed elsewhere, a double click
-//! that began on a notice.
+//! Catches: a palette that keeps an old query or acts differently from its text, a mark that cannot
+//! be clicked or hides the object below it, a light aimed at another point, a double click that
+//! began on a notice.
 
 use egui::accesskit::Role;
 use egui::{Key, PointerButton};
@@ -16,7 +16,7 @@ use marraztu_core::scene::{ItemId, LightKind, MaterialChoice, SpotOwner, Subject
 use crate::editor::Editor;
 use crate::panels::{click, control, type_text};
 
-/// What the palette lists, from the top.
+/// The entries of the palette, from the top.
 pub(crate) fn listed(editor: &Editor) -> Vec<String> {
     let dialog = editor.harness.get_by_label("Search everything").rect();
     let rows = editor.harness.query_all(By::new().role(Role::ListBoxOption));
@@ -40,7 +40,7 @@ fn the_palette_does_what_it_shows_and_begins_anew() {
         assert_ne!(editor.view().fill, before, "{query}");
         assert!(!editor.shows("Search everything"));
     }
-    // The keyboard is the viewport's again.
+    // The viewport has the keyboard again.
     editor.press(Lower(Key::C));
     assert_eq!(editor.view().subject, Subject::Object);
 }
@@ -134,7 +134,7 @@ fn the_list_of_keys_forgets_what_was_searched_for_and_knows_the_same_words() {
     assert_eq!(field.value().unwrap_or_default(), "");
 }
 
-/// The scene with a free spot at the origin, which is selected.
+/// An editor with a free spot light at the origin, selected.
 fn with_spot() -> Editor {
     let mut editor = Editor::new();
     editor.perform(Action::AddSpot);
@@ -154,9 +154,9 @@ fn a_spot_is_aimed_at_the_selection_and_by_a_click() {
     let mut editor = with_spot();
     let steps = editor.steps();
     editor.perform(Action::AimAtSelection);
-    // The selected object stands at the left.
+    // The selected object is on the left.
     assert!(direction(&editor).x < -0.99);
-    // The other ship stands at the right.
+    // The other ship is on the right.
     editor.perform(Action::AimByClick);
     assert!(editor.state().aiming);
     let nothing = editor.at(0.5, 0.95);
@@ -172,10 +172,10 @@ fn a_spot_is_aimed_at_the_selection_and_by_a_click() {
     assert!(!editor.state().aiming && !editor.shows("Save the scene?"));
 }
 
-/// A place in the picture that shows the ship at (100, 0, 0).
+/// A position in the picture that shows the ship at (100, 0, 0).
 fn ship_at_the_right(editor: &Editor) -> egui::Pos2 {
     let rect = editor.picture();
-    // 100 units aside, 400 away, 22.5 degrees across half of the shorter side.
+    // 100 units aside at a distance of 400; half of the shorter side spans 22.5 degrees.
     let half = rect.width().min(rect.height()) / 2.0;
     rect.center() + egui::vec2(100.0 / 400.0 / 22.5_f32.to_radians().tan() * half, 0.0)
 }
@@ -186,7 +186,7 @@ fn a_click_on_a_mark_selects_the_light_and_the_next_what_lies_under_it() {
     let spot = editor.view().light.unwrap();
     editor.perform(Action::SubjectCamera);
     let middle = editor.picture().center();
-    // A hair aside, so that no end of an axis and no other light is meant.
+    // Slightly off, to miss the ends of the axes and other lights.
     editor.click(middle, PointerButton::Primary);
     assert_eq!(editor.state().selected(), Some(ItemId::Light(spot)));
     editor.perform(Action::ToggleOverlays);
@@ -286,6 +286,7 @@ fn each_of_two_notices_frames_its_own_object() {
     let mut editor = Editor::new();
     let ids: Vec<_> = editor.scene().objects.ids().collect();
     let far = glam::DMat4::from_translation(glam::DVec3::X * 4000.0);
+    // Moves two ships out of view and asks for each why it is unseen.
     for id in &ids[..2] {
         let mut object = editor.scene().objects.get(*id).unwrap().clone();
         object.placement = marraztu_core::scene::Tracked::new(far * *object.placement.now());
@@ -311,6 +312,7 @@ fn each_of_two_notices_frames_its_own_object() {
         buttons.map(|button| format!("{:?}", button.rect())).collect()
     };
     assert_eq!(names(&editor).len(), 2);
+    // The button of the first notice frames the first ship.
     let first = editor.scene().objects.get(ids[0]).unwrap().name.clone();
     let top = editor.harness.query_all(By::new().role(Role::Button).label("Frame")).next();
     top.unwrap().click();

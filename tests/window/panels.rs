@@ -1,8 +1,8 @@
-//! Menus, outline, switches of the view, status line and list of keys.
+//! Menus, outline, view switches, status line and list of keys.
 //!
-//! Catches: a switch that acts differently from its key, an action that is in no menu, a control
-//! without a name, a list in another order than the scene's, a name that is lost or given without
-//! being asked for.
+//! Catches: a switch that acts differently from its key, an action missing from the menus, a
+//! control without a name, a list in another order than the scene, a name lost or changed without a
+//! request.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
@@ -18,7 +18,7 @@ use marraztu_core::scene::{ItemId, LightKind, Subject};
 
 use crate::editor::Editor;
 
-/// The one control of this kind and name.
+/// Finds the only control of this kind and name.
 pub(crate) fn control<'a>(editor: &'a Editor, role: Role, label: &'a str) -> Node<'a> {
     let mut found = editor.harness.query_all(By::new().role(role).label(label));
     let first = found.next().unwrap_or_else(|| panic!("no {role:?} is called {label}"));
@@ -31,7 +31,7 @@ pub(crate) fn click(editor: &mut Editor, role: Role, label: &str) {
     editor.settle();
 }
 
-/// Types letter by letter.
+/// Types text letter by letter.
 pub(crate) fn type_text(editor: &mut Editor, text: &str) {
     for letter in text.chars() {
         editor.harness.event(Event::Text(letter.to_string()));
@@ -96,7 +96,7 @@ fn every_choice_of_the_view_does_what_its_action_does() {
         asked.perform(action);
         assert_ne!(asked.view(), before, "{label} has nothing to do");
         for _ in 0..2 {
-            // The current choice stays.
+            // Clicking the current choice changes nothing.
             click(&mut clicked, Role::RadioButton, label);
             assert_eq!(clicked.view(), asked.view(), "{label}");
         }
@@ -119,7 +119,7 @@ fn every_axis_of_accuracy_is_chosen_by_its_name() {
         ("Light arithmetic: 64 bits", Settings { arithmetic: Arithmetic::F64, ..first }),
         ("Light arithmetic: 32 bits", first),
     ] {
-        // Some of the panel is scrolled out of sight.
+        // Part of the panel is scrolled out of view.
         control(&editor, Role::RadioButton, label).click_accesskit();
         editor.settle();
         assert_eq!(editor.state().settings, expected, "{label}");
@@ -270,18 +270,18 @@ fn items_change_places_by_buttons_and_by_dragging_their_lines() {
 
     let row = |editor: &Editor, name| control(editor, Role::ListBoxOption, name).rect();
     let steps = editor.steps();
-    // Into the lower half of the last line: behind it.
+    // On the lower half of the last line: after it.
     let (from, to) = (row(&editor, "r_falke").center(), row(&editor, "cam"));
     let low = egui::pos2(to.center().x, to.bottom() - 3.0);
     editor.drag(PointerButton::Primary, &[from, from + egui::vec2(0.0, 9.0), low]);
     assert_eq!(order(&editor), ["x_wing", "cam", "r_falke"]);
-    // Into the upper half of the first line: before it.
+    // On the upper half of the first line: before it.
     let (from, to) = (row(&editor, "r_falke").center(), row(&editor, "x_wing"));
     let high = egui::pos2(to.center().x, to.top() + 3.0);
     editor.drag(PointerButton::Primary, &[from, from - egui::vec2(0.0, 9.0), high]);
     assert_eq!(order(&editor), ["r_falke", "x_wing", "cam"]);
     assert_eq!(editor.steps(), steps + 2);
-    // Nothing goes into another list.
+    // Items cannot be dropped into another list.
     let from = row(&editor, "r_falke").center();
     let lamp = row(&editor, "sun").center();
     editor.drag(PointerButton::Primary, &[from, from + egui::vec2(0.0, 9.0), lamp]);
@@ -431,7 +431,7 @@ fn a_drag_in_the_colour_picker_is_one_step() {
     let Color([r, g, b]) = editor.scene().background;
     assert!(r == g && g == b && r.abs_diff(128) <= 2, "grey, half way up: {r} {g} {b}");
     assert_eq!(editor.steps(), 1);
-    // Grey has kept the blue that it came from.
+    // Grey remembers the hue of the blue before it.
     editor.drag(PointerButton::Primary, &[at(0.0, 0.5), at(0.5, 0.2), at(1.0, 0.0)]);
     assert_eq!(editor.scene().background, Color([0, 0, 255]));
     editor.press(Command(Key::Z));
@@ -447,7 +447,7 @@ fn a_key_hides_tooltips_until_the_pointer_moves() {
     editor.hover(at);
     editor.harness.run_steps(60);
     assert!(editor.shows(hint));
-    // The palette lies over the switch, which the pointer does not leave.
+    // The palette covers the switch while the pointer stays there.
     editor.press(Command(Key::K));
     type_text(&mut editor, "cube");
     editor.harness.run_steps(60);
@@ -482,7 +482,7 @@ fn an_explained_pixel_stays_within_the_picture_and_leads_to_those_beside_it() {
         let at = editor.at(0.2, 0.5);
         editor.click(at, PointerButton::Primary);
         editor.wait_until(|editor| editor.shows("Copy as text"));
-        // The window finds its size and its place.
+        // The window settles on its size and position.
         editor.harness.run_steps(30);
         let copy = control(&editor, Role::Button, "Copy as text").rect();
         let picture = editor.picture();

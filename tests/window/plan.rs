@@ -1,7 +1,7 @@
-//! The panel of the plan, and that nothing is drawn while nothing changes.
+//! The plan panel; and an idle window draws nothing.
 //!
-//! Catches: a panel that lags behind the scene, a list of another picture, an effect without a
-//! line, a window that repaints or draws by itself.
+//! Catches: a panel that lags behind the scene, a list for another picture, an effect without a
+//! line, a window that repaints without a cause.
 
 use egui::accesskit::Role;
 use marraztu::app::actions::Action;
@@ -37,7 +37,7 @@ fn the_plan_follows_the_scene_while_it_is_shown() {
     assert!(!editor.shows("sun on, all 3"));
 }
 
-/// Clicks a line, which may have to be scrolled to.
+/// Clicks a line, scrolled into view if necessary.
 fn unfold(editor: &mut Editor, line: &str) {
     control(editor, Role::Row, line).click_accesskit();
     editor.settle();
@@ -100,7 +100,7 @@ fn an_idle_editor_draws_nothing_and_asks_for_no_frame() {
         if plan {
             editor.perform(Action::Panel(Panel::Plan));
         }
-        // Panels that fade in are fully visible by now.
+        // By now panels have faded in.
         for _ in 0..60 {
             editor.settle();
         }

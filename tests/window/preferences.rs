@@ -1,7 +1,7 @@
-//! Preferences, About, and the words by which the palette finds them.
+//! Preferences, About, and the search words for both in the palette.
 //!
-//! Catches: words that find nothing, something that is remembered and cannot be reset, recent files
-//! that come back after they were cleared, a package without its licence.
+//! Catches: words without a result, a remembered value that cannot be reset, recent files that
+//! return after being cleared, a package without its licence.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -96,7 +96,7 @@ fn recent_files_that_were_cleared_do_not_come_back_from_the_disk() {
     assert_eq!(Preferences::load(&folders).0.recent, Vec::<std::path::PathBuf>::new());
 }
 
-/// The packages of Cargo.lock, with the names of their dependencies.
+/// Parses Cargo.lock: packages with the names of their dependencies.
 fn locked(text: &str) -> BTreeMap<String, (String, Vec<String>)> {
     let mut packages = BTreeMap::new();
     for package in text.split("[[package]]").skip(1) {
@@ -125,7 +125,7 @@ fn every_package_that_the_program_is_built_from_is_listed_with_its_licence() {
         .lines()
         .filter_map(|line| line.split_once(" = ").map(|(name, _)| name.to_owned()))
         .collect();
-    // A dependency is its name alone if there is one version of it.
+    // A dependency is named without its version if there is only one.
     let full = |wanted: &str| -> String {
         let found = packages.iter().find(|(full, (name, _))| *full == wanted || name == wanted);
         found.unwrap_or_else(|| panic!("{wanted} is not in Cargo.lock")).0.clone()

@@ -1,7 +1,7 @@
 //! The properties of the selected item.
 //!
-//! Catches: a field that sets another thing than it names, drags that are many steps, a number
-//! typed for one item that lands in another, fields that round what they only show, sliders that
+//! Catches: a field that sets another value than its label, drags that become several steps, a
+//! number typed for one item that changes another, fields that round hidden digits, sliders that
 //! act differently from keys.
 
 use egui::accesskit::Role;
@@ -37,7 +37,7 @@ fn light(editor: &Editor) -> Light {
     editor.scene().lights.get(id).unwrap().clone()
 }
 
-/// An editor in which the first light of this kind is selected.
+/// An editor with the first light of this kind selected.
 fn with_light(wanted: impl Fn(&LightKind) -> bool) -> Editor {
     let mut editor = Editor::tall();
     editor.perform(Action::SubjectLight);
@@ -62,14 +62,14 @@ fn with_camera() -> Editor {
     editor
 }
 
-/// Types into a field as a person does: a click, the text, Enter.
+/// Types into a field as a user does: a click, the text, Enter.
 fn type_into(editor: &mut Editor, field: &str, text: &str) {
     click(editor, Role::SpinButton, field);
     type_text(editor, text);
     editor.press(Named(Key::Enter));
 }
 
-/// Drags a control by a number of points to the right.
+/// Drags a control to the right by a number of points.
 fn drag(editor: &mut Editor, role: Role, label: &str, by: f32) {
     let at = control(editor, role, label).rect().center();
     let places: Vec<Pos2> = (0..=4_u8).map(|i| at + vec2(by * f32::from(i) / 4.0, 0.0)).collect();
@@ -108,8 +108,8 @@ const OF_CAMERA: &[(&str, Read)] = &[
     ("Orthographic far", |e| camera(e).lens.parallel_far),
 ];
 
-/// What is typed, and dragged, into each field becomes its value in one step, and one step of undo
-/// takes it back.
+/// Types and drags in each field. Each entry is one step that sets the field's value, and one undo
+/// reverts it.
 fn fields_set_what_they_name(mut editor: Editor, fields: &[(&str, Read)]) {
     for (field, read) in fields {
         let (before, steps) = (editor.scene(), editor.steps());
@@ -231,7 +231,7 @@ fn a_number_typed_for_one_item_never_lands_in_another() {
     assert_ne!(first, second);
     assert_eq!((height(first), height(second)), (33.0, 0.0));
     assert_eq!(editor.steps(), 1);
-    // The selection goes on by itself while a number is typed: it is then for none.
+    // The selection changes while a number is typed; then the number belongs to no item.
     click(&mut editor, Role::SpinButton, "Position Z");
     type_text(&mut editor, "44");
     editor.ask(Request::Select(ItemId::Object(first)));
@@ -422,7 +422,8 @@ fn a_spot_gets_a_place_of_its_own_where_it_was() {
 fn a_camera_goes_to_analysis_by_its_properties_as_by_the_key() {
     let (mut clicked, mut pressed) = (with_camera(), with_camera());
     let mode = |editor: &Editor| camera(editor).pose.now().mode;
-    // In the switches of the view and in the properties: the last one is the properties'.
+    // Both the view switches and the properties have this control. The last one is in the
+    // properties.
     clicked.click_label("Camera mode: Analysis");
     pressed.press(Either(Key::G));
     assert!(matches!(mode(&clicked), CameraMode::Analysis { .. }));
@@ -449,7 +450,7 @@ fn the_fields_show_what_the_keys_do() {
     assert_eq!(shown.as_deref(), Some("X -90"));
 }
 
-/// Adds a model of a file with this text, and selects it. Gives its id.
+/// Adds a model with this text, selects it, and returns its id.
 fn with_model(editor: &mut Editor, text: &str) -> ObjectId {
     let options = LoadOptions::default();
     let loaded = parse(text.as_bytes(), "a.obj", None, &options, &Progress::new()).unwrap();
@@ -481,7 +482,7 @@ fn a_crease_angle_makes_edges_sharp_or_smooth_in_one_step() {
     editor.press(Command(Key::Z));
     assert!(editor.scene() == before);
 
-    // A copy shares the model again once it has the same angle.
+    // A copy with the same angle shares the model again.
     let copy = items::duplicate(&editor.scene(), ItemId::Object(id), DVec3::ZERO).unwrap();
     editor.ask(Request::Change {
         command: copy,
@@ -560,6 +561,7 @@ fn rotations_go_on_over_a_quarter_turn_and_open_with_the_plainest_angles() {
         })
     };
     editor.perform(Action::Rotate);
+    // Steps beyond 90 degrees continue in the same angle.
     for step in 1..=20 {
         editor.perform(Action::StepYUp);
         let degrees = 10 * step;
@@ -572,6 +574,7 @@ fn rotations_go_on_over_a_quarter_turn_and_open_with_the_plainest_angles() {
     for _ in 0..10 {
         editor.perform(Action::StepYUp);
     }
+    // A reopened scene has lost its history, so the angles come from the matrix alone.
     editor.press(Command(Key::S));
     editor.type_path(&file);
     editor.wait_until(|_| file.is_file());

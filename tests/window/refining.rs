@@ -1,7 +1,7 @@
-//! The picture while nothing happens: refined, as far as the user allows.
+//! The picture of an idle window: refined as far as the user allows.
 //!
-//! Catches: a refined picture that is not the one of `render --samples`, settings that change with
-//! it, a window that goes on drawing when it is done, refining that does not give way.
+//! Catches: a refined picture that differs from `render --samples`, settings changed by refining, a
+//! window that keeps drawing when it is done, refining that blocks input.
 
 use egui::Key;
 use marraztu::app::actions::Chord::Lower;
@@ -13,7 +13,7 @@ use marraztu_render::{Renderer, plan_frame};
 
 use crate::editor::Editor;
 
-/// Switches refining on, and waits until it is done.
+/// Switches refining on, and waits for the result.
 fn refined_to(editor: &mut Editor, refined: Samples) {
     let now = editor.state().drawing;
     editor.ask(Request::Drawing(DrawingChoices { refines: true, refined, ..now }));
@@ -22,14 +22,14 @@ fn refined_to(editor: &mut Editor, refined: Samples) {
 
 fn rest(editor: &mut Editor) {
     editor.settle();
-    // Two changes within a moment are a motion, which a slow machine draws with less.
+    // Two changes in quick succession count as motion, for which a slow machine draws less.
     editor.harness.run_steps(15);
     editor.settle();
     editor.harness.state().wait_until_refined();
     editor.harness.run_steps(2);
 }
 
-/// The picture of these settings, without the window.
+/// Draws with these settings, without the window.
 fn rendered(editor: &Editor, settings: Settings) -> Picture {
     let size = editor.state().statistics.size;
     let shot = Shot::new(&editor.scene(), &editor.view(), &settings, size);
@@ -52,7 +52,7 @@ fn a_still_picture_becomes_the_one_that_render_draws_with_as_many_samples() {
     }
     assert_eq!(editor.state().settings, settings, "files and the laboratory keep theirs");
     assert!(editor.state().history.is_saved());
-    // A change shows at once, and is refined again.
+    // A change shows at once, and the picture is refined again.
     editor.press(Lower(Key::Z));
     rest(&mut editor);
     let samples = Samples::Four;

@@ -1,7 +1,7 @@
 //! The keyboard in the panels: F6 from region to region, Tab within one, arrows within a group.
 //!
-//! Catches: a control that no key reaches, a row of choices in which each is a stop, a focus that
-//! is out of sight.
+//! Catches: a control that no key reaches, a group of choices with a stop for each choice, a focus
+//! out of view.
 
 use std::collections::BTreeSet;
 
@@ -13,17 +13,17 @@ use marraztu::app::actions::Chord::{self, Named};
 
 use crate::editor::Editor;
 
-/// The most presses of Tab from the beginning of a region to any of its controls.
+/// The largest number of Tab presses from the start of a region to any of its controls.
 const MOST: usize = 15;
 
-/// The name of what has the keyboard, and its place.
+/// Name and area of the control with the keyboard focus.
 fn focused(editor: &Editor) -> Option<(String, Rect)> {
     let all = editor.harness.query_all(By::new().predicate(|node| node.is_focused()));
     let node = all.last()?;
     Some((node.accesskit_node().label().unwrap_or_default(), node.rect()))
 }
 
-/// Everything that the keyboard can go to.
+/// The names of all controls that can have the focus.
 fn stops(editor: &Editor) -> BTreeSet<String> {
     let all = editor.harness.query_all(
         By::new().predicate(|node| node.data().supports_action(Deed::Focus) && !node.is_disabled()),
@@ -38,7 +38,7 @@ fn press(editor: &mut Editor, key: Key) {
     editor.harness.run_steps(2);
 }
 
-/// What F6 and then at most 15 presses of Tab reach, region by region.
+/// Collects the controls that F6 and then at most 15 presses of Tab reach, region by region.
 fn reached(editor: &mut Editor) -> BTreeSet<String> {
     let window = editor.harness.ctx.content_rect();
     let (mut reached, mut firsts) = (BTreeSet::new(), Vec::new());
@@ -58,7 +58,7 @@ fn reached(editor: &mut Editor) -> BTreeSet<String> {
         for tabs in 0..=MOST {
             if let Some((name, rect)) = focused(editor) {
                 if name == "Viewport" {
-                    // There, Tab goes to the next light or object.
+                    // There, Tab selects the next light or object.
                     reached.insert(name);
                     break;
                 }

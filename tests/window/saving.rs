@@ -1,7 +1,7 @@
-//! Saving over files that are there.
+//! Saving over existing files.
 //!
-//! Catches: work of another window or program that is overwritten without a question, a question
-//! where nothing would be lost, a double Enter that replaces a file.
+//! Catches: work of another window or program overwritten without a question, a question although
+//! nothing would be lost, a double Enter that replaces a file.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use marraztu::app::actions::Request;
 
 use crate::editor::Editor;
 
-/// A scene file, and two editors that have opened it.
+/// A scene file, opened in two editors.
 fn two() -> (tempfile::TempDir, PathBuf, [Editor; 2]) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("shared.marraztu");
@@ -55,7 +55,7 @@ fn a_file_that_another_window_has_saved_is_not_overwritten_without_a_question() 
     second.press(Lower(Key::X));
     second.press(Command(Key::S));
     assert!(second.state().history.is_saved(), "and now it is its own");
-    // The other way round.
+    // The same in the other direction.
     first.press(Lower(Key::Z));
     first.press(Command(Key::S));
     assert!(first.shows(QUESTION));
@@ -118,7 +118,7 @@ fn save_as_over_a_file_asks_and_enter_twice_keeps_it() {
     std::fs::write(&there, "precious").unwrap();
     let mut editor = Editor::small();
     editor.press(Lower(Key::Z));
-    // The ending is added, so this is the file that is there.
+    // With the extension added, this name belongs to an existing file.
     write_as(&mut editor, &folder.path().join("there"));
     assert!(editor.shows("Replace there.marraztu?"));
     editor.press(Named(Key::Enter));

@@ -1,7 +1,7 @@
 //! Several items selected at once.
 //!
-//! Catches: a command that acts on one of them, is several steps, or goes on with a selection that
-//! is gone.
+//! Catches: a command that acts on only one of the items, is several steps, or continues with an
+//! outdated selection.
 
 use egui::{Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::Queryable as _;
@@ -36,7 +36,7 @@ fn object(editor: &Editor, name: &str) -> ItemId {
     ItemId::Object(found.unwrap().0)
 }
 
-/// An editor in which both ships are selected.
+/// An editor with both ships selected.
 fn with_both() -> Editor {
     let mut editor = Editor::new();
     let both = vec![object(&editor, "x_wing"), object(&editor, "r_falke")];
@@ -56,6 +56,7 @@ fn every_command_acts_on_all_in_one_step() {
         Action::Duplicate,
         Action::Delete,
     ];
+    // Each action is one step for both ships, and one undo reverts it.
     for action in acts {
         editor.perform(action);
         assert!(editor.scene() != before, "{action:?}");
@@ -67,6 +68,7 @@ fn every_command_acts_on_all_in_one_step() {
         let both = vec![object(&editor, "x_wing"), object(&editor, "r_falke")];
         editor.ask(Request::SelectAlso(both, Also::Only));
     }
+    // Both ships move, the third object stays.
     editor.press(Lower(Key::X));
     let moved: Vec<DVec3> = places(&editor);
     assert!(moved.contains(&DVec3::new(110.0, 0.0, 0.0)), "{moved:?}");
@@ -102,7 +104,7 @@ fn ctrl_a_selects_all_of_the_subject_and_once_more_everything_and_esc_one() {
     assert_eq!(names(&editor).len(), all);
     editor.press(Named(Key::Escape));
     assert_eq!(names(&editor), ["r_falke"]);
-    // Another selection is one by itself.
+    // A new selection has a single item.
     editor.press(Command(Key::A));
     editor.press(Named(Key::Tab));
     assert_eq!(names(&editor).len(), 1);
@@ -182,7 +184,7 @@ fn a_change_in_the_properties_sets_all_to_the_same_value_and_keeps_what_it_does_
             scene.objects.iter().map(|(_, object)| object.material.clone()).collect()
         };
     assert_eq!(materials(&after), materials(&scene), "the materials stay different");
-    // Of a place, the number that was changed.
+    // Of a position, only the changed coordinate is copied to the others.
     let to = DVec3::new(-100.0, 33.0, 0.0);
     let phase = marraztu_core::edit::GesturePhase::First;
     let moved = marraztu_core::edit::placement::object_translation(&scene, &view, first, to, phase)

@@ -1,7 +1,7 @@
-//! The menu of shapes, and scene files with shapes.
+//! The menu of shapes, and shapes in scene files.
 //!
-//! Catches: a plane that cuts through what stands on it, a shape that is saved as a file, one that
-//! is not the subject after it was added.
+//! Catches: a plane that cuts through the objects on it, a shape saved as a file, an added shape
+//! that is not the subject.
 
 use marraztu::app::actions::Action;
 use marraztu_core::accuracy::Settings;
@@ -57,7 +57,7 @@ fn the_plane_lies_below_everything_and_touches_it() {
     let floor = lowest(&editor, false);
     editor.perform(Action::AddPlane);
     assert_eq!(lowest(&editor, true), floor);
-    // The ground makes neither steps nor further shapes larger.
+    // The ground does not enlarge steps or further shapes.
     let scale = |editor: &Editor| {
         let scene = editor.scene();
         let (_, first) = scene.objects.iter().next().unwrap();

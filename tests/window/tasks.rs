@@ -1,8 +1,8 @@
 //! The ten tasks of `docs/tasks.md`, by keyboard alone and by mouse alone.
 //!
-//! Catches: a way that takes more steps than the page says, or does not lead there.
+//! Catches: a path with more steps than the page states, or one that misses its goal.
 //!
-//! A step is a key, a word that is typed, a click, or a drag.
+//! A step is a key, a typed word, a click, or a drag.
 
 use std::path::Path;
 
@@ -19,7 +19,7 @@ use crate::editor::Editor;
 use crate::panels::{click, control, middle, type_text};
 use crate::undo_buttons::pull_to;
 
-/// An editor, and the steps that were taken in it.
+/// An editor, with a count of the steps taken in it.
 struct Hand {
     editor: Editor,
     steps: usize,
@@ -46,7 +46,7 @@ impl Hand {
         self.steps += 1;
     }
 
-    /// Chooses an entry of the palette by the words that are typed.
+    /// Chooses a palette entry by its words.
     fn find(&mut self, words: &str) {
         self.press(Command(Key::K));
         self.write(words);
@@ -55,7 +55,7 @@ impl Hand {
 
     fn click(&mut self, role: Role, label: &str) {
         click(&mut self.editor, role, label);
-        // Menus inside of menus open a little later.
+        // Submenus open after a delay.
         self.editor.harness.run_steps(30);
         self.steps += 1;
     }
@@ -66,21 +66,21 @@ impl Hand {
         self.steps += 1;
     }
 
-    /// Writes the path of a file over the one that is proposed. A user takes the proposed one; a
-    /// test has a folder of its own.
+    /// Replaces the proposed path of a file. A user would accept the proposal; the test has to
+    /// write to a temporary folder.
     fn elsewhere(&mut self, path: &Path) {
         self.editor.press(Command(Key::A));
         type_text(&mut self.editor, &path.display().to_string());
     }
 
-    /// As [`Self::elsewhere`], in the field of the file among the options of a picture.
+    /// Like [`Self::elsewhere`], for the file field among the options of a picture.
     fn named(&mut self, path: &Path) {
         click(&mut self.editor, Role::TextInput, "File");
         self.elsewhere(path);
     }
 }
 
-/// What stands in the table of the page for a task: steps by keyboard and by mouse.
+/// The steps by keyboard and by mouse that the page's table states for a task.
 fn promised(task: &str) -> [usize; 2] {
     let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/tasks.md"));
     let page = page.unwrap();
@@ -173,7 +173,7 @@ fn a_spot_is_aimed() {
 fn shading_is_flat_or_smooth() {
     let mut keys = Hand::after(&[]);
     keys.press(Either(Key::I));
-    // In a window of the usual size, and in a small one, it is in sight.
+    // The button is visible in windows of the usual size and in small ones.
     let in_sight = |editor: &Editor, height: f32| {
         let button = control(editor, Role::RadioButton, "Normals: Face").rect();
         button.bottom() < height - 30.0
@@ -229,11 +229,11 @@ fn a_scene_is_saved_and_opened_again() {
         scene.objects.iter().map(|(_, object)| *object.placement.now()).collect()
     };
     assert_eq!(places(&opened()), places(&scene));
-    // It is opened by its name on the command line, or from the strip.
+    // Opening takes one step: its name on the command line, or a click in the strip.
     keys.steps += 1;
     std::fs::remove_file(&path).unwrap();
     let mut mouse = Hand::after(&[Action::SubjectObject, Action::StepXUp]);
-    // The cross of the window asks as the key does.
+    // The close button asks like the key does.
     mouse.editor.perform(Action::Quit);
     mouse.steps += 1;
     mouse.click(Role::Button, "Save");

@@ -1,7 +1,7 @@
-//! Undo and Redo in the bar of menus, and the steps that they list.
+//! The Undo and Redo buttons in the menu bar, and their lists of steps.
 //!
-//! Catches: a press that undoes one step as well as those chosen from the list, a list that undoes
-//! one step too many, or one that is left open or undoes anything when the pointer has gone away.
+//! Catches: a press that undoes a further step after a choice from the list, a list that undoes one
+//! step too many, a list that stays open or undoes anything after the pointer has left.
 
 use egui::accesskit::Role;
 use egui::{PointerButton, Pos2, vec2};
@@ -21,7 +21,7 @@ fn moved(count: usize) -> Editor {
     editor
 }
 
-/// Presses a button of the bar and pulls until its list is there. The button is still held.
+/// Presses a button of the menu bar and pulls down until its list opens. The button stays held.
 fn pull(editor: &mut Editor, name: &str) -> Pos2 {
     let at = middle(editor, Role::Button, name);
     editor.hover(at);
@@ -31,7 +31,7 @@ fn pull(editor: &mut Editor, name: &str) -> Pos2 {
     at
 }
 
-/// Pulls the list down and lets the button go over the step that is this far away.
+/// Pulls the list down and releases the button over the step at this distance.
 pub(crate) fn pull_to(editor: &mut Editor, name: &str, step: usize) {
     pull(editor, name);
     let row = editor.row(&format!("{name} {step}: "));
@@ -41,7 +41,7 @@ pub(crate) fn pull_to(editor: &mut Editor, name: &str, step: usize) {
 }
 
 impl Editor {
-    /// The middle of the button whose name begins so.
+    /// The centre of the first button with a name that contains this text.
     fn row(&self, name: &str) -> Pos2 {
         use egui_kittest::kittest::Queryable as _;
         let found = self.harness.query_all_by_label_contains(name).next();

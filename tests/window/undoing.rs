@@ -1,7 +1,7 @@
-//! What is selected after undo and redo.
+//! The selection after undo and redo.
 //!
-//! Catches: an undo that looks through another camera or selects another light, a deletion that
-//! comes back unselected, a step that takes what the user has selected since.
+//! Catches: an undo that switches to another camera or light, a restored item that is not selected,
+//! a step that reverts a later selection by the user.
 
 use marraztu::app::actions::{Action, Also, Request};
 use marraztu_core::scene::{CameraId, ItemId, ObjectId, Subject};
@@ -23,7 +23,7 @@ fn undoing_a_deletion_selects_the_object_and_leaves_camera_and_light() {
     let object = editor.view().object.unwrap();
     editor.ask(Request::Select(ItemId::Object(object)));
     let before = editor.view();
-    // The spot that is attached to it goes and comes back with it.
+    // The spot attached to the object is removed and restored with it.
     let spots = editor.scene().lights.len();
     editor.perform(Action::Delete);
     assert_eq!(editor.scene().lights.len(), spots - 1);
@@ -76,12 +76,12 @@ fn what_was_selected_since_stays_unless_the_step_takes_it_away() {
     assert_eq!(editor.view().object, cube);
     editor.perform(Action::Redo);
     assert_eq!((editor.view().light, editor.view().subject), (bulb, Subject::Light));
-    // Undoing a move selects nothing.
+    // Undoing a move does not change the selection.
     editor.perform_all(&[Action::SubjectObject, Action::StepXUp]);
     editor.ask(Request::Select(ItemId::Light(before.light.unwrap())));
     editor.perform(Action::Undo);
     assert_eq!((editor.view().light, editor.view().subject), (before.light, Subject::Light));
-    // Many steps at once end at what was selected at the beginning.
+    // Going back many steps restores the selection of the beginning.
     editor.ask(Request::GoTo(0));
     assert_eq!(editor.view().object, before.object);
     assert_eq!(editor.view().light, before.light);

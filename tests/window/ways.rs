@@ -1,7 +1,7 @@
-//! Every action is reached by a menu and by the palette, and does there what it does anywhere.
+//! Every action is in a menu and in the palette, with the same effect in both.
 //!
-//! Catches: an action without a way to it, an entry that does another thing than it says, a menu
-//! that is taller than the window.
+//! Catches: an action without an entry, an entry with another effect than its label, a menu taller
+//! than the window.
 
 use egui::Key;
 use egui::accesskit::Role;
@@ -13,7 +13,7 @@ use crate::editor::Editor;
 use crate::palette::listed;
 use crate::panels::{click, type_text};
 
-/// Every menu and every menu within one.
+/// The paths of all menus and submenus.
 const PATHS: [&[&str]; 15] = [
     &["File"],
     &["Edit"],
@@ -32,18 +32,18 @@ const PATHS: [&[&str]; 15] = [
     &["Help"],
 ];
 
-/// What each action is tried on.
+/// The subjects for which each action is tried.
 const SUBJECTS: [Action; 2] = [Action::SubjectObject, Action::SubjectLight];
 
 fn open(editor: &mut Editor, path: &[&str]) {
     for (depth, name) in path.iter().enumerate() {
         click(editor, if depth == 0 { Role::Button } else { Role::MenuItem }, name);
-        // Menus inside of menus open a little later.
+        // Submenus open after a delay.
         editor.harness.run_steps(30);
     }
 }
 
-/// The entries of the menus that are open.
+/// The entries of the open menus.
 fn entries(editor: &Editor) -> Vec<(String, egui::Rect)> {
     let all = [Role::MenuItem, Role::MenuItemCheckBox]
         .into_iter()
@@ -51,17 +51,17 @@ fn entries(editor: &Editor) -> Vec<(String, egui::Rect)> {
     all.filter_map(|it| Some((it.accesskit_node().label()?, it.rect()))).collect()
 }
 
-/// What an action has done.
+/// The observable result of an action.
 fn done(editor: &Editor) -> impl PartialEq + std::fmt::Debug + use<> {
     let state = editor.state();
     let shown = (state.panels, state.theme, state.overlays, state.gizmo, state.helpers);
     let modes = (state.aiming, state.explaining, state.renaming, state.others());
-    // A search on a thread tells of itself when it has ended.
+    // A search on a thread reports its result when it ends; that message is ignored.
     let told = state.message.clone().filter(|it| !it.text.contains("is in the picture"));
     (editor.view(), editor.steps(), shown, modes, told, state.zoom, state.settings)
 }
 
-/// Leaves the program, or opens a dialog of the system's in a window that has none.
+/// Actions that quit the program, or open a system dialog in a window without one.
 const LEFT_OUT: [Action; 2] = [Action::Quit, Action::CopyPicture];
 
 #[test]
@@ -70,6 +70,7 @@ fn every_action_is_in_a_menu_and_does_there_what_it_does_anywhere() {
     for path in PATHS {
         let mut editor = Editor::of_size(900.0, 640.0);
         open(&mut editor, path);
+        // The actions in this menu. A label that names a submenu is not an action.
         let here = entries(&editor);
         let is_menu = |label: &str| {
             PATHS.iter().any(|it| it.len() > 1 && it[0] == path[0] && it.last() == Some(&label))
@@ -80,6 +81,7 @@ fn every_action_is_in_a_menu_and_does_there_what_it_does_anywhere() {
         };
         missing.retain(|action| !is_here(&action));
         for action in Action::ALL.iter().filter(is_here).filter(|it| !LEFT_OUT.contains(it)) {
+            // Performs the action directly.
             let subject = SUBJECTS[0];
             let mut asked = Editor::of_size(900.0, 300.0);
             asked.perform(subject);
@@ -87,6 +89,7 @@ fn every_action_is_in_a_menu_and_does_there_what_it_does_anywhere() {
                 continue;
             }
             asked.perform(*action);
+            // Performs it by a click in the menu, in a second editor.
             let mut clicked = Editor::of_size(900.0, 640.0);
             clicked.perform(subject);
             open(&mut clicked, path);
@@ -139,7 +142,8 @@ fn every_menu_fits_into_a_low_window() {
                 .into_iter()
                 .max_by(|(_, a), (_, b)| a.bottom().total_cmp(&b.bottom()));
             if let Some((label, rect)) = last {
-                // What is scrolled out of sight is cut off by its menu, which is in the window.
+                // A menu clips entries that are scrolled out of view; the menu itself is in the
+                // window.
                 let limit = if size[1] < 500.0 { f32::INFINITY } else { size[1] };
                 assert!(rect.bottom() <= limit, "{label} of {path:?} at {rect:?} in {size:?}");
             }

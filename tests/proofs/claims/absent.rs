@@ -1,5 +1,5 @@
-//! What is invisible changes nothing: a light that is off, a hidden object and an unused material
-//! change no byte, wherever they are inserted.
+//! Invisible items change nothing: lights that are off, hidden objects and unused materials change
+//! no byte, at any position in their list.
 
 use marraztu_core::base::Shared;
 use marraztu_core::base::rng::Rng;
@@ -26,8 +26,8 @@ pub(super) const PROOF: Proof = Proof {
     check,
 };
 
-/// Draws the scenes of a batch as they are and with what is invisible, and expects the same bytes
-/// and the same pipelines.
+/// Draws the scenes of a batch with and without invisible items, and expects the same bytes and
+/// pipelines.
 fn check(batch: u64) -> Result<Tally, String> {
     let mut tally = Tally::default();
     for it in seeds(batch).map(random_scene) {
@@ -49,7 +49,7 @@ fn check(batch: u64) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// The scene with `count` lights that are off among the others.
+/// Inserts `count` lights that are off among the others.
 pub(super) fn with_lights_off(it: &RandomScene, count: u32, rng: &mut Rng) -> RandomScene {
     let mut more = it.clone();
     for i in 0..count {
@@ -74,10 +74,10 @@ pub(super) fn with_lights_off(it: &RandomScene, count: u32, rng: &mut Rng) -> Ra
     more
 }
 
-/// The scene with a light, an object and a material that are invisible.
+/// Adds a light, an object and a material that are invisible.
 fn with_absent(it: &RandomScene, rng: &mut Rng) -> RandomScene {
     let mut more = with_lights_off(it, 1, rng);
-    // Older than all others, or younger.
+    // Older or younger than all others.
     let id = ObjectId(rng.one_of(&[20, 700]));
     let material = MaterialChoice::Own(shapes::material(rng));
     let mut hidden = Object::new(rng.one_of(shapes::shapes()), material);
@@ -98,7 +98,7 @@ fn insert(more: &mut RandomScene, at: usize, item: Item) {
     Command::Insert { at, item }.apply(&mut more.scene).expect("its id is free");
 }
 
-/// The same model, with an additional material that none of its parts has.
+/// Adds a material that no part of the model uses.
 fn with_unused_material(model: &Shared<Model>, rng: &mut Rng) -> Shared<Model> {
     let mesh = &model.mesh;
     let at = rng.index(model.materials.len() + 1);

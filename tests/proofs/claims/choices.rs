@@ -1,9 +1,9 @@
-//! Counts the instructions of each choice of accuracy on the scenes of the laboratory's suite: a
-//! coarser choice takes no more than a more exact one, unless its axis gives the reason.
+//! Counts the instructions of each choice of accuracy on the scenes of the laboratory's suite. A
+//! coarser choice takes no more than a more exact one, unless its axis states a reason.
 //!
-//! Times are noisy, and an approximation that seems to cost more than what it approximates teaches
-//! something false; callgrind counts the same number in every run. It has no AVX-512, so frames are
-//! drawn with AVX2, and by one thread.
+//! Times are noisy, and an approximation that seems slower than the exact method would mislead.
+//! callgrind counts the same number in every run. It lacks AVX-512, so frames are drawn with AVX2,
+//! on one thread.
 
 use std::fmt::Write as _;
 use std::hint::black_box;
@@ -18,20 +18,20 @@ use rayon::prelude::*;
 
 use super::instructions::level;
 
-/// A pattern of callgrind for the function that is counted.
+/// The callgrind pattern for the counted function.
 const COUNTED: &str = "*counted_choice*";
 
 /// The size of the pictures.
 const SIZE: Size = Size::new(640, 360);
 
-/// The thousandths of the scenes' triangles: as the pixels, a quarter of what the laboratory draws.
+/// The share of the scenes' triangles, in thousandths; like the pixels, a quarter of the
+/// laboratory's.
 const DETAIL: u32 = 250;
 
-/// The part by which a coarser choice may take more: what sorting and memory differ by.
+/// The tolerance for a coarser choice, relative. Sorting and memory cause differences of this size.
 const MARGIN: f64 = 0.01;
 
-/// The settings that are counted on a scene, in this order: the default, and every other choice of
-/// its axes.
+/// The settings counted on a scene, in order: the default, then every other choice of its axes.
 fn counted(suite: &SuiteScene, scene: &Scene, view: &View) -> Vec<Settings> {
     let default = Settings::default();
     let mut found = candidates(scene, view, &default, &suite.measured(), 0).all;
@@ -40,10 +40,10 @@ fn counted(suite: &SuiteScene, scene: &Scene, view: &View) -> Vec<Settings> {
     std::iter::once(default).chain(others).collect()
 }
 
-/// Draws a scene with one of its settings, once before and once in a call that is counted.
+/// Draws a scene twice with one of its settings: a warm-up, then the counted call.
 ///
 /// # Errors
-/// If this thread draws together with others already.
+/// If this thread already belongs to a thread pool.
 pub(crate) fn draw(suite: &SuiteScene, which: usize) -> Result<(), rayon::ThreadPoolBuildError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build()?;
     let (scene, view) = suite.open(DETAIL);
@@ -63,10 +63,10 @@ fn counted_choice(renderer: &mut Renderer, plan: &FramePlan) {
     black_box(renderer.render(black_box(plan)));
 }
 
-/// Counts all choices on the scenes whose words contain a text, and returns the tables in Markdown.
+/// Counts all choices on the scenes with names that contain `word`, and returns Markdown tables.
 ///
 /// # Errors
-/// What went wrong, or the choices that take more than a more exact one without a reason.
+/// The failure, or the choices that take more than a more exact one without a reason.
 pub(crate) fn count(word: &str, tell: &mut dyn FnMut(&str)) -> Result<String, String> {
     let (mut tables, mut wrong) = (String::new(), Vec::new());
     for suite in SUITE.iter().filter(|suite| suite.word.contains(word)) {
@@ -86,7 +86,7 @@ pub(crate) fn count(word: &str, tell: &mut dyn FnMut(&str)) -> Result<String, St
     if wrong.is_empty() { Ok(tables) } else { Err(wrong.join("\n")) }
 }
 
-/// The counts of an axis, from the coarsest choice to the most exact.
+/// The counts of an axis, from the coarsest choice to the most exact one.
 fn choices_of(axis: &Axis, counts: &[(Settings, u64)]) -> Vec<(usize, u64)> {
     let default = Settings::default();
     let mut own: Vec<(usize, u64)> = Vec::new();
@@ -103,7 +103,7 @@ fn choices_of(axis: &Axis, counts: &[(Settings, u64)]) -> Vec<(usize, u64)> {
     own
 }
 
-/// The choices that take more than a more exact one, without a reason.
+/// Lists the choices that take more than a more exact one without stating a reason.
 fn unexplained(suite: &SuiteScene, axis: &Axis, own: &[(usize, u64)]) -> Vec<String> {
     if axis.kind == AxisKind::Model {
         return Vec::new();
@@ -126,7 +126,7 @@ fn unexplained(suite: &SuiteScene, axis: &Axis, own: &[(usize, u64)]) -> Vec<Str
     wrong
 }
 
-/// The counts of an axis on a scene as a table.
+/// Formats the counts of an axis on a scene as a Markdown table.
 fn table(suite: &SuiteScene, axis: &Axis, own: &[(usize, u64)]) -> String {
     let default = axis.default_choice().word;
     let usual = own.iter().find(|(place, _)| axis.choices[*place].word == default);
@@ -146,7 +146,7 @@ fn table(suite: &SuiteScene, axis: &Axis, own: &[(usize, u64)]) -> String {
     text
 }
 
-/// The number of instructions of the counted call.
+/// Returns the number of instructions of the counted call.
 fn callgrind(suite: &SuiteScene, which: usize) -> Result<u64, String> {
     let which = which.to_string();
     let draw = ["--draw-choice", suite.word, "--which", which.as_str()];

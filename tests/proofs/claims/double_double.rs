@@ -1,26 +1,26 @@
-//! Numbers with twice the digits of f64, about 32 decimal places: the oracle of arithmetic.
+//! Double-double numbers, about 32 decimal digits: the oracle of arithmetic.
 //!
-//! A number is the sum of two f64; the second is at most half a last place of the first.
+//! A number is the sum of two f64. The second is at most half an ulp of the first.
 //! Dekker, "A Floating-Point Technique for Extending the Available Precision", Numerische
 //! Mathematik 1971; Knuth, "The Art of Computer Programming", volume 2, section 4.2.2.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number with twice the digits of f64.
+/// A double-double number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Double {
     high: f64,
     low: f64,
 }
 
-/// a + b exactly, as the nearest f64 and the rest.
+/// a + b exactly: the nearest f64 and the rounding error.
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     let part = high - a;
     Double { high, low: (a - (high - part)) + (b - part) }
 }
 
-/// a b exactly, by halves of 26 bits.
+/// a b exactly, by splitting the factors into halves of 26 bits.
 fn two_product(a: f64, b: f64) -> Double {
     let halves = |x: f64| {
         let shifted = x * 134_217_729.0;
@@ -51,7 +51,7 @@ impl Double {
         if self.high < 0.0 { -self } else { self }
     }
 
-    /// The square root of a number that is not negative, by Newton's step from that of f64.
+    /// The square root of a non-negative number, by one Newton step from the f64 root.
     #[must_use]
     pub(crate) fn sqrt(self) -> Self {
         if self.high <= 0.0 {
@@ -61,7 +61,7 @@ impl Double {
         root + (self - root * root) / (root + root)
     }
 
-    /// Sine and cosine of a small angle (below 1/2), by their series.
+    /// Sine and cosine of an angle below 1/2, by their Taylor series.
     #[must_use]
     pub(crate) fn sin_cos(self) -> (Self, Self) {
         let (mut sin, mut cos) = (Self::default(), Self::default());

@@ -1,9 +1,9 @@
-//! No crack and no pixel covered twice: closed fans of triangles about a hub.
+//! Closed fans of triangles around a hub have no cracks and cover no pixel twice.
 //!
-//! Three things are compared with the crossings of [`super::exact`]: the pixels that each triangle
-//! covers; how often the triangles of a fan cover a pixel, counted with the sign of their area,
-//! which is the winding number of the snapped outline, whatever snapping did to slivers; and the
-//! triangle that the renderer shows at each pixel of a picture of many fans.
+//! Three results are compared with the crossings of [`super::exact`]: the pixels of each triangle;
+//! the number of triangles over a pixel, counted with the sign of their area, which equals the
+//! winding number of the snapped outline even if snapping flipped slivers; and the triangle that
+//! the renderer shows at each pixel of a picture of many fans.
 
 use super::exact::{span, wind};
 use super::{Proof, Tally};
@@ -25,7 +25,7 @@ pub(crate) const PROOF: Proof = Proof {
     check,
 };
 
-/// The number of fans in a picture of `ROW` rows of `ROW`.
+/// The number of fans in a picture, `ROW` by `ROW`.
 const FANS: u64 = (ROW * ROW) as u64;
 const ROW: usize = 8;
 
@@ -55,8 +55,8 @@ fn check(batch: u64) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// A hub and an outline in a square. Half of the coordinates are on centres and borders of pixels,
-/// and some corners are equal, or a subpixel apart.
+/// A hub and an outline in a square. Half of the coordinates are on centres and borders of pixels.
+/// Some corners are equal, or one subpixel apart.
 fn fan(rng: &mut Rng, side: i32) -> (Snapped, Vec<Snapped>) {
     let far = side * SUBPIXELS;
     let coordinate = |rng: &mut Rng| {
@@ -89,11 +89,12 @@ fn triangles_of(hub: Snapped, outline: &[Snapped]) -> Vec<[Snapped; 3]> {
     (0..outline.len()).map(side).collect()
 }
 
-/// Compares what the triangles of a fan cover, one by one and all together.
+/// Compares the coverage of a fan, triangle by triangle and in total.
 fn count(fan: &[[Snapped; 3]], outline: &[Snapped], side: i32) -> Result<(), String> {
     let square = PixelBox { left: 0, top: 0, right: side, bottom: side };
     let width = usize::try_from(side).expect("positive");
     let mut signed = vec![0; width * width];
+    // Each triangle by itself: its pixels per row are one span, the exact one.
     for corners in fan {
         let mut rows = vec![0..0_i64; width];
         if let Some(triangle) = Triangle::new(*corners) {
@@ -120,6 +121,7 @@ fn count(fan: &[[Snapped; 3]], outline: &[Snapped], side: i32) -> Result<(), Str
             }
         }
     }
+    // All triangles together: signed counts equal the winding numbers.
     let mut windings = vec![0; width];
     for (y, counted) in (0..).zip(signed.chunks(width)) {
         wind(outline, y, &mut windings);

@@ -1,4 +1,4 @@
-//! Triangles of every size, with corners up to a million pixels off, pixel by pixel.
+//! Triangles of every size with corners up to a million pixels away, pixel by pixel.
 
 use super::fans::compare;
 use super::{Proof, Tally};
@@ -21,7 +21,7 @@ pub(crate) const PROOF: Proof = Proof {
 
 const SIDE: usize = 256;
 
-/// How far off corners are in pixels, and the step of their coordinates in subpixels: a mesh has 24
+/// The distance of corners in pixels, and the step of their coordinates in subpixels. A mesh has 24
 /// bits, and the renderer's guard band is 2^20 pixels wide.
 const REACH: [(i32, i32); 5] = [(300, 1), (300, 1), (2000, 1), (30_000, 1), (1_000_000, 16)];
 
@@ -34,7 +34,7 @@ fn check(batch: u64) -> Result<Tally, String> {
             let mut coordinate = || {
                 let at = rng.between(-reach, reach) * SUBPIXELS + rng.between(0, 255);
                 let at = at.clamp(-reach * SUBPIXELS, reach * SUBPIXELS) / step * step;
-                // Half of them on centres and borders of pixels.
+                // Half of the coordinates are on centres and borders of pixels.
                 if rng.one_in(2) { at.div_euclid(128) * 128 } else { at }
             };
             Snapped { x: coordinate(), y: coordinate() }

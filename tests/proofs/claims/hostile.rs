@@ -1,8 +1,8 @@
-//! Generates scenes of hostile numbers: NaN, infinite, subnormal and huge ones; flat placements,
-//! lights on surfaces, cameras inside objects.
+//! Generates scenes with hostile numbers (NaN, infinities, subnormal and huge values), flat
+//! placements, lights on surfaces and cameras inside objects.
 //!
-//! They enter the scene as a user's do, by meshes and commands, which may refuse them and then
-//! change nothing.
+//! They enter the scene as user input does, through meshes and commands. Those may reject them, but
+//! must then leave the scene unchanged.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -25,14 +25,14 @@ use marraztu_core::scene::{
 fn try_out(scene: &mut Scene, command: Command, tally: &mut Tally) {
     let before = scene.clone();
     if command.apply(scene).is_err() {
-        // Compared as text, since NaN is not equal to itself.
+        // Compared as text, because NaN is not equal to itself.
         let unchanged = format!("{scene:?}") == format!("{before:?}");
         assert!(unchanged, "a command that is refused changes nothing");
         tally.count("refusals", 1);
     }
 }
 
-/// Magnitudes of hard cases.
+/// Hard magnitudes.
 const HARD: [f64; 26] = [
     0.0,
     5e-324,
@@ -65,7 +65,7 @@ const HARD: [f64; 26] = [
 /// Generates hostile items.
 pub(crate) struct Hostile {
     pub(crate) rng: Rng,
-    /// One in this many numbers is hostile.
+    /// Hostile numbers occur with a probability of 1 / `rarity`.
     rarity: u64,
     /// Positions on surfaces, where some lights are placed.
     surfaces: Vec<DVec3>,
@@ -78,7 +78,7 @@ impl Hostile {
         Self { rng, rarity, surfaces: vec![DVec3::ZERO] }
     }
 
-    /// A number that should be from -`size` to `size`.
+    /// A number from -`size` to `size`, or a hostile one.
     fn number(&mut self, size: f64) -> f64 {
         if !self.rng.one_in(self.rarity) {
             return self.rng.real(-size, size);
@@ -91,7 +91,7 @@ impl Hostile {
         if self.rng.one_in(2) { special } else { -special }
     }
 
-    /// A number that should be from 0 to `size`.
+    /// A number from 0 to `size`, or a hostile one.
     fn amount(&mut self, size: f64) -> f64 {
         let number = self.number(size);
         if self.rng.one_in(self.rarity) { number } else { number.abs() }
@@ -169,6 +169,7 @@ impl Hostile {
         if self.bool() {
             source.colors = (0..vertices).map(|_| self.narrow(1.0)).collect();
         }
+        // Indices are valid, because meshes with others are rejected at once.
         let index = |rng: &mut Rng, n: usize| match n {
             0 => NONE,
             n => u32::try_from(rng.index(n)).unwrap_or(NONE),

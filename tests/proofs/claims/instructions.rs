@@ -1,7 +1,7 @@
 //! Counts the instructions of a frame: lights that are off add none.
 //!
-//! `callgrind` counts what runs inside `counted_frame` only. Every process that is counted does the
-//! same before: it plans and draws both frames, so that memory is laid out the same way.
+//! `callgrind` counts only the code inside `counted_frame`. Every counted process does the same
+//! work beforehand: it plans and draws both frames, which gives memory the same layout.
 
 use std::hint::black_box;
 use std::process::Command;
@@ -17,27 +17,27 @@ use marraztu_render::{FramePlan, Renderer};
 use super::absent::with_lights_off;
 use super::random_scenes::RandomScene;
 
-/// A pattern of callgrind for the function that is counted.
+/// The callgrind pattern for the counted function.
 pub(crate) const COUNTED: &str = "*counted_frame*";
 
 /// The number of lights that are off in the second frame.
 pub(crate) const LIGHTS_OFF: u32 = 100;
 
-/// The frame that is counted.
+/// The counted frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Frame {
     /// The first scene.
     Plain,
-    /// The same among [`LIGHTS_OFF`] lights that are off.
+    /// The first scene with [`LIGHTS_OFF`] additional lights that are off.
     LightsOff,
 }
 
-/// Draws both frames, and then the one that is counted.
+/// Draws both frames, then the counted one.
 ///
 /// # Errors
-/// If this thread draws together with others already.
+/// If this thread already belongs to a thread pool.
 pub(crate) fn draw(frame: Frame) -> Result<(), rayon::ThreadPoolBuildError> {
-    // All on this thread, since callgrind counts one thread.
+    // Everything runs on this thread, because callgrind counts one thread.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build()?;
     let (scene, view) = io::default_scene();
     let (settings, size) = (Settings::default(), Size::new(128, 128));
@@ -63,7 +63,7 @@ fn counted_frame(renderer: &mut Renderer, plan: &FramePlan) {
     black_box(renderer.render(black_box(plan)));
 }
 
-/// The best instructions that callgrind supports.
+/// The best instruction set that callgrind supports.
 pub(super) fn level() -> Level {
     let best = Level::new();
     #[cfg(target_arch = "x86_64")]
@@ -73,11 +73,11 @@ pub(super) fn level() -> Level {
     best
 }
 
-/// The number of instructions that callgrind counts inside functions of a pattern, in a process of
-/// this program with these arguments.
+/// Runs this program under callgrind with these arguments, and returns the number of instructions
+/// inside functions that match a pattern.
 ///
 /// # Errors
-/// What went wrong.
+/// The failure.
 pub(crate) fn count(pattern: &str, arguments: &[&str]) -> Result<u64, String> {
     let program = std::env::current_exe().map_err(|error| error.to_string())?;
     let output = Command::new("valgrind")
@@ -90,7 +90,7 @@ pub(crate) fn count(pattern: &str, arguments: &[&str]) -> Result<u64, String> {
     let said = String::from_utf8_lossy(&output.stderr);
     let collected = said.lines().find_map(|line| line.split_once("Collected : "));
     let count = collected.and_then(|(_, count)| count.trim().parse().ok()).filter(|n| *n > 0);
-    // Stripped programs have no names of functions.
+    // Stripped programs have no function names.
     count.ok_or_else(|| {
         format!("callgrind counted nothing; add --profile profiling. It said:\n{said}")
     })

@@ -1,8 +1,8 @@
 //! The program's guarantees, each checked on randomly generated cases.
 //!
-//! A proof generates cases and checks each against an oracle that shares no code with what it
-//! judges. Cases come in batches, and the number of a batch alone decides what is in it: a
-//! counterexample is named by its batch, and found again by that number.
+//! A proof generates cases and checks each against an oracle that shares no code with the tested
+//! part. Cases come in batches, and the batch number alone determines its cases, so a
+//! counterexample is named by its batch and can be reproduced.
 
 #![allow(dead_code, reason = "the hard cases use a part of it")]
 
@@ -28,7 +28,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use rayon::prelude::*;
 
-/// A claim, with what generates cases of it and checks them.
+/// A claim, with the code that generates and checks its cases.
 #[derive(Debug)]
 pub(crate) struct Proof {
     /// Its name on the command line.
@@ -43,9 +43,9 @@ pub(crate) struct Proof {
     pub(crate) quick: u64,
     /// The number of cases that `docs/stability.md` reports.
     pub(crate) whole: u64,
-    /// The least that a thousand cases have to show, so that the check is not vacuous.
+    /// The least number of events per thousand cases, which keeps the check from being vacuous.
     pub(crate) shows: &'static [(&'static str, u64)],
-    /// Batches in which the claim once failed.
+    /// Batches that once contradicted the claim.
     pub(crate) regressions: &'static [u64],
     /// Checks the cases of a batch.
     pub(crate) check: fn(u64) -> Result<Tally, String>,
@@ -63,10 +63,10 @@ pub(crate) static PROOFS: &[Proof] = &[
     absent::PROOF,
 ];
 
-/// The counts in the cases of a proof.
+/// The counts and errors that a proof has collected.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Tally {
-    /// How often each thing occurred.
+    /// The number of occurrences of each event.
     pub(crate) counts: BTreeMap<&'static str, u64>,
     /// The largest error of each kind.
     pub(crate) worst: BTreeMap<&'static str, f64>,
@@ -78,13 +78,13 @@ impl Tally {
         *self.counts.entry(what).or_default() += more;
     }
 
-    /// Keeps an error if it is the largest of its kind; NaN is larger than any number.
+    /// Keeps an error if it is the largest of its kind. NaN counts as larger than any number.
     pub(crate) fn error(&mut self, what: &'static str, size: f64) {
         let worst = self.worst.entry(what).or_default();
         *worst = if size.is_nan() { size } else { worst.max(size) };
     }
 
-    /// Both tallies together.
+    /// Merges two tallies.
     #[must_use]
     pub(crate) fn and(mut self, other: &Self) -> Self {
         for (what, more) in &other.counts {
@@ -105,27 +105,27 @@ impl std::fmt::Display for Tally {
     }
 }
 
-/// A batch in which a claim does not hold.
+/// A batch that contradicts a claim.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("batch {batch}: {what}")]
 pub(crate) struct Counterexample {
-    /// Its number.
+    /// The number of the batch.
     pub(crate) batch: u64,
-    /// The failure in it.
+    /// The failure.
     pub(crate) what: String,
 }
 
 impl Proof {
-    /// The proof of this name.
+    /// Finds a proof by name.
     #[must_use]
     pub(crate) fn named(name: &str) -> Option<&'static Self> {
         PROOFS.iter().find(|proof| proof.name == name)
     }
 
-    /// Checks some batches, on all threads. `checked` is called after each.
+    /// Checks batches on all threads, and calls `checked` after each.
     ///
     /// # Errors
-    /// A batch in which the claim does not hold, or in which something panics.
+    /// A batch that contradicts the claim or panics.
     pub(crate) fn run(
         &self,
         batches: Range<u64>,
@@ -141,13 +141,13 @@ impl Proof {
         batches.into_par_iter().map(one).try_reduce(Tally::default, join)
     }
 
-    /// The number of batches that hold this many cases.
+    /// The number of batches that contain this many cases.
     #[must_use]
     pub(crate) const fn batches(&self, cases: u64) -> u64 {
         cases.div_ceil(self.batch)
     }
 
-    /// The things that a thousand cases should have shown and did not.
+    /// Names an event that occurred too rarely.
     pub(crate) fn missing(&self, tally: &Tally, cases: u64) -> Option<String> {
         let missing = self.shows.iter().find(|(what, per_thousand)| {
             tally.counts.get(what).copied().unwrap_or_default() < per_thousand * (cases / 1000)

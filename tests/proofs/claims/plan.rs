@@ -1,5 +1,5 @@
-//! Leaving out changes nothing: pictures of randomly generated scenes are compared with pictures by
-//! plans that leave out nothing. `tests/breakages` breaks the rules one by one and sees this fail.
+//! Leaving effects out changes nothing: pictures of random scenes are compared with pictures from
+//! complete plans. `tests/breakages` breaks the rules one by one and expects this proof to fail.
 
 use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::Picture;
@@ -10,7 +10,7 @@ use marraztu_render::{FramePlan, Renderer};
 use super::random_scenes::{RandomScene, random_scene};
 use super::{Proof, Tally};
 
-/// Scenes in a batch, drawn one after the other by one renderer, as the editor does.
+/// The number of scenes in a batch. One renderer draws them in turn, as the editor does.
 pub(super) const SCENES: u64 = 16;
 
 pub(crate) const PLAN: Proof = Proof {
@@ -30,17 +30,17 @@ pub(super) const fn seeds(batch: u64) -> std::ops::Range<u64> {
     batch * SCENES..(batch + 1) * SCENES
 }
 
-/// A plan that leaves out nothing: everything that the scene names is computed.
+/// The complete plan of a scene, which computes everything.
 fn complete(it: &RandomScene) -> FramePlan {
     plan_everything(&Shot::new(&it.scene, &it.view, &it.settings, it.size))
 }
 
-/// Draws the scenes of a batch by their plans and by complete ones, and expects the same bytes.
+/// Draws the scenes of a batch with both plans, and expects the same bytes.
 fn is_complete(batch: u64) -> Result<Tally, String> {
     let (mut renderer, mut reference) = (Renderer::default(), Renderer::default());
     let mut tally = Tally::default();
     for seed in seeds(batch) {
-        // One scene in four repeats the one before, so that nothing has changed.
+        // One scene in four repeats the previous one, to test a frame without changes.
         let it = random_scene(if seed % 4 == 3 { seed - 1 } else { seed });
         let expected = reference.render(&complete(&it));
         let drawn = renderer.redraw(&it.plan(), &|| true);
@@ -51,7 +51,7 @@ fn is_complete(batch: u64) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// Whether two pictures are the same, and if not, the first pixel that differs.
+/// Compares two pictures, and names the first pixel that differs.
 pub(super) fn same(seed: u64, got: &Picture, wanted: &Picture) -> Result<(), String> {
     if got == wanted {
         return Ok(());

@@ -1,7 +1,7 @@
-//! The accuracy that is left after a million key presses.
+//! The accuracy after a million key presses.
 //!
-//! An object is turned about its own axes and the world's, and a camera about its own, by the
-//! commands of the keys and again with twice the digits.
+//! Rotates an object about its own axes and the world's, and a camera about its own, both by the
+//! commands of the keys and in double-double.
 
 use std::collections::BTreeMap;
 
@@ -74,7 +74,7 @@ fn key(rng: &mut Rng) -> (Axis, Sign) {
     (rng.one_of(&Axis::ALL), rng.one_of(&[Sign::Positive, Sign::Negative]))
 }
 
-/// The angle between an object and where it should be, and the largest entry of M'M - I.
+/// The angle between an object and its exact rotation, and the largest entry of M'M - I.
 fn object_turned(rng: &mut Rng, frame: Frame, presses: u64) -> (f64, f64) {
     let (mut scene, view) = desk(Subject::Object, Transformation::Rotation, frame);
     let id = view.object.expect("the first scene has objects");
@@ -82,6 +82,7 @@ fn object_turned(rng: &mut Rng, frame: Frame, presses: u64) -> (f64, f64) {
     for _ in 0..presses {
         let key = key(rng);
         press(&mut scene, &view, key);
+        // Local rotations multiply from the right, global ones from the left.
         exact = match frame {
             Frame::Local => product(&exact, &step(key)),
             Frame::Global => product(&step(key), &exact),
@@ -91,7 +92,7 @@ fn object_turned(rng: &mut Rng, frame: Frame, presses: u64) -> (f64, f64) {
     compare(DMat3::from_mat4(*object.placement.now()), &exact)
 }
 
-/// The same for a camera: x turns it about its own Y, y about its own X, z about its own Z.
+/// The same for a camera: x rotates about its own Y, y about its own X, z about its own Z.
 fn camera_turned(rng: &mut Rng, presses: u64) -> (f64, f64) {
     let (mut scene, view) = desk(Subject::Camera, Transformation::Rotation, Frame::Local);
     let mut exact = identity();
@@ -108,7 +109,7 @@ fn camera_turned(rng: &mut Rng, presses: u64) -> (f64, f64) {
     compare(scene.selected_camera(&view).pose.now().axes, &exact)
 }
 
-/// How far an object is from where its steps lead, relative to their length.
+/// The distance of an object from its exact position, relative to the length of the path.
 fn object_moved(rng: &mut Rng, presses: u64) -> f64 {
     let (mut scene, mut view) = desk(Subject::Object, Transformation::Translation, Frame::Global);
     view.steps.translation = 0.1;
@@ -118,6 +119,7 @@ fn object_moved(rng: &mut Rng, presses: u64) -> f64 {
         object.placement.now().w_axis.truncate()
     };
     let start: DVec3 = place(&scene);
+    // The exact position follows from the net number of steps per axis.
     let mut steps = [0_i32; 3];
     for _ in 0..presses {
         let (axis, sign) = key(rng);
@@ -156,7 +158,8 @@ fn product(a: &Turn, b: &Turn) -> Turn {
     })
 }
 
-/// The angle between two turns, |R - S| = sqrt 8 sin(angle / 2), and the largest entry of R'R - I.
+/// The angle between two rotations, |R - S| = sqrt 8 sin(angle / 2), and the largest entry of
+/// R'R - I.
 fn compare(m: DMat3, exact: &Turn) -> (f64, f64) {
     let rows = DMat4::from_mat3(m).transpose().to_cols_array_2d();
     let squares: f64 = (0..9)

@@ -1,5 +1,5 @@
-//! Scenes of hostile numbers are drawn without a panic, the same on all instructions, with depths
-//! from 0 to 1, and never dark in f32 if f64 shows light.
+//! Scenes with hostile numbers are drawn without a panic, with the same bytes on all instruction
+//! sets, with depths from 0 to 1, and without pixels that are dark in f32 but lit in f64.
 
 use fearless_simd::Level;
 use glam::{DMat4, DVec3, DVec4};
@@ -40,11 +40,13 @@ fn check(batch: u64) -> Result<Tally, String> {
         let settings = hostile.settings();
         let size = Size::new(1 + hostile.rng.index(40), 1 + hostile.rng.index(40));
         let plan = plan_frame(&Shot::new(&scene, &view, &settings, size));
+        // The baseline and the best instruction set draw the same bytes.
         let first = plain.render(&plan).clone();
         let fail = |what: String| Err(format!("scene {i}: {what}"));
         if let Some(at) = difference(&first, best.render(&plan)) {
             return fail(format!("instructions show at {at:?}"));
         }
+        // Depths stay in range at two random pixels.
         for _ in 0..2 {
             let (x, y) = (hostile.rng.index(size.width), hostile.rng.index(size.height));
             if let Some(hit) = best.hit(x, y)
@@ -53,6 +55,7 @@ fn check(batch: u64) -> Result<Tally, String> {
                 return fail(format!("a depth of {}", hit.depth));
             }
         }
+        // No pixel that f64 lights is dark in f32.
         if settings.arithmetic == Arithmetic::F32 {
             let settings = Settings { arithmetic: Arithmetic::F64, ..settings };
             let mut in_f64 = |scene: &Scene| {
@@ -70,8 +73,8 @@ fn check(batch: u64) -> Result<Tally, String> {
                 tally.count("scenes too bright to be judged", 1);
                 lost.clear();
             }
-            // On a border of light, a change below the precision of f32 makes the pixel dark in f64
-            // too.
+            // On a border of light, a perturbation below the precision of f32 makes the pixel dark
+            // in f64 too.
             tally.count("pixels on a border of light", lost.len() as u64);
             let rng = &mut hostile.rng;
             for _ in 0..NUDGES {
@@ -92,13 +95,13 @@ fn check(batch: u64) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// A pixel in which two pictures differ.
+/// The first pixel that differs between two pictures.
 fn difference(a: &Picture, b: &Picture) -> Option<(usize, usize)> {
     let at = a.pixels().iter().zip(b.pixels()).position(|(a, b)| a != b)?;
     Some((at % a.size().width, at / a.size().width))
 }
 
-/// The pixels that are dark in one picture and bright in the other: the trace of a NaN.
+/// The pixels that are dark in f32 and bright in f64, which is the trace of a NaN.
 fn lost(fast: &Picture, exact: &Picture) -> Vec<usize> {
     let bright = |pixel: &[u8; 4]| pixel[..3].iter().any(|byte| *byte > 32);
     let both = fast.pixels().iter().zip(exact.pixels()).enumerate();
@@ -113,7 +116,7 @@ fn far(a: [u8; 4], b: [u8; 4]) -> bool {
     a.into_iter().zip(b).any(|(a, b)| a.abs_diff(b) > 1)
 }
 
-/// Whether nothing in a scene is so bright that its rounding error in f32 would be visible light.
+/// Whether a scene is dim enough that its rounding errors in f32 stay invisible.
 fn has_measure(scene: &Scene) -> bool {
     const BRIGHT: f64 = 1e4;
     let within = |numbers: &[f64]| numbers.iter().all(|k| k.abs() < BRIGHT);
@@ -126,12 +129,11 @@ fn has_measure(scene: &Scene) -> bool {
     })
 }
 
-/// How often lights and objects are moved to find out whether a pixel is on a border of light.
+/// The number of perturbed scenes that test whether a pixel is on a border of light.
 const NUDGES: usize = 32;
 
-/// The scene with its lights moved by a millionth of their distances, and its objects turned and
-/// stretched by as much: some last places of f32. For an almost flat placement this is the accuracy
-/// of its normals.
+/// Moves lights by a millionth of their distance, and rotates and stretches objects by as much: a
+/// few ulps of f32. For an almost flat placement this is the accuracy of its normals.
 fn nudged(scene: &Scene, view: &View, rng: &mut Rng) -> Scene {
     const PART: f64 = 1.0 / (1 << 20) as f64;
     let eye = scene.observer_frame(view).w_axis.truncate();
@@ -171,7 +173,7 @@ fn nudged(scene: &Scene, view: &View, rng: &mut Rng) -> Scene {
             LightKind::Ambient => continue,
         };
         let item = Item::Light(id, Box::new(Light { kind, ..light }));
-        // A refused change leaves it where it was.
+        // A rejected change leaves the light unchanged.
         let _ = Command::Replace(item).apply(&mut scene);
     }
     scene

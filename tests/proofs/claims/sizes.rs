@@ -1,5 +1,5 @@
-//! The largest and the smallest: pictures of 1 x 1 and of 16,384 x 16,384 pixels, meshes without a
-//! face and with ten million.
+//! Extreme sizes: pictures of 1 x 1 and of 16,384 x 16,384 pixels, meshes without faces and with
+//! ten million.
 
 use super::fans::seen;
 use super::{Proof, Tally};
@@ -25,7 +25,7 @@ pub(crate) const PROOF: Proof = Proof {
     check,
 };
 
-/// The side of the picture and the number of triangles; the quick round draws the first ones.
+/// Side of the picture and number of triangles; the quick round draws the first ones.
 const SIZES: [(usize, usize); 9] = [
     (1, 0),
     (1, 1),
@@ -42,6 +42,7 @@ fn check(batch: u64) -> Result<Tally, String> {
     let count = usize::try_from(batch).map_err(|_large| "there is no such size")? % SIZES.len();
     let (side, count) = SIZES[count];
     let mut rng = Rng::new(batch);
+    // Large meshes have small triangles, or drawing them would take too long.
     let far = i32::try_from(side).expect("small") * SUBPIXELS;
     let size = (far / if count > 10_000 { 64 } else { 1 }).max(SUBPIXELS);
     let triangles: Vec<Flat> = (0..count)
@@ -57,6 +58,7 @@ fn check(batch: u64) -> Result<Tally, String> {
         .collect();
     let picture = flat::draw_triangles(&triangles, side, &mut Renderer::default());
     let expected = seen(&triangles, side);
+    // The largest mesh has ten million triangles, so its memory is released early.
     drop(triangles);
     for (i, (pixel, expected)) in picture.pixels().iter().zip(&expected).enumerate() {
         if flat::number_of(*pixel) != *expected {
@@ -73,7 +75,7 @@ fn check(batch: u64) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// Pictures of one row and of one column, covered by one triangle.
+/// Draws pictures with one row and with one column, covered by one triangle.
 fn narrow(tally: &mut Tally) -> Result<(), String> {
     let at = |x: i32, y: i32| Snapped { x: x * SUBPIXELS, y: y * SUBPIXELS };
     let whole = [at(-20_000, -20_000), at(60_000, -20_000), at(-20_000, 60_000)];

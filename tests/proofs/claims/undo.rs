@@ -53,6 +53,7 @@ fn check(batch: u64) -> Result<Tally, String> {
             }
             continue;
         };
+        // One command in four belongs to one of two drags.
         let before = scene.clone();
         let gesture = match rng.below(4) {
             0 => Gesture::Part(rng.below(2)),
@@ -64,13 +65,14 @@ fn check(batch: u64) -> Result<Tally, String> {
         selection::follow(&before, &scene, &mut view);
         performed += 1;
         if performed % SAVED == 0 {
-            // A continued gesture would change the step that was saved.
+            // A continued gesture would change the saved step.
             let mark = Command::Background(scene.background);
             let whole = Gesture::Whole;
             history.perform(&mut scene, mark, whole, "mark").map_err(|e| e.to_string())?;
             saved.push((history.position(), text(&scene)?));
         }
     }
+    // Undo, redo and every saved file restore all bits.
     let end = every_bit(&scene);
     let steps = history.steps().len();
     walk(&mut scene, &mut history, [&start, &end], &saved)?;
@@ -85,13 +87,14 @@ fn check(batch: u64) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// Undoes everything and redoes it, and compares the scene with each saved one on the way.
+/// Undoes and redoes everything, and compares the scene with each saved one along the way.
 fn walk(
     scene: &mut Scene,
     history: &mut History,
     [start, end]: [&str; 2],
     saved: &[(usize, String)],
 ) -> Result<(), String> {
+    // At a saved position the scene must equal the saved file.
     let at = |scene: &Scene, history: &History| match saved
         .iter()
         .find(|(position, _)| *position == history.position())
@@ -120,7 +123,7 @@ fn text(scene: &Scene) -> Result<String, String> {
     io::to_text(path, scene, &view, &Settings::default()).map_err(|error| error.to_string())
 }
 
-/// Writes a file, opens it, and writes it again.
+/// Saves a scene file, opens it, and compares it when saved again.
 fn reopen(file: &str, batch: u64) -> Result<(), String> {
     let name = format!("marraztu-{}-{batch}.{}", std::process::id(), io::SCENE_ENDING);
     let path = std::env::temp_dir().join(name);
@@ -132,13 +135,13 @@ fn reopen(file: &str, batch: u64) -> Result<(), String> {
     if text(&opened.scene)? == file { Ok(()) } else { Err("opened as something else".to_owned()) }
 }
 
-/// Every number of a scene and of its stacks as text, in which different numbers differ, and so do
-/// -0 and 0.
+/// Formats every number of a scene and its undo stacks. Different numbers have different text, and
+/// so have -0 and 0.
 fn every_bit(scene: &Scene) -> String {
     use std::fmt::Write;
     let mut text = format!("{scene:?}");
     let mut add = |stack: &dyn std::fmt::Debug| {
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = write!(text, "{stack:?}");
     };
     for (_, object) in scene.objects.iter() {
@@ -179,7 +182,7 @@ fn anything(scene: &Scene, view: &mut View, rng: &mut Rng) -> Result<Command, Re
     }
 }
 
-/// A random transform, or taking one back.
+/// A random transformation, or one step back.
 fn placing(
     scene: &Scene,
     view: &mut View,
@@ -192,7 +195,7 @@ fn placing(
             let all = [Subject::Camera, Subject::Object, Subject::Light];
             selection::set_subject(view, rng.one_of(&all));
             let kind = rng.one_of(&[Translation, Rotation, Scaling]);
-            // Refused if the subject cannot be scaled: then the old kind stays.
+            // Refused if the subject cannot be scaled; the previous kind stays.
             let _ = selection::set_transformation(view, kind);
             view.frame = rng.one_of(&[Frame::Local, Frame::Global]);
             let sign = rng.one_of(&[Sign::Positive, Sign::Negative]);
@@ -207,7 +210,7 @@ fn placing(
     }
 }
 
-/// Looks from somewhere else.
+/// Moves or changes the camera.
 fn looking(
     scene: &Scene,
     view: &View,
@@ -225,7 +228,7 @@ fn looking(
     }
 }
 
-/// A random change of lights, or a new light or camera.
+/// Changes a light, or adds a light or a camera.
 fn lighting(scene: &Scene, view: &View, rng: &mut Rng) -> Result<Command, Refusal> {
     match rng.below(4) {
         0 => {
@@ -248,7 +251,7 @@ fn lighting(scene: &Scene, view: &View, rng: &mut Rng) -> Result<Command, Refusa
     }
 }
 
-/// Keeps the scene small.
+/// Rejects commands that would let the scene grow beyond 20 items.
 fn few(scene: &Scene, command: Command) -> Result<Command, Refusal> {
     let all = scene.objects.len() + scene.cameras.len() + scene.lights.len();
     if all < 20 { Ok(command) } else { Err(Refusal::TooLarge) }
