@@ -50,7 +50,7 @@
 //! * `frame`: what a frame draws, as plain data.
 //! * [`screen`]: clipping, snapping, coverage, sample positions and tiles.
 //! * [`plan`]: decides what a frame draws before any pixel is touched, and says why.
-//! * `reference`: the fill algorithm of ancestor A, as a whole.
+//! * `ancestors`: the fill algorithm of ancestor A, as a whole.
 //! * `raster`: vertices to the screen, triangles and lines into the bins of tiles, and from there
 //!   to the visibility buffer.
 //! * `shadow`: rays from lit points to lights, and what stands between.
@@ -60,6 +60,7 @@
 //!   questions about what was drawn.
 
 pub mod accel;
+mod ancestors;
 mod cancellation;
 mod count;
 mod damage;
@@ -68,7 +69,6 @@ mod frame;
 pub mod lights;
 pub mod plan;
 mod raster;
-mod reference;
 mod renderer;
 pub mod screen;
 mod shading;

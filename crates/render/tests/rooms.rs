@@ -13,7 +13,7 @@ const ROOMS: &[&str] = &[
     "texture",
     "screen",
     "plan",
-    "reference",
+    "ancestors",
     "raster",
     "shadow",
     "shading",

@@ -4,6 +4,7 @@ use crate::simd::dispatch;
 use fearless_simd::{Level, Simd};
 
 use super::{Shown, Visibility};
+use crate::ancestors::points;
 use crate::frame::FramePlan;
 use crate::raster::alpha_test::{AlphaSurface, AlphaTest};
 use crate::raster::beyond::{beyond, reach};
@@ -12,7 +13,6 @@ use crate::raster::depth_format::Any;
 use crate::raster::edges_in_floats::{Everywhere, FloatTriangle, Opaque, in_pixels};
 use crate::raster::geometry::ScreenGeometry;
 use crate::raster::scan_lines::ScanLines;
-use crate::reference::points;
 use crate::screen::coverage::PixelBox;
 use crate::screen::tiles::BLOCK;
 use marraztu_core::accuracy::Coverage;
