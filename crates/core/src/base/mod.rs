@@ -2,8 +2,6 @@
 
 mod byte_bounds;
 pub mod color;
-#[cfg(test)]
-pub(crate) mod counted;
 pub mod image;
 pub mod lists;
 pub mod math;
