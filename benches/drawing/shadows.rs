@@ -1,7 +1,7 @@
-//! Benchmarks of shadows: `shadows/SHAPE/none` and `shadows/SHAPE/METHOD`, of all lights of the
-//! stage that can cast them, at 800 x 800. Before each shape it is said how many rays that takes.
+//! Benchmarks of shadows: `shadows/SHAPE/none` and `shadows/SHAPE/METHOD`, with shadows from every
+//! light of the stage that can cast them, at 800 x 800. Each shape first prints its number of rays.
 //!
-//! Nothing but the camera moves, so trees and shadow maps are kept.
+//! Only the camera moves, so the BVHs and shadow maps are built once and reused.
 
 use std::io::Write as _;
 

@@ -1,4 +1,4 @@
-//! Each stage of a frame, for each shape: `stages/SHAPE/STAGE`.
+//! Benchmarks of each stage of a frame for each shape: `stages/SHAPE/STAGE`.
 
 use std::time::Duration;
 

@@ -1,5 +1,5 @@
-//! Benchmarks of transparency: `transparent/SHAPE/opaque` and `transparent/SHAPE/CHOICE`, with one
-//! layer over the whole picture, with eight, and with a knot whose tube shows both its sides.
+//! Benchmarks of transparency: `transparent/SHAPE/opaque` and `transparent/SHAPE/CHOICE`, with 1, 8
+//! and 64 layers over the whole picture, and with a knot whose tube shows both sides.
 
 use criterion::{BenchmarkId, Criterion};
 use marraztu_core::accuracy::Transparency;

@@ -1,4 +1,4 @@
-//! The built-in ball with dimples: a coarse ball whose bumps are a map of heights, made here.
+//! The built-in ball with dimples: a coarse ball with a procedural bump map.
 
 use std::f64::consts::{PI, TAU};
 use std::path::PathBuf;
@@ -11,23 +11,23 @@ use marraztu_core::scene::{
     SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
 };
 
-/// Its name in scene files.
+/// The name of the model in scene files.
 pub(super) const NAME: &str = "dimples";
 
-/// Segments about the axis, and rings from pole to pole: few, so that tangents change much from
-/// vertex to vertex.
+/// Segments about the axis, and rings from pole to pole: few, to make tangents differ strongly
+/// between vertices.
 const SEGMENTS: u32 = 16;
 const RINGS: u32 = 10;
 const RADIUS: f64 = 40.0;
 
-/// Texels of the map of heights.
+/// The size of the bump map in texels.
 const TEXELS: Size = Size::new(128, 64);
-/// How often the map is repeated about the ball.
+/// The number of repetitions of the map about the ball.
 const REPEATED: [f64; 2] = [4.0, 4.0];
 /// The height of a white texel, in texels.
 const GAIN: f64 = 20.0;
 
-/// The heights: round hills and pits, with fine grooves across them.
+/// Makes the heights: round hills and pits, with fine grooves across them.
 fn heights() -> Picture {
     let mut picture = Picture::filled(TEXELS, [0, 0, 0, 255]);
     for (i, pixel) in picture.pixels_mut().iter_mut().enumerate() {
@@ -41,7 +41,7 @@ fn heights() -> Picture {
     picture
 }
 
-/// The ball, its poles on the y axis.
+/// Builds the ball with its poles on the y axis.
 #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
 fn source() -> MeshSource {
     let mut source = MeshSource {
@@ -82,7 +82,7 @@ fn source() -> MeshSource {
     source
 }
 
-/// The model, with its material.
+/// Builds the model with its material.
 pub(super) fn model() -> Shared<Model> {
     let texture = Shared::new(Texture {
         source: PathBuf::from("own:dimples"),
