@@ -13,7 +13,7 @@ pub(crate) struct Shape {
 }
 
 /// Returns one triangle over the whole view; few triangles of about a hundred pixels; many of a few
-/// pixels; more triangles than pixels; slivers; and large triangles that overlap back to front.
+/// pixels; many smaller than a pixel; slivers; and large triangles that overlap back to front.
 pub(crate) fn all() -> Vec<Shape> {
     let shape = |name, model| Shape { name, model };
     vec![

@@ -1,4 +1,4 @@
-//! `marraztu lab`: measures what accuracy costs in time.
+//! `marraztu lab`: measures the cost of accuracy.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -95,7 +95,7 @@ pub(crate) struct Lab {
     accuracy: Accuracy,
 }
 
-/// Measures, and prints the report.
+/// Runs the measurement and prints the report.
 pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
     arguments.talk.apply();
     draw_along(arguments.threads);
@@ -158,7 +158,7 @@ fn save_suite(folder: &Path, reports: &[Report]) -> Result<(), Failure> {
     write("report.json", format!("[{}]\n", json.join(",\n")))
 }
 
-/// Writes a text into a folder, which is created if it does not exist.
+/// Writes a text into a folder, creating it if it does not exist.
 fn write(folder: &Path, name: &str, text: String) -> Result<(), Failure> {
     let fail = |path: &Path| {
         let path = path.to_owned();
@@ -192,7 +192,7 @@ fn measured(arguments: &Lab, studio: &mut Studio, current: Settings) -> Result<R
     })
 }
 
-/// The names of the files: "bunny.obj, pot.obj".
+/// Joins the names of the files: "bunny.obj, pot.obj".
 fn scene_name(files: &[PathBuf]) -> String {
     let name = |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     match files {
@@ -201,7 +201,7 @@ fn scene_name(files: &[PathBuf]) -> String {
     }
 }
 
-/// The arguments of this process, as they would be typed.
+/// Returns the command line of this process as it would be typed.
 fn command() -> String {
     let quoted = |word: String| {
         let plain = |c: char| c.is_alphanumeric() || "-_./,=:+".contains(c);
@@ -234,13 +234,13 @@ fn explain_pixel(studio: &mut Studio, settings: &Settings, at: [usize; 2]) -> Re
 
 fn print(text: &str) -> Result<(), Failure> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
-        // The reader has closed the pipe, as `head` does.
+        // The reader has closed the pipe, like `head`.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
         written => written.map_err(Failure::Output),
     }
 }
 
-/// The files that a measurement writes.
+/// The files written by a measurement.
 const RESULTS: [&str; 11] = [
     "table.txt",
     "table.csv",

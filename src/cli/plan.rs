@@ -1,4 +1,4 @@
-//! `marraztu plan`: explains which effects a frame uses.
+//! `marraztu plan`: explains the effects that a frame uses.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -49,7 +49,7 @@ enum Format {
     Json,
 }
 
-/// Lists the effects of the picture that the arguments describe.
+/// Lists the effects of the picture described by the arguments.
 pub(crate) fn plan(arguments: &Plan) -> Result<(), Failure> {
     let stage = render::stage(&arguments.picture)?;
     let shot = stage.shot(arguments.picture.size);
@@ -93,7 +93,7 @@ fn table(explained: &Explained, costs: Option<&Costs>) -> String {
     } else {
         format!("changes a channel by {off_by:.3} of a byte's step at most")
     };
-    // Writing to a text cannot fail.
+    // Writing to a string cannot fail.
     let _ = writeln!(text, "\n{} x {} pixels. What is left out {bound}.", size.width, size.height);
     if let Some(costs) = costs {
         let (frame, noise) = (costs.frame, costs.noise);
@@ -128,7 +128,7 @@ fn columns(rows: &[[String; 6]]) -> String {
     text
 }
 
-/// The cells of one effect on one item, as CSV and JSON have them.
+/// Returns the cells of one effect on one item, for CSV and JSON.
 fn cells(one: &EffectUse, costs: Option<&Costs>) -> [(&'static str, Cell); 9] {
     let bound = match one.state {
         EffectState::LeftOut { class: Class::Bounded(steps), .. } => steps,
@@ -206,7 +206,7 @@ fn json(explained: &Explained, costs: Option<&Costs>) -> String {
     )
 }
 
-/// A text as JSON has it (RFC 8259, section 7).
+/// Quotes a text for JSON (RFC 8259, section 7).
 fn quoted(text: &str) -> String {
     let mut quoted = String::from("\"");
     for letter in text.chars() {

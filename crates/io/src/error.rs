@@ -7,7 +7,7 @@ use super::progress::Cancelled;
 /// The message for files that do not fit in memory.
 pub(super) const NO_MEMORY: &str = "there is not enough memory for it";
 
-/// The reason why a file could not be loaded. Nothing has changed then.
+/// The reason why a file could not be loaded. A failed load changes nothing.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LoadError {
     /// The file cannot be read at all.

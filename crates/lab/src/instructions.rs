@@ -1,8 +1,8 @@
-//! The sets of vector instructions that this processor has.
+//! The SIMD instruction sets of this processor.
 
 use fearless_simd::Level;
 
-/// The sets that this processor has, the oldest first and the best last.
+/// Returns the instruction sets of this processor, the oldest first and the best last.
 #[must_use]
 pub fn levels() -> Vec<Level> {
     let mut levels: Vec<Level> = Vec::new();
@@ -14,8 +14,8 @@ pub fn levels() -> Vec<Level> {
     levels
 }
 
-/// The set with a name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, which every processor of
-/// this kind has. `None` if this processor lacks it, or if the name is unknown.
+/// Finds an instruction set by name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, the baseline
+/// of the architecture. `None` if this processor lacks it, or if the name is unknown.
 #[must_use]
 pub fn named(name: &str) -> Option<Level> {
     let best = Level::new();
@@ -32,7 +32,7 @@ pub fn named(name: &str) -> Option<Level> {
     }
 }
 
-/// The name of a set in reports: "Avx2".
+/// Returns the name of an instruction set in reports, such as "Avx2".
 #[must_use]
 pub fn name_of(level: Level) -> String {
     let level = format!("{level:?}");

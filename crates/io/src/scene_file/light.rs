@@ -1,4 +1,4 @@
-//! Lights in scene files: their form, and both ways between it and the scene's.
+//! Lights in scene files: their format, and conversions in both directions.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -134,7 +134,7 @@ pub(super) fn read_owner(owner: &FileOwner) -> Result<SpotOwner, String> {
     })
 }
 
-/// A direction of length 1, kept bit for bit if it has that length already.
+/// Checks a direction and normalizes it. A unit vector is kept bit for bit.
 pub(super) fn read_direction(direction: [f64; 3]) -> Result<DVec3, String> {
     finite("its direction", &direction)?;
     let direction = DVec3::from_array(direction);
