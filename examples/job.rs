@@ -192,6 +192,7 @@ fn run(job: &Job) -> Result<String, Failure> {
     if let Some(out) = &job.out {
         io::save_picture(out, &measured.picture)?;
     }
+    // The count of covered pixels lets other renderers check that they draw the same mesh.
     let pixels = measured.picture.pixels().iter();
     let covered = pixels.filter(|pixel| **pixel != BACKGROUND.opaque()).count();
     let shortest = measured.frames.iter().copied().reduce(f64::min);
@@ -309,12 +310,14 @@ fn measure(
         let i = job.warm + 1 + frames.len();
         frames.push(frame(&mut renderer, scene, i)?);
         timings.push(renderer.timings());
+        // The same camera without shadows, in alternation, so drift affects both alike.
         if job.shadows {
             plain = Some(frame(&mut other, &unshaded, i)?.min(plain.unwrap_or(f64::INFINITY)));
         }
     }
     #[expect(clippy::cast_precision_loss, reason = "few frames")]
     let processor = processor.elapsed().as_secs_f64() * 1e3 / frames.len() as f64;
+    // The saved picture is that of the first camera, whatever number of frames fits the budget.
     frame(&mut renderer, scene, 0)?;
     let (picture, rays) = (renderer.picture().clone(), renderer.rays());
     Ok(Measured { frames, timings, processor, plain, rays, picture })
@@ -336,6 +339,7 @@ fn without_shadows(scene: &Scene) -> Result<Scene, CommandError> {
 fn prepared(model: &Model, raw: bool, textured: bool) -> Model {
     let mesh = &model.mesh;
     let positions: Vec<DVec3> = mesh.positions().iter().map(|p| dvec3(*p)).collect();
+    // Normalise position and size, so one camera orbit fits every mesh.
     let centre = mesh.bounds().map_or(DVec3::ZERO, |bounds| bounds.centre());
     let farthest = positions.iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
     let scale = 100.0 / farthest.max(f64::MIN_POSITIVE);
@@ -345,6 +349,7 @@ fn prepared(model: &Model, raw: bool, textured: bool) -> Model {
     let position = |corner: u32| mesh.corners()[corner as usize].position;
     let corners: Vec<[u32; 3]> =
         mesh.triangles().iter().map(|triangle| triangle.corners.map(position)).collect();
+    // The cross product has twice the area as length, so the sums are area-weighted.
     for [a, b, c] in corners.iter().map(|ids| ids.map(|id| id as usize)) {
         let normal = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
         for vertex in [a, b, c] {
@@ -353,6 +358,7 @@ fn prepared(model: &Model, raw: bool, textured: bool) -> Model {
     }
     let narrow = |v: &DVec3| v.as_vec3().to_array();
     let unit = |v: &DVec3| narrow(&math::unit(*v).unwrap_or(DVec3::Z));
+    // Positions, texture coordinates and normals share their indices.
     let corner = |&position: &u32| {
         let uv = if textured { position } else { NONE };
         SourceCorner { position, uv, normal: position }
@@ -408,6 +414,7 @@ fn stage(
     samples: Samples,
     model: Shared<Model>,
 ) -> Result<Stage, CommandError> {
+    // The depth mode measures rasterisation, so its surface is one constant colour.
     let [ambient, diffuse, specular] = match mode {
         Mode::Depth => [[0.9, 0.8, 0.6], [0.0; 3], [0.0; 3]],
         Mode::Flat | Mode::Gouraud | Mode::Phong | Mode::Textured(_) | Mode::Wire => {
@@ -442,6 +449,7 @@ fn stage(
         }
         _ => object.surface = Surface::Material,
     }
+    // Objects share the mesh; ids continue with the lights.
     for (i, placement) in (1..).zip(placements(job.copies)) {
         let object = Object { placement: Tracked::new(placement), ..object.clone() };
         let item = Item::Object(ObjectId(i), Box::new(object));
@@ -459,6 +467,7 @@ fn stage(
         ..scene.first_view()
     };
     settings = method(job).map_or(settings, |method| method.of(&settings));
+    // The mode decides where lighting is evaluated.
     settings.light = match mode {
         Mode::Flat => LightAt::Face,
         Mode::Gouraud => LightAt::Vertex,

@@ -69,7 +69,7 @@ fn everything() -> Stage {
     stage
 }
 
-/// Makes a chequered texture in which every eighth field is a hole.
+/// Makes a chequered texture with every eighth field as a hole.
 fn holed() -> Texture {
     let size = Size::new(256, 256);
     let texel = |i: usize| {

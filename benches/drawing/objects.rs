@@ -25,6 +25,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
     let quad = shapes::sheet(2);
     let mut group = criterion.benchmark_group("objects");
     for count in COUNTS {
+        // Every insertion starts from a copy of the empty scene.
         let empty = Stage::new(&quad, FULL);
         let objects = objects(&quad, count);
         group.bench_function(BenchmarkId::new("insert", count), |b| {
@@ -52,11 +53,13 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         });
         group.bench_function(BenchmarkId::from_parameter(count), |b| stage.measure(b));
     }
+    // The same visible objects, with and without many others out of view.
     for count in [SEEN, 10_000] {
         let stage = mostly_outside(&quad, count);
         let name = format!("{SEEN} in view of {count}");
         group.bench_function(BenchmarkId::from_parameter(name), |b| stage.measure(b));
     }
+    // Copies share one mesh, so only its instances cost more.
     let knot = shapes::knot(1_000_000);
     for count in [1, 20] {
         let stage = knots(&knot, count);

@@ -41,7 +41,7 @@ fn print(text: &str) {
     print!("{text}");
 }
 
-/// Returns the folder in which cargo builds.
+/// Returns cargo's build folder.
 fn target(root: &Path) -> std::path::PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), Into::into)
 }

@@ -65,6 +65,7 @@ pub(crate) fn table(file: &Path) -> Result<String, String> {
         }
         text.push('\n');
     }
+    // The geometric mean suits ratios.
     text.push_str("| geometric mean | |");
     for logarithms in logarithms {
         #[expect(clippy::cast_precision_loss, reason = "few jobs")]

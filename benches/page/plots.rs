@@ -50,6 +50,7 @@ fn plot(growth: &Growth, measured: &Measured) -> Result<String, Box<dyn Error>> 
     let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
         return Err(format!("{} was not measured", growth.group).into());
     };
+    // The axis of times spans whole decades.
     let times = points.iter().map(|point| point.1);
     let least = times.clone().fold(f64::INFINITY, f64::min);
     let most = times.fold(0.0, f64::max);

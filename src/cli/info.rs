@@ -96,6 +96,7 @@ fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
         Projection::Perspective => "in perspective",
         Projection::Orthographic => "in parallel projection",
     };
+    // The observer and the projection explain what `render` would draw.
     let observer = match view.observer {
         Observer::Camera => "the selected camera",
         Observer::Object => "the selected object",

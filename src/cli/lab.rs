@@ -105,6 +105,7 @@ pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
     let Lab { files, reading, surfaces, seeing, accuracy, size, .. } = arguments;
     let stage = staged(files, reading, surfaces, seeing, accuracy)?;
     let settings = stage.settings;
+    // Check all results before the measurement, which takes minutes.
     if let Some(folder) = &arguments.out {
         let sources = stage.sources(files);
         RESULTS.iter().try_for_each(|name| sources.spare(&folder.join(name)))?;
@@ -277,6 +278,7 @@ fn save(
         write(&format!("plots-{word}.svg"), report::svg(report, look)?)?;
         io::save_picture(&place(&format!("plots-{word}.png")), &report::png(report, look)?)?;
     }
+    // Error pictures show the difference to the exact picture, amplified to be visible.
     studio.draw(&settings.reference());
     let exact = studio.picture().clone();
     io::save_picture(&place("exact.png"), &exact)?;

@@ -76,6 +76,7 @@ fn table(explained: &Explained, costs: Option<&Costs>) -> String {
             false => "noise".to_owned(),
         });
         rows.push(row(&group.uses[0].name, &group.of(), &group, time));
+        // Uses that differ are listed one by one below the group.
         if group.is_alike() {
             continue;
         }

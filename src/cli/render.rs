@@ -131,6 +131,7 @@ fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
         object.file_normals &= !surfaces.no_file_normals;
     };
     stage.change(items::change_all_objects(&stage.scene, change))?;
+    // A texture has no effect without texture coordinates, so say why.
     if let Some(texture) = &surfaces.texture {
         let objects = stage.scene.objects.iter();
         for (_, object) in objects.filter(|(_, object)| object.model.mesh.uvs().is_empty()) {
@@ -149,6 +150,7 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     if seeing.from.is_some() && !stage.models_alone {
         return Err(usage("--from says from where models alone are seen; a scene has its cameras"));
     }
+    // The camera comes first: lights and exposure depend on the view.
     aim(stage, seeing)?;
     if let Some(Slots(slots)) = &seeing.lights {
         light(stage, slots)?;
@@ -171,6 +173,7 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     view.face_normals |= seeing.face_normals;
     view.vertex_normals |= seeing.vertex_normals;
     view.marks = seeing.helpers.unwrap_or(view.marks && !stage.models_alone);
+    // Exposure comes last, since fitting it draws the finished scene.
     match seeing.exposure {
         Some(Exposure::Stops(stops)) => stage.view.exposure = stops,
         Some(Exposure::Fit) => {

@@ -129,6 +129,7 @@ impl Stage {
                 once.len() - 1
             });
         }
+        // The first error in the order of the arguments is reported, whatever thread met it.
         let mut models: Vec<Shared<Model>> = Vec::with_capacity(once.len());
         for loaded in load_all(&once, input, reading, &progress) {
             let Loaded { model, findings } = loaded?;

@@ -62,6 +62,7 @@ pub(crate) struct Turntable {
 pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
     let Turntable { out, frames, seconds, turn, transparent, picture } = arguments;
     let path = out.clone().unwrap_or_else(|| default_name(&picture.files).with_extension("gif"));
+    // Check the name before the files are loaded, which may take long.
     AnimationWriter::check(&path, &Sources::default())?;
     let stage = stage(picture)?;
     let size = picture.size;
@@ -78,6 +79,7 @@ pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
     for i in 0..frames {
         let part = f64::from(i) / f64::from(frames);
         let scene = turned(&stage.scene, &stage.view, turn, part)?;
+        // Spins and orbits continue during the turn.
         let time = stage.view.time + seconds * part;
         let view = View { time, ..stage.view.clone() };
         let shot = Stage { scene, view, findings: Vec::new(), ..stage }.shot(size);

@@ -44,7 +44,7 @@ fn decimal(text: &str) -> Option<[u8; 3]> {
     channels?.try_into().ok()
 }
 
-/// Parses six hexadecimal digits, two per channel, or three, each of which is doubled.
+/// Parses six hexadecimal digits, two per channel, or three, one per channel, which are doubled.
 fn hexadecimal(digits: &str) -> Option<[u8; 3]> {
     let digits: Option<Vec<u8>> =
         digits.chars().map(|digit| u8::try_from(digit.to_digit(16)?).ok()).collect();

@@ -109,6 +109,7 @@ fn comparison(levels: &[Level], threads: usize, listed: &[(&str, u64)]) -> (Stri
             let _ = writeln!(text, "{}: {wrong}, with {}", picture.name, name_of(*level));
         }
     });
+    // Listed pictures that were not drawn are differences, too.
     for name in missing.keys() {
         let _ = writeln!(text, "{name}: it is listed, but there is no such picture");
     }

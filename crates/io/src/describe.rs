@@ -101,6 +101,7 @@ fn describe_mesh(mesh: &Mesh, text: &mut Text) {
         Some(bounds) => {
             let place =
                 |p: glam::DVec3| format!("({}, {}, {})", short(p.x), short(p.y), short(p.z));
+            // Positions are stored relative to the offset; the box shows those of the file.
             let offset = mesh.offset();
             let [min, max] = [bounds.min, bounds.max].map(|p| place(p + offset));
             text.line("box", &format!("{min} to {max}"));
@@ -165,6 +166,7 @@ fn closed(mesh: &Mesh) -> String {
     let sides = |right: fn(usize) -> bool| {
         edges.iter().filter(|edge| right(mesh.edge_polygons(edge).len())).count()
     };
+    // Closed means that every edge joins exactly two polygons.
     let (borders, crowded) = (sides(|n| n == 1), sides(|n| n > 2));
     let all = number_of(edges.len(), "edge");
     if edges.is_empty() {
@@ -239,6 +241,7 @@ fn describe_material(material: &FileMaterial) -> String {
         let _ = write!(text, ", d {}", short(material.opacity));
         text.push_str(if material.opacity == 0.0 { " (draws nothing)" } else { " (transparent)" });
     }
+    // The texture and all maps are listed alike, with file name and size.
     let maps = material.maps.iter().map(|(kind, map)| (kind.statement(), &map.texture));
     for (word, texture) in material.texture.iter().map(|it| ("texture", it)).chain(maps) {
         let size = texture.picture.size();

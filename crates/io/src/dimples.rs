@@ -49,6 +49,7 @@ fn source() -> MeshSource {
         smoothing: Smoothing::default(),
         ..MeshSource::default()
     };
+    // The seam shares positions but not texture coordinates: there u jumps from 1 to 0.
     for ring in 0..=RINGS {
         let polar = PI * f64::from(ring) / f64::from(RINGS);
         for segment in 0..=SEGMENTS {
@@ -70,6 +71,7 @@ fn source() -> MeshSource {
     for (ring, segment) in (0..RINGS).flat_map(|ring| (0..SEGMENTS).map(move |i| (ring, i))) {
         let (a, b) = (corner(ring, segment), corner(ring + 1, segment));
         let (c, d) = (corner(ring + 1, segment + 1), corner(ring, segment + 1));
+        // Quads between the rings, triangles at the poles.
         let outline: &[SourceCorner] = match ring {
             0 => &[a, b, c],
             _ if ring + 1 == RINGS => &[a, b, d],

@@ -344,7 +344,7 @@ impl FindingKind {
         )
     }
 
-    /// Returns whether a model loses something, so that it differs from the file's intent.
+    /// Returns whether the model loses something that its file defines.
     #[must_use]
     pub const fn is_loss(self) -> bool {
         matches!(
@@ -378,6 +378,7 @@ impl FindingKind {
             Some((end, _)) => &format!("{}...", &name[..end]),
             None => name,
         };
+        // Names come from files, so control characters must not reach a terminal.
         let shown = name.replace(char::is_control, "\u{FFFD}");
         let text = words.replace('#', &count.to_string()).replace('@', &shown);
         match (line, files) {

@@ -31,7 +31,7 @@ const LESSONS: &[(&str, &str)] = &[
 /// Opens the scene of a lesson.
 ///
 /// # Errors
-/// If there is no lesson of this name.
+/// If no lesson has this name.
 pub fn lesson_scene(name: &str) -> Result<Opened, SceneFileError> {
     let found = LESSONS.iter().find(|(other, _)| *other == name);
     let Some((_, text)) = found else {

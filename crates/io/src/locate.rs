@@ -43,6 +43,7 @@ impl Locator {
         let file = |path: PathBuf| path.is_file().then_some(path);
         // A pipe or a device counts as found; reading it will report why it is rejected.
         let other = |path: PathBuf| (path.exists() && !path.is_dir()).then_some(path);
+        // The cheapest lookups come first; listing a folder is slow.
         file(folder.join(&name))
             .or_else(|| file(folder.join(last)))
             .or_else(|| self.any_case(folder, &name))

@@ -181,6 +181,7 @@ fn write_png(picture: &Picture, to: &mut dyn Write) -> std::io::Result<()> {
     let mut encoder = png::Encoder::new(to, width, height);
     encoder.set_color(if has_alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
     encoder.set_depth(png::BitDepth::Eight);
+    // Fast compression with adaptive filters: drawing should not wait for the encoder.
     encoder.set_compression(png::Compression::Fast);
     encoder.set_filter(png::Filter::Adaptive);
     let mut writer = encoder.write_header()?;

@@ -82,6 +82,7 @@ pub(super) fn read(path: &Path, most: usize, progress: &Progress) -> Result<Vec<
     let file = shown(path);
     let (mut handle, size) = open(path, most)?;
     let mut bytes = Vec::new();
+    // One byte more than the size, so the last read detects the end without growing the buffer.
     bytes.try_reserve(size + 1).map_err(|_full| LoadError::file(&file, NO_MEMORY))?;
     loop {
         let limit = u64::try_from(PIECE).unwrap_or(u64::MAX);

@@ -48,6 +48,7 @@ pub(super) fn check_target(path: &Path) -> Result<(), SaveError> {
     let target = target(path)?;
     check_folder(path, &target)?;
     let beside = beside(&target, std::process::id());
+    // Permissions are checked by creating the temporary file.
     let opened = OpenOptions::new().write(true).create_new(true).open(&beside);
     let opened = opened.map(|_file| fs::remove_file(&beside));
     match opened {
@@ -155,6 +156,7 @@ fn write(
     }
     file.sync_all()?;
     drop(file);
+    // A hard link keeps the old file at its name until the rename; copying is the fallback.
     if worth == Worth::Work && target.exists() {
         let kept = with_ending(target, "~");
         let _ = fs::remove_file(&kept);

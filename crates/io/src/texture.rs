@@ -166,6 +166,7 @@ fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
         return Err(fail(unknown()));
     }
     let cut_off = reader.format() == Some(ImageFormat::Jpeg) && jpeg_ends_early(&bytes);
+    // Limits protect against small files that claim huge pictures.
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(LARGEST_SIDE);
     limits.max_image_height = Some(LARGEST_SIDE);

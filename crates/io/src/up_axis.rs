@@ -77,6 +77,7 @@ fn up_of(comment: &str) -> Option<UpAxis> {
             return Some(UpAxis::Z);
         }
         let small = |word: &&String| ["axis", "is", "vector", "points"].contains(&word.as_str());
+        // The axis follows "up" ("up axis: z") or precedes it ("z up, y forward").
         let mut after = words[at + 1..].iter().skip_while(small);
         let (next, second) = (after.next(), after.next());
         let is_forward = second.is_some_and(|word| word == "forward" || word == "front");

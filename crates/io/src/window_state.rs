@@ -8,7 +8,7 @@ use serde::de::{self, Deserializer, MapAccess, Visitor};
 use serde::ser::{self, Serializer};
 use serde::{Deserialize, Serialize};
 
-/// The state of the window in which a scene was saved.
+/// The state of the window when a scene was saved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WindowState {
     /// Whether pictures may be coarser during motion, if full quality would be too slow.

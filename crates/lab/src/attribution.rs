@@ -61,6 +61,7 @@ pub fn attribute(
     let reference = lit.fold(reference, |now, axis| axis.most_exact(&now).of(&now));
     let (exact, exact_primitive) = look(&reference)?;
     let (ours, primitive) = look(settings)?;
+    // Make one axis exact at a time, starting from the judged settings.
     let mut shares = Vec::new();
     let judged = |axis: &&Axis| match axis.kind {
         AxisKind::Scored => true,

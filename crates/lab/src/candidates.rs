@@ -94,9 +94,11 @@ pub fn candidates(
     let mut add = |group, name: String, settings| {
         found.all.push(Candidate { group, name, settings });
     };
+    // The default comes first: all others are measured against it.
     for preset in ACCURACY_PRESETS.iter().filter(|preset| preset.of(current) == base) {
         add(Group::Preset, preset.label.to_owned(), base);
     }
+    // Axes without an effect in this scene are listed as left out.
     let (sensible, senseless): (Vec<&Axis>, Vec<&Axis>) =
         axes.iter().partition(|axis| (axis.sense)(scene, view).is_ok());
     for axis in &sensible {
@@ -112,6 +114,7 @@ pub fn candidates(
     for settings in combinations {
         add(Group::Combination, settings.in_words(), settings);
     }
+    // Report omissions with reasons, since a missing row would look like an error.
     for axis in senseless {
         let reason = (axis.sense)(scene, view).err().unwrap_or_default().to_owned();
         found.left_out.push(LeftOut { what: axis.label.to_owned(), reason });

@@ -144,6 +144,7 @@ pub fn measure(shot: &Shot, budget: Duration, stopped: impl Fn() -> bool) -> Cos
     effects.dedup();
     let without: Vec<(Effect, FramePlan)> =
         effects.iter().filter_map(|effect| Some((*effect, plan.without(*effect)?))).collect();
+    // The budget is divided equally among the effects and the control.
     let share = budget / u32::try_from(without.len() + 1).unwrap_or(u32::MAX);
 
     // Warm up caches and memory before the control measurement.
@@ -200,6 +201,7 @@ impl Bench {
             && (differences.len() < PAIRS || begun.elapsed() < share)
             && !stopped()
         {
+            // Alternate the order within pairs, so that neither plan always comes first.
             let (a, b) = if differences.len().is_multiple_of(2) {
                 let a = self.time(with);
                 (a, self.time(without))

@@ -163,6 +163,7 @@ impl Rendering {
         let pixels = self.picture.pixels().iter().zip(reference.picture.pixels());
         let primitives = self.primitives.iter().zip(&reference.primitives);
         for ((a, b), (shown, exact)) in pixels.zip(primitives) {
+            // Alpha is not compared.
             let steps = [0, 1, 2].map(|i| a[i].abs_diff(b[i]));
             whole.add(steps);
             if reference.mixed || shown == exact {

@@ -187,6 +187,7 @@ fn features(bright: &[f64], size: Size) -> Vec<[f64; 2]> {
     let deviation = 0.5 * 0.082 * PIXELS_A_DEGREE;
     let radius = ceil(3.0 * deviation);
     let smooth = |x: f64| exp(-x * x / (2.0 * deviation * deviation));
+    // Edges are the first derivative of a Gaussian, points the second.
     let across = taps(radius, smooth);
     let edge = taps(radius, |x| -x * smooth(x));
     let point = taps(radius, |x| (x * x / (deviation * deviation) - 1.0) * smooth(x));
@@ -220,6 +221,7 @@ fn filter(plane: &[f64], size: Size, along: &[f64], down: &[f64]) -> Vec<f64> {
         return Vec::new();
     }
     let radius = along.len() / 2;
+    // Rows: extended copies make the borders free of branches.
     let mut rows = vec![0.0; plane.len()];
     rows.par_chunks_mut(width).zip(plane.par_chunks(width)).for_each(|(out, row)| {
         let mut wide = vec![row[0]; radius];
@@ -232,6 +234,7 @@ fn filter(plane: &[f64], size: Size, along: &[f64], down: &[f64]) -> Vec<f64> {
         }
     });
     let mut all = vec![0.0; plane.len()];
+    // Columns: whole rows are added at a time, which vectorises and stays in cache.
     let radius = down.len() / 2;
     all.par_chunks_mut(width).enumerate().for_each(|(y, out)| {
         for (i, tap) in down.iter().enumerate() {

@@ -126,6 +126,7 @@ fn turned<S: Simd>(simd: S, flat: &[f32]) -> [f32x16<S>; 4] {
     let second = f32x16::from_slice(simd, &flat[16..32]);
     let third = f32x16::from_slice(simd, &flat[32..48]);
     let fourth = f32x16::from_slice(simd, &flat[48..64]);
+    // Two rounds of deinterleaving transpose 16 x 4 numbers.
     let (even_low, odd_low) = first.deinterleave(second);
     let (even_high, odd_high) = third.deinterleave(fourth);
     let (x, z) = even_low.deinterleave(even_high);

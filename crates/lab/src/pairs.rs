@@ -191,6 +191,7 @@ pub fn abba(
     run(1)?;
     let (mut ratios, mut of_a, mut thrown, mut spent) = (Vec::new(), Vec::new(), 0, 0.0);
     let mut endless = None;
+    // Discarded pairs are limited, too: constant touches must not keep the loop running.
     while ratios.len() < limits.pairs && thrown < MOST_THROWN * limits.pairs {
         if ratios.len() >= limits.least && spent >= limits.time.as_secs_f64() * 1e3 {
             break;
@@ -214,6 +215,7 @@ pub fn abba(
             thrown += 1;
         }
     }
+    // Without a single valid pair, there is no result.
     let quartiles = Quartiles::of(&ratios).ok_or(Unmeasured::Disturbed)?;
     let interval = median_interval(&ratios, CONFIDENCE).ok_or(Unmeasured::Disturbed)?;
     let a_ms = Quartiles::of(&of_a).ok_or(Unmeasured::Disturbed)?.median;

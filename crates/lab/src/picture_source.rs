@@ -131,6 +131,7 @@ impl PictureSource for Studio {
     }
 
     fn draw_sampled(&mut self, settings: &Settings) -> Picture {
+        // One plan serves all samples: only the subpixel shift changes.
         let plan = plan_frame(&self.shot.with(Settings { samples: Samples::One, ..*settings }));
         let mut sums = vec![[0_u16; 4]; self.shot.size.area()];
         for shift in sample_shifts() {

@@ -57,7 +57,7 @@ pub struct Findings {
     pub current: Settings,
     /// The distinct settings that were measured; the first is the default.
     pub points: Vec<Measured>,
-    /// The rows of the table, each of which refers to a point.
+    /// The rows of the table. Each refers to a point.
     pub rows: Vec<Row>,
     /// Settings that were not measured, with the reason.
     pub left_out: Vec<LeftOut>,
@@ -282,12 +282,14 @@ impl Bench<'_> {
         let thoroughness = self.question.thoroughness;
         let Candidates { all, left_out } = candidates;
         let base = all.first().expect("the default is always measured").settings;
+        // The references are drawn first, once, outside the timed part.
         let mut references = References {
             exact: vec![(base.reference(), self.source.rendering(&base.reference()))],
             sampled: self.source.sampled(&base),
             default: self.source.rendering(&base),
         };
         self.watch.progress.reached(0, all.len())?;
+        // The control measures the default against itself, which gives the noise floor.
         let control = self.measured(&base, &base)?;
         let mut findings = self.begin(control, left_out);
         // Each kernel counts as a choice.
@@ -295,6 +297,7 @@ impl Bench<'_> {
         let mut late = 0;
         for (i, candidate) in all.into_iter().enumerate() {
             self.watch.progress.reached(i, steps)?;
+            // Only combinations are dropped for lack of time; single axes are always measured.
             let is_late = self.clock.now().saturating_sub(begun) >= thoroughness.time;
             if candidate.group == Group::Combination && is_late {
                 late += 1;
@@ -382,6 +385,7 @@ impl Bench<'_> {
             let ms = a_ms * ratio.quartiles.median;
             (ratio, ms)
         };
+        // Each model has its own exact reference, drawn on first use.
         let reference = settings.reference();
         if references.exact.iter().all(|(settings, _)| *settings != reference) {
             references.exact.push((reference, self.source.rendering(&reference)));

@@ -66,13 +66,15 @@ impl GifWriter {
         let (Some(width), Some(height)) = (width, height) else {
             return Err(std::io::Error::other("a GIF has at most 65535 pixels a side").into());
         };
-        // Without dithering there is no global palette: each picture gets its exact one.
+        // Without dithering, each picture gets its exact palette instead of a global one.
+        // All pictures are known now, so the shared palette can be chosen.
         let palette = self.needs_dither.then(|| Palette::of(&self.colors, self.most_colors()));
         let global = palette.as_ref().map_or(Vec::new(), |it| self.table(&it.colors));
         let mut encoder = Encoder::new(Vec::new(), width, height, &global)?;
         encoder.set_repeat(Repeat::Infinite)?;
         let mut dither = palette.map(Dither::new);
         for (number, compressed) in self.pictures.iter().enumerate() {
+            // Only one picture at a time is unpacked.
             let mut bytes = Vec::with_capacity(4 * self.size.area());
             DeflateDecoder::new(&compressed[..]).read_to_end(&mut bytes)?;
             let (pixels, _) = bytes.as_chunks::<4>();

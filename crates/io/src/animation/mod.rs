@@ -185,7 +185,7 @@ impl AnimationWriter {
         Ok(Self { path: path.to_owned(), animation, encoder, bytes, written: 0, notes })
     }
 
-    /// Returns the ways in which the file will differ from the request, one sentence each.
+    /// Returns the differences between the file and the request, one sentence each.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes

@@ -46,9 +46,11 @@ impl Colors {
             let (count, sum) = &mut self.cells[cell(color)];
             *count += 1;
             *sum = std::array::from_fn(|i| sum[i] + u64::from(color[i]));
+            // Bounds the memory: colours that appear late are only counted by cell.
             if self.counts.len() < MOST_COUNTED || self.counts.contains_key(&color) {
                 *self.counts.entry(color).or_default() += 1;
             }
+            // Neighbours are often equal, so the set is searched only when it changes.
             if last.replace(color) != Some(color) && distinct.len() <= 256 {
                 distinct.insert(color);
             }

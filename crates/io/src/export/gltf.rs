@@ -59,6 +59,7 @@ pub(super) fn written(
         notes: Vec::new(),
     };
     writer.root.asset.generator = Some("Marraztu".to_owned());
+    // Objects come first: their looks determine the materials.
     for (_, object) in scene.objects.iter().filter(|(_, object)| object.visible) {
         writer.object(object);
     }
@@ -86,6 +87,7 @@ pub(super) fn written(
             extras: Default::default(),
         });
     }
+    // The text comes last in the list: the main file is written last.
     let text = root.to_vec().map_err(|error| error.to_string())?;
     let mut files = Vec::new();
     match form {
@@ -107,6 +109,7 @@ fn binary(mut text: Vec<u8>, mut buffer: Vec<u8>) -> Result<Vec<u8>, String> {
     let length = |bytes: usize| u32::try_from(bytes).map_err(|_large| "it is too large".to_owned());
     let more = if buffer.is_empty() { 0 } else { 8 + buffer.len() };
     let whole = length(12 + 8 + text.len() + more)?;
+    // The header: magic, version 2 and the total length, all little-endian.
     let mut file = Vec::with_capacity(12 + 16 + text.len() + buffer.len());
     file.extend(b"glTF");
     file.extend(2_u32.to_le_bytes());

@@ -71,6 +71,7 @@ impl Writer<'_> {
         if all.is_empty() {
             return;
         }
+        // The extension keeps all lights in the root; nodes refer to them by index.
         self.uses("KHR_lights_punctual");
         let mut lights = Vec::new();
         for (i, (light, world)) in (0..).zip(all) {
@@ -87,6 +88,7 @@ impl Writer<'_> {
 
     /// Returns a light and its placement; `None` if glTF has no equivalent.
     fn light(&self, light: &Light) -> Option<(punctual::Light, DMat4)> {
+        // glTF lights shine along -Z of their node.
         let along = |direction: DVec3| {
             math::frame(-direction, DVec3::Y, DMat3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y))
         };
@@ -101,6 +103,7 @@ impl Writer<'_> {
                 (punctual::Type::Point, DMat4::from_translation(at))
             }
             Anchor::Owner(owner) => {
+                // glTF spots do not follow an owner: each is placed where its owner is now.
                 let world = match owner {
                     SpotOwner::SelectedObject => self.object_frame(self.view.object?)?,
                     SpotOwner::Object(id) => self.object_frame(*id)?,

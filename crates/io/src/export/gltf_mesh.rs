@@ -100,6 +100,7 @@ impl Writer<'_> {
 
     /// Writes the meshes of an object, by the objects and groups of its file.
     fn meshes<'a>(&mut self, object: &'a Object, baked: &DMat4) -> Vec<(Name<'a>, Groups<'a>)> {
+        // One primitive per piece and look, since a primitive has one material.
         let Sorted { pieces, polygons, .. } = self.sorted(object);
         let mut by_piece: Vec<Vec<Primitive>> = pieces.iter().map(|_| Vec::new()).collect();
         for ((piece, look), polygons) in polygons {

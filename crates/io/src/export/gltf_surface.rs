@@ -59,12 +59,14 @@ fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
         extras: Default::default(),
     });
     let [r, g, b] = look.base.map(linear);
+    // Most readers sort blended surfaces, so blending is used only for partial alpha.
     let alpha_mode = match cover {
         _ if look.opacity < 1.0 => AlphaMode::Blend,
         Cover::Fades => AlphaMode::Blend,
         Cover::Holes => AlphaMode::Mask,
         Cover::Whole => AlphaMode::Opaque,
     };
+    // glTF limits emission to 1; brighter light goes into the strength extension.
     let strength = strength(look);
     let emissive = look.material.emission.map(|x| unclamped(x) / strength.unwrap_or(1.0));
     let extensions = extensions::material::Material {
@@ -73,6 +75,7 @@ fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
             emissive_strength: extensions::material::EmissiveStrengthFactor(single(strength)),
         }),
     };
+    // Roughness and metalness from the file take precedence over the derived ones.
     let exponent = roughness(look.material.exponent);
     let metallic = look.undrawn("Pm").unwrap_or(0.0);
     gltf_json::Material {

@@ -135,12 +135,14 @@ impl Writer<'_> {
         textures: &mut Textures,
         of: &Shared<Texture>,
     ) -> Index<gltf_json::Texture> {
+        // A new picture also gets a name.
         let number = textures.pictures.number(&of.picture);
         if number == textures.names.len() {
             let stem = of.source.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             textures.names.push(stem);
         }
         let root = &mut self.root;
+        // Textures are shared by picture and wrapping: the layout is in the coordinates.
         *textures.textures.entry((number, of.wrap)).or_insert_with(|| {
             let sampler = textures.samplers.entry(of.wrap);
             let sampler = *sampler.or_insert_with(|| root.push(sampler_of(of.wrap)));

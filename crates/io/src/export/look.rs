@@ -148,6 +148,7 @@ impl Looks {
 
     /// Builds a look with its wanted name.
     fn look(&self, object: &Object, file: Option<&FileMaterial>, asked: Option<&str>) -> Look {
+        // The material as drawn: the object's choice overrides the file's.
         let shown = object.material_look(file);
         let of_file = object.material == MaterialChoice::File;
         let is_bare = object.surface == Surface::Texture;

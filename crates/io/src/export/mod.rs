@@ -103,6 +103,7 @@ pub fn export(
     };
     let Content { files, notes } = content.map_err(|reason| SaveError::new(path, reason))?;
     let notes = left_out.into_iter().chain(notes).collect();
+    // The main file keeps the user's name; companions are placed next to it.
     let last = files.len().saturating_sub(1);
     let named = |(i, (name, bytes)): (usize, (String, Vec<u8>))| {
         (if i == last { path.to_owned() } else { path.with_file_name(name) }, bytes)

@@ -51,6 +51,7 @@ pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content,
     for object in visible {
         writer.object(object, view.time);
     }
+    // The head comes last, since only now is it known whether there are materials.
     let mut content = Content::default();
     let mut head = String::from(SIGNATURE);
     if !writer.looks.all.is_empty() {

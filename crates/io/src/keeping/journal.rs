@@ -34,7 +34,7 @@ pub struct Unsaved {
     pub settings: Settings,
     /// The state of the window.
     pub window: WindowState,
-    /// The file in which the scene was last saved, if any.
+    /// The file of the scene when it was last saved, if any.
     pub file: Option<PathBuf>,
     /// The content of that file when it was last read or written.
     pub content: Option<Fingerprint>,
@@ -93,6 +93,7 @@ impl Journal {
         let folder = &folders.state;
         made(folder)?;
         let fail = |error: std::io::Error| format!("{}: {}", folder.display(), reason(&error));
+        // The lock on the list keeps other programs from taking the same slot.
         let list = list_lock(folder).map_err(fail)?;
         let process = std::process::id();
         let taken = |number: &u32| {
@@ -103,6 +104,7 @@ impl Journal {
         };
         let found = (1..1000).find_map(|number| taken(&number));
         let (slot, lock) = found.ok_or_else(|| format!("{}: cannot lock it", folder.display()))?;
+        // The slot's own lock protects it from here on.
         drop(list);
         let desk = Mutex::new(Desk::default());
         let shared = Arc::new(Shared { desk, changed: Condvar::new(), slot });
@@ -120,7 +122,7 @@ impl Journal {
         self.shared.changed.notify_all();
     }
 
-    /// Reports that there are no unsaved changes.
+    /// Reports that all changes are saved.
     pub fn all_saved(&self) {
         self.shared.desk().next = Next::Remove;
         self.shared.changed.notify_all();

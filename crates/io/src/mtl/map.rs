@@ -22,7 +22,7 @@ pub(super) struct Map {
 /// turbulence, base and gain of the texels, the channel of a scalar map, boosted sharpness.
 const IGNORED: [(&str, usize); 4] = [("-t", 3), ("-mm", 2), ("-imfchan", 1), ("-boost", 1)];
 
-/// Parses the arguments; `None` if there is no name.
+/// Parses the arguments; `None` without a name.
 pub(super) fn map(rest: &[u8]) -> Option<Map> {
     let mut map = Map {
         name: String::new(),
@@ -66,6 +66,7 @@ impl Map {
             }
             given.len()
         };
+        // Ignored options must still consume their arguments, or these would join the name.
         let word = word.to_ascii_lowercase();
         if let Some((option, most)) = IGNORED.iter().find(|(option, _)| *option == word) {
             self.ignored.push(option);

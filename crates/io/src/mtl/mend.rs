@@ -1,4 +1,4 @@
-//! Completes materials whose statements are missing or invalid.
+//! Completes materials with missing or invalid statements.
 //!
 //! Exporters write Ka as a copy of Kd or as white, which lights everything uniformly; Ks for dull
 //! surfaces; or no Kd next to a texture. Each rule has its own finding.
@@ -21,6 +21,7 @@ impl Statements {
         let mut note = |kind| findings.add(kind, &self.name, Some(self.line));
         let diffuse = self.mended_diffuse(&mut note);
         let ambient = self.mended_ambient(diffuse, &mut note);
+        // A packed Ks is not a colour: the highlight follows from roughness and metalness.
         let (specular, exponent) = match self.packed() {
             Some(packed) => {
                 note(FindingKind::MendedPacked);
@@ -32,6 +33,7 @@ impl Statements {
             }
         };
         let opacity = self.mended_opacity(&mut note);
+        // Kd multiplies the texture, so black hides it.
         if texture.is_some() && self.diffuse == Some([0.0; 3]) {
             note(FindingKind::DiffuseBlack);
         }

@@ -244,6 +244,7 @@ impl<'a> Library<'a> {
         folders: [&Path; 2],
         note: &mut dyn FnMut(FindingKind, &str),
     ) -> Option<Shared<Texture>> {
+        // Searches are cached and limited, because each takes several disk accesses.
         let key = (folders[0].to_owned(), map.name.clone());
         if self.found.len() >= MOST_NAMES && !self.found.contains_key(&key) {
             note(FindingKind::TextureMany, "");
@@ -256,6 +257,7 @@ impl<'a> Library<'a> {
             note(FindingKind::TextureMissing, &map.name);
             return None;
         };
+        // Maps with equal files and layouts share a texture.
         let bits = [map.offset, map.scale].concat();
         let bits = std::array::from_fn(|i| bits[i].to_bits());
         let key = (path.clone(), map.wrap == Wrap::Clamp, bits);

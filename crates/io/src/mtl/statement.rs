@@ -8,22 +8,22 @@ use std::panic::catch_unwind;
 
 use crate::obj::lines::{number, words};
 
-/// Parses `Ka r g b`; one number stands for all three.
+/// Parses `Ka r g b`; a single number sets all three.
 pub(super) fn ambient(rest: &[u8]) -> Option<[f64; 3]> {
     finite(material("Ka", &color(rest)?)?.ambient?)
 }
 
-/// Parses `Kd r g b`; one number stands for all three.
+/// Parses `Kd r g b`; a single number sets all three.
 pub(super) fn diffuse(rest: &[u8]) -> Option<[f64; 3]> {
     finite(material("Kd", &color(rest)?)?.diffuse?)
 }
 
-/// Parses `Ks r g b`; one number stands for all three.
+/// Parses `Ks r g b`; a single number sets all three.
 pub(super) fn specular(rest: &[u8]) -> Option<[f64; 3]> {
     finite(material("Ks", &color(rest)?)?.specular?)
 }
 
-/// Parses `Ke r g b`, which tobj does not know; one number stands for all three.
+/// Parses `Ke r g b`, which tobj does not know; a single number sets all three.
 pub(super) fn emission(rest: &[u8]) -> Option<[f64; 3]> {
     specular(rest)
 }

@@ -40,6 +40,7 @@ impl Piece {
                 break;
             }
         }
+        // A fault drops the whole face: the corners pushed so far are removed.
         let corners = self.faces.corners() - begin;
         if fault.is_none() && corners < 3 {
             let reason = format!("a face needs at least three corners, but has {corners}");

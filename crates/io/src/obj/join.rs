@@ -98,6 +98,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
     fn pieces(self) -> Result<Vec<Piece>, LoadError> {
         let threads = (0..rayon::current_num_threads()).into_par_iter();
         let own = |_| self.own_pieces().inspect_err(|_| self.chunks().stop());
+        // Threads take chunks in any order, so the pieces are sorted afterwards.
         let own: Vec<Vec<(usize, Piece)>> = threads.map(own).collect::<Result<_, LoadError>>()?;
         let mut pieces: Vec<(usize, Piece)> = own.into_iter().flatten().collect();
         pieces.sort_unstable_by_key(|(number, _)| *number);
@@ -167,6 +168,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
             Some(Stop::CountsBack) => counted(&piece.text),
             _ => [piece.vertices.count, piece.uvs.count, piece.normals.count],
         };
+        // A prefix sum gives the statements before each chunk.
         let counts: Vec<Counts> = pieces.par_iter().map(count).collect();
         let before = counts.iter().scan([0_u32; 3], |sum, counts| {
             let before = *sum;
@@ -305,6 +307,7 @@ fn complete_colors(pieces: &mut [Piece], findings: &mut Findings) -> Vec<[f32; 3
         colors.append(&mut piece.vertices.colors);
         colors.resize(all, NO_COLOR);
     }
+    // Colours may be bytes or fractions; the file as a whole decides.
     let numbers = || colors.as_flattened().iter().filter(|x| x.is_finite());
     let are_bytes =
         numbers().any(|x| f64::from(*x) > BYTES_ABOVE) && numbers().all(|x| x.fract() == 0.0);

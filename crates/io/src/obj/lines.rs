@@ -188,6 +188,7 @@ impl<'a> Iterator for Lines<'a> {
             let whole = |first: &'a [u8], oddity: Option<Oddity>| {
                 Some(Line { number, text: cleaned(first), joined: None, oddity })
             };
+            // Nearly all lines end here, without a copy.
             let Some(begin) = first.strip_suffix(b"\\") else { return whole(first, None) };
             if first.starts_with(b"#") {
                 return whole(first, None);
@@ -195,6 +196,7 @@ impl<'a> Iterator for Lines<'a> {
             if self.precedes_statement() {
                 return whole(begin, Some(Oddity::NotContinued));
             }
+            // Numbers are joined with a blank, names without one.
             let (mut text, mut joined) = (begin.to_vec(), begin.to_vec());
             let mut oddity = None;
             while let Some(next) = self.physical() {

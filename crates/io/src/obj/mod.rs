@@ -153,6 +153,7 @@ fn model(
     if library.count() > 0 && content.parts.iter().all(|part| part.names.material.is_none()) {
         findings.note_count(FindingKind::MaterialsUnused, library.count());
     }
+    // Finishing the library decides how `Tr 1` is read, which depends on the used materials.
     let companions = library.files();
     let (materials, of_materials) = library.finish(&used);
     let edge_color = content.edge_color;
@@ -288,6 +289,7 @@ fn own_library(
     let stem = stem.to_string_lossy();
     let mut own = |ending: &str| library.locator.locate(folder, &format!("{stem}.{ending}"));
     let has_library = !content.libraries.is_empty() && missing.is_empty();
+    // Without such an MTL file, a picture of that name is worth a note.
     let Some(mtl) = (if has_library { None } else { own("mtl") }) else {
         if content.libraries.is_empty()
             && let Some(picture) = texture_endings().into_iter().find_map(own)
@@ -299,6 +301,7 @@ fn own_library(
         }
         return;
     };
+    // An MTL file that no face needs is not read.
     let names_materials = content.parts.iter().any(|part| part.names.material.is_some());
     if missing.is_empty() && !names_materials {
         return findings.add(FindingKind::MtlUnnamed, &short_name(&mtl), None);
@@ -342,6 +345,7 @@ fn source(
     if placement(options) != placement(&LoadOptions::default()) {
         place(&mut positions, &mut normals, options);
     }
+    // Splitting off the offset keeps f32 precision far from the origin.
     let (offset, positions) = split_positions(&positions, &content.faces.corners.positions);
     let (arities, polygon_parts) = (faces.arities(), faces.parts());
     let smoothing = if has_smoothing {
@@ -350,6 +354,7 @@ fn source(
         Smoothing::Crease(options.crease)
     };
     let mut corners = content.faces.corners;
+    // Reversing the corners of each polygon flips its winding.
     if options.winding == Winding::Turned {
         let CornerLists { positions, uvs, normals } = &mut corners;
         for list in [positions, uvs, normals].into_iter().filter(|list| !list.is_empty()) {
@@ -395,6 +400,7 @@ fn place(positions: &mut [[f64; 3]], normals: &mut [[f32; 3]], options: &LoadOpt
 /// Notes polygons with triangles of opposite orientation: they cross themselves, or were too large
 /// to be triangulated correctly.
 fn note_crossings(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
+    // Triangles cannot cross themselves.
     if mesh.triangle_count() == mesh.polygon_count() {
         return;
     }
@@ -430,6 +436,7 @@ fn note_unmapped(mesh: &Mesh, materials: &[FileMaterial], findings: &mut Finding
     if !mesh.parts().iter().any(|part| texture(part).is_some()) {
         return;
     }
+    // A part is reported if it has faces, but none with texture coordinates.
     let mut seen = vec![[false; 2]; mesh.parts().len()];
     for (polygon, part) in (0..).zip(mesh.polygon_parts()) {
         let [is_used, is_mapped] = &mut seen[*part as usize];

@@ -69,7 +69,7 @@ impl Piece {
 }
 
 /// Counts the words of a line, their bytes and the bytes of the line end; `None` if the line has
-/// characters other than blanks and those of numbers. It begins with a blank.
+/// characters that are neither blanks nor part of numbers. It begins with a blank.
 #[inline]
 fn plain(text: &[u8]) -> Option<(u32, usize, usize)> {
     let (mut words, mut after_blank, mut length) = (0, false, 0);
@@ -125,6 +125,7 @@ fn index(text: &[u8], count: Option<u32>) -> Option<(u32, &[u8])> {
         [b'-', rest @ ..] => (true, rest),
         _ => (false, text),
     };
+    // Eight digits at once; the loop handles a ninth, and the end of the text.
     let (mut value, first) = digits.first_chunk().map_or((0, 0), |eight| leading_digits(*eight));
     let mut rest = &digits[first..];
     if first == 8 || digits.len() < 8 {

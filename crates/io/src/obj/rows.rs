@@ -1,7 +1,7 @@
 //! The numbers of `v`, `vt` and `vn`, parsed by tobj.
 //!
 //! tobj returns only rows that faces refer to, in the order of reference. The lines of one kind are
-//! therefore passed to it with polygons in between, each of which refers to the lines since the
+//! therefore passed to it with polygons in between, and each polygon refers to the lines since the
 //! last one. All rows come back in file order, used or not. tobj reads its text line by line,
 //! directly from the chunk.
 //!
@@ -148,6 +148,7 @@ impl<const N: usize, T: Number> Rows<N, T> {
         }
         let has_colors = lines.iter().any(|line| line.is_colored);
         let polygon = self.polygon(lines.len().min(POLYGON));
+        // tobj needs a vertex in every face, even if only texture coordinates or normals count.
         let mut text = RowText {
             chunk,
             rewritten: rewritten.as_bytes(),
@@ -161,6 +162,7 @@ impl<const N: usize, T: Number> Rows<N, T> {
         let options = tobj::LoadOptions::default();
         let no_library = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
         let read = || tobj::load_obj_buf(&mut text, &options, no_library);
+        // tobj panics on some malformed numbers.
         let Ok(Ok((models, _))) = catch_unwind(AssertUnwindSafe(read)) else { return false };
         self.kept.reserve(lines.len());
         for tobj::Model { mesh, .. } in &models {

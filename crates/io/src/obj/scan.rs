@@ -95,8 +95,10 @@ impl Piece {
                 self.findings.add(FindingKind::LineOrPoint, &excerpt(keyword), Some(line.number));
             }
             b"s" => self.smoothing(rest, line.number),
+            // Statements that do not change the shape are skipped silently.
             b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"usemap" | b"maplib"
             | b"shadow_obj" | b"trace_obj" | b"t" => {}
+            // Free-form geometry is missing from the picture, so it is reported.
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf"
             | b"parm" | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"ctech"
             | b"stech" => {

@@ -97,6 +97,7 @@ impl SoundPiece {
         if let Some((line, _)) = &mut faces.refused {
             *line = line.saturating_add(lines);
         }
+        // The fast check covers nearly all files; only the rest is checked face by face.
         let lists = &faces.corners;
         let sound = totals[0].holds(&lists.positions, false)
             && totals[1].holds(&lists.uvs, true)
@@ -186,6 +187,7 @@ impl SoundPiece {
         self.faces.end_face(Run { faces: 1, ..of });
         self.without[0].note(no_uv, of.line);
         self.without[1].note(no_normal, of.line);
+        // Faults of attributes are noted, but do not cost the face.
         let odd = [
             (wrong_uv, FindingKind::UvRange),
             (wrong_normal, FindingKind::NormalRange),

@@ -12,7 +12,7 @@ use marraztu_core::scene::{Model, Shape};
 /// The side of a box as a fraction of the median extent.
 const PART_OF_USUAL: f64 = 0.6;
 
-/// The side of a box as a fraction of half the visible height, if there is no other object.
+/// The side of a box as a fraction of half the visible height, without other objects.
 const PART_SEEN: f64 = 0.5;
 
 /// The reference sizes for boxes.

@@ -104,6 +104,7 @@ impl Files {
         name: &str,
         progress: &Progress,
     ) -> Result<(), SceneFileError> {
+        // Each distinct model is loaded once, unless it is already known.
         let of_objects = file.objects.iter().map(|object| &object.model);
         let all = of_objects.chain(file.cameras.iter().map(|camera| &camera.model));
         let mut keys = BTreeSet::new();

@@ -140,6 +140,7 @@ pub fn items_of_text(
         settings: Settings::default(),
     };
     open::check_counts(&file).map_err(fail)?;
+    // From here on, the fragment is checked like a scene file.
     let mut files = Files::new(PathBuf::new(), NAME);
     files.know(known);
     files.load(&file, NAME, progress)?;

@@ -101,6 +101,7 @@ pub(super) fn read_light(light: &FileLight) -> Result<Light, String> {
             LightKind::Bulb { position: Tracked::new(DVec3::from_array(position)), orbit }
         }
         FileLightKind::Spot { ref owner, half_aperture, exponent } => {
+            // Also false for NaN.
             let right =
                 (0.0..=90.0).contains(&half_aperture) && (0.0..f64::INFINITY).contains(&exponent);
             if !right {

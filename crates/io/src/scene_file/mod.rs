@@ -201,10 +201,12 @@ fn file_scene(text: &str, name: &str) -> Result<FileScene, SceneFileError> {
         let reason = "this is not a scene file: it does not begin with \"(\"".to_owned();
         return Err(SceneFileError::Line { file: name.to_owned(), line: 1, column: 1, reason });
     }
+    // The version comes first: fields of a newer version would only give a confusing error.
     let Head { version } = ron::from_str(text).map_err(fail)?;
     if (1..=VERSION).contains(&version) {
         return ron::from_str(text).map_err(fail);
     }
+    // Point the error at the version in the text.
     let place = text.lines().zip(1..).find_map(|(line, number)| {
         let before = line.find("version")?;
         Some((number, line[..before].chars().count() + 1))

@@ -69,6 +69,7 @@ pub(super) fn scene(
         locked: BTreeSet::new(),
     };
     let mut largest = 0;
+    // Errors name the item, since the user finds it by id and name in the file.
     let mut insert = |at: usize, item: Item, id: u32, what: String| {
         largest = largest.max(id);
         let insertion = Command::Insert { at, item };
@@ -89,6 +90,7 @@ pub(super) fn scene(
         let item = read_camera(camera, needs).map_err(|reason| format!("{what}: {reason}"))?;
         insert(at, Item::Camera(CameraId(camera.id), Box::new(item)), camera.id, what)?;
     }
+    // Commands do not check slots, so duplicates are rejected here.
     let mut slots = BTreeSet::new();
     for (at, light) in file.lights.iter().enumerate() {
         let what = format!("light {} \"{}\"", light.id, light.name);
@@ -101,6 +103,7 @@ pub(super) fn scene(
     if file.cameras.is_empty() {
         return Err("a scene needs a camera".to_owned());
     }
+    // New items must get unused ids, even if the file states a smaller `next_id`.
     let after = largest.checked_add(1).ok_or("an id is too large for another to follow")?;
     scene.next_id = file.next_id.max(after);
     scene.locked = file.locked.within(&scene);

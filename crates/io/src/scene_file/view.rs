@@ -165,6 +165,7 @@ pub(super) fn read_view(
     let is_there = |id: &LightId| check("light", id.0, scene.lights.get(*id).is_some());
     let light = file.light.map(LightId).filter(is_there);
     let object = object.or(first.object);
+    // Polygon mode belongs to the selected object.
     let polygons = object.and_then(|id| scene.objects.get(id)).and_then(|object| {
         let file = file.polygons.as_ref()?;
         let count = object.model.mesh.polygon_count();

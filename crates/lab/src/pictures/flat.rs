@@ -62,6 +62,7 @@ pub fn number_of([r, g, b, _]: [u8; 4]) -> Option<usize> {
 #[expect(clippy::cast_precision_loss, reason = "a side is at most 2^14")]
 pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
     assert!(side.is_power_of_two(), "only then is every corner exact");
+    // One unit is one pixel, and the centre of the picture is the origin.
     let camera = Camera {
         name: "camera".to_owned(),
         visible: false,
@@ -80,6 +81,7 @@ pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
         let silver = MaterialChoice::Preset(PresetId::SILVER);
         let mut object = Object::new(model(triangles, side, number), silver);
         number += triangles.len();
+        // Unlit, so the vertex colours reach the picture unchanged.
         object.surface = Surface::Texture;
         object.sides = Sides::Two;
         (ObjectId(id), object)
@@ -124,6 +126,7 @@ fn model(triangles: &[Flat], side: usize, first: usize) -> Shared<Model> {
     for (number, triangle) in triangles.iter().enumerate() {
         for (corner, distance) in triangle.corners.into_iter().zip(triangle.distances) {
             let place = place(corner, distance, side);
+            // Meshes store f32: a rounded corner would make the test meaningless.
             let narrow = place.as_vec3();
             assert_eq!(narrow.as_dvec3(), place, "a corner has too many bits");
             let position = u32::try_from(source.positions.len()).expect("few triangles");

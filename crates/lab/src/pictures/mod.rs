@@ -104,6 +104,7 @@ pub fn all() -> Vec<TestPicture> {
     let each_lit = Settings { light: LightAt::Sample, ..of(Samples::Four) };
     let half = Settings { specular: SpecularForm::HalfVector, ..settings };
     let (textured, rough) = (textured(&near), Settings { filter: Filter::Nearest, ..settings });
+    // Overlapping random triangles stress coverage and depth.
     let (stage, from_above) = flat::scene(&[scattered()], SIDE);
     let mut all = vec![
         picture("first scene", &scene, &view, settings),

@@ -50,6 +50,7 @@ pub fn place(
             let clear = |others: &[TextBox]| others.iter().all(|other| !other.overlaps(text));
             text.is_inside(frame) && clear(&taken) && clear(marks)
         };
+        // Avoid marks and line, then only marks, then only other labels.
         let found = around(*mark, *size, radius)
             .find(|text| free(text, &both))
             .or_else(|| around(*mark, *size, radius).find(|text| free(text, &squares)))

@@ -86,6 +86,7 @@ impl Report {
     /// Returns the front for a minimum cut of the error. A point within the noise gets the time of
     /// the default, and the default represents all points that are as fast and as exact.
     fn front_by(&self, least: f64) -> Vec<usize> {
+        // Within the noise, times are equal: noise must not decide who is on the front.
         let (places, mut points) = self.comparable();
         let Some(default) = points.first().copied() else { return Vec::new() };
         for (place, point) in places.iter().zip(&mut points) {

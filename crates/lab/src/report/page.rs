@@ -88,6 +88,7 @@ pub fn page_html(reports: &[Report]) -> Result<String, PlotError> {
     for (axis, reports) in sections(reports) {
         let _ = writeln!(text, "<h2>{}</h2>", axis.label);
         for report in reports {
+            // Both themes are embedded; CSS shows one.
             let [light, dark] =
                 [Look::Light, Look::Dark].map(|look| panel_svg(report, Some(axis.key), look));
             let _ = write!(

@@ -78,6 +78,7 @@ impl Panels {
         let of_axes = || AXES.iter().flat_map(|axis| findings.rows_of(axis));
         let overview = report.overview();
         let time = |point: usize| libm::log10(ratio(report, point));
+        // One scale for all panels makes them comparable.
         let shown = of_axes().map(|row| row.point).chain(overview.iter().copied());
         // Large noise should not widen the scale.
         let near = noise.map(|x| x.clamp(-0.2, 0.2));

@@ -248,6 +248,7 @@ impl Sheet {
         let at: Vec<(i32, i32)> =
             panel.marks.iter().map(|mark| self.place(frame, mark.at)).collect();
         area.draw(&PathElement::new(at.clone(), colors.data.stroke_width(2)))?;
+        // The interval is drawn first, so the mark covers it.
         for (mark, at) in panel.marks.iter().zip(&at) {
             let color = if mark.is_default { colors.default } else { colors.data };
             let [left, _, right, _] = frame;
@@ -259,6 +260,7 @@ impl Sheet {
                 area.draw(&Circle::new(*at, MARK + 4, colors.ink.stroke_width(2)))?;
             }
         }
+        // Names come last, on top of all lines.
         for (mark, text) in panel.marks.iter().zip(self.names(panel, frame)) {
             let Some(text) = text else { continue };
             let color = if mark.is_default { colors.default } else { colors.ink };
@@ -292,6 +294,7 @@ impl Sheet {
     fn scales<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, frame: Rect) -> Drawn<DB> {
         let (colors, panels, [left, top, right, bottom]) = (self.colors, &self.panels, frame);
         let small = |h, v| styled(12, colors.faint, h, v);
+        // The noise band lies below the grid.
         let band = panels.noise.map(|x| along(&panels.x, x, left, right).clamp(left, right));
         let band = [(band[0], top), (band[1].max(band[0] + 1), bottom)];
         area.draw(&Rectangle::new(band, colors.noise.filled()))?;

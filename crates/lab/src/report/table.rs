@@ -75,6 +75,7 @@ pub fn text(report: &Report) -> String {
         "FLIP"
     );
     let (front, current) = (report.front(), report.current());
+    // Print a heading wherever the group changes.
     let mut last = String::new();
     for row in report.rows() {
         let heading = heading(row);
@@ -82,6 +83,7 @@ pub fn text(report: &Report) -> String {
             let _ = writeln!(text, "{heading}");
             last = heading;
         }
+        // The marks are explained below the table.
         let marks = [
             if row.point == 0 { '*' } else { ' ' },
             if current == Some(row.point) { '>' } else { ' ' },
@@ -174,6 +176,7 @@ fn foot(text: &mut String, report: &Report) {
             if kernel.equal { "equal results" } else { "DIFFERENT RESULTS" }
         );
     }
+    // The answers to budgets follow, if the user set any.
     let answers = report.answers();
     if !answers.is_empty() {
         let _ = writeln!(text);
@@ -208,6 +211,7 @@ pub fn markdown(report: &Report, axis: &Axis) -> String {
     for row in report.findings.rows_of(axis) {
         let (point, error) = (&report.findings.points[row.point], report.findings.error_of(row));
         let quartiles = &point.ratio.quartiles;
+        // The default is exactly 1x by definition; its own measurement is the control.
         let star = if row.point == 0 { " (default)" } else { "" };
         let time = match (row.point, point.verdict) {
             (0, _) => "1x".to_owned(),
@@ -279,12 +283,14 @@ fn cells(report: &Report) -> Vec<Vec<String>> {
         "current",
     ];
     let (front, current) = (report.front(), report.current());
+    // One column per axis lets spreadsheets filter by choice.
     let axes = AXES.iter().map(|axis| axis.key);
     let head = ["group", "name"].into_iter().chain(axes).chain(FIGURES);
     let mut cells = vec![head.map(str::to_owned).collect()];
     for row in &report.findings.rows {
         let Measured { settings, ms, ratio, verdict, sampled, hash, .. } =
             &report.findings.points[row.point];
+        // Errors refer to the row's own reference, which the column `against` names.
         let error = report.findings.error_of(row);
         let (whole, inside) = (&error.whole, &error.inside);
         let quartiles = &ratio.quartiles;

@@ -63,6 +63,7 @@ pub(super) fn verdict_on(report: &Report, axis: &Axis) -> String {
 
 /// Explains why choices take longer than more exact ones, if this happens here.
 fn reasons(report: &Report, axis: &Axis) -> Vec<String> {
+    // Choices in the order of the table, from coarse to exact.
     let rows = report.findings.rows_of(axis);
     let mut measured: Vec<(usize, [f64; 2])> = rows
         .filter_map(|row| {
@@ -73,6 +74,7 @@ fn reasons(report: &Report, axis: &Axis) -> Vec<String> {
         })
         .collect();
     measured.sort_by_key(|(place, _)| *place);
+    // Slower than a later, more exact choice, beyond the noise of both.
     let is_slower = |i: usize| {
         let mut others = measured[i + 1..].iter();
         others.any(|(_, other)| Verdict::between(measured[i].1, *other) == Verdict::Slower)
@@ -201,6 +203,7 @@ fn bought(all: &[&Said<'_>]) -> Vec<String> {
         let more = |it: &&Said<'_>| {
             format!("{}: {}, {}", it.row.name, times(it.ratio()), digits(it.error))
         };
+        // Finer choices of the same axis follow in brackets.
         let others: Vec<String> = own.map(more).collect();
         if !others.is_empty() {
             text += &format!(" ({})", others.join("; "));

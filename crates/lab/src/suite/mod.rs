@@ -1,4 +1,4 @@
-//! The suite: scenes in which each axis of accuracy matters.
+//! The suite: scenes that make each axis of accuracy matter.
 //!
 //! In an ordinary scene, most choices make no difference because other work dominates the time.
 //! Each scene here has one bottleneck, and each axis is measured in a scene with a bottleneck that
@@ -171,6 +171,7 @@ pub fn run(
 ) -> Result<Vec<Report>, Unmeasured> {
     let mut reports = Vec::new();
     for (i, suite) in scenes.iter().enumerate() {
+        // Each scene is an equal part of the progress.
         let part = |i: usize| f64::from(u32::try_from(i).unwrap_or(0)) / scenes.len() as f64;
         let watch = watch.clone().with(&watch.progress.part(part(i), part(i + 1)));
         let report = measured(suite, detail, clock, &watch)?;

@@ -75,6 +75,7 @@ fn ball(rings: u32) -> Shared<Model> {
             maker.vertex([s * libm::sin(angle), c, s * libm::cos(angle)], None);
         }
     }
+    // The poles are vertices 0 and 1; the rings follow from top to bottom.
     let at = |ring: u32, segment: u32| 2 + (ring - 1) * segments + segment % segments;
     for segment in 0..segments {
         maker.polygon(&[0, at(1, segment), at(1, segment + 1)]);
@@ -208,6 +209,7 @@ pub(super) fn edges(_: u32) -> (Scene, View) {
     let mut maker = Maker::default();
     let mut slat = |from: [f64; 2], to: [f64; 2], width: f64, z: f64| {
         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        // A slat is a quad around its axis, as wide as `width`.
         let length = libm::hypot(dx, dy);
         let side = [-dy / length * width / 2.0, dx / length * width / 2.0];
         let corner = |[x, y]: [f64; 2], sign: f64| [x + sign * side[0], y + sign * side[1], z];
@@ -310,6 +312,7 @@ pub(super) fn shadows(detail: u32) -> (Scene, View) {
     });
     let (mut scene, view) =
         stage(std::iter::once(floor).chain(balls).collect(), DVec3::new(0.0, 40.0, 230.0));
+    // The stage has a sun and a bulb; a spot adds the third kind of shadow.
     let aim = Aim { position: DVec3::new(150.0, 120.0, 120.0), direction: aimed_down() };
     let owner = SpotOwner::Fixed(Tracked::new(aim));
     let spot = LightKind::Spot { owner, half_aperture: 30.0, exponent: 3.0 };

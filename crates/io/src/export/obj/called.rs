@@ -121,6 +121,7 @@ impl Names {
 
     fn called(&mut self, object: &Object, part: u32, looks: &mut Looks) -> Called {
         let names = object.model.mesh.part_names(part);
+        // The object's name is taken once and reused by its other parts.
         let own = match self.of_object.objects.get(&names.object) {
             Some(name) => name.clone(),
             None => {
@@ -134,6 +135,7 @@ impl Names {
             let name = || taken.take(&on_one_line(group));
             self.of_object.groups.entry(group.clone()).or_insert_with(name).clone()
         });
+        // Plain faces need no material, unless an earlier `usemtl` is still in effect.
         let asked = names.material.as_deref();
         let material = match asked.filter(|name| !name.is_empty()) {
             None if is_plain(object, part)
