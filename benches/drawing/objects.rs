@@ -59,7 +59,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         let name = format!("{SEEN} in view of {count}");
         group.bench_function(BenchmarkId::from_parameter(name), |b| stage.measure(b));
     }
-    // Copies share one mesh, so only its instances cost more.
+    // Copies share one mesh, so only the drawing time grows.
     let knot = shapes::knot(1_000_000);
     for count in [1, 20] {
         let stage = knots(&knot, count);

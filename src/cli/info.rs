@@ -96,7 +96,7 @@ fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
         Projection::Perspective => "in perspective",
         Projection::Orthographic => "in parallel projection",
     };
-    // The observer and the projection explain what `render` would draw.
+    // The observer and the projection determine the picture that `render` draws.
     let observer = match view.observer {
         Observer::Camera => "the selected camera",
         Observer::Object => "the selected object",

@@ -57,7 +57,7 @@ impl LoadError {
     }
 }
 
-/// Words an error of the operating system, in plainer words than its own where we have them.
+/// Returns the message of an I/O error, in plainer words for common kinds.
 pub(super) fn reason(error: &std::io::Error) -> String {
     use std::io::ErrorKind;
     match error.kind() {

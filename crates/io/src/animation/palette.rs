@@ -50,7 +50,7 @@ impl Colors {
             if self.counts.len() < MOST_COUNTED || self.counts.contains_key(&color) {
                 *self.counts.entry(color).or_default() += 1;
             }
-            // Neighbours are often equal, so the set is searched only when it changes.
+            // Neighbours are often equal, so the set is searched only when the colour changes.
             if last.replace(color) != Some(color) && distinct.len() <= 256 {
                 distinct.insert(color);
             }

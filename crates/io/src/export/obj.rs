@@ -177,7 +177,7 @@ fn is_far(object: &Object, time: f64) -> bool {
         || sphere.is_some_and(|(centre, radius)| centre.length() > FAR * radius)
 }
 
-/// Writes a position in world space, bit for bit that of the file if the transform is the identity.
+/// Writes a position in world space. The identity transform keeps the bits of the file.
 fn place_to(text: &mut String, world_from_mesh: &DMat4, position: [f32; 3], is_far: bool) {
     let place = world_from_mesh.transform_point3(dvec3(position));
     let _ = if *world_from_mesh == DMat4::IDENTITY {

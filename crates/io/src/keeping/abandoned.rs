@@ -16,7 +16,7 @@ pub struct Abandoned {
     lock: Lock,
     /// The time of the last write.
     pub written: SystemTime,
-    /// The file of the scene when it was last saved, if any.
+    /// The file that the scene was last saved to, if any.
     pub scene_file: Option<PathBuf>,
     /// The content of that file when the work began, if known.
     pub content: Option<Fingerprint>,

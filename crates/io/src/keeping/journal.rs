@@ -34,7 +34,7 @@ pub struct Unsaved {
     pub settings: Settings,
     /// The state of the window.
     pub window: WindowState,
-    /// The file of the scene when it was last saved, if any.
+    /// The file that the scene was last saved to, if any.
     pub file: Option<PathBuf>,
     /// The content of that file when it was last read or written.
     pub content: Option<Fingerprint>,

@@ -168,7 +168,7 @@ impl Preferences {
         self.recent.truncate(MOST_RECENT);
     }
 
-    /// Replaces numbers with which no window could open by their defaults.
+    /// Replaces values that no window can have by the defaults.
     fn within_limits(mut self) -> Self {
         let sound = |x: f32, min: f32, max: f32| x.is_finite() && x >= min && x <= max;
         if !sound(self.scale, 0.2, 5.0) {

@@ -137,7 +137,7 @@ impl<'a> Library<'a> {
         self.findings.push(findings);
     }
 
-    /// The number of materials.
+    /// Returns the number of materials.
     pub(super) fn count(&self) -> usize {
         self.materials.len()
     }

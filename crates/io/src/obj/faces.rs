@@ -5,7 +5,7 @@
 
 use marraztu_core::scene::{CornerLists, NONE, SourceCorner};
 
-/// Marks an index that counts back past the beginning of the file, or is 0.
+/// The value of an index that counts back past the beginning of the file, or is 0.
 pub(super) const WRONG: u32 = NONE - 1;
 
 /// Faces of at least three corners. Indices count from 0, or are [`NONE`] or [`WRONG`].

@@ -159,7 +159,7 @@ fn model(
     let edge_color = content.edge_color;
     progress.reached(1, 10)?;
 
-    // Faces may change in triangulation, so the checks run on the finished mesh.
+    // The checks below need the triangles and normals of the finished mesh.
     let mut content = content;
     let faces = FaceRuns::of(std::mem::take(&mut content.faces.runs));
     let (source, corners) = source(content, &faces, parts, options)
@@ -214,7 +214,7 @@ fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
         .then(|| "this is not an OBJ file: it is not text".into())
 }
 
-/// Rejects a file if no face of it is usable and it has no usable vertex either.
+/// Rejects a file if all of its faces, or all of its vertices, are unusable.
 fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
     if !content.faces.runs.is_empty() {
         return Ok(());
@@ -301,7 +301,7 @@ fn own_library(
         }
         return;
     };
-    // An MTL file that no face needs is not read.
+    // If no face names a material, the file is only noted.
     let names_materials = content.parts.iter().any(|part| part.names.material.is_some());
     if missing.is_empty() && !names_materials {
         return findings.add(FindingKind::MtlUnnamed, &short_name(&mtl), None);

@@ -106,7 +106,7 @@ impl Report {
         self.front_by(LEAST_CUT)
     }
 
-    /// Returns the default and up to ten points of the front, the fastest first. If there are more,
+    /// Returns the default and the front, at most ten points, the fastest first. If there are more,
     /// the ones with the largest cuts of the error remain.
     #[must_use]
     pub fn overview(&self) -> Vec<usize> {
