@@ -226,6 +226,7 @@ fn supported(job: &Job) -> Result<(Mode, Samples, Level), String> {
     let samples = samples.ok_or_else(|| {
         format!("{msaa} samples per pixel are not supported; there are 1, 4, 16 and 64")
     })?;
+    // Other renderers lack some options, too: status 3 lets a script skip them.
     let level = instructions::named(instructions).ok_or_else(|| {
         format!(
             "the instructions \"{instructions}\" are unknown, or this processor does not have \

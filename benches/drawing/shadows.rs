@@ -28,6 +28,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
     ] {
         let mut group = criterion.benchmark_group(format!("shadows/{name}"));
         let mut stage = Stage::new(&model, Size::new(800, 800));
+        // The baseline: the same stage before its lights cast shadows.
         group.bench_function("none", |b| stage.measure(b));
         let lights: Vec<_> =
             stage.scene.lights.iter().map(|(id, light)| (id, light.clone())).collect();
@@ -36,6 +37,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
             let item = Item::Light(id, Box::new(light));
             Command::Replace(item).apply(&mut stage.scene).expect("it fits");
         }
+        // One frame outside the measurement counts the rays.
         let mut renderer = Renderer::default();
         renderer.render(&stage.plan(0));
         let RayCount { traced, occluded } = renderer.rays();

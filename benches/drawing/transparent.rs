@@ -27,6 +27,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         group.bench_function("opaque", |b| stage.measure(b));
         let id = ObjectId(0);
         let mut object = stage.scene.objects.get(id).expect("there is one").clone();
+        // Two-sided, so closed shapes have at least two layers per pixel.
         (object.opacity, object.sides) = (0.5, Sides::Two);
         let item = Item::Object(id, Box::new(object));
         Command::Replace(item).apply(&mut stage.scene).expect("it fits");

@@ -37,6 +37,7 @@ impl Measured {
             })?;
             for entry in entries {
                 let path = entry?.path();
+                // criterion keeps the last run in `new` and the one before in `base`.
                 if path.ends_with("new") {
                     let benchmark: Benchmark = json(&path.join("benchmark.json"))?;
                     let estimates: Estimates = json(&path.join("estimates.json"))?;

@@ -78,6 +78,7 @@ fn show(
     }
     bar.set_message(what.to_owned());
     while !done.load(Ordering::Relaxed) {
+        // Short work should not flash a bar.
         if bar.is_hidden() && begin.elapsed() > PATIENCE {
             bar.set_draw_target(ProgressDrawTarget::stderr());
         }

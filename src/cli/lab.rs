@@ -182,6 +182,7 @@ fn measured(arguments: &Lab, studio: &mut Studio, current: Settings) -> Result<R
     let bar = Bar::of("measuring", &watch.progress);
     let findings = sweep(studio, &question, &mut WallClock::default(), &watch, &mut |_| {})?;
     drop(bar);
+    // clap has checked the word.
     let measure = Measure::ALL.into_iter().find(|measure| measure.word() == arguments.measure);
     Ok(Report {
         scene: scene_name(&arguments.files),

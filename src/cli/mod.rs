@@ -50,6 +50,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Headless::Verify(arguments)) => verify::verify(&arguments),
         None => open::open(&arguments.files, arguments.shell, arguments.preset),
     };
+    // Usage errors are printed like clap's own, with exit status 2.
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Usage(reason)) => {

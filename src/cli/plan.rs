@@ -131,6 +131,7 @@ fn columns(rows: &[[String; 6]]) -> String {
 
 /// Returns the cells of one effect on one item, for CSV and JSON.
 fn cells(one: &EffectUse, costs: Option<&Costs>) -> [(&'static str, Cell); 9] {
+    // Only bounded omissions change the picture; exact ones change nothing.
     let bound = match one.state {
         EffectState::LeftOut { class: Class::Bounded(steps), .. } => steps,
         _ => 0.0,
@@ -166,6 +167,7 @@ fn csv(explained: &Explained, costs: Option<&Costs>) -> String {
             let names: Vec<&str> = cells.iter().map(|(name, _)| *name).collect();
             let _ = writeln!(text, "{}", names.join(","));
         }
+        // Names come from files, so they are quoted if needed (RFC 4180).
         let line: Vec<String> = cells
             .iter()
             .map(|(_, cell)| match cell {

@@ -71,6 +71,7 @@ fn tell_unseen(renderer: &mut Renderer, shot: &Shot) {
         }
     }
     for (reason, names) in &reasons {
+        // Some reasons have an option that helps.
         let remedy = match reason {
             Unseen::TurnedAway { .. } => ": --sides two draws both sides",
             _ => "",
@@ -228,6 +229,7 @@ fn light(stage: &mut Stage, slots: &std::collections::BTreeSet<u32>) -> Result<(
 /// Switches the shadows of these lights on and all others off.
 fn shade(stage: &mut Stage, slots: &ShadowSlots) -> Result<(), Failure> {
     let lights: Vec<_> = stage.scene.lights.iter().map(|(id, light)| (id, light.clone())).collect();
+    // Check all slots first, so that an error changes nothing.
     if let ShadowSlots::These(Slots(slots)) = slots {
         let able = |slot: &u32| {
             lights.iter().any(|(_, light)| light.slot == *slot && light.can_cast_shadows())

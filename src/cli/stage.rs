@@ -179,6 +179,7 @@ fn load_all(
 ) -> Vec<Result<Loaded, LoadError>> {
     let done = AtomicUsize::new(0);
     let load = |file: &&PathBuf| {
+        // A single file reports its own progress; several count as one step each.
         let own = if files.len() == 1 { progress.clone() } else { Progress::new() };
         let input = input.filter(|_| is_standard(file));
         let options = reading.options(file, input);

@@ -34,6 +34,7 @@ impl Input {
         let magic = u64::try_from(MAGIC.len()).unwrap_or(u64::MAX);
         let system = |error: std::io::Error| LoadError::system(NAME, &error);
         source.by_ref().take(magic).read_to_end(&mut bytes).map_err(system)?;
+        // A pipe cannot be rewound, so the first bytes are chained in front of the rest.
         let packed = bytes == MAGIC;
         let all = std::io::Cursor::new(std::mem::take(&mut bytes)).chain(source);
         let limit = u64::try_from(MOST_BYTES).unwrap_or(u64::MAX).saturating_add(1);
@@ -42,6 +43,7 @@ impl Input {
             false => all.take(limit).read_to_end(&mut bytes),
         };
         read.map_err(system)?;
+        // The limit is one byte higher, so reaching it shows that the input is too large.
         if bytes.len() > MOST_BYTES {
             return Err(LoadError::too_large(NAME, MOST_BYTES));
         }

@@ -107,6 +107,7 @@ impl Attribution {
         if self.coverage_differs {
             lines.push("  the exact picture shows another triangle there".to_owned());
         }
+        // Shares may be negative: errors can cancel.
         for Share { axis, chosen, exact, value, steps } in &self.shares {
             let how = match steps {
                 0 => "no nearer".to_owned(),

@@ -172,6 +172,7 @@ fn contrast(plane: &[f64], size: Size, of: &[[f64; 2]; 2]) -> Vec<f64> {
     };
     let parts: Vec<(f64, Vec<f64>)> =
         of.iter().filter(|[a, _]| *a > 0.0).map(|[a, b]| (a * sqrt(PI / b), kernel(*b))).collect();
+    // A 2D Gaussian is the product of two 1D ones, so its sum is the square of theirs.
     let sum: f64 = parts.iter().map(|(a, taps)| a * pow(taps.iter().sum::<f64>(), 2.0)).sum();
     let mut all = vec![0.0; plane.len()];
     for (a, taps) in parts {

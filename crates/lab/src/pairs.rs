@@ -168,6 +168,7 @@ pub fn measure(
     let mut draw = |which: usize| {
         let settings = [a, b][which];
         let time = clock.time(Work::Picture(settings), &mut || source.draw(settings));
+        // Hashing is outside the timed part.
         let hash = hash(source.picture());
         match expected[which].replace(hash) {
             Some(before) if before != hash => Err(Unmeasured::Unsteady(settings.in_words())),

@@ -67,6 +67,7 @@ pub fn facts(scene: &Scene, point: &SurfacePoint) -> Vec<[String; 2]> {
         ["V".to_owned(), direction(point.to_eye)],
         ["light".to_owned(), light.to_owned()],
     ];
+    // A factor of 1 changes nothing, so it is omitted.
     if point.own != [1.0; 3] {
         facts.push(["texture and tint".to_owned(), vector(DVec3::from_array(point.own))]);
     }
@@ -87,6 +88,7 @@ pub fn ray_line(ray: &LightRay) -> String {
     if let Some(distance) = ray.distance {
         line += &format!("  d {}  att {}", number(distance), number(ray.attenuation));
     }
+    // Factors of 1 are omitted.
     if ray.shadow != 1.0 {
         line += "  in shadow";
     }
@@ -105,6 +107,7 @@ pub fn lines(scene: &Scene, explained: &PixelColor) -> Vec<String> {
         let facts = facts(scene, point);
         lines.extend(facts.iter().map(|[name, value]| format!("  {name:<17}{value}")));
     }
+    // The vectors of each light come before the sum that uses them.
     for term in &explained.terms {
         if let (Some(ray), Some(id)) = (&term.ray, term.light) {
             lines.push(format!("  {:<17}{}", light_name(scene, id), ray_line(ray)));

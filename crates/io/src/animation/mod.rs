@@ -172,6 +172,7 @@ impl AnimationWriter {
                 Encoder::Apng(Box::new(writer.map_err(|error| fail(error.to_string()))?))
             }
             AnimationFormat::Frames => {
+                // Check every file now: a failure after an hour of drawing would be too late.
                 fs::create_dir_all(path).map_err(|error| fail(reason(&error)))?;
                 for i in 0..animation.frames {
                     let frame = frame(path, &animation, i);
@@ -203,6 +204,7 @@ impl AnimationWriter {
         match &mut self.encoder {
             Encoder::Gif(writer) => writer.push(picture).map_err(|error| fail(error.to_string())),
             Encoder::Apng(writer) => {
+                // A single picture is a plain PNG, without times.
                 let time = u16::try_from(animation.time(i, 1000.0)).unwrap_or(u16::MAX);
                 let timed = match animation.frames {
                     1 => Ok(()),
@@ -266,6 +268,7 @@ fn notes(path: &Path, animation: &Animation, encoder: &Encoder) -> Vec<String> {
 
 /// Notes pictures in the folder that this animation does not replace.
 fn stale(folder: &Path, animation: &Animation) -> Option<String> {
+    // The folder may hold pictures of a longer animation with the same names.
     let is_stale = |name: &String| {
         frame_number(name).is_some_and(|number| {
             let is_own = (1..=animation.frames).contains(&number)

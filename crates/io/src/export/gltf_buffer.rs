@@ -24,6 +24,7 @@ impl Buffer {
         let start = self.bytes.len();
         self.bytes.extend(bytes);
         let length = self.bytes.len() - start;
+        // glTF requires accessors to be aligned to their component size, at most 4 bytes.
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         root.push(View {
             buffer: Index::new(0),

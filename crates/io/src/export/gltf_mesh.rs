@@ -135,6 +135,7 @@ impl Writer<'_> {
         for polygon in polygons(object) {
             let part = mesh.polygon_parts()[polygon as usize];
             let Sorted { pieces, numbers, parts, .. } = &mut sorted;
+            // Looks are expensive to build, so each part is resolved once.
             let key = *parts.entry(part).or_insert_with(|| {
                 let names = mesh.part_names(part);
                 let names = (names.object.as_deref(), names.group.as_deref());
@@ -267,10 +268,12 @@ fn with_placement(node: Node, world: &DMat4) -> Node {
         return node;
     }
     let turn = DMat3::from_mat4(*world);
+    // Readers decompose a matrix, which loses precision in large entries.
     let lengths = [turn.x_axis, turn.y_axis, turn.z_axis].map(DVec3::length);
     if lengths.into_iter().all(|length| length <= LARGEST_IN_MATRIX) {
         return Node { matrix: Some(columns(world)), ..node };
     }
+    // A rotation cannot mirror, so one scale takes the sign.
     let mirror = if turn.determinant() < 0.0 { -1.0 } else { 1.0 };
     let scale = DVec3::new(mirror * lengths[0], lengths[1], lengths[2]);
     let axes = turn * DMat3::from_diagonal(scale.recip());

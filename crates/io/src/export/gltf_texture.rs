@@ -109,6 +109,7 @@ impl Writer<'_> {
         let layouts = layouts(look);
         let opacity = look.map(MapKind::Opacity).map(|map| &map.texture);
         let base = textures.with_opacity(look.texture.as_ref(), opacity);
+        // Blending is needed only if alpha has values between 0 and 255.
         let fades = look.texture.as_ref().is_some_and(|it| it.picture.has_partial_alpha())
             || opacity.is_some_and(|it| it.picture.fades());
         let cover = match &base {
@@ -263,6 +264,7 @@ fn moved(texture: &Texture, map: &Texture, at: [f64; 2]) -> [f64; 2] {
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer rows than 2^52")]
 fn sample(picture: &Picture, wrap: Wrap, [u, v]: [f64; 2]) -> [f64; 4] {
     let size = picture.size();
+    // Texel centres are at half integers.
     let along = |x: f64, count: usize| {
         let (x, count) = (x * count as f64 - 0.5, count as f64);
         let texel = |x: f64| match wrap {

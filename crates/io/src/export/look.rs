@@ -84,6 +84,7 @@ impl Key {
         let colors = [ambient, diffuse, specular, emission, look.base];
         let flags = u64::from(look.two_sided) | u64::from(look.unlit) << 1;
         let numbers = colors.into_iter().flatten().chain([exponent, look.opacity]);
+        // Bits instead of floats make the key hashable and exact.
         let map = |kind, Texture { picture, wrap, offset, scale, .. }: &Texture, gain: f64| {
             let bits = [offset[0], offset[1], scale[0], scale[1], gain].map(f64::to_bits);
             (kind, Shared::address(picture), *wrap, bits)

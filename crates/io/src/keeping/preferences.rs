@@ -120,6 +120,7 @@ impl Preferences {
                 return (Self::default(), Some(text + &reason(&error) + "."));
             }
         };
+        // A broken file is renamed, never overwritten: the user may want to repair it.
         let read = text
             .and_then(|text| ron::from_str::<Self>(&text).map_err(|error| format!("line {error}")));
         match read {
@@ -143,6 +144,7 @@ impl Preferences {
     pub fn save(&self, folders: &OwnFolders, known: &[PathBuf]) -> Result<(), String> {
         made(&folders.config)?;
         let path = file(folders);
+        // The lock makes reading and writing one step among several programs.
         let lock = Lock::take(&folders.config.join("lock")).map_err(|error| reason(&error))?;
         let others = fs::read_to_string(&path).ok();
         let others = others.and_then(|text| ron::from_str::<Self>(&text).ok());

@@ -221,6 +221,7 @@ impl<'a> Library<'a> {
         findings: &mut Findings,
     ) {
         let Some(bump) = maps.get(&MapKind::Bump) else { return };
+        // The option overrides the detection.
         let has_normals = match self.bumps {
             BumpMaps::Auto => shows_normals(&bump.texture.picture),
             BumpMaps::Heights => false,
@@ -278,6 +279,7 @@ impl<'a> Library<'a> {
         note: &mut dyn FnMut(FindingKind, &str),
     ) -> Option<Shared<Picture>> {
         let counted = self.counted.contains(path);
+        // A picture counts once, in whatever number of textures it appears.
         let most = if counted { MOST_TEXELS } else { MOST_TEXELS - self.texels };
         match self.pictures.read(path, most) {
             Ok(Read { picture, cut_off }) => {
@@ -313,6 +315,7 @@ fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Statements> {
         if keyword.starts_with(b"#") {
             continue;
         }
+        // Statements belong to the last `newmtl`.
         match list.last_mut() {
             Some(statements) => statements.read(&line, findings),
             None => findings.add(FindingKind::MtlStray, &decode(keyword), Some(line.number)),

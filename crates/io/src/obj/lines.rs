@@ -301,10 +301,12 @@ pub(crate) fn number(word: &[u8]) -> Result<Number, NoNumber> {
     let parse = |word: &[u8]| std::str::from_utf8(word).ok()?.parse::<f64>().ok();
     let [plain, odd] =
         [false, true].map(|is_odd| move |value| Number { value, is_odd, ends_line: false });
+    // Nearly all numbers parse here; the notations below are rare.
     if let Some(value) = parse(word) {
         return Ok(plain(value));
     }
     let lower = word.to_ascii_lowercase();
+    // Old C libraries write 1.#INF, 1.#QNAN and nan(ind).
     if lower.windows(2).any(|two| two == b".#") || lower.windows(4).any(|four| four == b"nan(") {
         return Ok(plain(f64::NAN));
     }

@@ -189,6 +189,7 @@ fn model(
 /// Returns the reason why a text with these first bytes cannot be an OBJ file. `whole` means that
 /// they are the whole text.
 fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
+    // Signatures of formats that users confuse with OBJ, for a helpful message.
     let known = [
         (&b"glTF"[..], "a glTF file"),
         (b"PK\x03\x04", "a ZIP archive; unpack it first"),

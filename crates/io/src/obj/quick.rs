@@ -50,6 +50,7 @@ impl Piece {
     fn quick_face<'a>(&mut self, mut rest: &'a [u8], line: u32) -> Option<&'a [u8]> {
         let counts = self.counts();
         let begin = self.faces.corners();
+        // Corners are pushed at once, and removed if the line turns out not to be plain.
         let after = loop {
             if let Some(after) = line_end(rest) {
                 break Some(after);

@@ -46,6 +46,7 @@ impl Piece {
         let mut count = 0_u32;
         loop {
             count = count.wrapping_add(1);
+            // An atomic update for every line would slow all threads down.
             if count.is_multiple_of(4096) {
                 reached(lines.position())?;
             }
@@ -130,6 +131,7 @@ impl Piece {
         };
         self.note_odd(&row, line);
         let Row { values: [x, y, z, more @ ..], count, .. } = row;
+        // Four numbers include a weight, six or seven a colour; other counts are odd.
         match count {
             4 if more[0] != 1.0 => self.findings.note(FindingKind::Weight, line),
             5 | 8.. => self.findings.note(FindingKind::ExtraNumbers, line),

@@ -122,6 +122,7 @@ impl SoundPiece {
                 }
             }
         }
+        // An empty list means that every corner lacks the attribute.
         let all = Without {
             corners: lists.positions.len(),
             faces: piece.faces.runs.iter().map(|run| run.faces as usize).sum(),

@@ -150,6 +150,7 @@ impl Files {
 
     fn load_texture(&mut self, path: &str) -> Result<Shared<Texture>, SceneFileError> {
         let place = self.place(path);
+        // Files of built-in examples come from the program, all others from disk.
         let loaded = match examples::content(&place) {
             Some(content) => examples::texture(&place, content),
             None => self.pictures.texture(&place, &mut self.findings),
@@ -158,6 +159,7 @@ impl Files {
             Ok(texture) => Ok(texture),
             Err(LoadError::Cancelled) => Err(LoadError::Cancelled.into()),
             Err(error) => {
+                // A damaged file and a missing one need different remedies.
                 if place.exists() {
                     self.lost.add(FindingKind::TextureUnreadable, &error.to_string(), None);
                 } else {

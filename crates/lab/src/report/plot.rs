@@ -209,6 +209,7 @@ impl Sheet {
     fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Drawn<DB> {
         let colors = self.colors;
         area.fill(&colors.paper)?;
+        // The title and the verdict, line by line.
         let left = |size, color| styled(size, color, HPos::Left, VPos::Top);
         area.draw(&Text::new(self.title.clone(), (EDGE, 14), left(18, colors.ink)))?;
         let mut y = 44;
@@ -218,6 +219,7 @@ impl Sheet {
         }
         self.panel(area, &self.panels.overview, self.overview_rect())?;
         let (top, width) = (self.head() + OVERVIEW + 16, (WIDTH - 2 * EDGE) / COLUMNS);
+        // Panels fill the rows from left to right.
         let mut place = (0, 0);
         for panel in &self.panels.axes {
             let (x, y) = (EDGE + place.0 * width, top + place.1 * ROW);

@@ -18,6 +18,7 @@ pub fn brief(number: f64) -> String {
     if !(1e-3..1e5).contains(&size) {
         return format!("{number:.1e}");
     }
+    // Decimals for three significant digits.
     let text = match size {
         100.0.. => format!("{number:.0}"),
         10.0.. => format!("{number:.1}"),

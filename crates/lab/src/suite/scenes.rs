@@ -149,6 +149,7 @@ pub(super) fn vertices(detail: u32) -> (Scene, View) {
     for y in 0..=side {
         for x in 0..=side {
             let [u, v] = [x, y].map(|i| f64::from(i) / f64::from(side) - 0.5);
+            // Waves vary the normals, so lighting differs between triangles.
             let wave = libm::sin(u * 40.0) * libm::cos(v * 30.0);
             maker.vertex([u * 560.0, v * 330.0, wave * 6.0], None);
         }
@@ -190,6 +191,7 @@ pub(super) fn textures(_: u32) -> (Scene, View) {
     let mut picture = Picture::filled(Size::new(side, side), [225, 220, 205, 255]);
     for (i, pixel) in picture.pixels_mut().iter_mut().enumerate() {
         let (x, y) = (i % side, i / side);
+        // Thin joints between tiles alias strongly without filtering.
         if x % 32 < 3 || y % 32 < 3 {
             *pixel = [60, 50, 70, 255];
         } else if (x / 32 + y / 32) % 2 == 0 {

@@ -60,6 +60,7 @@ fn coefficients(mtl: &mut String, look: &Look) {
         let [r, g, b] = material.emission;
         let _ = writeln!(mtl, "Ke {r} {g} {b}");
     }
+    // Statements that this program does not draw pass through unchanged.
     for (word, numbers) in look.undrawn.iter().filter(|(word, _)| **word != "illum") {
         mtl.push_str(word);
         for number in numbers {
