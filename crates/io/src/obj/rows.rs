@@ -13,8 +13,8 @@ use std::io::{BufRead, ErrorKind, Read};
 use std::mem::take;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The most rows per polygon. tobj looks up each row in a hash table; this number fills one with 512
-/// slots, at its maximum load of 7/8.
+/// The most rows per polygon. tobj looks up each row in a hash table; this number fills one with
+/// 512 slots, at its maximum load of 7/8.
 const POLYGON: usize = 448;
 
 /// A statement with a row of numbers.
