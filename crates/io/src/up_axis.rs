@@ -1,7 +1,7 @@
 //! Detects the up axis that a model's file states.
 //!
 //! OBJ has no statement for the up axis. Some exporters write it in a comment at the top, and some
-//! programs always use Z up. The shape is not considered: lying, standing and hanging models look
+//! programs always use Z up. The shape is not considered: lying, upright and hanging models look
 //! alike, and the distance from the origin must not affect the picture.
 
 use std::fs::File;
