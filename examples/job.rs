@@ -1,8 +1,8 @@
-//! A drawing job for comparisons with other renderers: a mesh orbited by a
-//! camera, lit by five lights, in one of several modes.
+//! A drawing job for comparisons with other renderers: a camera orbits a mesh lit by five lights,
+//! in one of several modes.
 //!
-//! A frame is measured from the setting of its camera to bytes in memory, planning included, and no
-//! two frames have the same camera. Reading the mesh is not measured.
+//! The time of a frame runs from the setting of its camera to bytes in memory, including planning.
+//! No two frames have the same camera. Loading the mesh is not measured.
 //!
 //! ```text
 //! cargo run --release --example job -- --mesh bunny.obj --mode phong
@@ -110,7 +110,7 @@ struct Job {
     threads: Option<u16>,
 }
 
-/// A picture's size: "800x600", or "800" for a square.
+/// Parses a picture's size: "800x600", or "800" for a square.
 fn size(text: &str) -> Result<Size, String> {
     let side = |text: &str| text.parse().ok().filter(|side| (1..=16_384).contains(side));
     let (width, height) = text.split_once(['x', 'X']).unwrap_or((text, text));
@@ -118,10 +118,10 @@ fn size(text: &str) -> Result<Size, String> {
     sides.ok_or_else(|| "write width x height, each from 1 to 16384, as 800x600".to_owned())
 }
 
-/// How the mesh is drawn.
+/// The drawing mode of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mode {
-    /// Lit once a face, with its normal.
+    /// Lit once per face, with its normal.
     Flat,
     /// Lit at vertices.
     Gouraud,
@@ -131,7 +131,7 @@ enum Mode {
     Textured(Filter),
     /// One colour.
     Depth,
-    /// Every edge once.
+    /// All edges, each once.
     Wire,
 }
 
@@ -148,7 +148,7 @@ impl Mode {
     ];
 }
 
-/// Why a job is not done.
+/// The reason why a job fails.
 #[derive(Debug, thiserror::Error)]
 enum Failure {
     #[error("{0}")]
@@ -165,9 +165,9 @@ enum Failure {
 
 fn main() -> ExitCode {
     let job = Job::parse();
-    // This thread draws with the others: it has nothing else to do.
+    // This thread joins the pool, since it would otherwise idle.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(job.threads.map_or(0, usize::from));
-    // Fails only if the threads exist already, and nothing has started them.
+    // This fails only if the pool exists already, which is impossible here.
     let _ = pool.use_current_thread().build_global();
     let done = run(&job).and_then(|line| Ok(writeln!(std::io::stdout().lock(), "{line}")?));
     let Err(failure) = done else { return ExitCode::SUCCESS };
@@ -180,10 +180,10 @@ fn main() -> ExitCode {
     }
 }
 
-/// Draws the job's frames, and gives the line that describes them.
+/// Draws the job's frames, and returns the line of figures.
 fn run(job: &Job) -> Result<String, Failure> {
     let (mode, samples, level) = supported(job).map_err(Failure::Unsupported)?;
-    // The job computes its own normals.
+    // The job computes its own normals, so the crease angle of the loader does not matter.
     let options = LoadOptions { crease: Crease::SMOOTH, ..LoadOptions::default() };
     let loaded = &io::load(&job.mesh, &options, &Progress::new())?.model;
     let model = prepared(loaded, job.raw, matches!(mode, Mode::Textured(_)));
@@ -192,6 +192,7 @@ fn run(job: &Job) -> Result<String, Failure> {
     if let Some(out) = &job.out {
         io::save_picture(out, &measured.picture)?;
     }
+    // The count of covered pixels lets other renderers check that they draw the same mesh.
     let pixels = measured.picture.pixels().iter();
     let covered = pixels.filter(|pixel| **pixel != BACKGROUND.opaque()).count();
     let shortest = measured.frames.iter().copied().reduce(f64::min);
@@ -213,7 +214,7 @@ fn run(job: &Job) -> Result<String, Failure> {
     Ok(format!("{line}\nS,{drawn},{times},{traced},{occluded}"))
 }
 
-/// How a job is drawn; an error says what is not supported.
+/// Returns the mode, samples and instructions of a job, or the unsupported option.
 fn supported(job: &Job) -> Result<(Mode, Samples, Level), String> {
     let Job { mode, msaa, instructions, .. } = job;
     let found = Mode::ALL.into_iter().find(|(name, _)| name == mode);
@@ -225,6 +226,7 @@ fn supported(job: &Job) -> Result<(Mode, Samples, Level), String> {
     let samples = samples.ok_or_else(|| {
         format!("{msaa} samples per pixel are not supported; there are 1, 4, 16 and 64")
     })?;
+    // Other renderers lack some options, too: status 3 lets a script skip them.
     let level = instructions::named(instructions).ok_or_else(|| {
         format!(
             "the instructions \"{instructions}\" are unknown, or this processor does not have \
@@ -235,29 +237,29 @@ fn supported(job: &Job) -> Result<(Mode, Samples, Level), String> {
     Ok((mode, samples, level))
 }
 
-/// The choice of how shadows are decided.
+/// Returns the chosen shadow method.
 fn method(job: &Job) -> Option<&'static Choice> {
     Axis::named("shadow-method")?.choice(&job.shadow_method)
 }
 
-/// What was measured.
+/// The measurements of a job.
 struct Measured {
     /// The time of each frame in milliseconds.
     frames: Vec<f64>,
-    /// How much of it each stage took.
+    /// The stage timings of each frame.
     timings: Vec<Timings>,
-    /// Milliseconds of all processors together that a frame took on average.
+    /// The mean processor milliseconds per frame, summed over all threads.
     processor: f64,
-    /// The shortest time of a frame without shadows, if those with shadows were measured.
+    /// The shortest time of a frame without shadows, if shadows were measured.
     plain: Option<f64>,
-    /// The rays of the first picture's shadows.
+    /// The shadow rays of the first picture.
     rays: RayCount,
     /// The first picture.
     picture: Picture,
 }
 
 impl Measured {
-    /// The median time of each stage, and of all else, in milliseconds.
+    /// Returns the median time of each stage and of the rest, in milliseconds.
     fn stages(&self) -> [f64; 5] {
         let of = |stage: &dyn Fn(f64, &Timings) -> f64| {
             let times = self.frames.iter().zip(&self.timings);
@@ -275,10 +277,10 @@ impl Measured {
     }
 }
 
-/// The colour of pixels that the mesh does not cover.
+/// The colour of pixels outside the mesh.
 const BACKGROUND: Color = Color([26, 26, 31]);
 
-/// A scene, how it is seen and how it is drawn.
+/// A scene with its view and settings.
 type Stage = (Scene, View, Settings);
 
 fn measure(
@@ -286,7 +288,7 @@ fn measure(
     level: Level,
     (scene, view, settings): &Stage,
 ) -> Result<Measured, CommandError> {
-    // One for each kind of frame, so that shadow maps are kept.
+    // One renderer for each kind of frame, so shadow maps are reused.
     let [mut renderer, mut other] = [Renderer::new(level), Renderer::new(level)];
     let unshaded = without_shadows(scene)?;
     let frame = |renderer: &mut Renderer, scene: &Scene, i| -> Result<f64, CommandError> {
@@ -309,18 +311,20 @@ fn measure(
         let i = job.warm + 1 + frames.len();
         frames.push(frame(&mut renderer, scene, i)?);
         timings.push(renderer.timings());
+        // The same camera without shadows, in alternation, so drift affects both alike.
         if job.shadows {
             plain = Some(frame(&mut other, &unshaded, i)?.min(plain.unwrap_or(f64::INFINITY)));
         }
     }
     #[expect(clippy::cast_precision_loss, reason = "few frames")]
     let processor = processor.elapsed().as_secs_f64() * 1e3 / frames.len() as f64;
+    // The saved picture is that of the first camera, whatever number of frames fits the budget.
     frame(&mut renderer, scene, 0)?;
     let (picture, rays) = (renderer.picture().clone(), renderer.rays());
     Ok(Measured { frames, timings, processor, plain, rays, picture })
 }
 
-/// The same scene, whose lights cast no shadows.
+/// Returns a copy of the scene without shadows.
 fn without_shadows(scene: &Scene) -> Result<Scene, CommandError> {
     let mut plain = scene.clone();
     for (id, light) in scene.lights.iter() {
@@ -330,12 +334,13 @@ fn without_shadows(scene: &Scene) -> Result<Scene, CommandError> {
     Ok(plain)
 }
 
-/// The job's mesh: its bounding box centred at the origin, its farthest vertex 100 away, with
-/// normals that are the sums of the face normals around a vertex, weighted by area, and with places
-/// on the texture if it is `textured`.
+/// Prepares the job's mesh: its bounding box is centred at the origin, and its farthest vertex is
+/// at distance 100. Vertex normals are area-weighted sums of face normals. A `textured` mesh gets
+/// texture coordinates.
 fn prepared(model: &Model, raw: bool, textured: bool) -> Model {
     let mesh = &model.mesh;
     let positions: Vec<DVec3> = mesh.positions().iter().map(|p| dvec3(*p)).collect();
+    // Normalise position and size, so one camera orbit fits every mesh.
     let centre = mesh.bounds().map_or(DVec3::ZERO, |bounds| bounds.centre());
     let farthest = positions.iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
     let scale = 100.0 / farthest.max(f64::MIN_POSITIVE);
@@ -345,6 +350,7 @@ fn prepared(model: &Model, raw: bool, textured: bool) -> Model {
     let position = |corner: u32| mesh.corners()[corner as usize].position;
     let corners: Vec<[u32; 3]> =
         mesh.triangles().iter().map(|triangle| triangle.corners.map(position)).collect();
+    // The cross product has twice the area as length, so the sums are area-weighted.
     for [a, b, c] in corners.iter().map(|ids| ids.map(|id| id as usize)) {
         let normal = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
         for vertex in [a, b, c] {
@@ -353,6 +359,7 @@ fn prepared(model: &Model, raw: bool, textured: bool) -> Model {
     }
     let narrow = |v: &DVec3| v.as_vec3().to_array();
     let unit = |v: &DVec3| narrow(&math::unit(*v).unwrap_or(DVec3::Z));
+    // Positions, texture coordinates and normals share their indices.
     let corner = |&position: &u32| {
         let uv = if textured { position } else { NONE };
         SourceCorner { position, uv, normal: position }
@@ -380,7 +387,7 @@ fn prepared(model: &Model, raw: bool, textured: bool) -> Model {
     }
 }
 
-/// The texture of the job: random texels, the row at v = 0 first.
+/// Makes the job's texture: random texels, starting with the row at v = 0.
 fn texture() -> Texture {
     const SIDE: usize = 512;
     let mut state = 1_u32;
@@ -390,7 +397,7 @@ fn texture() -> Texture {
     };
     let rows: Vec<[[u8; 4]; SIDE]> =
         (0..SIDE).map(|_| std::array::from_fn(|_| [byte(), byte(), byte(), 255])).collect();
-    // A picture's rows run down.
+    // Rows of a picture run from top to bottom, so they are reversed.
     let pixels = rows.iter().rev().flatten().copied().collect();
     let picture = Picture::from_pixels(Size::new(SIDE, SIDE), pixels).expect("all its pixels");
     Texture {
@@ -408,6 +415,7 @@ fn stage(
     samples: Samples,
     model: Shared<Model>,
 ) -> Result<Stage, CommandError> {
+    // The depth mode measures rasterisation, so its surface is one constant colour.
     let [ambient, diffuse, specular] = match mode {
         Mode::Depth => [[0.9, 0.8, 0.6], [0.0; 3], [0.0; 3]],
         Mode::Flat | Mode::Gouraud | Mode::Phong | Mode::Textured(_) | Mode::Wire => {
@@ -432,7 +440,7 @@ fn stage(
     scene.background = BACKGROUND;
     let mut object = Object::new(model, material);
     object.edge_color = Color::from_factors([0.9, 0.8, 0.6]);
-    // Edges are drawn whichever way their faces are turned.
+    // Edges of back faces are drawn, too.
     object.sides = if mode == Mode::Wire { Sides::Two } else { Sides::One };
     let mut settings = Settings { samples, ..Settings::default() };
     match mode {
@@ -442,6 +450,7 @@ fn stage(
         }
         _ => object.surface = Surface::Material,
     }
+    // Objects share the mesh; ids continue with the lights.
     for (i, placement) in (1..).zip(placements(job.copies)) {
         let object = Object { placement: Tracked::new(placement), ..object.clone() };
         let item = Item::Object(ObjectId(i), Box::new(object));
@@ -459,6 +468,7 @@ fn stage(
         ..scene.first_view()
     };
     settings = method(job).map_or(settings, |method| method.of(&settings));
+    // The mode decides where lighting is evaluated.
     settings.light = match mode {
         Mode::Flat => LightAt::Face,
         Mode::Gouraud => LightAt::Vertex,
@@ -467,7 +477,8 @@ fn stage(
     Ok((scene, view, settings))
 }
 
-/// Where copies of the mesh stand: one where it is; more in a square of the size of two, smaller.
+/// Places copies of the mesh. A single copy stays at the origin; more are shrunk to fit a square
+/// that is two meshes wide.
 fn placements(copies: u32) -> impl Iterator<Item = DMat4> {
     let side = (1..).find(|side| side * side >= copies).unwrap_or(copies);
     let scale = if copies == 1 { 1.0 } else { 2.0 / f64::from(side) };
@@ -485,7 +496,7 @@ fn lights(mode: Mode) -> Vec<Light> {
         attenuation: Attenuation::default(),
         ..Light::new("light", slot, kind)
     };
-    // The job's spots do not fade with distance.
+    // The job's spots have no distance falloff.
     let steady = Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.0 };
     let unfading = |slot, color, kind| Light { attenuation: steady, ..light(slot, color, kind) };
     let spot = |position: DVec3| LightKind::Spot {
@@ -507,7 +518,7 @@ fn lights(mode: Mode) -> Vec<Light> {
     ]
 }
 
-/// Camera number `i` of the orbit.
+/// Returns camera `i` of the orbit.
 #[expect(clippy::cast_precision_loss, reason = "few frames")]
 fn camera(job: &Job, i: usize, scene: &Scene) -> Camera {
     let (yaw, pitch) =
@@ -527,10 +538,10 @@ mod tests {
 
     const SQUARE: &str = "v 5 5 5\nv 6 5 5\nv 6 6 5\nv 5 6 5\nf 1 2 3 4\n";
 
-    /// Two sides of a tent, one turned away.
+    /// Two sides of a tent, one facing away.
     const TENT: &str = "v -1 0 -1\nv 1 0 -1\nv 0 1 0\nv 0 -1 1\nf 1 3 2\nf 1 4 2\nf 4 3 1\n";
 
-    /// The cells of the line, and the pixels of the picture.
+    /// Returns the cells of the line, and the pixels of the picture.
     fn drawn(
         threads: usize,
         model: &str,

@@ -1,4 +1,4 @@
-//! Arguments: the editor, or a headless command.
+//! The entry point: opens the editor, or runs a headless command.
 
 mod cli;
 

@@ -19,11 +19,12 @@ pub(crate) fn measure(criterion: &mut Criterion) {
     let mut effects: Vec<Effect> =
         uses.iter().filter(|one| one.state.is_on()).map(|one| one.effect).collect();
     effects.dedup();
+    // An effect that the plan does not use cannot be left out.
     for effect in effects {
         if stage.plan(0).without(effect).is_none() {
             continue;
         }
-        // Both beside each other, since a machine is not as fast now as a minute ago.
+        // Both run one after the other: the speed of a machine drifts within minutes.
         let mut group = criterion.benchmark_group(format!("effects/{}", name(effect, scene)));
         group.bench_function("with", |bencher| stage.measure(bencher));
         group.bench_function("without", |bencher| {
@@ -47,8 +48,8 @@ fn name(effect: Effect, scene: &Scene) -> String {
     }
 }
 
-/// A painted sheet with holes, some of it turned away, with edges and normals and with the marks of
-/// cameras and bulbs.
+/// Builds a painted sheet with holes. Parts of it face away, and it shows edges, normals and the
+/// marks of cameras and bulbs.
 fn everything() -> Stage {
     let mut stage = Stage::new(&shapes::painted(2_000), FULL);
     let id = ObjectId(0);
@@ -68,7 +69,7 @@ fn everything() -> Stage {
     stage
 }
 
-/// A chequered texture in which every eighth field is a hole.
+/// Makes a chequered texture with every eighth field as a hole.
 fn holed() -> Texture {
     let size = Size::new(256, 256);
     let texel = |i: usize| {

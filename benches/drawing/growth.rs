@@ -1,4 +1,4 @@
-//! How the time of a picture grows: `triangles/N`, `pixels/WxH`, `lights/N`, `threads/N`.
+//! Measures how frame time grows: `triangles/N`, `pixels/WxH`, `lights/N`, `threads/N`.
 
 use criterion::{BenchmarkId, Criterion};
 use marraztu_core::base::color::Color;
@@ -16,7 +16,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
     threads(criterion);
 }
 
-/// The same picture, in ever more triangles.
+/// Draws the same picture with more and more triangles.
 fn triangles(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("triangles");
     for count in [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000] {
@@ -37,7 +37,8 @@ fn pixels(criterion: &mut Criterion) {
     }
 }
 
-/// The five lights over and over, ever fainter, so that none is lost in white.
+/// Repeats the five lights, dimming them by their number so that the picture does not clip to
+/// white.
 fn lights(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("lights");
     let knot = shapes::knot(70_000);
@@ -48,7 +49,7 @@ fn lights(criterion: &mut Criterion) {
             let gone = Command::Remove(marraztu_core::scene::ItemId::Light(id));
             gone.apply(&mut stage.scene).expect("it is there");
         }
-        // Not the ambient one, which costs nothing a pixel.
+        // The ambient light is skipped: it costs nothing per pixel.
         let kinds = Light::five().into_iter().skip(1).cycle();
         for (light, i) in kinds.zip(0..count) {
             let color = Color::from_factors(

@@ -1,9 +1,9 @@
-//! Benchmarks of drawing: by stage and shape, by effect, by size, by texture, and of
-//! transparent surfaces.
+//! Benchmarks of drawing: by stage and shape, by effect, by size, by texture, and of transparent
+//! surfaces.
 //!
-//! `cargo bench --bench drawing` runs them all; a part of a name selects some. Times depend on the
-//! machine and the moment, so only their ratios are meaningful. `tools/speed.sh` makes a page of
-//! them.
+//! `cargo bench --bench drawing` runs them all; part of a name selects some. Times depend on the
+//! machine and the moment, so only their ratios are meaningful. `tools/speed.sh` turns them into a
+//! page.
 
 mod effects;
 mod growth;

@@ -1,7 +1,10 @@
-//! Benchmarks of scenes of many objects: `objects/N` draws a frame, `objects/100 in view of N` a
-//! frame that has the others out of view, `objects/N knots` one with as many knots of a million
-//! triangles, which share their mesh, `objects/insert/N` inserts them into a scene,
-//! `objects/move/N` is one command on one of them, with the editor's work after it.
+//! Benchmarks of scenes with many objects.
+//!
+//! - `objects/N` draws a frame.
+//! - `objects/100 in view of N` draws a frame with all but 100 objects out of view.
+//! - `objects/N knots` draws N knots of a million triangles that share their mesh.
+//! - `objects/insert/N` inserts the objects into a scene.
+//! - `objects/move/N` applies one command to one object, with the editor's work after it.
 
 use criterion::{BenchmarkId, Criterion};
 use glam::{DMat4, DVec3};
@@ -15,13 +18,14 @@ use marraztu_core::scene::{Command, ItemId, MaterialChoice, Model, Object, Prese
 use super::shapes;
 use super::stage::{FULL, Stage};
 
-/// How many there are.
+/// The numbers of objects.
 const COUNTS: [u32; 4] = [1_000, 2_000, 4_000, 10_000];
 
 pub(crate) fn measure(criterion: &mut Criterion) {
     let quad = shapes::sheet(2);
     let mut group = criterion.benchmark_group("objects");
     for count in COUNTS {
+        // Every insertion starts from a copy of the empty scene.
         let empty = Stage::new(&quad, FULL);
         let objects = objects(&quad, count);
         group.bench_function(BenchmarkId::new("insert", count), |b| {
@@ -49,11 +53,13 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         });
         group.bench_function(BenchmarkId::from_parameter(count), |b| stage.measure(b));
     }
+    // The same visible objects, with and without many others out of view.
     for count in [SEEN, 10_000] {
         let stage = mostly_outside(&quad, count);
         let name = format!("{SEEN} in view of {count}");
         group.bench_function(BenchmarkId::from_parameter(name), |b| stage.measure(b));
     }
+    // Copies share one mesh, so only the drawing time grows.
     let knot = shapes::knot(1_000_000);
     for count in [1, 20] {
         let stage = knots(&knot, count);
@@ -62,7 +68,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
     }
 }
 
-/// Copies of a knot, five in a row, at 1280 x 720.
+/// Builds copies of a knot, five in a row, at 1280 x 720.
 fn knots(knot: &Shared<Model>, count: u32) -> Stage {
     let mut stage = Stage::new(knot, Size::new(1280, 720));
     let only = stage.view.object.expect("the stage has one object");
@@ -79,10 +85,10 @@ fn knots(knot: &Shared<Model>, count: u32) -> Stage {
     stage
 }
 
-/// How many objects are in view where most are not.
+/// The number of objects in view when most are outside.
 const SEEN: u32 = 100;
 
-/// A scene of `count` objects: [`SEEN`] are in view, all others are behind the camera.
+/// Builds a scene of `count` objects: [`SEEN`] are in view, all others are behind the camera.
 fn mostly_outside(quad: &Shared<Model>, count: u32) -> Stage {
     let mut stage = Stage::new(quad, FULL);
     let mut objects = objects(quad, count);
@@ -95,7 +101,7 @@ fn mostly_outside(quad: &Shared<Model>, count: u32) -> Stage {
     stage
 }
 
-/// Squares side by side, each with a different material.
+/// Builds squares side by side, each with a different material.
 fn objects(model: &Shared<Model>, count: u32) -> Vec<Object> {
     let object = |i: u32| {
         let mut material = PresetId::RUBY.get().material;

@@ -1,7 +1,8 @@
-//! Benchmarks of what is drawn again under shadows: `redraw/CHANGE` draws the laboratory's suite
-//! scene of shadows at 1280 x 720 after a change and after its opposite, in turn;
-//! `redraw/everything` draws two such pictures from scratch. After each it is said how many rays
-//! that takes.
+//! Benchmarks of redrawing under shadows.
+//!
+//! `redraw/CHANGE` draws the laboratory's suite scene of shadows at 1280 x 720 after a change and
+//! after its opposite, in turn. `redraw/everything` draws two such pictures from scratch. Each
+//! prints the number of rays that it traced.
 
 use std::io::Write as _;
 
@@ -85,13 +86,13 @@ fn change(scene: &mut Scene, id: ObjectId, change: impl FnOnce(&mut Object)) {
     Command::Replace(Item::Object(id, Box::new(object))).apply(scene).expect("it fits");
 }
 
-/// Changes the last object: a ball.
+/// Changes the last object, which is a ball.
 fn change_object(scene: &mut Scene, how: impl FnOnce(&mut Object)) {
     let id = scene.objects.ids().max().expect("there is a ball");
     change(scene, id, how);
 }
 
-/// Changes the first light that can be changed so.
+/// Changes the first light that `change` accepts.
 fn change_light(scene: &mut Scene, change: impl Fn(&mut Light) -> bool) {
     let all: Vec<_> = scene.lights.iter().map(|(id, light)| (id, light.clone())).collect();
     for (id, mut light) in all {
@@ -103,7 +104,7 @@ fn change_light(scene: &mut Scene, change: impl Fn(&mut Light) -> bool) {
     }
 }
 
-/// Draws again what changes take.
+/// Redraws only the pixels that each change affects.
 pub(crate) fn measure(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("redraw");
     let (scene, view) = SuiteScene::named("shadows").expect("it is in the suite").open(1000);
@@ -117,6 +118,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         let plans = [shot(&scene), shot(&changed)];
         let mut renderer = Renderer::default();
         let mut turn = 0;
+        // The two plans alternate, so each frame sees the opposite of the last change.
         if name == CHANGES[0].0 {
             group.bench_function("everything", |b| {
                 b.iter(|| {

@@ -1,7 +1,7 @@
-//! Benchmarks of shadows: `shadows/SHAPE/none` and `shadows/SHAPE/METHOD`, of all lights of the
-//! stage that can cast them, at 800 x 800. Before each shape it is said how many rays that takes.
+//! Benchmarks of shadows: `shadows/SHAPE/none` and `shadows/SHAPE/METHOD`, with shadows from every
+//! light of the stage that can cast them, at 800 x 800. Each shape first prints its number of rays.
 //!
-//! Nothing but the camera moves, so trees and shadow maps are kept.
+//! Only the camera moves, so the BVHs and shadow maps are built once and reused.
 
 use std::io::Write as _;
 
@@ -28,6 +28,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
     ] {
         let mut group = criterion.benchmark_group(format!("shadows/{name}"));
         let mut stage = Stage::new(&model, Size::new(800, 800));
+        // The baseline: the same stage before its lights cast shadows.
         group.bench_function("none", |b| stage.measure(b));
         let lights: Vec<_> =
             stage.scene.lights.iter().map(|(id, light)| (id, light.clone())).collect();
@@ -36,6 +37,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
             let item = Item::Light(id, Box::new(light));
             Command::Replace(item).apply(&mut stage.scene).expect("it fits");
         }
+        // One frame outside the measurement counts the rays.
         let mut renderer = Renderer::default();
         renderer.render(&stage.plan(0));
         let RayCount { traced, occluded } = renderer.rays();

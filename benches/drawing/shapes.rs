@@ -1,4 +1,4 @@
-//! The meshes that are drawn: each stresses another part of the renderer.
+//! The meshes of the benchmarks: each stresses a different part of the renderer.
 
 use std::f64::consts::TAU;
 
@@ -12,8 +12,8 @@ pub(crate) struct Shape {
     pub(crate) model: Shared<Model>,
 }
 
-/// One triangle over the whole view; few triangles of a hundred pixels; many of some pixels; more
-/// than there are pixels; thin ones; and large ones, each before the last.
+/// Returns one triangle over the whole view; few triangles of about a hundred pixels; many of a few
+/// pixels; many smaller than a pixel; slivers; and large triangles that overlap back to front.
 pub(crate) fn all() -> Vec<Shape> {
     let shape = |name, model| Shape { name, model };
     vec![
@@ -26,8 +26,8 @@ pub(crate) fn all() -> Vec<Shape> {
     ]
 }
 
-/// A wavy sheet of `count` triangles that covers the square from -1 to 1, facing +Z; a single
-/// triangle covers all of it, and more.
+/// Builds a wavy sheet of `count` triangles that covers the square from -1 to 1, facing +Z. A
+/// single triangle covers the whole square and extends beyond it.
 pub(crate) fn sheet(count: u32) -> Shared<Model> {
     if count == 1 {
         return model(vec![[-3.0, -1.0, 0.0], [3.0, -1.0, 0.0], [0.0, 5.0, 0.0]], &[[0, 1, 2]]);
@@ -40,7 +40,8 @@ pub(crate) fn sheet(count: u32) -> Shared<Model> {
     model(grid.0, &grid.1)
 }
 
-/// The (2, 3) torus knot as a tube of about `count` triangles, as wide as the square from -1 to 1.
+/// Builds the (2, 3) torus knot as a tube of about `count` triangles, as wide as the square from -1
+/// to 1.
 pub(crate) fn knot(count: u32) -> Shared<Model> {
     let around = (f64::from(count) / 40.0).sqrt().ceil();
     let along = (f64::from(count) / (2.0 * around)).ceil();
@@ -60,7 +61,7 @@ pub(crate) fn knot(count: u32) -> Shared<Model> {
     model(positions, &triangles)
 }
 
-/// `count` triangles that share a corner and are a thousandth of a turn wide.
+/// Builds `count` triangles that share a corner, each 1 / `count` of a turn wide.
 fn slivers(count: u32) -> Shared<Model> {
     let rim = |i: u32| {
         let angle = TAU * f64::from(i) / f64::from(count);
@@ -71,7 +72,7 @@ fn slivers(count: u32) -> Shared<Model> {
     model(positions, &triangles)
 }
 
-/// `count` triangles over the whole view, the farthest first: all but the last are hidden.
+/// Builds `count` triangles over the whole view, the farthest first: only the last is visible.
 pub(crate) fn layers(count: u32) -> Shared<Model> {
     let depth = |i: u32| f64::from(i) / f64::from(count) - 1.0;
     let corners = [DVec3::new(-3.0, -1.0, 0.0), DVec3::new(3.0, -1.0, 0.0), DVec3::Y * 5.0];
@@ -81,12 +82,12 @@ pub(crate) fn layers(count: u32) -> Shared<Model> {
     model(positions, &triangles)
 }
 
-/// A sheet of `count` triangles with all that a file can hold: places on a texture, and colours.
+/// Builds a sheet of `count` triangles with texture coordinates and vertex colours.
 pub(crate) fn painted(count: u32) -> Shared<Model> {
     placed(count, |[u, v]| Some([u, v, 1.0]))
 }
 
-/// A sheet of `count` triangles with places on a texture.
+/// Builds a sheet of `count` triangles with texture coordinates.
 pub(crate) fn textured(count: u32) -> Shared<Model> {
     placed(count, |_| None)
 }
@@ -110,7 +111,7 @@ fn placed(count: u32, color: impl Fn([f32; 2]) -> Option<[f32; 3]>) -> Shared<Mo
 
 type Triangles = (Vec<[f32; 3]>, Vec<[u32; 3]>);
 
-/// A surface over the unit square, cut into cells of two triangles.
+/// Builds a surface over the unit square from cells of two triangles.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small whole numbers")]
 fn grid([columns, rows]: [f64; 2], at: impl Fn(f64, f64) -> DVec3) -> Triangles {
     let [width, height] = [columns, rows].map(|n| n as u32);
@@ -140,7 +141,7 @@ fn plainly(position: u32) -> SourceCorner {
     SourceCorner { position, uv: NONE, normal: NONE }
 }
 
-/// As many triangles, all of one part.
+/// Returns the faces of `count` triangles, all in one part.
 fn faces(count: usize) -> MeshSource {
     MeshSource {
         arities: vec![3; count],

@@ -1,4 +1,4 @@
-//! A shape in the light of the first scene, with a camera that always moves.
+//! A shape in the light of the first scene, with a camera that moves every frame.
 
 use std::time::Duration;
 
@@ -16,10 +16,10 @@ use marraztu_io as io;
 use marraztu_render::plan_frame;
 use marraztu_render::{FramePlan, Renderer};
 
-/// As wide and high as most windows.
+/// The size of most windows.
 pub(crate) const FULL: Size = Size { width: 1920, height: 1080 };
 
-/// What is drawn.
+/// The scene of a benchmark.
 pub(crate) struct Stage {
     pub(crate) scene: Scene,
     pub(crate) view: View,
@@ -28,7 +28,8 @@ pub(crate) struct Stage {
 }
 
 impl Stage {
-    /// A model in ruby, twenty times as large as it is, so that it is lit as the first scene's are.
+    /// Places a model in ruby at 20 times its size, the scale at which the first scene's lights
+    /// work.
     pub(crate) fn new(model: &Shared<Model>, size: Size) -> Self {
         let (mut scene, view) = io::default_scene();
         let ids: Vec<ObjectId> = scene.objects.ids().collect();
@@ -42,8 +43,8 @@ impl Stage {
         Self { scene, view, settings: Settings::default(), size }
     }
 
-    /// The plan of frame `i`: each from a place of its own, so that nothing of the last can be
-    /// kept.
+    /// Plans frame `i`. Each frame has a different camera position, which prevents the renderer
+    /// from reusing the last one.
     #[expect(clippy::cast_precision_loss, reason = "few frames")]
     pub(crate) fn plan(&self, i: u64) -> FramePlan {
         let mut scene = self.scene.clone();
@@ -56,7 +57,7 @@ impl Stage {
         plan_frame(&Shot::new(&scene, &self.view, &self.settings, self.size))
     }
 
-    /// Draws frames, and adds up what `time` says of each.
+    /// Draws frames and sums the times that `time` reads from the renderer after each.
     pub(crate) fn drawn(
         &self,
         frames: u64,
@@ -72,7 +73,7 @@ impl Stage {
             .sum()
     }
 
-    /// Measures whole frames, with their planning. The first ones, which grow the renderer's
+    /// Measures whole frames, including their planning. The first frames, which grow the renderer's
     /// memory, are not measured: criterion calls this again for each sample.
     pub(crate) fn measure(&self, bencher: &mut Bencher<'_>) {
         let (mut renderer, mut i) = (Renderer::default(), 2);

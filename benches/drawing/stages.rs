@@ -1,4 +1,4 @@
-//! Each stage of a frame, for each shape: `stages/SHAPE/STAGE`.
+//! Benchmarks of each stage of a frame for each shape: `stages/SHAPE/STAGE`.
 
 use std::time::Duration;
 
@@ -32,6 +32,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
                 })
             });
         });
+        // Each stage is timed by the renderer itself, within whole frames.
         for (name, part) in STAGES {
             let at_vertices = name == "tiles-lit-at-vertices";
             let light = if at_vertices { LightAt::Vertex } else { LightAt::Pixel };
@@ -40,6 +41,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
                 bencher.iter_custom(|frames| stage.drawn(frames, |r| part(&r.timings())));
             });
         }
+        // Lines need another fill mode, so they come last.
         stage.view.fill = marraztu_core::scene::Fill::Edges;
         group.bench_function("lines", |bencher| {
             bencher.iter_custom(|frames| stage.drawn(frames, |r| r.timings().lines));

@@ -1,6 +1,8 @@
-//! Benchmarks of textures: `textures/TRIANGLES/FILTER` on a sheet that fills the view, beside
-//! `textures/TRIANGLES/none`; with holes; and `textures/floor/FILTER`, a plane that the near plane
-//! cuts, with a hundred thousand texels to its horizon.
+//! Benchmarks of textures.
+//!
+//! `textures/TRIANGLES/FILTER` draws a sheet that fills the view, with and without holes;
+//! `textures/TRIANGLES/none` is its baseline. `textures/floor/FILTER` draws a plane that the near
+//! plane clips, with a hundred thousand texels to its horizon.
 
 use criterion::{BenchmarkId, Criterion};
 use glam::{DMat4, DVec3};
@@ -66,7 +68,7 @@ fn edit(stage: &mut Stage, change: impl FnOnce(&mut Object)) {
     Command::Replace(Item::Object(id, Box::new(object))).apply(&mut stage.scene).expect("it fits");
 }
 
-/// Random texels; with `holes`, every second field of sixteen by sixteen is one.
+/// Makes random texels. With `holes`, every second field of 16 x 16 texels is a hole.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bytes")]
 fn noise(holes: bool) -> Texture {
     const SIDE: usize = 512;

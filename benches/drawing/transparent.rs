@@ -1,5 +1,5 @@
-//! Benchmarks of transparency: `transparent/SHAPE/opaque` and `transparent/SHAPE/CHOICE`, with one
-//! layer over the whole picture, with eight, and with a knot whose tube shows both its sides.
+//! Benchmarks of transparency: `transparent/SHAPE/opaque` and `transparent/SHAPE/CHOICE`, with 1, 8
+//! and 64 layers over the whole picture, and with a knot whose tube shows both sides.
 
 use criterion::{BenchmarkId, Criterion};
 use marraztu_core::accuracy::Transparency;
@@ -27,6 +27,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         group.bench_function("opaque", |b| stage.measure(b));
         let id = ObjectId(0);
         let mut object = stage.scene.objects.get(id).expect("there is one").clone();
+        // Two-sided, so closed shapes have at least two layers per pixel.
         (object.opacity, object.sides) = (0.5, Sides::Two);
         let item = Item::Object(id, Box::new(object));
         Command::Replace(item).apply(&mut stage.scene).expect("it fits");

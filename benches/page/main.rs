@@ -1,5 +1,5 @@
-//! Makes `docs/speed.md` from the last run of `cargo bench --bench drawing` and, if there is one, a
-//! table of other renderers' times. `tools/speed.sh` runs all of it.
+//! Writes `docs/speed.md` from the last run of `cargo bench --bench drawing` and, if there is one,
+//! a table of other renderers' times. `tools/speed.sh` runs all steps.
 //!
 //! The text is `page.md` in this folder; names in double braces are filled in.
 
@@ -41,12 +41,12 @@ fn print(text: &str) {
     print!("{text}");
 }
 
-/// The folder in which cargo builds.
+/// Returns cargo's build folder.
 fn target(root: &Path) -> std::path::PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), Into::into)
 }
 
-/// The machine on which the figures were measured, as a list.
+/// Lists the machine on which the figures were measured.
 fn machine() -> String {
     let said = |program: &str, arguments: &[&str]| {
         let output = Command::new(program).args(arguments).output();

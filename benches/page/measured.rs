@@ -27,7 +27,7 @@ struct Estimate {
 }
 
 impl Measured {
-    /// Reads what lies under a folder.
+    /// Reads all results under a folder.
     pub(crate) fn read(folder: &Path) -> Result<Self, Box<dyn Error>> {
         let mut all = BTreeMap::new();
         let mut folders = vec![folder.to_owned()];
@@ -37,6 +37,7 @@ impl Measured {
             })?;
             for entry in entries {
                 let path = entry?.path();
+                // criterion keeps the last run in `new` and the one before in `base`.
                 if path.ends_with("new") {
                     let benchmark: Benchmark = json(&path.join("benchmark.json"))?;
                     let estimates: Estimates = json(&path.join("estimates.json"))?;
@@ -50,19 +51,19 @@ impl Measured {
         Ok(Self(all))
     }
 
-    /// The milliseconds of one.
+    /// Returns the milliseconds of one benchmark.
     pub(crate) fn of(&self, group: &str, name: &str) -> Result<f64, String> {
         let key = (group.to_owned(), name.to_owned());
         self.0.get(&key).copied().ok_or_else(|| format!("{group}/{name} was not measured"))
     }
 
-    /// All of a group, by name.
+    /// Returns all benchmarks of a group, by name.
     pub(crate) fn group<'a>(&'a self, group: &'a str) -> impl Iterator<Item = (&'a str, f64)> {
         let all = self.0.iter().filter(move |((of, _), _)| of == group);
         all.map(|((_, name), ms)| (name.as_str(), *ms))
     }
 
-    /// The names of groups that begin so, without that beginning.
+    /// Returns the names of groups that begin with `beginning`, without that prefix.
     pub(crate) fn groups<'a>(&'a self, beginning: &'a str) -> Vec<&'a str> {
         let mut names: Vec<&str> =
             self.0.keys().filter_map(|(group, _)| group.strip_prefix(beginning)).collect();

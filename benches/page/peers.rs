@@ -1,5 +1,5 @@
-//! Reads the times of other renderers and ours from the table of a comparison in interleaved
-//! rounds, with one row for each run.
+//! Reads the times of this renderer and others from a table with one row for each run. The runs
+//! were made in interleaved rounds.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,15 +9,14 @@ use marraztu_lab::statistics::median;
 
 use super::tables::{brief, head};
 
-/// The label of the renderer that all are measured against, and ours with the best instructions
-/// and with AVX2.
+/// The label of the baseline renderer, and our labels with the best instructions and with AVX2.
 const ANCHOR: &str = "llvmpipe-host";
 const OURS: &str = "marraztu";
 const AVX2: &str = "marraztu-avx2";
 
 type Times = BTreeMap<(String, String), Vec<f64>>;
 
-/// The table: a row for each job, with the median of each renderer's runs.
+/// Makes a table with a row for each job and the median of each renderer's runs.
 pub(crate) fn table(file: &Path) -> Result<String, String> {
     let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
     let mut lines = text.lines();
@@ -30,7 +29,7 @@ pub(crate) fn table(file: &Path) -> Result<String, String> {
             let missing = || format!("{}: no column {name:?} in {line:?}", file.display());
             row.get(name).copied().ok_or_else(missing)
         };
-        // All threads; the other rows show what threads gain.
+        // Only rows that use all threads: the others show the gain from threads.
         if cell("threads")? == "1" {
             continue;
         }
@@ -48,6 +47,7 @@ pub(crate) fn table(file: &Path) -> Result<String, String> {
         }
         times.entry((job, cell("label")?.to_owned())).or_default().push(ms);
     }
+    // A missing baseline drops the row; a missing time of ours leaves its cells empty.
     let columns = ["llvmpipe", "Marraztu", "times as fast", "AVX2", "times as fast"];
     let mut text = head("mesh (triangles), mode, size", &columns);
     let mut logarithms = [Vec::new(), Vec::new()];
@@ -65,6 +65,7 @@ pub(crate) fn table(file: &Path) -> Result<String, String> {
         }
         text.push('\n');
     }
+    // The geometric mean suits ratios.
     text.push_str("| geometric mean | |");
     for logarithms in logarithms {
         #[expect(clippy::cast_precision_loss, reason = "few jobs")]

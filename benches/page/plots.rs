@@ -1,4 +1,4 @@
-//! Plots how the time of a picture grows, with two logarithmic scales.
+//! Plots how frame time grows, on log-log axes.
 
 use std::error::Error;
 
@@ -13,7 +13,7 @@ const GRID: RGBColor = RGBColor(226, 226, 230);
 const LINE: RGBColor = RGBColor(0, 114, 178);
 const LINEAR: RGBColor = RGBColor(160, 160, 168);
 
-/// The quantity that grows, and how its numbers are read from the names of benchmarks.
+/// The quantity that grows, and the function that reads its value from a benchmark's name.
 struct Growth {
     group: &'static str,
     title: &'static str,
@@ -33,9 +33,9 @@ const GROWTHS: [Growth; 3] = [
     Growth { group: "lights", title: "lights, 70,000 triangles", number: |n| n.parse().ok() },
 ];
 
-/// The plots, with the names of their files.
+/// Returns the plots with their file names.
 pub(crate) fn all(measured: &Measured) -> Result<Vec<(String, String)>, Box<dyn Error>> {
-    // Registering it again changes nothing.
+    // Registering the font again has no effect.
     let _ = register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
     GROWTHS
         .iter()
@@ -50,6 +50,7 @@ fn plot(growth: &Growth, measured: &Measured) -> Result<String, Box<dyn Error>> 
     let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
         return Err(format!("{} was not measured", growth.group).into());
     };
+    // The axis of times spans whole decades.
     let times = points.iter().map(|point| point.1);
     let least = times.clone().fold(f64::INFINITY, f64::min);
     let most = times.fold(0.0, f64::max);
@@ -73,7 +74,7 @@ fn plot(growth: &Growth, measured: &Measured) -> Result<String, Box<dyn Error>> 
         .x_label_formatter(&|x| short(*x))
         .y_label_formatter(&|y| short(*y))
         .draw()?;
-    // The line on which each costs as much as at the end.
+    // A reference line: linear growth from the last point, at its cost per unit.
     let begin = first.0.max(last.0 * low / last.1);
     let linear = [(begin, last.1 * begin / last.0), last];
     chart.draw_series([PathElement::new(linear, LINEAR.stroke_width(1))])?;
@@ -85,7 +86,7 @@ fn plot(growth: &Growth, measured: &Measured) -> Result<String, Box<dyn Error>> 
     Ok(svg)
 }
 
-/// A number without noughts: 0.5, 20, 3k, 1M.
+/// Formats a number without trailing zeros: 0.5, 20, 3k, 1M.
 fn short(number: f64) -> String {
     match number {
         _ if number >= 999_999.0 => format!("{}M", tidy(number / 1e6)),

@@ -6,7 +6,7 @@ use super::measured::Measured;
 
 const STAGES: [&str; 6] = ["plan", "vertices", "set-up", "lines", "tiles", "tiles-lit-at-vertices"];
 
-/// Stages by shapes.
+/// Tabulates stages by shapes.
 pub(crate) fn stages(measured: &Measured) -> Result<String, String> {
     let shapes = measured.groups("stages/");
     let mut text = head("stage", &shapes);
@@ -18,7 +18,7 @@ pub(crate) fn stages(measured: &Measured) -> Result<String, String> {
     Ok(text)
 }
 
-/// The cost of each effect, the most expensive first.
+/// Tabulates the cost of each effect, the most expensive first.
 pub(crate) fn effects(measured: &Measured) -> Result<String, String> {
     let mut rows = Vec::new();
     for name in measured.groups("effects/") {
@@ -34,7 +34,7 @@ pub(crate) fn effects(measured: &Measured) -> Result<String, String> {
     Ok(text)
 }
 
-/// Textures by filter, on sheets of triangles and on a floor.
+/// Tabulates textures by filter, on sheets of triangles and on a floor.
 pub(crate) fn textures(measured: &Measured) -> Result<String, String> {
     const COLUMNS: [&str; 6] =
         ["none", "nearest", "bilinear", "trilinear", "nearest with holes", "trilinear with holes"];
@@ -42,7 +42,7 @@ pub(crate) fn textures(measured: &Measured) -> Result<String, String> {
     for (group, name) in [("1", "1"), ("2000", "2,000"), ("100000", "100,000"), ("floor", "floor")]
     {
         let cell = |column: &&str| measured.of(&format!("textures/{group}"), column).map(brief);
-        // The floor has no other columns.
+        // The floor is only measured with some of the filters.
         let cells: Vec<String> =
             COLUMNS.iter().map(|column| cell(column).unwrap_or_default()).collect();
         if cells[2].is_empty() {
@@ -53,7 +53,7 @@ pub(crate) fn textures(measured: &Measured) -> Result<String, String> {
     Ok(text)
 }
 
-/// How the time of a frame grows with the number of objects.
+/// Tabulates how frame time grows with the number of objects.
 pub(crate) fn objects(measured: &Measured) -> Result<String, String> {
     let mut rows: Vec<(u32, f64)> = measured
         .group("objects")
@@ -73,7 +73,7 @@ pub(crate) fn objects(measured: &Measured) -> Result<String, String> {
     Ok(text)
 }
 
-/// How many times as fast more threads are.
+/// Tabulates the speed-up from more threads.
 pub(crate) fn threads(measured: &Measured) -> Result<String, String> {
     let one = measured.of("threads", "1")?;
     let mut rows: Vec<(u32, f64)> = measured
@@ -90,12 +90,12 @@ pub(crate) fn threads(measured: &Measured) -> Result<String, String> {
     Ok(text)
 }
 
-/// The first lines of a table of numbers.
+/// Writes the first lines of a table of numbers.
 pub(crate) fn head(first: &str, columns: &[&str]) -> String {
     format!("| {first} | {} |\n|---|{}\n", columns.join(" | "), "--:|".repeat(columns.len()))
 }
 
-/// Milliseconds in three digits.
+/// Formats milliseconds with three digits.
 pub(crate) fn brief(ms: f64) -> String {
     match ms {
         _ if ms < 0.0005 => "0".to_owned(),

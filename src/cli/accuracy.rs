@@ -1,10 +1,10 @@
-//! The options of accuracy: one for each axis, made from the table of axes.
+//! The options for accuracy, one per axis, generated from the table of axes.
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Choice, Settings};
 
-/// The choices that were made; other axes stay as they are.
+/// The chosen options; other axes keep their settings.
 #[derive(Debug, Default)]
 pub(crate) struct Accuracy {
     preset: Option<&'static AccuracyPreset>,
@@ -17,14 +17,14 @@ const PRESET: &str = "preset";
 const SAMPLES: &str = "samples";
 
 impl Accuracy {
-    /// The settings with these choices: first the preset, then single axes.
+    /// Applies the preset to settings, then the single axes.
     pub(crate) fn of(&self, settings: &Settings) -> Settings {
         let settings = self.preset.map_or(*settings, |preset| preset.of(settings));
         self.choices.iter().fold(settings, |settings, choice| choice.of(&settings))
     }
 
-    /// The settings of a picture in a file: refined as in a still window, unless the samples per
-    /// pixel or a quick preset are chosen.
+    /// Returns the settings for a picture file: refined as in an idle window, unless the samples
+    /// per pixel or a quick preset are chosen.
     pub(crate) fn of_file(&self, settings: &Settings) -> Settings {
         let settings = self.of(settings);
         let is_quick = self.preset.is_some_and(|preset| preset.word == "draft");
@@ -57,7 +57,7 @@ fn option(name: &'static str, words: Vec<&'static str>, help: String) -> Arg {
         .help(help)
 }
 
-/// "Where light is evaluated: face, vertex, pixel*"
+/// Formats the help of an axis: "Where light is evaluated: face, vertex, pixel*".
 fn help_of(axis: &Axis) -> String {
     let star = |choice: &Choice| {
         let star = if choice.word == axis.default_choice().word { "*" } else { "" };

@@ -1,4 +1,4 @@
-//! The arguments that commands share, and their help.
+//! Arguments that several commands share, with their help.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -192,12 +192,12 @@ pub(crate) struct Seeing {
     pub(crate) helpers: Option<bool>,
 }
 
-/// An exposure.
+/// An exposure option.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Exposure {
-    /// In stops.
+    /// A number of stops.
     Stops(f64),
-    /// As it fits the picture.
+    /// Fitted to the picture.
     Fit,
 }
 
@@ -224,7 +224,7 @@ pub(crate) struct Info {
     pub(crate) reading: Reading,
 }
 
-/// The axes that may point up, by name.
+/// The possible up axes, by name.
 const UP_AXES: [(&str, UpAxis); 6] = {
     let mut axes = [("", UpAxis::Y); 6];
     let mut i = 0;
@@ -235,12 +235,12 @@ const UP_AXES: [(&str, UpAxis); 6] = {
     axes
 };
 
-/// The lights that cast shadows.
+/// The selection of lights that cast shadows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum ShadowSlots {
-    /// Every light that can.
+    /// Every light that can cast shadows.
     All,
-    /// Those in these slots.
+    /// The lights in these slots.
     These(Slots),
 }
 
@@ -249,7 +249,7 @@ pub(crate) enum ShadowSlots {
 pub(crate) struct Slots(pub(crate) BTreeSet<u32>);
 
 impl Reading {
-    /// The options of the reader for a file, or for standard input.
+    /// Returns the load options for a file or for standard input.
     pub(crate) fn options(&self, file: &Path, input: Option<&Input>) -> LoadOptions {
         let stated = || match input {
             Some(input) => input.stated_up(),
@@ -265,18 +265,18 @@ impl Reading {
         }
     }
 
-    /// Whether any of the options was given.
+    /// Returns whether any of the options was given.
     pub(crate) const fn is_given(&self) -> bool {
         let crease_or_bumps = self.crease.is_some() || self.bump_maps.is_some();
         self.up.is_some() || self.scale.is_some() || self.flip_winding || crease_or_bumps
     }
 }
 
-/// A parser that accepts these words, and returns their values.
+/// Returns a parser that accepts the words of a table and returns their values.
 pub(super) fn choice<T: Copy + Send + Sync>(
     table: &'static [(&'static str, T)],
 ) -> impl TypedValueParser<Value = T> {
-    // The help lists them in its sentence, with a star at the default.
+    // The help text lists the words, with a star at the default.
     PossibleValuesParser::new(table.iter().map(|(word, _)| *word)).map(move |word| {
         let row = table.iter().find(|(other, _)| *other == word);
         row.expect("clap lets only words of the table through").1
@@ -297,7 +297,7 @@ fn texture_help() -> String {
     format!("A texture for the objects: {}", io::texture_formats())
 }
 
-/// Checks the name before anything is drawn, which may take long.
+/// Checks the file name before the picture is drawn, which may take long.
 fn picture(path: PathBuf) -> Result<PathBuf, String> {
     if is_standard(&path) { Ok(path) } else { PictureFormat::of(&path).map(|_| path) }
 }

@@ -1,5 +1,4 @@
-//! Shows progress on standard error: a bar if that is a terminal, or else lines if they are asked
-//! for.
+//! Shows progress on standard error: as a bar on a terminal, or as lines on request.
 
 use std::io::IsTerminal;
 use std::sync::Arc;
@@ -13,16 +12,16 @@ use marraztu_io::Progress;
 use super::say;
 use super::talk;
 
-/// Work that takes less time has no bar.
+/// Shorter work has no bar.
 const PATIENCE: Duration = Duration::from_millis(700);
 
 /// The time between two updates.
 const PERIOD: Duration = Duration::from_millis(60);
 
-/// The step in per cent between two lines.
+/// The step between two lines, in per cent.
 const STEP: u64 = 10;
 
-/// Shows the progress of work as long as it lives.
+/// Shows the progress of work until it is dropped.
 #[derive(Debug)]
 pub(crate) struct Bar {
     done: Arc<AtomicBool>,
@@ -30,14 +29,14 @@ pub(crate) struct Bar {
 }
 
 impl Bar {
-    /// Shows work with known progress.
+    /// Starts a bar for work with known progress.
     pub(crate) fn of(what: &str, progress: &Progress) -> Self {
         let style = ProgressStyle::with_template("{msg} [{bar:30}] {percent}%");
         let progress = progress.clone();
         Self::start(what, style.ok(), move || Some(thousandths(&progress)))
     }
 
-    /// Shows work with unknown progress.
+    /// Starts a spinner for work with unknown progress.
     pub(crate) fn unmeasured(what: &str) -> Self {
         let style = ProgressStyle::with_template("{msg} {spinner} {elapsed}");
         Self::start(what, style.ok(), || None)
@@ -51,7 +50,7 @@ impl Bar {
         let done = Arc::new(AtomicBool::new(false));
         let (watched, what) = (Arc::clone(&done), what.to_owned());
         let builder = || Builder::new().name("bar".to_owned());
-        // If no thread can be started, there is no bar.
+        // If the thread cannot be started, no bar is shown.
         let thread = if talk::is_quiet() {
             None
         } else if std::io::stderr().is_terminal() {
@@ -65,7 +64,7 @@ impl Bar {
     }
 }
 
-/// A bar, once the work takes long.
+/// Draws a bar when the work takes long.
 fn show(
     what: &str,
     style: Option<ProgressStyle>,
@@ -79,6 +78,7 @@ fn show(
     }
     bar.set_message(what.to_owned());
     while !done.load(Ordering::Relaxed) {
+        // Short work should not flash a bar.
         if bar.is_hidden() && begin.elapsed() > PATIENCE {
             bar.set_draw_target(ProgressDrawTarget::stderr());
         }
@@ -91,7 +91,7 @@ fn show(
     bar.finish_and_clear();
 }
 
-/// Prints lines, from the first step that is reached to the end: "drawing: 40%".
+/// Prints lines such as "drawing: 40%", from the first step to the end.
 fn tell(what: &str, thousandths: &dyn Fn() -> Option<u64>, done: &AtomicBool) {
     let mut told = 0;
     while !done.load(Ordering::Relaxed) {
@@ -110,7 +110,7 @@ impl Drop for Bar {
         self.done.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
             thread.thread().unpark();
-            // A panic of the bar does not concern the work.
+            // A panic of the bar does not affect the work.
             let _ = thread.join();
         }
     }

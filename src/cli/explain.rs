@@ -1,4 +1,4 @@
-//! `marraztu explain`: says what a pixel shows and what its colour is made of.
+//! `marraztu explain`: explains the surface at a pixel and the terms of its colour.
 
 use std::io::Write as _;
 
@@ -31,7 +31,7 @@ pub(crate) struct Explain {
     at: Pixel,
 }
 
-/// Explains the pixel that the arguments name.
+/// Explains the pixel given in the arguments.
 pub(crate) fn explain(arguments: &Explain) -> Result<(), Failure> {
     let stage = render::stage(&arguments.picture)?;
     let shot = stage.shot(arguments.picture.size);

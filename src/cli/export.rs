@@ -41,7 +41,7 @@ pub(crate) struct Export {
     seeing: Seeing,
 }
 
-/// Writes the scene that the arguments describe.
+/// Exports the scene described by the arguments.
 pub(super) fn export(arguments: &Export) -> Result<(), Failure> {
     let Export { files, out, talk, reading, surfaces, seeing } = arguments;
     talk.apply();

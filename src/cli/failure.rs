@@ -1,4 +1,4 @@
-//! Why a command of the command line fails.
+//! The errors of commands.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use marraztu_io::{LoadError, SaveError, SceneFileError};
 use marraztu_lab::pairs::Unmeasured;
 use marraztu_lab::report::PlotError;
 
-/// Why a command fails, in one sentence.
+/// The reason why a command failed, in one sentence.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     /// Invalid arguments, or arguments that contradict each other.
@@ -21,34 +21,34 @@ pub(crate) enum Failure {
     /// The error has been printed already.
     #[error("some of it failed")]
     Told,
-    /// Something that the arguments name does not exist.
+    /// An item named in the arguments does not exist.
     #[error("{0}")]
     Absent(String),
-    /// A model or a texture.
+    /// A model or a texture could not be loaded.
     #[error(transparent)]
     Load(#[from] LoadError),
-    /// A scene.
+    /// A scene could not be opened.
     #[error(transparent)]
     Scene(#[from] SceneFileError),
-    /// The picture.
+    /// A file could not be saved.
     #[error(transparent)]
     Save(#[from] SaveError),
-    /// A change that the scene does not allow.
+    /// The scene does not allow a change.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// Standard output.
+    /// Standard output could not be written.
     #[error("standard output: {0}")]
     Output(std::io::Error),
-    /// A file of results.
+    /// A file of results could not be written.
     #[error("{0} could not be written: {1}")]
     Write(PathBuf, std::io::Error),
-    /// A measurement.
+    /// A measurement failed.
     #[error(transparent)]
     Measure(#[from] Unmeasured),
-    /// A plot.
+    /// A plot could not be drawn.
     #[error(transparent)]
     Plot(#[from] PlotError),
-    /// The window.
+    /// The window could not be opened.
     #[error(
         "{0}\nWithout a window, `marraztu render --out picture.png` draws the same pictures into \
          files"
@@ -56,7 +56,7 @@ pub(crate) enum Failure {
     Start(#[from] StartError),
 }
 
-/// Invalid arguments, or arguments that contradict each other.
+/// Makes an error for invalid or contradictory arguments.
 pub(crate) fn usage(reason: &str) -> Failure {
     Failure::Usage(reason.to_owned())
 }

@@ -13,7 +13,7 @@ use super::say;
 use super::stage::{Stage, input, is_scene, load};
 use super::values::is_standard;
 
-/// Describes each file; the others are described even if one cannot be read.
+/// Describes each file. An unreadable file is reported, and the rest are still described.
 pub(crate) fn info(arguments: &Info) -> Result<(), Failure> {
     let input = input(&arguments.files)?;
     let mut failed = false;
@@ -28,7 +28,7 @@ pub(crate) fn info(arguments: &Info) -> Result<(), Failure> {
         };
         let blank = if i == 0 { "" } else { "\n" };
         match write!(io::stdout().lock(), "{blank}{described}") {
-            // The reader has closed the pipe, as `head` does.
+            // The reader has closed the pipe, like `head`.
             Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
             written => written.map_err(Failure::Output)?,
         }
@@ -49,13 +49,13 @@ fn description(file: &Path, input: Option<&Input>, reading: &Reading) -> Result<
     let stage = Stage::of_scene(file, input)?;
     let mut text = scene_text(file, &stage.scene, &stage.view);
     for finding in &stage.findings {
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "  {finding}");
     }
     Ok(text)
 }
 
-/// The shape of an object: "a cube, 8 vertices, 6 faces".
+/// Describes the shape of an object: "a cube, 8 vertices, 6 faces".
 fn model_text(model: &Model) -> String {
     if let (true, Some(file)) = (model.is_placeholder(), &model.source) {
         return format!("a box in the place of {}, which is missing", file.display());
@@ -65,7 +65,7 @@ fn model_text(model: &Model) -> String {
     format!("{kind}{vertices} vertices, {faces} faces")
 }
 
-/// The objects, cameras and lights of a scene, one in each line; an asterisk marks the selection.
+/// Lists the objects, cameras and lights of a scene, one per line; an asterisk marks the selection.
 fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
     let mut lines = vec![format!("{:16}{}", "scene", file.display())];
     let head = |what: &str, count: usize| format!("{what:16}{count}");
@@ -96,6 +96,7 @@ fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
         Projection::Perspective => "in perspective",
         Projection::Orthographic => "in parallel projection",
     };
+    // The observer and the projection determine the picture that `render` draws.
     let observer = match view.observer {
         Observer::Camera => "the selected camera",
         Observer::Object => "the selected object",

@@ -1,5 +1,4 @@
-//! `marraztu keys`: lists every key of the editor and what the mouse does, from the tables that the
-//! editor itself reads.
+//! `marraztu keys`: lists all keys and mouse actions, from the same tables as the editor.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -21,13 +20,13 @@ pub(crate) struct Keys {
 pub(crate) fn keys(arguments: &Keys) -> Result<(), Failure> {
     let text = if arguments.markdown { markdown() } else { plain() };
     match io::stdout().lock().write_all(text.as_bytes()) {
-        // The reader has closed the pipe, as `head` does.
+        // The reader has closed the pipe, like `head`.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         written => written.map_err(Failure::Output),
     }
 }
 
-/// The groups, each with its actions that have keys.
+/// Returns each group with the actions that have keys.
 fn groups() -> impl Iterator<Item = (Group, Vec<ActionInfo>)> {
     Group::ALL.into_iter().filter_map(|group| {
         let looks = group.actions().map(|action| action.info());
@@ -44,7 +43,7 @@ fn plain() -> String {
     let mut text = String::new();
     for (group, looks) in groups() {
         let blank = if text.is_empty() { "" } else { "\n" };
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "{blank}{}", group.label());
         for look in looks {
             let _ = writeln!(text, "  {:22}{:26}{}", names(&look).join(" "), look.label, look.hint);

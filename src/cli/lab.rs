@@ -1,4 +1,4 @@
-//! `marraztu lab`: measures what accuracy costs in time.
+//! `marraztu lab`: measures the cost of accuracy.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -95,7 +95,7 @@ pub(crate) struct Lab {
     accuracy: Accuracy,
 }
 
-/// Measures, and prints the report.
+/// Runs the measurement and prints the report.
 pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
     arguments.talk.apply();
     draw_along(arguments.threads);
@@ -105,6 +105,7 @@ pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
     let Lab { files, reading, surfaces, seeing, accuracy, size, .. } = arguments;
     let stage = staged(files, reading, surfaces, seeing, accuracy)?;
     let settings = stage.settings;
+    // Check all results before the measurement, which takes minutes.
     if let Some(folder) = &arguments.out {
         let sources = stage.sources(files);
         RESULTS.iter().try_for_each(|name| sources.spare(&folder.join(name)))?;
@@ -158,7 +159,7 @@ fn save_suite(folder: &Path, reports: &[Report]) -> Result<(), Failure> {
     write("report.json", format!("[{}]\n", json.join(",\n")))
 }
 
-/// Writes a text into a folder, which is created if it does not exist.
+/// Writes a text into a folder, creating it if it does not exist.
 fn write(folder: &Path, name: &str, text: String) -> Result<(), Failure> {
     let fail = |path: &Path| {
         let path = path.to_owned();
@@ -181,6 +182,7 @@ fn measured(arguments: &Lab, studio: &mut Studio, current: Settings) -> Result<R
     let bar = Bar::of("measuring", &watch.progress);
     let findings = sweep(studio, &question, &mut WallClock::default(), &watch, &mut |_| {})?;
     drop(bar);
+    // clap has checked the word.
     let measure = Measure::ALL.into_iter().find(|measure| measure.word() == arguments.measure);
     Ok(Report {
         scene: scene_name(&arguments.files),
@@ -192,7 +194,7 @@ fn measured(arguments: &Lab, studio: &mut Studio, current: Settings) -> Result<R
     })
 }
 
-/// The names of the files: "bunny.obj, pot.obj".
+/// Joins the names of the files: "bunny.obj, pot.obj".
 fn scene_name(files: &[PathBuf]) -> String {
     let name = |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     match files {
@@ -201,7 +203,7 @@ fn scene_name(files: &[PathBuf]) -> String {
     }
 }
 
-/// The arguments of this process, as they would be typed.
+/// Returns the command line of this process as it would be typed.
 fn command() -> String {
     let quoted = |word: String| {
         let plain = |c: char| c.is_alphanumeric() || "-_./,=:+".contains(c);
@@ -234,13 +236,13 @@ fn explain_pixel(studio: &mut Studio, settings: &Settings, at: [usize; 2]) -> Re
 
 fn print(text: &str) -> Result<(), Failure> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
-        // The reader has closed the pipe, as `head` does.
+        // The reader has closed the pipe, like `head`.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
         written => written.map_err(Failure::Output),
     }
 }
 
-/// The files that a measurement writes.
+/// The files written by a measurement.
 const RESULTS: [&str; 11] = [
     "table.txt",
     "table.csv",
@@ -277,6 +279,7 @@ fn save(
         write(&format!("plots-{word}.svg"), report::svg(report, look)?)?;
         io::save_picture(&place(&format!("plots-{word}.png")), &report::png(report, look)?)?;
     }
+    // Error pictures show the difference to the exact picture, amplified to be visible.
     studio.draw(&settings.reference());
     let exact = studio.picture().clone();
     io::save_picture(&place("exact.png"), &exact)?;

@@ -1,7 +1,7 @@
 //! The command line: one file for each command.
 //!
-//! The exit status is 0 on success, 1 if something failed, and 2 for invalid arguments. Results go
-//! to standard output, notes and errors to standard error.
+//! The exit status is 0 on success, 1 on failure, and 2 for invalid arguments. Results go to
+//! standard output, notes and errors to standard error.
 
 mod accuracy;
 mod arguments;
@@ -32,7 +32,7 @@ use clap::{CommandFactory, Parser};
 use self::commands::{Arguments, Headless};
 use self::failure::Failure;
 
-/// Runs the command that the arguments of this process name.
+/// Runs the command given by the arguments of this process.
 pub(crate) fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -54,6 +54,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Headless::Verify(arguments)) => verify::verify(&arguments),
         None => open::open(&arguments.files, arguments.shell, arguments.preset),
     };
+    // Usage errors are printed like clap's own, with exit status 2.
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Usage(reason)) => {
@@ -68,22 +69,22 @@ pub(crate) fn run() -> ExitCode {
     }
 }
 
-/// Makes this thread draw together with others: `threads` in all, or one for each core. It has
-/// nothing else to do, and would only have to be woken when the others are done.
+/// Adds this thread to the drawing pool of `threads` threads, or one per core. It would otherwise
+/// idle, and have to be woken when the others are done.
 fn draw_along(threads: Option<usize>) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
-    // Fails only if the threads exist already, and nothing has started them.
+    // This fails only if the pool exists already, and nothing has started it.
     let _ = pool.use_current_thread().build_global();
 }
 
-/// Prints clap's message. Help and version come this way too, with exit status 0.
+/// Prints clap's message. This includes help and version, with exit status 0.
 fn usage(wrong: &clap::Error) -> ExitCode {
-    // If standard error is closed, nothing can be told.
+    // If standard error is closed, the message is lost.
     let _ = wrong.print();
     ExitCode::from(u8::try_from(wrong.exit_code()).unwrap_or(2))
 }
 
-/// Prints a line on standard error, in the form of clap's own errors.
+/// Prints a line to standard error, in the style of clap's errors.
 fn say(kind: &str, what: &dyn std::fmt::Display) {
     let _ = writeln!(std::io::stderr().lock(), "{kind}: {what}");
 }

@@ -13,7 +13,7 @@ use super::commands::Arguments;
 use super::failure::{Failure, usage};
 use super::values::is_standard;
 
-/// Opens the editor with these files, which have to exist.
+/// Opens the editor with these files, which must exist.
 pub(crate) fn open(
     files: &[PathBuf],
     shell: Option<Shell>,
@@ -31,7 +31,7 @@ pub(crate) fn open(
     Ok(marraztu::app::run(files, shell.unwrap_or_default(), preset)?)
 }
 
-/// The error if the first argument is not a file, but nearly the name of a command.
+/// Returns an error if the first argument is not a file, but close to the name of a command.
 pub(super) fn misspelt() -> Option<clap::Error> {
     misspelt_in(std::env::args_os().nth(1)?)
 }
@@ -43,11 +43,11 @@ fn misspelt_in(word: OsString) -> Option<clap::Error> {
     }
     let command = Arguments::command();
     let names = command.get_subcommands().map(clap::Command::get_name);
-    // Counts wrong, missing, additional and swapped letters. Short names allow only one.
+    // The distance counts wrong, missing, extra and swapped letters. Short names allow only one.
     let slips = |name: &&str| strsim::osa_distance(name, &word);
     let most = |name: &str| if name.len() <= 4 { 1 } else { 2 };
     let nearest = names.min_by_key(slips).filter(|name| slips(name) <= most(name))?;
-    // clap has handled the command itself.
+    // clap has already handled exact names.
     if *nearest == *word {
         return None;
     }

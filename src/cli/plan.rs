@@ -1,4 +1,4 @@
-//! `marraztu plan`: explains which effects a frame uses.
+//! `marraztu plan`: explains the effects that a frame uses.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -50,7 +50,7 @@ enum Format {
     Json,
 }
 
-/// Lists the effects of the picture that the arguments describe.
+/// Lists the effects of the picture described by the arguments.
 pub(crate) fn plan(arguments: &Plan) -> Result<(), Failure> {
     let stage = render::stage(&arguments.picture)?;
     let shot = stage.shot(arguments.picture.size);
@@ -77,6 +77,7 @@ fn table(explained: &Explained, costs: Option<&Costs>) -> String {
             false => "noise".to_owned(),
         });
         rows.push(row(&group.uses[0].name, &group.of(), &group, time));
+        // Uses that differ are listed one by one below the group.
         if group.is_alike() {
             continue;
         }
@@ -88,7 +89,7 @@ fn table(explained: &Explained, costs: Option<&Costs>) -> String {
     }
     let mut text = columns(&rows);
     let size = explained.size;
-    // Writing to a text cannot fail.
+    // Writing to a string cannot fail.
     let _ = writeln!(
         text,
         "\n{} x {} pixels. Leaving effects out changes no bit.",
@@ -165,7 +166,7 @@ fn csv(explained: &Explained, costs: Option<&Costs>) -> String {
         let numbers = [pixels.map(|x| x.to_string()), milliseconds.map(|x| x.to_string())];
         let [pixels, milliseconds] = numbers.map(Option::unwrap_or_default);
         let spread = spread.map_or_else(String::new, |x| x.to_string());
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "{},{pixels},{milliseconds},{spread}", words.join(","));
     }
     text

@@ -21,13 +21,14 @@ use super::stage::Stage;
 use super::talk::note;
 use super::target::Target;
 
-/// Draws the picture that the arguments describe.
+/// Draws the picture described by the arguments.
 pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     let target = Target::of(arguments)?;
     let stage = stage(&arguments.picture)?;
     target.check(&stage.sources(&arguments.picture.files), arguments.transparent)?;
     let progress = Progress::new();
     let bar = Bar::of("drawing", &progress);
+    // For a single picture, computing a faster drawing order is not worth its time.
     for (_, object) in stage.scene.objects.iter() {
         object.model.mesh.draw_as_filed();
     }
@@ -40,18 +41,18 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     }
     let plan = plan_frame(&shot);
     renderer.render_watched(&plan, &|done, all| {
-        // Nothing cancels this.
+        // Nothing cancels this progress.
         let _ = progress.reached(done, all);
     });
     drop(bar);
     tell_unseen(&mut renderer, &shot);
     written(arguments, &target, renderer.picture())?;
-    // The process ends here: freeing a million vertices first would only take time.
+    // The process ends here, so freeing a million vertices would only waste time.
     std::mem::forget((stage, plan, renderer));
     Ok(())
 }
 
-/// Writes the picture, and notes its place if the user has not named it.
+/// Writes the picture, and prints its path if the user did not choose it.
 fn written(arguments: &Render, target: &Target, picture: &Picture) -> Result<(), Failure> {
     target.write(picture)?;
     if let (None, Target::File(path)) = (&arguments.out, target) {
@@ -60,7 +61,7 @@ fn written(arguments: &Render, target: &Target, picture: &Picture) -> Result<(),
     Ok(())
 }
 
-/// Notes why some objects are invisible: a line for each reason.
+/// Notes why some objects are invisible, with one line per reason.
 fn tell_unseen(renderer: &mut Renderer, shot: &Shot) {
     let mut reasons: Vec<(Unseen, Vec<&str>)> = Vec::new();
     for (id, reason) in unseen(renderer, shot) {
@@ -71,6 +72,7 @@ fn tell_unseen(renderer: &mut Renderer, shot: &Shot) {
         }
     }
     for (reason, names) in &reasons {
+        // Some reasons have an option that helps.
         let remedy = match reason {
             Unseen::TurnedAway { .. } => ": --sides two draws both sides",
             _ => "",
@@ -84,7 +86,7 @@ fn tell_unseen(renderer: &mut Renderer, shot: &Shot) {
     }
 }
 
-/// Reads the files, applies the options, and reports the findings in the files.
+/// Loads the files, applies the options, and reports findings.
 pub(super) fn stage(picture: &PictureArguments) -> Result<Stage, Failure> {
     let PictureArguments { files, reading, surfaces, seeing, accuracy, talk, threads, .. } =
         picture;
@@ -97,7 +99,7 @@ pub(super) fn stage(picture: &PictureArguments) -> Result<Stage, Failure> {
     Ok(stage)
 }
 
-/// The scene of these files with the options applied.
+/// Loads the scene of these files and applies the options.
 pub(crate) fn staged(
     files: &[PathBuf],
     reading: &Reading,
@@ -131,6 +133,7 @@ fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
         object.file_normals &= !surfaces.no_file_normals;
     };
     stage.change(items::change_all_objects(&stage.scene, change))?;
+    // A texture has no effect without texture coordinates, so say why.
     if let Some(texture) = &surfaces.texture {
         let objects = stage.scene.objects.iter();
         for (_, object) in objects.filter(|(_, object)| object.model.mesh.uvs().is_empty()) {
@@ -149,6 +152,7 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     if seeing.from.is_some() && !stage.models_alone {
         return Err(usage("--from says from where models alone are seen; a scene has its cameras"));
     }
+    // The camera comes first: lights and exposure depend on the view.
     aim(stage, seeing)?;
     if let Some(Slots(slots)) = &seeing.lights {
         light(stage, slots)?;
@@ -171,6 +175,7 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     view.face_normals |= seeing.face_normals;
     view.vertex_normals |= seeing.vertex_normals;
     view.marks = seeing.helpers.unwrap_or(view.marks && !stage.models_alone);
+    // Exposure comes last, since fitting it draws the finished scene.
     match seeing.exposure {
         Some(Exposure::Stops(stops)) => stage.view.exposure = stops,
         Some(Exposure::Fit) => {
@@ -184,8 +189,8 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
 /// The side of the picture that the exposure is fitted to.
 const FITTED: usize = 256;
 
-/// Chooses the camera. Models alone are framed, and lit for that view; a camera that is named sees
-/// them under the first scene's own lights.
+/// Selects the camera. Models without a scene are framed, and lit for that view. An explicitly
+/// chosen camera sees them under the first scene's own lights.
 fn aim(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     if let Some(number) = seeing.camera {
         stage.view.camera = camera(stage, number)?;
@@ -201,12 +206,12 @@ fn aim(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     }
     match lighting::models(&stage.scene, &stage.view) {
         Ok(command) => stage.change(command),
-        // The note about framing has said why.
+        // The note about framing has already given the reason.
         Err(_) => Ok(()),
     }
 }
 
-/// Switches the lights in these slots on, and all others off.
+/// Switches the lights in these slots on and all others off.
 fn light(stage: &mut Stage, slots: &std::collections::BTreeSet<u32>) -> Result<(), Failure> {
     let lights: Vec<_> =
         stage.scene.lights.iter().map(|(id, light)| (id, light.slot, light.on)).collect();
@@ -222,9 +227,10 @@ fn light(stage: &mut Stage, slots: &std::collections::BTreeSet<u32>) -> Result<(
     Ok(())
 }
 
-/// Switches the shadows of these lights on, and those of all others off.
+/// Switches the shadows of these lights on and all others off.
 fn shade(stage: &mut Stage, slots: &ShadowSlots) -> Result<(), Failure> {
     let lights: Vec<_> = stage.scene.lights.iter().map(|(id, light)| (id, light.clone())).collect();
+    // Check all slots first, so that an error changes nothing.
     if let ShadowSlots::These(Slots(slots)) = slots {
         let able = |slot: &u32| {
             lights.iter().any(|(_, light)| light.slot == *slot && light.can_cast_shadows())
@@ -246,7 +252,7 @@ fn shade(stage: &mut Stage, slots: &ShadowSlots) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The camera with this number in the list, from 1.
+/// Returns the camera with this number in the list, from 1.
 fn camera(stage: &Stage, number: u32) -> Result<CameraId, Failure> {
     let index = usize::try_from(number).unwrap_or(usize::MAX) - 1;
     stage.scene.cameras.ids().nth(index).ok_or_else(|| {

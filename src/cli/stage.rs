@@ -1,4 +1,4 @@
-//! Builds the scene from files: a scene file or the first scene, with models put into it.
+//! Builds the scene from files: a scene file or the first scene, with models added to it.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -26,25 +26,25 @@ pub(crate) struct Stage {
     pub(crate) view: View,
     pub(crate) settings: Settings,
     pub(crate) findings: Vec<Finding>,
-    /// Whether there are models only, without a scene file that says how they are seen.
+    /// Whether there are only models, without a scene file that defines the view.
     pub(crate) models_alone: bool,
 }
 
 impl Stage {
-    /// The picture of this size.
+    /// Returns a shot of this size.
     pub(crate) fn shot(&self, size: Size) -> Shot {
         Shot::new(&self.scene, &self.view, &self.settings, size)
     }
 
-    /// The files that the scene was read from, which the result must not replace.
+    /// Returns the files of the scene, which the output must not overwrite.
     pub(crate) fn sources(&self, files: &[PathBuf]) -> Sources {
         Sources::of(&self.scene).with(files.iter().filter(|file| !is_standard(file)))
     }
 
-    /// Reads the files.
+    /// Loads the files.
     pub(crate) fn of(files: &[PathBuf], reading: &Reading) -> Result<Self, Failure> {
         let input = input(files)?;
-        // Checked before any of them is read, which may take long.
+        // Check all files before the first is read, which may take long.
         for file in files.iter().filter(|file| !is_standard(file)) {
             io::check_file(file)?;
         }
@@ -71,7 +71,7 @@ impl Stage {
         Ok(stage)
     }
 
-    /// The first scene, or its camera and lights alone.
+    /// Returns the first scene, or only its camera and lights.
     fn first(with_objects: bool) -> Self {
         let (scene, mut view) = if with_objects { io::default_scene() } else { io::empty_scene() };
         view.steps.by_size = !with_objects;
@@ -84,7 +84,7 @@ impl Stage {
         }
     }
 
-    /// The scene of a file, or of standard input.
+    /// Opens a scene from a file or from standard input.
     pub(super) fn of_scene(file: &Path, input: Option<&Input>) -> Result<Self, Failure> {
         let progress = Progress::new();
         let bar = Bar::of(&format!("reading {}", file.display()), &progress);
@@ -102,8 +102,8 @@ impl Stage {
         })
     }
 
-    /// Puts models into the scene as the editor does, with their files' own materials. A file that
-    /// is named several times is read once.
+    /// Adds models to the scene like the editor, with their own materials. A repeated file is read
+    /// once.
     fn add(
         &mut self,
         files: &[&PathBuf],
@@ -120,7 +120,7 @@ impl Stage {
         let place =
             |file: &Path| std::path::absolute(file).unwrap_or_else(|_empty| file.to_owned());
         let places: Vec<PathBuf> = files.iter().map(|file| place(file)).collect();
-        // Each once, in the order of the arguments.
+        // The distinct files, in the order of the arguments.
         let mut numbers: BTreeMap<&Path, usize> = BTreeMap::new();
         let mut once: Vec<&PathBuf> = Vec::new();
         for (file, place) in files.iter().zip(&places) {
@@ -129,6 +129,7 @@ impl Stage {
                 once.len() - 1
             });
         }
+        // The first error in the order of the arguments is reported, whatever thread met it.
         let mut models: Vec<Shared<Model>> = Vec::with_capacity(once.len());
         for loaded in load_all(&once, input, reading, &progress) {
             let Loaded { model, findings } = loaded?;
@@ -137,7 +138,7 @@ impl Stage {
         }
         let object = |place: &PathBuf| {
             let model = models[numbers[place.as_path()]].clone();
-            // This also applies to a model from standard input, which has no file name.
+            // Set explicitly, since a model from standard input has no file name.
             Object { sides: Sides::Auto, ..Object::new(model, MaterialChoice::File) }
         };
         let objects = places.iter().map(object).collect();
@@ -153,14 +154,14 @@ impl Stage {
     }
 }
 
-/// Reads a model, with a progress bar if it takes long.
+/// Loads a model, with a progress bar if it takes long.
 pub(crate) fn load(file: &Path, options: &LoadOptions) -> Result<Loaded, Failure> {
     let progress = Progress::new();
     let _bar = Bar::of(&format!("reading {}", file.display()), &progress);
     Ok(io::load(file, options, &progress)?)
 }
 
-/// The content of standard input, if it is among the files.
+/// Reads standard input, if it is among the files.
 pub(crate) fn input(files: &[PathBuf]) -> Result<Option<Input>, Failure> {
     match files.iter().filter(|file| is_standard(file)).count() {
         0 => Ok(None),
@@ -169,7 +170,7 @@ pub(crate) fn input(files: &[PathBuf]) -> Result<Option<Input>, Failure> {
     }
 }
 
-/// Reads several models at a time, since one small file leaves most threads idle.
+/// Loads several models in parallel, since one small file leaves most threads idle.
 fn load_all(
     files: &[&PathBuf],
     input: Option<&Input>,
@@ -178,6 +179,7 @@ fn load_all(
 ) -> Vec<Result<Loaded, LoadError>> {
     let done = AtomicUsize::new(0);
     let load = |file: &&PathBuf| {
+        // A single file reports its own progress; several count as one step each.
         let own = if files.len() == 1 { progress.clone() } else { Progress::new() };
         let input = input.filter(|_| is_standard(file));
         let options = reading.options(file, input);
@@ -191,7 +193,7 @@ fn load_all(
     files.par_iter().map(load).collect()
 }
 
-/// Whether a file's name is that of a scene.
+/// Returns whether a file has the extension of scenes.
 pub(crate) fn is_scene(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(io::SCENE_ENDING))
 }

@@ -1,4 +1,4 @@
-//! Messages on standard error besides errors: notes and progress.
+//! Notes and progress on standard error.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -22,7 +22,7 @@ pub(crate) struct Talk {
 }
 
 impl Talk {
-    /// Applies the options from now on.
+    /// Applies the options to all later messages.
     pub(crate) fn apply(&self) {
         QUIET.store(self.quiet, Ordering::Relaxed);
         PROGRESS.store(self.progress, Ordering::Relaxed);
@@ -36,12 +36,12 @@ pub(crate) fn note(what: &dyn std::fmt::Display) {
     }
 }
 
-/// Whether only errors are printed.
+/// Returns whether only errors are printed.
 pub(super) fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// Whether progress is printed in lines.
+/// Returns whether progress is printed in lines.
 pub(super) fn tells_progress() -> bool {
     PROGRESS.load(Ordering::Relaxed)
 }

@@ -1,5 +1,5 @@
-//! The target of a picture: standard output, or a file, whose name may follow from the files that
-//! are drawn.
+//! The target of a picture: standard output or a file. The default file name derives from the input
+//! files.
 
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -12,20 +12,20 @@ use super::failure::{Failure, usage};
 use super::stage::is_scene;
 use super::values::is_standard;
 
-/// The picture's name if no file gives it one.
+/// The picture's name if no input file has a name.
 const UNNAMED: &str = "scene";
 
 /// The target of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Target {
-    /// Into a file.
+    /// A file.
     File(PathBuf),
-    /// To standard output, as PNG.
+    /// Standard output, as PNG.
     Output,
 }
 
 impl Target {
-    /// The target that the arguments name, checked before anything is read or drawn.
+    /// Returns the target given in the arguments, checked before anything is read or drawn.
     pub(super) fn of(arguments: &Render) -> Result<Self, Failure> {
         let target = match &arguments.out {
             Some(out) if is_standard(out) => Self::Output,
@@ -45,8 +45,8 @@ impl Target {
         }
     }
 
-    /// Refuses to replace a file that the picture is made from, and a format without an alpha
-    /// channel if the picture needs one.
+    /// Refuses to overwrite an input file, and rejects formats without an alpha channel if the
+    /// picture needs one.
     pub(super) fn check(&self, sources: &Sources, transparent: bool) -> Result<(), Failure> {
         let Self::File(path) = self else { return Ok(()) };
         sources.spare(path)?;
@@ -63,7 +63,7 @@ impl Target {
             Self::Output => {
                 let bytes = PICTURE_FORMATS[0].encode(picture).map_err(Failure::Absent)?;
                 match std::io::stdout().lock().write_all(&bytes) {
-                    // The reader has closed the pipe, as `head` does.
+                    // The reader has closed the pipe, like `head`.
                     Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
                     written => written.map_err(Failure::Output),
                 }
@@ -72,7 +72,7 @@ impl Target {
     }
 }
 
-/// The name of the scene or first model with .png, in the current folder.
+/// Returns the name of the scene or first model with .png, in the current folder.
 pub(super) fn default_name(files: &[PathBuf]) -> PathBuf {
     let named = || files.iter().filter(|file| !is_standard(file));
     let file = named().find(|file| is_scene(file)).or_else(|| named().next());

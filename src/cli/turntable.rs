@@ -1,4 +1,4 @@
-//! `marraztu turntable`: draws a scene from all around.
+//! `marraztu turntable`: draws a full turn of a scene.
 
 use std::path::PathBuf;
 
@@ -18,7 +18,7 @@ use super::talk::note;
 use super::target::default_name;
 use super::values::is_standard;
 
-/// The most pictures of a turn: one for each tenth of a degree.
+/// The most pictures in a turn: one per tenth of a degree.
 const MOST_FRAMES: i64 = 3600;
 
 /// A turn, and the file that it goes to.
@@ -58,10 +58,11 @@ pub(crate) struct Turntable {
     picture: PictureArguments,
 }
 
-/// Draws the turn that the arguments describe.
+/// Draws the turn described by the arguments.
 pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
     let Turntable { out, frames, seconds, turn, transparent, picture } = arguments;
     let path = out.clone().unwrap_or_else(|| default_name(&picture.files).with_extension("gif"));
+    // Check the name before the files are loaded, which may take long.
     AnimationWriter::check(&path, &Sources::default())?;
     let stage = stage(picture)?;
     let size = picture.size;
@@ -78,6 +79,7 @@ pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
     for i in 0..frames {
         let part = f64::from(i) / f64::from(frames);
         let scene = turned(&stage.scene, &stage.view, turn, part)?;
+        // Spins and orbits continue during the turn.
         let time = stage.view.time + seconds * part;
         let view = View { time, ..stage.view.clone() };
         let shot = Stage { scene, view, findings: Vec::new(), ..stage }.shot(size);
@@ -86,7 +88,7 @@ pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
         } else {
             writer.push(renderer.render(&plan_frame(&shot)))?;
         }
-        // Nothing cancels this.
+        // Nothing cancels this progress.
         let _ = progress.reached(i as usize + 1, frames as usize);
     }
     writer.finish()?;
@@ -97,7 +99,7 @@ pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Checks the name before anything is drawn, which may take long.
+/// Checks the file name before the pictures are drawn, which may take long.
 fn animation(path: PathBuf) -> Result<PathBuf, String> {
     if is_standard(&path) {
         return Err("a turn goes to a file".to_owned());

@@ -1,19 +1,19 @@
-//! Parses values of options.
+//! Parses option values.
 
 use std::path::Path;
 
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
 
-/// The longest side that a picture may have.
+/// The longest side of a picture.
 const LONGEST_SIDE: usize = 16_384;
 
-/// Whether a file's name stands for standard input or output.
+/// Returns whether a file name refers to standard input or output.
 pub(crate) fn is_standard(file: &Path) -> bool {
     file == Path::new("-")
 }
 
-/// A picture's size: "800x600", or "800" for a square.
+/// Parses a picture size: "800x600", or "800" for a square.
 pub(super) fn size(text: &str) -> Result<Size, String> {
     let side = |text: &str| text.parse().ok().filter(|side| (1..=LONGEST_SIDE).contains(side));
     let sides = text.split_once(['x', 'X']).unwrap_or((text, text));
@@ -25,7 +25,7 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
     }
 }
 
-/// A colour: "255,128,0", "#ff8000", "#f80", or a name.
+/// Parses a colour: "255,128,0", "#ff8000", "#f80", or a name.
 pub(super) fn color(text: &str) -> Result<Color, String> {
     let text = text.trim();
     let color = match text.strip_prefix('#') {
@@ -44,7 +44,7 @@ fn decimal(text: &str) -> Option<[u8; 3]> {
     channels?.try_into().ok()
 }
 
-/// Six digits, two for each channel, or three: each of them stands for two equal ones.
+/// Parses six hexadecimal digits, two per channel, or three, one per channel, which are doubled.
 fn hexadecimal(digits: &str) -> Option<[u8; 3]> {
     let digits: Option<Vec<u8>> =
         digits.chars().map(|digit| u8::try_from(digit.to_digit(16)?).ok()).collect();
@@ -55,17 +55,17 @@ fn hexadecimal(digits: &str) -> Option<[u8; 3]> {
     }
 }
 
-/// A number of threads.
+/// Parses a number of threads.
 pub(super) fn threads(text: &str) -> Result<usize, String> {
     let count = text.parse().ok().filter(|count| (1..=1024).contains(count));
     count.ok_or_else(|| "write a whole number from 1 to 1024".to_owned())
 }
 
-/// A column and a row.
+/// A pixel as column and row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Pixel(pub(super) [usize; 2]);
 
-/// A column and a row, as `120,80`.
+/// Parses a column and a row, such as `120,80`.
 pub(super) fn pixel(text: &str) -> Result<Pixel, String> {
     let parts = text.split_once(',').map(|(x, y)| (x.trim().parse(), y.trim().parse()));
     match parts {

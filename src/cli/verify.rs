@@ -1,4 +1,4 @@
-//! `marraztu verify`: whether this processor draws the listed pictures.
+//! `marraztu verify`: checks that this processor draws the listed pictures.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -44,7 +44,7 @@ fn level(name: &str) -> Result<Level, &'static str> {
     )
 }
 
-/// Draws the pictures, and compares or prints their sums.
+/// Draws the pictures, and compares or prints their hashes.
 pub(crate) fn verify(arguments: &Verify) -> Result<(), Failure> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = arguments.threads.unwrap_or(all);
@@ -58,18 +58,18 @@ pub(crate) fn verify(arguments: &Verify) -> Result<(), Failure> {
     if differing > 0 { Err(Failure::Told) } else { Ok(()) }
 }
 
-/// Goes through the pictures, with a bar.
+/// Visits all pictures, with a progress bar.
 fn each(mut visit: impl FnMut(&TestPicture)) {
     let (pictures, progress) = (pictures::all(), Progress::new());
     let _bar = Bar::of("drawing", &progress);
     for (i, picture) in pictures.iter().enumerate() {
-        // Nothing cancels this.
+        // Nothing cancels this progress.
         let _ = progress.reached(i, pictures.len());
         visit(picture);
     }
 }
 
-/// The sums as the list holds them, and the number of those that depend on the instructions.
+/// Formats the list of hashes; also returns the number that depend on the instructions.
 fn list(levels: &[Level], threads: usize) -> (String, usize) {
     let mut text = "# What `marraztu verify --print` prints, on every processor.\n".to_owned();
     let mut differing = 0;
@@ -78,7 +78,7 @@ fn list(levels: &[Level], threads: usize) -> (String, usize) {
         for level in levels {
             let sum = picture.sum(*level, threads);
             let expected = *first.get_or_insert(sum);
-            // Writing to a text cannot fail.
+            // Writing to a string cannot fail.
             if sum != expected {
                 differing += 1;
                 let _ = writeln!(text, "# with {}: {sum:016x}", name_of(*level));
@@ -89,7 +89,7 @@ fn list(levels: &[Level], threads: usize) -> (String, usize) {
     (text, differing)
 }
 
-/// A line for each picture that differs and a summary, with the number of differences.
+/// Formats a line for each difference and a summary; also returns the number of differences.
 fn comparison(levels: &[Level], threads: usize, listed: &[(&str, u64)]) -> (String, usize) {
     let (mut text, mut alike, mut differing) = (String::new(), 0, 0);
     let mut missing: BTreeMap<&str, u64> = listed.iter().copied().collect();
@@ -109,6 +109,7 @@ fn comparison(levels: &[Level], threads: usize, listed: &[(&str, u64)]) -> (Stri
             let _ = writeln!(text, "{}: {wrong}, with {}", picture.name, name_of(*level));
         }
     });
+    // Listed pictures that were not drawn are differences, too.
     for name in missing.keys() {
         let _ = writeln!(text, "{name}: it is listed, but there is no such picture");
     }

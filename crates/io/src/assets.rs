@@ -1,4 +1,4 @@
-//! The three built-in models, and the first scene.
+//! The built-in models, and the first scene.
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -29,7 +29,7 @@ impl Asset {
         Self { name, text, model: OnceLock::new() }
     }
 
-    /// The model, read when it is first needed.
+    /// Returns the model. It is parsed on first use.
     fn model(&self) -> Shared<Model> {
         let read = || {
             let file = format!("{}.obj", self.name);
@@ -53,13 +53,13 @@ static WHEEL: Asset = Asset::new("wheel", include_bytes!("../../../assets/lesson
 /// The built-in texture, by its path in a scene file.
 const TILES: (&str, &[u8]) = ("own:tiles.png", include_bytes!("../../../assets/lessons/tiles.png"));
 
-/// The pyramid: the marker of cameras.
+/// Returns the pyramid that marks cameras.
 #[must_use]
 pub fn cam_model() -> Shared<Model> {
     CAM.model()
 }
 
-/// A built-in model or a simple shape, by its name.
+/// Finds a built-in model or a simple shape by name.
 #[must_use]
 pub fn own_model(name: &str) -> Option<Shared<Model>> {
     if let Some(shape) = Shape::named(name) {
@@ -73,7 +73,7 @@ pub fn own_model(name: &str) -> Option<Shared<Model>> {
     all.into_iter().find(|asset| asset.name == name).map(Asset::model)
 }
 
-/// A built-in texture, by its path in a scene file.
+/// Finds a built-in texture by its path in a scene file.
 #[must_use]
 pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
     static TEXTURE: OnceLock<Shared<Texture>> = OnceLock::new();
@@ -86,10 +86,10 @@ pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
     (path == own).then(|| get_or_compute(&TEXTURE, read).clone())
 }
 
-/// The first scene, with its view.
+/// Builds the first scene, with its view.
 ///
-/// Three objects were loaded one after the other, each to the front of the list, so the last one is
-/// the first and the selected one.
+/// The order is as if three objects had been loaded one after the other, each to the front of the
+/// list. The last one is therefore first and selected.
 #[must_use]
 pub fn default_scene() -> (Scene, View) {
     let object = |asset: &Asset, material, place| {
@@ -108,8 +108,7 @@ pub fn default_scene() -> (Scene, View) {
     (scene, view)
 }
 
-/// The first scene without its objects, with its view, and a background on which all models stand
-/// out.
+/// Builds the first scene without its objects, on a background that contrasts with all models.
 #[must_use]
 pub fn empty_scene() -> (Scene, View) {
     let camera = Camera {

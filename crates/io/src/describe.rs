@@ -6,7 +6,7 @@ use std::fmt::Write;
 use super::obj::Loaded;
 use marraztu_core::scene::{FileMaterial, Mesh, Model, Shape, Smoothing, UpAxis, Winding};
 
-/// The shape, parts, materials and findings of a loaded file, line by line.
+/// Lists the shape, parts, materials and findings of a loaded file, line by line.
 #[must_use]
 pub fn describe(loaded: &Loaded) -> String {
     let model = &loaded.model;
@@ -37,7 +37,7 @@ pub fn describe(loaded: &Loaded) -> String {
     text.0
 }
 
-/// The simple shape that a model is.
+/// Returns the simple shape that a model was made from.
 #[must_use]
 pub fn shape(model: &Model) -> Option<Shape> {
     Shape::named(&model.name).filter(|shape| shape.model().shares_file_with(model))
@@ -50,7 +50,7 @@ struct Text(String);
 /// The width of the labels.
 const LABEL: usize = 16;
 
-/// How many parts and materials are listed; `MakeHuman`'s body alone has 139 parts.
+/// The most parts and materials that are listed; `MakeHuman`'s body alone has 139 parts.
 const MOST: usize = 200;
 
 impl Text {
@@ -101,6 +101,7 @@ fn describe_mesh(mesh: &Mesh, text: &mut Text) {
         Some(bounds) => {
             let place =
                 |p: glam::DVec3| format!("({}, {}, {})", short(p.x), short(p.y), short(p.z));
+            // Positions are stored relative to the offset; the box shows those of the file.
             let offset = mesh.offset();
             let [min, max] = [bounds.min, bounds.max].map(|p| place(p + offset));
             text.line("box", &format!("{min} to {max}"));
@@ -124,7 +125,7 @@ fn describe_mesh(mesh: &Mesh, text: &mut Text) {
     text.line("closed", &closed(mesh));
 }
 
-/// "crease 60 degrees", "3 groups".
+/// Describes smoothing, such as "crease 60 degrees" or "3 groups".
 fn smoothing(mesh: &Mesh) -> String {
     match mesh.smoothing() {
         _ if mesh.has_file_normals_only() => "by the file's normals".to_owned(),
@@ -136,7 +137,7 @@ fn smoothing(mesh: &Mesh) -> String {
     }
 }
 
-/// "12,480 (480 triangles, 12,000 quads)".
+/// Counts faces by size, such as "12,480 (480 triangles, 12,000 quads)".
 fn faces(mesh: &Mesh) -> String {
     let polygons = 0..u32::try_from(mesh.polygon_count()).unwrap_or(u32::MAX);
     let sizes: Vec<usize> = polygons.map(|i| mesh.polygon(i).len()).collect();
@@ -159,12 +160,13 @@ fn faces(mesh: &Mesh) -> String {
     if kinds.is_empty() { all } else { format!("{all} ({})", kinds.join(", ")) }
 }
 
-/// Whether every edge has two polygons, and how many do not.
+/// Says whether every edge has two polygons, and counts the edges that do not.
 fn closed(mesh: &Mesh) -> String {
     let edges = mesh.edges();
     let sides = |right: fn(usize) -> bool| {
         edges.iter().filter(|edge| right(mesh.edge_polygons(edge).len())).count()
     };
+    // Closed means that every edge joins exactly two polygons.
     let (borders, crowded) = (sides(|n| n == 1), sides(|n| n > 2));
     let all = number_of(edges.len(), "edge");
     if edges.is_empty() {
@@ -239,6 +241,7 @@ fn describe_material(material: &FileMaterial) -> String {
         let _ = write!(text, ", d {}", short(material.opacity));
         text.push_str(if material.opacity == 0.0 { " (draws nothing)" } else { " (transparent)" });
     }
+    // The texture and all maps are listed alike, with file name and size.
     let maps = material.maps.iter().map(|(kind, map)| (kind.statement(), &map.texture));
     for (word, texture) in material.texture.iter().map(|it| ("texture", it)).chain(maps) {
         let size = texture.picture.size();
@@ -248,12 +251,12 @@ fn describe_material(material: &FileMaterial) -> String {
     text
 }
 
-/// "1 face", "2,000 faces".
+/// Formats a count with its noun, such as "1 face" or "2,000 faces".
 fn number_of(count: usize, name: &str) -> String {
     format!("{} {name}{}", grouped(count), if count == 1 { "" } else { "s" })
 }
 
-/// A count with a comma before each three digits.
+/// Formats a count with a comma before each three digits.
 fn grouped(count: usize) -> String {
     let digits = count.to_string();
     let mut text = String::new();
@@ -266,7 +269,7 @@ fn grouped(count: usize) -> String {
     text
 }
 
-/// A number with at most six significant digits.
+/// Formats a number with at most six significant digits.
 fn short(x: f64) -> String {
     if x == 0.0 {
         return "0".to_owned();

@@ -1,4 +1,4 @@
-//! The built-in ball with dimples: a coarse ball whose bumps are a map of heights, made here.
+//! The built-in ball with dimples: a coarse ball with a procedural bump map.
 
 use std::f64::consts::{PI, TAU};
 use std::path::PathBuf;
@@ -11,23 +11,23 @@ use marraztu_core::scene::{
     SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
 };
 
-/// Its name in scene files.
+/// The name of the model in scene files.
 pub(super) const NAME: &str = "dimples";
 
-/// Segments about the axis, and rings from pole to pole: few, so that tangents change much from
-/// vertex to vertex.
+/// Segments about the axis, and rings from pole to pole: few, to make tangents differ strongly
+/// between vertices.
 const SEGMENTS: u32 = 16;
 const RINGS: u32 = 10;
 const RADIUS: f64 = 40.0;
 
-/// Texels of the map of heights.
+/// The size of the bump map in texels.
 const TEXELS: Size = Size::new(128, 64);
-/// How often the map is repeated about the ball.
+/// The number of repetitions of the map about the ball.
 const REPEATED: [f64; 2] = [4.0, 4.0];
 /// The height of a white texel, in texels.
 const GAIN: f64 = 20.0;
 
-/// The heights: round hills and pits, with fine grooves across them.
+/// Makes the heights: round hills and pits, with fine grooves across them.
 fn heights() -> Picture {
     let mut picture = Picture::filled(TEXELS, [0, 0, 0, 255]);
     for (i, pixel) in picture.pixels_mut().iter_mut().enumerate() {
@@ -41,7 +41,7 @@ fn heights() -> Picture {
     picture
 }
 
-/// The ball, its poles on the y axis.
+/// Builds the ball with its poles on the y axis.
 #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
 fn source() -> MeshSource {
     let mut source = MeshSource {
@@ -49,6 +49,7 @@ fn source() -> MeshSource {
         smoothing: Smoothing::default(),
         ..MeshSource::default()
     };
+    // The seam shares positions but not texture coordinates: there u jumps from 1 to 0.
     for ring in 0..=RINGS {
         let polar = PI * f64::from(ring) / f64::from(RINGS);
         for segment in 0..=SEGMENTS {
@@ -70,6 +71,7 @@ fn source() -> MeshSource {
     for (ring, segment) in (0..RINGS).flat_map(|ring| (0..SEGMENTS).map(move |i| (ring, i))) {
         let (a, b) = (corner(ring, segment), corner(ring + 1, segment));
         let (c, d) = (corner(ring + 1, segment + 1), corner(ring, segment + 1));
+        // Quads between the rings, triangles at the poles.
         let outline: &[SourceCorner] = match ring {
             0 => &[a, b, c],
             _ if ring + 1 == RINGS => &[a, b, d],
@@ -82,7 +84,7 @@ fn source() -> MeshSource {
     source
 }
 
-/// The model, with its material.
+/// Builds the model with its material.
 pub(super) fn model() -> Shared<Model> {
     let texture = Shared::new(Texture {
         source: PathBuf::from("own:dimples"),

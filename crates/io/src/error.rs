@@ -1,31 +1,31 @@
-//! Why a file could not be loaded, worded for the person at the screen.
+//! Reasons why a file cannot be loaded, worded for the user.
 
 use std::path::Path;
 
 use super::progress::Cancelled;
 
-/// The message if there is not enough memory for a file.
+/// The message for files that do not fit in memory.
 pub(super) const NO_MEMORY: &str = "there is not enough memory for it";
 
-/// Why a file could not be loaded. Nothing has changed then.
+/// The reason why a file could not be loaded. A failed load changes nothing.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LoadError {
     /// The file cannot be read at all.
     #[error("{file}: {reason}")]
     File {
-        /// Its path, as the user gave it.
+        /// The file's path, as the user gave it.
         file: String,
-        /// What is wrong.
+        /// The reason.
         reason: String,
     },
-    /// A line of it is not a valid statement.
+    /// A line of the file is not a valid statement.
     #[error("{file}:{line}: {reason}")]
     Line {
         /// The file's path, as the user gave it.
         file: String,
         /// The line, counted from 1.
         line: u32,
-        /// What is wrong.
+        /// The reason.
         reason: String,
     },
     /// [`Progress::cancel`](super::Progress::cancel) was called.
@@ -57,7 +57,7 @@ impl LoadError {
     }
 }
 
-/// The message of the operating system, in our own words if they are plainer.
+/// Returns the message of an I/O error, in plainer words for common kinds.
 pub(super) fn reason(error: &std::io::Error) -> String {
     use std::io::ErrorKind;
     match error.kind() {
@@ -72,12 +72,12 @@ pub(super) fn reason(error: &std::io::Error) -> String {
     }
 }
 
-/// A path as messages show it: as the user gave it.
+/// Formats a path for messages: as the user gave it.
 pub(super) fn shown(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// A file's name without folders.
+/// Returns a file's name without its folders.
 pub(super) fn short_name(path: &Path) -> String {
     let name = path.file_name().unwrap_or(path.as_os_str());
     name.to_string_lossy().into_owned()

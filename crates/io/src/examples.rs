@@ -1,8 +1,8 @@
 //! The built-in example scenes, with their models and textures.
 //!
-//! They are ordinary scene files, `assets/examples/*.marraztu`. A path that begins with [`FOLDER`]
-//! names one of their files inside the program, so a scene that uses them can be saved anywhere and
-//! opened again without them.
+//! They are ordinary scene files, `assets/examples/*.marraztu`. Paths that begin with [`FOLDER`]
+//! refer to files inside the program, so a scene that uses them can be saved anywhere and opened
+//! again without the files.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use super::texture::own_picture;
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{LoadOptions, Texture, Wrap};
 
-/// The folder that stands for the examples in paths.
+/// The prefix of paths to the built-in examples.
 const FOLDER: &str = "example:/";
 
 /// A built-in scene.
@@ -104,24 +104,24 @@ const FILES: &[(&str, &[u8])] = files![
     "still-life/wall.png",
 ];
 
-/// Whether a path names an example or one of its files.
+/// Returns whether a path names an example or one of its files.
 #[must_use]
 pub fn is_example(path: &Path) -> bool {
     path.to_str().is_some_and(|path| path.starts_with(FOLDER))
 }
 
-/// The text of an example's scene file.
+/// Returns the text of an example's scene file.
 pub(super) fn scene_text(path: &Path) -> Option<&'static str> {
     EXAMPLES.iter().find(|example| Path::new(example.path) == path).map(|example| example.text)
 }
 
-/// The content of a file in [`FOLDER`].
+/// Returns the content of a file in [`FOLDER`].
 pub(super) fn content(path: &Path) -> Option<&'static [u8]> {
     let name = path.to_str()?.strip_prefix(FOLDER)?;
     FILES.iter().find(|(other, _)| *other == name).map(|(_, content)| *content)
 }
 
-/// Reads a model of the examples from its `content`.
+/// Parses a model of the examples from its `content`.
 ///
 /// # Errors
 /// If `progress` is cancelled.
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
     use crate::{Opened, open, save};
 
-    /// `assets/examples`.
+    /// Returns `assets/examples`.
     fn folder() -> std::path::PathBuf {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/examples")
     }

@@ -1,14 +1,14 @@
 //! The kinds of findings, each with its sentence.
 //!
-//! A file that could be loaded may have thousands of equal faults, so each sentence is worded for
-//! one case and for many.
+//! A file may load with thousands of equal faults, so each kind has a sentence for one case and one
+//! for many.
 
-/// Declares the kinds, each with its words for one case and for more.
+/// Declares the kinds, each with its sentences for one case and for many.
 ///
-/// `#` stands for the number of cases, `@` for the name that the first one is about.
+/// `#` is the number of cases, `@` the name in the first case.
 macro_rules! kinds {
     ($($(#[$doc:meta])* $name:ident: $one:literal, $many:literal;)+) => {
-        /// What a [`Finding`](super::Finding) is about.
+        /// The subject of a [`Finding`](super::Finding).
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum FindingKind {
             $($(#[$doc])* $name,)+
@@ -37,7 +37,7 @@ kinds! {
     VertexUnused:
         "a vertex is not used by any face: it does not count for the size and the centre",
         "# vertices are not used by any face: they do not count for the size and the centre";
-    /// A number in the spelling of another language.
+    /// A number in an unusual notation.
     NumberOdd:
         "the number \"@\" is written in an unusual way and is read nevertheless",
         "# statements have numbers that are written in an unusual way (the first: \"@\") and are \
@@ -50,11 +50,11 @@ kinds! {
     ControlCharacter:
         "a line has control characters, which are read as blanks",
         "# lines have control characters, which are read as blanks";
-    /// A face that refers to such a vertex.
+    /// A face that refers to a skipped vertex.
     FaceOnLostVertex:
         "a face refers to a skipped vertex and is skipped too",
         "# faces refer to skipped vertices and are skipped too";
-    /// A face that refers to a vertex that is not there.
+    /// A face that refers to a vertex that does not exist.
     FaceRange:
         "a face refers to a vertex that the file does not have and is skipped",
         "# faces refer to vertices that the file does not have and are skipped";
@@ -78,17 +78,17 @@ kinds! {
     FreeForm:
         "a statement of a free-form curve or surface is skipped: only polygons are drawn",
         "# statements of free-form curves and surfaces are skipped: only polygons are drawn";
-    /// A statement that OBJ or MTL does not have.
+    /// An unknown statement.
     Unknown: "an unknown statement \"@\" is ignored", "# unknown statements \"@\" are ignored";
-    /// A texture coordinate that is not there.
+    /// A texture coordinate that does not exist.
     UvRange:
         "a face refers to a texture coordinate that the file does not have; its corner has none",
         "# faces refer to texture coordinates that the file does not have; their corners have none";
-    /// A normal that is not there.
+    /// A normal that does not exist.
     NormalRange:
         "a face refers to a normal that the file does not have; its normals are computed",
         "# faces refer to normals that the file does not have; their normals are computed";
-    /// A texture coordinate of one number.
+    /// A texture coordinate with one number.
     UvSingle:
         "a texture coordinate has one number; 0 is taken for the other",
         "# texture coordinates have one number; 0 is taken for the other";
@@ -116,7 +116,7 @@ kinds! {
     NormalMixed:
         "a face has no normals, while others have; they are computed",
         "# faces have no normals, while others have; they are computed";
-    /// Numbers after those that a statement has.
+    /// Extra numbers at the end of a statement.
     ExtraNumbers:
         "a vertex has more numbers than x, y, z and a colour; the rest is ignored",
         "# vertices have more numbers than x, y, z and a colour; the rest is ignored";
@@ -124,7 +124,7 @@ kinds! {
     Weight:
         "a vertex has a weight other than 1, which is ignored",
         "# vertices have a weight other than 1, which is ignored";
-    /// Colours on some vertices only.
+    /// Colours on only some vertices.
     ColorPartly:
         "a vertex has no colour, while others have: it is white",
         "# vertices have no colour, while others have: they are white";
@@ -136,7 +136,7 @@ kinds! {
     ColorBright:
         "vertex colours exceed 1 and are clamped",
         "vertex colours exceed 1 and are clamped";
-    /// The colours of vertices that ZBrush writes.
+    /// Vertex colours in ZBrush's comments.
     ColorComments:
         "a comment #MRGB (vertex colours of ZBrush) is ignored",
         "# comments #MRGB (vertex colours of ZBrush) are ignored";
@@ -146,7 +146,7 @@ kinds! {
     FaceNoArea:
         "a face has no area and no normal of its own",
         "# faces have no area and no normals of their own";
-    /// A polygon whose triangles leave it.
+    /// A polygon with triangles that extend beyond it.
     PolygonCrosses:
         "a polygon of @ corners crosses itself; its triangles may lie outside of it",
         "# polygons (the first of @ corners) cross themselves; their triangles may lie outside of \
@@ -155,51 +155,51 @@ kinds! {
     InsideOut:
         "the closed body is inside out; --flip-winding turns it",
         "all # closed bodies are inside out; --flip-winding turns them";
-    /// Closed bodies that are inside out, while others are not.
+    /// Some closed bodies that are inside out.
     InsideOutPartly:
         "a closed body is inside out, while others are not",
         "# closed bodies are inside out, while others are not";
-    /// Normals of the file against the winding of their face.
+    /// Normals of the file that point against the winding of their face.
     NormalsAgainst:
         "the normals of a face point against its winding; --no-file-normals ignores them",
         "the normals of # faces point against their winding; --no-file-normals ignores them";
-    /// No face at all.
+    /// A file without faces.
     NoFaces:
         "the file has vertices but no faces: it draws nothing",
         "the file has vertices but no faces: it draws nothing";
-    /// An MTL file that is not there.
+    /// A missing MTL file.
     MtlMissing: "the material file \"@\" was not found", "the material file \"@\" was not found";
-    /// An MTL file that is not there, while one with the model's name is.
+    /// A missing MTL file, replaced by the one with the model's name.
     MtlRenamed:
         "the material file \"@\" was not found; the one with the model's name is used",
         "the material file \"@\" was not found; the one with the model's name is used";
-    /// Materials are named, but no MTL file is; one has the model's name.
+    /// An MTL file with the model's name, used because the model names materials but no MTL file.
     MtlOfModel:
         "the file names materials but no material file; \"@\" is used",
         "the file names materials but no material file; \"@\" is used";
-    /// An MTL file with the model's name that nothing asks for.
+    /// An MTL file with the model's name, not used because the model names no materials.
     MtlUnnamed:
         "the file names no materials; the material file \"@\" is not used",
         "the file names no materials; the material file \"@\" is not used";
-    /// A picture with the model's name that nothing asks for.
+    /// A picture with the model's name that no file refers to.
     PictureUnnamed:
         "the file names no material file; the picture \"@\" is not used",
         "the file names no material file; the picture \"@\" is not used";
-    /// Materials, but no `usemtl`.
+    /// Materials that no `usemtl` uses.
     MaterialsUnused:
         "no face names a material: the one in the material file is not used",
         "no face names a material: the # in the material files are not used";
-    /// More MTL files than are read.
+    /// More MTL files than the limit.
     MtlMany:
         "a statement \"mtllib\" is ignored: 1000 different ones are read at most",
         "# statements \"mtllib\" are ignored: 1000 different ones are read at most";
     /// An MTL file that cannot be read.
     MtlUnreadable: "the material file cannot be read: @", "the material file cannot be read: @";
-    /// A `usemtl` of a name that no MTL file has.
+    /// A `usemtl` with a name that is not defined.
     MaterialUnknown:
         "the material \"@\" is not defined: silver is used",
         "the material \"@\" is not defined: silver is used";
-    /// Two materials of one name.
+    /// Two materials with the same name.
     MaterialTwice:
         "the material \"@\" is defined twice: the first is used",
         "the material \"@\" is defined # times more: the first is used";
@@ -211,23 +211,23 @@ kinds! {
     MtlNumber:
         "a statement \"@\" has a number that cannot be read and is ignored",
         "# statements (the first: \"@\") have numbers that cannot be read and are ignored";
-    /// Ka := 0.2 Kd.
+    /// Ka is set to 0.2 Kd.
     MendedAmbient:
         "material \"@\": Ka is missing, white, above 1 or equal to Kd, and is taken as 0.2 Kd",
         "# materials: Ka is missing, white, above 1 or equal to Kd, and is taken as 0.2 Kd";
-    /// Kd := 0.8, or 1 with a texture.
+    /// Kd is set to 0.8, or to 1 with a texture.
     MendedDiffuse:
         "material \"@\": Kd is missing and is taken as 0.8, or 1 with a texture",
         "# materials: Kd is missing and is taken as 0.8, or 1 with a texture";
-    /// Ks := 0.
+    /// Ks is set to 0.
     MendedSpecular:
         "material \"@\": Ks is missing or switched off by illum, and is taken as 0",
         "# materials: Ks is missing or switched off by illum, and is taken as 0";
-    /// Ns := 1.
+    /// Ns is set to 1.
     MendedExponent:
         "material \"@\": Ns is below 1 and is taken as 1",
         "# materials: Ns is below 1 and is taken as 1";
-    /// No highlight.
+    /// The highlight is removed.
     MendedMatt:
         "material \"@\": Ns is missing or 0: the surface is matt, without the highlight of Ks",
         "# materials: Ns is missing or 0: the surfaces are matt, without the highlights of Ks";
@@ -235,21 +235,21 @@ kinds! {
     MendedBytes:
         "the colours of materials are whole numbers above 16 and are read as 0 to 255",
         "the colours of materials are whole numbers above 16 and are read as 0 to 255";
-    /// Kd 0 with a texture.
+    /// Kd is 0 with a texture.
     DiffuseBlack:
         "material \"@\": Kd 0 makes its texture black",
         "# materials: Kd 0 makes their textures black";
-    /// A bump map with a picture of normals.
+    /// A bump map that contains normals.
     BumpIsNormals:
         "the bump map \"@\" shows normals and is read as a normal map; --bump-maps heights reads \
          it as heights",
         "the bump map \"@\" shows normals and is read as a normal map; --bump-maps heights reads \
          it as heights";
-    /// Ke := 1 with a map.
+    /// Ke is set to 1 with a map.
     MendedEmission:
         "material \"@\": Ke is missing beside map_Ke, and is taken as 1",
         "# materials: Ke is missing beside map_Ke, and is taken as 1";
-    /// Ks := 1 with a map.
+    /// Ks is set to 1 with a map.
     MendedMapped:
         "material \"@\": Ks is missing beside map_Ks, and is taken as 1",
         "# materials: Ks is missing beside map_Ks, and is taken as 1";
@@ -257,7 +257,7 @@ kinds! {
     MendedPacked:
         "material \"@\": with bsdf pbr, Ks is taken as occlusion, roughness and metalness",
         "# materials: with bsdf pbr, Ks is taken as occlusion, roughness and metalness";
-    /// An illumination model that is not drawn.
+    /// An unsupported illumination model.
     Illumination:
         "material \"@\": illum is not 0, 1 or 2: it is drawn as 2, without mirrors and refraction",
         "# materials: illum is not 0, 1 or 2: it is drawn as 2, without mirrors and refraction";
@@ -265,39 +265,39 @@ kinds! {
     MendedRange:
         "material \"@\": a value is outside 0 to 1 and is clamped",
         "# values of materials are outside 0 to 1 and are clamped";
-    /// `Tr 1` in all materials that are used.
+    /// `Tr 1` in all used materials.
     MendedTransparency:
         "material \"@\": Tr 1, which would hide the whole model, is taken as opaque",
         "# materials: Tr 1, which would hide the whole model, is taken as opaque";
-    /// `d` of 0.
+    /// A `d` of 0.
     Transparent:
         "material \"@\" is wholly transparent and draws nothing",
         "# materials are wholly transparent and draw nothing";
-    /// A map of a kind that is not drawn.
+    /// A map of an unsupported kind.
     MapUnused:
         "a statement \"@\" is ignored: maps of this kind are not drawn",
         "# statements \"@\" are ignored: maps of this kind are not drawn";
-    /// An option of a map that is not applied.
+    /// An unsupported option of a map.
     MapOption:
         "the option \"@\" of a map is ignored",
         "the option \"@\" of # maps is ignored";
-    /// A texture that is not there.
+    /// A missing texture.
     TextureMissing: "the texture \"@\" was not found", "the texture \"@\" was not found";
     /// A texture on faces without texture coordinates.
     TextureUnmapped:
         "the texture @ is not shown: its faces have no texture coordinates",
         "the texture @ is not shown: its faces have no texture coordinates";
-    /// More textures than are read.
+    /// More textures than the limit.
     TextureMany:
         "a texture is ignored: 10,000 different ones are read at most",
         "# textures are ignored: 10,000 different ones are read at most";
     /// A texture that cannot be read.
     TextureUnreadable: "the texture cannot be read: @", "the texture cannot be read: @";
-    /// A texture whose file ends before the picture does.
+    /// A truncated texture file.
     TextureCutOff:
         "the texture is cut off: @ ends early, and the rest of the picture is grey",
         "the texture is cut off: @ ends early, and the rest of the picture is grey";
-    /// A model of a scene that is not there.
+    /// A missing model of a scene.
     ModelMissing:
         "the model \"@\" was not found: a box takes its place",
         "the model \"@\" was not found: a box takes its place";
@@ -305,19 +305,19 @@ kinds! {
     ModelUnreadable:
         "a model cannot be read, and a box takes its place: @",
         "a model cannot be read, and a box takes its place: @";
-    /// A selection of something that the scene does not have.
+    /// A selection of an item that the scene does not have.
     SelectionMissing:
         "the view selects @, which is not in the scene: the first one is selected",
         "the view selects @, which is not in the scene: the first one is selected";
-    /// A spot or a camera that is bound to something that the scene does not have.
+    /// A spot or a camera attached to an item that the scene does not have.
     OwnerMissing: "@, which is not in the scene", "@, which is not in the scene";
 }
 
-/// How many characters of a name are shown.
+/// The most characters of a name that are shown.
 const LONGEST_NAME: usize = 200;
 
 impl FindingKind {
-    /// Whether cases about different names are one finding.
+    /// Returns whether cases with different names are joined into one finding.
     pub(super) const fn joins_names(self) -> bool {
         matches!(
             self,
@@ -344,7 +344,7 @@ impl FindingKind {
         )
     }
 
-    /// Whether something of a model is lost by it, so that it looks otherwise than its file means.
+    /// Returns whether the model loses something that its file defines.
     #[must_use]
     pub const fn is_loss(self) -> bool {
         matches!(
@@ -378,6 +378,7 @@ impl FindingKind {
             Some((end, _)) => &format!("{}...", &name[..end]),
             None => name,
         };
+        // Names come from files, so control characters must not reach a terminal.
         let shown = name.replace(char::is_control, "\u{FFFD}");
         let text = words.replace('#', &count.to_string()).replace('@', &shown);
         match (line, files) {

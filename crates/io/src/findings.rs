@@ -1,25 +1,25 @@
-//! Findings: everything that was mended, left out or odd in a file that could be loaded.
+//! Findings: everything that was repaired, left out or odd in a loaded file.
 //!
-//! Findings of one kind are joined into one sentence with their number and the first line, so that
-//! a file with a million faults is as easy to read about as one with two.
+//! Findings of one kind are joined into one sentence with their count and first line. A report on a
+//! million faults is then as short as one on two.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 pub use super::finding_kinds::FindingKind;
 
-/// One thing that was mended, left out or odd.
+/// A repair, an omission or an oddity.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// The path of the file; of the first one if it is about several.
+    /// The path of the file, or of the first one if several are affected.
     pub file: String,
-    /// The first line of that file that it is about, counted from 1.
+    /// The first affected line of that file, counted from 1.
     pub line: Option<u32>,
     /// Its kind.
     pub kind: FindingKind,
     /// The number of cases.
     pub count: usize,
-    /// The name that the first case is about.
+    /// The name in the first case.
     name: String,
     /// The number of files.
     files: usize,
@@ -36,7 +36,7 @@ impl Finding {
     }
 }
 
-/// Joins findings of one kind in several files, at the position of the first.
+/// Joins findings of one kind from several files, at the position of the first.
 #[must_use]
 pub fn joined(findings: Vec<Finding>) -> Vec<Finding> {
     let mut places = BTreeMap::new();
@@ -63,25 +63,25 @@ impl std::fmt::Display for Finding {
     }
 }
 
-/// Colours of a file with a larger number than this, all of them whole, count from 0 to 255. Others
-/// above 1 are too bright, as from baked light.
+/// Whole colours count from 0 to 255 if one exceeds this number. Other colours above 1 are too
+/// bright, as from baked light.
 pub(super) const BYTES_ABOVE: f64 = 16.0;
 
-/// How many names of a kind are distinguished.
+/// The number of names that are distinguished per kind.
 const MOST_NAMES: usize = 100;
 
-/// A name after which no other sorts.
+/// A string that sorts after every name.
 const LAST: &str = "\u{10FFFF}";
 
-/// The findings of one file, as they are noted.
+/// The findings of one file, collected while it is read.
 #[derive(Debug, Default)]
 pub(super) struct Findings {
     file: String,
-    /// By kind and, if names are distinguished, by name.
+    /// Cases by kind and, if names are distinguished, by name.
     cases: BTreeMap<(FindingKind, String), Cases>,
-    /// How many names of a kind are distinguished.
+    /// The number of distinguished names per kind.
     names: BTreeMap<FindingKind, usize>,
-    /// Cases of names beyond those.
+    /// Cases with names beyond [`MOST_NAMES`].
     others: BTreeMap<FindingKind, Cases>,
 }
 
@@ -102,26 +102,26 @@ impl Findings {
         self.add(kind, "", Some(line));
     }
 
-    /// Notes one case that is about a name, with its line if there is one.
+    /// Notes one case with a name, and its line if it has one.
     pub(super) fn add(&mut self, kind: FindingKind, name: &str, line: Option<u32>) {
         self.add_cases(kind, Cases { count: 1, name: name.to_owned(), line });
     }
 
-    /// Notes `count` cases, the first of them at `line`. Zero cases are no finding.
+    /// Notes `count` cases, the first of them at `line`. Zero cases add nothing.
     pub(super) fn note_all(&mut self, kind: FindingKind, count: usize, line: u32) {
         if count > 0 {
             self.add_cases(kind, Cases { count, name: String::new(), line: Some(line) });
         }
     }
 
-    /// Notes `count` cases without a line. Zero cases are no finding.
+    /// Notes `count` cases without a line. Zero cases add nothing.
     pub(super) fn note_count(&mut self, kind: FindingKind, count: usize) {
         if count > 0 {
             self.add_cases(kind, Cases { count, name: String::new(), line: None });
         }
     }
 
-    /// Adds the findings of the lines after the first `lines` lines.
+    /// Appends the findings of the text that follows the first `lines` lines.
     pub(super) fn append(&mut self, following: Self, lines: u32) {
         let placed = |cases: Cases| {
             let line = cases.line.map(|line| line.saturating_add(lines));
@@ -149,8 +149,8 @@ impl Findings {
             return;
         }
         *names -= 1;
-        // The last one by name is dropped, so the rest does not depend on the order in which they
-        // came.
+        // The name that sorts last is dropped, so the result does not depend on the order of
+        // insertion.
         let last = self.cases.range(..(kind, LAST.to_owned())).next_back();
         if let Some(cases) =
             last.map(|(key, _)| key.clone()).and_then(|key| self.cases.remove(&key))
@@ -159,7 +159,7 @@ impl Findings {
         }
     }
 
-    /// Adds cases of names that are not distinguished.
+    /// Adds cases without their names.
     fn add_others(&mut self, kind: FindingKind, cases: &Cases) {
         let Cases { count, line, .. } = *cases;
         let none = Cases { count: 0, name: "... and others".to_owned(), line };

@@ -1,7 +1,7 @@
-//! Tells whether the content of a file has changed.
+//! Detects whether the content of a file has changed.
 //!
-//! The content is hashed, not the time of the last change: some systems count whole seconds, and a
-//! file that is copied back may have an old time.
+//! The content is hashed because modification times are unreliable: some systems count whole
+//! seconds, and a file that is copied back may have an old time.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
@@ -20,8 +20,8 @@ impl Fingerprint {
         Self(hasher.finish())
     }
 
-    /// Whether saving to `path` would replace other content than this: the file is there, and was
-    /// changed or cannot be read.
+    /// Returns whether saving to `path` would overwrite different content. This is so if the file
+    /// exists and was changed or cannot be read.
     #[must_use]
     pub fn differs_from(self, path: &Path) -> bool {
         match read(path, MOST_WORDS, &Progress::new()) {
@@ -30,7 +30,7 @@ impl Fingerprint {
         }
     }
 
-    /// As text, for [`Self::from_text`].
+    /// Formats the hash for [`Self::from_text`].
     pub(super) fn text(self) -> String {
         format!("{:016x}", self.0)
     }

@@ -1,4 +1,4 @@
-//! Reads a model or a scene from standard input, or from another input without a name.
+//! Reads a model or a scene from standard input or another unnamed source.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -14,18 +14,17 @@ use marraztu_core::scene::LoadOptions;
 /// The name of the input in messages and in the outline.
 const NAME: &str = "standard input";
 
-/// The beginnings of scene files; no OBJ file begins with one.
+/// The possible first bytes of scene files; no OBJ file begins with them.
 const SCENE: [&[u8]; 4] = [b"(", b"//", b"/*", b"#!["];
 
-/// A model or a scene whose bytes are in memory. The files that it names are looked for in the
-/// current folder.
+/// The bytes of a model or a scene. Files that it names are searched for in the current folder.
 #[derive(Debug)]
 pub struct Input {
     bytes: Vec<u8>,
 }
 
 impl Input {
-    /// Reads all of it, and unpacks it if it is packed.
+    /// Reads the whole input, and unpacks it if it is compressed.
     ///
     /// # Errors
     /// If it cannot be read, or is too large.
@@ -35,6 +34,7 @@ impl Input {
         let magic = u64::try_from(MAGIC.len()).unwrap_or(u64::MAX);
         let system = |error: std::io::Error| LoadError::system(NAME, &error);
         source.by_ref().take(magic).read_to_end(&mut bytes).map_err(system)?;
+        // A pipe cannot be rewound, so the first bytes are chained in front of the rest.
         let packed = bytes == MAGIC;
         let all = std::io::Cursor::new(std::mem::take(&mut bytes)).chain(source);
         let limit = u64::try_from(MOST_BYTES).unwrap_or(u64::MAX).saturating_add(1);
@@ -43,13 +43,14 @@ impl Input {
             false => all.take(limit).read_to_end(&mut bytes),
         };
         read.map_err(system)?;
+        // The limit is one byte higher, so reaching it shows that the input is too large.
         if bytes.len() > MOST_BYTES {
             return Err(LoadError::too_large(NAME, MOST_BYTES));
         }
         Ok(Self { bytes })
     }
 
-    /// Whether it is a scene, by its beginning.
+    /// Returns whether the input is a scene, judged by its first bytes.
     #[must_use]
     pub fn is_scene(&self) -> bool {
         let text = self.bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&self.bytes);
@@ -57,13 +58,13 @@ impl Input {
         SCENE.iter().any(|begin| text.starts_with(begin))
     }
 
-    /// The axis that the comments at its top state to point up.
+    /// Returns the up axis that the comments at the top state.
     #[must_use]
     pub fn stated_up(&self) -> Option<StatedUp> {
         stated_in(&self.bytes)
     }
 
-    /// The model, if it is one.
+    /// Parses the input as a model.
     ///
     /// # Errors
     /// As [`load`](super::load).
@@ -71,7 +72,7 @@ impl Input {
         parse(&self.bytes, NAME, Some(Path::new("")), options, progress)
     }
 
-    /// The scene, if it is one.
+    /// Parses the input as a scene.
     ///
     /// # Errors
     /// As [`open`](super::open).

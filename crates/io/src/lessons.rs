@@ -1,13 +1,13 @@
 //! The scenes of the lessons: each makes one kind of error as visible as possible.
 //!
-//! They are ordinary scene files that are part of the program, as are their models.
+//! They are ordinary scene files, built into the program with their models.
 
 use std::path::PathBuf;
 
 use super::progress::Progress;
 use super::scene_file::{Opened, SceneFileError, open_text};
 
-/// The scenes, by the names that [`marraztu_core::accuracy::Lesson::scene`] has.
+/// The scenes, by the names in [`marraztu_core::accuracy::Lesson::scene`].
 const LESSONS: &[(&str, &str)] = &[
     ("ball", include_str!("../../../assets/lessons/ball.marraztu")),
     ("dimples", include_str!("../../../assets/lessons/dimples.marraztu")),
@@ -26,10 +26,10 @@ const LESSONS: &[(&str, &str)] = &[
     ("wheel", include_str!("../../../assets/lessons/wheel.marraztu")),
 ];
 
-/// The scene of a lesson.
+/// Opens the scene of a lesson.
 ///
 /// # Errors
-/// If there is no lesson of this name.
+/// If no lesson has this name.
 pub fn lesson_scene(name: &str) -> Result<Opened, SceneFileError> {
     let found = LESSONS.iter().find(|(other, _)| *other == name);
     let Some((_, text)) = found else {

@@ -1,7 +1,7 @@
-//! Models, textures, scene files and pictures, to and from the disk.
+//! Reading and writing of models, textures, scene files and pictures.
 //!
-//! Files come from elsewhere, so nothing in them may stop the program. A file is either refused
-//! with one reason, or loaded with a list of everything that was mended in it.
+//! Files come from untrusted sources, so no content may stop the program. A file is either rejected
+//! with one reason, or loaded with a list of all repairs.
 //!
 //! ```
 //! let obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n";

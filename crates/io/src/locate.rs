@@ -1,9 +1,9 @@
-//! Finds the file that another file names.
+//! Finds the files that other files refer to.
 //!
-//! Names come from other machines: with backslashes, with folders that exist only there, in another
-//! case, with accents as characters of their own (macOS), with escaped blanks (`my\ wood.png`) or
-//! as a URL (`my%20wood.png`). A name is therefore first taken as it is, then by its last part in
-//! the folder of the file that names it, then without regard to case and accents, then in its other
+//! Names come from other machines. They contain backslashes, folders that exist only there, a
+//! different case, decomposed accents (macOS), escaped blanks (`my\ wood.png`) or URL encoding
+//! (`my%20wood.png`). The search therefore tries the name as given, then its last part in the
+//! folder of the referring file, then both without regard to case and accents, then other
 //! spellings.
 
 use std::collections::BTreeMap;
@@ -13,10 +13,10 @@ use std::path::{Path, PathBuf};
 use percent_encoding::percent_decode_str;
 use unicode_normalization::UnicodeNormalization;
 
-/// How many words of a line of names are considered.
+/// The most words of a line of names that are considered.
 const MOST_WORDS: usize = 1000;
 
-/// Looks for files, and caches the content of folders.
+/// Searches for files, and caches the content of folders.
 #[derive(Debug, Default)]
 pub(super) struct Locator {
     /// The names in a folder, by their [`key`].
@@ -24,7 +24,7 @@ pub(super) struct Locator {
 }
 
 impl Locator {
-    /// The file that `name` refers to, relative to `folder`, if there is one.
+    /// Finds the file that `name` refers to, relative to `folder`.
     pub(super) fn locate(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
         self.locate_spelled(folder, name).or_else(|| {
             let others = spellings(name);
@@ -32,17 +32,18 @@ impl Locator {
         })
     }
 
-    /// As [`Self::locate`], without other spellings of the name.
+    /// Works like [`Self::locate`], without other spellings of the name.
     fn locate_spelled(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
         let name = plain(name);
-        // No system has longer names.
+        // Longer names exceed the limit of every system.
         if name.is_empty() || name.len() > 4096 {
             return None;
         }
         let last = name.rsplit('/').next().unwrap_or(&name);
         let file = |path: PathBuf| path.is_file().then_some(path);
-        // A pipe or a device counts as found; reading it will give the reason why it is refused.
+        // A pipe or a device counts as found; reading it will report why it is rejected.
         let other = |path: PathBuf| (path.exists() && !path.is_dir()).then_some(path);
+        // The cheapest lookups come first; listing a folder is slow.
         file(folder.join(&name))
             .or_else(|| file(folder.join(last)))
             .or_else(|| self.any_case(folder, &name))
@@ -67,26 +68,26 @@ impl Locator {
         path.is_file().then_some(path)
     }
 
-    /// The names in a folder, by their [`key`]; if two have the same, the first.
+    /// Lists the names in a folder by their [`key`]; among equal keys the first name wins.
     fn listing(&mut self, folder: &Path) -> &BTreeMap<String, OsString> {
         self.listings.entry(folder.to_owned()).or_insert_with(|| {
             let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
             let entries = std::fs::read_dir(here).into_iter().flatten();
             let mut names: Vec<_> =
                 entries.filter_map(|entry| Some(entry.ok()?.file_name())).collect();
-            // The entries of a folder have no reliable order, so the first by name is inserted
-            // last.
+            // The entries of a folder have no reliable order. They are inserted in reverse order of
+            // their names, so the first name overwrites the others.
             names.sort();
             names.reverse();
             names.into_iter().map(|name| (key(&name.to_string_lossy()), name)).collect()
         })
     }
 
-    /// The files that a line of names refers to. Names are separated by blanks, and may contain
-    /// blanks.
+    /// Finds the files that a line of names refers to. Names are separated by blanks and may
+    /// contain blanks.
     ///
-    /// From each word on, the longest run of words that is a file is one name. If no run is a file,
-    /// a missing name goes up to the first word with the ending that all names have.
+    /// At each word, the longest run of words that names a file is taken. If no run is a file, the
+    /// missing name extends to the first word with the expected extension.
     pub(super) fn locate_all(
         &mut self,
         folder: &Path,
@@ -101,7 +102,7 @@ impl Locator {
         let mut found = Vec::new();
         let mut at = 0;
         while at < words.len() {
-            // Every further word costs a look at the disk, and no name has more words than this.
+            // Each extra word costs a disk access, and no name has more than 16 words.
             let longest = words.len().min(at + 16);
             let run = (at + 1..=longest).rev().find_map(|end| {
                 let name = words[at..end].join(" ");
@@ -119,7 +120,7 @@ impl Locator {
     }
 }
 
-/// A name with slashes, without the quotation marks that some programs write around it.
+/// Returns a name with slashes, without the quotation marks that some programs add.
 pub(super) fn plain(name: &str) -> String {
     let name = name.trim();
     let unquoted = name.strip_prefix('"').and_then(|name| name.strip_suffix('"')).unwrap_or(name);
@@ -129,12 +130,12 @@ pub(super) fn plain(name: &str) -> String {
     format!("{lead}{}", parts.join("/"))
 }
 
-/// A name in lower case and composed characters (Unicode's NFC), by which names are compared.
+/// Returns a name in lower case and NFC, for comparisons.
 fn key(name: &str) -> String {
     name.to_lowercase().nfc().collect()
 }
 
-/// Other spellings of a name: without escapes before blanks, and with percent-encoding resolved.
+/// Returns other spellings of a name: with escaped blanks and with percent-encoding resolved.
 fn spellings(name: &str) -> Vec<String> {
     let unescaped = name.replace("\\ ", " ");
     let decoded = percent_decode_str(name).decode_utf8().map(String::from).unwrap_or_default();

@@ -4,19 +4,19 @@ use std::io::{Error, ErrorKind, Read};
 
 use flate2::read::MultiGzDecoder;
 
-/// The bytes that every gzip archive begins with (RFC 1952, section 2.3.1).
+/// The first bytes of every gzip archive (RFC 1952, section 2.3.1).
 pub(super) const MAGIC: &[u8] = b"\x1F\x8B";
 
-/// The ending of the names of packed files.
+/// The extension of gzip files.
 const ENDING: &str = ".gz";
 
-/// A file's name without the ending of gzip; `None` if it does not have that ending.
+/// Removes the extension of gzip; `None` if the name has another one.
 pub(super) fn unpacked_name(name: &str) -> Option<&str> {
     let (stem, ending) = name.split_at_checked(name.len().checked_sub(ENDING.len())?)?;
     ending.eq_ignore_ascii_case(ENDING).then_some(stem)
 }
 
-/// Unpacks what it reads. The caller limits how much that may be.
+/// A reader that unpacks its source. The caller limits the number of bytes.
 pub(super) struct Unpacked<R>(MultiGzDecoder<R>);
 
 impl<R: Read> Unpacked<R> {

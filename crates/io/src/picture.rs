@@ -1,6 +1,6 @@
 //! Saves pictures.
 //!
-//! A PNG or PPM is written in bands of rows, directly into the file: a picture of a gigabyte is
+//! PNG and PPM are written in bands of rows, directly into the file, so a picture of a gigabyte is
 //! never copied.
 
 use std::fs::File;
@@ -14,25 +14,25 @@ use image::{ExtendedColorType, ImageEncoder};
 use super::replace::{SaveError, Worth, check_target, replace_by};
 use marraztu_core::base::image::Picture;
 
-/// The quality of a JPEG, from 1 to 100: differences are hardly visible.
+/// The quality of a JPEG, from 1 to 100: artefacts are barely visible.
 const JPEG_QUALITY: u8 = 92;
 
-/// How many bytes identify the format of a picture.
+/// The number of bytes that identify the format of a picture.
 const SIGNATURE: u64 = 64;
 
-/// A format that pictures are written in.
+/// An output format of pictures.
 #[derive(Debug)]
 pub struct PictureFormat {
-    /// What people call it.
+    /// The common name.
     pub name: &'static str,
-    /// How names of such files end, in lower case; the first is the usual one.
+    /// The extensions in lower case, the usual one first.
     pub endings: &'static [&'static str],
-    /// Whether a pixel can be transparent.
+    /// Whether pixels can be transparent.
     pub has_alpha: bool,
     encode: fn(&Picture, &mut dyn Write) -> Result<(), std::io::Error>,
 }
 
-/// The formats that pictures are written in.
+/// The output formats of pictures.
 pub static PICTURE_FORMATS: &[PictureFormat] = &[
     PictureFormat { name: "PNG", endings: &["png"], has_alpha: true, encode: write_png },
     PictureFormat {
@@ -56,10 +56,10 @@ pub static PICTURE_FORMATS: &[PictureFormat] = &[
 ];
 
 impl PictureFormat {
-    /// The format that the ending of a file's name asks for.
+    /// Returns the format for a file's extension.
     ///
     /// # Errors
-    /// The endings of all formats, if it has none of them.
+    /// All supported extensions, if the name has another one.
     pub fn of(path: &Path) -> Result<&'static Self, String> {
         let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
         let ending = ending.as_deref().and_then(|ending| ending.to_str()).unwrap_or_default();
@@ -67,13 +67,13 @@ impl PictureFormat {
         found.ok_or_else(|| format!("its name has to end in {}", Self::usual_endings()))
     }
 
-    /// The usual endings of all formats: ".png, .jpg, .webp or .ppm".
+    /// Lists the usual extensions of all formats: ".png, .jpg, .webp or .ppm".
     #[must_use]
     pub fn usual_endings() -> String {
         either(PICTURE_FORMATS.iter().map(|format| format!(".{}", format.endings[0])))
     }
 
-    /// The picture as the bytes of a file.
+    /// Encodes a picture as the bytes of a file.
     ///
     /// # Errors
     /// The reason, if the format cannot hold it.
@@ -84,7 +84,7 @@ impl PictureFormat {
     }
 }
 
-/// Words as a list in a sentence: "a, b or c".
+/// Joins words for a sentence: "a, b or c".
 pub(super) fn either(words: impl Iterator<Item = String>) -> String {
     let words: Vec<String> = words.collect();
     match words.split_last() {
@@ -94,10 +94,10 @@ pub(super) fn either(words: impl Iterator<Item = String>) -> String {
     }
 }
 
-/// Saves a picture in the format of its name's ending.
+/// Saves a picture in the format of the path's extension.
 ///
 /// # Errors
-/// If the ending is unknown, or the file cannot be written; an existing file stays as it was.
+/// If the extension is unknown, or the file cannot be written; an existing file is unchanged.
 pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
     let fail = |reason: String| SaveError::new(path, reason);
     let format = PictureFormat::of(path).map_err(fail)?;
@@ -108,10 +108,10 @@ pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
     })
 }
 
-/// Checks whether the format of a transparent picture has an alpha channel.
+/// Checks that the format for `path` has an alpha channel, for transparent pictures.
 ///
 /// # Errors
-/// If it has none.
+/// If it has no alpha channel.
 pub fn check_alpha(path: &Path) -> Result<(), SaveError> {
     let fail = |reason: String| SaveError::new(path, reason);
     let format = PictureFormat::of(path).map_err(fail)?;
@@ -123,11 +123,11 @@ pub fn check_alpha(path: &Path) -> Result<(), SaveError> {
     Err(fail(format!("{} has no transparent pixels; choose a name in {able}", format.name)))
 }
 
-/// Checks, before anything is drawn, whether a picture could be saved at `path`. An existing file
-/// has to be a picture, or empty.
+/// Checks, before anything is drawn, whether a picture can be saved at `path`. An existing file
+/// must be a picture, or empty.
 ///
 /// # Errors
-/// If it could not.
+/// If it cannot.
 pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
     let fail = |reason: &str| SaveError::new(path, reason);
     PictureFormat::of(path).map_err(|reason| fail(&reason))?;
@@ -143,15 +143,15 @@ pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
     }
 }
 
-/// Rows of a picture that are converted at a time.
+/// The number of rows that are converted at a time.
 const BAND: usize = 64;
 
-/// Whether a pixel is transparent.
+/// Returns whether any pixel is transparent.
 fn has_alpha(picture: &Picture) -> bool {
     picture.pixels().iter().any(|pixel| pixel[3] != 255)
 }
 
-/// Writes a picture with an alpha channel only if a pixel needs one.
+/// Writes a picture, with an alpha channel only if a pixel needs it.
 fn write(picture: &Picture, encoder: impl ImageEncoder) -> std::io::Result<()> {
     if !has_alpha(picture) {
         return write_opaque(picture, encoder);
@@ -181,6 +181,7 @@ fn write_png(picture: &Picture, to: &mut dyn Write) -> std::io::Result<()> {
     let mut encoder = png::Encoder::new(to, width, height);
     encoder.set_color(if has_alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
     encoder.set_depth(png::BitDepth::Eight);
+    // Fast compression with adaptive filters: drawing should not wait for the encoder.
     encoder.set_compression(png::Compression::Fast);
     encoder.set_filter(png::Filter::Adaptive);
     let mut writer = encoder.write_header()?;

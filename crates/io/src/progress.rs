@@ -1,15 +1,15 @@
-//! The progress of a long task, and whether it should continue.
+//! The progress of a long task, with a flag to cancel it.
 //!
 //! The task and its observer hold clones of the same value.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// A share of some work, from 0 to 1, with a flag that asks for its end.
+/// A fraction of some work, from 0 to 1, with a flag that cancels it.
 #[derive(Clone, Debug)]
 pub struct Progress {
     state: Arc<Status>,
-    /// The beginning of this part of the work, and its share of the whole.
+    /// The start of this part of the work, and its share of the whole.
     begin: f64,
     share: f64,
 }
@@ -21,7 +21,7 @@ struct Status {
     cancelled: AtomicBool,
 }
 
-/// The work should end: its result is no longer wanted.
+/// The work was cancelled: its result is no longer wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cancelled;
 
@@ -32,30 +32,30 @@ impl Default for Progress {
 }
 
 impl Progress {
-    /// Work that has not begun.
+    /// Starts at 0.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// How much of the whole work is done, from 0 to 1.
+    /// Returns the completed fraction of the whole work, from 0 to 1.
     #[must_use]
     pub fn fraction(&self) -> f64 {
         f64::from_bits(self.state.fraction.load(Ordering::Relaxed))
     }
 
-    /// Asks for the end of the work. It ends with an error, and nothing is changed.
+    /// Cancels the work. It ends with an error, and changes nothing.
     pub fn cancel(&self) {
         self.state.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether [`Self::cancel`] was called.
+    /// Returns whether [`Self::cancel`] was called.
     #[must_use]
     pub fn is_cancelled(&self) -> bool {
         self.state.cancelled.load(Ordering::Relaxed)
     }
 
-    /// The part of this work between two fractions of it, as work of its own.
+    /// Returns the part between two fractions of this work, as work in itself.
     #[must_use]
     pub fn part(&self, from: f64, to: f64) -> Self {
         Self {
@@ -65,10 +65,10 @@ impl Progress {
         }
     }
 
-    /// Reports that `done` of `all` steps of this work are done.
+    /// Reports that `done` of `all` steps are done.
     ///
     /// # Errors
-    /// If the work should end.
+    /// If the work was cancelled.
     #[expect(clippy::cast_precision_loss, reason = "for the eye")]
     pub fn reached(&self, done: usize, all: usize) -> Result<(), Cancelled> {
         let fraction = (done as f64 / all.max(1) as f64).min(1.0);

@@ -1,4 +1,4 @@
-//! Reads files into memory, up to a limit of size.
+//! Reads files into memory, up to a size limit.
 
 use std::fs::{File, FileType, Metadata};
 use std::io::{Chain, Cursor, Read};
@@ -7,27 +7,27 @@ use std::path::Path;
 use super::error::{LoadError, NO_MEMORY, shown};
 use super::progress::Progress;
 
-/// The most bytes of a text that describes materials or a scene.
+/// The most bytes of a text of materials or a scene.
 pub(super) const MOST_WORDS: usize = 64 << 20;
 
-/// The bytes of a text in UTF-16 that are too many to be converted.
+/// The size in bytes from which UTF-16 texts are rejected.
 const MOST_UTF_16: u64 = 1 << 30;
 
-/// How much is read between two checks of the progress.
+/// The number of bytes between two progress checks.
 const PIECE: usize = 8 << 20;
 
 /// Checks whether `path` is a file that can be read, without reading it.
 ///
 /// # Errors
-/// If there is nothing, or no file: a folder, a device, or a pipe that the program did not inherit.
+/// If it does not exist, or is not a file: a folder, a device, or a pipe that was not inherited.
 pub fn check_file(path: &Path) -> Result<(), LoadError> {
     readable(path).map(|_| ())
 }
 
-/// Opens a file of at most `most` bytes, and returns its size if that is known beforehand.
+/// Opens a file of at most `most` bytes, and returns its size as far as it is known.
 ///
 /// # Errors
-/// If it cannot be opened, cannot be read as a file, or is larger.
+/// If it cannot be opened, is not a file, or is larger.
 pub(super) fn open(path: &Path, most: usize) -> Result<(File, usize), LoadError> {
     let metadata = readable(path)?;
     let size = usize::try_from(metadata.len()).unwrap_or(usize::MAX);
@@ -38,9 +38,9 @@ pub(super) fn open(path: &Path, most: usize) -> Result<(File, usize), LoadError>
     Ok((handle, size))
 }
 
-/// Refuses anything but a regular file before it is opened: opening a pipe waits until another
-/// program writes to it. A pipe that this program was started with, as `<(...)` in a shell, is open
-/// already and can be read.
+/// Rejects anything but a regular file before it is opened: opening a pipe would wait for a writer.
+/// A pipe that this program was started with, like `<(...)` in a shell, is already open and can be
+/// read.
 fn readable(path: &Path) -> Result<Metadata, LoadError> {
     let file = shown(path);
     let metadata = std::fs::metadata(path).map_err(|error| LoadError::system(&file, &error))?;
@@ -51,7 +51,7 @@ fn readable(path: &Path) -> Result<Metadata, LoadError> {
     }
 }
 
-/// The kind of an entry of a folder, if it is not a file.
+/// Describes a folder entry that is not a file.
 fn kind(kind: FileType) -> Option<&'static str> {
     #[cfg(unix)]
     {
@@ -69,25 +69,26 @@ fn kind(kind: FileType) -> Option<&'static str> {
     kind.is_dir().then_some("a folder")
 }
 
-/// Whether a path refers to a file that was open when this program was started.
+/// Returns whether a path refers to a file that was open when this program was started.
 fn is_inherited(path: &Path) -> bool {
     ["/dev/fd", "/proc/self/fd", "/dev/stdin"].iter().any(|begin| path.starts_with(begin))
 }
 
-/// Reads a file in pieces, so that it can be watched and cancelled.
+/// Reads a file in pieces, reporting progress and checking for cancellation in between.
 ///
 /// # Errors
-/// If it cannot be read or has more than `most` bytes, or if `progress` is cancelled.
+/// If it cannot be read, has more than `most` bytes, or `progress` is cancelled.
 pub(super) fn read(path: &Path, most: usize, progress: &Progress) -> Result<Vec<u8>, LoadError> {
     let file = shown(path);
     let (mut handle, size) = open(path, most)?;
     let mut bytes = Vec::new();
+    // One byte more than the size, so the last read detects the end without growing the buffer.
     bytes.try_reserve(size + 1).map_err(|_full| LoadError::file(&file, NO_MEMORY))?;
     loop {
         let limit = u64::try_from(PIECE).unwrap_or(u64::MAX);
         let piece = handle.by_ref().take(limit).read_to_end(&mut bytes);
         let piece = piece.map_err(|error| LoadError::system(&file, &error))?;
-        // A pipe does not say how large it is.
+        // The size of a pipe is not known in advance.
         if bytes.len() > most {
             return Err(LoadError::too_large(&file, most));
         }
@@ -98,12 +99,12 @@ pub(super) fn read(path: &Path, most: usize, progress: &Progress) -> Result<Vec<
     }
 }
 
-/// Whether a text begins with a byte-order mark of UTF-16.
+/// Returns whether a text begins with a UTF-16 byte-order mark.
 pub(super) const fn is_utf_16(bytes: &[u8]) -> bool {
     matches!(bytes, [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..])
 }
 
-/// A text in UTF-8 if it is one in UTF-16, which its byte-order mark tells; else as it is.
+/// Converts UTF-16 with a byte-order mark to UTF-8; other texts are unchanged.
 pub(super) fn utf_8(bytes: Vec<u8>) -> Vec<u8> {
     let unit = match bytes[..] {
         [0xFF, 0xFE, ..] => u16::from_le_bytes,
@@ -116,7 +117,8 @@ pub(super) fn utf_8(bytes: Vec<u8>) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// A text, converted if it is one in UTF-16. That is done at once, and not for the largest texts.
+/// Wraps a text, converted to UTF-8 if it is UTF-16. The conversion is done in memory, which limits
+/// the size.
 pub(super) fn in_utf_8<R: Read + Send>(
     mut text: R,
     file: &str,
@@ -133,8 +135,8 @@ pub(super) fn in_utf_8<R: Read + Send>(
     Ok(Cursor::new(utf_8(head)).chain(text))
 }
 
-/// Whether bytes are not text. Some programs fill the end of a text with NUL, and a control
-/// character here and there is only a blank.
+/// Returns whether bytes are not text. Trailing NULs, which some programs write, and a few control
+/// characters are allowed.
 pub(super) fn is_binary(bytes: &[u8]) -> bool {
     let end = bytes.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
     let is_control = |byte: &&u8| **byte < b' ' && !byte.is_ascii_whitespace();

@@ -1,8 +1,8 @@
-//! Writes files so that nothing is lost if writing fails.
+//! Writes files without losing the old content if writing fails.
 //!
-//! The new content is written to a file beside the old one, which is then renamed in one step: a
-//! reader finds the old file or the new one, whole. A user's own work is flushed to the disk
-//! before, so that it survives even a loss of power.
+//! The new content is written to a temporary file in the same folder, which then replaces the old
+//! file atomically: a reader always finds a complete file. The user's own work is flushed to disk
+//! first, so it survives even a power failure.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Write};
@@ -11,13 +11,13 @@ use std::time::Duration;
 
 use super::error::{reason, shown};
 
-/// Why a file could not be written. An existing file stays as it was.
+/// The reason why a file could not be written. An existing file is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file} could not be saved: {reason}")]
 pub struct SaveError {
     /// The file's path, as the user gave it.
     pub file: String,
-    /// What is wrong.
+    /// The reason.
     pub reason: String,
 }
 
@@ -27,27 +27,28 @@ impl SaveError {
     }
 }
 
-/// How valuable a file is.
+/// The value of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Worth {
-    /// It can be made again, so saving it does not wait for the disk.
+    /// It can be recreated, so saving it does not wait for the disk.
     Product,
-    /// It is a user's work: it is flushed to the disk, and the old file is kept with `~` after its
+    /// The user's work: it is flushed to disk, and the old file is kept with `~` appended to its
     /// name.
     Work,
-    /// It is the program's own file about a user's work: it is flushed to the disk, and the old
-    /// file is not kept.
+    /// The program's own record of the user's work: it is flushed to disk, and the old file is not
+    /// kept.
     Journal,
 }
 
-/// Checks whether a file could be written at `path`: its folder exists and can be written to.
+/// Checks whether a file can be written at `path`: its folder exists and is writable.
 ///
 /// # Errors
-/// If it could not.
+/// If it cannot.
 pub(super) fn check_target(path: &Path) -> Result<(), SaveError> {
     let target = target(path)?;
     check_folder(path, &target)?;
     let beside = beside(&target, std::process::id());
+    // Permissions are checked by creating the temporary file.
     let opened = OpenOptions::new().write(true).create_new(true).open(&beside);
     let opened = opened.map(|_file| fs::remove_file(&beside));
     match opened {
@@ -62,15 +63,15 @@ pub(super) fn check_target(path: &Path) -> Result<(), SaveError> {
     }
 }
 
-/// How many links are followed, as on Linux.
+/// The most links that are followed, as on Linux.
 const MOST_LINKS: usize = 40;
 
-/// The file that is replaced; a link is followed and stays a link, even if its file is missing.
+/// Returns the file to replace. Links are followed and stay links, even to a missing file.
 fn target(path: &Path) -> Result<PathBuf, SaveError> {
     let mut target = path.to_owned();
     for _ in 0..MOST_LINKS {
         let Ok(next) = fs::read_link(&target) else { break };
-        // A relative link counts from the folder that it is in.
+        // A relative link is relative to the folder that contains it.
         target = folder(&target).join(next);
     }
     let target = fs::canonicalize(&target).unwrap_or(target);
@@ -106,20 +107,20 @@ fn folder(target: &Path) -> &Path {
     }
 }
 
-/// The folder of a file, for messages.
+/// Formats the folder of a file for messages.
 fn folder_name(target: &Path) -> String {
     format!("the folder {}/", folder(target).display())
 }
 
-/// Makes `content` the content of the file at `path`.
+/// Replaces the content of the file at `path`.
 pub(super) fn replace(path: &Path, content: &[u8], worth: Worth) -> Result<(), SaveError> {
     replace_by(path, worth, &mut |file| file.write_all(content))
 }
 
-/// Writes the content of a file.
+/// A function that writes the content of a file.
 type Content<'a> = dyn FnMut(&mut File) -> std::io::Result<()> + 'a;
 
-/// As [`replace`], with a function that writes the content.
+/// Works like [`replace`], with a function that writes the content.
 pub(super) fn replace_by(
     path: &Path,
     worth: Worth,
@@ -132,7 +133,7 @@ pub(super) fn replace_by(
     let beside = beside(&target, std::process::id());
     let written = write(&beside, &target, content, worth);
     if written.is_err() {
-        // Nothing more can be done if even that fails.
+        // If even this fails, nothing more can be done.
         let _ = fs::remove_file(&beside);
     }
     written.map_err(fail)
@@ -147,7 +148,7 @@ fn write(
     let mut file = OpenOptions::new().write(true).create(true).truncate(true).open(beside)?;
     content(&mut file)?;
     if let Ok(old) = fs::metadata(target) {
-        // The permissions stay as they were, if the file system has any.
+        // Keeps the permissions, if the file system supports them.
         let _ = file.set_permissions(old.permissions());
     }
     if worth == Worth::Product {
@@ -155,6 +156,7 @@ fn write(
     }
     file.sync_all()?;
     drop(file);
+    // A hard link keeps the old file at its name until the rename; copying is the fallback.
     if worth == Worth::Work && target.exists() {
         let kept = with_ending(target, "~");
         let _ = fs::remove_file(&kept);
@@ -163,7 +165,7 @@ fn write(
         }
     }
     fs::rename(beside, target)?;
-    // The name, too, should survive a loss of power; not every system supports that.
+    // Flushing the folder makes the new name survive a power failure; not every system supports it.
     let _ = File::open(folder(target)).and_then(|folder| folder.sync_all());
     Ok(())
 }
@@ -174,15 +176,15 @@ fn with_ending(path: &Path, ending: &str) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// The temporary file that a process writes beside the file that it replaces.
+/// Returns the temporary file that a process writes next to its target.
 fn beside(target: &Path, process: u32) -> PathBuf {
     with_ending(target, &format!(".{process}.new"))
 }
 
-/// No process is still writing a temporary file that is older than this.
+/// A temporary file that is older than this is not in use.
 const LONG_AGO: Duration = Duration::from_secs(60);
 
-/// Removes temporary files beside a file that crashed processes have left.
+/// Removes temporary files that crashed processes have left next to a file.
 fn remove_left_over(target: &Path) {
     let Some(name) = target.file_name().and_then(|name| name.to_str()) else { return };
     let is_left_over = |entry: &fs::DirEntry| {
@@ -196,12 +198,12 @@ fn remove_left_over(target: &Path) {
     };
     let entries = fs::read_dir(folder(target)).into_iter().flatten().flatten();
     for entry in entries.filter(is_left_over) {
-        // If it may not be removed, it stays.
+        // If this fails, the file stays.
         let _ = fs::remove_file(entry.path());
     }
 }
 
-/// Whether a process has ended, as far as the system reports.
+/// Returns whether a process has ended, as far as the system reports.
 fn has_ended(process: u32) -> bool {
     let processes = Path::new("/proc");
     process != std::process::id() && !processes.join(process.to_string()).exists()
@@ -213,7 +215,7 @@ mod tests {
 
     use super::*;
 
-    /// The id of a process that has ended.
+    /// Returns the id of a process that has ended.
     fn ended() -> u32 {
         let mut child = std::process::Command::new("true").spawn().unwrap();
         child.wait().unwrap();

@@ -1,8 +1,8 @@
 //! The files that a scene was read from.
 //!
-//! A picture, a turntable or an export has further files (materials, textures, frames), and each of
-//! them could have the name of a file that the scene needs. Every writer therefore asks here before
-//! it writes its first byte.
+//! A picture, a turntable or an export may write several files (materials, textures, frames), and
+//! any of them could overwrite a file that the scene needs. Every writer therefore checks all
+//! targets here before it writes the first byte.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,15 +11,15 @@ use super::replace::SaveError;
 use marraztu_core::scene::{Object, Scene};
 
 /// The files that a scene was read from: models with their MTL files and textures, and the scene
-/// file itself. No result of the scene replaces one of them.
+/// file itself. No output of the scene may overwrite one of them.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
-    /// The paths without links, and as they were given.
+    /// The canonical paths, with the paths as given.
     places: BTreeMap<PathBuf, PathBuf>,
 }
 
 impl Sources {
-    /// The files of all objects.
+    /// Collects the files of all objects.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let mut sources = Self::default();
@@ -29,7 +29,7 @@ impl Sources {
         sources
     }
 
-    /// These and further files, such as the scene file.
+    /// Adds further files, such as the scene file.
     #[must_use]
     pub fn with<P: AsRef<Path>>(mut self, files: impl IntoIterator<Item = P>) -> Self {
         self.add_all(files);
@@ -39,15 +39,15 @@ impl Sources {
     fn add_all<P: AsRef<Path>>(&mut self, files: impl IntoIterator<Item = P>) {
         for file in files {
             let file = file.as_ref();
-            // A file that does not exist cannot be replaced.
+            // A file that does not exist cannot be overwritten.
             if let Ok(place) = file.canonicalize() {
                 self.places.entry(place).or_insert_with(|| file.to_owned());
             }
         }
     }
 
-    /// Checks that writing to `target` would not replace one of the files, by whatever path or link
-    /// it is named.
+    /// Checks that writing to `target` would not overwrite one of the files, even through another
+    /// path or a link.
     ///
     /// # Errors
     /// If it would.
@@ -67,7 +67,7 @@ impl Sources {
     }
 }
 
-/// The files that an object was read from.
+/// Returns the files that an object was read from.
 fn files(object: &Object) -> impl Iterator<Item = &Path> {
     let model = &object.model;
     let texture = object.texture.iter().map(|texture| texture.source.as_path());

@@ -1,4 +1,4 @@
-//! Reads textures and other pictures.
+//! Loads textures and other pictures.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -18,13 +18,13 @@ use marraztu_core::scene::{Texture, Wrap};
 /// The largest side of a texture, in texels.
 const LARGEST_SIDE: u32 = 16_384;
 
-/// The most memory that reading a picture may take.
+/// The most memory for decoding a picture.
 const MOST_MEMORY: u64 = 2 << 30;
 
-/// The most bytes of a file.
+/// The most bytes in a file.
 const MOST_BYTES: usize = 2 << 30;
 
-/// The formats that textures are read in, by the names that people call them.
+/// The input formats of textures, by their common names.
 const FORMATS: &[(&str, ImageFormat)] = &[
     ("PNG", ImageFormat::Png),
     ("JPEG", ImageFormat::Jpeg),
@@ -35,24 +35,24 @@ const FORMATS: &[(&str, ImageFormat)] = &[
     ("GIF", ImageFormat::Gif),
 ];
 
-/// The formats that textures are read in, as a list in a sentence.
+/// Lists the input formats of textures for a sentence.
 #[must_use]
 pub fn texture_formats() -> String {
     either(FORMATS.iter().map(|(name, _)| (*name).to_owned()))
 }
 
-/// How names of textures end.
+/// Returns the file extensions of textures.
 #[must_use]
 pub fn texture_endings() -> Vec<&'static str> {
     FORMATS.iter().flat_map(|(_, format)| format.extensions_str()).copied().collect()
 }
 
-/// The message for a file of another kind.
+/// The error for a file of another kind.
 fn unknown() -> String {
     format!("this is not a {}", texture_formats())
 }
 
-/// Reads a texture that the user chooses: it repeats, and follows the model's texture coordinates.
+/// Loads a texture that the user chooses: it repeats, and uses the model's texture coordinates.
 ///
 /// # Errors
 /// If the file cannot be read or is not a picture.
@@ -60,10 +60,10 @@ pub fn load_texture(path: &Path) -> Result<Shared<Texture>, LoadError> {
     load_texture_with(path, &mut Vec::new())
 }
 
-/// As [`load_texture`]; notes what is odd about the file.
+/// Works like [`load_texture`], and notes oddities of the file.
 ///
 /// # Errors
-/// As [`load_texture`].
+/// The same as [`load_texture`].
 pub fn load_texture_with(
     path: &Path,
     findings: &mut Vec<Finding>,
@@ -71,8 +71,8 @@ pub fn load_texture_with(
     Pictures::default().texture(path, findings)
 }
 
-/// Reads a picture in any of the formats that textures have, whatever its name ends in; of a GIF,
-/// the first picture.
+/// Loads a picture in any input format, whatever its extension. Only the first picture of a GIF is
+/// used.
 ///
 /// # Errors
 /// If the file cannot be read, is not a picture, or is too large.
@@ -81,7 +81,7 @@ pub fn load_picture(path: &Path) -> Result<Picture, LoadError> {
     Ok(picture)
 }
 
-/// The pictures that were read for one model or scene: each is read once and shared.
+/// The pictures of one model or scene: each file is decoded once and shared.
 #[derive(Debug, Default)]
 pub(super) struct Pictures {
     read: BTreeMap<PathBuf, Result<Read, LoadError>>,
@@ -91,16 +91,16 @@ pub(super) struct Pictures {
 #[derive(Clone, Debug)]
 pub(super) struct Read {
     pub(super) picture: Shared<Picture>,
-    /// The file ends before the picture does.
+    /// Whether the file is truncated.
     pub(super) cut_off: bool,
 }
 
 impl Pictures {
-    /// The picture of a file.
+    /// Returns the picture of a file.
     ///
     /// # Errors
-    /// If it cannot be read, is not a picture, or has more than `most` texels; these are counted
-    /// before any is decoded.
+    /// If it cannot be read, is not a picture, or has more than `most` texels. The size is checked
+    /// before decoding.
     pub(super) fn read(&mut self, path: &Path, most: usize) -> Result<Read, LoadError> {
         // One file may have several paths.
         let file = std::fs::canonicalize(path).unwrap_or_else(|_missing| path.to_owned());
@@ -113,14 +113,14 @@ impl Pictures {
         }
         let read = decode(path, most)
             .map(|(picture, cut_off)| Read { picture: Shared::new(picture), cut_off });
-        // With a higher limit it may still be read.
+        // A call with a higher limit may still decode it.
         if read.as_ref().err() != Some(&too_many_texels(path)) {
             self.read.insert(file, read.clone());
         }
         read
     }
 
-    /// The texture of a file. It repeats, and follows the model's texture coordinates.
+    /// Returns the texture of a file. It repeats, and uses the model's texture coordinates.
     ///
     /// # Errors
     /// If the file cannot be read or is not a picture.
@@ -136,7 +136,7 @@ impl Pictures {
             findings.extend(own.into_list());
         }
         Ok(Shared::new(Texture {
-            // The path is absolute, so that it stays valid if the current folder changes.
+            // An absolute path stays valid when the current folder changes.
             source: std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()),
             picture,
             wrap: Wrap::Repeat,
@@ -150,13 +150,13 @@ fn too_many_texels(path: &Path) -> LoadError {
     LoadError::file(&shown(path), "with it the textures take more than 2 GB of memory")
 }
 
-/// The picture of a file, and whether the file ends before it does.
+/// Decodes a file; returns the picture and whether the file is truncated.
 fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
     let file = shown(path);
     let fail = |reason: String| LoadError::file(&file, reason);
     let bytes = read(path, MOST_BYTES, &Progress::new())?;
     let mut reader = ImageReader::new(Cursor::new(&bytes));
-    // A TGA can be recognised only by its name.
+    // TGA files have no signature, so the extension decides.
     if let Ok(format) = ImageFormat::from_path(path) {
         reader.set_format(format);
     }
@@ -166,6 +166,7 @@ fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
         return Err(fail(unknown()));
     }
     let cut_off = reader.format() == Some(ImageFormat::Jpeg) && jpeg_ends_early(&bytes);
+    // Limits protect against small files that claim huge pictures.
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(LARGEST_SIDE);
     limits.max_image_height = Some(LARGEST_SIDE);
@@ -179,7 +180,7 @@ fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
         }
         DynamicImage::from_decoder(decoder).map(Some)
     };
-    // A decoder that panics on a damaged file must not take the editor with it.
+    // A decoder that panics on a damaged file must not crash the editor.
     let decoded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(decoded))
         .map_err(|_panic| fail("the picture is damaged".to_owned()))?
         .map_err(|error| fail(reason(&error)))?
@@ -204,15 +205,15 @@ fn picture(decoded: DynamicImage) -> Option<Picture> {
     Picture::from_pixels(size, texels)
 }
 
-/// Whether a JPEG ends before its marker of the end: the decoder fills up the missing part.
+/// Returns whether a JPEG lacks its end marker: the decoder then fills the missing part.
 fn jpeg_ends_early(bytes: &[u8]) -> bool {
-    // After the marker of the beginning: FF, a kind, and for most kinds a length and a content.
+    // Skip the start marker. Segments follow: FF, a kind, and usually a length and content.
     let mut rest = bytes.get(2..).unwrap_or_default();
     while let [first, kind, after @ ..] = rest {
         rest = match (first, kind) {
             (0xFF, 0xD9) => return false,
-            // Stuffing, restarts and fill bytes have no content. Everything else is the picture
-            // itself.
+            // Stuffing, restarts and fill bytes have no content. All other bytes are entropy-coded
+            // data.
             (0xFF, 0x00 | 0x01 | 0xD0..=0xD8) => after,
             (0xFF, 0xFF) | (0..=0xFE, _) => &rest[1..],
             _ => {
@@ -225,7 +226,7 @@ fn jpeg_ends_early(bytes: &[u8]) -> bool {
     true
 }
 
-/// A built-in picture; `None` if it cannot be read.
+/// Decodes a built-in picture; `None` if that fails.
 pub(super) fn own_picture(content: &[u8]) -> Option<Picture> {
     picture(image::load_from_memory(content).ok()?)
 }
@@ -257,7 +258,7 @@ mod tests {
             image::Rgba(texels[(x / 4 + y / 4 * 2) as usize])
         });
         for (_, format) in FORMATS.iter().copied() {
-            // Only a TGA has nothing in it that tells what it is.
+            // Only TGA files have no signature.
             let path =
                 folder.path().join(if format == ImageFormat::Tga { "a.tga" } else { "a.picture" });
             let written = DynamicImage::from(drawn.clone()).to_rgb8();
@@ -266,7 +267,7 @@ mod tests {
             assert_eq!(read.size(), Size::new(8, 8), "{format:?}");
             for (x, y, texel) in [(0, 0, texels[0]), (7, 0, texels[1]), (0, 7, texels[2])] {
                 for (got, expected) in read.pixel(x, y).into_iter().zip(texel) {
-                    // JPEG blurs; a row or a channel in the wrong place would differ by more.
+                    // JPEG blurs; a swapped row or channel would differ by more.
                     assert!(got.abs_diff(expected) < 64, "{format:?} at {x}, {y}: {got}");
                 }
             }
@@ -325,7 +326,7 @@ mod tests {
         let again = pictures.read(&folder.path().join("./a.png"), 256).unwrap().picture;
         assert!(Shared::same(&first, &again));
         assert_eq!(pictures.read(&path, 255).unwrap_err(), too_many_texels(&path));
-        // A header without texels: it is refused for their number, before memory is allocated.
+        // A header without texels: the size is rejected before memory is allocated.
         let whole = std::fs::read(&path).unwrap();
         let headless = folder.path().join("b.png");
         std::fs::write(&headless, &whole[..50]).unwrap();

@@ -1,8 +1,8 @@
-//! Which axis of a model's file points up, if the file states it.
+//! Detects the up axis that a model's file states.
 //!
-//! OBJ has no statement for the up axis. Some exporters say it in a comment at the top, and some
-//! programs always write Z up. The shape is not considered: models that lie, stand and hang look
-//! alike, and a surface far from the origin has to give the same picture as one at the origin.
+//! OBJ has no statement for the up axis. Some exporters write it in a comment at the top, and some
+//! programs always use Z up. The shape is not considered: lying, upright and hanging models look
+//! alike, and the distance from the origin must not affect the picture.
 
 use std::fs::File;
 use std::io::Read;
@@ -11,30 +11,30 @@ use std::path::Path;
 use super::packed::{Unpacked, unpacked_name};
 use marraztu_core::scene::UpAxis;
 
-/// The bytes of a file that are looked at.
+/// The number of bytes that are searched.
 const HEAD: u64 = 8192;
 
-/// Programs that always write Z up, by a comment of theirs in lower case.
+/// Comments of programs that always use Z up, in lower case.
 const WRITE_Z_UP: [&str; 4] =
     ["openscad obj exporter", "tinkercad", "created by freecad", "freecad v"];
 
-/// The most letters of a comment that are quoted.
+/// The most characters of a comment that are quoted.
 const LONGEST: usize = 60;
 
-/// The statement of a file about its up axis.
+/// A statement about the up axis in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatedUp {
     /// The axis.
     pub up: UpAxis,
-    /// The comment that states it.
+    /// The comment that contains the statement.
     pub comment: String,
 }
 
-/// The axis that the comments at the top of a file state; `None` if they state none, or if the file
-/// cannot be read.
+/// Finds the up axis in the comments at the top of a file; `None` if there is no statement or the
+/// file cannot be read.
 #[must_use]
 pub fn stated_up(path: &Path) -> Option<StatedUp> {
-    // Reading a pipe would take what is read from it later.
+    // Reading from a pipe would consume bytes that the loader needs.
     if !std::fs::metadata(path).ok()?.is_file() {
         return None;
     }
@@ -49,7 +49,7 @@ pub fn stated_up(path: &Path) -> Option<StatedUp> {
     stated_in(&head)
 }
 
-/// The axis that the comments before the first statement state.
+/// Finds the up axis in the comments before the first statement.
 pub(super) fn stated_in(bytes: &[u8]) -> Option<StatedUp> {
     let head = &bytes[..bytes.len().min(usize::try_from(HEAD).unwrap_or(usize::MAX))];
     let text = String::from_utf8_lossy(head);
@@ -64,7 +64,7 @@ pub(super) fn stated_in(bytes: &[u8]) -> Option<StatedUp> {
     })
 }
 
-/// The axis that a comment in lower case states: "z-up", "up axis: -y", "axis_forward=-z, up=y".
+/// Parses a comment in lower case: "z-up", "up axis: -y", "axis_forward=-z, up=y".
 fn up_of(comment: &str) -> Option<UpAxis> {
     if WRITE_Z_UP.iter().any(|program| comment.contains(program)) {
         return Some(UpAxis::Z);
@@ -77,6 +77,7 @@ fn up_of(comment: &str) -> Option<UpAxis> {
             return Some(UpAxis::Z);
         }
         let small = |word: &&String| ["axis", "is", "vector", "points"].contains(&word.as_str());
+        // The axis follows "up" ("up axis: z") or precedes it ("z up, y forward").
         let mut after = words[at + 1..].iter().skip_while(small);
         let (next, second) = (after.next(), after.next());
         let is_forward = second.is_some_and(|word| word == "forward" || word == "front");
@@ -87,7 +88,7 @@ fn up_of(comment: &str) -> Option<UpAxis> {
     })
 }
 
-/// The words of a clause. A sign belongs to a letter if nothing but a separator is before it.
+/// Splits a clause into words. A minus sign belongs to a word if a separator precedes it.
 fn words(clause: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     for letter in clause.chars() {
@@ -106,7 +107,7 @@ fn words(clause: &str) -> Vec<String> {
     words
 }
 
-/// The axis of a word. X is left out: no program puts it up, and "up x 2" is a factor.
+/// Parses the name of an axis. X is excluded: no program uses it, and "up x 2" is a factor.
 fn axis(word: &str) -> Option<UpAxis> {
     let all = [UpAxis::Y, UpAxis::Z, UpAxis::MinusY, UpAxis::MinusZ];
     all.into_iter().find(|up| up.word() == word)

@@ -1,4 +1,4 @@
-//! What scene files and preferences keep of the window.
+//! The state of the window in scene files and preferences.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -8,31 +8,29 @@ use serde::de::{self, Deserializer, MapAccess, Visitor};
 use serde::ser::{self, Serializer};
 use serde::{Deserialize, Serialize};
 
-/// What a scene file keeps of the window in which the scene was saved.
+/// The state of the window when a scene was saved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WindowState {
-    /// Whether pictures may be coarser while something moves, if they would come too late
-    /// otherwise.
+    /// Whether pictures may be coarser during motion, if full quality would be too slow.
     pub coarse_while_moving: bool,
     /// Which panels are open.
     pub panels: Panels,
 }
 
 impl WindowState {
-    /// That of the first start.
+    /// The state at the first start.
     pub const DEFAULT: Self = Self { coarse_while_moving: true, panels: Panels(BTreeMap::new()) };
 }
 
-/// Which panels are open and which are closed, by their names. A panel that is not named is as at
-/// the first start.
+/// The open and closed panels, by name. Other panels have their state of the first start.
 ///
-/// Files know names alone: the window has the table of panels, and leaves out what it has not.
-/// They are written as the fields of a struct are: `(outline: true, plan: false)`.
+/// Files contain arbitrary names: only the window knows the panels, and ignores unknown ones. The
+/// format is that of a struct: `(outline: true, plan: false)`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Panels(BTreeMap<String, bool>);
 
 impl Panels {
-    /// Whether the panel of this name is open, if it is named.
+    /// Returns whether a panel is open, if it is listed.
     #[must_use]
     pub fn is_open(&self, name: &str) -> Option<bool> {
         self.0.get(name).copied()
@@ -60,7 +58,7 @@ impl<'de> Deserialize<'de> for Panels {
     }
 }
 
-/// Reads any names, each with whether the panel is open.
+/// Deserializes arbitrary panel names with their states.
 struct Fields;
 
 impl<'de> Visitor<'de> for Fields {

@@ -1,24 +1,24 @@
 //! Attributes the error of one pixel to the axes of accuracy.
 //!
-//! The picture is drawn again with one axis at a time at its most exact choice. What that takes off
-//! the error is the share of the axis. Shares need not add up to the error, since errors may cancel
-//! or depend on each other.
+//! The picture is drawn again with one axis at a time at its most exact choice. The reduction of
+//! the error is the share of that axis. Shares need not add up to the error, since errors may
+//! cancel or depend on each other.
 
 use serde::Serialize;
 
 use super::picture_source::PictureSource;
 use marraztu_core::accuracy::{AXES, Axis, AxisKind, Settings};
 
-/// One pixel, and where its error comes from.
+/// One pixel, with the sources of its error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Attribution {
     /// Column and row, from the upper left.
     pub at: [usize; 2],
     /// The reference's red, green and blue.
     pub exact: [u8; 3],
-    /// Those of the settings that are judged.
+    /// Red, green and blue of the judged settings.
     pub ours: [u8; 3],
-    /// Whether the reference shows another primitive there.
+    /// Whether the reference shows a different primitive.
     pub coverage_differs: bool,
     /// The axes that are not at their most exact choice, the largest share first.
     pub shares: Vec<Share>,
@@ -33,13 +33,13 @@ pub struct Share {
     pub chosen: &'static str,
     /// The most exact choice.
     pub exact: &'static str,
-    /// The pixel with that axis alone made exact.
+    /// The pixel with only this axis made exact.
     pub value: [u8; 3],
-    /// The byte steps of all channels together by which that reduces the error; below 0 it grows.
+    /// The reduction of the error in byte steps, summed over the channels; negative if it grows.
     pub steps: i32,
 }
 
-/// Judges a pixel of the picture that these settings draw; `None` if it is outside.
+/// Attributes the error of a pixel; `None` if the pixel is outside the picture.
 #[must_use]
 pub fn attribute(
     source: &mut dyn PictureSource,
@@ -55,12 +55,13 @@ pub fn attribute(
         let [r, g, b, _] = source.picture().pixel(at[0], at[1]);
         Some(([r, g, b], source.primitives()[at[1] * size.width + at[0]]))
     };
-    // A pixel of several samples is judged against as many, each lit.
+    // A pixel with several samples is judged against the same number, each lit.
     let reference = Settings { samples: settings.samples, ..settings.reference() };
     let lit = AXES.iter().filter(|axis| axis.kind == AxisKind::Scored);
     let reference = lit.fold(reference, |now, axis| axis.most_exact(&now).of(&now));
     let (exact, exact_primitive) = look(&reference)?;
     let (ours, primitive) = look(settings)?;
+    // Make one axis exact at a time, starting from the judged settings.
     let mut shares = Vec::new();
     let judged = |axis: &&Axis| match axis.kind {
         AxisKind::Scored => true,
@@ -81,19 +82,19 @@ pub fn attribute(
     Some(Attribution { at, exact, ours, coverage_differs, shares })
 }
 
-/// The byte steps between two colours, all channels together.
+/// Returns the difference of two colours in byte steps, summed over the channels.
 fn distance(a: [u8; 3], b: [u8; 3]) -> i32 {
     (0..3).map(|i| i32::from(a[i].abs_diff(b[i]))).sum()
 }
 
 impl Attribution {
-    /// The byte steps between exact and ours, all channels together.
+    /// Returns the error in byte steps, summed over the channels.
     #[must_use]
     pub fn steps(&self) -> i32 {
         distance(self.ours, self.exact)
     }
 
-    /// A description, line by line.
+    /// Describes the result, line by line.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let [x, y] = self.at;
@@ -106,6 +107,7 @@ impl Attribution {
         if self.coverage_differs {
             lines.push("  the exact picture shows another triangle there".to_owned());
         }
+        // Shares may be negative: errors can cancel.
         for Share { axis, chosen, exact, value, steps } in &self.shares {
             let how = match steps {
                 0 => "no nearer".to_owned(),

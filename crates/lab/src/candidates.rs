@@ -1,4 +1,4 @@
-//! Chooses which settings are measured: each axis by itself, the presets, and some combinations.
+//! Chooses the settings to measure: each axis separately, the presets, and some combinations.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -7,21 +7,21 @@ use super::pairs::Limits;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Settings};
 use marraztu_core::scene::{Scene, View};
 
-/// How much is measured.
+/// The thoroughness of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thoroughness {
-    /// Its name on the command line and in reports.
+    /// The name on the command line and in reports.
     pub word: &'static str,
-    /// How long each choice is measured.
+    /// The measuring time of each choice.
     pub limits: Limits,
-    /// The largest number of combinations that are measured.
+    /// The most combinations that are measured.
     pub combinations: usize,
-    /// No combination is begun after this time.
+    /// The time after which no new combination is started.
     pub time: Duration,
 }
 
 impl Thoroughness {
-    /// Some 25 seconds for the first scene on two cores.
+    /// About 25 seconds for the first scene on two cores.
     pub const QUICK: Self = Self {
         word: "quick",
         limits: Limits { pairs: 11, least: 7, time: Duration::from_millis(300) },
@@ -40,47 +40,47 @@ impl Thoroughness {
 /// Settings to measure, with their name in the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// Why they are measured.
+    /// The reason why they are measured.
     pub group: Group,
-    /// Their name in the table.
+    /// The name in the table.
     pub name: String,
     /// The settings.
     pub settings: Settings,
 }
 
-/// Why settings are measured.
+/// The reason why settings are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(tag = "group", content = "axis", rename_all = "lowercase")]
 pub enum Group {
     /// A preset.
     Preset,
-    /// The default with another choice of one axis, which has this key.
+    /// The default with another choice for the axis with this key.
     Axis(&'static str),
-    /// The settings that the picture is drawn with now.
+    /// The current settings.
     Current,
     /// Other choices of several axes.
     Combination,
 }
 
-/// Something that is not measured, with the reason.
+/// Settings that are not measured, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct LeftOut {
-    /// What it is.
+    /// Their description.
     pub what: String,
     /// The reason.
     pub reason: String,
 }
 
-/// What is measured, and what is not.
+/// The settings to measure, and those left out.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
     /// In the order of measurement; the first is the default.
     pub all: Vec<Candidate>,
-    /// What makes no difference in this scene, and combinations beyond the limit.
+    /// Choices without an effect in this scene, and combinations beyond the limit.
     pub left_out: Vec<LeftOut>,
 }
 
-/// The settings to measure for these axes in this scene.
+/// Lists the settings to measure for these axes in this scene.
 #[must_use]
 pub fn candidates(
     scene: &Scene,
@@ -94,9 +94,11 @@ pub fn candidates(
     let mut add = |group, name: String, settings| {
         found.all.push(Candidate { group, name, settings });
     };
+    // The default comes first: all others are measured against it.
     for preset in ACCURACY_PRESETS.iter().filter(|preset| preset.of(current) == base) {
         add(Group::Preset, preset.label.to_owned(), base);
     }
+    // Axes without an effect in this scene are listed as left out.
     let (sensible, senseless): (Vec<&Axis>, Vec<&Axis>) =
         axes.iter().partition(|axis| (axis.sense)(scene, view).is_ok());
     for axis in &sensible {
@@ -112,6 +114,7 @@ pub fn candidates(
     for settings in combinations {
         add(Group::Combination, settings.in_words(), settings);
     }
+    // Report omissions with reasons, since a missing row would look like an error.
     for axis in senseless {
         let reason = (axis.sense)(scene, view).err().unwrap_or_default().to_owned();
         found.left_out.push(LeftOut { what: axis.label.to_owned(), reason });
@@ -133,8 +136,8 @@ pub fn candidates(
     found
 }
 
-/// The choices of an axis that differ from all others in this scene, with these settings of the
-/// other axes.
+/// Returns the choices of an axis that have a distinct effect in this scene, given the other
+/// settings.
 fn offered<'a>(
     axis: &'static Axis,
     (scene, view): (&'a Scene, &'a View),
@@ -146,12 +149,12 @@ fn offered<'a>(
 /// A choice that is combined with others, and the index of its axis.
 type Pick = (usize, &'static Choice);
 
-/// Settings that differ from `base` in two or more axes, models excepted: at most `most` of them,
-/// and the number of those that were listed. All that differ in two axes come first, then those
-/// that differ in three, and so on.
+/// Returns up to `most` settings that differ from `base` in at least two axes (models excepted),
+/// and the number of candidates considered. Settings that differ in two axes come first, then
+/// three, and so on.
 ///
-/// Among those that differ in the same number of axes, the next is the one whose axes were chosen
-/// least often before, so that even a few are spread over all axes.
+/// With equal numbers of axes, the next setting is the one with the least frequently chosen axes,
+/// so even a short list covers all axes.
 fn combinations(
     base: &Settings,
     axes: &[&'static Axis],
@@ -168,6 +171,7 @@ fn combinations(
     let mut all: Vec<Vec<Pick>> = picks.iter().map(|pick| vec![*pick]).collect();
     let (mut chosen, mut count, mut spread) = (Vec::new(), 0, Spread::default());
     while chosen.len() < most && !all.is_empty() {
+        // Extend each combination by a pick of a later axis, so each set appears once.
         let grown = all.iter().flat_map(|combination| {
             let last = combination.last().map_or(0, |(axis, _)| *axis);
             let later = picks.iter().filter(move |(axis, _)| *axis > last);
@@ -190,8 +194,8 @@ fn combinations(
     (chosen, count)
 }
 
-/// Whether the choice is combined with others. Choices without an effect, models, historical
-/// choices, and the samples that all others are judged against are not.
+/// Returns whether a choice is combined with others. Excluded are choices without an effect,
+/// models, historical choices, and the number of samples that all others are judged against.
 fn is_combined(
     axis: &Axis,
     choice: &Choice,
@@ -206,7 +210,7 @@ fn is_combined(
         && (choice.sense)(scene, view).is_ok()
 }
 
-/// Choices that are offered for teaching only.
+/// Choices that exist only for teaching.
 const HISTORICAL: [(&str, &str); 6] = [
     ("coverage", "points"),
     ("coverage", "scan-lines"),
@@ -216,7 +220,7 @@ const HISTORICAL: [(&str, &str); 6] = [
     ("rounding", "truncated"),
 ];
 
-/// How often each axis, set of axes and choice was chosen.
+/// The number of times that each axis, set of axes and choice was chosen.
 #[derive(Default)]
 struct Spread {
     axes: BTreeMap<usize, usize>,
@@ -225,7 +229,7 @@ struct Spread {
 }
 
 impl Spread {
-    /// How often the parts of a combination were chosen, axes first.
+    /// Returns the number of times that the parts of a combination were chosen: axes, set, choices.
     fn weight(&self, combination: &[Pick]) -> [usize; 3] {
         let axes = combination.iter().filter_map(|(axis, _)| self.axes.get(axis));
         let choices = combination.iter().filter_map(|(i, it)| self.choices.get(&(*i, it.word)));
@@ -242,15 +246,15 @@ impl Spread {
     }
 }
 
-/// The axes of a combination.
+/// Returns the axes of a combination.
 fn set(combination: &[Pick]) -> Vec<usize> {
     combination.iter().map(|(axis, _)| *axis).collect()
 }
 
-/// The largest number of combinations that are listed: many axes have more.
+/// The most combinations that are considered: many axes have more.
 const MOST: usize = 4096;
 
-/// All axes.
+/// Returns all axes.
 #[must_use]
 pub fn all_axes() -> Vec<&'static Axis> {
     AXES.iter().collect()
@@ -260,7 +264,7 @@ pub fn all_axes() -> Vec<&'static Axis> {
 mod tests {
     use super::*;
 
-    /// The combinations in the first scene, at most `most`.
+    /// Returns up to `most` combinations in the first scene.
     fn combined(most: usize) -> Vec<Settings> {
         let (scene, view) = marraztu_io::default_scene();
         let found = candidates(&scene, &view, &Settings::default(), &all_axes(), most);
@@ -268,7 +272,7 @@ mod tests {
         all.map(|it| it.settings).collect()
     }
 
-    /// The choices of these settings that are not the default's, by axis.
+    /// Returns the choices that differ from the default, by axis.
     fn words(settings: &Settings) -> Vec<(&'static str, &'static str)> {
         let words = AXES.iter().map(|axis| (axis, axis.chosen(settings).word));
         let own = words.filter(|(axis, word)| *word != axis.default_choice().word);
@@ -280,8 +284,7 @@ mod tests {
         let all = combined(Thoroughness::QUICK.combinations);
         assert_eq!(all.len(), Thoroughness::QUICK.combinations);
         let words: Vec<_> = all.iter().map(words).collect();
-        // Axes that have choices beyond historical ones, make a difference in the first scene, and
-        // are not models.
+        // Axes with non-historical choices and an effect in the first scene, except models.
         let of_axes = |key: &str| words.iter().flatten().filter(|(axis, _)| *axis == key).count();
         for key in [
             "shading",

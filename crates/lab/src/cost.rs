@@ -1,8 +1,8 @@
-//! Explains which effects a frame uses, and measures what each costs in pixels and milliseconds.
+//! Explains the effects of a frame, and measures the cost of each in pixels and milliseconds.
 //!
-//! A time is measured by pairs of frames in turn, one with the effect and one without it. The
-//! result is the median of the differences, with half of their interquartile range as its spread.
-//! Pairs of equal frames, measured first, give the noise: a time within it means nothing.
+//! A time is measured by alternating frames with and without the effect. The result is the median
+//! of the differences; its spread is half the interquartile range. Pairs of equal frames, measured
+//! first, give the noise: a time within it is meaningless.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -15,32 +15,32 @@ use marraztu_render::explain_frame;
 use marraztu_render::plan_frame;
 use marraztu_render::{Effect, EffectUse, FramePlan, Renderer};
 
-/// The smallest number of pairs that are measured for each effect.
+/// The fewest pairs per effect.
 const PAIRS: usize = 7;
 
-/// The largest number.
+/// The most pairs per effect.
 const MOST_PAIRS: usize = 31;
 
-/// A frame, explained.
+/// The effects of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explained {
-    /// The effects that are used and those that are left out, sorted by effect.
+    /// The uses and omissions of effects, sorted by effect.
     pub uses: Vec<EffectUse>,
-    /// The picture's.
+    /// The size of the picture.
     pub size: Size,
 }
 
-/// The uses of one effect; there is at least one.
+/// The uses of one effect; never empty.
 #[derive(Clone, Copy, Debug)]
 pub struct Group<'a> {
     /// The effect.
     pub effect: Effect,
-    /// The uses and the omissions.
+    /// The uses and omissions.
     pub uses: &'a [EffectUse],
 }
 
 impl Explained {
-    /// The uses by effect.
+    /// Groups the uses by effect.
     pub fn groups(&self) -> impl Iterator<Item = Group<'_>> {
         let groups = self.uses.chunk_by(|a, b| a.effect == b.effect);
         groups.map(|uses| Group { effect: uses[0].effect, uses })
@@ -48,26 +48,26 @@ impl Explained {
 }
 
 impl Group<'_> {
-    /// The number of items that the effect is on for.
+    /// Returns the number of items with the effect on.
     #[must_use]
     pub fn on(&self) -> usize {
         self.uses.iter().filter(|one| one.state.is_on()).count()
     }
 
-    /// Whether all uses are in the same state, for the same reason.
+    /// Returns whether all uses are in the same state, for the same reason.
     #[must_use]
     pub fn is_alike(&self) -> bool {
         self.uses.iter().all(|one| one.state == self.uses[0].state)
     }
 
-    /// The number of pixels of all uses together.
+    /// Returns the total number of pixels.
     #[must_use]
     pub fn pixels(&self) -> Option<u64> {
         let counted = self.uses.iter().filter_map(|one| one.pixels);
         counted.reduce(|sum, pixels| sum + pixels)
     }
 
-    /// The items that it is on for, in words.
+    /// Describes the items with the effect on.
     #[must_use]
     pub fn of(&self) -> String {
         let (on, all) = (self.on(), self.uses.len());
@@ -80,14 +80,14 @@ impl Group<'_> {
     }
 }
 
-/// What an effect costs.
+/// The cost of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
     /// The effect.
     pub effect: Effect,
-    /// The milliseconds that it adds to a frame.
+    /// The milliseconds that the effect adds to a frame.
     pub milliseconds: f64,
-    /// Half of the interquartile range of that.
+    /// Half the interquartile range of the milliseconds.
     pub spread: f64,
 }
 
@@ -98,25 +98,25 @@ pub struct Costs {
     pub frame: f64,
     /// The apparent difference of two equal frames in milliseconds.
     pub noise: f64,
-    /// The cost of each effect that is on and can be taken out.
+    /// The costs of all removable effects that are on.
     pub effects: Vec<Cost>,
 }
 
 impl Costs {
-    /// The cost of an effect, if it was measured.
+    /// Returns the cost of an effect, if it was measured.
     #[must_use]
     pub fn of(&self, effect: Effect) -> Option<&Cost> {
         self.effects.iter().find(|cost| cost.effect == effect)
     }
 
-    /// Whether a cost is more than noise.
+    /// Returns whether a cost exceeds the noise.
     #[must_use]
     pub fn is_clear(&self, cost: &Cost) -> bool {
         cost.milliseconds.abs() > self.noise + cost.spread
     }
 }
 
-/// Plans and draws a picture, and counts the pixels of each of its effects.
+/// Plans and draws a picture, and counts the pixels of each effect.
 #[must_use]
 pub fn explain(shot: &Shot) -> Explained {
     let mut renderer = Renderer::default();
@@ -124,7 +124,7 @@ pub fn explain(shot: &Shot) -> Explained {
     explain_with(&mut renderer, shot)
 }
 
-/// The same for the picture that `renderer` drew last.
+/// Works like [`explain`], for the picture that `renderer` drew last.
 #[must_use]
 pub fn explain_with(renderer: &mut Renderer, shot: &Shot) -> Explained {
     let (_, mut uses) = explain_frame(shot);
@@ -132,8 +132,8 @@ pub fn explain_with(renderer: &mut Renderer, shot: &Shot) -> Explained {
     Explained { uses, size: shot.size }
 }
 
-/// Measures what the effects of a picture cost, within about `budget` of time. When `stopped`
-/// returns true, returns what was measured so far.
+/// Measures the costs of a picture's effects within about `budget`. Once `stopped` returns true,
+/// the result is partial.
 #[must_use]
 pub fn measure(shot: &Shot, budget: Duration, stopped: impl Fn() -> bool) -> Costs {
     let (plan, uses) = explain_frame(shot);
@@ -142,8 +142,10 @@ pub fn measure(shot: &Shot, budget: Duration, stopped: impl Fn() -> bool) -> Cos
     effects.dedup();
     let without: Vec<(Effect, FramePlan)> =
         effects.iter().filter_map(|effect| Some((*effect, plan.without(*effect)?))).collect();
+    // The budget is divided equally among the effects and the control.
     let share = budget / u32::try_from(without.len() + 1).unwrap_or(u32::MAX);
 
+    // Warm up caches and memory before the control measurement.
     let mut bench = Bench::default();
     for _ in 0..3 {
         bench.time(&plan);
@@ -167,7 +169,7 @@ struct Bench {
     renderer: Renderer,
 }
 
-/// The median frame in milliseconds, and how much longer the first frame of a pair took.
+/// The median frame in milliseconds, and the extra time of the frame with the effect.
 struct Pairs {
     frame: f64,
     difference: Quartiles,
@@ -181,7 +183,7 @@ impl Bench {
         time(render).as_secs_f64() * 1e3
     }
 
-    /// Frames in turn: with, without, without, with.
+    /// Times frames in the order with, without, without, with, which cancels drift.
     fn pairs(
         &mut self,
         with: &FramePlan,
@@ -191,12 +193,13 @@ impl Bench {
     ) -> Pairs {
         let begun = Instant::now();
         let (mut frames, mut differences) = (Vec::new(), Vec::new());
-        // The first frame allocates memory and is not counted.
+        // The first frame allocates memory, so it is not counted.
         self.time(without);
         while differences.len() < MOST_PAIRS
             && (differences.len() < PAIRS || begun.elapsed() < share)
             && !stopped()
         {
+            // Alternate the order within pairs, so that neither plan always comes first.
             let (a, b) = if differences.len().is_multiple_of(2) {
                 let a = self.time(with);
                 (a, self.time(without))
@@ -207,7 +210,7 @@ impl Bench {
             frames.push(a);
             differences.push(a - b);
         }
-        // Stopped before the first pair: nothing was measured.
+        // Without a complete pair, nothing was measured.
         let none = Quartiles { lower: 0.0, median: 0.0, upper: 0.0 };
         let [frame, difference] =
             [frames, differences].map(|all| Quartiles::of(&all).unwrap_or(none));
@@ -215,7 +218,7 @@ impl Bench {
     }
 }
 
-/// The apparent difference of equal frames: |median| and half of the interquartile range.
+/// Returns the apparent difference of equal frames: |median| plus half the interquartile range.
 fn noise(differences: &Quartiles) -> f64 {
     differences.median.abs() + differences.spread()
 }

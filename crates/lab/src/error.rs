@@ -1,22 +1,22 @@
 //! The error of a picture against its reference.
 //!
-//! All pixels count: a pixel that shows another triangle is an error like any other, and is counted
-//! besides. The same figures over the pixels alone that show the same primitive in both pictures
-//! say how light was computed, apart from where edges lie. Against the mean of several samples a
-//! pixel may show several primitives, and both are the same.
+//! All pixels count. A pixel that shows a different triangle is an error like any other, and is
+//! also counted separately. A second set of figures covers only pixels with equal coverage: it
+//! measures shading without the errors along edges. With several samples, a pixel may show several
+//! primitives, so both sets are equal.
 
 use serde::Serialize;
 
 use super::flip::Perceived;
 use marraztu_core::base::image::Picture;
 
-/// A picture with the primitives that it shows.
+/// A picture with the primitive at each pixel.
 #[derive(Debug)]
 pub struct Rendering {
     picture: Picture,
-    /// The primitive that each pixel shows.
+    /// The primitive at each pixel.
     primitives: Vec<u32>,
-    /// Whether a pixel may show several.
+    /// Whether pixels may show several primitives.
     mixed: bool,
     seen: Perceived,
 }
@@ -24,43 +24,43 @@ pub struct Rendering {
 /// The error of a picture against its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Error {
-    /// The differences of bytes over all pixels.
+    /// The byte differences over all pixels.
     #[serde(flatten)]
     pub whole: Figures,
-    /// The same over the pixels whose coverage does not differ.
+    /// The byte differences over pixels with equal coverage.
     pub inside: Figures,
-    /// The number of pixels whose coverage differs: they show another triangle, line or background.
+    /// The number of pixels that show a different triangle, line or background.
     pub coverage: usize,
-    /// How different the pictures look, from 0 to 1, over all pixels.
+    /// The perceived difference over all pixels, from 0 to 1.
     pub flip: f64,
 }
 
-/// The differences of the bytes of two pictures.
+/// Statistics of the byte differences of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Figures {
-    /// The largest difference of a byte.
+    /// The largest difference.
     pub largest: u8,
-    /// The root of the mean square of the differences of bytes.
+    /// The root mean square of the differences.
     pub rmse: f64,
     /// 20 log10(255 / rmse), in decibels; `None` if no byte differs.
     pub psnr: Option<f64>,
-    /// The part of the bytes that differ.
+    /// The fraction of bytes that differ.
     pub differing: f64,
 }
 
-/// The pixels that figures are taken over.
+/// The pixels that figures cover.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Region {
-    /// All of them.
+    /// All pixels.
     #[default]
     Whole,
-    /// Those whose coverage does not differ.
+    /// The pixels with equal coverage.
     Inside,
 }
 
 impl Region {
-    /// What it adds to the label of a metric.
+    /// Returns the addition to the label of a metric.
     #[must_use]
     pub const fn note(self) -> &'static str {
         match self {
@@ -71,7 +71,7 @@ impl Region {
 }
 
 impl Error {
-    /// The figures over these pixels.
+    /// Returns the figures over a region.
     #[must_use]
     pub const fn over(&self, region: Region) -> &Figures {
         match region {
@@ -90,9 +90,9 @@ pub enum Measure {
     Rmse,
     /// The largest difference, in byte steps.
     Largest,
-    /// The part of the bytes that differ.
+    /// The fraction of bytes that differ.
     Differing,
-    /// FLIP: how different it looks.
+    /// The perceived difference by FLIP.
     Flip,
 }
 
@@ -100,7 +100,7 @@ impl Measure {
     /// All metrics.
     pub const ALL: [Self; 4] = [Self::Rmse, Self::Largest, Self::Differing, Self::Flip];
 
-    /// Its word on the command line.
+    /// Returns the name on the command line.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -111,7 +111,7 @@ impl Measure {
         }
     }
 
-    /// Its label at an axis of a plot.
+    /// Returns the label at a plot axis.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -122,7 +122,7 @@ impl Measure {
         }
     }
 
-    /// The metric's value for an error. FLIP is always that of all pixels.
+    /// Returns the metric's value for an error. FLIP always covers all pixels.
     #[must_use]
     pub fn of(self, error: &Error, region: Region) -> f64 {
         let figures = error.over(region);
@@ -136,7 +136,7 @@ impl Measure {
 }
 
 impl Rendering {
-    /// A picture with the primitive that each of its pixels shows.
+    /// Combines a picture with the primitive at each pixel.
     #[must_use]
     pub fn new(picture: Picture, primitives: Vec<u32>) -> Self {
         assert_eq!(picture.pixels().len(), primitives.len(), "every pixel shows something");
@@ -144,7 +144,7 @@ impl Rendering {
         Self { picture, primitives, mixed: false, seen }
     }
 
-    /// The same with several samples per pixel, so that each pixel may show several primitives.
+    /// Marks that each pixel has several samples, and may show several primitives.
     #[must_use]
     pub fn mixed(self) -> Self {
         Self { mixed: true, ..self }
@@ -156,13 +156,14 @@ impl Rendering {
         &self.picture
     }
 
-    /// The error of this picture against a reference.
+    /// Computes the error of this picture against a reference.
     #[must_use]
     pub fn error(&self, reference: &Self) -> Error {
         let (mut whole, mut inside) = (Sum::default(), Sum::default());
         let pixels = self.picture.pixels().iter().zip(reference.picture.pixels());
         let primitives = self.primitives.iter().zip(&reference.primitives);
         for ((a, b), (shown, exact)) in pixels.zip(primitives) {
+            // Alpha is not compared.
             let steps = [0, 1, 2].map(|i| a[i].abs_diff(b[i]));
             whole.add(steps);
             if reference.mixed || shown == exact {
@@ -177,7 +178,7 @@ impl Rendering {
         }
     }
 
-    /// The differences of the bytes of this picture and another.
+    /// Computes the byte differences between this picture and another.
     #[must_use]
     pub fn change(&self, other: &Self) -> Figures {
         let mut sum = Sum::default();
@@ -188,7 +189,7 @@ impl Rendering {
     }
 }
 
-/// What figures are made of.
+/// Running sums for figures.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sum {
     pixels: usize,
@@ -220,7 +221,7 @@ impl Sum {
     }
 }
 
-/// The differences of two pictures of one size, each byte times `factor`.
+/// Returns the absolute difference of two equally sized pictures, times `factor`.
 #[must_use]
 pub fn amplified(a: &Picture, b: &Picture, factor: u16) -> Picture {
     let difference = |a: u8, b: u8| {
@@ -245,8 +246,8 @@ mod tests {
     const PIXELS: [[u8; 4]; 4] =
         [[10, 20, 30, 255], [0, 0, 0, 255], [255, 255, 255, 255], [7, 7, 7, 255]];
 
-    /// By hand: of twelve bytes three differ, by 3, 4 and 193; of the nine in pixels that show the
-    /// same primitive, two.
+    /// By hand: three of twelve bytes differ, by 3, 4 and 193; in pixels with the same primitive,
+    /// two of nine.
     #[test]
     fn an_error_is_counted_by_hand_over_all_pixels_and_inside() {
         let reference = rendering(PIXELS, [1, 0, 2, 2]);

@@ -1,45 +1,45 @@
-//! FLIP: how different two pictures look to an observer who flips between them.
+//! FLIP: the perceived difference of two pictures when an observer flips between them.
 //!
 //! The metric is for display values on a screen 0.7 m and 3840 pixels wide, seen from 0.7 m: 67
-//! pixels per degree. 0 is equal, 1 the largest difference.
+//! pixels per degree. 0 means equal, 1 is the largest difference.
 //!
 //! Source: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild, "FLIP: A Difference
 //! Evaluator for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2), 2020, for low
-//! dynamic range. Every filter in it is a sum of products of two functions of one coordinate each,
-//! and is run as such, along rows and then along columns; at a border the last pixel goes on.
+//! dynamic range. All its filters are sums of separable ones, so each runs along rows, then along
+//! columns. Borders are extended with the last pixel.
 
 use libm::{ceil, exp, pow, sqrt};
 use rayon::prelude::*;
 
 use marraztu_core::base::image::{Picture, Size};
 
-/// Pixels to a degree: 0.7 (3840 / 0.7) (pi / 180).
+/// Pixels per degree: 0.7 (3840 / 0.7) (pi / 180).
 const PIXELS_A_DEGREE: f64 = 3840.0 * std::f64::consts::PI / 180.0;
 
-/// The white that colours are seen against: X, Y and Z of D65.
+/// The white point: X, Y and Z of D65.
 const WHITE: [f64; 3] = [0.950_428_545, 1.0, 1.088_900_371];
 
-/// X, Y and Z from linear red, green and blue of sRGB.
+/// Converts linear sRGB to XYZ.
 const XYZ_FROM_RGB: [[f64; 3]; 3] = [
     [10_135_552.0 / 24_577_794.0, 8_788_810.0 / 24_577_794.0, 4_435_075.0 / 24_577_794.0],
     [2_613_072.0 / 12_288_897.0, 8_788_810.0 / 12_288_897.0, 887_015.0 / 12_288_897.0],
     [1_425_312.0 / 73_733_382.0, 8_788_810.0 / 73_733_382.0, 70_074_185.0 / 73_733_382.0],
 ];
 
-/// Linear red, green and blue from X, Y and Z.
+/// Converts XYZ to linear sRGB.
 const RGB_FROM_XYZ: [[f64; 3]; 3] = [
     [3.241_003_275, -1.537_398_934, -0.498_615_861],
     [-0.969_224_334, 1.875_930_071, 0.041_554_224],
     [0.055_639_423, -0.204_011_202, 1.057_148_933],
 ];
 
-/// The part of the metric that does not depend on the other picture.
+/// The part of the metric that depends on one picture only.
 #[derive(Debug)]
 pub struct Perceived {
     size: Size,
     /// The picture filtered by the eye's contrast sensitivity, in CIELAB with Hunt's adjustment.
     color: Vec<[f64; 3]>,
-    /// The strength of edges and of points.
+    /// The strengths of edges and points.
     features: Vec<[f64; 2]>,
 }
 
@@ -61,14 +61,14 @@ impl Perceived {
         Self { size, color, features: features(&bright, size) }
     }
 
-    /// The mean over all pixels of the difference to another picture of the same size, from 0 to 1.
+    /// Returns the mean difference to another picture of the same size, from 0 to 1.
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 pixels")]
     pub fn difference(&self, other: &Self) -> f64 {
         assert_eq!(self.size, other.size, "pictures of one size are compared");
         let most = most_color_error();
         let rows = self.size.width.max(1);
-        // Summed row by row, so that the result does not depend on the number of threads.
+        // Summation by rows makes the result independent of the number of threads.
         let sums: Vec<f64> = (0..self.size.height)
             .into_par_iter()
             .map(|y| (y * rows..(y + 1) * rows).map(|i| self.at(other, i, most)).sum())
@@ -85,10 +85,10 @@ impl Perceived {
     }
 }
 
-/// q_c: differences of colour are raised to it.
+/// q_c: the exponent of colour differences.
 const COLOR_EXPONENT: f64 = 0.7;
 
-/// The sensitivity of the eye to contrast, as a sum of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in
+/// The contrast sensitivity of the eye, as a sum of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in
 /// degrees.
 const SENSITIVITY: [[[f64; 2]; 2]; 3] =
     [[[1.0, 0.0047], [0.0, 1e-5]], [[1.0, 0.0053], [0.0, 1e-5]], [[34.1, 0.04], [13.5, 0.025]]];
@@ -97,7 +97,7 @@ fn times(m: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
     m.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
 }
 
-/// Y C_x C_z, a linear relative of CIELAB.
+/// Converts a pixel to Y C_x C_z, a linear relative of CIELAB.
 fn opponent(pixel: [u8; 4]) -> [f64; 3] {
     let linear = |byte: u8| {
         let c = f64::from(byte) / 255.0;
@@ -116,7 +116,7 @@ fn relative(xyz: [f64; 3]) -> [f64; 3] {
     [xyz[0] / WHITE[0], xyz[1] / WHITE[1], xyz[2] / WHITE[2]]
 }
 
-/// CIELAB with Hunt's adjustment, from Y C_x C_z brought into the range of the screen.
+/// Converts Y C_x C_z, clamped to the screen's gamut, to CIELAB with Hunt's adjustment.
 fn lab([luminance, cx, cz]: [f64; 3]) -> [f64; 3] {
     let y = (luminance + 16.0) / 116.0;
     let (x, z) = (y + cx / 500.0, y - cz / 200.0);
@@ -138,18 +138,18 @@ fn hunt(rgb: [f64; 3]) -> [f64; 3] {
     [lightness, 500.0 * (x - y) * 0.01 * lightness, 200.0 * (y - z) * 0.01 * lightness]
 }
 
-/// The HyAB distance: large differences of colour are judged better by it than by Euclid's.
+/// Returns the HyAB distance, which suits large colour differences better than the Euclidean.
 fn hyab(a: [f64; 3], b: [f64; 3]) -> f64 {
     let (da, db) = (a[1] - b[1], a[2] - b[2]);
     (a[0] - b[0]).abs() + sqrt(da * da + db * db)
 }
 
-/// The largest difference of colour, from green to blue, raised to its exponent.
+/// Returns the largest colour difference, from green to blue, raised to the exponent.
 fn most_color_error() -> f64 {
     pow(hyab(hunt([0.0, 1.0, 0.0]), hunt([0.0, 0.0, 1.0])), COLOR_EXPONENT)
 }
 
-/// Brings a difference of colour into 0 to 1: what is below 0.4 of the most fills 0.95 of it.
+/// Maps a colour difference to 0..=1: differences below 0.4 of the largest fill 0.95 of the range.
 fn compressed(error: f64, most: f64) -> f64 {
     let (corner, height) = (0.4 * most, 0.95);
     if error < corner {
@@ -159,7 +159,8 @@ fn compressed(error: f64, most: f64) -> f64 {
     }
 }
 
-/// A channel as the eye's sensitivity to contrast leaves it.
+/// Filters a channel by the contrast sensitivity of the eye.
+// All channels share the radius of the widest filter, as in the authors' program.
 fn contrast(plane: &[f64], size: Size, of: &[[f64; 2]; 2]) -> Vec<f64> {
     use std::f64::consts::PI;
     let radius = ceil(3.0 * sqrt(0.04 / (2.0 * PI * PI)) * PIXELS_A_DEGREE);
@@ -171,6 +172,7 @@ fn contrast(plane: &[f64], size: Size, of: &[[f64; 2]; 2]) -> Vec<f64> {
     };
     let parts: Vec<(f64, Vec<f64>)> =
         of.iter().filter(|[a, _]| *a > 0.0).map(|[a, b]| (a * sqrt(PI / b), kernel(*b))).collect();
+    // A 2D Gaussian is the product of two 1D ones, so its sum is the square of theirs.
     let sum: f64 = parts.iter().map(|(a, taps)| a * pow(taps.iter().sum::<f64>(), 2.0)).sum();
     let mut all = vec![0.0; plane.len()];
     for (a, taps) in parts {
@@ -181,16 +183,17 @@ fn contrast(plane: &[f64], size: Size, of: &[[f64; 2]; 2]) -> Vec<f64> {
     all
 }
 
-/// The strength of edges and of points at each pixel.
+/// Returns the strengths of edges and points at each pixel.
 fn features(bright: &[f64], size: Size) -> Vec<[f64; 2]> {
     let deviation = 0.5 * 0.082 * PIXELS_A_DEGREE;
     let radius = ceil(3.0 * deviation);
     let smooth = |x: f64| exp(-x * x / (2.0 * deviation * deviation));
+    // Edges are the first derivative of a Gaussian, points the second.
     let across = taps(radius, smooth);
     let edge = taps(radius, |x| -x * smooth(x));
     let point = taps(radius, |x| (x * x / (deviation * deviation) - 1.0) * smooth(x));
     let weigh = |along: Vec<f64>| {
-        // What is above 0 adds up to 1, what is below to -1.
+        // Normalize the positive weights to a sum of 1, and the negative ones to -1.
         let sum: f64 = across.iter().sum();
         let up: f64 = along.iter().filter(|t| **t > 0.0).sum::<f64>() * sum;
         let down: f64 = -along.iter().filter(|t| **t < 0.0).sum::<f64>() * sum;
@@ -205,7 +208,7 @@ fn features(bright: &[f64], size: Size) -> Vec<[f64; 2]> {
     edges.into_iter().zip(points).map(|(edge, point)| [edge, point]).collect()
 }
 
-/// A function at the whole numbers from -radius to radius.
+/// Samples a function at the integers from -radius to radius.
 #[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
 fn taps(radius: f64, of: impl Fn(f64) -> f64) -> Vec<f64> {
     let radius = radius as i32;
@@ -219,6 +222,7 @@ fn filter(plane: &[f64], size: Size, along: &[f64], down: &[f64]) -> Vec<f64> {
         return Vec::new();
     }
     let radius = along.len() / 2;
+    // Rows: extended copies make the borders free of branches.
     let mut rows = vec![0.0; plane.len()];
     rows.par_chunks_mut(width).zip(plane.par_chunks(width)).for_each(|(out, row)| {
         let mut wide = vec![row[0]; radius];
@@ -231,6 +235,7 @@ fn filter(plane: &[f64], size: Size, along: &[f64], down: &[f64]) -> Vec<f64> {
         }
     });
     let mut all = vec![0.0; plane.len()];
+    // Columns: whole rows are added at a time, which vectorises and stays in cache.
     let radius = down.len() / 2;
     all.par_chunks_mut(width).enumerate().for_each(|(y, out)| {
         for (i, tap) in down.iter().enumerate() {
@@ -260,7 +265,7 @@ mod tests {
         [x * 8, y * 8, x * y]
     }
 
-    /// The same pattern with a changed rectangle and a changed column.
+    /// Returns the same pattern with a changed rectangle and a changed column.
     fn changed(x: usize, y: usize) -> [usize; 3] {
         let [r, g, b] = pattern(x, y);
         match (x, y) {
@@ -270,8 +275,8 @@ mod tests {
         }
     }
 
-    /// The numbers are those of the authors' own program, `flip_evaluator` 1.7 (LDR), which
-    /// computes in 32 bits.
+    /// The expected numbers are from the authors' program, `flip_evaluator` 1.7 (LDR), which
+    /// computes in f32.
     #[test]
     fn differences_are_those_of_the_authors_program() {
         let (a, b) = (picture(32, pattern), picture(32, changed));

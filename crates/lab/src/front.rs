@@ -1,7 +1,7 @@
-//! The Pareto front: the points that no other beats in both time and error.
+//! The Pareto front: the points that no other point beats in both time and error.
 //!
-//! Differences that mean nothing are no reason for a place on it: a slower point has to cut the
-//! error by a stated part.
+//! Tiny differences do not earn a place on the front: a slower point must reduce the error by a
+//! given fraction.
 
 /// A choice as time and error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,8 +12,8 @@ pub struct Point {
     pub error: f64,
 }
 
-/// The indices of the points on the front, from the fastest to the most exact. Each cuts the error
-/// of the one before by at least `least`, as a part of it.
+/// Returns the indices of the points on the front, from the fastest to the most exact. Each reduces
+/// the error of its predecessor by at least the fraction `least`.
 #[must_use]
 pub fn front(points: &[Point], least: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
@@ -29,7 +29,7 @@ pub fn front(points: &[Point], least: f64) -> Vec<usize> {
     order
 }
 
-/// The fastest of the points whose error is at most `most`.
+/// Returns the fastest point with an error of at most `most`.
 #[must_use]
 pub fn fastest_within(points: &[Point], most: f64) -> Option<usize> {
     let within = (0..points.len()).filter(|i| points[*i].error <= most);
@@ -39,7 +39,7 @@ pub fn fastest_within(points: &[Point], most: f64) -> Option<usize> {
     })
 }
 
-/// The most exact of the points that take at most `most` of time.
+/// Returns the most exact point with a time of at most `most`.
 #[must_use]
 pub fn most_exact_within(points: &[Point], most: f64) -> Option<usize> {
     let within = (0..points.len()).filter(|i| points[*i].time <= most);

@@ -1,6 +1,6 @@
-//! A hash that is the same on every machine.
+//! A hash with the same value on every machine.
 
-/// FNV-1a (Fowler, Noll and Vo) in 64 bits over bytes, or over wider words.
+/// Computes FNV-1a (Fowler, Noll and Vo) in 64 bits over bytes or wider words.
 #[must_use]
 pub fn fnv1a(words: impl IntoIterator<Item = u64>) -> u64 {
     words
@@ -12,7 +12,7 @@ pub fn fnv1a(words: impl IntoIterator<Item = u64>) -> u64 {
 mod tests {
     use super::*;
 
-    /// From the list of test vectors of the hash's authors.
+    /// From the authors' list of test vectors.
     #[test]
     fn hashes_are_those_of_its_authors() {
         let hash = |text: &str| fnv1a(text.bytes().map(u64::from));

@@ -1,10 +1,10 @@
-//! The sets of vector instructions that this processor has.
+//! The SIMD instruction sets of this processor.
 
 use fearless_simd::Level;
 pub use marraztu_render::simd::levels;
 
-/// The set with a name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, the least that pictures are
-/// drawn with. `None` if this processor lacks it, or if the name is unknown.
+/// Finds an instruction set by name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, the oldest that
+/// pictures are drawn with. `None` if this processor lacks it, or if the name is unknown.
 #[must_use]
 pub fn named(name: &str) -> Option<Level> {
     let levels = levels();
@@ -18,7 +18,7 @@ pub fn named(name: &str) -> Option<Level> {
     }
 }
 
-/// The name of a set in reports: "Avx2".
+/// Returns the name of an instruction set in reports, such as "Avx2".
 #[must_use]
 pub fn name_of(level: Level) -> String {
     let level = format!("{level:?}");

@@ -1,10 +1,9 @@
-//! Measures four small pieces of arithmetic, written plainly and with SIMD: equal results,
-//! different times.
+//! Measures four small kernels in plain Rust and with SIMD: equal results, different times.
 //!
-//! An ancestor of this program timed them in C against assembler: the dot product, interpolation, a
+//! An ancestor of this program compared C and assembler on these: the dot product, interpolation, a
 //! vector times a matrix, and the clearing of a depth buffer. Both versions add in the same order
-//! and fuse nothing, so every bit is the same. The plain version is what the compiler makes of a
-//! loop for the oldest processor that the program runs on; it may vectorise that.
+//! and fuse nothing, so all bits are equal. The plain version is a loop, compiled for the oldest
+//! supported processor; the compiler may vectorise it.
 
 use fearless_simd::{Level, Simd, SimdBase as _, dispatch, f32x4, f32x16};
 use serde::Serialize;
@@ -12,7 +11,7 @@ use serde::Serialize;
 use super::pairs::{Limits, Ratio, Unmeasured, Watch, abba};
 use super::timing::{Clock, Work};
 
-/// The number of vectors that a kernel processes: 800 x 800 depths.
+/// The number of vectors per kernel: 800 x 800 depths.
 const VECTORS: usize = 160_000;
 
 /// The number of kernels.
@@ -21,15 +20,15 @@ pub const COUNT: usize = KERNELS.len();
 /// The measurement of a kernel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Kernel {
-    /// What it computes.
+    /// The name of the computation.
     pub name: &'static str,
-    /// How many times as long SIMD takes as the plain version.
+    /// The time of SIMD relative to the plain version.
     pub ratio: Ratio,
-    /// Whether every bit of the results is equal.
+    /// Whether all bits of the results are equal.
     pub equal: bool,
 }
 
-/// What kernels read and write: vectors of four numbers, one after the other.
+/// The inputs and outputs of kernels: vectors of four numbers, one after the other.
 #[derive(Clone, Debug, PartialEq)]
 struct Rows {
     a: Vec<f32>,
@@ -82,7 +81,7 @@ impl Rows {
 /// Measures the kernel with this index.
 ///
 /// # Errors
-/// If it was cancelled, or disturbed all the time.
+/// If it was cancelled, or if every pair was disturbed.
 pub fn measure(
     number: usize,
     clock: &mut dyn Clock,
@@ -107,7 +106,7 @@ fn bits(numbers: &[f32]) -> Vec<u32> {
 const PART: f32 = 0.3;
 /// The depth that a buffer is cleared to.
 const FAR: f32 = 1.0;
-/// The rows of the matrix that row vectors are multiplied with.
+/// The rows of the matrix; row vectors are multiplied from the left.
 const MATRIX: [[f32; 4]; 4] =
     [[0.8, 0.1, -0.3, 0.0], [-0.2, 0.9, 0.1, 0.0], [0.3, -0.1, 0.7, 0.0], [5.0, -2.0, 1.0, 1.0]];
 
@@ -119,14 +118,15 @@ fn plain_dot(rows: &mut Rows) {
     }
 }
 
-/// Transposes sixteen vectors into rows of their first, second, third and fourth numbers. It is a
-/// function because a closure would not be compiled for the instructions of `S`.
+/// Transposes 16 vectors into rows of their first, second, third and fourth numbers. It is a
+/// function because the compiler would not use the instructions of `S` in a closure.
 #[inline(always)]
 fn turned<S: Simd>(simd: S, flat: &[f32]) -> [f32x16<S>; 4] {
     let first = f32x16::from_slice(simd, &flat[..16]);
     let second = f32x16::from_slice(simd, &flat[16..32]);
     let third = f32x16::from_slice(simd, &flat[32..48]);
     let fourth = f32x16::from_slice(simd, &flat[48..64]);
+    // Two rounds of deinterleaving transpose 16 x 4 numbers.
     let (even_low, odd_low) = first.deinterleave(second);
     let (even_high, odd_high) = third.deinterleave(fourth);
     let (x, z) = even_low.deinterleave(even_high);
@@ -202,8 +202,8 @@ fn simd_clear<S: Simd>(simd: S, rows: &mut Rows) {
 mod tests {
     use super::*;
 
-    /// By hand: (1, 2, 3, 4) . (5, 6, 7, 8) = 70; mixed by 0.3 it begins with 2.2; times the matrix
-    /// its first number is 0.8 - 0.4 + 0.9 + 20 = 21.3.
+    /// By hand: (1, 2, 3, 4) . (5, 6, 7, 8) = 70; mixed by 0.3, the first number is 2.2; times the
+    /// matrix it is 0.8 - 0.4 + 0.9 + 20 = 21.3.
     #[test]
     fn kernels_compute_what_their_names_say_both_ways_with_the_same_bits() {
         let expected: [f32; COUNT] = [70.0, 2.2, 21.3, FAR];

@@ -1,5 +1,5 @@
-//! Measures how long pictures take and how far they are from exact ones, and checks that this
-//! processor draws the listed pictures.
+//! Measures the time and the error of pictures, and checks that this processor draws the listed
+//! pictures bit for bit.
 //!
 //! ```
 //! use marraztu_core::base::image::{Picture, Size};

@@ -1,9 +1,9 @@
-//! Measures how much longer one way of drawing takes than another, so that disturbances cancel.
+//! Measures the time of one setting relative to another, cancelling disturbances.
 //!
-//! A pair is four pictures, A B B A, so that a steady drift of the machine's speed affects both
-//! alike. The result is the median and the quartiles of the ratios of all pairs, and the interval
-//! in which their true median lies. Every picture is hashed after it is timed: the compiler cannot
-//! leave out work, and the same settings have to give the same bytes.
+//! A pair consists of four pictures in the order A B B A, so a steady drift of the machine's speed
+//! affects both alike. The result is the median and quartiles of the ratios of all pairs, with a
+//! confidence interval of the median. Every picture is hashed after it is timed: the compiler
+//! cannot omit work, and equal settings must give equal bytes.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,60 +17,59 @@ use super::timing::{Clock, Work};
 use marraztu_core::accuracy::Settings;
 use marraztu_io::{Cancelled, Progress};
 
-/// How long to measure.
+/// The limits of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// The largest number of pairs for each choice.
+    /// The most pairs per choice.
     pub pairs: usize,
-    /// The smallest number.
+    /// The fewest pairs per choice.
     pub least: usize,
-    /// Once there are enough pairs, none is begun after this time.
+    /// The time after which no new pair is started, if there are enough.
     pub time: Duration,
 }
 
-/// Connects measurements with the user who waits for them, and may disturb them.
+/// Connects measurements with the user, who waits for them and may disturb them.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
-    /// Reports progress, and cancels.
+    /// Reports progress and cancels.
     pub progress: Progress,
     touches: Arc<Touches>,
 }
 
 #[derive(Debug, Default)]
 struct Touches {
-    /// Odd while the machine does something else.
+    /// Odd while the machine is used for something else.
     count: AtomicU64,
     last: Mutex<Option<Instant>>,
     /// The time of the last pair in milliseconds.
     pair: AtomicU64,
 }
 
-/// The machine does something else as long as this lives.
+/// While this guard exists, measurements are invalid.
 #[derive(Debug)]
 pub struct Touch(Arc<Touches>);
 
-/// Time for what follows a touch, such as showing the window.
+/// The time that the effects of a touch last, such as showing the window.
 const AFTERMATH: Duration = Duration::from_millis(40);
 
-/// A touch is waited for no longer than this: a busy machine may take long to show the window.
+/// The longest wait for a touch to end: a busy machine may take long to show the window.
 const PATIENCE: Duration = Duration::from_secs(if cfg!(test) { 1 } else { 10 });
 
 impl Watch {
-    /// The same with the progress of other work.
+    /// Returns the same watch with the progress of other work.
     #[must_use]
     pub fn with(self, progress: &Progress) -> Self {
         Self { progress: progress.clone(), ..self }
     }
 
-    /// Marks the machine as used for something else from now on: the pair that is being measured is
-    /// thrown away.
+    /// Marks the machine as busy while the guard exists. The current pair is discarded.
     #[must_use]
     pub fn touch(&self) -> Touch {
         self.touches.count.fetch_add(1, Ordering::Relaxed);
         Touch(Arc::clone(&self.touches))
     }
 
-    /// The time that a pair takes now. Touches that are more frequent disturb all pairs.
+    /// Returns the current time of a pair. More frequent touches would disturb every pair.
     #[must_use]
     pub fn pair(&self) -> Duration {
         Duration::from_millis(self.touches.pair.load(Ordering::Relaxed))
@@ -80,8 +79,9 @@ impl Watch {
         self.touches.count.load(Ordering::Relaxed)
     }
 
-    /// Waits for the touch of now to end, and for the aftermath of the last one, but only once:
-    /// touches without pause must not stop the work. `endless` is the touch that did not end.
+    /// Waits for the current touch to end, and for the effects of the last one. It waits only once
+    /// per touch, since constant touches must not stop the work. `endless` is a touch that did not
+    /// end.
     fn settle(&self, endless: &mut Option<u64>) {
         let (touch, begun) = (self.touches(), Instant::now());
         while !touch.is_multiple_of(2) && *endless != Some(touch) && self.touches() == touch {
@@ -104,28 +104,28 @@ impl Drop for Touch {
     }
 }
 
-/// The measurement of a choice, B, against another, A.
+/// The time of a choice B relative to a choice A.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ratio {
-    /// How many times as long B takes.
+    /// The ratio of B's time to A's.
     pub quartiles: Quartiles,
-    /// The true median lies between these with a probability of [`CONFIDENCE`].
+    /// The interval of the true median, with a probability of [`CONFIDENCE`].
     pub interval: [f64; 2],
-    /// The number of pairs that count.
+    /// The number of valid pairs.
     pub pairs: usize,
-    /// The number of pairs that were thrown away.
+    /// The number of discarded pairs.
     pub thrown: usize,
     /// The median time of a picture of A in milliseconds.
     pub a_ms: f64,
 }
 
-/// How probable it is that a [`Ratio::interval`] holds the true median: of seven pairs, the least
-/// number, it is all of them, 98%.
+/// The probability that [`Ratio::interval`] contains the true median. For seven pairs, the minimum,
+/// the interval spans all of them, 98%.
 pub const CONFIDENCE: f64 = 0.95;
 
 impl Ratio {
-    /// The interval of ratios that may be meant by this one, where differences up to `floor` mean
-    /// nothing: the larger, on each side, of its own interval and of the floor about its median.
+    /// Returns the interval of ratios that are indistinguishable from this one. It combines, on
+    /// each side, the larger of the confidence interval and `floor` around the median.
     #[must_use]
     pub fn noise(&self, floor: f64) -> [f64; 2] {
         let ([lower, upper], median) = (self.interval, self.quartiles.median);
@@ -133,16 +133,16 @@ impl Ratio {
     }
 }
 
-/// Why a measurement fails.
+/// The reason why a measurement failed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unmeasured {
     /// It was cancelled.
     #[error("cancelled")]
     Cancelled,
-    /// The interface was busy all the time.
+    /// The interface was busy during every pair.
     #[error("no pair was left undisturbed")]
     Disturbed,
-    /// The same settings gave different bytes.
+    /// Equal settings gave different bytes.
     #[error("{0}: the same settings gave two different pictures")]
     Unsteady(String),
 }
@@ -153,10 +153,10 @@ impl From<Cancelled> for Unmeasured {
     }
 }
 
-/// Measures how many times as long B takes as A.
+/// Measures the time of B relative to A.
 ///
 /// # Errors
-/// If it was cancelled, or disturbed all the time, or if a picture differs from the one before.
+/// If it was cancelled, if every pair was disturbed, or if a picture differs from the one before.
 pub fn measure(
     clock: &mut dyn Clock,
     source: &mut dyn PictureSource,
@@ -168,6 +168,7 @@ pub fn measure(
     let mut draw = |which: usize| {
         let settings = [a, b][which];
         let time = clock.time(Work::Picture(settings), &mut || source.draw(settings));
+        // Hashing is outside the timed part.
         let hash = hash(source.picture());
         match expected[which].replace(hash) {
             Some(before) if before != hash => Err(Unmeasured::Unsteady(settings.in_words())),
@@ -177,20 +178,21 @@ pub fn measure(
     abba(limits, watch, &mut draw)
 }
 
-/// Measures two pieces of work in pairs; `run` does number 0 or 1 and returns its milliseconds.
+/// Measures two tasks in pairs; `run` executes task 0 or 1 and returns its milliseconds.
 ///
 /// # Errors
-/// If it was cancelled, or disturbed all the time, or if `run` fails.
+/// If it was cancelled, if every pair was disturbed, or if `run` fails.
 pub fn abba(
     limits: &Limits,
     watch: &Watch,
     run: &mut dyn FnMut(usize) -> Result<f64, Unmeasured>,
 ) -> Result<Ratio, Unmeasured> {
-    // The first runs fill caches and are not counted.
+    // The first runs fill caches, so they are not counted.
     run(0)?;
     run(1)?;
     let (mut ratios, mut of_a, mut thrown, mut spent) = (Vec::new(), Vec::new(), 0, 0.0);
     let mut endless = None;
+    // Discarded pairs are limited, too: constant touches must not keep the loop running.
     while ratios.len() < limits.pairs && thrown < MOST_THROWN * limits.pairs {
         if ratios.len() >= limits.least && spent >= limits.time.as_secs_f64() * 1e3 {
             break;
@@ -198,6 +200,7 @@ pub fn abba(
         if watch.progress.is_cancelled() {
             return Err(Unmeasured::Cancelled);
         }
+        // A pair counts only if no touch began, ended or was active during it.
         watch.settle(&mut endless);
         let before = watch.touches();
         let [a1, b1, b2, a2] = [run(0)?, run(1)?, run(1)?, run(0)?];
@@ -213,17 +216,18 @@ pub fn abba(
             thrown += 1;
         }
     }
+    // Without a single valid pair, there is no result.
     let quartiles = Quartiles::of(&ratios).ok_or(Unmeasured::Disturbed)?;
     let interval = median_interval(&ratios, CONFIDENCE).ok_or(Unmeasured::Disturbed)?;
     let a_ms = Quartiles::of(&of_a).ok_or(Unmeasured::Disturbed)?.median;
     Ok(Ratio { quartiles, interval, pairs: ratios.len(), thrown, a_ms })
 }
 
-/// Pairs of this many milliseconds count even if they were touched: a window that is drawn a few
-/// times a second touches each of them, and takes a small part of it.
+/// Pairs of at least this many milliseconds count even if they were touched. A window that is drawn
+/// a few times per second touches every such pair, but takes a small part of it.
 const LONG: f64 = 500.0;
 
-/// The number of pairs that may be thrown away for each that is wanted.
+/// The most discarded pairs for each wanted pair.
 const MOST_THROWN: usize = 3;
 
 #[cfg(test)]
@@ -268,7 +272,7 @@ mod tests {
         let (watch, mut runs) = (Watch::default(), 0);
         let ratio = abba(&LIMITS, &watch, &mut |which| {
             runs += 1;
-            // The second pair, after two runs that are not counted.
+            // The second pair, after two uncounted runs.
             if runs == 8 {
                 drop(watch.touch());
                 return Ok(LONG / 2.0);
@@ -285,7 +289,7 @@ mod tests {
         assert_eq!(disturbed, Err(Unmeasured::Disturbed));
     }
 
-    /// Short pairs would all be over before a window that takes long is shown.
+    /// Otherwise short pairs would all be over before a slow window is shown.
     #[test]
     fn a_touch_that_takes_longer_than_all_pairs_is_waited_for() {
         let watch = Watch::default();

@@ -11,20 +11,20 @@ use marraztu_io::Progress;
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
 
-/// The picture that another is judged against.
+/// The reference that pictures are judged against.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reference {
-    /// Every axis at its most exact, one sample per pixel; models as they are chosen.
+    /// All axes at their most exact, one sample per pixel, with the chosen models.
     #[default]
     Exact,
     /// 256 samples per pixel, each lit.
     Sampled,
-    /// As [`Self::Exact`], with the models of the default.
+    /// Like [`Self::Exact`], with the default models.
     DefaultModel,
 }
 
 impl Reference {
-    /// The reference that shows what the choices of an axis do.
+    /// Returns the reference that reveals the effect of an axis.
     #[must_use]
     pub const fn of(axis: &Axis) -> Self {
         match axis.kind {
@@ -37,25 +37,24 @@ impl Reference {
 
 /// Draws one scene, from one view and in one size, with any settings.
 pub trait PictureSource {
-    /// Draws the whole picture, reusing nothing of the last one.
+    /// Draws the whole picture without reusing the last one.
     fn draw(&mut self, settings: &Settings);
-    /// The picture that was drawn last.
+    /// Returns the last picture.
     fn picture(&self) -> &Picture;
-    /// The primitive that each of its pixels shows.
+    /// Returns the primitive at each pixel of the last picture.
     fn primitives(&mut self) -> Vec<u32>;
 
-    /// Draws the mean of 256 samples per pixel, each drawn with these settings as if it were the
-    /// centre of its pixel.
+    /// Draws the mean of 256 samples per pixel, each drawn as if it were the pixel's centre.
     fn draw_sampled(&mut self, settings: &Settings) -> Picture;
 
-    /// The reference of samples per pixel: [`Settings::sampled`] with 256 samples, each lit.
+    /// Draws the reference for samples per pixel: [`Settings::sampled`] with 256 samples, each lit.
     fn sampled(&mut self, settings: &Settings) -> Rendering {
         let picture = self.draw_sampled(&settings.sampled());
         let primitives = vec![0; picture.pixels().len()];
         Rendering::new(picture, primitives).mixed()
     }
 
-    /// The picture that these settings are judged against.
+    /// Draws the reference for these settings.
     fn reference(&mut self, settings: &Settings, reference: Reference) -> Rendering {
         match reference {
             Reference::Exact => self.rendering(&settings.reference()),
@@ -64,7 +63,7 @@ pub trait PictureSource {
         }
     }
 
-    /// Draws the picture of these settings, to be judged.
+    /// Draws the picture for these settings, to be judged.
     fn rendering(&mut self, settings: &Settings) -> Rendering {
         self.draw(settings);
         let primitives = self.primitives();
@@ -73,43 +72,44 @@ pub trait PictureSource {
     }
 }
 
-/// The samples per pixel of the reference of sampling.
+/// The samples per pixel of [`Reference::Sampled`].
 const SAMPLED: u16 = 256;
 
-/// The positions of these samples, in 1/256 pixel from the centre: the centres of 16 x 16 squares.
+/// Returns the sample positions, in 1/256 pixel from the centre: the centres of 16 x 16 squares.
 fn sample_shifts() -> impl Iterator<Item = [i32; 2]> {
     (0..256).map(|i| [i % 16, i / 16].map(|i| 16 * i + 8 - 128))
 }
 
-/// The renderer with a scene.
+/// A renderer with a scene.
 #[derive(Debug)]
 pub struct Studio {
     shot: Shot,
     renderer: Renderer,
-    /// Whether its pictures are still wanted; if not, drawing ends between two tiles.
+    /// Cancels drawing between two tiles when the pictures are no longer wanted.
     progress: Progress,
 }
 
 impl Studio {
-    /// Draws this shot, with any settings.
+    /// Prepares to draw this shot with any settings.
     #[must_use]
     pub fn new(shot: Shot) -> Self {
         Self::watched(shot, Progress::new())
     }
 
-    /// As [`Self::new`]. Once `progress` is cancelled, pictures are undefined, and soon there.
+    /// Works like [`Self::new`]. Once `progress` is cancelled, drawing ends soon with undefined
+    /// pictures.
     #[must_use]
     pub fn watched(shot: Shot, progress: Progress) -> Self {
         Self { shot, renderer: Renderer::default(), progress }
     }
 
-    /// The scene.
+    /// Returns the shot.
     #[must_use]
     pub const fn shot(&self) -> &Shot {
         &self.shot
     }
 
-    /// The name of the item that a pixel of the last picture shows, and the polygon.
+    /// Returns the name of the item at a pixel of the last picture, and the polygon.
     #[must_use]
     pub fn seen(&mut self, [x, y]: [usize; 2]) -> Option<(String, u32)> {
         use marraztu_core::scene::ItemId;
@@ -126,11 +126,12 @@ impl Studio {
 impl PictureSource for Studio {
     fn draw(&mut self, settings: &Settings) {
         let plan = plan_frame(&self.shot.with(*settings));
-        // If it is cancelled, the picture is not used.
+        // A cancelled picture is not used.
         let _ = self.renderer.render_while(&plan, &|| !self.progress.is_cancelled());
     }
 
     fn draw_sampled(&mut self, settings: &Settings) -> Picture {
+        // One plan serves all samples: only the subpixel shift changes.
         let plan = plan_frame(&self.shot.with(Settings { samples: Samples::One, ..*settings }));
         let mut sums = vec![[0_u16; 4]; self.shot.size.area()];
         for shift in sample_shifts() {
@@ -144,7 +145,7 @@ impl PictureSource for Studio {
                 }
             });
         }
-        // 256 bytes fit into 16 bits, and so does the half that rounds their mean.
+        // The sum of 256 bytes fits into 16 bits, even with the half for rounding.
         let mean = |sum: u16| ((sum + SAMPLED / 2) / SAMPLED) as u8;
         let pixels = sums.into_iter().map(|sum| sum.map(mean)).collect();
         Picture::from_pixels(self.shot.size, pixels).expect("a sum for each pixel")
@@ -156,14 +157,14 @@ impl PictureSource for Studio {
 
     fn primitives(&mut self) -> Vec<u32> {
         if self.progress.is_cancelled() {
-            // The picture may be half drawn: its pixels show nothing that is known.
+            // The picture may be incomplete, so its primitives are unknown.
             return vec![0; self.picture().pixels().len()];
         }
         self.renderer.primitives()
     }
 }
 
-/// A hash of a picture, the same on every machine: FNV-1a over its pixels.
+/// Hashes a picture's pixels with FNV-1a, with the same value on every machine.
 #[must_use]
 pub fn hash(picture: &Picture) -> u64 {
     fnv1a(picture.pixels().iter().map(|pixel| u64::from(u32::from_le_bytes(*pixel))))

@@ -1,6 +1,6 @@
-//! A pixel explained, in words and numbers: what is seen there, and what its colour is made of.
+//! Explains a pixel in words and numbers: the visible surface, and the terms of its colour.
 //!
-//! One row a term: a term that the renderer adds becomes a row here without another line.
+//! There is one row per term. A new term of the renderer appears here automatically.
 
 use glam::DVec3;
 
@@ -11,13 +11,13 @@ use marraztu_render::{LightRay, PixelColor, SurfacePoint, Term};
 /// A row of the sum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// "sun, diffuse"
+    /// The label, such as "sun, diffuse".
     pub label: String,
-    /// Red, green and blue, in steps of a byte.
+    /// Red, green and blue, in byte steps.
     pub value: [f64; 3],
 }
 
-/// The rows whose sum is the colour of the pixel: terms, and what rounding takes.
+/// Returns rows that add up to the colour of the pixel: the terms, and the rounding error.
 #[must_use]
 pub fn rows(scene: &Scene, explained: &PixelColor) -> Vec<Row> {
     let steps = |value: [f64; 3]| value.map(|x| x * 255.0);
@@ -36,13 +36,13 @@ pub fn rows(scene: &Scene, explained: &PixelColor) -> Vec<Row> {
     rows
 }
 
-/// The name of a light.
+/// Returns the name of a light.
 #[must_use]
 pub fn light_name(scene: &Scene, id: LightId) -> &str {
     scene.lights.get(id).map_or("a light", |light| &light.name)
 }
 
-/// Facts about the surface, name and value.
+/// Returns facts about the surface as pairs of name and value.
 #[must_use]
 pub fn facts(scene: &Scene, point: &SurfacePoint) -> Vec<[String; 2]> {
     let name = match point.item {
@@ -67,13 +67,14 @@ pub fn facts(scene: &Scene, point: &SurfacePoint) -> Vec<[String; 2]> {
         ["V".to_owned(), direction(point.to_eye)],
         ["light".to_owned(), light.to_owned()],
     ];
+    // A factor of 1 changes nothing, so it is omitted.
     if point.own != [1.0; 3] {
         facts.push(["texture and tint".to_owned(), vector(DVec3::from_array(point.own))]);
     }
     facts
 }
 
-/// How a light reaches the point, in one line.
+/// Describes the path of a light to the point, in one line.
 #[must_use]
 pub fn ray_line(ray: &LightRay) -> String {
     let cosine = if ray.half_vector { "N.H" } else { "R.V" };
@@ -87,6 +88,7 @@ pub fn ray_line(ray: &LightRay) -> String {
     if let Some(distance) = ray.distance {
         line += &format!("  d {}  att {}", number(distance), number(ray.attenuation));
     }
+    // Factors of 1 are omitted.
     if ray.shadow != 1.0 {
         line += "  in shadow";
     }
@@ -96,7 +98,7 @@ pub fn ray_line(ray: &LightRay) -> String {
     line
 }
 
-/// All of it as text, line by line.
+/// Writes the whole explanation as text, line by line.
 #[must_use]
 pub fn lines(scene: &Scene, explained: &PixelColor) -> Vec<String> {
     let [x, y] = explained.at;
@@ -105,6 +107,7 @@ pub fn lines(scene: &Scene, explained: &PixelColor) -> Vec<String> {
         let facts = facts(scene, point);
         lines.extend(facts.iter().map(|[name, value]| format!("  {name:<17}{value}")));
     }
+    // The vectors of each light come before the sum that uses them.
     for term in &explained.terms {
         if let (Some(ray), Some(id)) = (&term.ray, term.light) {
             lines.push(format!("  {:<17}{}", light_name(scene, id), ray_line(ray)));
@@ -125,7 +128,7 @@ pub fn lines(scene: &Scene, explained: &PixelColor) -> Vec<String> {
     lines
 }
 
-/// A number with up to four decimals.
+/// Formats a number with up to four decimals.
 #[must_use]
 pub fn number(x: f64) -> String {
     let text = if x != 0.0 && (x.abs() < 1e-3 || x.abs() >= 1e6) {
@@ -140,7 +143,7 @@ fn vector(v: DVec3) -> String {
     format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
 }
 
-/// A vector of length 1: what would be shown as 0 with four decimals is 0.
+/// Formats a unit vector; components that round to 0 at four decimals become 0.
 fn direction(v: DVec3) -> String {
     vector(v.map(|x| if x.abs() < 5e-5 { 0.0 } else { x }))
 }

@@ -1,23 +1,23 @@
-//! Medians and quartiles of a few measurements, and how well they tell the true median.
+//! Medians and quartiles of a few measurements, with confidence intervals of the median.
 //!
-//! A quantile is that of type 7 in Hyndman and Fan, "Sample Quantiles in Statistical Packages",
-//! 1996: interpolated linearly between the two neighbours of (n - 1) p.
+//! Quantiles are of type 7 in Hyndman and Fan, "Sample Quantiles in Statistical Packages", 1996:
+//! linear interpolation between the two neighbours of (n - 1) p.
 
 use serde::Serialize;
 
-/// The quartiles of some numbers.
+/// The quartiles of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Quartiles {
-    /// A quarter of them is less.
+    /// A quarter of the numbers is smaller.
     pub lower: f64,
-    /// Half of them is less.
+    /// Half of the numbers is smaller.
     pub median: f64,
-    /// A quarter of them is more.
+    /// A quarter of the numbers is larger.
     pub upper: f64,
 }
 
 impl Quartiles {
-    /// The quartiles of these numbers without NaN; `None` if there are none.
+    /// Returns the quartiles of numbers without NaN; `None` for an empty slice.
     #[must_use]
     pub fn of(numbers: &[f64]) -> Option<Self> {
         let mut sorted = numbers.to_vec();
@@ -26,37 +26,38 @@ impl Quartiles {
         Some(Self { lower: quantile(0.25)?, median: quantile(0.5)?, upper: quantile(0.75)? })
     }
 
-    /// Half of the interquartile range (IQR).
+    /// Returns half the interquartile range (IQR).
     #[must_use]
     pub fn spread(&self) -> f64 {
         (self.upper - self.lower) / 2.0
     }
 }
 
-/// The median of these numbers without NaN; `None` if there are none.
+/// Returns the median of numbers without NaN; `None` for an empty slice.
 #[must_use]
 pub fn median(numbers: &[f64]) -> Option<f64> {
     Quartiles::of(numbers).map(|quartiles| quartiles.median)
 }
 
-/// The interval from the k-th smallest to the k-th largest of these numbers, with the largest k for
-/// which the true median lies in it with a probability of at least `confidence`; `None` if there
-/// are no numbers. If they are too few (or more than a thousand), it is from the smallest to the
-/// largest.
+/// Returns a confidence interval of the median, from the k-th smallest to the k-th largest number.
+/// k is the largest for which the interval contains the true median with a probability of at least
+/// `confidence`. With too few numbers (or more than a thousand), the interval spans all of them.
+/// `None` for an empty slice.
 ///
-/// Whatever the distribution, each of n independent numbers is below the true median with a
-/// probability of one half, so that is outside of the interval with a probability of
-/// 2 sum (i < k) C(n, i) / 2^n: the medians in it are those that a sign test does not reject.
-/// David and Nagaraja, "Order Statistics", 2003, section 7.1.
+/// For any distribution, each of n independent numbers is below the true median with a probability
+/// of one half. The median is therefore outside the interval with a probability of 2 sum (i < k)
+/// C(n, i) / 2^n: the interval contains the medians that a sign test does not reject. David and
+/// Nagaraja, "Order Statistics", 2003, section 7.1.
 #[must_use]
 pub fn median_interval(numbers: &[f64], confidence: f64) -> Option<[f64; 2]> {
     let mut sorted = numbers.to_vec();
     sorted.sort_by(f64::total_cmp);
     let last = sorted.len().checked_sub(1)?;
     let n = i32::try_from(sorted.len()).unwrap_or(i32::MAX);
-    // C(n, i) / 2^n, and twice the sum up to this i.
+    // C(n, i) / 2^n, and twice its sum up to this i.
     let mut chance = libm::ldexp(1.0, -n);
     let (mut outside, mut cut) = (2.0 * chance, 0);
+    // Widen the cut on both sides while the confidence holds; above 1000, 2^-n underflows.
     for i in 1..if n > 1000 { 0 } else { (n + 1) / 2 } {
         chance *= f64::from(n + 1 - i) / f64::from(i);
         outside += 2.0 * chance;
@@ -68,7 +69,7 @@ pub fn median_interval(numbers: &[f64], confidence: f64) -> Option<[f64; 2]> {
     Some([sorted[cut], sorted[last - cut]])
 }
 
-/// The quantile of sorted numbers.
+/// Returns the quantile of sorted numbers.
 #[expect(
     clippy::cast_precision_loss,
     clippy::cast_possible_truncation,
@@ -97,8 +98,8 @@ mod tests {
         assert_eq!((median(&[9.0, 1.0, 4.0, 2.0]), quartiles.spread()), (Some(3.0), 1.75));
     }
 
-    /// `qbinom(0.025, n, 0.5)` in R is the k of an interval of 95%: 1 of 6 and 7, 2 of 11, 4 of
-    /// 15, 10 of 31.
+    /// `qbinom(0.025, n, 0.5)` in R is the k of a 95% interval: 1 for n = 6 and 7, 2 for 11, 4 for
+    /// 15, 10 for 31.
     #[test]
     fn the_interval_of_a_median_is_that_of_the_sign_test() {
         let interval = |n: i32| {
@@ -113,14 +114,14 @@ mod tests {
         assert_eq!(median_interval(&[], 0.95), None);
     }
 
-    /// Of ten thousand sets of numbers with a true median of 1, at most the promised part misses
-    /// it.
+    /// Draws ten thousand samples with a true median of 1: at most the promised fraction of the
+    /// intervals misses it.
     #[test]
     fn the_interval_holds_the_true_median_as_often_as_is_said() {
         let mut rng = marraztu_core::base::rng::Rng::new(7);
         for n in [7, 11, 31] {
             let misses = (0..10_000).filter(|_| {
-                // Skewed, as times are: disturbances only make them longer.
+                // Skewed like times: disturbances only make them longer.
                 let numbers: Vec<f64> =
                     (0..n).map(|_| libm::exp(3.0 * rng.real(-1.0, 1.0))).collect();
                 let [low, high] = median_interval(&numbers, 0.95).unwrap();

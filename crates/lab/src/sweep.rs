@@ -1,15 +1,15 @@
-//! Measures what accuracy costs: every choice of every axis against the default.
+//! Measures the cost of accuracy: every choice of every axis against the default.
 //!
-//! Two pictures are drawn first, whatever is on screen: the reference, with every axis at its most
-//! exact choice, and the mean of 256 samples per pixel, each lit. All choices are judged against
-//! the first, samples per pixel against the second. The default is measured against itself; the
-//! spread of that control is the floor under which no difference means anything. Then every
-//! candidate is measured against the default, in the same process, in turn with it.
+//! Two references are drawn first, whatever the current settings: the picture with every axis at
+//! its most exact choice, and the mean of 256 samples per pixel, each lit. Most choices are judged
+//! against the first, samples per pixel against the second. The default is measured against itself.
+//! The spread of this control is the noise floor: smaller differences are ignored. Every candidate
+//! is then measured against the default in the same process, in alternation.
 //!
-//! One interval says what a ratio may mean, in verdicts, plots and pages alike: [`Ratio::noise`],
-//! the larger of the control's noise and the ratio's own. Two choices differ in time only if their
-//! intervals do not meet. The control alone does not tell: it is measured once, at the beginning,
-//! and what else the machine does may begin later.
+//! Verdicts, plots and pages all use one interval, [`Ratio::noise`]: the larger of the control's
+//! noise and the ratio's own. Two choices differ in time only if their intervals do not overlap.
+//! The control alone is not enough: it is measured once, at the beginning, and other load may start
+//! later.
 
 use fearless_simd::Level;
 use serde::Serialize;
@@ -26,61 +26,62 @@ use marraztu_core::accuracy::Shot;
 use marraztu_core::accuracy::{AXES, Axis, AxisKind, Settings};
 use marraztu_core::base::image::Size;
 
-/// What to measure.
+/// The task of a sweep.
 #[derive(Clone, Debug)]
 pub struct Question {
-    /// The settings that the picture is drawn with now.
+    /// The current settings.
     pub current: Settings,
     /// The axes to measure.
     pub axes: Vec<&'static Axis>,
-    /// How thoroughly.
+    /// The thoroughness of the sweep.
     pub thoroughness: Thoroughness,
 }
 
-/// The results.
+/// The results of a sweep.
 #[derive(Clone, Debug, Serialize)]
 pub struct Findings {
     /// The picture's width and height.
     pub size: [usize; 2],
-    /// The number of threads that drew it.
+    /// The number of threads.
     pub threads: usize,
-    /// The set of instructions that it was drawn with.
+    /// The SIMD instruction set.
     pub instructions: String,
     /// The name of the thoroughness.
     pub thoroughness: &'static str,
-    /// The default against itself.
+    /// The default measured against itself.
     pub control: Ratio,
-    /// The noise of the control: the farthest of its quartiles from 1. No row has less.
+    /// The noise of the control: the largest distance of its quartiles from 1. It is the minimum
+    /// for all rows.
     pub floor: f64,
-    /// The settings that the picture is drawn with now.
+    /// The current settings.
     pub current: Settings,
-    /// All settings that were measured, each once; the first is the default.
+    /// The distinct settings that were measured; the first is the default.
     pub points: Vec<Measured>,
-    /// The rows of the table, each of a point.
+    /// The rows of the table. Each refers to a point.
     pub rows: Vec<Row>,
-    /// What was not measured, with the reason.
+    /// Settings that were not measured, with the reason.
     pub left_out: Vec<LeftOut>,
-    /// Small pieces of arithmetic, plain and with SIMD.
+    /// Small kernels, plain and with SIMD.
     pub kernels: Vec<Kernel>,
 }
 
-/// Settings with their time and their error.
+/// Settings with their time and error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measured {
-    /// The first name under which they were measured.
+    /// The first name under which the settings were measured.
     pub name: String,
     /// The settings.
     pub settings: Settings,
-    /// Milliseconds of a picture: the default's median times the ratio.
+    /// The milliseconds of a picture: the default's median times the ratio.
     pub ms: f64,
-    /// How many times as long as the default they take.
+    /// The time relative to the default.
     pub ratio: Ratio,
-    /// Whether the ratio means anything: see [`Findings::noise_of`].
+    /// Whether the ratio exceeds the noise: see [`Findings::noise_of`].
     pub verdict: Verdict,
     /// The error against the reference: every axis at its most exact, one sample per pixel.
     pub error: Error,
-    /// The error against 256 samples per pixel, each lit; `None` for another model than the one
-    /// that is drawn now.
+    /// The error against 256 samples per pixel, each lit; `None` for models other than the current
+    /// one.
     pub sampled: Option<Error>,
     /// The difference from the default's picture.
     pub change: Figures,
@@ -88,7 +89,7 @@ pub struct Measured {
     pub hash: String,
 }
 
-/// What a row's picture is judged against.
+/// The reference of a row's picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Against {
@@ -96,12 +97,12 @@ pub enum Against {
     Exact,
     /// 256 samples per pixel, each lit.
     Sampled,
-    /// The reference of another model than the one that is drawn now.
+    /// The reference of a model other than the current one.
     Model,
 }
 
 impl Against {
-    /// Its word in tables.
+    /// Returns the name in tables.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -111,7 +112,7 @@ impl Against {
         }
     }
 
-    /// What a candidate is judged against.
+    /// Returns the reference of a candidate.
     fn of(candidate: &Candidate, base: &Settings) -> Self {
         let Candidate { group, settings, .. } = candidate;
         let apart = |axis: &Axis| axis.kind == AxisKind::ScoredApart;
@@ -128,13 +129,13 @@ impl Against {
     }
 }
 
-/// Whether a ratio means anything.
+/// The significance of a ratio.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// Than the default, beyond the noise.
+    /// Faster than the default, beyond the noise.
     Faster,
-    /// Than the default, beyond the noise.
+    /// Slower than the default, beyond the noise.
     Slower,
     /// Within the noise.
     Alike,
@@ -143,19 +144,19 @@ pub enum Verdict {
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// The group that it stands in.
+    /// The group of the row.
     #[serde(flatten)]
     pub group: Group,
-    /// Its name in the group.
+    /// The name in the group.
     pub name: String,
-    /// The index of its point.
+    /// The index of the point.
     pub point: usize,
-    /// What it is judged against.
+    /// The reference of the row.
     pub against: Against,
 }
 
 impl Findings {
-    /// The error of a row against its own reference.
+    /// Returns the error of a row against its own reference.
     #[must_use]
     pub fn error_of(&self, row: &Row) -> &Error {
         let point = &self.points[row.point];
@@ -165,15 +166,16 @@ impl Findings {
         }
     }
 
-    /// The interval of what the ratio of a point to the default may be. Two points differ in time
-    /// if their intervals do not meet.
+    /// Returns the interval of a point's ratio to the default. Two points differ in time if their
+    /// intervals do not overlap.
     #[must_use]
     pub fn noise_of(&self, point: usize) -> [f64; 2] {
         if point == 0 { DEFAULT } else { self.points[point].ratio.noise(self.floor) }
     }
 
-    /// The least and the largest noise of some points, as parts: the larger distance of each to the
-    /// ends of its interval. Only the control's if there are no points.
+    /// Returns the smallest and the largest noise of some points, as fractions. The noise of a
+    /// point is the larger distance of its median to the ends of its interval. Without points, it
+    /// is the control's.
     #[must_use]
     pub fn noises(&self, points: impl Iterator<Item = usize>) -> [f64; 2] {
         let noise = |point: usize| {
@@ -188,24 +190,24 @@ impl Findings {
         noises.fold(None, ends).unwrap_or([self.floor; 2])
     }
 
-    /// The rows of an axis, from coarse to exact.
+    /// Returns the rows of an axis, from coarse to exact.
     pub fn rows_of<'a>(&'a self, axis: &'a Axis) -> impl Iterator<Item = &'a Row> {
         self.rows.iter().filter(move |row| row.group == Group::Axis(axis.key))
     }
 }
 
-/// What the default's ratio to itself may be.
+/// The interval of the default's ratio to itself.
 const DEFAULT: [f64; 2] = [1.0; 2];
 
 impl Verdict {
-    /// Judges a ratio to the default, if differences up to `floor` mean nothing.
+    /// Judges a ratio to the default, ignoring differences up to `floor`.
     #[must_use]
     pub fn of(ratio: &Ratio, floor: f64) -> Self {
         Self::between(ratio.noise(floor), DEFAULT)
     }
 
-    /// Judges one of two choices, by the intervals of what their ratios may be: they differ only if
-    /// these do not meet.
+    /// Judges one choice against another by the intervals of their ratios: they differ only if the
+    /// intervals do not overlap.
     #[must_use]
     pub fn between(one: [f64; 2], other: [f64; 2]) -> Self {
         if one[1] < other[0] {
@@ -217,7 +219,7 @@ impl Verdict {
         }
     }
 
-    /// Its word in tables.
+    /// Returns the name in tables.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -231,7 +233,7 @@ impl Verdict {
 /// Measures a scene. `tell` is called with the results so far after every choice.
 ///
 /// # Errors
-/// If it was cancelled or disturbed, or if a picture could not be repeated.
+/// If it was cancelled or disturbed, or if a picture was not reproducible.
 pub fn sweep(
     studio: &mut Studio,
     question: &Question,
@@ -246,15 +248,15 @@ pub fn sweep(
     bench.run(candidates, tell)
 }
 
-/// Everything that a sweep works with.
+/// The context of a sweep.
 pub struct Bench<'a> {
     /// Measures time.
     pub clock: &'a mut dyn Clock,
     /// Draws the pictures.
     pub source: &'a mut dyn PictureSource,
-    /// Connects the sweep with the user who waits for it.
+    /// Connects the sweep with the user.
     pub watch: &'a Watch,
-    /// What to measure.
+    /// The task.
     pub question: &'a Question,
     /// The picture's size.
     pub size: Size,
@@ -267,10 +269,10 @@ impl std::fmt::Debug for Bench<'_> {
 }
 
 impl Bench<'_> {
-    /// Measures these candidates; the first is the default.
+    /// Measures candidates; the first is the default.
     ///
     /// # Errors
-    /// As [`sweep`].
+    /// The same as [`sweep`].
     pub fn run(
         &mut self,
         candidates: Candidates,
@@ -280,19 +282,22 @@ impl Bench<'_> {
         let thoroughness = self.question.thoroughness;
         let Candidates { all, left_out } = candidates;
         let base = all.first().expect("the default is always measured").settings;
+        // The references are drawn first, once, outside the timed part.
         let mut references = References {
             exact: vec![(base.reference(), self.source.rendering(&base.reference()))],
             sampled: self.source.sampled(&base),
             default: self.source.rendering(&base),
         };
         self.watch.progress.reached(0, all.len())?;
+        // The control measures the default against itself, which gives the noise floor.
         let control = self.measured(&base, &base)?;
         let mut findings = self.begin(control, left_out);
-        // Each piece of arithmetic counts as a choice.
+        // Each kernel counts as a choice.
         let steps = all.len() + kernels::COUNT;
         let mut late = 0;
         for (i, candidate) in all.into_iter().enumerate() {
             self.watch.progress.reached(i, steps)?;
+            // Only combinations are dropped for lack of time; single axes are always measured.
             let is_late = self.clock.now().saturating_sub(begun) >= thoroughness.time;
             if candidate.group == Group::Combination && is_late {
                 late += 1;
@@ -357,7 +362,7 @@ impl Bench<'_> {
                 findings.points.len() - 1
             }
         };
-        // The current settings have a row of their own only if no other row shows them.
+        // The current settings get a row only if no other row shows them.
         if group != Group::Current || known.is_none() {
             findings.rows.push(Row { group, name, point, against });
         }
@@ -372,7 +377,7 @@ impl Bench<'_> {
         references: &mut References,
     ) -> Result<Measured, Unmeasured> {
         let a_ms = findings.control.a_ms;
-        // All times are relative to the default, and its ratio is the control's.
+        // All times are relative to the default. Its own ratio is the control's.
         let (ratio, ms) = if settings == *base {
             (findings.control.clone(), a_ms)
         } else {
@@ -380,6 +385,7 @@ impl Bench<'_> {
             let ms = a_ms * ratio.quartiles.median;
             (ratio, ms)
         };
+        // Each model has its own exact reference, drawn on first use.
         let reference = settings.reference();
         if references.exact.iter().all(|(settings, _)| *settings != reference) {
             references.exact.push((reference, self.source.rendering(&reference)));
@@ -402,9 +408,9 @@ impl Bench<'_> {
     }
 }
 
-/// The pictures that errors are taken against.
+/// The reference pictures of errors.
 struct References {
-    /// Every axis at its most exact, for each model, with the settings; the default's is the first.
+    /// Every axis at its most exact, with the settings: one per model, the default's first.
     exact: Vec<(Settings, Rendering)>,
     /// 256 samples per pixel.
     sampled: Rendering,

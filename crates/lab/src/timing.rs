@@ -1,37 +1,37 @@
-//! Measures how long work takes.
+//! Measures the time of work.
 //!
-//! The laboratory hands its work to a [`Clock`], together with what it is: a test can replace the
-//! clock by one that makes one choice slow, and expects that choice to be named and no other.
+//! The laboratory passes its work to a [`Clock`] together with a description. A test can substitute
+//! a clock that makes one choice slow, and check that only this choice is reported.
 
 use std::time::{Duration, Instant};
 
 use marraztu_core::accuracy::Settings;
 
-/// Does the work, and measures how long it takes.
+/// Runs the work and returns its duration.
 pub fn time(work: impl FnOnce()) -> Duration {
     let begun = Instant::now();
     work();
     begun.elapsed()
 }
 
-/// What is timed.
+/// A description of timed work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Work<'a> {
-    /// A picture, drawn with these settings.
+    /// A picture with these settings.
     Picture(&'a Settings),
-    /// A small piece of arithmetic, by name.
+    /// A small kernel, by name.
     Kernel(&'static str),
 }
 
-/// Measures work.
+/// Measures durations.
 pub trait Clock {
-    /// Does the work, and gives the time that it took.
+    /// Runs the work and returns its duration.
     fn time(&mut self, work: Work<'_>, todo: &mut dyn FnMut()) -> Duration;
-    /// The time since some fixed moment.
+    /// Returns the time since a fixed moment.
     fn now(&self) -> Duration;
 }
 
-/// The machine's own monotonic clock.
+/// The machine's monotonic clock.
 #[derive(Clone, Copy, Debug)]
 pub struct WallClock {
     begun: Instant,

@@ -1,9 +1,9 @@
 //! Writes a GIF.
 //!
-//! A GIF has 256 colours a picture. If no picture has more, each keeps its colours. Otherwise all
-//! pictures share one palette, chosen once all of them are known, and a pixel's pattern depends on
-//! its place and colour alone: two pictures differ only where the scene does, so nothing flickers.
-//! Until then the pictures wait in memory, compressed.
+//! A GIF has up to 256 colours per picture. If every picture fits, each gets an exact palette.
+//! Otherwise all pictures share one palette, chosen when all are known. Dithering depends only on
+//! the position and colour of a pixel, so still regions do not flicker. Until the palette is known,
+//! the pictures are kept in memory, compressed.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -17,13 +17,13 @@ use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use super::palette::{Colors, Dither, Palette};
 use marraztu_core::base::image::{Picture, Size};
 
-/// Colours of a picture.
+/// The most colours of a picture.
 const MOST_COLORS: usize = 256;
 
-/// Pixels that cover less than this are transparent.
+/// Pixels with a smaller alpha are transparent.
 const LEAST_ALPHA: u8 = 128;
 
-/// A GIF that receives its pictures.
+/// Collects the pictures of a GIF.
 #[derive(Debug)]
 pub(super) struct GifWriter {
     size: Size,
@@ -60,19 +60,21 @@ impl GifWriter {
         MOST_COLORS - self.transparent as usize
     }
 
-    /// The bytes of the file; `delay` says how long each picture is shown, in hundredths of a
-    /// second.
+    /// Encodes the file. `delay` is the time of each picture, in hundredths of a second.
     pub(super) fn finish(self, delay: impl Fn(usize) -> u16) -> Result<Vec<u8>, EncodingError> {
         let [width, height] = super::sides(self.size).map(|side| u16::try_from(side).ok());
         let (Some(width), Some(height)) = (width, height) else {
             return Err(std::io::Error::other("a GIF has at most 65535 pixels a side").into());
         };
+        // Without dithering, each picture gets its exact palette instead of a global one.
+        // All pictures are known now, so the shared palette can be chosen.
         let palette = self.needs_dither.then(|| Palette::of(&self.colors, self.most_colors()));
         let global = palette.as_ref().map_or(Vec::new(), |it| self.table(&it.colors));
         let mut encoder = Encoder::new(Vec::new(), width, height, &global)?;
         encoder.set_repeat(Repeat::Infinite)?;
         let mut dither = palette.map(Dither::new);
         for (number, compressed) in self.pictures.iter().enumerate() {
+            // Only one picture at a time is unpacked.
             let mut bytes = Vec::with_capacity(4 * self.size.area());
             DeflateDecoder::new(&compressed[..]).read_to_end(&mut bytes)?;
             let (pixels, _) = bytes.as_chunks::<4>();
@@ -97,7 +99,7 @@ impl GifWriter {
         encoder.into_inner()
     }
 
-    /// A palette as the file has it, with the transparent colour first.
+    /// Returns a palette in the layout of the file, with the transparent colour first.
     fn table(&self, colors: &[[u8; 3]]) -> Vec<u8> {
         let transparent = self.transparent.then_some([0; 3]);
         transparent.into_iter().chain(colors.iter().copied()).flatten().collect()
@@ -113,7 +115,7 @@ impl GifWriter {
         pixels.iter().enumerate().map(index).collect()
     }
 
-    /// The pixels as indices of a palette of their own.
+    /// Returns the pixels as indices into their exact palette.
     fn exact(&self, pixels: &[[u8; 4]]) -> (Vec<u8>, Option<Vec<u8>>) {
         let shown = || pixels.iter().map(|pixel| shown(*pixel, self.transparent));
         let mut indices: BTreeMap<[u8; 3], u8> =
@@ -128,7 +130,7 @@ impl GifWriter {
     }
 }
 
-/// The colour of a pixel; `None` if it is transparent.
+/// Returns the colour of a pixel, or `None` if it is transparent.
 fn shown([r, g, b, alpha]: [u8; 4], transparent: bool) -> Option<[u8; 3]> {
     (!transparent || alpha >= LEAST_ALPHA).then_some([r, g, b])
 }

@@ -1,8 +1,8 @@
-//! Saves pictures that follow each other: as a GIF, as an animated PNG, or as numbered files.
+//! Saves a sequence of pictures as a GIF, an animated PNG or numbered files.
 //!
-//! A GIF has 256 colours a picture and times in hundredths of a second; an animated PNG has every
-//! colour. Both are written whole when they are finished, so that what is
-//! cancelled leaves nothing behind.
+//! A GIF has 256 colours per picture and times in hundredths of a second; an animated PNG has full
+//! colour. Both are written in one piece at the end, so a cancelled animation leaves no file
+//! behind.
 
 mod gif;
 mod palette;
@@ -23,7 +23,7 @@ use marraztu_core::base::image::{Picture, Size};
 /// one hundredth for ten.
 const LEAST_GIF_TIME: u32 = 2;
 
-/// The form of an animation.
+/// The format of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AnimationFormat {
     /// A GIF.
@@ -35,10 +35,10 @@ pub enum AnimationFormat {
 }
 
 impl AnimationFormat {
-    /// The form that the name of a file asks for.
+    /// Returns the format for a file name.
     ///
     /// # Errors
-    /// The endings, if it has another one.
+    /// The supported extensions, if the name has another one.
     pub fn of(path: &Path) -> Result<Self, String> {
         let Some(ending) = path.extension() else { return Ok(Self::Frames) };
         match ending.to_string_lossy().to_lowercase().as_str() {
@@ -51,22 +51,22 @@ impl AnimationFormat {
     }
 }
 
-/// What an animation is like.
+/// The properties of an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Animation {
     /// The width and height of its pictures.
     pub size: Size,
-    /// The number of pictures: at least 1.
+    /// The number of pictures, at least 1.
     pub frames: u32,
-    /// How long all of them take.
+    /// The duration of the whole animation.
     pub seconds: f64,
     /// Whether pixels may be transparent.
     pub transparent: bool,
 }
 
 impl Animation {
-    /// The time of picture `i` in whole units; a second has `units`. The sum of all times
-    /// is the whole time, rounded once.
+    /// Returns the time of picture `i` in units of 1/`units` second. The times sum to the whole
+    /// duration, rounded once.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within a day")]
     fn time(&self, i: u32, units: f64) -> u32 {
         let end = |i: u32| {
@@ -76,18 +76,18 @@ impl Animation {
         (end(i + 1) - end(i)).max(1)
     }
 
-    /// The time of picture `i` of a GIF in hundredths of a second.
+    /// Returns the time of picture `i` of a GIF in hundredths of a second.
     fn gif_time(&self, i: u32) -> u32 {
         self.time(i, 100.0).max(LEAST_GIF_TIME)
     }
 
-    /// The seconds that a GIF of it takes.
+    /// Returns the duration of the animation as a GIF, in seconds.
     fn gif_seconds(&self) -> f64 {
         f64::from((0..self.frames).map(|i| self.gif_time(i)).sum::<u32>()) / 100.0
     }
 }
 
-/// Bytes that an encoder writes and that are read when it is done.
+/// A shared buffer: an encoder writes into it, and the writer takes the bytes at the end.
 #[derive(Clone, Debug, Default)]
 struct Bytes(Arc<Mutex<Vec<u8>>>);
 
@@ -131,11 +131,11 @@ impl std::fmt::Debug for AnimationWriter {
 }
 
 impl AnimationWriter {
-    /// Checks, before anything is drawn, whether an animation could be saved at `path` without
-    /// replacing one of `sources`.
+    /// Checks, before anything is drawn, whether an animation can be saved at `path` without
+    /// overwriting one of `sources`.
     ///
     /// # Errors
-    /// If it could not.
+    /// If it cannot.
     pub fn check(path: &Path, sources: &Sources) -> Result<(), SaveError> {
         sources.spare(path)?;
         let fail = |reason: &str| SaveError::new(path, reason);
@@ -158,7 +158,7 @@ impl AnimationWriter {
     /// Begins an animation.
     ///
     /// # Errors
-    /// If it could not be saved there.
+    /// If it cannot be saved there.
     pub fn begin(path: &Path, animation: Animation, sources: &Sources) -> Result<Self, SaveError> {
         Self::check(path, sources)?;
         let fail = |reason: String| SaveError::new(path, reason);
@@ -172,6 +172,7 @@ impl AnimationWriter {
                 Encoder::Apng(Box::new(writer.map_err(|error| fail(error.to_string()))?))
             }
             AnimationFormat::Frames => {
+                // Check every file now: a failure after an hour of drawing would be too late.
                 fs::create_dir_all(path).map_err(|error| fail(reason(&error)))?;
                 for i in 0..animation.frames {
                     let frame = frame(path, &animation, i);
@@ -185,7 +186,7 @@ impl AnimationWriter {
         Ok(Self { path: path.to_owned(), animation, encoder, bytes, written: 0, notes })
     }
 
-    /// How the file will differ from the wishes of the user, a sentence each.
+    /// Returns the differences between the file and the request, one sentence each.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
@@ -203,6 +204,7 @@ impl AnimationWriter {
         match &mut self.encoder {
             Encoder::Gif(writer) => writer.push(picture).map_err(|error| fail(error.to_string())),
             Encoder::Apng(writer) => {
+                // A single picture is a plain PNG, without times.
                 let time = u16::try_from(animation.time(i, 1000.0)).unwrap_or(u16::MAX);
                 let timed = match animation.frames {
                     1 => Ok(()),
@@ -264,8 +266,9 @@ fn notes(path: &Path, animation: &Animation, encoder: &Encoder) -> Vec<String> {
     }
 }
 
-/// A note about pictures in the folder that this animation does not replace.
+/// Notes pictures in the folder that this animation does not replace.
 fn stale(folder: &Path, animation: &Animation) -> Option<String> {
+    // The folder may hold pictures of a longer animation with the same names.
     let is_stale = |name: &String| {
         frame_number(name).is_some_and(|number| {
             let is_own = (1..=animation.frames).contains(&number)
@@ -285,13 +288,13 @@ fn stale(folder: &Path, animation: &Animation) -> Option<String> {
     })
 }
 
-/// The number in the name of a picture of a folder; `None` for other names.
+/// Returns the number in a file name such as `frame-001.png`; `None` for other names.
 fn frame_number(name: &str) -> Option<u32> {
     let digits = name.strip_prefix("frame-")?.strip_suffix(".png")?;
     digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())?
 }
 
-/// The file of picture `i` in a folder.
+/// Returns the file of picture `i` in a folder.
 fn frame(folder: &Path, animation: &Animation, i: u32) -> PathBuf {
     let digits = animation.frames.to_string().len().max(3);
     folder.join(format!("frame-{:0digits$}.png", i + 1))
@@ -377,7 +380,7 @@ mod tests {
         let size = Size::new(64, 64);
         let animation = Animation { size, frames: 4, seconds: 1.0, transparent: false };
         let mut writer = AnimationWriter::begin(&path, animation, &Sources::default()).unwrap();
-        // The upper half is a still gradient; the lower one changes its colours.
+        // The upper half is a constant gradient; the lower half changes its colours.
         let pixel = |frame: usize, i: usize| {
             let byte = |x: usize| u8::try_from(x % 256).unwrap();
             let (x, y) = (i % 64, i / 64);
@@ -396,7 +399,7 @@ mod tests {
         let frames: Vec<Frame> = frames.collect_frames().unwrap();
         let upper = |frame: &Frame| frame.buffer().as_raw()[..64 * 32 * 4].to_vec();
         assert!(frames.iter().all(|frame| upper(frame) == upper(&frames[0])));
-        // The mean of the gradient is kept.
+        // Dithering keeps the mean of the gradient.
         let mean =
             |bytes: &[u8]| bytes.iter().map(|x| f64::from(*x)).sum::<f64>() / bytes.len() as f64;
         let right: Vec<u8> = (0..64 * 32).flat_map(|i| pixel(0, i)).collect();

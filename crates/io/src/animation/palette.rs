@@ -1,27 +1,28 @@
-//! Chooses the colours of an animation, and mixes other colours of two of them.
+//! Chooses the palette of an animation and dithers colours that it lacks.
 //!
-//! The palette is that of NeuQuant (Dekker, "Kohonen Neural Networks for Optimal Colour
-//! Quantization", Network 1994), except for colours of large flat regions, which are kept. A colour
-//! that is missing is mixed of the two that come nearest to it, in a pattern of 8 x 8 pixels
-//! (Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC 1973).
+//! The palette comes from NeuQuant (Dekker, "Kohonen Neural Networks for Optimal Colour
+//! Quantization", Network 1994), except that colours of large flat regions are kept exactly. A
+//! missing colour is dithered from the two best colours of the palette, with the ordered 8 x 8
+//! pattern of Bayer ("An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC
+//! 1973).
 
 use std::collections::{BTreeSet, HashMap};
 
 use color_quant::NeuQuant;
 
-/// The most colours that are counted one by one.
+/// The most colours that are counted individually.
 const MOST_COUNTED: usize = 1 << 16;
 
-/// Bits of a channel in the histogram.
+/// Bits per channel in the histogram.
 const BITS: u32 = 5;
 
-/// The least share of all pixels that makes a colour a flat region, as 1 / N.
+/// A colour of at least 1 / `FLAT` of all pixels is a flat region.
 const FLAT: u64 = 200;
 
 /// The most colours of flat regions.
 const MOST_FLAT: usize = 32;
 
-/// Pixels of the sample that NeuQuant learns from.
+/// Number of pixels in the sample that NeuQuant learns from.
 const SAMPLE: f64 = 60_000.0;
 
 /// The colours of all pictures.
@@ -29,12 +30,13 @@ const SAMPLE: f64 = 60_000.0;
 pub(super) struct Colors {
     pixels: u64,
     counts: HashMap<[u8; 3], u64>,
-    /// Number and sum of the colours in each cell.
+    /// The number of pixels and the sum of their colours in each cell.
     cells: Vec<(u64, [u64; 3])>,
 }
 
 impl Colors {
-    /// Counts the colours of a picture. Returns how many it has, if they are few.
+    /// Counts the colours of a picture. Returns the number of distinct colours, or 257 if there are
+    /// more.
     pub(super) fn add(&mut self, pixels: impl Iterator<Item = [u8; 3]>) -> usize {
         self.cells.resize(1 << (3 * BITS), (0, [0; 3]));
         let mut distinct = BTreeSet::new();
@@ -44,9 +46,11 @@ impl Colors {
             let (count, sum) = &mut self.cells[cell(color)];
             *count += 1;
             *sum = std::array::from_fn(|i| sum[i] + u64::from(color[i]));
+            // Bounds the memory: colours that appear late are only counted by cell.
             if self.counts.len() < MOST_COUNTED || self.counts.contains_key(&color) {
                 *self.counts.entry(color).or_default() += 1;
             }
+            // Neighbours are often equal, so the set is searched only when the colour changes.
             if last.replace(color) != Some(color) && distinct.len() <= 256 {
                 distinct.insert(color);
             }
@@ -54,7 +58,7 @@ impl Colors {
         distinct.len()
     }
 
-    /// The colours of flat regions, the most frequent first.
+    /// Returns the colours of flat regions, the most frequent first.
     fn flat(&self) -> Vec<[u8; 3]> {
         let counts = self.counts.iter().map(|(color, count)| (*count, *color));
         let mut flat: Vec<_> = counts.filter(|(count, _)| count * FLAT >= self.pixels).collect();
@@ -62,8 +66,8 @@ impl Colors {
         flat.into_iter().map(|(_, color)| color).take(MOST_FLAT).collect()
     }
 
-    /// Pixels in which each colour is as frequent as the root of its number, so that small parts of
-    /// the pictures have colours, too.
+    /// Returns a sample in which each cell is as frequent as the square root of its pixel count.
+    /// Small parts of the pictures then get colours, too.
     #[expect(
         clippy::cast_precision_loss,
         clippy::cast_possible_truncation,
@@ -84,7 +88,7 @@ impl Colors {
     }
 }
 
-/// The cell of a colour in the histogram.
+/// Returns the histogram cell of a colour.
 fn cell(color: [u8; 3]) -> usize {
     color.iter().fold(0, |cell, x| cell << BITS | usize::from(x >> (8 - BITS)))
 }
@@ -96,11 +100,11 @@ pub(super) struct Palette {
 }
 
 impl Palette {
-    /// At most `most` colours.
+    /// Builds a palette of at most `most` colours.
     pub(super) fn of(colors: &Colors, most: usize) -> Self {
         let mut palette = colors.flat();
         let sample = colors.sample();
-        // NeuQuant takes 64 colours at the least.
+        // NeuQuant needs at least 64 colours.
         let learned = NeuQuant::new(1, (most - palette.len()).max(64), &sample).color_map_rgb();
         let (learned, _) = learned.as_chunks::<3>();
         palette.extend(learned.iter().take(most - palette.len()));
@@ -108,10 +112,10 @@ impl Palette {
     }
 }
 
-/// Two colours of the palette, and how many of 64 pixels have the second.
+/// Two colours of the palette, and the number of pixels out of 64 that get the second.
 type Mix = (u8, u8, u8);
 
-/// Finds the palette's index for each pixel.
+/// Finds the palette index of each pixel.
 #[derive(Debug)]
 pub(super) struct Dither {
     palette: Palette,
@@ -123,7 +127,7 @@ impl Dither {
         Self { palette, mixes: HashMap::new() }
     }
 
-    /// The index of the colour that a pixel shows.
+    /// Returns the palette index that a pixel shows.
     pub(super) fn index(&mut self, color: [u8; 3], [x, y]: [usize; 2]) -> u8 {
         let (first, second, share) = match self.mixes.get(&color) {
             Some(mix) => *mix,
@@ -137,7 +141,7 @@ impl Dither {
     }
 }
 
-/// The order of a pixel among the 64 of the pattern.
+/// Returns the rank of a pixel in the 8 x 8 Bayer pattern, 0 to 63.
 fn threshold(x: usize, y: usize) -> u8 {
     // The bits of x ^ y and y, interleaved from the lowest.
     (0..3).fold(0, |sum, bit| {
@@ -148,8 +152,8 @@ fn threshold(x: usize, y: usize) -> u8 {
     })
 }
 
-/// The best mixture of two colours for a colour. Colours that are far apart make a coarse pattern,
-/// so similar ones are preferred.
+/// Finds the best mixture of two palette colours. Distant colours make a coarse pattern, so similar
+/// ones are preferred.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 64")]
 fn mix(palette: &[[u8; 3]], color: [u8; 3]) -> Mix {
     const COARSENESS: f32 = 0.06;
@@ -161,10 +165,12 @@ fn mix(palette: &[[u8; 3]], color: [u8; 3]) -> Mix {
         let off = minus(color, float(*other));
         dot(off, off)
     };
+    // The nearest colour is always one of the two.
     let nearest = (0_u8..=255).zip(palette).min_by(|a, b| away(a.1).total_cmp(&away(b.1)));
     let Some((first, near)) = nearest else { return (0, 0, 0) };
     let mut best = (away(near), first, 0.0);
     let off = minus(color, float(*near));
+    // The second minimises the error of the mixture plus a penalty for its contrast.
     for (second, other) in (0_u8..=255).zip(palette) {
         let along = minus(float(*other), float(*near));
         let length = dot(along, along);
@@ -220,7 +226,7 @@ mod tests {
         let palette = Palette::of(&colors, 255);
         assert!(palette.colors.len() <= 255 && palette.colors.contains(&[0, 0, 179]));
         let mut dither = Dither::new(palette);
-        // The mean of each 8 x 8 pixels is that of the picture.
+        // The mean of each 8 x 8 block is close to the true colour.
         let mut sums = [[0.0; 2]; 2];
         for i in 0..64 {
             let color = [100, 200, 128];

@@ -1,8 +1,8 @@
 //! Decides whether an export may replace a companion file: an MTL file, a texture or a buffer.
 //!
-//! The user names the main file only, so a file that happens to have the name of a companion is
-//! replaced only if an earlier export wrote it. Texts carry a signature; a picture or a buffer is
-//! recognised by the exported text that names it.
+//! The user names only the main file, so an existing companion is overwritten only if an earlier
+//! export wrote it. Text files carry a signature. A picture or a buffer counts as ours if an
+//! exported text refers to it.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -13,7 +13,7 @@ use memchr::memmem::find;
 use super::{SIGNATURE, escaped};
 use crate::replace::{SaveError, check_target};
 
-/// How a glTF file says that this program wrote it.
+/// The text by which a glTF file shows that this program wrote it.
 const GENERATOR: &[u8] = br#""generator":"Marraztu""#;
 
 /// Checks that a companion file is new, or was written by an earlier export to `main`.
@@ -31,14 +31,14 @@ pub(super) fn check_companion(companion: &Path, main: &Path) -> Result<(), SaveE
     Err(SaveError::new(main, reason))
 }
 
-/// Whether a file begins with the signature.
+/// Returns whether a file begins with the signature.
 fn is_signed(file: &Path) -> bool {
     let mut begin = vec![0; SIGNATURE.len()];
     let read = File::open(file).and_then(|mut file| file.read_exact(&mut begin));
     read.is_ok() && begin == SIGNATURE.as_bytes()
 }
 
-/// Whether a text was exported by this program and names the companion.
+/// Returns whether a text was exported by this program and names the companion.
 fn names(text: &Path, companion: &Path) -> bool {
     let Ok(text) = fs::read(text) else { return false };
     let name = companion.file_name().unwrap_or_default().to_string_lossy();

@@ -1,15 +1,15 @@
 //! Exports a scene as glTF 2.0: meshes with their placements, cameras and lights.
 //!
-//! Positions stay in the object's own space, bit for bit. Other programs find the names of the
-//! scene: a node for each object, below it one for each object and group of its file, and materials
-//! by name. What the format does not know is approximated, and said:
+//! Positions stay in the object's space, bit for bit. Names survive: each object becomes a node,
+//! each object and group of its file a node below it, and materials keep their names. Features that
+//! glTF lacks are approximated, with a note to the user:
 //!
-//! * colours are display values here and linear there: `c = ((s + 0.055) / 1.055)^2.4`;
+//! * display colours become linear ones: `c = ((s + 0.055) / 1.055)^2.4`;
 //! * Phong's exponent n becomes roughness r = (2 / (4 n + 2))^(1/4): Blinn's exponent is about 4 n,
-//!   and that of a microfacet distribution is 2 / alpha^2 - 2 with alpha = r^2 (Walter et al.,
-//!   "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007);
-//! * lamps fade with the square of the distance there: theirs is the light that arrives at the
-//!   middle of the scene; light from everywhere is left out.
+//!   and a microfacet distribution has 2 / alpha^2 - 2 with alpha = r^2 (Walter et al., "Microfacet
+//!   Models for Refraction through Rough Surfaces", EGSR 2007);
+//! * bulbs and spots fade with the square of the distance in glTF: each gets the intensity that
+//!   lights the middle of the scene as before; ambient lights are left out.
 
 use gltf_json::scene::Node;
 use gltf_json::validation::USize64;
@@ -21,12 +21,12 @@ use super::names::Names;
 use super::{Content, escaped};
 use marraztu_core::scene::{Scene, View};
 
-/// Whether the buffer is a file of its own.
+/// The form of a glTF export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
-    /// A text with a buffer beside it.
+    /// A text and a separate buffer file.
     Separate,
-    /// One file.
+    /// A single .glb file.
     Binary,
 }
 
@@ -41,7 +41,7 @@ pub(super) struct Writer<'a> {
     pub(super) notes: Vec<String>,
 }
 
-/// The files.
+/// Writes the files.
 pub(super) fn written(
     stem: &str,
     scene: &Scene,
@@ -59,6 +59,7 @@ pub(super) fn written(
         notes: Vec::new(),
     };
     writer.root.asset.generator = Some("Marraztu".to_owned());
+    // Objects come first: their looks determine the materials.
     for (_, object) in scene.objects.iter().filter(|(_, object)| object.visible) {
         writer.object(object);
     }
@@ -75,7 +76,7 @@ pub(super) fn written(
         nodes,
     };
     root.scene = Some(root.push(all));
-    // A buffer without bytes is invalid: a scene without faces has none.
+    // A buffer without bytes is invalid, so a scene without faces gets no buffer.
     if !buffer.bytes.is_empty() {
         let uri = (form == Form::Separate).then(|| format!("{}.bin", escaped(stem)));
         root.buffers.push(gltf_json::Buffer {
@@ -86,6 +87,7 @@ pub(super) fn written(
             extras: Default::default(),
         });
     }
+    // The text comes last in the list: the main file is written last.
     let text = root.to_vec().map_err(|error| error.to_string())?;
     let mut files = Vec::new();
     match form {
@@ -100,13 +102,14 @@ pub(super) fn written(
     Ok(Content { files, notes })
 }
 
-/// A .glb file: a header of 12 bytes, and the text and the buffer as chunks.
+/// Builds a .glb file: a header of 12 bytes, then the text and the buffer as chunks.
 fn binary(mut text: Vec<u8>, mut buffer: Vec<u8>) -> Result<Vec<u8>, String> {
     text.resize(text.len().next_multiple_of(4), b' ');
     buffer.resize(buffer.len().next_multiple_of(4), 0);
     let length = |bytes: usize| u32::try_from(bytes).map_err(|_large| "it is too large".to_owned());
     let more = if buffer.is_empty() { 0 } else { 8 + buffer.len() };
     let whole = length(12 + 8 + text.len() + more)?;
+    // The header: magic, version 2 and the total length, all little-endian.
     let mut file = Vec::with_capacity(12 + 16 + text.len() + buffer.len());
     file.extend(b"glTF");
     file.extend(2_u32.to_le_bytes());
@@ -121,7 +124,8 @@ fn binary(mut text: Vec<u8>, mut buffer: Vec<u8>) -> Result<Vec<u8>, String> {
 }
 
 impl Writer<'_> {
-    /// A node with a name, if that is not empty; some readers want no two of the same name.
+    /// Makes a node with a unique name, since some readers reject duplicates. An empty name is left
+    /// out.
     pub(super) fn named(&mut self, name: &str) -> Node {
         let name = (!name.is_empty()).then(|| self.names.take(name));
         Node { name, ..Node::default() }

@@ -1,4 +1,4 @@
-//! The buffer of a glTF file, the numbers that point into it, and how numbers are written.
+//! The buffer of a glTF file, the accessors that refer to it, and the conversion of numbers.
 
 use std::collections::HashMap;
 
@@ -8,7 +8,7 @@ use gltf_json::buffer::{Target, View};
 use gltf_json::validation::{Checked, USize64};
 use gltf_json::{Accessor, Index, Root, Value};
 
-/// A number of floats for each vertex, or indices, in the buffer.
+/// The bytes of the buffer: vertex attributes, indices and pictures.
 pub(super) struct Buffer {
     pub(super) bytes: Vec<u8>,
 }
@@ -24,6 +24,7 @@ impl Buffer {
         let start = self.bytes.len();
         self.bytes.extend(bytes);
         let length = self.bytes.len() - start;
+        // glTF requires accessors to be aligned to their component size, at most 4 bytes.
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         root.push(View {
             buffer: Index::new(0),
@@ -70,7 +71,7 @@ impl Buffer {
     }
 }
 
-/// Whether the least and the greatest numbers are told; of positions they have to be.
+/// Whether an accessor states its least and greatest values, which glTF requires for positions.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Limits {
     Told,
@@ -94,18 +95,18 @@ fn accessor(view: Index<View>, count: usize, component: ComponentType, kind: Typ
     }
 }
 
-/// A vertex of glTF, which has all attributes of a corner.
+/// A glTF vertex: one index for all attributes of a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Vertex {
-    /// The point, with the position and the normal.
+    /// The point, which has the position and the normal.
     pub(super) point: u32,
     /// The texture coordinates, or [`marraztu_core::scene::NONE`].
     pub(super) uv: u32,
-    /// The bits of the tangent, all 0 if none is needed.
+    /// The bits of the tangent, all 0 if the look has no normal map.
     pub(super) tangent: [u32; 4],
 }
 
-/// The vertices of a primitive, each once.
+/// The distinct vertices of a primitive.
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
     numbers: HashMap<Vertex, u32>,
@@ -113,7 +114,7 @@ pub(super) struct Vertices {
 }
 
 impl Vertices {
-    /// The number of a vertex.
+    /// Returns the index of a vertex, adding it if it is new.
     pub(super) fn number(&mut self, vertex: Vertex) -> u32 {
         let next = u32::try_from(self.all.len()).unwrap_or(u32::MAX);
         let number = *self.numbers.entry(vertex).or_insert(next);
@@ -128,12 +129,13 @@ pub(super) fn columns(world: &DMat4) -> [f32; 16] {
     world.to_cols_array().map(single)
 }
 
-/// Whether all numbers of a placement are finite as single ones.
+/// Returns whether all entries of a placement are finite as f32.
 pub(super) fn is_single(world: &DMat4) -> bool {
     world.to_cols_array().into_iter().all(|x| x.abs() <= f64::from(f32::MAX))
 }
 
-/// A number of glTF, which is single and finite: infinite ones become the largest.
+/// Rounds a number to f32, the precision of glTF. Infinite values become the largest finite ones,
+/// NaN becomes 0.
 #[expect(clippy::cast_possible_truncation, reason = "numbers of glTF are single")]
 pub(super) const fn single(x: f64) -> f32 {
     if x.is_nan() { 0.0 } else { (x as f32).clamp(f32::MIN, f32::MAX) }

@@ -1,4 +1,4 @@
-//! The cameras and the lights of a scene as glTF has them.
+//! Exports the cameras and lights of a scene to glTF.
 
 use glam::{DMat3, DMat4, DVec3};
 use gltf_json::extensions::scene::khr_lights_punctual as punctual;
@@ -18,8 +18,8 @@ impl Writer<'_> {
     pub(super) fn camera(&mut self, camera: &Camera) {
         let lens = &camera.lens;
         let is_perspective = self.view.projection == Projection::Perspective;
-        // Planes that are one as single numbers are invalid; a picture in perspective needs no far
-        // one.
+        // Near and far planes that are equal as f32 are invalid. A perspective camera may omit the
+        // far plane, so it is dropped then.
         let near = single(lens.near).max(f32::MIN_POSITIVE);
         let perspective = gltf_json::camera::Perspective {
             aspect_ratio: None,
@@ -71,6 +71,7 @@ impl Writer<'_> {
         if all.is_empty() {
             return;
         }
+        // The extension keeps all lights in the root; nodes refer to them by index.
         self.uses("KHR_lights_punctual");
         let mut lights = Vec::new();
         for (i, (light, world)) in (0..).zip(all) {
@@ -85,8 +86,9 @@ impl Writer<'_> {
         self.root.extensions = Some(extensions::root::Root { khr_lights_punctual: Some(of_root) });
     }
 
-    /// A light with its place in the world; `None` if glTF has none of its kind.
+    /// Returns a light and its placement; `None` if glTF has no equivalent.
     fn light(&self, light: &Light) -> Option<(punctual::Light, DMat4)> {
+        // glTF lights shine along -Z of their node.
         let along = |direction: DVec3| {
             math::frame(-direction, DVec3::Y, DMat3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y))
         };
@@ -101,6 +103,7 @@ impl Writer<'_> {
                 (punctual::Type::Point, DMat4::from_translation(at))
             }
             Anchor::Owner(owner) => {
+                // glTF spots do not follow an owner: each is placed where its owner is now.
                 let world = match owner {
                     SpotOwner::SelectedObject => self.object_frame(self.view.object?)?,
                     SpotOwner::Object(id) => self.object_frame(*id)?,
@@ -120,7 +123,7 @@ impl Writer<'_> {
         let spot = (kind == punctual::Type::Spot).then(|| {
             let half_aperture = (HALF_APERTURE.get)(&light.kind).unwrap_or(HALF_APERTURE.largest);
             let outer_cone_angle = single(half_aperture.to_radians());
-            // The angle is above 0 and at most pi/2, which the nearest single number exceeds.
+            // The angle must be above 0 and at most pi/2, but the nearest f32 exceeds pi/2.
             let widest = std::f32::consts::FRAC_PI_2.next_down();
             let outer_cone_angle = outer_cone_angle.clamp(f32::MIN_POSITIVE, widest);
             punctual::Spot { inner_cone_angle: 0.0, outer_cone_angle }
@@ -144,7 +147,7 @@ impl Writer<'_> {
         Some((light, world))
     }
 
-    /// The frame of an object that a spot shines from.
+    /// Returns the frame of an object that a spot shines from.
     fn object_frame(&self, id: ObjectId) -> Option<DMat4> {
         let world = self.scene.objects.get(id)?.world_from_object(self.view.time);
         let turn = DMat3::from_mat4(world);
@@ -152,8 +155,8 @@ impl Writer<'_> {
         Some(math::placed(axes, world.w_axis.truncate()))
     }
 
-    /// The intensity with which a lamp that fades with the square of the distance lights the middle
-    /// of the scene as this one does.
+    /// Returns the intensity with which a light with inverse-square falloff lights the middle of
+    /// the scene as brightly as this one.
     fn candela(&self, fades: &Attenuation, at: DVec3) -> f32 {
         let objects = self.scene.objects.iter().filter(|(_, object)| object.visible);
         let centres = objects.map(|(_, object)| object.centre(self.view.time));

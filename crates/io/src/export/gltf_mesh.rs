@@ -1,7 +1,7 @@
-//! The objects of a scene as nodes and meshes of glTF.
+//! Exports the objects of a scene as glTF nodes and meshes.
 //!
-//! An object is a node with its placement. If its file has several objects or groups, each is a
-//! node below it; levels that would hold one node of the same name are left out.
+//! An object becomes a node with its placement. If its file has several objects or groups, each
+//! becomes a child node. A level that would hold a single node of the same name is left out.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -19,11 +19,11 @@ use super::look::{has_colors, polygons};
 use marraztu_core::base::math;
 use marraztu_core::scene::{MapKind, Mesh, NONE, NormalSource, Object, dvec3};
 
-/// The largest scale of a placement that is written as a matrix: its entries are then exact to
+/// The largest scale of a placement that is written as a matrix: its entries are then accurate to
 /// 1e-6.
 const LARGEST_IN_MATRIX: f64 = 10.0;
 
-/// A name from the file; `None` if it gives none.
+/// A name from the file; `None` if the file gives no name.
 type Name<'a> = Option<&'a str>;
 
 /// The meshes of an object of a file, each with its group.
@@ -35,7 +35,7 @@ struct Sorted<'a> {
     /// The objects and groups of the file, in the order of their first faces.
     pieces: Vec<(Name<'a>, Name<'a>)>,
     numbers: HashMap<(Name<'a>, Name<'a>), usize>,
-    /// The piece and the look of each part, once a face has needed them.
+    /// The piece and the look of each part, filled in when a face uses it.
     parts: HashMap<u32, (usize, usize)>,
     polygons: BTreeMap<(usize, usize), Vec<u32>>,
 }
@@ -43,8 +43,8 @@ struct Sorted<'a> {
 impl Writer<'_> {
     pub(super) fn object(&mut self, object: &Object) {
         let world = object.world_from_mesh(self.view.time);
-        // A matrix of glTF has to be a product of moving, turning and scaling: others go into the
-        // positions.
+        // A glTF matrix must be a product of translation, rotation and scale. Other placements are
+        // baked into the positions.
         let baked = if is_product(&world) { DMat4::IDENTITY } else { world };
         let objects = self.meshes(object, &baked);
         let node = match &objects[..] {
@@ -53,7 +53,7 @@ impl Writer<'_> {
                 self.named(&object.name)
             }
             [(name, groups)] => {
-                // The name that the user gave it replaces that of the file's only object.
+                // A name from the user replaces the name of the file's only object.
                 let only = match &groups[..] {
                     [(group, _)] if name.is_none() => *group,
                     _ => *name,
@@ -81,7 +81,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The node of an object of a file, with the nodes of its groups below it.
+    /// Makes the node of an object of a file, with child nodes for its groups.
     fn file_object(&mut self, name: &str, groups: &[(Name<'_>, Index<gltf_json::Mesh>)]) -> Node {
         let mut node = self.named(name);
         let mut children = Vec::new();
@@ -98,8 +98,9 @@ impl Writer<'_> {
         Node { children: Some(children).filter(|list| !list.is_empty()), ..node }
     }
 
-    /// The meshes of an object, by the objects and groups of its file.
+    /// Writes the meshes of an object, by the objects and groups of its file.
     fn meshes<'a>(&mut self, object: &'a Object, baked: &DMat4) -> Vec<(Name<'a>, Groups<'a>)> {
+        // One primitive per piece and look, since a primitive has one material.
         let Sorted { pieces, polygons, .. } = self.sorted(object);
         let mut by_piece: Vec<Vec<Primitive>> = pieces.iter().map(|_| Vec::new()).collect();
         for ((piece, look), polygons) in polygons {
@@ -134,6 +135,7 @@ impl Writer<'_> {
         for polygon in polygons(object) {
             let part = mesh.polygon_parts()[polygon as usize];
             let Sorted { pieces, numbers, parts, .. } = &mut sorted;
+            // Looks are expensive to build, so each part is resolved once.
             let key = *parts.entry(part).or_insert_with(|| {
                 let names = mesh.part_names(part);
                 let names = (names.object.as_deref(), names.group.as_deref());
@@ -148,7 +150,7 @@ impl Writer<'_> {
         sorted
     }
 
-    /// The triangles of some polygons of one look.
+    /// Writes the triangles of polygons that share a look.
     fn primitive(
         &mut self,
         object: &Object,
@@ -160,8 +162,9 @@ impl Writer<'_> {
         let is_mirrored = DMat3::from_mat4(*baked).determinant() < 0.0;
         let is_bumpy = self.looks.all[look].map(MapKind::Normal).is_some();
         let source = if object.file_normals { NormalSource::File } else { NormalSource::Computed };
-        // Readers differ in the tangents that they would compute for a map of normals.
+        // Readers would compute different tangents for a normal map, so ours are written.
         let tangents = is_bumpy.then(|| mesh.tangents(source));
+        // Corners become vertices: glTF has one index for all attributes.
         let mut vertices = Vertices::default();
         let mut indices = Vec::new();
         for triangle in polygons.iter().flat_map(|polygon| mesh.triangles_of(*polygon)) {
@@ -173,6 +176,7 @@ impl Writer<'_> {
                     tangent: tangents.map_or([0; 4], |all| all[triangle][i].map(f32::to_bits)),
                 })
             });
+            // A baked mirror reverses the winding, which would swap front and back.
             if is_mirrored {
                 corners.reverse();
             }
@@ -181,6 +185,7 @@ impl Writer<'_> {
         if indices.is_empty() {
             return None;
         }
+        // Attributes that the look does not need are left out.
         let layouts = layouts(&self.looks.all[look]);
         let (root, buffer) = (&mut self.root, &mut self.buffer);
         let mut attributes = BTreeMap::new();
@@ -202,7 +207,7 @@ impl Writer<'_> {
             let uvs: Vec<_> = vertices.all.iter().map(|it| layout.laid(uv(it))).collect();
             put(Semantic::TexCoords(i), buffer.floats(root, &uvs, Limits::LeftOut));
         }
-        // Texture coordinates that nothing uses here may be of use elsewhere.
+        // Unused texture coordinates are kept for other programs.
         if layouts.is_empty() && vertices.all.iter().any(|it| it.uv != NONE) {
             let plain = Layout::default();
             let uvs: Vec<_> = vertices.all.iter().map(|it| plain.laid(uv(it))).collect();
@@ -226,7 +231,7 @@ impl Writer<'_> {
     }
 }
 
-/// A position in the space of the node.
+/// Returns a position in the space of the node.
 fn placed(baked: &DMat4, mesh: &Mesh, position: u32) -> [f32; 3] {
     let position = mesh.positions()[position as usize];
     if *baked == DMat4::IDENTITY {
@@ -235,7 +240,7 @@ fn placed(baked: &DMat4, mesh: &Mesh, position: u32) -> [f32; 3] {
     single3(baked.transform_point3(dvec3(position)))
 }
 
-/// A normal in the space of the node, of length 1.
+/// Returns a unit normal in the space of the node.
 fn turned(baked: &DMat4, normal: [f32; 3]) -> [f32; 3] {
     let own = dvec3(normal);
     if *baked == DMat4::IDENTITY && (own.length_squared() - 1.0).abs() < 1e-4 {
@@ -245,8 +250,8 @@ fn turned(baked: &DMat4, normal: [f32; 3]) -> [f32; 3] {
     single3(math::unit(placed).or_else(|| math::unit(own)).unwrap_or(DVec3::Y))
 }
 
-/// A tangent in the space of the node, of length 1, with the sign of the bitangent; any one across
-/// the normal if texture coordinates give none.
+/// Returns a unit tangent in the space of the node, with the sign of the bitangent. If the texture
+/// coordinates define no tangent, it is any direction orthogonal to the normal.
 fn tangent(baked: &DMat4, [x, y, z, sign]: [f32; 4], normal: [f32; 3]) -> [f32; 4] {
     let turn = DMat3::from_mat4(*baked);
     let placed = math::unit(turn * dvec3([x, y, z]));
@@ -255,17 +260,20 @@ fn tangent(baked: &DMat4, [x, y, z, sign]: [f32; 4], normal: [f32; 3]) -> [f32; 
     [x, y, z, if turn.determinant() < 0.0 { -sign } else { sign }]
 }
 
-/// A node with a placement: a matrix, or its factors if it enlarges, since a matrix of large single
-/// numbers is no longer a product of moving, turning and scaling.
+/// Adds a placement to a node: as a matrix, or as its factors if a scale is above
+/// [`LARGEST_IN_MATRIX`]. A matrix with large f32 entries is no longer an exact product of
+/// translation, rotation and scale.
 fn with_placement(node: Node, world: &DMat4) -> Node {
     if *world == DMat4::IDENTITY {
         return node;
     }
     let turn = DMat3::from_mat4(*world);
+    // Readers decompose a matrix, which loses precision in large entries.
     let lengths = [turn.x_axis, turn.y_axis, turn.z_axis].map(DVec3::length);
     if lengths.into_iter().all(|length| length <= LARGEST_IN_MATRIX) {
         return Node { matrix: Some(columns(world)), ..node };
     }
+    // A rotation cannot mirror, so one scale takes the sign.
     let mirror = if turn.determinant() < 0.0 { -1.0 } else { 1.0 };
     let scale = DVec3::new(mirror * lengths[0], lengths[1], lengths[2]);
     let axes = turn * DMat3::from_diagonal(scale.recip());
@@ -278,7 +286,8 @@ fn with_placement(node: Node, world: &DMat4) -> Node {
     }
 }
 
-/// Whether a placement is a product of moving, turning and scaling, within the precision of f32.
+/// Returns whether a placement is a product of translation, rotation and scale, within f32
+/// precision.
 fn is_product(world: &DMat4) -> bool {
     let turn = DMat3::from_mat4(*world);
     let axes = [turn.x_axis, turn.y_axis, turn.z_axis];

@@ -1,4 +1,4 @@
-//! Phong's materials as those of glTF.
+//! Converts Phong materials to glTF materials.
 
 use gltf_json::material::{AlphaCutoff, AlphaMode, PbrBaseColorFactor, StrengthFactor};
 use gltf_json::validation::Checked;
@@ -12,7 +12,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::scene::{MapKind, Texture};
 
 impl Writer<'_> {
-    /// Writes the materials, and the textures that they need.
+    /// Writes the materials and the textures that they use.
     pub(super) fn materials(&mut self) -> Result<(), String> {
         let mut textures = Textures::default();
         let looks = std::mem::take(&mut self.looks.all);
@@ -34,7 +34,8 @@ impl Writer<'_> {
     }
 }
 
-/// Whether a look has maps that glTF does not have. Ambient light shows the texture anyway.
+/// Returns whether a look has maps that glTF lacks. An ambient map that equals the texture is not a
+/// loss: ambient light shows the texture anyway.
 fn loses_maps(look: &Look) -> bool {
     look.maps.iter().any(|(kind, map)| match kind {
         MapKind::Specular | MapKind::Exponent => true,
@@ -47,7 +48,7 @@ fn loses_maps(look: &Look) -> bool {
     })
 }
 
-/// A material: Phong's as metallic roughness.
+/// Converts a Phong material to metallic roughness.
 fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
     let Infos { base, emission, normal, cover } = infos;
     let normal_texture = normal.map(|info| material::NormalTexture {
@@ -58,12 +59,14 @@ fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
         extras: Default::default(),
     });
     let [r, g, b] = look.base.map(linear);
+    // Most readers sort blended surfaces, so blending is used only for partial alpha.
     let alpha_mode = match cover {
         _ if look.opacity < 1.0 => AlphaMode::Blend,
         Cover::Fades => AlphaMode::Blend,
         Cover::Holes => AlphaMode::Mask,
         Cover::Whole => AlphaMode::Opaque,
     };
+    // glTF limits emission to 1; brighter light goes into the strength extension.
     let strength = strength(look);
     let emissive = look.material.emission.map(|x| unclamped(x) / strength.unwrap_or(1.0));
     let extensions = extensions::material::Material {
@@ -72,6 +75,7 @@ fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
             emissive_strength: extensions::material::EmissiveStrengthFactor(single(strength)),
         }),
     };
+    // Roughness and metalness from the file take precedence over the derived ones.
     let exponent = roughness(look.material.exponent);
     let metallic = look.undrawn("Pm").unwrap_or(0.0);
     gltf_json::Material {
@@ -94,28 +98,28 @@ fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
     }
 }
 
-/// How many times brighter than white a surface shines, if it is brighter.
+/// Returns the brightness of an emission brighter than white, as a multiple of white.
 fn strength(look: &Look) -> Option<f64> {
     let most = look.material.emission.into_iter().map(unclamped).fold(0.0, f64::max);
     (most > 1.0 && !look.unlit).then_some(most)
 }
 
-/// The roughness for a highlight with Phong's exponent.
+/// Returns the roughness that matches a Phong exponent.
 fn roughness(exponent: f64) -> f64 {
     libm::pow(2.0 / (4.0 * exponent.max(0.0) + 2.0), 0.25)
 }
 
-/// A factor from 0 to 1; NaN counts as 1.
+/// Clamps a factor to 0..=1; NaN counts as 1.
 fn factor(x: f64) -> f32 {
     if x < 1.0 { single(x.max(0.0)) } else { 1.0 }
 }
 
-/// A display value as linear light (IEC 61966-2-1).
+/// Converts a display value to linear light (IEC 61966-2-1).
 pub(super) fn linear(display: f64) -> f32 {
     single(unclamped(display.min(1.0)))
 }
 
-/// As [`linear`], with values brighter than white.
+/// Converts like [`linear`], but keeps values brighter than white.
 fn unclamped(display: f64) -> f64 {
     let s = display.max(0.0);
     if s <= 0.04045 { s / 12.92 } else { libm::pow((s + 0.055) / 1.055, 2.4) }

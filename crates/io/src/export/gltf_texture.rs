@@ -1,8 +1,9 @@
-//! The textures of glTF, and how they are laid over a surface.
+//! The textures of glTF, and their mapping onto surfaces.
 //!
-//! glTF has the opacity of a surface in the alpha of its texture, so a map of opacity is merged
-//! into the texture. Offset and scale go into the texture coordinates, and maps that are laid out
-//! differently get several sets of them: more readers know sets than the extension for transforms.
+//! glTF stores the opacity of a surface in the alpha of its texture, so an opacity map is merged
+//! into the texture. Offset and scale are applied to the texture coordinates. Maps with different
+//! layouts get several sets of coordinates, because more readers support sets than the extension
+//! for transforms.
 
 use std::collections::HashMap;
 
@@ -17,10 +18,10 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{MapKind, Texture, Wrap};
 
-/// The most texels of a texture that is made of two of different sizes.
+/// The most texels of a texture that is merged from two of different sizes.
 const MOST_TEXELS: usize = 1 << 26;
 
-/// How a texture is laid over a surface.
+/// The offset and scale of a texture on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Layout {
     offset: [f64; 2],
@@ -38,14 +39,14 @@ impl Layout {
         Self { offset: texture.offset, scale: texture.scale }
     }
 
-    /// Texture coordinates with (0, 0) at the upper left.
+    /// Returns texture coordinates with (0, 0) at the upper left.
     pub(super) fn laid(&self, [u, v]: [f32; 2]) -> [f32; 2] {
         let along = |x: f32, i: usize| f64::from(x) * self.scale[i] + self.offset[i];
         [single(along(u, 0)), single(1.0 - along(v, 1))]
     }
 }
 
-/// The layouts of a look's textures; the texture coordinates of a vertex are in this order.
+/// Returns the layouts of a look's textures, in the order of a vertex's texture coordinates.
 pub(super) fn layouts(look: &Look) -> Vec<Layout> {
     let map = |kind| look.map(kind).map(|map| &map.texture);
     let base = look.texture.as_ref().or_else(|| map(MapKind::Opacity));
@@ -62,22 +63,22 @@ pub(super) fn layouts(look: &Look) -> Vec<Layout> {
 /// The textures of one look.
 #[derive(Debug)]
 pub(super) struct Infos {
-    /// Its colour, with its opacity as alpha.
+    /// The colour, with the opacity as alpha.
     pub(super) base: Option<texture::Info>,
     pub(super) emission: Option<texture::Info>,
     pub(super) normal: Option<texture::Info>,
-    /// How much the alpha of `base` leaves of the surface.
+    /// The effect of the alpha of `base`.
     pub(super) cover: Cover,
 }
 
-/// What the alpha of a texture does.
+/// The effect of a texture's alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Cover {
-    /// Nothing.
+    /// No effect: alpha is 255 everywhere.
     Whole,
-    /// It cuts holes.
+    /// Alpha cuts holes.
     Holes,
-    /// It fades.
+    /// Alpha fades smoothly.
     Fades,
 }
 
@@ -89,11 +90,11 @@ pub(super) struct Textures {
     names: Vec<String>,
     textures: HashMap<(usize, Wrap), Index<gltf_json::Texture>>,
     samplers: HashMap<Wrap, Index<texture::Sampler>>,
-    /// Textures with their maps of opacity, by both.
+    /// Textures merged with opacity maps, by both keys.
     merged: HashMap<[Option<TextureKey>; 2], Shared<Texture>>,
 }
 
-/// The picture and the layout of a texture.
+/// The picture, wrapping and layout of a texture.
 type TextureKey = (usize, Wrap, [u64; 4]);
 
 fn key(texture: &Texture) -> TextureKey {
@@ -103,11 +104,12 @@ fn key(texture: &Texture) -> TextureKey {
 }
 
 impl Writer<'_> {
-    /// The textures of a look.
+    /// Writes the textures of a look.
     pub(super) fn infos(&mut self, textures: &mut Textures, look: &Look) -> Infos {
         let layouts = layouts(look);
         let opacity = look.map(MapKind::Opacity).map(|map| &map.texture);
         let base = textures.with_opacity(look.texture.as_ref(), opacity);
+        // Blending is needed only if alpha has values between 0 and 255.
         let fades = look.texture.as_ref().is_some_and(|it| it.picture.has_partial_alpha())
             || opacity.is_some_and(|it| it.picture.fades());
         let cover = match &base {
@@ -134,12 +136,14 @@ impl Writer<'_> {
         textures: &mut Textures,
         of: &Shared<Texture>,
     ) -> Index<gltf_json::Texture> {
+        // A new picture also gets a name.
         let number = textures.pictures.number(&of.picture);
         if number == textures.names.len() {
             let stem = of.source.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             textures.names.push(stem);
         }
         let root = &mut self.root;
+        // Textures are shared by picture and wrapping: the layout is in the coordinates.
         *textures.textures.entry((number, of.wrap)).or_insert_with(|| {
             let sampler = textures.samplers.entry(of.wrap);
             let sampler = *sampler.or_insert_with(|| root.push(sampler_of(of.wrap)));
@@ -153,7 +157,7 @@ impl Writer<'_> {
         })
     }
 
-    /// Writes the pictures.
+    /// Writes the pictures into the buffer.
     pub(super) fn images(&mut self, textures: Textures) -> Result<(), String> {
         let Textures { pictures, names, .. } = textures;
         for (bytes, name) in pictures.encoded()?.into_iter().zip(names) {
@@ -186,7 +190,7 @@ fn sampler_of(wrap: Wrap) -> texture::Sampler {
 }
 
 impl Textures {
-    /// A texture with a map of opacity in its alpha; white if there is a map alone.
+    /// Merges an opacity map into the alpha of a texture, or of white if there is only a map.
     fn with_opacity(
         &mut self,
         texture: Option<&Shared<Texture>>,
@@ -205,8 +209,8 @@ impl Textures {
     }
 }
 
-/// A texture whose alpha is multiplied by a map of opacity: by its alpha, or by its brightness if
-/// all of it is opaque. The larger picture gives the size.
+/// Multiplies a texture's alpha by an opacity map: by its alpha, or by its luminance if the map is
+/// opaque. The result has the larger width and height, up to [`MOST_TEXELS`].
 fn merged_texture(texture: Option<&Shared<Texture>>, map: &Texture) -> Texture {
     let by_brightness = map.picture.least_alpha() == 255;
     let opacity = |[r, g, b, alpha]: [f64; 4]| {
@@ -217,6 +221,7 @@ fn merged_texture(texture: Option<&Shared<Texture>>, map: &Texture) -> Texture {
         let pixels = map.picture.pixels().iter().map(white).collect();
         return with_pixels(map, map.picture.size(), pixels);
     };
+    // The pictures may differ in size and layout, so both are sampled at the same surface point.
     let (own, other) = (texture.picture.size(), map.picture.size());
     let larger = Size::new(own.width.max(other.width), own.height.max(other.height));
     let size = if larger.area() <= MOST_TEXELS { larger } else { own };
@@ -238,13 +243,13 @@ fn with_pixels(like: &Texture, size: Size, pixels: Vec<[u8; 4]>) -> Texture {
     Texture { picture: Shared::new(picture), ..like.clone() }
 }
 
-/// The middle of a texel, from 0 to 1.
+/// Returns the centre of a texel, from 0 to 1.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer rows than 2^52")]
 fn middle(i: usize, count: usize) -> f64 {
     (i as f64 + 0.5) / count as f64
 }
 
-/// The coordinates in a map at the place of the surface that has these coordinates in a texture.
+/// Converts coordinates in a texture to coordinates in a map at the same point of the surface.
 fn moved(texture: &Texture, map: &Texture, at: [f64; 2]) -> [f64; 2] {
     std::array::from_fn(|i| {
         if texture.scale[i] == map.scale[i] || texture.scale[i] == 0.0 {
@@ -254,11 +259,12 @@ fn moved(texture: &Texture, map: &Texture, at: [f64; 2]) -> [f64; 2] {
     })
 }
 
-/// A picture between its four nearest texels; (0, 0) is its lower left corner.
+/// Samples a picture with bilinear filtering; (0, 0) is its lower left corner.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer rows than 2^52")]
 fn sample(picture: &Picture, wrap: Wrap, [u, v]: [f64; 2]) -> [f64; 4] {
     let size = picture.size();
+    // Texel centres are at half integers.
     let along = |x: f64, count: usize| {
         let (x, count) = (x * count as f64 - 0.5, count as f64);
         let texel = |x: f64| match wrap {

@@ -1,7 +1,7 @@
-//! The materials of an export: how the parts of objects look, each look once.
+//! The materials of an export: the distinct looks of the parts of objects.
 //!
-//! A look is found by a key of its name and numbers and of the addresses of its pictures, in
-//! constant time: scenes have up to a hundred thousand materials.
+//! Looks are deduplicated by a hash of their name, their numbers and the addresses of their
+//! pictures. The lookup takes constant time: scenes have up to a hundred thousand materials.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -16,49 +16,50 @@ use marraztu_core::scene::{
     Texture, Undrawn, Wrap,
 };
 
-/// How a part of an object looks.
+/// The look of a part of an object.
 #[derive(Clone, Debug)]
 pub(super) struct Look {
-    /// Its name, which no other look has.
+    /// A unique name.
     pub(super) name: String,
-    /// Its coefficients; the tint is multiplied into Ka and Kd.
+    /// The coefficients. The tint is multiplied into Ka and Kd.
     pub(super) material: Material,
-    /// The colour that texture and vertex colours are multiplied by: Kd, or white if the file names
-    /// no material.
+    /// The colour that multiplies texture and vertex colours: Kd, or white if the file names no
+    /// material.
     pub(super) base: [f64; 3],
     pub(super) opacity: f64,
     pub(super) texture: Option<Shared<Texture>>,
     pub(super) two_sided: bool,
-    /// Whether Kd and texture are shown without light.
+    /// Whether Kd and texture are shown without lighting.
     pub(super) unlit: bool,
-    /// Its maps beside the texture, with the factor of heights.
+    /// All maps except the texture, with their height factor.
     pub(super) maps: Vec<(MapKind, SurfaceMap)>,
-    /// Numbers of the file's material that are not drawn here.
+    /// Numbers of the file's material that this program does not draw.
     pub(super) undrawn: Undrawn,
 }
 
 impl Look {
-    /// The map of a kind.
+    /// Returns the map of a kind.
     pub(super) fn map(&self, kind: MapKind) -> Option<&SurfaceMap> {
         self.maps.iter().find(|(other, _)| *other == kind).map(|(_, map)| map)
     }
 
-    /// A number that is not drawn.
+    /// Returns a number that this program does not draw.
     pub(super) fn undrawn(&self, keyword: &str) -> Option<f64> {
         self.undrawn.get(keyword)?.first().copied()
     }
 }
 
-/// The materials that a format distinguishes.
+/// The level of detail at which a format distinguishes materials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Detail {
-    /// MTL knows nothing of the sides of faces.
+    /// MTL does not store whether faces are two-sided.
     Mtl,
-    /// A material of glTF has sides, and no texture if the mesh has no texture coordinates.
+    /// glTF materials may be two-sided, and lose their textures on a mesh without texture
+    /// coordinates.
     Gltf,
 }
 
-/// All looks of a scene, each once.
+/// The distinct looks of a scene.
 #[derive(Debug)]
 pub(super) struct Looks {
     pub(super) all: Vec<Look>,
@@ -77,12 +78,13 @@ struct Key {
 }
 
 impl Key {
-    /// The key of a look with the name that it should have.
+    /// Returns the key of a look, with its wanted name.
     fn of(look: &Look) -> Self {
         let Material { ambient, diffuse, specular, exponent, emission } = look.material;
         let colors = [ambient, diffuse, specular, emission, look.base];
         let flags = u64::from(look.two_sided) | u64::from(look.unlit) << 1;
         let numbers = colors.into_iter().flatten().chain([exponent, look.opacity]);
+        // Bits instead of floats make the key hashable and exact.
         let map = |kind, Texture { picture, wrap, offset, scale, .. }: &Texture, gain: f64| {
             let bits = [offset[0], offset[1], scale[0], scale[1], gain].map(f64::to_bits);
             (kind, Shared::address(picture), *wrap, bits)
@@ -104,15 +106,15 @@ impl Looks {
         Self { all: Vec::new(), numbers: HashMap::new(), names: Names::default(), detail }
     }
 
-    /// The number of the look of a part.
+    /// Returns the index of a part's look.
     pub(super) fn of_part(&mut self, object: &Object, part: u32) -> usize {
         let file = file_material(object, part);
         let asked = object.model.mesh.part_names(part).material.as_deref();
         self.number(object, file, asked)
     }
 
-    /// Adds the looks of all materials of the object's file, in their order, except for those that
-    /// only hidden parts have.
+    /// Adds the looks of all materials of the object's file, in order. Materials that only hidden
+    /// parts use are skipped.
     pub(super) fn add_file(&mut self, object: &Object) {
         if object.material != MaterialChoice::File {
             return;
@@ -145,8 +147,9 @@ impl Looks {
         })
     }
 
-    /// A look, with the name that it should have.
+    /// Builds a look with its wanted name.
     fn look(&self, object: &Object, file: Option<&FileMaterial>, asked: Option<&str>) -> Look {
+        // The material as drawn: the object's choice overrides the file's.
         let shown = object.material_look(file);
         let of_file = object.material == MaterialChoice::File;
         let is_bare = object.surface == Surface::Texture;
@@ -154,10 +157,12 @@ impl Looks {
         let mut material = shown.material;
         material.ambient = std::array::from_fn(|i| material.ambient[i] * tint[i]);
         material.diffuse = std::array::from_fn(|i| material.diffuse[i] * tint[i]);
+        // A texture shown without light replaces all shading.
         if is_bare {
             (material.diffuse, material.specular) = (tint, [0.0; 3]);
             material.emission = [0.0; 3];
         }
+        // glTF ties textures to texture coordinates; MTL can name them anyway.
         let mesh = &object.model.mesh;
         let is_mapped = self.detail == Detail::Mtl || !mesh.uvs().is_empty();
         let texture = shown.texture.filter(|_| is_mapped).cloned();
@@ -181,7 +186,8 @@ impl Looks {
     }
 }
 
-/// The name of a material: its own, that of the preset, or, if the user made it, the object's.
+/// Returns the name of a material: the file's, the preset's or, for a custom material, the
+/// object's.
 fn wanted_name<'a>(
     object: &'a Object,
     file: Option<&'a FileMaterial>,
@@ -197,29 +203,29 @@ fn wanted_name<'a>(
     }
 }
 
-/// The material of the file that a part has.
+/// Returns the file's material of a part.
 pub(super) fn file_material(object: &Object, part: u32) -> Option<&FileMaterial> {
     let place = object.model.mesh.parts().get(part as usize)?.material?;
     object.model.materials.get(place as usize)
 }
 
-/// The colour that the surface of an object is multiplied by.
+/// Returns the colour that multiplies the surface of an object.
 pub(super) fn tint(object: &Object) -> [f64; 3] {
     if object.surface == Surface::Material { [1.0; 3] } else { object.tint.factors() }
 }
 
-/// Whether the colours of its vertices are shown.
+/// Returns whether an object shows its vertex colours.
 pub(super) fn has_colors(object: &Object) -> bool {
     object.surface != Surface::Material && !object.model.mesh.colors().is_empty()
 }
 
-/// The polygons of an object that are exported.
+/// Returns the polygons of an object that are exported.
 pub(super) fn polygons(object: &Object) -> impl Iterator<Item = u32> {
     let parts = object.model.mesh.polygon_parts();
     (0..).zip(parts).filter(|(_, part)| !object.hidden_parts.contains(part)).map(|(i, _)| i)
 }
 
-/// The pictures of an export, each once, whatever number of textures share it.
+/// The distinct pictures of an export, shared among textures.
 #[derive(Debug, Default)]
 pub(super) struct Pictures {
     pub(super) all: Vec<Shared<Picture>>,
@@ -227,7 +233,7 @@ pub(super) struct Pictures {
 }
 
 impl Pictures {
-    /// The number of a picture, from 0.
+    /// Returns the index of a picture, adding it if it is new.
     pub(super) fn number(&mut self, picture: &Shared<Picture>) -> usize {
         *self.numbers.entry(Shared::address(picture)).or_insert_with(|| {
             self.all.push(picture.clone());
@@ -235,7 +241,7 @@ impl Pictures {
         })
     }
 
-    /// The pictures as PNG, in the order of their numbers.
+    /// Encodes the pictures as PNG, in index order.
     pub(super) fn encoded(&self) -> Result<Vec<Vec<u8>>, String> {
         self.all.par_iter().map(|picture| PICTURE_FORMATS[0].encode(picture)).collect()
     }

@@ -1,7 +1,6 @@
 //! Exports a scene for other programs: as OBJ with MTL, or as glTF.
 //!
-//! Everything visible is exported: objects that are hidden, and hidden parts, are left out. What a
-//! format cannot say is told in notes.
+//! Only visible objects and parts are exported. Features that a format lacks are listed as notes.
 
 mod companion;
 mod gltf;
@@ -22,30 +21,30 @@ use super::replace::{SaveError, Worth, check_target, replace};
 use super::sources::Sources;
 use marraztu_core::scene::{Scene, View};
 
-/// The first line of the texts that are exported. A companion file that begins with it was written
-/// by this program and may be replaced.
+/// The first line of exported text files. A companion file that begins with it was written by this
+/// program and may be replaced.
 const SIGNATURE: &str = "# exported by Marraztu\n";
 
-/// The endings of the formats, without the dot.
+/// The extensions of the formats, without the dot.
 pub const EXPORT_ENDINGS: [&str; 3] = ["obj", "gltf", "glb"];
 
-/// What was exported.
+/// The result of an export.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Exported {
     /// The files that were written.
     pub files: Vec<PathBuf>,
-    /// What the format does not say as the scene does, a sentence each.
+    /// Differences from the scene that the format forces, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// The files of an export, in memory: their names and their bytes, the main one last.
+/// The files of an export in memory, with their names; the main file is last.
 #[derive(Debug, Default)]
 struct Content {
     files: Vec<(String, Vec<u8>)>,
     notes: Vec<String>,
 }
 
-/// A format.
+/// An export format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     Obj,
@@ -67,22 +66,23 @@ impl Format {
     }
 }
 
-/// Checks whether a scene could be exported to `path`.
+/// Checks whether a scene can be exported to `path`.
 ///
 /// # Errors
-/// If it could not.
+/// If it cannot.
 pub fn check_export_target(path: &Path) -> Result<(), SaveError> {
     Format::of(path)?;
     check_target(path)
 }
 
-/// Exports the scene in the format of the name's ending, at the time of the view. Further files
-/// (materials, textures, the buffer of .gltf) are written next to it, under names that begin alike.
+/// Exports the scene in the format of the path's extension, at the time of the view. Companion
+/// files (materials, textures, the buffer of .gltf) are written next to it, under names that begin
+/// alike.
 ///
 /// # Errors
 /// If a file cannot be written, is one of `sources`, or has the name of a companion file but was
 /// not written by an earlier export. Everything is checked before the first file is written, and
-/// the main one is written last.
+/// the main file is written last.
 pub fn export(
     path: &Path,
     scene: &Scene,
@@ -103,11 +103,13 @@ pub fn export(
     };
     let Content { files, notes } = content.map_err(|reason| SaveError::new(path, reason))?;
     let notes = left_out.into_iter().chain(notes).collect();
+    // The main file keeps the user's name; companions are placed next to it.
     let last = files.len().saturating_sub(1);
     let named = |(i, (name, bytes)): (usize, (String, Vec<u8>))| {
         (if i == last { path.to_owned() } else { path.with_file_name(name) }, bytes)
     };
     let files: Vec<(PathBuf, Vec<u8>)> = files.into_iter().enumerate().map(named).collect();
+    // Check every companion before the first write: a refused export leaves no files.
     for (companion, _) in &files[..last] {
         sources.spare(companion)?;
         check_companion(companion, path)?;
@@ -120,7 +122,7 @@ pub fn export(
     Ok(exported)
 }
 
-/// A name in a URI: everything but letters, digits, `-`, `_` and `.` as percent and digits.
+/// Percent-encodes a name for a URI: all but letters, digits, `-`, `_` and `.`.
 fn escaped(name: &str) -> String {
     let byte = |byte: u8| match byte {
         b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' => {

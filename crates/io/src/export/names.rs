@@ -1,20 +1,20 @@
-//! Names in exported files: on one line, and each only once.
+//! Makes names of exported files unique and puts them on one line.
 //!
-//! Readers merge materials and objects of OBJ that have the same name, and some readers of glTF
-//! lose nodes that do. Repeated names are numbered as Blender does: `Paint`, `Paint.001`.
+//! OBJ readers merge materials and objects of the same name, and some glTF readers lose such nodes.
+//! Duplicates are numbered as in Blender: `Paint`, `Paint.001`.
 
 use std::collections::{HashMap, HashSet};
 
-/// The names given so far.
+/// The names in use.
 #[derive(Debug, Default)]
 pub(super) struct Names {
     taken: HashSet<String>,
-    /// The last number of each repeated name, so that a thousand equal names take one try each.
+    /// The last number of each repeated name, so a thousand equal names take one try each.
     numbers: HashMap<String, u32>,
 }
 
 impl Names {
-    /// `wanted`, with a number if it is taken.
+    /// Takes `wanted`, with a number if the name is in use.
     pub(super) fn take(&mut self, wanted: &str) -> String {
         if self.taken.insert(wanted.to_owned()) {
             return wanted.to_owned();
@@ -30,8 +30,8 @@ impl Names {
     }
 }
 
-/// A name as a statement of OBJ or MTL can hold it. Readers take a `#` between blanks for a
-/// comment, and a `\` at the end for a line that goes on; names from files have neither.
+/// Makes a name fit into an OBJ or MTL statement. Readers take a `#` between blanks for a comment,
+/// and a trailing `\` for a continuation; names from files contain neither.
 pub(super) fn on_one_line(name: &str) -> String {
     let name: Vec<char> = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let is_blank =
@@ -48,8 +48,8 @@ pub(super) fn on_one_line(name: &str) -> String {
     }
 }
 
-/// The beginning of the names of the files that a statement of OBJ or MTL names: a ` -` in them
-/// would be an option.
+/// Returns the prefix for names of files that OBJ or MTL statements refer to. A ` -` in such a name
+/// would be read as an option.
 pub(super) fn companion(stem: &str) -> String {
     let name = on_one_line(stem).replace(" -", " _");
     match name.strip_prefix('-') {

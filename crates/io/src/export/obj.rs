@@ -1,10 +1,10 @@
 //! Exports a scene as OBJ with MTL.
 //!
-//! Positions are those of the world, since the format knows no placement; polygons keep their
-//! corners, and a mirrored object has them in the opposite order, so its front stays its front. If
-//! an object is not moved, its numbers are those of its file, bit for bit.
+//! Positions are in world space, since the format has no transforms. Polygons keep their corners; a
+//! mirrored object gets them in reverse order, which keeps its front faces in front. The numbers of
+//! an object with the identity transform equal those of its file, bit for bit.
 //!
-//! The statements `o`, `g` and `usemtl` of a file come back as they were ([`called`]).
+//! The statements `o`, `g` and `usemtl` of a file survive unchanged ([`called`]).
 
 mod called;
 mod mtl;
@@ -20,25 +20,25 @@ use super::{Content, SIGNATURE};
 use marraztu_core::base::math::{normal_matrix, unit};
 use marraztu_core::scene::{Corner, NONE, Object, Scene, View, dvec3};
 
-/// An object that is farther from the origin than this many times its size is far.
+/// An object counts as far if its distance from the origin exceeds this multiple of its radius.
 const FAR: f64 = 256.0;
 
-/// An OBJ file that is being written.
+/// An OBJ file in progress.
 struct Writer {
     text: String,
     looks: Looks,
     names: Names,
-    /// How many positions, texture coordinates and normals have been written.
+    /// The number of positions written so far; texture coordinates and normals follow.
     positions: usize,
     uvs: usize,
     normals: usize,
 }
 
-/// The files.
+/// Writes the files.
 pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content, String> {
     let objects = scene.objects.iter().map(|(_, object)| object);
     let (visible, mut hidden): (Vec<&Object>, Vec<&Object>) = objects.partition(|it| it.visible);
-    // A placeholder is noted with its file.
+    // Placeholders are already noted, with their files.
     hidden.retain(|it| !it.model.is_placeholder());
     let mut writer = Writer {
         text: String::new(),
@@ -51,6 +51,7 @@ pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content,
     for object in visible {
         writer.object(object, view.time);
     }
+    // The head comes last, since only now is it known whether there are materials.
     let mut content = Content::default();
     let mut head = String::from(SIGNATURE);
     if !writer.looks.all.is_empty() {
@@ -74,7 +75,7 @@ impl Writer {
         self.looks.add_file(object);
         self.names.object_without_faces(object, &mut self.text);
 
-        // A piece of a model has only the vertices of that piece.
+        // With hidden parts, only the vertices of visible faces are written.
         let all = object.hidden_parts.is_empty();
         let corners = || polygons(object).flat_map(|polygon| mesh.polygon(polygon));
         let point =
@@ -92,6 +93,7 @@ impl Writer {
             let _ = writeln!(self.text, "vn {x} {y} {z}");
         }
 
+        // A mirrored object reverses its corners, which keeps its front faces in front.
         let is_mirrored = turn.determinant() < 0.0;
         for polygon in polygons(object) {
             let part = mesh.polygon_parts()[polygon as usize];
@@ -119,7 +121,7 @@ impl Writer {
         self.normals += normals.used.len();
     }
 
-    /// Writes positions, with their colours if these are shown.
+    /// Writes positions, with vertex colours if they are shown.
     fn vertices(&mut self, object: &Object, time: f64, positions: &Numbers) {
         let mesh = &object.model.mesh;
         let colors = if has_colors(object) { mesh.colors() } else { &[] };
@@ -139,12 +141,12 @@ impl Writer {
 /// The rows of a list that are written, and their numbers in the file.
 struct Numbers {
     used: Vec<u32>,
-    /// The number of each row from 1; 0 if it is not written.
+    /// The number of each row, from 1; 0 if it is not written.
     numbers: Vec<usize>,
 }
 
 impl Numbers {
-    /// All rows of a list of `count`, or the used ones; [`NONE`] is skipped.
+    /// Numbers all rows of a list of `count`, or only the used ones. [`NONE`] is skipped.
     fn of(count: usize, all: bool, used: impl Iterator<Item = u32>) -> Self {
         let mut numbers = vec![usize::from(all); count];
         if !all {
@@ -167,15 +169,15 @@ impl Numbers {
     }
 }
 
-/// Whether an object is so far from the origin that its positions need more digits than single
-/// numbers have.
+/// Returns whether an object is so far from the origin that its positions need more than f32
+/// precision.
 fn is_far(object: &Object, time: f64) -> bool {
     let sphere = object.bounding_sphere(time);
     object.model.mesh.offset() != DVec3::ZERO
         || sphere.is_some_and(|(centre, radius)| centre.length() > FAR * radius)
 }
 
-/// Writes a position in the world; unchanged, bit for bit, if the object is not moved.
+/// Writes a position in world space. The identity transform keeps the bits of the file.
 fn place_to(text: &mut String, world_from_mesh: &DMat4, position: [f32; 3], is_far: bool) {
     let place = world_from_mesh.transform_point3(dvec3(position));
     let _ = if *world_from_mesh == DMat4::IDENTITY {
@@ -189,7 +191,7 @@ fn place_to(text: &mut String, world_from_mesh: &DMat4, position: [f32; 3], is_f
     };
 }
 
-/// A normal in the world, of length 1.
+/// Returns a unit normal in world space.
 fn turned(turn: &DMat3, normal: [f32; 3]) -> [f32; 3] {
     if *turn == DMat3::IDENTITY {
         return normal;

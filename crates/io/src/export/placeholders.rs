@@ -1,8 +1,8 @@
-//! Leaves out what takes the place of missing files: a box is not what the scene means.
+//! Leaves out the placeholders of missing files: their boxes are not part of the scene.
 
 use marraztu_core::scene::{Command, Item, Object, ObjectId, Scene};
 
-/// The scene without its placeholders, with a note about each.
+/// Returns the scene without its placeholders, with a note about each.
 ///
 /// # Errors
 /// The reason, if the scene is not valid.
@@ -14,7 +14,7 @@ pub(super) fn without(scene: &Scene) -> Result<(Scene, Vec<String>), String> {
     for id in ids {
         let Some(mut object) = scene.objects.get(id).cloned() else { continue };
         note(&object, &mut notes);
-        // It is hidden and not removed, so that a spot attached to it keeps its place.
+        // It is hidden rather than removed: a spot attached to it keeps its position.
         object.visible &= !object.model.is_placeholder();
         object.texture = object.texture.filter(|texture| !texture.is_placeholder());
         let command = Command::Replace(Item::Object(id, Box::new(object)));
@@ -23,7 +23,7 @@ pub(super) fn without(scene: &Scene) -> Result<(Scene, Vec<String>), String> {
     Ok((scene, notes))
 }
 
-/// Notes what of a visible object is left out.
+/// Notes which parts of a visible object are left out.
 fn note(object: &Object, notes: &mut Vec<String>) {
     if !object.visible {
         return;

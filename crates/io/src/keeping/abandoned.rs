@@ -1,4 +1,4 @@
-//! Unsaved work that a program has left behind by crashing or being killed.
+//! Unsaved work left behind by a program that crashed or was killed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,21 +9,21 @@ use super::{Lock, OwnFolders, Slot, discarded, list_lock};
 use crate::error::reason;
 use crate::fingerprint::Fingerprint;
 
-/// Unsaved work of a program that has ended. While this value lives, no other program takes it.
+/// Unsaved work of a program that has ended. While this value lives, other programs cannot take it.
 #[derive(Debug)]
 pub struct Abandoned {
     slot: Slot,
     lock: Lock,
-    /// When it was written last.
+    /// The time of the last write.
     pub written: SystemTime,
-    /// The file in which the scene was saved before, if it was.
+    /// The file that the scene was last saved to, if any.
     pub scene_file: Option<PathBuf>,
-    /// The content of that file on which the work is based, if it is known.
+    /// The content of that file when the work began, if known.
     pub content: Option<Fingerprint>,
 }
 
 impl Abandoned {
-    /// All there is, the latest first. Locks that were left without work are removed.
+    /// Finds all abandoned work, the latest first. Locks without work are removed.
     #[must_use]
     pub fn all(folders: &OwnFolders) -> Vec<Self> {
         let folder = &folders.state;
@@ -54,21 +54,21 @@ impl Abandoned {
         Some(Self { slot, lock, written, scene_file, content })
     }
 
-    /// The scene file with the work.
+    /// Returns the scene file with the work.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.slot.work
     }
 
-    /// Moves the work aside, where [`Discarded::all`](super::Discarded::all) finds it for 30 days.
+    /// Moves the work aside; [`Discarded::all`](super::Discarded::all) finds it for 30 days.
     ///
     /// # Errors
-    /// The reason, if it cannot be moved; then it stays as it was.
+    /// The reason, if it cannot be moved; it is then unchanged.
     pub fn set_aside(&self) -> Result<(), String> {
         discarded::set_aside(&self.slot.work).map_err(|error| reason(&error))
     }
 
-    /// Removes the work for good.
+    /// Deletes the work.
     pub fn remove(self) {
         let Self { slot, lock, .. } = self;
         slot.remove();
@@ -76,5 +76,5 @@ impl Abandoned {
     }
 }
 
-/// How the names of work begin.
+/// The prefix of the names of work.
 pub(super) const PREFIX: &str = "work-";

@@ -1,6 +1,6 @@
-//! Unsaved work that the user has discarded: it is moved aside, and removed after 30 days.
+//! Unsaved work that the user has discarded: it is moved aside, and deleted after 30 days.
 //!
-//! The name of its file says when it was discarded; the time of the file is when it was written.
+//! The file name contains the time of discarding; the file's timestamp is that of the last write.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,28 +10,28 @@ use super::OwnFolders;
 use super::origin::origin;
 use crate::fingerprint::Fingerprint;
 
-/// How the names of discarded work begin.
+/// The prefix of the names of discarded work.
 const PREFIX: &str = "discarded-";
 
-/// How long discarded work is kept.
+/// The time for which discarded work is kept.
 const KEPT: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
-/// Work that was discarded.
+/// A piece of discarded work.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Discarded {
     path: PathBuf,
-    /// When it was discarded.
+    /// The time at which it was discarded.
     at: SystemTime,
-    /// When it was written last.
+    /// The time of the last write.
     pub written: SystemTime,
-    /// The file in which the scene was saved before, if it was.
+    /// The file that the scene was last saved to, if any.
     pub scene_file: Option<PathBuf>,
-    /// The content of that file on which the work is based, if it is known.
+    /// The content of that file when the work began, if known.
     pub content: Option<Fingerprint>,
 }
 
 impl Discarded {
-    /// All there is, the latest first. Work older than 30 days is removed.
+    /// Finds all discarded work, the latest first. Work older than 30 days is deleted.
     #[must_use]
     pub fn all(folders: &OwnFolders) -> Vec<Self> {
         Self::all_at(folders, SystemTime::now())
@@ -57,18 +57,18 @@ impl Discarded {
         Some(Self { path, at, written, scene_file, content })
     }
 
-    /// Whether it is kept; removes it if it is too old.
+    /// Returns whether the work is kept; deletes it if it is too old.
     fn is_kept(&self, now: SystemTime) -> bool {
-        // A clock that was set back makes nothing old.
+        // If the clock was set back, nothing counts as old.
         let is_old = now.duration_since(self.at).is_ok_and(|age| age > KEPT);
         if is_old {
-            // If that fails, the next program tries it again.
+            // If this fails, the next start tries again.
             let _ = fs::remove_file(&self.path);
         }
         !is_old
     }
 
-    /// The scene file with the work.
+    /// Returns the scene file with the work.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -78,7 +78,7 @@ impl Discarded {
 /// Moves a file of work aside.
 ///
 /// # Errors
-/// If it cannot be renamed; it stays where it was.
+/// If it cannot be renamed; the file then keeps its name.
 pub(super) fn set_aside(work: &Path) -> std::io::Result<()> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
     let name = work.file_name().unwrap_or(work.as_os_str()).to_string_lossy();

@@ -1,9 +1,8 @@
-//! Keeps the unsaved scene on the disk while it is edited.
+//! Saves unsaved work to disk while the scene is edited.
 //!
-//! A thread writes the latest state of the scene, as a scene file that names the models' files, and
-//! flushes it to the disk. It takes a state at most every [`PAUSE`], so that what a crash can lose
-//! was done in the last second. The file is replaced in one step: at any moment it holds a whole
-//! scene.
+//! A thread writes the latest state as a scene file that refers to the models' files, and flushes
+//! it to disk. It writes at most once per [`PAUSE`], so a crash loses at most the last second of
+//! work. The file is replaced atomically: it always holds a complete scene.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -21,10 +20,10 @@ use crate::window_state::WindowState;
 use marraztu_core::accuracy::Settings;
 use marraztu_core::scene::{Scene, View};
 
-/// The time between two states that are written.
+/// The minimum time between two writes.
 const PAUSE: Duration = Duration::from_millis(200);
 
-/// A state with unsaved changes. Clones share everything large.
+/// A state with unsaved changes. Clones share all large data.
 #[derive(Clone, Debug)]
 pub struct Unsaved {
     /// The scene.
@@ -35,30 +34,30 @@ pub struct Unsaved {
     pub settings: Settings,
     /// The state of the window.
     pub window: WindowState,
-    /// The file in which it was saved before, if it was.
+    /// The file that the scene was last saved to, if any.
     pub file: Option<PathBuf>,
-    /// The content of that file as it was read or written last.
+    /// The content of that file when it was last read or written.
     pub content: Option<Fingerprint>,
 }
 
-/// What the thread is to write next.
+/// The next task of the thread.
 #[derive(Debug, Default)]
 enum Next {
     #[default]
     Nothing,
     Write(Box<Unsaved>),
-    /// Everything is saved: there is no work to keep.
+    /// Delete the work, because everything is saved.
     Remove,
 }
 
 #[derive(Debug, Default)]
 struct Desk {
     next: Next,
-    /// Work that has been taken over, and is removed once this program has written it.
+    /// Work taken over from other programs. It is deleted when this program has written its own.
     replaced: Vec<Abandoned>,
     busy: bool,
     ended: bool,
-    /// Why the last state could not be written.
+    /// The reason why the last state could not be written.
     fault: Option<String>,
 }
 
@@ -75,8 +74,8 @@ impl Shared {
     }
 }
 
-/// The unsaved work of this program, on the disk. It stays there if this value is dropped; only
-/// [`Journal::end`] removes it.
+/// The unsaved work of this program, on disk. Dropping this value keeps the file; only
+/// [`Journal::end`] deletes it.
 #[derive(Debug)]
 pub struct Journal {
     shared: Arc<Shared>,
@@ -86,7 +85,7 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Begins to keep the work of this program.
+    /// Starts saving the work of this program.
     ///
     /// # Errors
     /// The reason, if the folder cannot be written.
@@ -94,6 +93,7 @@ impl Journal {
         let folder = &folders.state;
         made(folder)?;
         let fail = |error: std::io::Error| format!("{}: {}", folder.display(), reason(&error));
+        // The lock on the list keeps other programs from taking the same slot.
         let list = list_lock(folder).map_err(fail)?;
         let process = std::process::id();
         let taken = |number: &u32| {
@@ -104,6 +104,7 @@ impl Journal {
         };
         let found = (1..1000).find_map(|number| taken(&number));
         let (slot, lock) = found.ok_or_else(|| format!("{}: cannot lock it", folder.display()))?;
+        // The slot's own lock protects it from here on.
         drop(list);
         let desk = Mutex::new(Desk::default());
         let shared = Arc::new(Shared { desk, changed: Condvar::new(), slot });
@@ -115,31 +116,31 @@ impl Journal {
         Ok(Self { shared, thread: Some(thread), _lock: lock })
     }
 
-    /// Keeps this state instead of the one before.
+    /// Replaces the state to be written.
     pub fn keep(&self, state: Unsaved) {
         self.shared.desk().next = Next::Write(Box::new(state));
         self.shared.changed.notify_all();
     }
 
-    /// There are no unsaved changes any more.
+    /// Reports that all changes are saved.
     pub fn all_saved(&self) {
         self.shared.desk().next = Next::Remove;
         self.shared.changed.notify_all();
     }
 
-    /// The work of another program is part of the state that is kept next; it is removed once that
-    /// state is on the disk.
+    /// Registers work taken over from another program, now part of the state to be written. It is
+    /// deleted when that state is on disk.
     pub fn replace(&self, taken_over: Abandoned) {
         self.shared.desk().replaced.push(taken_over);
     }
 
-    /// Why the last state could not be written; told once.
+    /// Returns the reason why the last state could not be written, once.
     #[must_use]
     pub fn fault(&self) -> Option<String> {
         self.shared.desk().fault.take()
     }
 
-    /// Waits until everything is on the disk.
+    /// Waits until everything is on disk.
     pub fn wait(&self) {
         let mut desk = self.shared.desk();
         while desk.busy || !matches!(desk.next, Next::Nothing) {
@@ -147,7 +148,7 @@ impl Journal {
         }
     }
 
-    /// The program is left properly: nothing is left to recover.
+    /// Ends the journal at a regular exit, leaving nothing to recover.
     pub fn end(mut self) {
         self.stop();
         for taken_over in std::mem::take(&mut self.shared.desk().replaced) {
@@ -160,7 +161,7 @@ impl Journal {
         self.shared.desk().ended = true;
         self.shared.changed.notify_all();
         if let Some(thread) = self.thread.take() {
-            // A thread that failed has nothing more to write.
+            // A thread that panicked has nothing more to write.
             let _ = thread.join();
         }
     }
@@ -172,7 +173,7 @@ impl Drop for Journal {
     }
 }
 
-/// The thread: writes the latest state, rests, and begins again.
+/// Runs the thread: writes the latest state, pauses, and repeats.
 fn keep(shared: &Shared) {
     let mut rested = Instant::now();
     loop {
@@ -180,7 +181,7 @@ fn keep(shared: &Shared) {
         while matches!(desk.next, Next::Nothing) && !desk.ended {
             desk = shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
         }
-        // What comes meanwhile is newer.
+        // States that arrive during the pause replace older ones.
         while !desk.ended && Instant::now() < rested {
             let rest = rested.saturating_duration_since(Instant::now());
             let waited = shared.changed.wait_timeout(desk, rest);
@@ -194,13 +195,14 @@ fn keep(shared: &Shared) {
             Next::Nothing => Ok(false),
             Next::Write(state) => write(&shared.slot.work, &state).map(|()| true),
             Next::Remove => {
-                // It may not be there.
+                // The file may not exist.
                 let _ = std::fs::remove_file(&shared.slot.work);
                 Ok(false)
             }
         };
         rested = Instant::now() + PAUSE;
         let mut desk = shared.desk();
+        // Deleting work taken over is only safe after a successful write.
         let replaced = match result {
             Ok(true) => std::mem::take(&mut desk.replaced),
             Ok(false) => Vec::new(),

@@ -1,4 +1,4 @@
-//! The program's own files: unsaved work, so that a crash loses nothing, and preferences.
+//! The program's own files: preferences, and unsaved work for recovery after a crash.
 //!
 //! ```text
 //! state folder    work-<process>-<number>.marraztu   the unsaved scene of a running program
@@ -8,8 +8,8 @@
 //! config folder   preferences.ron                    theme, panels, scale, window, recent files
 //! ```
 //!
-//! The system drops a lock when its process ends, in whatever way; so a file whose lock can be
-//! taken was left by a program that crashed or was killed.
+//! The system releases a lock when its process ends, for whatever reason. A file with a free lock
+//! was therefore left by a program that crashed or was killed.
 
 mod abandoned;
 mod discarded;
@@ -37,7 +37,7 @@ pub struct OwnFolders {
 }
 
 impl OwnFolders {
-    /// The folders of this user; `None` if the system names none.
+    /// Returns the folders of this user; `None` if the system does not define them.
     #[must_use]
     pub fn of_user() -> Option<Self> {
         let folders = directories::ProjectDirs::from("", "", "marraztu")?;
@@ -45,14 +45,14 @@ impl OwnFolders {
         Some(Self { state: state.to_owned(), config: folders.config_dir().to_owned() })
     }
 
-    /// Both in one folder.
+    /// Returns both folders inside one.
     #[must_use]
     pub fn within(folder: &Path) -> Self {
         Self { state: folder.join("state"), config: folder.join("config") }
     }
 }
 
-/// The lock of a file, which one program at a time has until it drops this or ends.
+/// A file lock, held by one program at a time until it is dropped or the program ends.
 #[derive(Debug)]
 struct Lock(File);
 
@@ -68,7 +68,7 @@ impl Lock {
         Ok(Self(file))
     }
 
-    /// Takes the lock if no other program has it.
+    /// Takes the lock if it is free.
     fn try_take(path: &Path) -> Option<Self> {
         let file = Self::open(path).ok()?;
         file.try_lock().ok()?;
@@ -83,7 +83,7 @@ impl Drop for Lock {
     }
 }
 
-/// A folder of the program's own, made if it is missing.
+/// Creates one of the program's folders if it is missing.
 fn made(folder: &Path) -> Result<(), String> {
     let fail = |error: &std::io::Error| format!("{}: {}", folder.display(), reason(error));
     fs::create_dir_all(folder).map_err(|error| fail(&error))
@@ -102,15 +102,15 @@ impl Slot {
         Self { work: at(super::SCENE_ENDING), lock: at("lock") }
     }
 
-    /// Removes both files; the lock last, so that no work is ever without one.
+    /// Removes both files. The lock comes last, so work always has its lock.
     fn remove(&self) {
-        // What cannot be removed is found again by the next program.
+        // Files that cannot be removed are found again at the next start.
         let _ = fs::remove_file(&self.work);
         let _ = fs::remove_file(&self.lock);
     }
 }
 
-/// The lock of the list of slots.
+/// Locks the list of slots.
 fn list_lock(folder: &Path) -> std::io::Result<Lock> {
     Lock::take(&folder.join("lock"))
 }

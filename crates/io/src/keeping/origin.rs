@@ -1,17 +1,17 @@
-//! The first lines of a file of unsaved work: the scene file that it changes.
+//! The first lines of a file of unsaved work, which name the scene file that it changes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::fingerprint::Fingerprint;
 
-/// The first line of a file of work: a comment of a scene file, with the path in quotes.
+/// The prefix of the first line: a comment in the scene file, followed by the path in quotes.
 const HEAD: &str = "// unsaved changes of ";
 
-/// The second line: the content of that file on which the work is based.
+/// The prefix of the second line, followed by the content of that file when the work began.
 const CONTENT: &str = "// its content was ";
 
-/// The first lines of work on the scene in `file`, which had this content.
+/// Formats the first lines for work on the scene in `file` with this content.
 pub(super) fn head(file: Option<&Path>, content: Option<Fingerprint>) -> String {
     let content = content.map_or_else(String::new, |it| format!("{CONTENT}{}\n", it.text()));
     match file.and_then(Path::to_str).map(ron::to_string) {
@@ -20,7 +20,7 @@ pub(super) fn head(file: Option<&Path>, content: Option<Fingerprint>) -> String 
     }
 }
 
-/// The file that the first line names, and the content that it had.
+/// Reads the path in the first line and the content in the second.
 pub(super) fn origin(work: &Path) -> (Option<PathBuf>, Option<Fingerprint>) {
     let text = fs::read_to_string(work).unwrap_or_default();
     let mut lines = text.lines();

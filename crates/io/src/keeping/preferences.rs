@@ -1,7 +1,6 @@
-//! What the program remembers from one start to the next.
+//! Settings that persist between starts.
 //!
-//! A file that cannot be understood is set aside under another name, and said; it never stops the
-//! program.
+//! A file that cannot be parsed is renamed and reported; the program starts anyway.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -17,10 +16,10 @@ use crate::window_state::Panels;
 use marraztu_core::accuracy::Samples;
 use marraztu_core::scene::UpAxis;
 
-/// The most recent files that are remembered.
+/// The number of recent files that are remembered.
 pub const MOST_RECENT: usize = 10;
 
-/// What is remembered.
+/// The persistent settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
@@ -28,53 +27,52 @@ pub struct Preferences {
     pub theme: Theme,
     /// Which panels are open.
     pub panels: Panels,
-    /// Whether handles to move, rotate and scale the selection lie over the picture.
+    /// Whether handles to move, rotate and scale the selection are drawn over the picture.
     pub gizmo: bool,
-    /// The zoom of the interface: 1 is the system's.
+    /// The zoom of the interface, relative to the system's.
     pub scale: f32,
     /// The inner width and height of the window in points, if it was ever open.
     pub window: Option<[f32; 2]>,
     /// Whether the window fills the screen.
     pub maximized: bool,
-    /// The widths in points and the shares of the panels that the user has chosen, by the names of
-    /// their borders.
+    /// The widths in points and the shares of resized panels, by the names of their borders.
     pub shares: BTreeMap<String, f32>,
     /// Whether the selection's outline, axes and marks of lights are drawn over the picture.
     pub overlays: bool,
-    /// What helps to see where things stand.
+    /// Overlays that help to judge positions.
     pub helpers: Helpers,
-    /// Whether models are read again when their files change.
+    /// Whether models are reloaded when their files change.
     pub watches: bool,
-    /// The up axis of models if their files do not state one.
+    /// The up axis of models with files that do not state one.
     pub up: UpAxis,
-    /// Keys that the user has chosen: those of each action, by its name.
+    /// Custom key bindings, by action.
     pub keys: BTreeMap<String, Vec<String>>,
-    /// Whether the window refines its picture while nothing happens.
+    /// Whether the window refines its picture while idle.
     pub refines: bool,
-    /// The samples per pixel that it is refined to.
+    /// The samples per pixel of a refined picture.
     pub refined: Samples,
-    /// The milliseconds that a picture may take while something moves.
+    /// The time budget of a picture during motion, in milliseconds.
     pub budget_ms: u16,
-    /// The models and scenes opened or saved last, the latest first.
+    /// The models and scenes that were opened or saved last, the latest first.
     pub recent: Vec<PathBuf>,
 }
 
-/// What is drawn over the picture to show where things stand.
+/// Overlays that help to judge the positions of objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Helpers {
     /// A grid on the ground.
     pub grid: bool,
-    /// The boxes around the selected objects, with their sizes.
+    /// The bounding boxes of the selected objects, with their sizes.
     pub dimensions: bool,
-    /// Where every sun and every spot shines, not only the selected one.
+    /// The directions of all suns and spots, not just the selected one.
     pub directions: bool,
 }
 
 /// Whether the window is light or dark.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Theme {
-    /// As the system is.
+    /// Follows the system.
     #[default]
     System,
     /// Light.
@@ -110,7 +108,7 @@ impl Preferences {
     /// The size of the window at the first start, in points.
     pub const WINDOW: [f32; 2] = [1280.0, 800.0];
 
-    /// What was remembered; and a sentence if the file was not understood and has been set aside.
+    /// Loads the preferences, with a message if the file could not be parsed and was renamed.
     #[must_use]
     pub fn load(folders: &OwnFolders) -> (Self, Option<String>) {
         let path = file(folders);
@@ -122,6 +120,7 @@ impl Preferences {
                 return (Self::default(), Some(text + &reason(&error) + "."));
             }
         };
+        // A broken file is renamed, never overwritten: the user may want to repair it.
         let read = text
             .and_then(|text| ron::from_str::<Self>(&text).map_err(|error| format!("line {error}")));
         match read {
@@ -137,14 +136,15 @@ impl Preferences {
         }
     }
 
-    /// Writes them in one step. Recent files that another program has added meanwhile stay: the
-    /// ones that are in the file, but not `known` to this program.
+    /// Writes the preferences atomically. Recent files that another program has added meanwhile
+    /// stay: these are in the file, but not `known` to this program.
     ///
     /// # Errors
     /// The reason, if they cannot be written.
     pub fn save(&self, folders: &OwnFolders, known: &[PathBuf]) -> Result<(), String> {
         made(&folders.config)?;
         let path = file(folders);
+        // The lock makes reading and writing one step among several programs.
         let lock = Lock::take(&folders.config.join("lock")).map_err(|error| reason(&error))?;
         let others = fs::read_to_string(&path).ok();
         let others = others.and_then(|text| ron::from_str::<Self>(&text).ok());
@@ -162,7 +162,7 @@ impl Preferences {
         Ok(())
     }
 
-    /// Puts a file at the front of the recent ones.
+    /// Moves a file to the front of the recent ones.
     pub fn note_recent(&mut self, path: &Path) {
         let path = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
         self.recent.retain(|other| *other != path);
@@ -170,7 +170,7 @@ impl Preferences {
         self.recent.truncate(MOST_RECENT);
     }
 
-    /// Numbers with which a window can be opened.
+    /// Replaces values that no window can have by the defaults.
     fn within_limits(mut self) -> Self {
         let sound = |x: f32, min: f32, max: f32| x.is_finite() && x >= min && x <= max;
         if !sound(self.scale, 0.2, 5.0) {
@@ -188,7 +188,7 @@ fn file(folders: &OwnFolders) -> PathBuf {
     folders.config.join("preferences.ron")
 }
 
-/// Renames a file to a name that is free.
+/// Renames a file to a free name.
 fn set_aside(path: &Path) -> Result<PathBuf, String> {
     let named = |number: u32| path.with_extension(format!("broken-{number}.ron"));
     let free = (1..1000).map(named).find(|aside| !aside.exists());
@@ -242,7 +242,7 @@ mod tests {
         }
         let both = [PathBuf::from("/b.obj"), PathBuf::from("/a.obj")];
         assert_eq!(Preferences::load(&folders).0.recent, both);
-        // A program that has forgotten its files forgets only its own.
+        // A program that clears its list of recent files removes only its own.
         let known = [PathBuf::from("/a.obj")];
         Preferences::default().save(&folders, &known).unwrap();
         assert_eq!(Preferences::load(&folders).0.recent, both[..1]);

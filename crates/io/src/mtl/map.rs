@@ -1,28 +1,28 @@
-//! The arguments of a map: a file's name, with options before or after it.
+//! The arguments of a map statement: a file name, with options before or after it.
 
 use super::statement;
 use crate::obj::lines::decode;
 use marraztu_core::scene::Wrap;
 
-/// The file of a texture, and its options.
+/// The file of a texture and its options.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Map {
-    /// Its name in the MTL file.
+    /// The name in the MTL file.
     pub(super) name: String,
     pub(super) wrap: Wrap,
     pub(super) offset: [f64; 2],
     pub(super) scale: [f64; 2],
-    /// `-bm`.
+    /// The factor of `-bm`.
     pub(super) gain: f64,
-    /// Options that would change the picture and are ignored.
+    /// Options that would change the picture but are ignored.
     pub(super) ignored: Vec<&'static str>,
 }
 
-/// Options that would change the picture and are ignored, with the number of their arguments:
+/// Options that would change the picture but are ignored, with their numbers of arguments:
 /// turbulence, base and gain of the texels, the channel of a scalar map, boosted sharpness.
 const IGNORED: [(&str, usize); 4] = [("-t", 3), ("-mm", 2), ("-imfchan", 1), ("-boost", 1)];
 
-/// Parses the arguments; `None` if there is no name.
+/// Parses the arguments; `None` without a name.
 pub(super) fn map(rest: &[u8]) -> Option<Map> {
     let mut map = Map {
         name: String::new(),
@@ -34,7 +34,7 @@ pub(super) fn map(rest: &[u8]) -> Option<Map> {
     };
     let text = decode(rest);
     let words = words_with_places(&text);
-    // The range of the name: blanks inside it are kept.
+    // The range of the name in the text, which keeps blanks inside it.
     let mut name: Option<(usize, usize)> = None;
     let mut at = 0;
     while let Some(&(begin, word)) = words.get(at) {
@@ -53,8 +53,8 @@ pub(super) fn map(rest: &[u8]) -> Option<Map> {
 }
 
 impl Map {
-    /// Applies an option with the words that follow it; returns how many of them are its arguments,
-    /// or `None` if the word is no option.
+    /// Applies an option and returns the number of words that are its arguments, or `None` if the
+    /// word is not an option.
     fn option(&mut self, word: &str, following: &[(usize, &str)]) -> Option<usize> {
         let numbers = |most: usize| -> Vec<f64> {
             let words = following.iter().take(most);
@@ -66,6 +66,7 @@ impl Map {
             }
             given.len()
         };
+        // Ignored options must still consume their arguments, or these would join the name.
         let word = word.to_ascii_lowercase();
         if let Some((option, most)) = IGNORED.iter().find(|(option, _)| *option == word) {
             self.ignored.push(option);
@@ -91,9 +92,9 @@ impl Map {
     }
 }
 
-/// The words of a text, each with its offset.
+/// Splits a text into words with their offsets.
 fn words_with_places(text: &str) -> Vec<(usize, &str)> {
-    // The address of a part gives its offset in the text.
+    // Pointer arithmetic gives the offset of a word in the text.
     let place = |word: &str| word.as_ptr().addr() - text.as_ptr().addr();
     text.split_whitespace().map(|word| (place(word), word)).collect()
 }

@@ -1,18 +1,18 @@
-//! Completes materials whose statements are missing or invalid.
+//! Completes materials with missing or invalid statements.
 //!
-//! Exporters write Ka as a copy of Kd, or as white, which lights everything from everywhere; Ks for
-//! dull surfaces; no Kd beside a texture. Each rule has its finding.
+//! Exporters write Ka as a copy of Kd or as white, which lights everything uniformly; Ks for dull
+//! surfaces; or no Kd next to a texture. Each rule has its own finding.
 
 use super::Statements;
 use crate::findings::{BYTES_ABOVE, FindingKind, Findings};
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{FileMaterial, MapKind, Material, SurfaceMaps, Texture};
 
-/// The largest exponent of a highlight that roughness gives, as files have it at most.
+/// The largest exponent derived from roughness: files rarely exceed 1000.
 const NARROWEST: f64 = 1000.0;
 
 impl Statements {
-    /// The material, with missing and invalid values replaced.
+    /// Returns the material, with missing and invalid values replaced.
     pub(super) fn mended(
         self,
         (texture, maps): (Option<Shared<Texture>>, SurfaceMaps),
@@ -21,6 +21,7 @@ impl Statements {
         let mut note = |kind| findings.add(kind, &self.name, Some(self.line));
         let diffuse = self.mended_diffuse(&mut note);
         let ambient = self.mended_ambient(diffuse, &mut note);
+        // A packed Ks is not a colour: the highlight follows from roughness and metalness.
         let (specular, exponent) = match self.packed() {
             Some(packed) => {
                 note(FindingKind::MendedPacked);
@@ -32,6 +33,7 @@ impl Statements {
             }
         };
         let opacity = self.mended_opacity(&mut note);
+        // Kd multiplies the texture, so black hides it.
         if texture.is_some() && self.diffuse == Some([0.0; 3]) {
             note(FindingKind::DiffuseBlack);
         }
@@ -45,10 +47,10 @@ impl Statements {
         FileMaterial { name, material, opacity, texture, maps, unlit, undrawn }
     }
 
-    /// Light may be stronger than white, but not below 0.
+    /// Emission may exceed 1, but not fall below 0.
     fn mended_emission(&self, note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
         let Some(given) = self.emission else {
-            // A map that is named counts, whether it was found or not.
+            // A map counts even if its file is missing.
             let is_mapped = self.maps.contains_key(&MapKind::Emission);
             if is_mapped {
                 note(FindingKind::MendedEmission);
@@ -67,7 +69,7 @@ impl Statements {
             return clamped(color, note);
         }
         note(FindingKind::MendedDiffuse);
-        // A texture that is named counts, whether it was found or not.
+        // A texture counts even if its file is missing.
         [if self.map.is_some() { 1.0 } else { 0.8 }; 3]
     }
 
@@ -106,8 +108,8 @@ impl Statements {
         }
     }
 
-    /// The colour and the exponent of the highlight. Without an exponent there is none: Ns 0 would
-    /// be a highlight of half the body, but exporters mean a matt surface.
+    /// Returns the colour and exponent of the highlight. Without an exponent there is no highlight:
+    /// Ns 0 would spread it over half the body, but exporters mean a matt surface.
     fn mended_highlight(
         &self,
         specular: [f64; 3],
@@ -127,13 +129,13 @@ impl Statements {
         }
     }
 
-    /// The numbers of Ka, Kd and Ks.
+    /// Returns the numbers of Ka, Kd and Ks.
     fn numbers_of_colors(&mut self) -> impl Iterator<Item = &mut f64> {
         let Self { ambient, diffuse, specular, .. } = self;
         [ambient, diffuse, specular].into_iter().flatten().flatten()
     }
 
-    /// Occlusion, roughness and metalness, if Ks holds them.
+    /// Returns occlusion, roughness and metalness, if Ks holds them.
     fn packed(&self) -> Option<[f64; 3]> {
         self.specular.filter(|_| self.is_packed)
     }
@@ -145,13 +147,13 @@ impl Statements {
     }
 }
 
-/// The colour and the exponent of a highlight as wide and as bright as roughness and metalness say.
+/// Returns the colour and exponent of a highlight that matches roughness and metalness.
 ///
-/// Roughness r is that of a lobe with the slope r^2 (Burley, Physically Based Shading at Disney,
-/// 2012), whose Blinn exponent is n = 2 / r^4 - 2 (Karis, Real Shading in Unreal Engine 4, 2013).
-/// The lobe is (n + 8) / 8 times as high as its share of the light (Akenine-Möller, Haines and
-/// Hoffman, Real-Time Rendering, 3rd edition, 7.6), and Phong's exponent is a quarter of Blinn's.
-/// The share is 0.04 of what is no metal, and the colour of metal.
+/// Roughness r is that of a lobe with slope r^2 (Burley, Physically Based Shading at Disney, 2012).
+/// Its Blinn exponent is n = 2 / r^4 - 2 (Karis, Real Shading in Unreal Engine 4, 2013). The peak
+/// of the lobe is (n + 8) / 8 times its share of the light (Akenine-Möller, Haines and Hoffman,
+/// Real-Time Rendering, 3rd edition, 7.6), and Phong's exponent is a quarter of Blinn's. The share
+/// is 0.04 for dielectrics and the base colour for metals.
 fn highlight(packed: [f64; 3], diffuse: [f64; 3], given: Option<f64>) -> ([f64; 3], f64) {
     let [_, roughness, metalness] = packed.map(|x| x.clamp(0.0, 1.0));
     let blinn = (2.0 / roughness.powi(4) - 2.0).min(4.0 * NARROWEST);
@@ -162,7 +164,7 @@ fn highlight(packed: [f64; 3], diffuse: [f64; 3], given: Option<f64>) -> ([f64; 
     (specular, given.unwrap_or((blinn / 4.0).max(1.0)))
 }
 
-/// Three numbers, clamped to 0 to 1.
+/// Clamps three numbers to 0..=1.
 fn clamped(color: [f64; 3], note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
     let within = color.map(|x| x.clamp(0.0, 1.0));
     if within != color {
@@ -171,8 +173,8 @@ fn clamped(color: [f64; 3], note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
     within
 }
 
-/// Divides the colours of all materials by 255 if they count from 0 to 255: if all are whole
-/// numbers and one is above 16.
+/// Divides the colours of all materials by 255 if they are bytes: if all are whole numbers and one
+/// exceeds [`BYTES_ABOVE`].
 pub(super) fn scale_bytes(materials: &mut [Statements], findings: &mut Findings) {
     let (mut whole, mut largest) = (true, 0.0_f64);
     for x in materials.iter_mut().flat_map(Statements::numbers_of_colors) {

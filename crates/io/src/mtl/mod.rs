@@ -1,8 +1,8 @@
-//! Reads the materials of an MTL file, and mends what exporters write wrongly.
+//! Reads the materials of an MTL file, and repairs common faults of exporters.
 //!
-//! A faulty file is never a reason not to show the model: whatever is wrong is listed, and the rest
-//! is used. tobj therefore reads the statements one by one ([`statement`]), and a statement that it
-//! refuses affects no other.
+//! A faulty file must not prevent the model from being shown: faults are listed, and the rest is
+//! used. Statements are therefore passed to tobj one by one ([`statement`]); if it rejects one, the
+//! others are unaffected.
 
 mod map;
 mod mend;
@@ -32,16 +32,16 @@ use marraztu_core::scene::{
 /// The most texels of all textures of a model: 2 GB.
 const MOST_TEXELS: usize = 1 << 29;
 
-/// How many different textures are looked for: each takes several accesses to the disk.
+/// The number of different textures that are searched for: each takes several disk accesses.
 const MOST_NAMES: usize = 10_000;
 
-/// The materials of the files that a model names, in their order.
+/// The materials of all MTL files of a model, in order.
 #[derive(Debug)]
 pub(super) struct Library<'a> {
     materials: Vec<FileMaterial>,
     /// The origin of each of `materials`.
     origins: Vec<Origin>,
-    /// The findings of each file that was read.
+    /// The findings of each file.
     findings: Vec<Findings>,
     pub(super) locator: Locator,
     /// The index of each name in `materials`.
@@ -49,29 +49,28 @@ pub(super) struct Library<'a> {
     /// The files that were read.
     read: BTreeSet<PathBuf>,
     pictures: &'a mut Pictures,
-    /// How bump maps are read.
+    /// The interpretation of bump maps.
     bumps: BumpMaps,
-    /// The files whose texels are counted in `texels`.
+    /// The files that `texels` includes.
     counted: BTreeSet<PathBuf>,
     texels: usize,
-    /// The paths of textures that were looked for, by the folder of the file that names them and
-    /// their name.
+    /// The paths of textures, by the folder of the MTL file and the name in it.
     found: BTreeMap<(PathBuf, String), Option<PathBuf>>,
-    /// By path, wrapping, and the bits of offset and scale: equal textures are shared.
+    /// Textures by path, wrapping, and the bits of offset and scale: equal textures are shared.
     textures: BTreeMap<(PathBuf, bool, [u64; 4]), Shared<Texture>>,
 }
 
-/// The origin of a material, and how its opacity was given.
+/// The origin of a material, and the source of its opacity.
 #[derive(Debug)]
 struct Origin {
-    /// The index of its file's findings.
+    /// The index of the file's findings.
     file: usize,
     line: u32,
-    /// Whether it is fully transparent by `Tr 1` alone.
+    /// Whether the material is fully transparent only because of `Tr 1`.
     hidden_by_tr: bool,
 }
 
-/// A material as its statements give it.
+/// The statements of a material.
 #[derive(Debug, Default)]
 struct Statements {
     name: String,
@@ -93,7 +92,7 @@ struct Statements {
 }
 
 impl<'a> Library<'a> {
-    /// A library without materials, whose textures show `pictures`.
+    /// Creates a library without materials that loads textures through `pictures`.
     pub(super) fn new(pictures: &'a mut Pictures, bumps: BumpMaps) -> Self {
         Self {
             materials: Vec::new(),
@@ -111,8 +110,8 @@ impl<'a> Library<'a> {
         }
     }
 
-    /// Reads one file, if it was not read before. Textures are looked for beside it, then beside
-    /// the model.
+    /// Reads one file, unless it was read before. Textures are searched for in its folder, then in
+    /// the model's.
     pub(super) fn read(&mut self, path: &Path, model_folder: &Path) {
         if !self.read.insert(path.to_owned()) {
             return;
@@ -138,27 +137,27 @@ impl<'a> Library<'a> {
         self.findings.push(findings);
     }
 
-    /// The number of materials.
+    /// Returns the number of materials.
     pub(super) fn count(&self) -> usize {
         self.materials.len()
     }
 
-    /// The index of the material with this name.
+    /// Returns the index of the material with this name.
     pub(super) fn place(&self, name: &str) -> Option<u32> {
         self.places.get(name).copied()
     }
 
-    /// The files that were read: MTL files, and the textures that they name.
+    /// Returns the files that were read: MTL files and their textures.
     pub(super) fn files(&self) -> Vec<PathBuf> {
         let textures: BTreeSet<&PathBuf> = self.found.values().flatten().collect();
         self.read.iter().chain(textures).cloned().collect()
     }
 
-    /// The materials, and the findings in their files. `used` are the indices of those that the
+    /// Returns the materials and all findings. `used` are the indices of the materials that the
     /// model uses.
     ///
-    /// Some programs write `Tr 1` for opaque materials. It is ignored if it would hide everything
-    /// that is used.
+    /// Some programs write `Tr 1` for opaque materials. It is ignored if it would hide every used
+    /// material.
     pub(super) fn finish(mut self, used: &BTreeSet<u32>) -> (Vec<FileMaterial>, Vec<Finding>) {
         let hidden = |place: &u32| self.origins[*place as usize].hidden_by_tr;
         let other_convention = !used.is_empty() && used.iter().all(hidden);
@@ -182,6 +181,7 @@ impl<'a> Library<'a> {
             findings.add(FindingKind::MaterialTwice, &statements.name, Some(statements.line));
             return;
         }
+        // A packed Ks holds occlusion, roughness and metalness, so its map is not a specular map.
         if statements.is_packed
             && let Some((line, _)) = statements.maps.remove(&MapKind::Specular)
         {
@@ -212,8 +212,8 @@ impl<'a> Library<'a> {
         self.materials.push(statements.mended((texture, maps), findings));
     }
 
-    /// Takes a picture of normals that a file names as a bump map for a normal map, as Blender and
-    /// others write it. A map that the file itself calls a normal map is used first.
+    /// Reads a bump map that contains normals as a normal map, since Blender and others write it
+    /// so. A map that the file declares as a normal map has precedence.
     fn settle_bumps(
         &self,
         maps: &mut SurfaceMaps,
@@ -221,6 +221,7 @@ impl<'a> Library<'a> {
         findings: &mut Findings,
     ) {
         let Some(bump) = maps.get(&MapKind::Bump) else { return };
+        // The option overrides the detection.
         let has_normals = match self.bumps {
             BumpMaps::Auto => shows_normals(&bump.texture.picture),
             BumpMaps::Heights => false,
@@ -244,6 +245,7 @@ impl<'a> Library<'a> {
         folders: [&Path; 2],
         note: &mut dyn FnMut(FindingKind, &str),
     ) -> Option<Shared<Texture>> {
+        // Searches are cached and limited, because each takes several disk accesses.
         let key = (folders[0].to_owned(), map.name.clone());
         if self.found.len() >= MOST_NAMES && !self.found.contains_key(&key) {
             note(FindingKind::TextureMany, "");
@@ -256,6 +258,7 @@ impl<'a> Library<'a> {
             note(FindingKind::TextureMissing, &map.name);
             return None;
         };
+        // Maps with equal files and layouts share a texture.
         let bits = [map.offset, map.scale].concat();
         let bits = std::array::from_fn(|i| bits[i].to_bits());
         let key = (path.clone(), map.wrap == Wrap::Clamp, bits);
@@ -269,13 +272,14 @@ impl<'a> Library<'a> {
         Some(texture)
     }
 
-    /// The picture of a file, if it and the earlier ones are not too large for the memory.
+    /// Decodes the picture of a file, unless it exceeds [`MOST_TEXELS`] together with earlier ones.
     fn picture(
         &mut self,
         path: &Path,
         note: &mut dyn FnMut(FindingKind, &str),
     ) -> Option<Shared<Picture>> {
         let counted = self.counted.contains(path);
+        // A picture counts once, in whatever number of textures it appears.
         let most = if counted { MOST_TEXELS } else { MOST_TEXELS - self.texels };
         match self.pictures.read(path, most) {
             Ok(Read { picture, cut_off }) => {
@@ -311,6 +315,7 @@ fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Statements> {
         if keyword.starts_with(b"#") {
             continue;
         }
+        // Statements belong to the last `newmtl`.
         match list.last_mut() {
             Some(statements) => statements.read(&line, findings),
             None => findings.add(FindingKind::MtlStray, &decode(keyword), Some(line.number)),
@@ -364,8 +369,8 @@ impl Statements {
         }
     }
 
-    /// Removes the map of heights if it is the map of normals: some files, and exports of this
-    /// program, name it twice, for readers that know only one of the statements.
+    /// Removes the bump map if it is also the normal map. Some files, including our exports, name
+    /// it twice for readers that know only one of the statements.
     fn keep_one_relief(&mut self) {
         let name = |kind| self.maps.get(&kind).map(|(_, map): &(u32, Map)| &map.name);
         if name(MapKind::Bump).is_some() && name(MapKind::Bump) == name(MapKind::Normal) {
@@ -374,7 +379,7 @@ impl Statements {
     }
 }
 
-/// What a statement maps, by its keyword in lower case.
+/// Returns the kind of a map, by its keyword in lower case.
 fn kind_of(keyword: &[u8]) -> Option<MapKind> {
     match keyword {
         b"map_ka" => Some(MapKind::Ambient),
@@ -388,7 +393,7 @@ fn kind_of(keyword: &[u8]) -> Option<MapKind> {
     }
 }
 
-/// Sets a value if it could be read; returns whether it could.
+/// Sets a value if it was parsed; returns whether it was.
 fn set<T>(target: &mut Option<T>, value: Option<T>) -> bool {
     let read = value.is_some();
     if read {
@@ -514,7 +519,7 @@ mod tests {
 
     #[test]
     fn statements_that_stop_tobj_cost_no_other() {
-        // It panics on one or two numbers, and refuses fractions of illum and numbers with
+        // It panics on one or two numbers, and rejects fractions for illum and numbers followed by
         // comments.
         let (material, findings) = read(
             "newmtl m\nKa 0 0 0\nkd 0.5\nKd 0.1 0.2\nKs 1 1 1#x\n\

@@ -1,24 +1,24 @@
-//! Tells pictures of normals from pictures of heights.
+//! Distinguishes normal maps from height maps.
 //!
 //! A picture of tangent-space normals n stores (n + 1) / 2. All n have length 1 and point away from
-//! the surface, so the picture is bluish: its mean is near (128, 128, 255). Heights are grey, and
-//! the two greys of length 1 are far from that mean.
+//! the surface, so the picture is bluish, with a mean near (128, 128, 255). Heights are grey, and
+//! the two greys with length 1 are far from that mean.
 
 use marraztu_core::base::image::Picture;
 
-/// The number of texels that are looked at.
+/// The number of texels that are sampled.
 const MOST: usize = 1 << 16;
 
-/// Whether a picture shows normals in tangent space.
+/// Returns whether a picture contains tangent-space normals.
 pub(super) fn shows_normals(picture: &Picture) -> bool {
     let texels = picture.pixels();
     let step = texels.len().div_ceil(MOST).max(1);
     let (mut count, mut units, mut sum) = (0.0, 0.0, [0.0; 3]);
-    // An odd step meets all columns of a picture, whatever its width.
+    // An odd step visits every column of a picture with a power-of-two width.
     for [r, g, b, _] in texels.iter().step_by(step | 1) {
         let normal = [*r, *g, *b].map(|byte| f64::from(byte) / 127.5 - 1.0);
         let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
-        // The tolerance is that of bytes and of lossy compression.
+        // The tolerance covers 8-bit rounding and lossy compression.
         let is_unit = (length - 1.0).abs() < 0.15 && normal[2] > -0.05;
         units += if is_unit { 1.0 } else { 0.0 };
         count += 1.0;

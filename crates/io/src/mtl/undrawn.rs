@@ -1,5 +1,4 @@
-//! Keeps the numbers of a material that pictures do not show, for exports: other programs show
-//! them.
+//! Keeps numbers of a material that are not drawn, since exports pass them on to other programs.
 
 use super::{Statements, statement};
 
@@ -7,22 +6,22 @@ use super::{Statements, statement};
 const KEYWORDS: [&str; 11] =
     ["Ni", "Tf", "Kt", "sharpness", "Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor"];
 
-/// The illumination models with reflections, refraction and shadows, which are drawn as model 2.
+/// The illumination models with reflection, refraction and shadows, which are drawn as model 2.
 const MODELS: std::ops::RangeInclusive<f64> = 3.0..=10.0;
 
 impl Statements {
-    /// Keeps the numbers of a statement; returns whether it is one that is not drawn.
+    /// Keeps the numbers of a statement; returns whether its keyword is one of [`KEYWORDS`].
     pub(super) fn keep_undrawn(&mut self, keyword: &[u8], rest: &[u8]) -> bool {
         let is_same = |known: &&&str| known.as_bytes().eq_ignore_ascii_case(keyword);
         let Some(known) = KEYWORDS.iter().find(is_same) else { return false };
-        // `Tf` may name a file of a spectrum, which other folders do not have.
+        // `Tf` may name a spectrum file, which would be missing in other folders.
         if let Some(numbers) = statement::numbers(rest) {
             self.undrawn.insert(*known, numbers);
         }
         true
     }
 
-    /// Keeps the number of an illumination model that is drawn as another one.
+    /// Keeps the number of an illumination model that is drawn as another.
     pub(super) fn keep_model(&mut self) {
         self.undrawn.remove("illum");
         if let Some(model) = self.illumination.filter(|model| MODELS.contains(model)) {
@@ -30,7 +29,7 @@ impl Statements {
         }
     }
 
-    /// Takes roughness and metalness out of a packed Ks, as `Pr` and `Pm` would give them.
+    /// Extracts roughness and metalness from a packed Ks as `Pr` and `Pm`.
     pub(super) fn unpack(&mut self) {
         if let Some([_, roughness, metalness]) = self.specular.filter(|_| self.is_packed) {
             for (keyword, number) in [("Pr", roughness), ("Pm", metalness)] {

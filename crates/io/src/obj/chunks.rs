@@ -1,8 +1,8 @@
-//! A text in chunks that can be read apart.
+//! Splits a text into chunks that can be parsed independently.
 //!
-//! A chunk ends where a line ends that the next one does not continue; so every statement lies in
-//! one chunk, and the chunks together are the text. They are taken from the file as threads ask for
-//! them, so that there is never more of the text in memory than is being read.
+//! A chunk ends at a line end without a continuation, so every statement lies in one chunk, and the
+//! concatenation of all chunks is the text. Threads read chunks from the file on demand, which
+//! keeps only the chunks in progress in memory.
 
 use std::io::Read;
 
@@ -10,31 +10,31 @@ use memchr::memrchr2;
 
 use crate::error::{LoadError, NO_MEMORY};
 
-/// A text that is taken chunk by chunk.
+/// A text that is read chunk by chunk.
 #[derive(Debug)]
 pub(super) struct Chunks<'a, R> {
     source: R,
     /// The name of the file.
     file: &'a str,
     sizes: Sizes,
-    /// Bytes that were read and belong to the next chunk.
+    /// Bytes that were read but belong to the next chunk.
     rest: Vec<u8>,
-    /// How many chunks were taken.
+    /// The number of chunks taken.
     taken: usize,
-    /// How many bytes were read.
+    /// The number of bytes read.
     read: usize,
-    /// The source has no more.
+    /// Whether the source is exhausted.
     ended: bool,
 }
 
-/// How many bytes there are, at the least and at the most.
+/// Limits in bytes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sizes {
-    /// In a chunk, unless the text ends before.
+    /// The minimum size of a chunk, unless the text ends earlier.
     pub(super) chunk: usize,
-    /// In a statement, at the most.
+    /// The maximum size of a statement.
     pub(super) statement: usize,
-    /// In the text, at the most.
+    /// The maximum size of the text.
     pub(super) text: usize,
 }
 
@@ -43,13 +43,14 @@ impl<'a, R: Read> Chunks<'a, R> {
         Self { source, file, sizes, rest: Vec::new(), taken: 0, read: 0, ended: false }
     }
 
-    /// Puts the next chunk in place of what `chunk` holds, and gives its number, counted from 0.
+    /// Replaces `chunk` by the next chunk and returns its index, from 0.
     ///
     /// # Errors
-    /// If the text cannot be read or is too long, or a statement of it is.
+    /// If the text cannot be read, or if it or a statement is too long.
     pub(super) fn take(&mut self, chunk: &mut Vec<u8>) -> Result<Option<usize>, LoadError> {
         chunk.clear();
         chunk.append(&mut self.rest);
+        // Reads more until the chunk contains a complete statement.
         let mut wanted = self.sizes.chunk.max(1);
         let end = loop {
             self.fill(chunk, wanted)?;
@@ -70,13 +71,13 @@ impl<'a, R: Read> Chunks<'a, R> {
         Ok((end > 0).then_some(number))
     }
 
-    /// Takes no more from the source.
+    /// Discards the rest of the source.
     pub(super) fn stop(&mut self) {
         self.rest.clear();
         self.ended = true;
     }
 
-    /// Whether the source has no more.
+    /// Returns whether the source is exhausted.
     pub(super) const fn ended(&self) -> bool {
         self.ended
     }
@@ -100,9 +101,9 @@ impl<'a, R: Read> Chunks<'a, R> {
     }
 }
 
-/// The end of the last statement that a text contains as a whole.
+/// Returns the end of the last complete statement in a text.
 fn end(text: &[u8]) -> Option<usize> {
-    // Behind a CR there may yet come its LF.
+    // A LF may follow a trailing CR in the next read.
     let mut end = text.len() - usize::from(text.last() == Some(&b'\r'));
     loop {
         end = memrchr2(b'\n', b'\r', &text[..end])?;
@@ -112,8 +113,8 @@ fn end(text: &[u8]) -> Option<usize> {
     }
 }
 
-/// Whether the last character of a text's last line, blanks apart, is a back slash. The text may
-/// end between CR and LF.
+/// Returns whether the last line of a text ends in a backslash, ignoring blanks. The text may end
+/// between CR and LF.
 fn ends_in_back_slash(text: &[u8]) -> bool {
     let text = text.strip_suffix(b"\r").unwrap_or(text);
     text.iter().rev().find(|sign| !matches!(sign, b' ' | b'\t' | b'\x0C')) == Some(&b'\\')

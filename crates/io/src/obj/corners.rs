@@ -1,4 +1,4 @@
-//! Reads the faces that the quick way leaves: `f 1/2/3 -1//2 4`.
+//! Parses the faces that the fast path skips: `f 1/2/3 -1//2 4`.
 
 use super::faces::WRONG;
 use super::lines::{excerpt, words};
@@ -8,7 +8,7 @@ use marraztu_core::scene::{NONE, SourceCorner};
 
 impl Piece {
     pub(super) fn face(&mut self, rest: &[u8], line: u32) -> Result<(), Stop> {
-        // A minus in a comment stops the piece, too: nothing is lost but time.
+        // A minus sign in a comment stops the piece, too, which costs time but no data.
         if self.before.is_none() && rest.contains(&b'-') {
             return Err(Stop::CountsBack);
         }
@@ -16,7 +16,7 @@ impl Piece {
         let begin = self.faces.corners();
         let mut fault = None;
         for word in words(rest) {
-            // A comment may follow a number at once.
+            // A comment may follow a number without a blank.
             let (word, comment) = match word.iter().position(|b| *b == b'#') {
                 Some(end) => (&word[..end], true),
                 None => (word, false),
@@ -40,6 +40,7 @@ impl Piece {
                 break;
             }
         }
+        // A fault drops the whole face: the corners pushed so far are removed.
         let corners = self.faces.corners() - begin;
         if fault.is_none() && corners < 3 {
             let reason = format!("a face needs at least three corners, but has {corners}");
@@ -57,7 +58,7 @@ impl Piece {
     }
 }
 
-/// A corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` if it is not one.
+/// Parses a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` if it is invalid.
 fn corner(word: &[u8], counts: Counts) -> Option<SourceCorner> {
     let mut places = [NONE; 3];
     for (i, part) in word.split(|b| *b == b'/').enumerate() {
@@ -72,7 +73,7 @@ fn corner(word: &[u8], counts: Counts) -> Option<SourceCorner> {
     (position != NONE).then_some(SourceCorner { position, uv, normal })
 }
 
-/// An index counted from 0: positive ones count from 1, negative ones back from `count`.
+/// Converts an index to count from 0: positive ones count from 1, negative ones back from `count`.
 fn index(digits: &[u8], count: u32) -> Option<u32> {
     let (back, digits) = match digits {
         [b'-', rest @ ..] => (true, rest),
@@ -84,7 +85,7 @@ fn index(digits: &[u8], count: u32) -> Option<u32> {
     }
     let value = digits.iter().try_fold(0_u64, |value, digit| {
         let digit = digit.is_ascii_digit().then(|| digit - b'0')?;
-        // An index beyond 32 bits is as wrong as any other that is out of range.
+        // An index beyond 32 bits is out of range like any other.
         Some((value * 10 + u64::from(digit)).min(u64::from(u32::MAX)))
     })?;
     let value = u32::try_from(value).unwrap_or(u32::MAX);

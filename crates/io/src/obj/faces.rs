@@ -1,40 +1,39 @@
-//! Faces as a chunk names them.
+//! The faces of a chunk, compressed into runs.
 //!
-//! Millions of faces stand line after line with equal numbers of corners: what they have in common
-//! is kept once.
+//! In most files, millions of faces with equal corner counts follow line after line, so their
+//! common properties are stored once.
 
 use marraztu_core::scene::{CornerLists, NONE, SourceCorner};
 
-/// An index that counts back past the beginning of the file, or is 0.
+/// The value of an index that counts back past the beginning of the file, or is 0.
 pub(super) const WRONG: u32 = NONE - 1;
 
-/// Faces of three corners and more. Indices count from 0, or are [`NONE`] or [`WRONG`].
+/// Faces of at least three corners. Indices count from 0, or are [`NONE`] or [`WRONG`].
 #[derive(Debug, Default)]
 pub(super) struct Faces {
     pub(super) corners: CornerLists,
     pub(super) runs: Vec<Run>,
-    /// The first face statement that cannot be used, with the reason.
+    /// The first unusable face statement, with the reason.
     pub(super) refused: Option<(u32, String)>,
 }
 
-/// The smoothing group of faces before the first `s` of a chunk: that of the chunk before.
+/// The smoothing group before the first `s` of a chunk: the previous chunk's.
 pub(super) const INHERITED: u32 = u32::MAX;
 
-/// Faces of one part on lines that follow each other, with the same number of corners and the same
-/// smoothing group.
+/// Consecutive lines of faces with the same part, corner count and smoothing group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Run {
     pub(super) faces: u32,
     pub(super) corners: u32,
-    /// The line of the first one.
+    /// The line of the first face.
     pub(super) line: u32,
     pub(super) part: u32,
-    /// 0 for none, or [`INHERITED`].
+    /// The smoothing group: 0 for none, or [`INHERITED`].
     pub(super) smoothing: u32,
 }
 
 impl Run {
-    /// Takes up another face if it belongs to this run; says whether it does.
+    /// Extends the run by a face if it belongs to the run; returns whether it does.
     #[inline]
     fn take(&mut self, face: Self) -> bool {
         let next = Self { faces: 1, line: self.line.wrapping_add(self.faces), ..*self };
@@ -45,7 +44,7 @@ impl Run {
 }
 
 impl Faces {
-    /// How many corners there are.
+    /// Returns the number of corners.
     #[inline]
     pub(super) fn corners(&self) -> usize {
         self.corners.positions.len()
@@ -58,7 +57,7 @@ impl Faces {
         if !(bare && uvs.is_empty() && normals.is_empty()) {
             for (list, index) in [(uvs, corner.uv), (normals, corner.normal)] {
                 if index != NONE || !list.is_empty() {
-                    // Up to here no corner had one.
+                    // No corner before this one had such an index.
                     list.resize(positions.len(), NONE);
                     list.push(index);
                 }
@@ -67,7 +66,7 @@ impl Faces {
         positions.push(corner.position);
     }
 
-    /// Forgets the corners from `begin` on.
+    /// Discards the corners from `begin` on.
     pub(super) fn truncate(&mut self, begin: usize) {
         let CornerLists { positions, uvs, normals } = &mut self.corners;
         for list in [positions, uvs, normals] {
@@ -75,7 +74,7 @@ impl Faces {
         }
     }
 
-    /// Takes up a face, as a run of its own, whose corners were pushed last.
+    /// Adds a face, given as a run of one, after its corners were pushed.
     #[inline]
     pub(super) fn end_face(&mut self, face: Run) {
         if !self.runs.last_mut().is_some_and(|run| run.take(face)) {

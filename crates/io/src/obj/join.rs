@@ -1,9 +1,8 @@
-//! A file read in chunks, all at once, and put together as if it had been read from its beginning
-//! to its end.
+//! Parses the chunks of a file in parallel, and joins them as if they had been parsed in order.
 //!
-//! Findings, refusals and numbers are the same however the file is cut. Most files count their
-//! vertices from the beginning, so a chunk is read before the statements in front of it are
-//! counted; if one of its faces counts back, it is read again when all vertices are counted.
+//! Findings, errors and numbers do not depend on the chunk boundaries. Most files use positive
+//! indices, so a chunk is parsed before the preceding statements are counted. If one of its faces
+//! counts back, the chunk is parsed again when all counts are known.
 
 use std::io::Read;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -25,44 +24,44 @@ use crate::progress::{Cancelled, Progress};
 use marraztu_core::base::color::Color;
 use marraztu_core::base::lists::concatenated;
 
-/// The most bytes of a text.
+/// The most bytes in a text.
 pub(crate) const MOST_BYTES: usize = 4 << 30;
 
-/// The most bytes of a statement.
+/// The most bytes in a statement.
 const MOST_STATEMENT: usize = 256 << 20;
 
-/// The least and the most bytes of a chunk: they stay in a thread's own cache.
+/// The least and the most bytes in a chunk: chunks fit into a core's own cache.
 const CHUNK: [usize; 2] = [1 << 15, 1 << 18];
 
-/// The most vertices, and the most corners of faces, of a file: 5 GB of mesh.
+/// The most vertices, and the most corners of faces, in a file: 5 GB of mesh.
 const MOST: usize = 100_000_000;
 
-/// What a file says.
+/// The parsed content of a file.
 #[derive(Debug)]
 pub(super) struct Content {
     pub(super) positions: Vec<[f64; 3]>,
     pub(super) uvs: Vec<[f32; 2]>,
     pub(super) normals: Vec<[f32; 3]>,
-    /// Red, green and blue of the vertices, 0 to 1; empty if none has a colour.
+    /// Red, green and blue of the vertices, 0 to 1; empty if no vertex has a colour.
     pub(super) colors: Vec<[f32; 3]>,
     /// The number of vertices in the file, usable or not.
     pub(super) vertices: u32,
-    /// The first vertex that cannot be read, with the reason.
+    /// The first unreadable vertex, with the reason.
     pub(super) refused: Option<(u32, String)>,
     pub(super) faces: SoundFaces,
     pub(super) parts: Vec<NamedPart>,
-    /// Whether any statement `s` says which faces are smooth.
+    /// Whether any statement `s` sets a smoothing group.
     pub(super) has_smoothing: bool,
-    /// What follows `mtllib`, with its lines.
+    /// The arguments of `mtllib`, with their lines.
     pub(super) libraries: Vec<(u32, String)>,
     pub(super) edge_color: Option<Color>,
 }
 
-/// Reads all statements of a text. `size` is how many bytes it has, as far as that is known.
+/// Parses all statements of a text. `size` is its size in bytes, or an estimate.
 ///
 /// # Errors
-/// If it cannot be read, is not an OBJ file or is too long, if a line cannot be taken for what it
-/// says it is, or if the work should end.
+/// If the text cannot be read, is not an OBJ file or is too long, if a line is invalid, or if the
+/// work is cancelled.
 pub(super) fn content(
     text: impl Read + Send,
     size: usize,
@@ -70,7 +69,7 @@ pub(super) fn content(
     findings: &mut Findings,
     progress: &Progress,
 ) -> Result<Content, LoadError> {
-    // Several chunks a thread, so that none waits long for the others.
+    // Several chunks per thread balance the load.
     let chunk = (size / (4 * rayon::current_num_threads())).clamp(CHUNK[0], CHUNK[1]);
     let sizes = Sizes { chunk, statement: MOST_STATEMENT, text: MOST_BYTES };
     let reading = Reading {
@@ -85,7 +84,7 @@ pub(super) fn content(
     Ok(content)
 }
 
-/// A text that is being read by all threads.
+/// A text that all threads parse together.
 struct Reading<'a, R> {
     chunks: Mutex<Chunks<'a, R>>,
     file: &'a str,
@@ -95,10 +94,11 @@ struct Reading<'a, R> {
 }
 
 impl<'a, R: Read + Send> Reading<'a, R> {
-    /// Every chunk, read.
+    /// Parses all chunks.
     fn pieces(self) -> Result<Vec<Piece>, LoadError> {
         let threads = (0..rayon::current_num_threads()).into_par_iter();
         let own = |_| self.own_pieces().inspect_err(|_| self.chunks().stop());
+        // Threads take chunks in any order, so the pieces are sorted afterwards.
         let own: Vec<Vec<(usize, Piece)>> = threads.map(own).collect::<Result<_, LoadError>>()?;
         let mut pieces: Vec<(usize, Piece)> = own.into_iter().flatten().collect();
         pieces.sort_unstable_by_key(|(number, _)| *number);
@@ -110,7 +110,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         Ok(pieces)
     }
 
-    /// The chunks that one thread comes to read, with their numbers.
+    /// Parses the chunks that one thread takes, with their indices.
     fn own_pieces(&self) -> Result<Vec<(usize, Piece)>, LoadError> {
         let mut own = Vec::new();
         let mut text = Vec::new();
@@ -129,7 +129,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
                 self.piece(&text, None)?
             };
             match piece.stop {
-                // The file is refused.
+                // The file will be rejected, so the other threads can stop.
                 Some(Stop::Unread) => self.chunks().stop(),
                 Some(Stop::CountsBack) => {
                     own.push((number, Piece { text: std::mem::take(&mut text), ..piece }));
@@ -141,11 +141,11 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         }
     }
 
-    /// Reads one chunk. `before` is how many statements precede it, if that is known.
+    /// Parses one chunk. `before` counts the preceding statements, if known.
     fn piece(&self, text: &[u8], before: Option<Counts>) -> Result<Piece, Cancelled> {
         let mut told = 0;
         let mut reached = |now: usize| {
-            // A chunk that is read twice counts once.
+            // A chunk that is parsed twice counts once.
             let new = now.saturating_sub(told);
             let before = self.done.fetch_add(new, Ordering::Relaxed);
             self.progress.reached(before + new, self.size)?;
@@ -158,7 +158,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         Ok(piece)
     }
 
-    /// Reads those chunks again that count back.
+    /// Parses chunks with negative indices again, now that all statements are counted.
     fn count_back(&self, pieces: &mut [Piece]) -> Result<(), Cancelled> {
         let counts_back = |piece: &Piece| matches!(piece.stop, Some(Stop::CountsBack));
         if !pieces.iter().any(counts_back) {
@@ -168,6 +168,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
             Some(Stop::CountsBack) => counted(&piece.text),
             _ => [piece.vertices.count, piece.uvs.count, piece.normals.count],
         };
+        // A prefix sum gives the statements before each chunk.
         let counts: Vec<Counts> = pieces.par_iter().map(count).collect();
         let before = counts.iter().scan([0_u32; 3], |sum, counts| {
             let before = *sum;
@@ -188,7 +189,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
     }
 }
 
-/// How many statements of each kind a chunk has.
+/// Counts the statements of each kind in a chunk.
 fn counted(chunk: &[u8]) -> Counts {
     let mut counts = [0; 3];
     for line in Lines::within(chunk) {
@@ -215,6 +216,7 @@ fn joined(
     let mut lines = 0_u32;
     let mut smoothing = 0;
     let mut refused = None;
+    // Line numbers and smoothing groups continue from chunk to chunk.
     for piece in &mut pieces {
         if piece.stop == Some(Stop::Unread) {
             let reason = "the numbers from here on cannot be read";
@@ -233,6 +235,7 @@ fn joined(
         findings.append(std::mem::take(&mut piece.findings), lines);
         lines = lines.saturating_add(piece.lines);
     }
+    // Check the totals before large lists are allocated.
     let count = |length: fn(&Piece) -> usize| pieces.iter().map(length).sum();
     let counts: [(&str, usize); 2] = [
         ("vertices", count(|piece| piece.vertices.kept.len())),
@@ -268,7 +271,7 @@ fn joined(
     })
 }
 
-/// Why a count is refused, if it is: with everything made from it, a corner takes some fifty bytes.
+/// Returns the reason to reject a count: a corner takes about 50 bytes with all derived data.
 fn too_many(what: &str, count: usize) -> Option<String> {
     (count > MOST).then(|| {
         let [count, most] = [count, MOST].map(|n| n / 1_000_000);
@@ -276,7 +279,7 @@ fn too_many(what: &str, count: usize) -> Option<String> {
     })
 }
 
-/// The rows of all pieces, and how many there were and which are lost.
+/// Joins the rows of all pieces; returns them with the total count and the lost rows.
 fn all_rows<const N: usize, T: Copy + Send + Sync>(
     pieces: &mut [Piece],
     rows: impl Fn(&mut Piece) -> &mut Rows<N, T>,
@@ -292,22 +295,23 @@ fn all_rows<const N: usize, T: Copy + Send + Sync>(
     (concatenated(kept), totals)
 }
 
-/// The colours of all vertices, from 0 to 1; a vertex without a colour is white.
+/// Joins the colours of all vertices, from 0 to 1; a vertex without a colour is white.
 fn complete_colors(pieces: &mut [Piece], findings: &mut Findings) -> Vec<[f32; 3]> {
     if pieces.iter().all(|piece| piece.vertices.colors.is_empty()) {
         return Vec::new();
     }
     let mut colors = Vec::new();
     for piece in pieces {
-        // A piece has colours for all of its vertices, or none.
+        // A piece has colours for all of its vertices, or for none.
         let all = colors.len() + piece.vertices.kept.len();
         colors.append(&mut piece.vertices.colors);
         colors.resize(all, NO_COLOR);
     }
+    // Colours may be bytes or fractions; the file as a whole decides.
     let numbers = || colors.as_flattened().iter().filter(|x| x.is_finite());
     let are_bytes =
         numbers().any(|x| f64::from(*x) > BYTES_ABOVE) && numbers().all(|x| x.fract() == 0.0);
-    // A rounding error above 1 is not worth a word.
+    // A rounding error above 1 is not worth reporting.
     let brighter = numbers().filter(|x| **x > 1.01).count();
     match (are_bytes, brighter) {
         (true, _) => findings.add(FindingKind::ColorBytes, "", None),

@@ -1,83 +1,83 @@
-//! The lines of an OBJ or MTL file, whichever program wrote it.
+//! Splits an OBJ or MTL file into lines, tolerating the output of all known programs.
 //!
-//! A line ends with LF, CR LF or CR, and goes on with the next if its last character is a
-//! backslash. A comment does not go on, and neither does a line before one that begins with a
-//! keyword: paths such as `C:\out\` end in a backslash, too. Vertical tabs, form feeds and NUL are
-//! blanks. Bytes that are not UTF-8 are taken as Latin-1; a byte-order mark at the beginning is
+//! A line ends with LF, CR LF or CR, and continues on the next if its last character is a
+//! backslash. Comments do not continue, and neither do lines before one that begins with a keyword:
+//! paths such as `C:\out\` end in a backslash, too. Vertical tabs, form feeds and NUL count as
+//! blanks. Bytes that are not UTF-8 are decoded as Latin-1; a byte-order mark at the beginning is
 //! skipped.
 
 use std::borrow::Cow;
 
 use memchr::memchr2;
 
-/// A line, with those that continue it.
+/// A line with its continuations.
 #[derive(Clone, Debug)]
 pub(crate) struct Line<'a> {
-    /// The number of its first part, counted from 1.
+    /// The number of the first physical line, counted from 1.
     pub(crate) number: u32,
-    /// Its text, without blanks at its ends; continuations are joined by a blank.
+    /// The trimmed text; continuations are joined by a blank.
     text: Cow<'a, [u8]>,
-    /// The same, joined by nothing, if it differs: names go on without a blank.
+    /// The text with continuations joined directly, if it differs: names continue without a blank.
     joined: Option<Vec<u8>>,
-    /// An oddity of its form.
+    /// An oddity in the form of the line.
     pub(crate) oddity: Option<Oddity>,
 }
 
-/// An oddity of a line's form.
+/// An oddity in the form of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Oddity {
-    /// It ends in a backslash, but the next line is a statement.
+    /// The line ends in a backslash, but the next line is a statement.
     NotContinued,
 }
 
-/// Goes through the lines of a file; empty ones are passed over.
+/// Iterates over the lines of a file; empty lines are skipped.
 #[derive(Debug)]
 pub(crate) struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
     number: u32,
-    /// The number of lines with control characters, and the first of them.
+    /// The number of lines with control characters, and the first such line.
     control: (usize, u32),
 }
 
 impl<'a> Lines<'a> {
-    /// The lines of a whole file.
+    /// Iterates over the lines of a whole file.
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
         Self::within(unmarked(bytes))
     }
 
-    /// The lines of a part of a file.
+    /// Iterates over the lines of a part of a file.
     pub(super) const fn within(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0, number: 0, control: (0, 0) }
     }
 
-    /// How many bytes are behind.
+    /// Returns the number of bytes consumed.
     pub(super) const fn position(&self) -> usize {
         self.at
     }
 
-    /// How many lines are behind.
+    /// Returns the number of lines consumed.
     pub(super) const fn number(&self) -> u32 {
         self.number
     }
 
-    /// The number of lines so far with control characters, and the first of them.
+    /// Returns the number of lines so far with control characters, and the first such line.
     pub(super) const fn control(&self) -> (usize, u32) {
         self.control
     }
 
-    /// The bytes that are not behind yet.
+    /// Returns the unconsumed bytes.
     pub(super) fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at..]
     }
 
-    /// Passes over a line of `length` bytes, its ending among them.
+    /// Skips a line of `length` bytes, including its line end.
     pub(super) const fn pass(&mut self, length: usize) {
         self.at += length;
         self.number = self.number.saturating_add(1);
     }
 
-    /// The next line of the file as it stands there, trimmed.
+    /// Returns the next physical line, trimmed.
     fn physical(&mut self) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.at..];
         if rest.is_empty() {
@@ -100,7 +100,7 @@ impl<'a> Lines<'a> {
         Some(trimmed(line))
     }
 
-    /// Whether the next line of the file begins with a keyword.
+    /// Returns whether the next physical line begins with a keyword.
     fn precedes_statement(&self) -> bool {
         let rest = &self.bytes[self.at..];
         let end = memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
@@ -110,7 +110,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// The keywords that a line is not continued with.
+/// The keywords that end a continued line.
 const KEYWORDS: [&[u8]; 32] = [
     b"v",
     b"vt",
@@ -146,12 +146,12 @@ const KEYWORDS: [&[u8]; 32] = [
     b"norm",
 ];
 
-/// A control character that is taken as a blank.
+/// Returns whether a control character counts as a blank.
 const fn is_odd_blank(byte: u8) -> bool {
     matches!(byte, b'\x0B' | b'\x0C' | 0)
 }
 
-/// A line without blanks at its ends.
+/// Trims a line.
 fn trimmed(mut line: &[u8]) -> &[u8] {
     let is_blank = |byte: &u8| byte.is_ascii_whitespace() || is_odd_blank(*byte);
     while let [first, rest @ ..] = line
@@ -167,7 +167,7 @@ fn trimmed(mut line: &[u8]) -> &[u8] {
     line
 }
 
-/// A line with blanks for control characters.
+/// Replaces control characters by blanks.
 fn cleaned(line: &[u8]) -> Cow<'_, [u8]> {
     if !line.iter().copied().any(is_odd_blank) {
         return Cow::Borrowed(line);
@@ -188,6 +188,7 @@ impl<'a> Iterator for Lines<'a> {
             let whole = |first: &'a [u8], oddity: Option<Oddity>| {
                 Some(Line { number, text: cleaned(first), joined: None, oddity })
             };
+            // Nearly all lines end here, without a copy.
             let Some(begin) = first.strip_suffix(b"\\") else { return whole(first, None) };
             if first.starts_with(b"#") {
                 return whole(first, None);
@@ -195,6 +196,7 @@ impl<'a> Iterator for Lines<'a> {
             if self.precedes_statement() {
                 return whole(begin, Some(Oddity::NotContinued));
             }
+            // Numbers are joined with a blank, names without one.
             let (mut text, mut joined) = (begin.to_vec(), begin.to_vec());
             let mut oddity = None;
             while let Some(next) = self.physical() {
@@ -220,14 +222,14 @@ impl<'a> Iterator for Lines<'a> {
 }
 
 impl Line<'_> {
-    /// The first word, and what follows it.
+    /// Returns the first word, and the rest of the line.
     pub(crate) fn statement(&self) -> (&[u8], &[u8]) {
         split_word(&self.text)
     }
 
-    /// The name that follows the first word: blanks inside it are kept, a comment after it is not.
+    /// Returns the name after the first word, with its inner blanks but without a comment.
     ///
-    /// In a name a comment begins with a `#` between blanks; `Material #25` is a name.
+    /// In a name, only a `#` between blanks begins a comment: `Material #25` is a name.
     pub(crate) fn name(&self) -> String {
         let (_, rest) = split_word(self.joined.as_deref().unwrap_or(&self.text));
         let comment = (0..rest.len()).find(|&i| {
@@ -239,26 +241,26 @@ impl Line<'_> {
     }
 }
 
-/// A file without the byte-order mark that it may begin with.
+/// Removes a byte-order mark at the beginning of a file.
 pub(super) fn unmarked(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
 }
 
-/// The first word of a text that begins with one, and what follows it, trimmed.
+/// Splits a text into its first word and the trimmed rest.
 fn split_word(text: &[u8]) -> (&[u8], &[u8]) {
     let end = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
     let (word, rest) = text.split_at(end);
     (word, rest.trim_ascii())
 }
 
-/// The words of a text up to a comment.
+/// Returns the words of a text up to a comment.
 pub(crate) fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(u8::is_ascii_whitespace)
         .filter(|word| !word.is_empty())
         .take_while(|word| word[0] != b'#')
 }
 
-/// Text of UTF-8 or, if it is not UTF-8, of Latin-1.
+/// Decodes UTF-8 or, if the bytes are invalid, Latin-1.
 pub(crate) fn decode(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
@@ -266,10 +268,10 @@ pub(crate) fn decode(bytes: &[u8]) -> String {
     }
 }
 
-/// A word for a message, cut off if it is long.
+/// Shortens a word for a message.
 pub(crate) fn excerpt(word: &[u8]) -> String {
     const MOST: usize = 40;
-    // No character of UTF-8 has more than four bytes.
+    // A UTF-8 character has at most four bytes.
     let text = decode(&word[..word.len().min(4 * MOST)]);
     let is_cut = 4 * MOST < word.len() || text.chars().nth(MOST).is_some();
     let shown: String = text.chars().take(MOST).collect();
@@ -277,33 +279,34 @@ pub(crate) fn excerpt(word: &[u8]) -> String {
     if is_cut { shown + "..." } else { shown }
 }
 
-/// Why a word is not a number.
+/// The reason why a word is not a number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct NoNumber(pub(crate) String);
 
-/// A number of a file.
+/// A parsed number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Number {
     pub(crate) value: f64,
-    /// It is written in a way that the format does not have.
+    /// Whether the notation is not part of the format.
     pub(crate) is_odd: bool,
-    /// A comment follows at once.
+    /// Whether a comment follows without a blank.
     pub(crate) ends_line: bool,
 }
 
-/// The number that a word says.
+/// Parses a number.
 ///
-/// The spellings of C libraries for infinities and NaN are read as such. Exponents of Fortran
-/// (`1D0`), decimal commas, the suffix of a C literal and the minus sign of Unicode are read, too,
-/// and said to be odd.
+/// The notations of C libraries for infinities and NaN are accepted. Fortran exponents (`1D0`),
+/// decimal commas, C suffixes and the Unicode minus sign are accepted as well, and marked as odd.
 pub(crate) fn number(word: &[u8]) -> Result<Number, NoNumber> {
     let parse = |word: &[u8]| std::str::from_utf8(word).ok()?.parse::<f64>().ok();
     let [plain, odd] =
         [false, true].map(|is_odd| move |value| Number { value, is_odd, ends_line: false });
+    // Nearly all numbers parse here; the notations below are rare.
     if let Some(value) = parse(word) {
         return Ok(plain(value));
     }
     let lower = word.to_ascii_lowercase();
+    // Old C libraries write 1.#INF, 1.#QNAN and nan(ind).
     if lower.windows(2).any(|two| two == b".#") || lower.windows(4).any(|four| four == b"nan(") {
         return Ok(plain(f64::NAN));
     }
@@ -316,12 +319,12 @@ pub(crate) fn number(word: &[u8]) -> Result<Number, NoNumber> {
     Err(NoNumber(format!("\"{}\" is not a number", excerpt(word))))
 }
 
-/// A number as Rust spells it, from the spellings of other languages.
+/// Converts numbers in the notation of other languages to Rust's.
 fn respelled(lower: &[u8]) -> Option<String> {
     let text = std::str::from_utf8(lower).ok()?.replace('\u{2212}', "-");
     let text = text.trim_end_matches([',', ';']);
     let text = text.strip_suffix(['f', 'l']).unwrap_or(text);
-    // Words such as "d" or "food" are not numbers, even if a letter is replaced.
+    // Words such as "d" or "food" are not numbers, even with a letter replaced.
     let starts = text.starts_with(|sign: char| sign.is_ascii_digit() || "+-.,".contains(sign));
     let commas = text.matches(',').count();
     let respelled = match commas {

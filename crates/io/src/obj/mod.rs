@@ -1,17 +1,17 @@
-//! A model from an OBJ file.
+//! Loads a model from an OBJ file.
 //!
-//! The text is cut into chunks ([`chunks`]), which are read by all threads: plain lines the quick
-//! way ([`quick`]), all others the tolerant way ([`scan`], [`faces`]). The numbers of `v`, `vt` and
-//! `vn` are read by tobj ([`rows`]). Faces are not: tobj reads them on one thread, forgets their
-//! lines, and refuses the file for one bad index. The chunks are put together as if they had been
-//! read in order ([`join`]), the faces that can be used are picked ([`sound`]), and a [`Mesh`] is
-//! made of them. A vertex of the mesh is a `v` of the file, used or not.
+//! The text is split into chunks ([`chunks`]), which all threads parse: plain lines on a fast path
+//! ([`quick`]), all others on a tolerant path ([`scan`], [`faces`]). tobj parses the numbers of
+//! `v`, `vt` and `vn` ([`rows`]), but not the faces: it would parse them on one thread, lose their
+//! line numbers, and reject the file for one bad index. The chunks are joined as if they had been
+//! parsed in order ([`join`]), usable faces are selected ([`sound`]), and a [`Mesh`] is built from
+//! them. Each `v` of the file becomes a vertex of the mesh, used or not.
 //!
-//! Faults that can be left out or mended without guessing are, and each such case is a [`Finding`]:
-//! a vertex that cannot be read loses its faces, not the file.
+//! Faults that can be skipped or repaired without guessing become [`Finding`]s: an unreadable
+//! vertex costs only its faces, not the file.
 //!
-//! The format is that of Wavefront's "Advanced Visualizer", Appendix B1, with the colours of
-//! vertices that MeshLab and others write.
+//! The format is that of Wavefront's "Advanced Visualizer", Appendix B1, with the vertex colours
+//! that MeshLab and others write.
 
 mod chunks;
 mod corners;
@@ -48,32 +48,31 @@ use marraztu_core::scene::{
     Smoothing, Texture, UpAxis, Winding, dvec3, newell, split_positions,
 };
 
-/// Why a file without anything in it is refused.
+/// The error for a file without content.
 const EMPTY: &str = "the file is empty";
 
-/// How many different statements `mtllib` are followed.
+/// The most distinct `mtllib` statements that are followed.
 const MOST_LIBRARIES: usize = 1000;
 
-/// A model, with what was found on the way.
+/// A model with the findings from its files.
 #[derive(Debug)]
 pub struct Loaded {
     /// The model.
     pub model: Model,
-    /// What was mended, left out or odd.
+    /// Everything that was repaired, left out or odd.
     pub findings: Vec<Finding>,
 }
 
-/// Reads an OBJ file, with the MTL files and textures that it names. A file whose name ends in
-/// `.gz` is unpacked.
+/// Loads an OBJ file with its MTL files and textures. A file with the extension `.gz` is unpacked.
 ///
 /// # Errors
-/// If the file cannot be read, is not an OBJ file, has a number that cannot be read, or has faces
-/// but none that can be used; and if `progress` is cancelled.
+/// If the file cannot be read, is not an OBJ file, has an unreadable number, or has only unusable
+/// faces; and if `progress` is cancelled.
 pub fn load(path: &Path, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
     load_with(path, options, &mut Pictures::default(), progress)
 }
 
-/// As [`load`]; a picture that is among `pictures` already is not read again.
+/// Works like [`load`], but reuses pictures that are already in `pictures`.
 pub(super) fn load_with(
     path: &Path,
     options: &LoadOptions,
@@ -85,7 +84,7 @@ pub(super) fn load_with(
     let mut findings = Findings::new(&file);
     let part = progress.part(0.0, 0.6);
     let content = match unpacked_name(&file) {
-        // Its size when unpacked is not known; text has about four times as much.
+        // The unpacked size is unknown; text is typically four times as large.
         Some(_) => content(Unpacked::new(text), 4 * size, &file, &mut findings, &part)?,
         None => content(text, size, &file, &mut findings, &part)?,
     };
@@ -95,16 +94,15 @@ pub(super) fn load_with(
     own_library(&mut library, &content, path, missing, &mut findings);
     let progress = progress.part(0.6, 1.0);
     let mut loaded = model(content, &file, library, options, findings, &progress)?;
-    // The path is absolute, so that it stays valid if the current folder changes.
+    // An absolute path stays valid when the current folder changes.
     loaded.model.source = Some(std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()));
     Ok(loaded)
 }
 
-/// Reads the text of an OBJ file. `folder` is where its MTL files are looked for; if it is `None`
-/// none are.
+/// Parses the text of an OBJ file. MTL files are searched for in `folder`, if given.
 ///
 /// # Errors
-/// As [`load`].
+/// The same as [`load`].
 pub fn parse(
     bytes: &[u8],
     file: &str,
@@ -124,7 +122,7 @@ pub fn parse(
     model(content, file, library, options, findings, &progress.part(0.6, 1.0))
 }
 
-/// What the text of an OBJ file says; `size` is how many bytes it has, as far as that is known.
+/// Parses the text of an OBJ file; `size` is its size in bytes, or an estimate.
 fn content(
     text: impl Read + Send,
     size: usize,
@@ -141,7 +139,7 @@ fn content(
     Ok(content)
 }
 
-/// Makes a model of what a text says.
+/// Builds a model from parsed content.
 fn model(
     content: Content,
     file: &str,
@@ -155,11 +153,13 @@ fn model(
     if library.count() > 0 && content.parts.iter().all(|part| part.names.material.is_none()) {
         findings.note_count(FindingKind::MaterialsUnused, library.count());
     }
+    // Finishing the library decides how `Tr 1` is read, which depends on the used materials.
     let companions = library.files();
     let (materials, of_materials) = library.finish(&used);
     let edge_color = content.edge_color;
     progress.reached(1, 10)?;
 
+    // The checks below need the triangles and normals of the finished mesh.
     let mut content = content;
     let faces = FaceRuns::of(std::mem::take(&mut content.faces.runs));
     let (source, corners) = source(content, &faces, parts, options)
@@ -186,9 +186,10 @@ fn model(
     Ok(Loaded { model, findings: joined(findings) })
 }
 
-/// Why a text that begins with these bytes cannot be an OBJ file, if they tell; `whole` says that
-/// there are no more.
+/// Returns the reason why a text with these first bytes cannot be an OBJ file. `whole` means that
+/// they are the whole text.
 fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
+    // Signatures of formats that users confuse with OBJ, for a helpful message.
     let known = [
         (&b"glTF"[..], "a glTF file"),
         (b"PK\x03\x04", "a ZIP archive; unpack it first"),
@@ -214,12 +215,12 @@ fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
         .then(|| "this is not an OBJ file: it is not text".into())
 }
 
-/// Refuses a file if nothing of it would be left.
+/// Rejects a file if all of its faces, or all of its vertices, are unusable.
 fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
     if !content.faces.runs.is_empty() {
         return Ok(());
     }
-    // A vertex that cannot be read comes before the faces that refer to it.
+    // The unreadable vertex is the root cause, so it is reported before the faces.
     if let Some((line, reason)) = &content.refused
         && (content.positions.is_empty() || content.faces.refused.is_some())
     {
@@ -243,7 +244,7 @@ fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
     ))
 }
 
-/// Reads the MTL files in `folder`. Returns the missing ones, with their lines.
+/// Reads the MTL files in `folder`. Returns missing files, with their lines.
 fn read_libraries(
     library: &mut Library<'_>,
     content: &Content,
@@ -257,7 +258,7 @@ fn read_libraries(
         if !seen.insert(names) {
             continue;
         }
-        // Each is a look at the disk.
+        // Each file costs a disk access.
         if seen.len() > MOST_LIBRARIES {
             findings.note(FindingKind::MtlMany, *line);
             continue;
@@ -272,10 +273,10 @@ fn read_libraries(
     missing
 }
 
-/// Looks for an MTL file or a picture with the model's name.
+/// Searches for an MTL file or a picture with the model's name.
 ///
-/// Files are renamed and lose the MTL file that they name, or never named it. If faces name
-/// materials that no file has, the MTL file with the model's name is read, as Blender does.
+/// Renaming a model breaks its reference to the MTL file, and some models never had one. If faces
+/// name undefined materials, the MTL file with the model's name is read, as in Blender.
 fn own_library(
     library: &mut Library<'_>,
     content: &Content,
@@ -289,6 +290,7 @@ fn own_library(
     let stem = stem.to_string_lossy();
     let mut own = |ending: &str| library.locator.locate(folder, &format!("{stem}.{ending}"));
     let has_library = !content.libraries.is_empty() && missing.is_empty();
+    // Without such an MTL file, a picture of that name is worth a note.
     let Some(mtl) = (if has_library { None } else { own("mtl") }) else {
         if content.libraries.is_empty()
             && let Some(picture) = texture_endings().into_iter().find_map(own)
@@ -300,6 +302,7 @@ fn own_library(
         }
         return;
     };
+    // If no face names a material, the file is only noted.
     let names_materials = content.parts.iter().any(|part| part.names.material.is_some());
     if missing.is_empty() && !names_materials {
         return findings.add(FindingKind::MtlUnnamed, &short_name(&mtl), None);
@@ -311,7 +314,7 @@ fn own_library(
     }
 }
 
-/// The parts, by the names of their groups, objects or materials.
+/// Names the parts after their groups, objects or materials.
 fn named_parts(parts: &[NamedPart], library: &Library<'_>, findings: &mut Findings) -> Vec<Part> {
     let named = |(i, part): (usize, &NamedPart)| {
         let names = &part.names;
@@ -330,7 +333,8 @@ fn named_parts(parts: &[NamedPart], library: &Library<'_>, findings: &mut Findin
     parts.iter().enumerate().map(named).collect()
 }
 
-/// The lists of the mesh, turned and scaled as asked for; `None` if they are not finite.
+/// Builds the lists of the mesh with the requested rotation and scale; `None` if they are not
+/// finite.
 fn source(
     content: Content,
     faces: &FaceRuns,
@@ -342,6 +346,7 @@ fn source(
     if placement(options) != placement(&LoadOptions::default()) {
         place(&mut positions, &mut normals, options);
     }
+    // Splitting off the offset keeps f32 precision far from the origin.
     let (offset, positions) = split_positions(&positions, &content.faces.corners.positions);
     let (arities, polygon_parts) = (faces.arities(), faces.parts());
     let smoothing = if has_smoothing {
@@ -350,6 +355,7 @@ fn source(
         Smoothing::Crease(options.crease)
     };
     let mut corners = content.faces.corners;
+    // Reversing the corners of each polygon flips its winding.
     if options.winding == Winding::Turned {
         let CornerLists { positions, uvs, normals } = &mut corners;
         for list in [positions, uvs, normals].into_iter().filter(|list| !list.is_empty()) {
@@ -378,12 +384,12 @@ fn source(
     finite.then_some((source, corners))
 }
 
-/// The options that change positions and normals.
+/// Returns the options that change positions and normals.
 const fn placement(options: &LoadOptions) -> (UpAxis, Scale, Winding) {
     (options.up, options.scale, options.winding)
 }
 
-/// Turns and scales the positions and normals of a file as asked for.
+/// Rotates and scales the positions and normals of a file as requested.
 fn place(positions: &mut [[f64; 3]], normals: &mut [[f32; 3]], options: &LoadOptions) {
     let LoadOptions { up, scale, .. } = options;
     let turned = options.winding == Winding::Turned;
@@ -392,9 +398,10 @@ fn place(positions: &mut [[f64; 3]], normals: &mut [[f32; 3]], options: &LoadOpt
     normals.par_iter_mut().for_each(|row| *row = normal(*row));
 }
 
-/// Notes polygons whose triangles do not all run the polygon's way: they cross
-/// themselves, or were too large to be cut up rightly.
+/// Notes polygons with triangles of opposite orientation: they cross themselves, or were too large
+/// to be triangulated correctly.
 fn note_crossings(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
+    // Triangles cannot cross themselves.
     if mesh.triangle_count() == mesh.polygon_count() {
         return;
     }
@@ -406,7 +413,7 @@ fn note_crossings(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
     }
 }
 
-/// Notes bodies that are inside out, and faces with normals on their wrong side.
+/// Notes bodies that are inside out, and faces with normals on their back side.
 fn note_orientation(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
     let ClosedBodies { all, inside_out } = mesh.closed_bodies();
     let kind = match inside_out == all {
@@ -430,6 +437,7 @@ fn note_unmapped(mesh: &Mesh, materials: &[FileMaterial], findings: &mut Finding
     if !mesh.parts().iter().any(|part| texture(part).is_some()) {
         return;
     }
+    // A part is reported if it has faces, but none with texture coordinates.
     let mut seen = vec![[false; 2]; mesh.parts().len()];
     for (polygon, part) in (0..).zip(mesh.polygon_parts()) {
         let [is_used, is_mapped] = &mut seen[*part as usize];
@@ -448,7 +456,7 @@ fn crosses(mesh: &Mesh, polygon: u32) -> bool {
     let normal = dvec3(mesh.polygon_normals()[polygon as usize]);
     let at =
         |corner: u32| dvec3(mesh.positions()[mesh.corners()[corner as usize].position as usize]);
-    // Polygons that are not quite flat have triangles that are only just turned away.
+    // Slightly curved polygons may have triangles that barely face away.
     let [mut backwards, mut forwards] = [0.0; 2];
     for triangle in &mesh.triangles()[mesh.triangles_of(polygon)] {
         let area = newell(triangle.corners.into_iter().map(at)).dot(normal);

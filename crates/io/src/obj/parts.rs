@@ -1,16 +1,16 @@
-//! The parts of a model: what its `o`, `g` and `usemtl` call its faces.
+//! The parts of a model: faces with equal names from `o`, `g` and `usemtl`.
 
 use std::collections::HashMap;
 
 use marraztu_core::scene::{NONE, PartNames};
 
-/// The runs of `o`, `g` and `usemtl`, those with the same names together.
+/// The distinct combinations of `o`, `g` and `usemtl`.
 #[derive(Debug, Default)]
 pub(super) struct Parts {
     pub(super) list: Vec<NamedPart>,
     places: HashMap<PartNames, u32>,
     now: NamedPart,
-    /// The place of `now`, once a face has needed it.
+    /// The index of `now`, set when a face needs it.
     place: Option<u32>,
 }
 
@@ -38,8 +38,8 @@ impl Parts {
         })
     }
 
-    /// Takes up the parts of the lines that follow the first `lines` lines; gives the place here of
-    /// each part there.
+    /// Appends the parts of the text that follows the first `lines` lines. Returns the index here
+    /// of each part there.
     pub(super) fn append(&mut self, following: &Self, lines: u32) -> Vec<u32> {
         let before = self.now.clone();
         let mut place = |part: &NamedPart| {
@@ -53,13 +53,13 @@ impl Parts {
 }
 
 impl NamedPart {
-    /// The names with those that were given before; `lines` lines are before these.
+    /// Completes the names with earlier ones; `lines` lines precede these.
     fn after(&self, before: &Self, lines: u32) -> Self {
         let given = |ours: &Option<String>, earlier: &Option<String>| {
             ours.as_ref().or(earlier.as_ref()).cloned()
         };
         let (ours, earlier) = (&self.names, &before.names);
-        // An object begins without a group.
+        // A new object starts without a group.
         let group = if ours.object.is_some() { &None } else { &earlier.group };
         let names = PartNames {
             object: given(&ours.object, &earlier.object),

@@ -1,4 +1,4 @@
-//! What the statements of a chunk of an OBJ file say.
+//! The parsed statements of a chunk of an OBJ file.
 
 use super::faces::{Faces, INHERITED, Run};
 use super::parts::Parts;
@@ -7,52 +7,52 @@ use crate::findings::Findings;
 use marraztu_core::base::color::Color;
 use marraztu_core::scene::NONE;
 
-/// How many vertices, texture coordinates and normals there are.
+/// The numbers of vertices, texture coordinates and normals.
 pub(super) type Counts = [u32; 3];
 
-/// Everything that the statements of a chunk say.
+/// The parsed statements of a chunk.
 #[derive(Debug)]
 pub(super) struct Piece {
-    /// How many statements of each kind are before the chunk, if that is known.
+    /// The number of statements of each kind before the chunk, if known.
     pub(super) before: Option<Counts>,
-    /// Which lines of numbers go to tobj as they are.
+    /// The lines of numbers that tobj gets unchanged.
     pub(super) trust: Trust,
-    /// How many lines the chunk has, as far as it was read.
+    /// The number of lines parsed.
     pub(super) lines: u32,
     pub(super) vertices: Rows<3, f64>,
     pub(super) uvs: Rows<2, f32>,
     pub(super) normals: Rows<3, f32>,
-    /// The first vertex that cannot be read, with the reason.
+    /// The first unreadable vertex, with the reason.
     pub(super) refused: Option<(u32, String)>,
     pub(super) faces: Faces,
     pub(super) parts: Parts,
     /// The smoothing group of the next face: 0 for none, or [`INHERITED`].
     pub(super) smoothing: u32,
-    /// What follows `mtllib`, with its lines.
+    /// The arguments of `mtllib`, with their lines.
     pub(super) libraries: Vec<(u32, String)>,
     pub(super) edge_color: Option<Color>,
     pub(super) findings: Findings,
-    /// Why the chunk was not read to its end.
+    /// The reason why parsing stopped early.
     pub(super) stop: Option<Stop>,
-    /// The chunk, if it has to be read again.
+    /// The text of the chunk, if it has to be parsed again.
     pub(super) text: Vec<u8>,
 }
 
-/// Which lines of numbers go to tobj as they are.
+/// The lines of numbers that tobj gets unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Trust {
-    /// Those that look like nothing but numbers.
+    /// Lines that seem to contain only numbers.
     Plain,
-    /// None: tobj refused such a line.
+    /// No lines, because tobj rejected one.
     Nothing,
 }
 
-/// Why a chunk was not read to its end.
+/// The reason why parsing a chunk stopped early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stop {
-    /// tobj refuses the numbers.
+    /// tobj rejects the numbers.
     Unread,
-    /// A face counts back, and it is not known from where.
+    /// A face has a negative index, and the preceding statements are not counted yet.
     CountsBack,
 }
 
@@ -77,13 +77,13 @@ impl Piece {
         }
     }
 
-    /// How many statements of each kind are before the next one.
+    /// Returns the number of statements of each kind before the next one, if known.
     pub(super) fn counts(&self) -> Option<Counts> {
         let own = [self.vertices.count, self.uvs.count, self.normals.count];
         self.before.map(|before| std::array::from_fn(|i| before[i].saturating_add(own[i])))
     }
 
-    /// Takes up a face of `corners` corners, which were pushed last.
+    /// Adds a face with the `corners` corners that were pushed last.
     #[inline]
     pub(super) fn end_face(&mut self, corners: usize, line: u32) {
         let corners = u32::try_from(corners).unwrap_or(NONE);

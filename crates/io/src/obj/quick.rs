@@ -1,15 +1,15 @@
-//! Reads plain lines, as nearly all lines are written.
+//! Parses plain lines on a fast path, which takes nearly all lines of a file.
 //!
-//! A line is gone over once, from its keyword to its ending. A face is taken if the whole line is
-//! plain; a row of numbers is then left to tobj. Any other line is left untouched to the tolerant
-//! way, which knows comments, continued lines, odd numbers and every fault.
+//! A line is scanned once, from its keyword to its end. Faces are parsed if the whole line is
+//! plain; rows of numbers are passed to tobj. All other lines are left to the tolerant path, which
+//! handles comments, continued lines, odd numbers and all faults.
 
 use super::lines::Lines;
 use super::piece::{Counts, Piece, Trust};
 use marraztu_core::scene::{NONE, SourceCorner};
 
 impl Piece {
-    /// Reads the next line if it has the plain form; says how many bytes it has, with its ending.
+    /// Parses the next line if it is plain; returns its length in bytes, including the line end.
     #[inline]
     pub(super) fn quick(&mut self, lines: &Lines<'_>) -> Option<usize> {
         match lines.rest() {
@@ -24,7 +24,7 @@ impl Piece {
         }
     }
 
-    /// `v x y z`, `v x y z r g b`, `vt u v`, `vt u v w` and `vn x y z` go to tobj as they are.
+    /// Passes `v x y z`, `v x y z r g b`, `vt u v`, `vt u v w` and `vn x y z` to tobj unchanged.
     #[inline]
     fn quick_row(&mut self, text: &[u8], begin: usize) -> Option<usize> {
         let keyword = match text {
@@ -38,18 +38,19 @@ impl Piece {
             (b"v", 3 | 6) => self.vertices.add_line(begin, end, words == 6),
             (b"vn", 3) => self.normals.add_line(begin, end, false),
             (b"vt", 2) => self.uvs.add_line(begin, end, false),
-            // tobj does not look at the third number.
+            // tobj ignores the third number, so it is checked here.
             (b"vt", 3) if is_number(&text[..length]) => self.uvs.add_line(begin, end, false),
             _ => return None,
         }
         Some(length + ending)
     }
 
-    /// Three corners or more.
+    /// Parses three corners or more.
     #[inline]
     fn quick_face<'a>(&mut self, mut rest: &'a [u8], line: u32) -> Option<&'a [u8]> {
         let counts = self.counts();
         let begin = self.faces.corners();
+        // Corners are pushed at once, and removed if the line turns out not to be plain.
         let after = loop {
             if let Some(after) = line_end(rest) {
                 break Some(after);
@@ -68,13 +69,13 @@ impl Piece {
     }
 }
 
-/// How many words a line has, how many bytes they take, and how many its ending; `None` if the line
-/// has anything but blanks and what numbers are written with. It begins with a blank.
+/// Counts the words of a line, their bytes and the bytes of the line end; `None` if the line has
+/// characters that are neither blanks nor part of numbers. It begins with a blank.
 #[inline]
 fn plain(text: &[u8]) -> Option<(u32, usize, usize)> {
     let (mut words, mut after_blank, mut length) = (0, false, 0);
     while let Some(byte) = text.get(length) {
-        // Numbers are of any length, so a branch for each blank would be mispredicted.
+        // Branch-free: numbers have varying lengths, so a branch per blank would be mispredicted.
         let is_blank = matches!(byte, b' ' | b'\t');
         let is_number = matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+' | b'e' | b'E');
         if !(is_blank | is_number) {
@@ -92,14 +93,14 @@ fn plain(text: &[u8]) -> Option<(u32, usize, usize)> {
     }
 }
 
-/// Whether the last word of a line is a number.
+/// Returns whether the last word of a line is a number.
 fn is_number(line: &[u8]) -> bool {
     let mut words = line.trim_ascii_end().rsplit(|b| matches!(b, b' ' | b'\t'));
     let word = std::str::from_utf8(words.next().unwrap_or_default());
     word.is_ok_and(|word| word.parse::<f32>().is_ok())
 }
 
-/// A corner `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+/// Parses a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`.
 #[inline]
 fn corner(text: &[u8], counts: Option<Counts>) -> Option<(SourceCorner, &[u8])> {
     let count = |i: usize| counts.map(|counts| counts[i]);
@@ -118,13 +119,14 @@ fn corner(text: &[u8], counts: Option<Counts>) -> Option<(SourceCorner, &[u8])> 
     Some((SourceCorner { position, uv, normal }, text))
 }
 
-/// An index of up to nine digits, counted from 0; one that counts back has to count from somewhere.
+/// Parses an index of up to nine digits to count from 0. A negative one needs a known `count`.
 #[inline]
 fn index(text: &[u8], count: Option<u32>) -> Option<(u32, &[u8])> {
     let (back, digits) = match text {
         [b'-', rest @ ..] => (true, rest),
         _ => (false, text),
     };
+    // Eight digits at once; the loop handles a ninth, and the end of the text.
     let (mut value, first) = digits.first_chunk().map_or((0, 0), |eight| leading_digits(*eight));
     let mut rest = &digits[first..];
     if first == 8 || digits.len() < 8 {
@@ -140,7 +142,7 @@ fn index(text: &[u8], count: Option<u32>) -> Option<(u32, &[u8])> {
     Some((place, rest))
 }
 
-/// A text without the blanks that it begins with.
+/// Skips leading blanks.
 #[inline]
 fn blanks(mut text: &[u8]) -> &[u8] {
     while let [b' ' | b'\t', rest @ ..] = text {
@@ -149,13 +151,13 @@ fn blanks(mut text: &[u8]) -> &[u8] {
     text
 }
 
-/// Whether a word ends where this text begins.
+/// Returns whether a word ends at the beginning of this text.
 #[inline]
 fn ends_word(text: &[u8]) -> Option<()> {
     matches!(text, [] | [b' ' | b'\t' | b'\n' | b'\r', ..]).then_some(())
 }
 
-/// What follows the line's ending, if nothing but blanks is before it.
+/// Returns the text after the line end, if only blanks precede it.
 #[inline]
 fn line_end(text: &[u8]) -> Option<&[u8]> {
     match blanks(text) {
@@ -164,18 +166,18 @@ fn line_end(text: &[u8]) -> Option<&[u8]> {
     }
 }
 
-/// The number that the leading digits of eight bytes make, and how many digits there are.
+/// Parses the leading digits of eight bytes; returns the number and the digit count.
 #[inline]
 fn leading_digits(text: [u8; 8]) -> (u32, usize) {
-    // Digits become their values, other bytes more than 9.
+    // XOR turns digits into their values, and other bytes into more than 9.
     let values = u64::from_le_bytes(text) ^ 0x3030_3030_3030_3030;
     let beyond = values | values.wrapping_add(0x0606_0606_0606_0606);
-    // A carry spoils only what follows the first byte that is not a digit.
+    // A carry only affects bytes after the first non-digit.
     let count = (beyond & 0xf0f0_f0f0_f0f0_f0f0).trailing_zeros() / 8;
     if count == 0 {
         return (0, 0);
     }
-    // To the end, behind zeros; then neighbours are joined: to pairs, to fours, to eight.
+    // Shift the digits to the end, behind zeros. Then join neighbours: pairs, fours, eights.
     let values = values << (64 - 8 * count);
     let pairs = values.wrapping_mul(10).wrapping_add(values >> 8);
     let even = (pairs & 0x0000_00ff_0000_00ff).wrapping_mul(0x000f_4240_0000_0064);

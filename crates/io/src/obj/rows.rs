@@ -1,11 +1,11 @@
-//! The numbers of `v`, `vt` and `vn`, read by tobj.
+//! The numbers of `v`, `vt` and `vn`, parsed by tobj.
 //!
-//! tobj gives a mesh the rows that its faces name, in the order in which they name them. The lines
-//! of a kind therefore go to it with polygons between them, and each polygon names the lines since
-//! the last one: all rows come back in the order of the file, used or not. tobj reads its text line
-//! by line, and gets the lines directly from the chunk.
+//! tobj returns only rows that faces refer to, in the order of reference. The lines of one kind are
+//! therefore passed to it with polygons in between, and each polygon refers to the lines since the
+//! last one. All rows come back in file order, used or not. tobj reads its text line by line,
+//! directly from the chunk.
 //!
-//! tobj reads numbers in f64. Positions stay in f64 until the offset of the mesh is known; texture
+//! tobj parses numbers as f64. Positions stay in f64 until the offset of the mesh is known; texture
 //! coordinates and normals are rounded to f32.
 
 use std::fmt::Write;
@@ -13,8 +13,8 @@ use std::io::{BufRead, ErrorKind, Read};
 use std::mem::take;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// How many rows a polygon names at most. tobj looks each of them up in a table: this number fills
-/// one of 512 places.
+/// The most rows per polygon. tobj looks up each row in a hash table; this number fills one with
+/// 512 slots, at its maximum load of 7/8.
 const POLYGON: usize = 448;
 
 /// A statement with a row of numbers.
@@ -25,9 +25,9 @@ pub(super) enum RowKind {
     Normal,
 }
 
-/// A number as a row keeps it.
+/// A number in the precision of a row.
 pub(super) trait Number: Copy + Send + Sync + Into<f64> {
-    /// The number nearest to `x`.
+    /// Rounds `x` to the nearest number.
     fn nearest(x: f64) -> Self;
 }
 
@@ -44,25 +44,25 @@ impl Number for f64 {
     }
 }
 
-/// The statements of one kind in a chunk, each with `N` numbers that count.
+/// The statements of one kind in a chunk, each with `N` numbers.
 #[derive(Debug)]
 pub(super) struct Rows<const N: usize, T> {
     kind: RowKind,
     /// The lines for tobj.
     lines: Vec<RowLine>,
-    /// The text of those that do not go to tobj as they stand in the chunk.
+    /// The text of lines that tobj does not get unchanged from the chunk.
     rewritten: String,
-    /// The rows that are finite, once tobj has read them.
+    /// The finite rows, after tobj has parsed them.
     pub(super) kept: Vec<[T; N]>,
-    /// The colours of vertices; NaN if a vertex has none, and empty if no vertex has one.
+    /// The vertex colours: NaN for a vertex without one, empty if no vertex has one.
     pub(super) colors: Vec<[f32; 3]>,
     /// The number of statements, finite or not.
     pub(super) count: u32,
-    /// The statements that are not finite or cannot be read, ascending.
+    /// The statements that are not finite or not readable, ascending.
     pub(super) lost: Vec<u32>,
 }
 
-/// The position of a line.
+/// The range of a line in its text.
 #[derive(Clone, Copy, Debug)]
 struct RowLine {
     begin: u32,
@@ -84,14 +84,14 @@ impl<const N: usize, T: Number> Rows<N, T> {
         }
     }
 
-    /// Takes a line between two places of the chunk. tobj must read the same in it as the tolerant
-    /// way.
+    /// Adds a line, given by its range in the chunk. tobj must parse it just as the tolerant path
+    /// would.
     #[inline]
     pub(super) fn add_line(&mut self, begin: usize, end: usize, is_colored: bool) {
         self.push(begin, end, false, is_colored);
     }
 
-    /// Takes a row that was read already, if it is finite; says whether it is.
+    /// Adds a parsed row if it is finite; returns whether it is.
     pub(super) fn add(&mut self, row: [f64; N], color: Option<[f64; 3]>) -> bool {
         if !row.iter().all(is_finite) {
             self.lose();
@@ -104,14 +104,14 @@ impl<const N: usize, T: Number> Rows<N, T> {
             RowKind::Normal => "vn",
         };
         for number in row.iter().chain(color.iter().flatten()) {
-            // The shortest text of an f64 gives its value back.
+            // The shortest text of an f64 converts back to the same value.
             let _infallible = write!(self.rewritten, " {number:e}");
         }
         self.push(begin, self.rewritten.len(), true, color.is_some());
         true
     }
 
-    /// Counts a row that cannot be used.
+    /// Counts an unusable row.
     pub(super) fn lose(&mut self) {
         self.lost.push(self.count);
         self.count = self.count.saturating_add(1);
@@ -119,14 +119,14 @@ impl<const N: usize, T: Number> Rows<N, T> {
 
     #[inline]
     fn push(&mut self, begin: usize, end: usize, is_rewritten: bool, is_colored: bool) {
-        // No chunk has more bytes than 32 bits can count.
+        // Chunks are far smaller than 4 GB.
         let [begin, end] = [begin, end].map(|place| u32::try_from(place).unwrap_or(u32::MAX));
         self.lines.push(RowLine { begin, end, is_rewritten, is_colored });
-        // More than can be counted are more than a mesh can have: it will say so.
+        // A saturated count exceeds the limit of a mesh, which will report it.
         self.count = self.count.saturating_add(1);
     }
 
-    /// The polygon that names the last `count` rows.
+    /// Builds a polygon that refers to the last `count` rows.
     fn polygon(&self, count: usize) -> String {
         let mut polygon = "f".to_owned();
         for back in (1..=count).rev() {
@@ -139,15 +139,16 @@ impl<const N: usize, T: Number> Rows<N, T> {
         polygon
     }
 
-    /// Has tobj read the lines; says whether it could.
+    /// Lets tobj parse the lines; returns whether it succeeded.
     pub(super) fn read(&mut self, chunk: &[u8]) -> bool {
-        // Their memory is not needed any longer than this.
+        // Taken out, so their memory is freed on return.
         let (lines, rewritten) = (take(&mut self.lines), take(&mut self.rewritten));
         if lines.is_empty() {
             return true;
         }
         let has_colors = lines.iter().any(|line| line.is_colored);
         let polygon = self.polygon(lines.len().min(POLYGON));
+        // tobj needs a vertex in every face, even if only texture coordinates or normals count.
         let mut text = RowText {
             chunk,
             rewritten: rewritten.as_bytes(),
@@ -161,6 +162,7 @@ impl<const N: usize, T: Number> Rows<N, T> {
         let options = tobj::LoadOptions::default();
         let no_library = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
         let read = || tobj::load_obj_buf(&mut text, &options, no_library);
+        // tobj panics on some malformed numbers.
         let Ok(Ok((models, _))) = catch_unwind(AssertUnwindSafe(read)) else { return false };
         self.kept.reserve(lines.len());
         for tobj::Model { mesh, .. } in &models {
@@ -173,23 +175,23 @@ impl<const N: usize, T: Number> Rows<N, T> {
             append(&mut self.colors, &mesh.vertex_color);
         }
         let finite = self.kept.as_flattened().iter().all(|x| is_finite(&(*x).into()));
-        // tobj passes over colours that it cannot read.
+        // tobj silently skips colours that it cannot parse.
         let colors = if has_colors { lines.len() } else { 0 };
         finite && self.kept.len() == lines.len() && self.colors.len() == colors
     }
 }
 
-/// The lines of one kind and the polygons that name them, as tobj asks for them.
+/// The lines of one kind with the polygons that refer to them, produced on demand.
 struct RowText<'a> {
     chunk: &'a [u8],
     rewritten: &'a [u8],
     lines: std::slice::Iter<'a, RowLine>,
-    /// A face needs a vertex, whatever else it names.
+    /// Whether to emit a vertex first, which every face needs.
     needs_vertex: bool,
     has_colors: bool,
-    /// What names as many rows as a polygon can.
+    /// The polygon that refers to the most rows.
     polygon: &'a str,
-    /// How many lines no polygon names yet.
+    /// The number of lines since the last polygon.
     unnamed: usize,
     ends_group: bool,
 }
@@ -200,7 +202,7 @@ impl BufRead for RowText<'_> {
         if take(&mut self.needs_vertex) {
             text.push_str("v 0 0 0");
         } else if take(&mut self.ends_group) {
-            // tobj makes a mesh of each group, and forgets its table.
+            // tobj starts a new mesh at each group, and clears its hash table.
             text.push('g');
         } else if self.unnamed < POLYGON
             && let Some(line) = self.lines.next()
@@ -210,12 +212,12 @@ impl BufRead for RowText<'_> {
             let no_text = |error| std::io::Error::new(ErrorKind::InvalidData, error);
             text.push_str(std::str::from_utf8(bytes).map_err(no_text)?);
             if self.has_colors && !line.is_colored {
-                // All vertices have colours, or none has: NaN stands for none.
+                // tobj wants colours on all vertices or on none, so NaN marks missing ones.
                 text.push_str(" NaN NaN NaN");
             }
             self.unnamed += 1;
         } else if self.unnamed > 0 {
-            // The last corners of the polygon name the last rows.
+            // The last corners of the polygon refer to the last rows.
             let mut corners = self.polygon.rmatch_indices(' ');
             let first = match self.unnamed {
                 POLYGON => None,
@@ -242,10 +244,10 @@ impl Read for RowText<'_> {
     }
 }
 
-/// What stands for a vertex without a colour among others.
+/// The colour of a vertex without one, if others have colours.
 pub(super) const NO_COLOR: [f32; 3] = [f32::NAN; 3];
 
-/// Whether a number has a finite value as an f32, too: larger ones cannot be drawn.
+/// Returns whether a number is finite as f32, too: larger ones cannot be drawn.
 fn is_finite(x: &f64) -> bool {
     f32::nearest(*x).is_finite()
 }
@@ -261,7 +263,7 @@ mod tests {
 
     use super::*;
 
-    /// What tobj makes of lines as they stand in a file; `None` if it is not to be relied on.
+    /// Parses lines with tobj; `None` if its result is unreliable.
     fn read<const N: usize>(kind: RowKind, lines: &[String]) -> Option<Rows<N, f64>> {
         let mut rows = Rows::new(kind);
         let mut chunk = String::new();
@@ -333,7 +335,7 @@ mod tests {
         }
     }
 
-    /// Holds what tobj reads against the standard library.
+    /// Compares tobj's number with the standard library's.
     fn nearest(text: &str) {
         let right: f64 = text.parse().unwrap();
         match read::<3>(RowKind::Vertex, &[format!("v {text} 0 0")]) {

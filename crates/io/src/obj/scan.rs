@@ -1,12 +1,12 @@
-//! Reads the statements of a chunk of an OBJ file.
+//! Parses the statements of a chunk of an OBJ file.
 //!
-//! Chunks are read apart from each other, so lines are counted from the chunk's own first one, and
-//! names of parts may be missing that earlier chunks give. A negative index counts back from where
-//! it stands, so it can be resolved only if the statements before the chunk are counted; whether a
-//! positive one is in range is known only at the end of the file.
+//! Chunks are parsed independently. Lines are therefore counted from the start of the chunk, and
+//! the names of parts from earlier chunks may be missing. A negative index counts back from its own
+//! position, so it can be resolved only if the preceding statements are counted. The range of
+//! positive indices is checked at the end of the file.
 //!
-//! Most lines are read by the quick way (`quick`), and their numbers by tobj (`rows`). The other
-//! lines are read here, the tolerant way; their numbers reach tobj rewritten.
+//! Most lines take the fast path (`quick`), and tobj parses their numbers (`rows`). The other lines
+//! are parsed here, on the tolerant path; their numbers reach tobj rewritten.
 
 use super::faces::INHERITED;
 use super::lines::{Line, Lines, Oddity, excerpt, number, words};
@@ -16,9 +16,9 @@ use crate::progress::Cancelled;
 use marraztu_core::base::color::{Color, byte};
 
 impl Piece {
-    /// Reads all statements of a chunk, or those up to the first that cannot be read. `before` is
-    /// how many statements of each kind are before the chunk, if that is known; `reached` is told
-    /// now and then how many bytes are behind.
+    /// Parses the statements of a chunk up to its end or the first unreadable one. `before` counts
+    /// the preceding statements of each kind, if known. `reached` is called now and then with the
+    /// number of bytes consumed.
     pub(super) fn read(
         chunk: &[u8],
         before: Option<Counts>,
@@ -26,6 +26,7 @@ impl Piece {
     ) -> Result<Self, Cancelled> {
         let mut piece = Self::new(before, Trust::Plain);
         piece.scan(chunk, &mut reached)?;
+        // tobj rejected a line, so this time every number is rewritten.
         if !piece.read_rows(chunk) {
             piece = Self::new(before, Trust::Nothing);
             piece.scan(chunk, &mut reached)?;
@@ -45,6 +46,7 @@ impl Piece {
         let mut count = 0_u32;
         loop {
             count = count.wrapping_add(1);
+            // An atomic update for every line would slow all threads down.
             if count.is_multiple_of(4096) {
                 reached(lines.position())?;
             }
@@ -64,9 +66,9 @@ impl Piece {
         Ok(())
     }
 
-    /// Has tobj read the rows of numbers; says whether it could.
+    /// Lets tobj parse the rows of numbers; returns whether it succeeded.
     fn read_rows(&mut self, chunk: &[u8]) -> bool {
-        // A chunk that counts back is read again from its beginning.
+        // Such a chunk is parsed again from its beginning.
         matches!(self.stop, Some(Stop::CountsBack))
             || self.vertices.read(chunk) && self.uvs.read(chunk) && self.normals.read(chunk)
     }
@@ -94,8 +96,10 @@ impl Piece {
                 self.findings.add(FindingKind::LineOrPoint, &excerpt(keyword), Some(line.number));
             }
             b"s" => self.smoothing(rest, line.number),
+            // Statements that do not change the shape are skipped silently.
             b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"usemap" | b"maplib"
             | b"shadow_obj" | b"trace_obj" | b"t" => {}
+            // Free-form geometry is missing from the picture, so it is reported.
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf"
             | b"parm" | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"ctech"
             | b"stech" => {
@@ -110,7 +114,7 @@ impl Piece {
         Ok(())
     }
 
-    /// `v x y z`, `v x y z w`, `v x y z r g b` and `v x y z r g b a`.
+    /// Parses `v x y z`, `v x y z w`, `v x y z r g b` and `v x y z r g b a`.
     fn vertex(&mut self, rest: &[u8], line: u32) {
         let row = row::<7>(rest).and_then(|row| match row.count {
             count @ ..3 => Err(format!("a vertex needs three numbers, but has {count}")),
@@ -127,6 +131,7 @@ impl Piece {
         };
         self.note_odd(&row, line);
         let Row { values: [x, y, z, more @ ..], count, .. } = row;
+        // Four numbers include a weight, six or seven a colour; other counts are odd.
         match count {
             4 if more[0] != 1.0 => self.findings.note(FindingKind::Weight, line),
             5 | 8.. => self.findings.note(FindingKind::ExtraNumbers, line),
@@ -138,7 +143,7 @@ impl Piece {
         }
     }
 
-    /// `vt u`, `vt u v` and `vt u v w`.
+    /// Parses `vt u`, `vt u v` and `vt u v w`.
     fn uv(&mut self, rest: &[u8], line: u32) {
         let Ok(row @ Row { count: 1.., .. }) = row::<2>(rest) else {
             self.uvs.lose();
@@ -153,7 +158,7 @@ impl Piece {
         }
     }
 
-    /// `vn x y z`.
+    /// Parses `vn x y z`.
     fn normal(&mut self, rest: &[u8], line: u32) {
         let Ok(row @ Row { count: 3.., .. }) = row::<3>(rest) else {
             self.normals.lose();
@@ -165,14 +170,14 @@ impl Piece {
         }
     }
 
-    /// Notes a row with a number in the spelling of another language.
+    /// Notes a row with a number in unusual notation.
     fn note_odd<const N: usize>(&mut self, row: &Row<'_, N>, line: u32) {
         if let Some(word) = row.odd {
             self.findings.add(FindingKind::NumberOdd, &excerpt(word), Some(line));
         }
     }
 
-    /// `s group` and `s off`.
+    /// Parses `s group` and `s off`.
     fn smoothing(&mut self, rest: &[u8], line: u32) {
         let text = rest.split(|b| *b == b'#').next().unwrap_or_default().trim_ascii();
         let number = || std::str::from_utf8(text).ok()?.parse().ok();
@@ -183,7 +188,7 @@ impl Piece {
         });
     }
 
-    /// `# color r g b`.
+    /// Parses `# color r g b`.
     fn comment(&mut self, keyword: &[u8], rest: &[u8]) {
         if self.edge_color.is_some() {
             return;
@@ -198,7 +203,8 @@ impl Piece {
         }
     }
 
-    /// Takes `r g b`, 0 to 255, as the colour of edges, if they are one and the first.
+    /// Parses `r g b`, 0 to 255, as the colour of edges; the first one counts. Returns whether it
+    /// is valid.
     fn edge_color(&mut self, rest: &[u8]) -> bool {
         match row::<3>(rest) {
             Ok(row) if row.count == 3 && row.values.iter().all(|x| x.is_finite()) => {
@@ -211,13 +217,13 @@ impl Piece {
     }
 }
 
-/// The numbers of a statement: at most `N` of them are kept, and 0 replaces missing ones.
+/// The numbers of a statement: at most `N` are kept, and missing ones are 0.
 #[derive(Clone, Copy)]
 struct Row<'a, const N: usize> {
     values: [f64; N],
-    /// The number of numbers.
+    /// The number of words, even beyond `N`.
     count: usize,
-    /// The first word that is a number only in the spelling of another language.
+    /// The first number in unusual notation.
     odd: Option<&'a [u8]>,
 }
 

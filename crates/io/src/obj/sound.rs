@@ -1,11 +1,11 @@
-//! Which faces of a file can be used, and what is odd about them.
+//! Selects the usable faces of a file, and notes their faults.
 
 use super::faces::{Faces, INHERITED, Run, WRONG};
 use crate::findings::{FindingKind, Findings};
 use marraztu_core::base::lists::concatenated;
 use marraztu_core::scene::{CornerLists, NONE, SourceCorner};
 
-/// How many statements of a kind the file has, and which of them are lost, ascending.
+/// The number of statements of a kind in the file, and the indices of lost ones, ascending.
 #[derive(Debug)]
 pub(super) struct Totals {
     pub(super) count: u32,
@@ -13,7 +13,7 @@ pub(super) struct Totals {
 }
 
 impl Totals {
-    /// The index of statement `i` among those that are kept; `None` if it is lost.
+    /// Returns the index of statement `i` among the kept ones; `None` if it is lost.
     fn place(&self, i: u32) -> Option<u32> {
         match self.lost.binary_search(&i) {
             Ok(_) => None,
@@ -21,44 +21,44 @@ impl Totals {
         }
     }
 
-    /// Whether every index of a list names something, or is [`NONE`] if that is allowed.
+    /// Returns whether every index of a list is in range, or [`NONE`] if that is allowed.
     fn holds(&self, list: &[u32], none: bool) -> bool {
-        // Counted, not searched: that is done for many at once.
+        // Counting vectorises; an early exit would not.
         let wrong = |i: &&u32| **i >= self.count && !(none && **i == NONE);
         self.lost.is_empty() && list.iter().filter(wrong).count() == 0
     }
 }
 
-/// Faces whose every index is in range or [`NONE`], counted among the rows that are kept.
+/// Faces with valid indices into the kept rows, or [`NONE`].
 #[derive(Debug)]
 pub(super) struct SoundFaces {
     pub(super) corners: CornerLists,
     pub(super) runs: Vec<Run>,
-    /// The first face that cannot be used, with the reason.
+    /// The first unusable face, with the reason.
     pub(super) refused: Option<(u32, String)>,
 }
 
 /// The state at the beginning of a chunk.
 #[derive(Debug)]
 pub(super) struct Before {
-    /// How many lines are before it.
+    /// The number of lines before it.
     pub(super) lines: u32,
-    /// The places of its parts in the file's list.
+    /// The indices of its parts in the file's list.
     pub(super) parts: Vec<u32>,
     /// The smoothing group at its beginning.
     pub(super) smoothing: u32,
 }
 
-/// The sound faces of one chunk.
+/// The usable faces of one chunk.
 #[derive(Debug, Default)]
 pub(super) struct SoundPiece {
     faces: Faces,
     findings: Findings,
-    /// Faces without texture coordinates, and without normals.
+    /// Faces without texture coordinates, and faces without normals.
     without: [Without; 2],
 }
 
-/// Corners without something, and faces that have such corners.
+/// Corners that lack an attribute, and the faces that have such corners.
 #[derive(Clone, Copy, Debug, Default)]
 struct Without {
     corners: usize,
@@ -84,8 +84,8 @@ impl Without {
 }
 
 impl SoundPiece {
-    /// Leaves out faces whose vertices are missing, and takes missing texture coordinates and
-    /// normals from corners.
+    /// Leaves out faces with missing vertices, and removes references to missing texture
+    /// coordinates and normals.
     pub(super) fn of(mut faces: Faces, totals: &[Totals; 3], before: &Before) -> Self {
         let Before { lines, ref parts, smoothing } = *before;
         for run in &mut faces.runs {
@@ -97,6 +97,7 @@ impl SoundPiece {
         if let Some((line, _)) = &mut faces.refused {
             *line = line.saturating_add(lines);
         }
+        // The fast check covers nearly all files; only the rest is checked face by face.
         let lists = &faces.corners;
         let sound = totals[0].holds(&lists.positions, false)
             && totals[1].holds(&lists.uvs, true)
@@ -104,7 +105,7 @@ impl SoundPiece {
         if sound { Self::of_sound(faces) } else { Self::mended(&faces, totals) }
     }
 
-    /// Notes what is odd about faces that are all sound.
+    /// Notes the faults of faces that all have valid indices.
     fn of_sound(faces: Faces) -> Self {
         let mut piece = Self { faces, ..Self::default() };
         let lists = &piece.faces.corners;
@@ -121,6 +122,7 @@ impl SoundPiece {
                 }
             }
         }
+        // An empty list means that every corner lacks the attribute.
         let all = Without {
             corners: lists.positions.len(),
             faces: piece.faces.runs.iter().map(|run| run.faces as usize).sum(),
@@ -134,7 +136,7 @@ impl SoundPiece {
         piece
     }
 
-    /// Takes up the faces one by one.
+    /// Checks the faces one by one.
     fn mended(faces: &Faces, totals: &[Totals; 3]) -> Self {
         let refused = faces.refused.clone();
         let mut piece = Self { faces: Faces { refused, ..Faces::default() }, ..Self::default() };
@@ -161,8 +163,7 @@ impl SoundPiece {
         }
     }
 
-    /// Takes up a face with its indices counted among the rows that are kept, and notes what is
-    /// odd.
+    /// Adds a face with its indices converted to the kept rows, and notes its faults.
     fn add(
         &mut self,
         lists: &CornerLists,
@@ -187,6 +188,7 @@ impl SoundPiece {
         self.faces.end_face(Run { faces: 1, ..of });
         self.without[0].note(no_uv, of.line);
         self.without[1].note(no_normal, of.line);
+        // Faults of attributes are noted, but do not cost the face.
         let odd = [
             (wrong_uv, FindingKind::UvRange),
             (wrong_normal, FindingKind::NormalRange),
@@ -199,13 +201,13 @@ impl SoundPiece {
 }
 
 impl SoundFaces {
-    /// Puts the faces of all chunks together.
+    /// Joins the faces of all chunks.
     pub(super) fn of(pieces: Vec<SoundPiece>, findings: &mut Findings) -> Self {
         let mut all = Self { corners: CornerLists::default(), runs: Vec::new(), refused: None };
         let mut without = [Without::default(); 2];
         let [mut positions, mut uvs, mut normals] = [const { Vec::new() }; 3];
         for piece in pieces {
-            // The lines are those of the file already.
+            // The line numbers already count from the start of the file.
             findings.append(piece.findings, 0);
             for (all, more) in without.iter_mut().zip(piece.without) {
                 all.append(more);
@@ -223,7 +225,7 @@ impl SoundFaces {
             uvs: optional(uvs, &lengths),
             normals: optional(normals, &lengths),
         };
-        // What no face has is not missing.
+        // An attribute that all faces lack is not a fault.
         let kinds = [FindingKind::UvMixed, FindingKind::NormalMixed];
         for (without, kind) in without.into_iter().zip(kinds) {
             if without.corners < all.corners.positions.len() {
@@ -234,11 +236,11 @@ impl SoundFaces {
     }
 }
 
-/// What faces are, without their corners.
+/// The attributes of faces, without their corners.
 #[derive(Debug)]
 pub(super) struct FaceRuns {
     runs: Vec<Run>,
-    /// How many faces there are up to the end of each run.
+    /// The number of faces up to the end of each run.
     ends: Vec<u32>,
 }
 
@@ -251,24 +253,24 @@ impl FaceRuns {
         Self { ends: ends.collect(), runs }
     }
 
-    /// The line of a face.
+    /// Returns the line of a face.
     pub(super) fn line(&self, face: u32) -> u32 {
         let place = self.ends.partition_point(|end| *end <= face);
         let (run, end) = (self.runs[place], self.ends[place]);
         run.line.saturating_add(run.faces - (end - face))
     }
 
-    /// How many corners each face has, in order.
+    /// Returns the number of corners of each face, in order.
     pub(super) fn arities(&self) -> Vec<u32> {
         self.by_face(|run| run.corners)
     }
 
-    /// The part of each face, in order.
+    /// Returns the part of each face, in order.
     pub(super) fn parts(&self) -> Vec<u32> {
         self.by_face(|run| run.part)
     }
 
-    /// The smoothing group of each face, in order.
+    /// Returns the smoothing group of each face, in order.
     pub(super) fn smoothing(&self) -> Vec<u32> {
         self.by_face(|run| run.smoothing)
     }
@@ -283,7 +285,7 @@ impl FaceRuns {
     }
 }
 
-/// How many corners each face of these runs has, and its line.
+/// Iterates over the faces of runs as corner count and line.
 fn faces_of(runs: &[Run]) -> impl Iterator<Item = (usize, u32)> {
     let faces = |run: &Run| {
         let corners = run.corners as usize;
@@ -292,8 +294,7 @@ fn faces_of(runs: &[Run]) -> impl Iterator<Item = (usize, u32)> {
     runs.iter().flat_map(faces)
 }
 
-/// Lists one after the other. A list of nothing but [`NONE`] may be empty; `lengths` says how long
-/// each is.
+/// Concatenates lists with the given lengths. An empty list counts as all [`NONE`].
 fn optional(mut lists: Vec<Vec<u32>>, lengths: &[usize]) -> Vec<u32> {
     if lists.iter().all(Vec::is_empty) {
         return Vec::new();
@@ -318,14 +319,14 @@ fn fault(face: &[u32], vertices: &Totals) -> Option<(FindingKind, String)> {
     })
 }
 
-/// The place of an index among the rows that are kept, or [`NONE`].
+/// Converts an index to the kept rows, or to [`NONE`].
 fn settled(index: u32, totals: &Totals, wrong: &mut bool) -> u32 {
     let names = index < totals.count && index != WRONG;
     *wrong |= !names && index != NONE;
     if names { totals.place(index).unwrap_or(NONE) } else { NONE }
 }
 
-/// Whether a face names a vertex twice.
+/// Returns whether a face refers to a vertex twice.
 fn repeats(vertices: &[u32]) -> bool {
     match vertices {
         [a, b, c] => a == b || b == c || c == a,

@@ -1,30 +1,29 @@
-//! The sizes of the boxes in the place of missing models.
+//! The sizes of placeholder boxes for missing models.
 //!
-//! A box is a part of the median of the other objects' largest extents in the world: a cube as wide
-//! as they are would look larger than them. If there is no other object, it fills a part of the
-//! height that the camera sees at its distance.
+//! A box is a fraction of the median of the other objects' largest extents in world space: a full
+//! cube of that width would look larger than the objects. Without other objects, it fills a
+//! fraction of the height that the camera sees at its distance.
 
 use glam::{DMat4, DVec3};
 
 use super::format::{FileModel, FileObject, FileScene};
 use marraztu_core::scene::{Model, Shape};
 
-/// The side of a box as a part of the usual extent.
+/// The side of a box as a fraction of the median extent.
 const PART_OF_USUAL: f64 = 0.6;
 
-/// The side of a box as a part of half the height that the camera sees, if there is no other
-/// object.
+/// The side of a box as a fraction of half the visible height, without other objects.
 const PART_SEEN: f64 = 0.5;
 
-/// What the sizes of boxes go by.
+/// The reference sizes for boxes.
 pub(super) struct BoxSizes<'a> {
     file: &'a FileScene,
-    /// The side that the other objects suggest.
+    /// The side derived from the other objects.
     usual: Option<f64>,
 }
 
 impl<'a> BoxSizes<'a> {
-    /// The sizes in this scene; `known` gives the models that are there.
+    /// Measures the objects of this scene; `known` returns the models that exist.
     pub(super) fn new<'m>(
         file: &'a FileScene,
         known: impl Fn(&FileModel) -> Option<&'m Model>,
@@ -41,8 +40,8 @@ impl<'a> BoxSizes<'a> {
         Self { file, usual: usual.map(|extent| extent * PART_OF_USUAL) }
     }
 
-    /// The side of the box for a missing model, in its own space. If several objects have it, the
-    /// first decides. Models of cameras are drawn in one size whatever theirs is.
+    /// Returns the side of the box for a missing model, in object space. If several objects use the
+    /// model, the first decides. Camera models are always drawn in one size.
     pub(super) fn side(&self, model: &FileModel) -> f64 {
         let Some(object) = self.file.objects.iter().find(|object| object.model == *model) else {
             return 1.0;
@@ -52,7 +51,7 @@ impl<'a> BoxSizes<'a> {
         if side.is_finite() && side > 0.0 { side } else { 1.0 }
     }
 
-    /// A size that is well seen at an object's place.
+    /// Returns a size that is easy to see from the camera at an object's position.
     fn seen_at(&self, object: &FileObject) -> Option<f64> {
         let cameras = &self.file.cameras;
         let selected = cameras.iter().find(|camera| camera.id == self.file.view.camera);
@@ -75,7 +74,7 @@ fn placement(object: &FileObject) -> DMat4 {
     DMat4::from_cols_array_2d(&object.placement)
 }
 
-/// The lengths of an object's axes in the world.
+/// Returns the lengths of an object's axes in world space.
 fn column_lengths(object: &FileObject) -> DVec3 {
     let m = placement(object);
     DVec3::new(

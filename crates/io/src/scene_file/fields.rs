@@ -1,4 +1,4 @@
-//! What the parts of a scene file share: usual values, checks, and runs of numbers.
+//! Shared parts of scene files: default values, checks, and runs of numbers.
 
 use std::collections::BTreeSet;
 
@@ -12,10 +12,10 @@ pub(super) fn white() -> [u8; 3] {
     [255; 3]
 }
 
-/// Checks that all numbers of something are finite.
+/// Checks that all numbers are finite.
 ///
 /// # Errors
-/// The reason, if one is not.
+/// The reason, if one is infinite or NaN.
 pub(super) fn finite(what: &str, numbers: &[f64]) -> Result<(), String> {
     if numbers.iter().all(|x| x.is_finite()) {
         Ok(())
@@ -24,10 +24,10 @@ pub(super) fn finite(what: &str, numbers: &[f64]) -> Result<(), String> {
     }
 }
 
-/// Numbers as ranges, `0-7 9 12-20`, so that a hundred thousand shown polygons do not take as many
+/// Numbers as ranges, such as `0-7 9 12-20`: a hundred thousand numbers should not take as many
 /// lines.
 ///
-/// They stay ranges until it is known how many there can be.
+/// They stay ranges until an upper limit for them is known.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub(super) struct Numbers(Vec<(u32, u32)>);
@@ -44,23 +44,23 @@ impl Numbers {
         Self(runs)
     }
 
-    /// Whether a number is among them.
+    /// Returns whether the ranges contain a number.
     pub(super) fn has(&self, number: u32) -> bool {
         self.0.iter().any(|(first, last)| (*first..=*last).contains(&number))
     }
 
-    /// Those of the numbers that are below `count`.
+    /// Returns all numbers below `count`.
     pub(super) fn below(&self, count: usize) -> BTreeSet<u32> {
         let end = u32::try_from(count).unwrap_or(u32::MAX);
         self.ascending().take_while(|number| *number < end).collect()
     }
 
-    /// The smallest numbers, at most `most` of them.
+    /// Returns the `most` smallest numbers.
     pub(super) fn smallest(&self, most: usize) -> BTreeSet<u32> {
         self.ascending().take(most).collect()
     }
 
-    /// The numbers in order. A number that is named repeatedly counts once.
+    /// Iterates over the numbers in order. Repeated numbers count once.
     fn ascending(&self) -> impl Iterator<Item = u32> {
         let mut runs = self.0.clone();
         runs.sort_unstable();

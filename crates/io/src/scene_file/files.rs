@@ -1,4 +1,4 @@
-//! The models and textures that a scene file names.
+//! Loads the models and textures of a scene file.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -19,8 +19,8 @@ use marraztu_core::scene::{
     BumpMaps, Crease, LoadOptions, Model, Scale, Scene, Texture, UpAxis, Winding,
 };
 
-/// The identity of a model in a scene file: its name or path, and how it is read. The crease angle
-/// comes last, so that files that differ only in it are neighbours.
+/// The identity of a model in a scene file: its name or path, and its load options. The crease
+/// angle comes last, so files that differ only in it are neighbours.
 type ModelKey = (String, Option<(UpAxis, u64, Winding, BumpMaps, u64)>);
 
 fn key(model: &FileModel) -> ModelKey {
@@ -32,7 +32,7 @@ fn key(model: &FileModel) -> ModelKey {
     }
 }
 
-/// The models and textures of a scene, which need not be read again.
+/// The models and textures of an open scene, which can be reused.
 #[derive(Debug, Default)]
 pub struct Known {
     models: Vec<Shared<Model>>,
@@ -40,7 +40,7 @@ pub struct Known {
 }
 
 impl Known {
-    /// The models and textures of this scene.
+    /// Collects the models and textures of a scene.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let objects = || scene.objects.iter().map(|(_, object)| object);
@@ -52,13 +52,13 @@ impl Known {
     }
 }
 
-/// The models and textures that a scene file names, loaded. A placeholder takes the place of each
-/// that is missing or cannot be read.
+/// The loaded models and textures of a scene file. A placeholder replaces each one that is missing
+/// or cannot be read.
 pub(super) struct Files {
     folder: PathBuf,
     models: BTreeMap<ModelKey, Shared<Model>>,
     textures: BTreeMap<String, Shared<Texture>>,
-    /// Those of models and of textures: one file may be both.
+    /// The pictures of models and textures: one file may be used as both.
     pictures: Pictures,
     /// The findings in the files.
     pub(super) findings: Vec<Finding>,
@@ -67,15 +67,15 @@ pub(super) struct Files {
 }
 
 impl Files {
-    /// The files of the scene file `name` in `folder`.
+    /// Prepares to load the files of the scene file `name` in `folder`.
     pub(super) fn new(folder: PathBuf, name: &str) -> Self {
         let (models, textures) = (BTreeMap::new(), BTreeMap::new());
         let (pictures, lost) = (Pictures::default(), Findings::new(name));
         Self { folder, models, textures, pictures, findings: Vec::new(), lost }
     }
 
-    /// Takes models and textures that need not be read. A file name that is not text is skipped: no
-    /// scene file can contain it.
+    /// Registers models and textures that can be reused. A file name that is not UTF-8 is skipped:
+    /// scene files cannot contain it.
     pub(super) fn know(&mut self, known: &Known) {
         let nowhere = Path::new("");
         for model in &known.models {
@@ -90,7 +90,7 @@ impl Files {
         }
     }
 
-    /// The path of a file that the scene file names.
+    /// Resolves a path in the scene file.
     fn place(&self, path: &str) -> PathBuf {
         if examples::is_example(Path::new(path)) {
             return PathBuf::from(path);
@@ -104,6 +104,7 @@ impl Files {
         name: &str,
         progress: &Progress,
     ) -> Result<(), SceneFileError> {
+        // Each distinct model is loaded once, unless it is already known.
         let of_objects = file.objects.iter().map(|object| &object.model);
         let all = of_objects.chain(file.cameras.iter().map(|camera| &camera.model));
         let mut keys = BTreeSet::new();
@@ -118,7 +119,7 @@ impl Files {
                 None => lost.push(*model),
             }
         }
-        // Last, since their size goes by that of the others.
+        // Placeholders come last, since their size depends on the other models.
         let sizes = BoxSizes::new(file, |model| self.models.get(&key(model)).map(|model| &**model));
         for model in lost {
             if let FileModel::File { path, .. } = model {
@@ -149,6 +150,7 @@ impl Files {
 
     fn load_texture(&mut self, path: &str) -> Result<Shared<Texture>, SceneFileError> {
         let place = self.place(path);
+        // Files of built-in examples come from the program, all others from disk.
         let loaded = match examples::content(&place) {
             Some(content) => examples::texture(&place, content),
             None => self.pictures.texture(&place, &mut self.findings),
@@ -157,6 +159,7 @@ impl Files {
             Ok(texture) => Ok(texture),
             Err(LoadError::Cancelled) => Err(LoadError::Cancelled.into()),
             Err(error) => {
+                // A damaged file and a missing one need different remedies.
                 if place.exists() {
                     self.lost.add(FindingKind::TextureUnreadable, &error.to_string(), None);
                 } else {
@@ -167,7 +170,7 @@ impl Files {
         }
     }
 
-    /// The same file, loaded with another crease angle: it is not read twice.
+    /// Finds the same file loaded with another crease angle, to avoid reading it twice.
     fn with_other_crease(&self, model: &FileModel) -> Option<&Shared<Model>> {
         let (path, options) = key(model);
         let (up, scale, winding, bumps, _) = options?;
@@ -176,7 +179,7 @@ impl Files {
         others.next().map(|(_, loaded)| loaded)
     }
 
-    /// A model of the scene; `None` if its file is missing or cannot be read.
+    /// Loads a model of the scene; `None` if its file is missing or cannot be read.
     fn load_model(
         &mut self,
         model: &FileModel,
@@ -203,7 +206,7 @@ impl Files {
         };
         match loaded {
             Ok(loaded) => {
-                // A scene says itself which pictures its objects show.
+                // A scene assigns its own pictures, so unused ones do not matter.
                 let counts = |finding: &Finding| finding.kind != FindingKind::PictureUnnamed;
                 self.findings.extend(loaded.findings.into_iter().filter(counts));
                 Ok(Some(Shared::new(loaded.model)))
@@ -221,10 +224,10 @@ impl Files {
     }
 }
 
-/// The path of a model and how it is read.
+/// Returns the path of a model and its load options.
 ///
 /// # Errors
-/// If a number of them is not valid.
+/// If one of the options is invalid.
 fn read_options<'a>(
     model: &'a FileModel,
     name: &str,
@@ -241,7 +244,7 @@ fn read_options<'a>(
     Ok((path, LoadOptions { up: *up, scale, winding: *winding, crease, bumps: *bumps }))
 }
 
-/// A path from the root on, which stays valid if the current folder changes.
+/// Returns an absolute path, which stays valid if the current folder changes.
 fn complete(path: &Path) -> PathBuf {
     if examples::is_example(path) {
         return path.to_owned();
@@ -269,7 +272,7 @@ impl open::Needs for Files {
     }
 }
 
-/// Replaces models and textures if only the scene file itself is checked.
+/// Replaces models and textures when only the scene file itself is checked.
 pub(super) struct StandIns;
 
 impl open::Needs for StandIns {

@@ -1,8 +1,8 @@
 //! The text of a scene file.
 //!
-//! These types belong to the file alone: the scene may change its own, and old files still open. A
-//! missing field has the value that a new scene gives it; an unknown field is an error, since it
-//! may be a typing error that would be lost on saving.
+//! These types belong to the file format alone, so the scene's own types may change while old files
+//! still open. Missing fields get the values of a new scene. Unknown fields are errors, since they
+//! may be typing errors that would be lost on saving.
 
 use std::collections::BTreeSet;
 
@@ -16,10 +16,10 @@ use marraztu_core::scene::{
     BumpMaps, ItemId, Lens, MaterialChoice, Scene, Sides, Spin, Surface, UpAxis, Winding, Wrap,
 };
 
-/// The version that is written, and the latest that is read.
+/// The version that is written, and the latest that can be read.
 pub(super) const VERSION: u32 = 1;
 
-/// The part that every version has.
+/// The part that all versions share.
 #[derive(Debug, Deserialize)]
 pub(super) struct Head {
     pub(super) version: u32,
@@ -46,7 +46,7 @@ pub(super) struct FileScene {
     pub(super) settings: Settings,
 }
 
-/// The items that are locked, by their ids.
+/// The ids of locked items.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct FileLocked {
@@ -60,7 +60,7 @@ impl FileLocked {
         *self == Self::default()
     }
 
-    /// The locked ones of a scene.
+    /// Collects the locked items of a scene.
     pub(super) fn of(scene: &Scene) -> Self {
         let mut ids: [BTreeSet<u32>; 3] = Default::default();
         for id in scene.locked.iter().filter(|id| scene.contains(**id)) {
@@ -74,7 +74,7 @@ impl FileLocked {
         Self { objects, cameras, lights }
     }
 
-    /// Those of a scene's items that are locked.
+    /// Returns the items of a scene that are locked.
     pub(super) fn within(&self, scene: &Scene) -> BTreeSet<ItemId> {
         let objects = scene.objects.ids().filter(|id| self.objects.has(id.0)).map(ItemId::Object);
         let cameras = scene.cameras.ids().filter(|id| self.cameras.has(id.0)).map(ItemId::Camera);
@@ -86,7 +86,7 @@ impl FileLocked {
 /// The source of a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum FileModel {
-    /// A built-in one, by its name.
+    /// A built-in model, by name.
     Own(String),
     /// A file, relative to the folder of the scene file.
     File {
@@ -165,7 +165,7 @@ pub(super) struct FileCamera {
     pub(super) material: MaterialChoice,
     #[serde(default)]
     pub(super) eye: [f64; 3],
-    /// Its axes X, Y and Z.
+    /// The camera's axes X, Y and Z.
     #[serde(default = "axes")]
     pub(super) axes: [[f64; 3]; 3],
     #[serde(default)]
@@ -178,7 +178,7 @@ pub(super) struct FileCamera {
 pub(super) enum FileMode {
     #[default]
     Fly,
-    /// About the centre of the object with this id.
+    /// Orbits the centre of the object with this id.
     Analysis(u32),
 }
 
@@ -223,7 +223,7 @@ fn axes() -> [[f64; 3]; 3] {
     glam::DMat3::IDENTITY.to_cols_array_2d()
 }
 
-/// A field that may be missing, written without `Some`.
+/// Serializes an optional field without `Some`.
 pub(super) mod written_bare {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 

@@ -1,6 +1,6 @@
-//! Items of a scene as text: the parts of a scene file that are copied and pasted.
+//! Items of a scene as text, for the clipboard.
 //!
-//! They have the form that they have in scene files, with absolute paths, since the text can be
+//! Items have the same form as in scene files, but with absolute paths, since the text can be
 //! pasted into any scene.
 
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ use marraztu_core::scene::{
 /// The name of the text in errors.
 const NAME: &str = "the clipboard";
 
-/// Items from a text, with the ids that they have among themselves.
+/// Items from a text, with the ids that they have in it.
 #[derive(Debug, Default)]
 pub struct Fragment {
     /// The objects, in the order of the list.
@@ -34,7 +34,7 @@ pub struct Fragment {
     pub cameras: Vec<(CameraId, Camera)>,
     /// The lights.
     pub lights: Vec<(LightId, Light)>,
-    /// A material that was copied by itself.
+    /// A material that was copied alone.
     pub material: Option<MaterialChoice>,
 }
 
@@ -52,10 +52,10 @@ struct FileFragment {
     material: Option<MaterialChoice>,
 }
 
-/// These items of a scene as text.
+/// Writes items of a scene as text.
 ///
 /// # Errors
-/// The reason, if one of them cannot be written.
+/// The reason, if an item cannot be written.
 pub fn items_to_text(scene: &Scene, items: &[ItemId]) -> Result<String, String> {
     let mut fragment = FileFragment { version: VERSION, ..FileFragment::default() };
     let nowhere = Path::new("");
@@ -73,7 +73,7 @@ pub fn items_to_text(scene: &Scene, items: &[ItemId]) -> Result<String, String> 
     text(&fragment)
 }
 
-/// A material as text.
+/// Writes a material as text.
 ///
 /// # Errors
 /// The reason, if it cannot be written.
@@ -88,11 +88,11 @@ fn text(fragment: &FileFragment) -> Result<String, String> {
     Ok(text + "\n")
 }
 
-/// The items of a text. Models and textures that are not among the known ones are read.
+/// Parses the items of a text. Models and textures that are not in `known` are loaded.
 ///
 /// # Errors
-/// If it is the text of something else, if its items are not valid, or if a model that it names
-/// cannot be loaded; and if `progress` is cancelled.
+/// If the text is not a fragment, if its items are invalid, or if a model cannot be loaded; and if
+/// `progress` is cancelled.
 pub fn items_of_text(
     text: &str,
     known: &Known,
@@ -101,6 +101,7 @@ pub fn items_of_text(
     let fail = |reason: String| SceneFileError::File { file: NAME.to_owned(), reason };
     let text = text.trim_start();
     let is_ours = text.starts_with(['(', '/']) && ron::from_str::<Head>(text).is_ok();
+    // Text from other programs is rejected with one plain sentence.
     if !is_ours {
         return Err(fail("it holds no objects, cameras, lights or material".to_owned()));
     }
@@ -121,7 +122,7 @@ pub fn items_of_text(
     for (light, slot) in lights.iter_mut().zip(0..) {
         light.slot = slot;
     }
-    // A scene needs a camera.
+    // A scene needs a camera, so a temporary one is added.
     let has_cameras = !cameras.is_empty();
     if !has_cameras {
         let ids = objects.iter().map(|it| it.id).chain(lights.iter().map(|it| it.id));
@@ -139,6 +140,7 @@ pub fn items_of_text(
         settings: Settings::default(),
     };
     open::check_counts(&file).map_err(fail)?;
+    // From here on, the fragment is checked like a scene file.
     let mut files = Files::new(PathBuf::new(), NAME);
     files.know(known);
     files.load(&file, NAME, progress)?;

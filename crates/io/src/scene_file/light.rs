@@ -1,4 +1,4 @@
-//! Lights in scene files: their form, and both ways between it and the scene's.
+//! Lights in scene files: their format, and conversions in both directions.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -101,6 +101,7 @@ pub(super) fn read_light(light: &FileLight) -> Result<Light, String> {
             LightKind::Bulb { position: Tracked::new(DVec3::from_array(position)), orbit }
         }
         FileLightKind::Spot { ref owner, half_aperture, exponent } => {
+            // Also false for NaN.
             let right =
                 (0.0..=90.0).contains(&half_aperture) && (0.0..f64::INFINITY).contains(&exponent);
             if !right {
@@ -134,7 +135,7 @@ pub(super) fn read_owner(owner: &FileOwner) -> Result<SpotOwner, String> {
     })
 }
 
-/// A direction of length 1, kept bit for bit if it has that length already.
+/// Checks a direction and normalizes it. A unit vector is kept bit for bit.
 pub(super) fn read_direction(direction: [f64; 3]) -> Result<DVec3, String> {
     finite("its direction", &direction)?;
     let direction = DVec3::from_array(direction);

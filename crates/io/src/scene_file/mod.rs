@@ -1,8 +1,8 @@
 //! Saves and opens scene files.
 //!
-//! A file is a text that a person can read and change: RON, a version first, names for everything.
-//! Models are not in it but named, by their path relative to the file's folder, so that a folder
-//! with both can be moved. The view and the settings are saved with the scene; the history is not.
+//! A file is readable and editable text: RON, with a version first and named fields. Models are
+//! referenced by their path relative to the file's folder, so a folder with both can be moved. View
+//! and settings are saved with the scene; the undo stack is not.
 
 mod box_sizes;
 mod fields;
@@ -35,7 +35,7 @@ use super::window_state::WindowState;
 use marraztu_core::accuracy::Settings;
 use marraztu_core::scene::{Scene, View};
 
-/// The ending of the names of scene files, without the dot.
+/// The extension of scene files, without the dot.
 pub const SCENE_ENDING: &str = "marraztu";
 
 /// A scene from a file.
@@ -43,30 +43,30 @@ pub const SCENE_ENDING: &str = "marraztu";
 pub struct Opened {
     /// The scene.
     pub scene: Scene,
-    /// Its view when it was saved.
+    /// The view at the time of saving.
     pub view: View,
-    /// The state of the window when it was saved.
+    /// The state of the window at the time of saving.
     pub window: WindowState,
-    /// The settings of accuracy when it was saved.
+    /// The accuracy settings at the time of saving.
     pub settings: Settings,
-    /// The findings in its models.
+    /// The findings in the models and textures.
     pub findings: Vec<Finding>,
     /// The content of the file.
     pub content: Fingerprint,
 }
 
-/// Why a scene file cannot be opened. Nothing has changed then.
+/// The reason why a scene file cannot be opened. A failed open changes nothing.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SceneFileError {
-    /// The file cannot be read, or its scene is not valid.
+    /// The file cannot be read, or its scene is invalid.
     #[error("{file}: {reason}")]
     File {
-        /// Its path, as the user gave it.
+        /// The file's path, as the user gave it.
         file: String,
-        /// What is wrong.
+        /// The reason.
         reason: String,
     },
-    /// A line of it cannot be understood.
+    /// A line of the file is invalid.
     #[error("{file}:{line}:{column}: {reason}")]
     Line {
         /// The file's path, as the user gave it.
@@ -75,7 +75,7 @@ pub enum SceneFileError {
         line: usize,
         /// The column, in characters counted from 1.
         column: usize,
-        /// What is wrong.
+        /// The reason.
         reason: String,
     },
     /// The scene file cannot be read, or opening was cancelled.
@@ -83,18 +83,18 @@ pub enum SceneFileError {
     Model(#[from] LoadError),
 }
 
-/// Saves a scene; the file that was there is kept, with `~` after its name.
+/// Saves a scene; the previous file is kept, with `~` appended to its name.
 ///
 /// # Errors
-/// If the file, or something in the scene, cannot be written. An existing file stays as it was.
+/// If the file or a part of the scene cannot be written. An existing file is unchanged.
 pub fn save(path: &Path, scene: &Scene, view: &View, settings: &Settings) -> Result<(), SaveError> {
     save_with_window(path, scene, view, settings, &WindowState::DEFAULT).map(|_content| ())
 }
 
-/// Saves a scene as [`save()`] does, with the state of the window. Returns the content of the file.
+/// Saves a scene like [`save()`], with the state of the window. Returns the content of the file.
 ///
 /// # Errors
-/// As [`save()`].
+/// The same as [`save()`].
 pub fn save_with_window(
     path: &Path,
     scene: &Scene,
@@ -108,10 +108,10 @@ pub fn save_with_window(
     Ok(Fingerprint::of(text.as_bytes()))
 }
 
-/// The text that [`save()`] would write to `path`.
+/// Returns the text that [`save()`] would write to `path`.
 ///
 /// # Errors
-/// If something in the scene cannot be written.
+/// If a part of the scene cannot be written.
 pub fn to_text(
     path: &Path,
     scene: &Scene,
@@ -133,7 +133,7 @@ pub(crate) fn text_with_window(
     let file = file.map_err(fail)?;
     let config = ron::ser::PrettyConfig::new().new_line("\n");
     let text = ron::ser::to_string_pretty(&file, config).map_err(|e| fail(e.to_string()))?;
-    // A number that is not finite could be written, but not read again.
+    // Read the text back: a number that is not finite could be written, but not read.
     let again = file_scene(&text, "").map_err(|error| fail(error.to_string()))?;
     open::check_counts(&again).map_err(fail)?;
     open::scene(&again, &StandIns, &mut Findings::default()).map_err(fail)?;
@@ -141,10 +141,11 @@ pub(crate) fn text_with_window(
 }
 
 /// Opens a scene file. Models and textures that are missing or cannot be read become placeholders,
-/// see [`Model::is_placeholder`](marraztu_core::scene::Model::is_placeholder), with a finding each.
+/// see [`Model::is_placeholder`](marraztu_core::scene::Model::is_placeholder), with one finding
+/// each.
 ///
 /// # Errors
-/// If the file cannot be read or understood, and if `progress` is cancelled.
+/// If the file cannot be read or parsed, and if `progress` is cancelled.
 pub fn open(path: &Path, progress: &Progress) -> Result<Opened, SceneFileError> {
     let name = shown(path);
     if let Some(text) = examples::scene_text(path) {
@@ -181,13 +182,13 @@ pub(crate) fn open_text(
     Ok(Opened { scene, view, window, settings, findings, content })
 }
 
-/// The folder of a file, from the root on.
+/// Returns the absolute folder of a file.
 fn complete_folder(path: &Path) -> PathBuf {
     let complete = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
     complete.parent().map_or_else(PathBuf::new, paths::plain)
 }
 
-/// The text of a scene file as its types.
+/// Parses the text of a scene file.
 fn file_scene(text: &str, name: &str) -> Result<FileScene, SceneFileError> {
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
     let fail = |error: ron::error::SpannedError| SceneFileError::Line {
@@ -200,10 +201,12 @@ fn file_scene(text: &str, name: &str) -> Result<FileScene, SceneFileError> {
         let reason = "this is not a scene file: it does not begin with \"(\"".to_owned();
         return Err(SceneFileError::Line { file: name.to_owned(), line: 1, column: 1, reason });
     }
+    // The version comes first: fields of a newer version would only give a confusing error.
     let Head { version } = ron::from_str(text).map_err(fail)?;
     if (1..=VERSION).contains(&version) {
         return ron::from_str(text).map_err(fail);
     }
+    // Point the error at the version in the text.
     let place = text.lines().zip(1..).find_map(|(line, number)| {
         let before = line.find("version")?;
         Some((number, line[..before].chars().count() + 1))

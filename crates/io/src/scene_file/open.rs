@@ -1,7 +1,7 @@
-//! Makes a scene from the text of a file.
+//! Builds a scene from a parsed file.
 //!
-//! Items are inserted by the same commands as in the editor: whatever those refuse (an id used
-//! twice, a NaN) is refused here.
+//! Items are inserted by the editor's own commands, so the checks of those (a duplicate id, a NaN)
+//! apply here, too.
 
 use std::collections::BTreeSet;
 
@@ -21,11 +21,11 @@ use marraztu_core::scene::{
 /// The most items of a kind in a scene: each is looked up among all others.
 const MOST_ITEMS: usize = 10_000;
 
-/// The most hidden parts of missing models that are kept, so that a damaged file costs little
-/// memory.
+/// The most hidden parts of missing models that are kept: it limits the memory that a damaged file
+/// takes.
 const MOST_HIDDEN: usize = 1_000_000;
 
-/// Checks that there are few enough items for a scene.
+/// Checks that no kind has too many items.
 ///
 /// # Errors
 /// The reason, if there are too many.
@@ -45,16 +45,16 @@ pub(super) fn check_counts(file: &FileScene) -> Result<(), String> {
 
 /// The models and textures that a scene file needs.
 pub(super) trait Needs {
-    /// The model that the file names.
+    /// Returns the model that the file refers to.
     fn model(&self, model: &FileModel) -> Shared<Model>;
-    /// The texture that the file names.
+    /// Returns the texture that the file refers to.
     fn texture(&self, texture: &FileTexture) -> Shared<Texture>;
 }
 
-/// The scene and the view that a file holds.
+/// Builds the scene and the view of a file.
 ///
 /// # Errors
-/// The reason, if its scene is not valid.
+/// The reason, if the scene is invalid.
 pub(super) fn scene(
     file: &FileScene,
     needs: &dyn Needs,
@@ -69,6 +69,7 @@ pub(super) fn scene(
         locked: BTreeSet::new(),
     };
     let mut largest = 0;
+    // Errors name the item, since the user finds it by id and name in the file.
     let mut insert = |at: usize, item: Item, id: u32, what: String| {
         largest = largest.max(id);
         let insertion = Command::Insert { at, item };
@@ -89,6 +90,7 @@ pub(super) fn scene(
         let item = read_camera(camera, needs).map_err(|reason| format!("{what}: {reason}"))?;
         insert(at, Item::Camera(CameraId(camera.id), Box::new(item)), camera.id, what)?;
     }
+    // Commands do not check slots, so duplicates are rejected here.
     let mut slots = BTreeSet::new();
     for (at, light) in file.lights.iter().enumerate() {
         let what = format!("light {} \"{}\"", light.id, light.name);
@@ -101,6 +103,7 @@ pub(super) fn scene(
     if file.cameras.is_empty() {
         return Err("a scene needs a camera".to_owned());
     }
+    // New items must get unused ids, even if the file states a smaller `next_id`.
     let after = largest.checked_add(1).ok_or("an id is too large for another to follow")?;
     scene.next_id = file.next_id.max(after);
     scene.locked = file.locked.within(&scene);
@@ -109,7 +112,7 @@ pub(super) fn scene(
     Ok((scene, view))
 }
 
-/// Notes spots and cameras that are attached to something that is missing.
+/// Notes spots and cameras that are attached to a missing item.
 fn note_missing_owners(scene: &Scene, findings: &mut Findings) {
     let mut note = |what: String| findings.add(FindingKind::OwnerMissing, &what, None);
     for (_, light) in scene.lights.iter() {
@@ -134,7 +137,7 @@ fn note_missing_owners(scene: &Scene, findings: &mut Findings) {
 /// Checks a material.
 ///
 /// # Errors
-/// The reason, if a number of it is not valid.
+/// The reason, if one of its numbers is invalid.
 pub(super) fn read_material(material: &MaterialChoice) -> Result<MaterialChoice, String> {
     if let MaterialChoice::Own(own) = material {
         let colors = [own.ambient, own.diffuse, own.specular].concat();
@@ -148,7 +151,7 @@ pub(super) fn read_material(material: &MaterialChoice) -> Result<MaterialChoice,
     Ok(material.clone())
 }
 
-/// An object of the file. `room` is left for the hidden parts of missing models.
+/// Builds an object. `room` is the remaining limit for hidden parts of missing models.
 fn read_object(object: &FileObject, needs: &dyn Needs, room: &mut usize) -> Result<Object, String> {
     finite("its placement", object.placement.as_flattened())?;
     finite("its spin", &[object.spin.speed, object.spin.since])?;
@@ -162,7 +165,7 @@ fn read_object(object: &FileObject, needs: &dyn Needs, room: &mut usize) -> Resu
         *room -= kept.len();
         kept
     } else {
-        // The model may have changed since, and have fewer parts now.
+        // The model may have changed on disk, and have fewer parts now.
         object.hidden_parts.below(model.mesh.parts().len())
     };
     Ok(Object {
@@ -183,8 +186,8 @@ fn read_object(object: &FileObject, needs: &dyn Needs, room: &mut usize) -> Resu
     })
 }
 
-/// The sides that a scene file names; earlier files say whether there are two. Built-in models have
-/// one if nothing is said.
+/// Returns the sides that a scene file states, or that an earlier file states as `two_sided`. The
+/// default for built-in models is one side.
 fn read_sides(object: &FileObject) -> Sides {
     let earlier = object.two_sided.map(|two| if two { Sides::Two } else { Sides::One });
     object.sides.or(earlier).unwrap_or(match object.model {
@@ -197,6 +200,7 @@ fn read_camera(camera: &FileCamera, needs: &dyn Needs) -> Result<Camera, String>
     finite("its place", &camera.eye)?;
     finite("its axes", camera.axes.as_flattened())?;
     let axes = DMat3::from_cols_array_2d(&camera.axes);
+    // Orthonormal and right-handed, up to rounding in the file.
     let error = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array();
     if error.iter().any(|x| x.abs() > 1e-6) || axes.determinant() < 0.0 {
         return Err("its axes are not at right angles, of length 1 and right-handed".to_owned());

@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-/// `path` without `.` and with `..` resolved, by its text alone.
+/// Removes `.` and resolves `..` in a path, without disk access.
 pub(super) fn plain(path: &Path) -> PathBuf {
     let mut plain = PathBuf::new();
     for part in path.components() {
@@ -19,8 +19,8 @@ pub(super) fn plain(path: &Path) -> PathBuf {
     plain
 }
 
-/// `path` relative to `folder`, both absolute; `path` itself if they have nothing in common. `None`
-/// if it cannot be written as text.
+/// Makes `path` relative to `folder`, both absolute; `path` itself if they have no common root.
+/// `None` if it is not UTF-8.
 pub(super) fn relative(folder: &Path, path: &Path) -> Option<String> {
     let (folder, path) = (plain(folder), plain(path));
     let ours: Vec<Component<'_>> = folder.components().collect();

@@ -1,6 +1,7 @@
-//! Makes the text of a scene file.
+//! Writes the text of a scene file.
 //!
-//! Every type of the scene is destructured, so that a new field cannot be forgotten here.
+//! Every type of the scene is destructured: the compiler then reports new fields that are missing
+//! here.
 
 use std::path::Path;
 
@@ -18,10 +19,11 @@ use marraztu_core::scene::{
     Camera, CameraMode, LoadOptions, Model, Object, Pose, Scene, Texture, View,
 };
 
-/// A scene with its view and settings, in the types of the file. `folder` is the file's, absolute.
+/// Converts a scene with its view and settings to the types of the file. `folder` is the file's
+/// folder, absolute.
 ///
 /// # Errors
-/// The reason, if a model is in no file, or a path or a number cannot be written.
+/// The reason, if a model has no file, or a path or a number cannot be written.
 pub(super) fn file_scene(
     scene: &Scene,
     view: &View,

@@ -1,6 +1,6 @@
-//! The view in scene files: its form, and both ways between it and the scene's.
+//! The view in scene files: its format, and conversions in both directions.
 //!
-//! Each type is destructured, so that a new field cannot be forgotten here.
+//! Each type is destructured: the compiler then reports new fields that are missing here.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ use marraztu_core::scene::{
     Projection, Scene, Steps, Subject, Transformation, View,
 };
 
-/// The camera of a view that does not say which: no camera has this id.
+/// The camera id of a view that does not name one: no camera has this id.
 pub(super) const UNSAID: u32 = u32::MAX;
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -55,7 +55,7 @@ pub(super) struct FilePolygons {
 }
 
 impl FileView {
-    /// A view, and the state of the window that shows it.
+    /// Converts a view and the state of its window.
     pub(super) fn of(view: &View, window: &WindowState) -> Self {
         let View {
             subject,
@@ -117,7 +117,7 @@ impl FileView {
 }
 
 impl FileView {
-    /// The state of the window.
+    /// Returns the state of the window.
     pub(super) fn window(&self) -> WindowState {
         let Self { coarse_while_moving, panels, .. } = self;
         WindowState { coarse_while_moving: *coarse_while_moving, panels: panels.clone() }
@@ -136,10 +136,10 @@ fn is_zero(x: &f64) -> bool {
     *x == 0.0
 }
 
-/// The view of a scene.
+/// Reads the view of a scene.
 ///
 /// # Errors
-/// The reason, if its numbers are not valid.
+/// The reason, if one of its numbers is invalid.
 pub(super) fn read_view(
     file: &FileView,
     scene: &Scene,
@@ -150,7 +150,7 @@ pub(super) fn read_view(
     if translation <= 0.0 || rotation <= 0.0 || scaling <= 1.0 {
         return Err("the steps of the view have to be above 0, and of scaling above 1".to_owned());
     }
-    // If the selected item is missing, the selection of a new scene is used.
+    // A missing item falls back to the selection of a new scene.
     let first = scene.first_view();
     let mut check = |what: &str, id: u32, is_there: bool| {
         if !is_there {
@@ -165,11 +165,12 @@ pub(super) fn read_view(
     let is_there = |id: &LightId| check("light", id.0, scene.lights.get(*id).is_some());
     let light = file.light.map(LightId).filter(is_there);
     let object = object.or(first.object);
+    // Polygon mode belongs to the selected object.
     let polygons = object.and_then(|id| scene.objects.get(id)).and_then(|object| {
         let file = file.polygons.as_ref()?;
         let count = object.model.mesh.polygon_count();
         let there = |polygon: u32| (polygon as usize) < count;
-        // The model may have changed since, and have fewer polygons now.
+        // The model may have changed on disk, and have fewer polygons now.
         let shown = file.shown.below(count);
         let mut mode = PolygonMode { current: 0, shown };
         mode.go_to(if there(file.current) { file.current } else { 0 });

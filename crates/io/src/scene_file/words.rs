@@ -1,16 +1,17 @@
-//! Errors in the text of a scene file, worded for the person who reads it.
+//! Words errors in a scene file for the user.
 //!
-//! The parser's errors name its own types and Rust's. Here each gets a sentence about the file.
+//! The parser's errors refer to its own types and to Rust. Here each becomes a sentence about the
+//! file.
 
 use ron::Error;
 
 /// The most names that are listed.
 const MOST_NAMES: usize = 12;
 
-/// The most characters of a text that came from elsewhere.
+/// The most characters of an external message.
 const MOST_SIGNS: usize = 200;
 
-/// What the parser found, as a sentence.
+/// Words a parser error as a sentence.
 pub(super) fn sentence(error: &Error) -> String {
     if let Some(sign) = missing_sign(error) {
         return format!("{sign} is missing here");
@@ -46,12 +47,12 @@ pub(super) fn sentence(error: &Error) -> String {
             format!("{} is expected here, but {found} were found", plain(expected))
         }
         Error::Message(text) | Error::Io(text) => text.chars().take(MOST_SIGNS).collect(),
-        // No scene file can cause these.
+        // Scene files cannot cause the other errors.
         _ => "this cannot be understood".to_owned(),
     }
 }
 
-/// The sign that is expected, if it is one.
+/// Returns the token that was expected, if the error is about one.
 const fn missing_sign(error: &Error) -> Option<&'static str> {
     Some(match error {
         Error::ExpectedArray => "\"[\"",
@@ -70,7 +71,7 @@ const fn missing_sign(error: &Error) -> Option<&'static str> {
     })
 }
 
-/// The kind of value that is expected, if it is one.
+/// Returns the kind of value that was expected, if the error is about one.
 const fn missing_value(error: &Error) -> Option<&'static str> {
     Some(match error {
         Error::ExpectedBoolean => "true or false",
@@ -87,7 +88,7 @@ const fn missing_value(error: &Error) -> Option<&'static str> {
     })
 }
 
-/// The fault of a name, if the error is about one.
+/// Describes an error about a name.
 fn about_a_name(error: &Error) -> Option<String> {
     Some(match error {
         Error::MissingStructField { field: "version", outer } if is(outer.as_deref(), "Head") => {
@@ -120,7 +121,7 @@ fn is(outer: Option<&str>, name: &str) -> bool {
     outer == Some(name)
 }
 
-/// What a type of the file represents.
+/// Returns the item that a type of the file represents.
 fn thing(outer: Option<&str>) -> &str {
     match outer.unwrap_or_default() {
         "Head" | "FileScene" => "the scene",
@@ -146,7 +147,7 @@ fn thing(outer: Option<&str>) -> &str {
     }
 }
 
-/// "; use A, B or C"; nothing if there are too many to choose from.
+/// Formats choices as "; use A, B or C"; nothing if there are too many.
 fn listed(lead: &str, names: &[&str]) -> String {
     match names {
         [] => String::new(),
@@ -158,7 +159,7 @@ fn listed(lead: &str, names: &[&str]) -> String {
     }
 }
 
-/// A value of Rust as one of the file.
+/// Converts a description of a Rust value to the terms of the file.
 fn plain(value: &str) -> String {
     let is_rust = |name: &str| value.split(' ').any(|word| word == name);
     let known = match value {
@@ -177,7 +178,7 @@ fn plain(value: &str) -> String {
     known.to_owned()
 }
 
-/// The beginning of a text that came from the file.
+/// Shortens a text from the file.
 fn short(text: &str) -> String {
     crate::obj::lines::excerpt(text.as_bytes())
 }

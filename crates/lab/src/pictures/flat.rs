@@ -1,8 +1,8 @@
-//! Scenes in units of pixels, whose pictures tell which triangle each pixel shows.
+//! Scenes in pixel units: their pictures reveal the triangle at each pixel.
 //!
-//! In orthographic projection, with a side that is a power of two, a corner in parts of a pixel
-//! reaches the screen without any rounding. The colour of each triangle, which no light changes, is
-//! its number: coverage, depth and order can be read off a picture, pixel by pixel.
+//! In orthographic projection, with a power of two as side, corners in subpixels reach the screen
+//! without rounding. The unlit colour of each triangle encodes its number, so coverage, depth and
+//! order can be read from a picture, pixel by pixel.
 
 use glam::{DMat4, DVec3};
 
@@ -20,41 +20,41 @@ use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
 use marraztu_render::screen::coverage::{SUBPIXELS, Snapped};
 
-/// How far the camera sees, in units.
+/// The distance of the camera's far plane, in units.
 pub const FAR: f64 = 1024.0;
 
-/// A triangle in parts of a pixel, at a distance from 0 to [`FAR`] for each corner.
+/// A triangle in subpixels, with a distance from 0 to [`FAR`] at each corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flat {
-    /// Its corners.
+    /// The corners.
     pub corners: [Snapped; 3],
-    /// Their distances from the camera.
+    /// The distances of the corners from the camera.
     pub distances: [f64; 3],
 }
 
 impl Flat {
-    /// A triangle at half of the farthest distance.
+    /// Builds a triangle at half of [`FAR`].
     #[must_use]
     pub const fn new(corners: [Snapped; 3]) -> Self {
         Self { corners, distances: [FAR / 2.0; 3] }
     }
 }
 
-/// The colour of the triangle with this number.
+/// Encodes the number of a triangle as its colour.
 #[must_use]
 pub fn color_of(number: usize) -> [u8; 4] {
     let [r, g, b, ..] = (number + 1).to_le_bytes();
     [r, g, b, 255]
 }
 
-/// The number of the triangle of this colour; `None` for the background.
+/// Decodes the number of a triangle from its colour; `None` for the background.
 #[must_use]
 pub fn number_of([r, g, b, _]: [u8; 4]) -> Option<usize> {
     (usize::from(r) | usize::from(g) << 8 | usize::from(b) << 16).checked_sub(1)
 }
 
-/// A scene of one object for each list of triangles, the oldest first, for a picture with a side
-/// that is a power of two. Triangles are numbered through all lists.
+/// Builds a scene with one object per list of triangles, for a picture with a power of two as side.
+/// The oldest object is first, and triangles are numbered across all lists.
 ///
 /// # Panics
 /// If a coordinate has more than 24 bits, which a mesh cannot hold.
@@ -62,6 +62,7 @@ pub fn number_of([r, g, b, _]: [u8; 4]) -> Option<usize> {
 #[expect(clippy::cast_precision_loss, reason = "a side is at most 2^14")]
 pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
     assert!(side.is_power_of_two(), "only then is every corner exact");
+    // One unit is one pixel, and the centre of the picture is the origin.
     let camera = Camera {
         name: "camera".to_owned(),
         visible: false,
@@ -80,6 +81,7 @@ pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
         let silver = MaterialChoice::Preset(PresetId::SILVER);
         let mut object = Object::new(model(triangles, side, number), silver);
         number += triangles.len();
+        // Unlit, so the vertex colours reach the picture unchanged.
         object.surface = Surface::Texture;
         object.sides = Sides::Two;
         (ObjectId(id), object)
@@ -93,7 +95,7 @@ pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
     (scene, view)
 }
 
-/// Draws a scene of [`scene`].
+/// Draws a scene made by [`scene`].
 #[must_use]
 pub fn draw((scene, view): &(Scene, View), side: usize, renderer: &mut Renderer) -> Picture {
     let plan = plan_frame(&Shot::new(scene, view, &Settings::default(), Size::new(side, side)));
@@ -106,7 +108,7 @@ pub fn draw_triangles(triangles: &[Flat], side: usize, renderer: &mut Renderer) 
     draw(&scene(&[triangles.to_vec()], side), side, renderer)
 }
 
-/// The position in the world of a corner in parts of a pixel.
+/// Converts a corner in subpixels to its position in world space.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a side is at most 2^14")]
 pub fn place(corner: Snapped, distance: f64, side: usize) -> DVec3 {
@@ -124,6 +126,7 @@ fn model(triangles: &[Flat], side: usize, first: usize) -> Shared<Model> {
     for (number, triangle) in triangles.iter().enumerate() {
         for (corner, distance) in triangle.corners.into_iter().zip(triangle.distances) {
             let place = place(corner, distance, side);
+            // Meshes store f32: a rounded corner would make the test meaningless.
             let narrow = place.as_vec3();
             assert_eq!(narrow.as_dvec3(), place, "a corner has too many bits");
             let position = u32::try_from(source.positions.len()).expect("few triangles");
@@ -144,7 +147,7 @@ fn model(triangles: &[Flat], side: usize, first: usize) -> Shared<Model> {
     })
 }
 
-/// The placement that moves a scene by a number of pixels to the right and down.
+/// Returns the matrix that moves a scene by a number of pixels to the right and down.
 #[must_use]
 pub fn moved(right: f64, down: f64) -> DMat4 {
     DMat4::from_translation(DVec3::new(right, -down, 0.0))

@@ -1,7 +1,7 @@
 //! The listed pictures: the same bytes on every processor.
 //!
-//! Some show one thing each, and one is drawn for each choice of each axis of accuracy. Their sums
-//! are listed in `tests/pictures.sums`, and that list is part of the program: `marraztu verify`
+//! Some show one feature each, and one is drawn for each choice of each axis of accuracy. Their
+//! hashes are listed in `tests/pictures.sums`, which is built into the program: `marraztu verify`
 //! draws the pictures and compares.
 
 pub mod flat;
@@ -30,19 +30,19 @@ use marraztu_render::{FramePlan, Renderer};
 /// The width and height of the pictures in pixels.
 const SIDE: usize = 128;
 
-/// A picture whose bytes are the same on every processor.
+/// A picture with the same bytes on every processor.
 #[derive(Debug)]
 pub struct TestPicture {
-    /// What it shows.
+    /// The name of the picture.
     pub name: String,
     plan: FramePlan,
 }
 
 impl TestPicture {
-    /// The sum of the picture, drawn with these instructions by this number of threads.
+    /// Draws the picture with these instructions and this number of threads, and hashes it.
     ///
     /// # Panics
-    /// If the system has no more threads to give.
+    /// If the system cannot start that many threads.
     #[must_use]
     pub fn sum(&self, level: Level, threads: usize) -> u64 {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -51,7 +51,7 @@ impl TestPicture {
     }
 }
 
-/// FNV-1a over the width, the height and the bytes of a picture.
+/// Hashes the width, the height and the bytes of a picture with FNV-1a.
 #[must_use]
 pub fn sum(picture: &Picture) -> u64 {
     let Size { width, height } = picture.size();
@@ -60,10 +60,10 @@ pub fn sum(picture: &Picture) -> u64 {
     fnv1a(bytes.copied().map(u64::from))
 }
 
-/// The list: the name of each picture with its sum.
+/// Returns the list: the name of each picture with its hash.
 ///
 /// # Panics
-/// If a line of the list is neither a comment nor a sum and a name.
+/// If a line of the list is neither a comment nor a hash with a name.
 #[must_use]
 pub fn listed() -> Vec<(&'static str, u64)> {
     let line = |line: &'static str| {
@@ -77,7 +77,7 @@ pub fn listed() -> Vec<(&'static str, u64)> {
         .collect()
 }
 
-/// The pictures, in the order of the list.
+/// Returns the pictures, in the order of the list.
 #[must_use]
 pub fn all() -> Vec<TestPicture> {
     let (scene, view) = io::default_scene();
@@ -104,6 +104,7 @@ pub fn all() -> Vec<TestPicture> {
     let each_lit = Settings { light: LightAt::Sample, ..of(Samples::Four) };
     let half = Settings { specular: SpecularForm::HalfVector, ..settings };
     let (textured, rough) = (textured(&near), Settings { filter: Filter::Nearest, ..settings });
+    // Overlapping random triangles stress coverage and depth.
     let (stage, from_above) = flat::scene(&[scattered()], SIDE);
     let mut all = vec![
         picture("first scene", &scene, &view, settings),
@@ -123,6 +124,7 @@ pub fn all() -> Vec<TestPicture> {
         picture("sixteen samples", &stage, &from_above, of(Samples::Sixteen)),
         picture("four samples, each lit", &near, &drawn, each_lit),
     ];
+    // One picture for each choice that differs from the default and is portable.
     let bent = bent(&textured);
     for (axis, choice) in AXES.iter().flat_map(|axis| axis.choices.iter().map(move |it| (axis, it)))
     {
@@ -135,7 +137,7 @@ pub fn all() -> Vec<TestPicture> {
     all
 }
 
-/// The same with its first object stretched.
+/// Stretches the first object of a scene.
 fn bent(scene: &Scene) -> Scene {
     change(scene, |object| {
         let stretch = DMat4::from_scale(DVec3::new(1.0, 0.4, 1.0));
@@ -143,7 +145,7 @@ fn bent(scene: &Scene) -> Scene {
     })
 }
 
-/// The first scene with its first object moved so near that the near plane cuts it.
+/// Moves the first object so close that the near plane clips it.
 fn nearer(scene: &Scene) -> Scene {
     change(scene, |object| {
         let place = DMat4::from_translation(DVec3::new(5.0, -8.0, 370.0));
@@ -152,7 +154,7 @@ fn nearer(scene: &Scene) -> Scene {
     })
 }
 
-/// The same with a texture of noise on its first object.
+/// Gives the first object a noise texture.
 fn textured(scene: &Scene) -> Scene {
     let mut rng = Rng::new(5);
     let texels = (0..64).map(|_| rng.bits().to_le_bytes());
@@ -170,7 +172,7 @@ fn textured(scene: &Scene) -> Scene {
     })
 }
 
-/// A leaning square of 2 x 2 quads with texture coordinates.
+/// Builds a leaning square of 2 x 2 quads with texture coordinates.
 fn wall() -> Shared<Model> {
     let mut source = MeshSource {
         parts: vec![Part { name: "wall".to_owned(), material: None }],
@@ -209,7 +211,7 @@ fn change(scene: &Scene, change: impl FnOnce(&mut Object)) -> Scene {
     scene
 }
 
-/// Overlapping triangles of all sizes.
+/// Makes overlapping triangles of all sizes.
 fn scattered() -> Vec<Flat> {
     let mut rng = Rng::new(7);
     let far = i32::try_from(SIDE).expect("small") * SUBPIXELS;

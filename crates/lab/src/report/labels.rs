@@ -1,4 +1,4 @@
-//! Places names beside marks so that no two overlap.
+//! Places labels next to marks without overlaps.
 
 /// A rectangle of text: left, top, right, bottom.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,13 +10,13 @@ pub struct TextBox {
 }
 
 impl TextBox {
-    /// A box of some size.
+    /// Makes a box from its corner and size.
     #[must_use]
     pub fn new([left, top]: [f32; 2], [width, height]: [f32; 2]) -> Self {
         Self { min: [left, top], max: [left + width, top + height] }
     }
 
-    /// Whether two boxes share more than an edge.
+    /// Returns whether two boxes share more than an edge.
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
         (0..2).all(|i| self.min[i] < other.max[i] && other.min[i] < self.max[i])
@@ -27,9 +27,9 @@ impl TextBox {
     }
 }
 
-/// Places a text of each size near its mark, inside of `frame`: beside it if there is room, else at
-/// the nearest free place. No two texts overlap, and none covers a mark, or the line that joins the
-/// marks, if it can be helped; a text without any room is left out.
+/// Places a label of each size near its mark, inside `frame`: next to the mark, or in the nearest
+/// free place. Labels never overlap each other. They avoid the marks and the line that joins the
+/// marks if possible. A label without room is left out.
 #[must_use]
 pub fn place(
     marks: &[[f32; 2]],
@@ -50,6 +50,7 @@ pub fn place(
             let clear = |others: &[TextBox]| others.iter().all(|other| !other.overlaps(text));
             text.is_inside(frame) && clear(&taken) && clear(marks)
         };
+        // Avoid marks and line, then only marks, then only other labels.
         let found = around(*mark, *size, radius)
             .find(|text| free(text, &both))
             .or_else(|| around(*mark, *size, radius).find(|text| free(text, &squares)))
@@ -60,7 +61,7 @@ pub fn place(
     placed
 }
 
-/// Small squares along the line from one mark to the next.
+/// Returns small squares along the line between two marks.
 fn along(from: [f32; 2], to: [f32; 2]) -> impl Iterator<Item = TextBox> {
     const PARTS: u16 = 64;
     (0..=PARTS).map(move |i| {
@@ -70,7 +71,7 @@ fn along(from: [f32; 2], to: [f32; 2]) -> impl Iterator<Item = TextBox> {
     })
 }
 
-/// Boxes around a mark, the nearest first.
+/// Returns boxes around a mark, the nearest first.
 fn around([x, y]: [f32; 2], [w, h]: [f32; 2], radius: f32) -> impl Iterator<Item = TextBox> {
     const STEPS: u16 = 60;
     (0..STEPS).flat_map(move |step| {

@@ -20,25 +20,25 @@ use super::front::{Point, fastest_within, front, most_exact_within};
 use super::sweep::{Findings, Measured, Row, Verdict};
 use marraztu_core::accuracy::Axis;
 
-/// The results of a sweep, with how they are to be reported.
+/// The results of a sweep, with the options of the report.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// The name of what was drawn: "teapot.obj".
+    /// The name of the scene, such as "teapot.obj".
     pub scene: String,
-    /// The command that measures it again.
+    /// The command that repeats the measurement.
     pub command: String,
     /// The error metric of the plots, the front and the budgets.
     pub measure: Measure,
-    /// The pixels that it is taken over.
+    /// The pixels that the metric covers.
     pub region: Region,
-    /// The limits that the user has set.
+    /// The user's limits.
     pub budgets: Budgets,
     /// The results.
     #[serde(flatten)]
     pub findings: Findings,
 }
 
-/// The limits that the user has set.
+/// The user's limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Budgets {
     /// The largest error, in the unit of the report's metric.
@@ -47,14 +47,14 @@ pub struct Budgets {
     pub ms: Option<f64>,
 }
 
-/// The part of the error that a slower choice has to cut for a place on the front.
+/// The fraction of the error that a slower choice must remove for a place on the front.
 const LEAST_CUT: f64 = 0.02;
 
-/// The largest number of names in the overview.
+/// The most names in the overview.
 const NAMES: usize = 10;
 
 impl Report {
-    /// The rows of the table. Presets are measured first and last, but listed together.
+    /// Returns the rows of the table. Presets are measured first and last, but listed together.
     #[must_use]
     pub fn rows(&self) -> Vec<&Row> {
         let mut rows: Vec<&Row> = self.findings.rows.iter().collect();
@@ -62,14 +62,14 @@ impl Report {
         rows
     }
 
-    /// The error of a row against its own reference.
+    /// Returns the error of a row against its own reference.
     #[must_use]
     pub fn error(&self, row: &Row) -> f64 {
         self.measure.of(self.findings.error_of(row), self.region)
     }
 
-    /// The points as time and error against 256 samples per pixel: one reference for all. Another
-    /// model is judged against its own reference.
+    /// Returns the points as time and error against 256 samples per pixel, a common reference.
+    /// Points with another model use their own reference.
     #[must_use]
     pub fn points(&self) -> Vec<Point> {
         let error =
@@ -77,15 +77,16 @@ impl Report {
         self.findings.points.iter().map(|p| Point { time: p.ms, error: error(p) }).collect()
     }
 
-    /// The points that can be compared with one another, with their indices: no other models.
+    /// Returns the points that share the common reference, with their indices.
     fn comparable(&self) -> (Vec<usize>, Vec<Point>) {
         let all = self.points().into_iter().enumerate();
         all.filter(|(i, _)| self.findings.points[*i].sampled.is_some()).unzip()
     }
 
-    /// The front, each of whose points cuts the error by at least this part. A time within the
-    /// noise is the default's, and the default stands for all that is as fast and as exact.
+    /// Returns the front for a minimum cut of the error. A point within the noise gets the time of
+    /// the default, and the default represents all points that are as fast and as exact.
     fn front_by(&self, least: f64) -> Vec<usize> {
+        // Within the noise, times are equal: noise must not decide who is on the front.
         let (places, mut points) = self.comparable();
         let Some(default) = points.first().copied() else { return Vec::new() };
         for (place, point) in places.iter().zip(&mut points) {
@@ -99,14 +100,14 @@ impl Report {
         front(&points, least).into_iter().map(|i| places[i]).collect()
     }
 
-    /// The indices of the points on the front, the fastest first.
+    /// Returns the indices of the points on the front, the fastest first.
     #[must_use]
     pub fn front(&self) -> Vec<usize> {
         self.front_by(LEAST_CUT)
     }
 
-    /// The default and the front, at most ten points, the fastest first: if there are more, those
-    /// that cut the error most.
+    /// Returns the default and the front, at most ten points, the fastest first. If there are more,
+    /// the ones with the largest cuts of the error remain.
     #[must_use]
     pub fn overview(&self) -> Vec<usize> {
         let mut least = LEAST_CUT;
@@ -125,45 +126,45 @@ impl Report {
         }
     }
 
-    /// The fastest point whose error is within the budget; `None` without such a budget.
+    /// Returns the fastest point within the error budget; `None` without such a budget.
     #[must_use]
     pub fn fastest(&self) -> Option<Option<usize>> {
         let (places, points) = self.comparable();
         self.budgets.error.map(|most| fastest_within(&points, most).map(|i| places[i]))
     }
 
-    /// The most exact point within the budget of time; `None` without such a budget.
+    /// Returns the most exact point within the time budget; `None` without such a budget.
     #[must_use]
     pub fn most_exact(&self) -> Option<Option<usize>> {
         let (places, points) = self.comparable();
         self.budgets.ms.map(|most| most_exact_within(&points, most).map(|i| places[i]))
     }
 
-    /// The index of the point that the picture is drawn with now.
+    /// Returns the index of the point with the current settings.
     #[must_use]
     pub fn current(&self) -> Option<usize> {
         self.findings.points.iter().position(|point| point.settings == self.findings.current)
     }
 
-    /// What the figures say, in sentences.
+    /// Summarises the figures in sentences.
     #[must_use]
     pub fn verdict(&self) -> Vec<String> {
         verdict::verdict(self)
     }
 
-    /// What the figures say about one axis, in a paragraph.
+    /// Summarises the figures on one axis in a paragraph.
     #[must_use]
     pub fn verdict_on(&self, axis: &Axis) -> String {
         verdict::verdict_on(self, axis)
     }
 
-    /// The report as JSON.
+    /// Formats the report as JSON.
     #[must_use]
     pub fn json(&self) -> String {
         serde_json::to_string_pretty(self).expect("a report is plain data")
     }
 
-    /// The answer to each budget, as a sentence.
+    /// Returns the answer to each budget, as a sentence.
     #[must_use]
     pub fn answers(&self) -> Vec<String> {
         let points = self.points();

@@ -1,12 +1,12 @@
-//! A page of the suite: for each axis a panel, a table, a paragraph, and the command that repeats
-//! it.
+//! Writes a page about the suite: for each axis a panel, a table, a paragraph, and the command that
+//! repeats it.
 
 use std::fmt::Write as _;
 
 use super::{Look, PlotError, Report, markdown, panel_svg};
 use marraztu_core::accuracy::{AXES, Axis};
 
-/// The axes of some reports, each with the reports that measured it.
+/// Returns the axes of several reports, each with the reports that measured it.
 pub fn sections(reports: &[Report]) -> impl Iterator<Item = (&'static Axis, Vec<&Report>)> {
     let all = AXES.iter().map(|axis| {
         let measured = |report: &&Report| report.findings.rows_of(axis).count() > 1;
@@ -15,14 +15,14 @@ pub fn sections(reports: &[Report]) -> impl Iterator<Item = (&'static Axis, Vec<
     all.filter(|(_, reports)| !reports.is_empty())
 }
 
-/// The name of the plot of an axis on a scene of the suite: "depth-first".
+/// Returns the name of the plot of an axis on a scene of the suite: "depth-first".
 #[must_use]
 pub fn plot_name(axis: &Axis, report: &Report) -> String {
     let scene = report.scene.split_whitespace().last().unwrap_or_default();
     format!("{}-{scene}", axis.key)
 }
 
-/// What the figures rest on, in a paragraph.
+/// Describes the measuring method in a paragraph.
 fn basis(reports: &[Report]) -> String {
     let Some(first) = reports.first() else { return String::new() };
     let findings = &first.findings;
@@ -39,7 +39,7 @@ fn basis(reports: &[Report]) -> String {
     )
 }
 
-/// The page as Markdown. `picture` gives the address of the plot of an axis, by its key.
+/// Writes the page as Markdown. `picture` returns the URL of an axis's plot, by its name.
 #[must_use]
 pub fn page_markdown(reports: &[Report], picture: &dyn Fn(&str) -> String) -> String {
     let mut text = format!("{}\n", basis(reports));
@@ -70,7 +70,7 @@ const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem a
     .dark{display:none}@media(prefers-color-scheme:dark){body{background:#18181c;color:#e6e6ea}\
     .dark{display:block}.light{display:none}}";
 
-/// The page as HTML, complete in one file, light and dark.
+/// Writes the page as HTML in one file, for light and dark themes.
 ///
 /// # Errors
 /// If a plot cannot be drawn.
@@ -88,6 +88,7 @@ pub fn page_html(reports: &[Report]) -> Result<String, PlotError> {
     for (axis, reports) in sections(reports) {
         let _ = writeln!(text, "<h2>{}</h2>", axis.label);
         for report in reports {
+            // Both themes are embedded; CSS shows one.
             let [light, dark] =
                 [Look::Light, Look::Dark].map(|look| panel_svg(report, Some(axis.key), look));
             let _ = write!(
@@ -105,7 +106,7 @@ pub fn page_html(reports: &[Report]) -> Result<String, PlotError> {
     Ok(text + "</body></html>\n")
 }
 
-/// A table in Markdown as HTML.
+/// Converts a Markdown table to HTML.
 fn html_table(markdown: &str) -> String {
     let mut text = "<table>\n".to_owned();
     for (i, line) in markdown.lines().enumerate().filter(|(i, _)| *i != 1) {

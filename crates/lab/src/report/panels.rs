@@ -1,9 +1,9 @@
-//! Lays out the plots of a report, for the window and for files: small multiples, one panel an
+//! Lays out the plots of a report, for the window and for files: small multiples with one panel per
 //! axis, and an overview of the front.
 //!
-//! All panels share one scale: time relative to the default from left to right, error from below,
-//! both logarithmic, since choices differ by factors. An error of 0 has no logarithm: it is drawn
-//! one decade below the smallest error above 0, on a line of its own.
+//! All panels share the same scales: time relative to the default from left to right, error from
+//! the bottom up. Both are logarithmic, since choices differ by factors. An error of 0 has no
+//! logarithm: it gets a separate line one decade below the smallest positive error.
 
 use super::{Report, brief};
 use crate::sweep::Row;
@@ -14,37 +14,37 @@ use marraztu_core::accuracy::{AXES, Axis, AxisKind};
 pub struct PanelMark {
     /// The index of the report's point.
     pub point: usize,
-    /// Its position on the scales.
+    /// The position on the scales.
     pub at: [f64; 2],
-    /// The interval of `x` that its time may mean.
+    /// The confidence interval of the time on the `x` scale.
     pub noise: [f64; 2],
-    /// Its name.
+    /// The name.
     pub label: String,
     /// Whether it is the default.
     pub is_default: bool,
-    /// Whether the picture is drawn with it now.
+    /// Whether it is the current setting.
     pub current: bool,
 }
 
-/// The choices of an axis, or the front.
+/// A plot of the choices of an axis, or of the front.
 #[derive(Clone, Debug)]
 pub struct Panel {
     /// The axis; `None` for the overview.
     pub axis: Option<&'static Axis>,
-    /// Its title.
+    /// The title.
     pub title: String,
-    /// What its errors are against, if it is not the reference of the others.
+    /// The reference of the errors, if it differs from the usual one.
     pub note: &'static str,
-    /// Its choices, from coarse to exact; those of the overview from fast to slow.
+    /// The choices from coarse to exact, or those of the overview from fast to slow.
     pub marks: Vec<PanelMark>,
 }
 
-/// One side of a plot.
+/// One scale of a plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
-    /// Its label.
+    /// The label.
     pub label: String,
-    /// Its ends.
+    /// The first and the last value.
     pub range: [f64; 2],
     /// The positions and labels of its ticks.
     pub ticks: Vec<(f64, String)>,
@@ -55,7 +55,7 @@ pub struct Scale {
 pub struct Panels {
     /// Time, from left to right.
     pub x: Scale,
-    /// Error, from below.
+    /// Error, from the bottom up.
     pub y: Scale,
     /// The position of an error of 0.
     pub zero: f64,
@@ -63,12 +63,12 @@ pub struct Panels {
     pub noise: [f64; 2],
     /// The default and the front, by the error against 256 samples per pixel.
     pub overview: Panel,
-    /// A panel for each axis that was measured.
+    /// A panel for each measured axis.
     pub axes: Vec<Panel>,
 }
 
 impl Panels {
-    /// The plots of a report.
+    /// Lays out the plots of a report.
     #[must_use]
     pub fn new(report: &Report) -> Self {
         let findings = &report.findings;
@@ -78,8 +78,9 @@ impl Panels {
         let of_axes = || AXES.iter().flat_map(|axis| findings.rows_of(axis));
         let overview = report.overview();
         let time = |point: usize| libm::log10(ratio(report, point));
+        // One scale for all panels makes them comparable.
         let shown = of_axes().map(|row| row.point).chain(overview.iter().copied());
-        // Much noise is no reason for a wide scale.
+        // Large noise should not widen the scale.
         let near = noise.map(|x| x.clamp(-0.2, 0.2));
         let x = time_scale(shown.map(time).chain(near));
         let errors = of_axes().map(|row| report.error(row));
@@ -121,7 +122,7 @@ impl Panels {
         }
     }
 
-    /// The panel of an axis; the overview if it was not measured.
+    /// Returns the panel of an axis, or the overview if the axis was not measured.
     #[must_use]
     pub fn of(&self, key: Option<&str>) -> &Panel {
         let is_it = |panel: &&Panel| panel.axis.map(|axis| axis.key) == key;
@@ -129,12 +130,12 @@ impl Panels {
     }
 }
 
-/// How many times as long as the default a point takes; the default takes 1.
+/// Returns the time of a point relative to the default.
 fn ratio(report: &Report, point: usize) -> f64 {
     if point == 0 { 1.0 } else { report.findings.points[point].ratio.quartiles.median.max(1e-3) }
 }
 
-/// A scale of ratios with ticks at 1, 2 and 5 of each decade, and more if it is short.
+/// Makes a scale of ratios with ticks at 1, 2 and 5 of each decade, and more on a short scale.
 fn time_scale(logarithms: impl Iterator<Item = f64>) -> Scale {
     let [least, most] = bounds(logarithms);
     let room = ((most - least) * 0.1).max(0.08);
@@ -152,7 +153,7 @@ fn time_scale(logarithms: impl Iterator<Item = f64>) -> Scale {
     Scale { label: "time, the default is 1x".to_owned(), range, ticks }
 }
 
-/// A scale of errors with a tick at each decade and one at 0, and the position of 0.
+/// Makes a scale of errors with a tick at each decade and one at 0; also returns the position of 0.
 fn error_scale(report: &Report, errors: impl Iterator<Item = f64>) -> (Scale, f64) {
     let above = errors.filter(|error| *error > 0.0).map(libm::log10);
     let [least, most] = bounds(above);
@@ -169,7 +170,7 @@ fn error_scale(report: &Report, errors: impl Iterator<Item = f64>) -> (Scale, f6
     (Scale { label, range, ticks }, zero)
 }
 
-/// The smallest and the largest; 0 and 1 if there are none.
+/// Returns the smallest and the largest value, or 0 and 1 without values.
 fn bounds(places: impl Iterator<Item = f64>) -> [f64; 2] {
     let all = places.fold(None, |all: Option<[f64; 2]>, place| {
         Some(all.map_or([place; 2], |[a, b]| [a.min(place), b.max(place)]))

@@ -1,8 +1,8 @@
 //! Draws the plots of a report as SVG and PNG, light and dark.
 //!
-//! `plotters` draws them with the fonts of the window, so that a plot does not depend on the
-//! machine. At the head stand the title and the verdict, under them the overview, then a panel for
-//! each axis, all on one scale.
+//! `plotters` draws them with the window's fonts, so a plot looks the same on every machine. The
+//! title and the verdict are at the top, then the overview, then a panel for each axis, all with
+//! the same scales.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -13,12 +13,12 @@ use super::labels::{TextBox, place};
 use super::{Panel, Panels, Report, Scale};
 use marraztu_core::base::image::{Picture, Size};
 
-/// A plot could not be drawn.
+/// The error of a plot that could not be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the plot could not be drawn: {0}")]
 pub struct PlotError(String);
 
-/// The colours of a plot.
+/// The colour theme of a plot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Look {
     /// Dark ink on white.
@@ -28,7 +28,7 @@ pub enum Look {
     Dark,
 }
 
-/// The colours, the data strongest and the grid faintest.
+/// The colours: the data have the strongest contrast, the grid the weakest.
 struct Colors {
     paper: RGBColor,
     ink: RGBColor,
@@ -41,7 +41,7 @@ struct Colors {
     default: RGBColor,
 }
 
-// The data have colours of Okabe and Ito, which people with colour blindness can tell apart.
+// The data use the colours of Okabe and Ito, which colour-blind readers can distinguish.
 const LIGHT: Colors = Colors {
     paper: RGBColor(255, 255, 255),
     ink: RGBColor(34, 34, 40),
@@ -77,12 +77,12 @@ const LINE: i32 = 20;
 const OVERVIEW: i32 = 340;
 const COLUMNS: i32 = 3;
 const ROW: i32 = 250;
-/// The room of a panel for its title above, its ticks to the left and below.
+/// The margins of a panel for its title above and its ticks to the left and below.
 const ROOM: [i32; 3] = [26, 54, 42];
 /// Half the width of a mark.
 const MARK: i32 = 5;
 
-/// The plot as SVG.
+/// Draws the plot as SVG.
 ///
 /// # Errors
 /// If the plotting library fails.
@@ -92,7 +92,7 @@ pub fn svg(report: &Report, look: Look) -> Result<String, PlotError> {
     drawn_svg(size, |area| sheet.draw(area))
 }
 
-/// The panel of one axis as SVG; the overview if the axis was not measured.
+/// Draws the panel of one axis as SVG, or the overview if the axis was not measured.
 ///
 /// # Errors
 /// If the plotting library fails.
@@ -105,7 +105,7 @@ pub fn panel_svg(report: &Report, key: Option<&str>, look: Look) -> Result<Strin
     })
 }
 
-/// The plot as a picture.
+/// Draws the plot as a picture.
 ///
 /// # Errors
 /// If the plotting library fails.
@@ -121,7 +121,7 @@ pub fn png(report: &Report, look: Look) -> Result<Picture, PlotError> {
     Picture::from_pixels(size, pixels).ok_or_else(|| PlotError("its size is wrong".to_owned()))
 }
 
-/// The names of the overview with their boxes in the plot.
+/// Returns the names in the overview with their boxes in the plot.
 #[must_use]
 pub fn overview_names(report: &Report) -> Vec<(String, TextBox)> {
     let sheet = Sheet::new(report, Look::Light);
@@ -145,9 +145,9 @@ fn drawn_svg(
 type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 type Rect = [i32; 4];
 
-/// A font of the window, under the name that SVG knows.
+/// Returns a font of the window, under its name in SVG.
 fn font(size: u32) -> TextStyle<'static> {
-    // Registering a valid font cannot fail, and registering it again changes nothing.
+    // Registering a valid font cannot fail, and repeating it has no effect.
     let _ = register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
     ("sans-serif", size).into_font().into()
 }
@@ -156,19 +156,19 @@ fn styled(size: u32, color: RGBColor, h: HPos, v: VPos) -> TextStyle<'static> {
     TextStyle { color: color.to_backend_color(), pos: Pos::new(h, v), ..font(size) }
 }
 
-/// The size of a text; a little more than that of the font, since a reader of SVG may have another.
+/// Returns the size of a text, with a margin, since an SVG viewer may use another font.
 #[expect(clippy::cast_precision_loss, reason = "pixels of a plot")]
 fn size_of(text: &str, size: u32) -> [f32; 2] {
     let (width, height) = font(size).font.box_size(text).unwrap_or((0, 0));
     [width as f32 * 1.06 + 4.0, (height as f32).max(size as f32) + 2.0]
 }
 
-/// The rectangle of the scales in that of a panel.
+/// Returns the rectangle of the scales in the rectangle of a panel.
 const fn inner([left, top, right, bottom]: Rect) -> Rect {
     [left + ROOM[1], top + ROOM[0], right - 6, bottom - ROOM[2]]
 }
 
-/// Everything that is drawn.
+/// The content of a plot.
 struct Sheet {
     title: String,
     verdict: Vec<String>,
@@ -209,6 +209,7 @@ impl Sheet {
     fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Drawn<DB> {
         let colors = self.colors;
         area.fill(&colors.paper)?;
+        // The title and the verdict, line by line.
         let left = |size, color| styled(size, color, HPos::Left, VPos::Top);
         area.draw(&Text::new(self.title.clone(), (EDGE, 14), left(18, colors.ink)))?;
         let mut y = 44;
@@ -218,6 +219,7 @@ impl Sheet {
         }
         self.panel(area, &self.panels.overview, self.overview_rect())?;
         let (top, width) = (self.head() + OVERVIEW + 16, (WIDTH - 2 * EDGE) / COLUMNS);
+        // Panels fill the rows from left to right.
         let mut place = (0, 0);
         for panel in &self.panels.axes {
             let (x, y) = (EDGE + place.0 * width, top + place.1 * ROW);
@@ -248,6 +250,7 @@ impl Sheet {
         let at: Vec<(i32, i32)> =
             panel.marks.iter().map(|mark| self.place(frame, mark.at)).collect();
         area.draw(&PathElement::new(at.clone(), colors.data.stroke_width(2)))?;
+        // The interval is drawn first, so the mark covers it.
         for (mark, at) in panel.marks.iter().zip(&at) {
             let color = if mark.is_default { colors.default } else { colors.data };
             let [left, _, right, _] = frame;
@@ -259,6 +262,7 @@ impl Sheet {
                 area.draw(&Circle::new(*at, MARK + 4, colors.ink.stroke_width(2)))?;
             }
         }
+        // Names come last, on top of all lines.
         for (mark, text) in panel.marks.iter().zip(self.names(panel, frame)) {
             let Some(text) = text else { continue };
             let color = if mark.is_default { colors.default } else { colors.ink };
@@ -268,7 +272,7 @@ impl Sheet {
         Ok(())
     }
 
-    /// The boxes of the names of a panel.
+    /// Returns the boxes of the names in a panel.
     #[expect(clippy::cast_precision_loss, reason = "pixels of a plot")]
     fn names(&self, panel: &Panel, frame: Rect) -> Vec<Option<TextBox>> {
         let at = |mark: &super::PanelMark| {
@@ -280,11 +284,11 @@ impl Sheet {
             panel.marks.iter().map(|mark| size_of(&mark.label, 13)).collect();
         let [left, top, right, bottom] = frame.map(|edge| edge as f32);
         let frame = TextBox { min: [left, top], max: [right, bottom] };
-        // The ring around the current choice is clear, too.
+        // The ring around the current choice stays clear, too.
         place(&marks, &sizes, &frame, MARK as f32 + 4.0)
     }
 
-    /// The pixel of a position on the scales.
+    /// Converts a position on the scales to a pixel.
     fn place(&self, [left, top, right, bottom]: Rect, [x, y]: [f64; 2]) -> (i32, i32) {
         (along(&self.panels.x, x, left, right), along(&self.panels.y, y, bottom, top))
     }
@@ -292,9 +296,11 @@ impl Sheet {
     fn scales<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, frame: Rect) -> Drawn<DB> {
         let (colors, panels, [left, top, right, bottom]) = (self.colors, &self.panels, frame);
         let small = |h, v| styled(12, colors.faint, h, v);
+        // The noise band lies below the grid.
         let band = panels.noise.map(|x| along(&panels.x, x, left, right).clamp(left, right));
         let band = [(band[0], top), (band[1].max(band[0] + 1), bottom)];
         area.draw(&Rectangle::new(band, colors.noise.filled()))?;
+        // Labels that would overlap the last one are skipped.
         let mut free = left;
         for (x, label) in &panels.x.ticks {
             let x = along(&panels.x, *x, left, right);
@@ -336,7 +342,7 @@ fn along(scale: &Scale, place: f64, from: i32, to: i32) -> i32 {
     (f64::from(from) + part * f64::from(to - from)).round() as i32
 }
 
-/// Sentences one after the other, in lines of at most `width` pixels.
+/// Wraps sentences into lines of at most `width` pixels.
 #[expect(clippy::cast_precision_loss, reason = "pixels of a plot")]
 fn wrapped(sentences: &[String], size: u32, width: i32) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();

@@ -1,4 +1,4 @@
-//! Writes the table of a sweep for people and for other programs.
+//! Writes the table of a sweep for users and for other programs.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use crate::error::Region;
 use crate::sweep::{Measured, Row, Verdict};
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind};
 
-/// A number with three significant digits: "0", "0.0123", "4.57", "137", "1.2e-5".
+/// Formats a number with three significant digits: "0", "0.0123", "4.57", "137", "1.2e-5".
 #[must_use]
 pub fn brief(number: f64) -> String {
     let size = number.abs();
@@ -18,6 +18,7 @@ pub fn brief(number: f64) -> String {
     if !(1e-3..1e5).contains(&size) {
         return format!("{number:.1e}");
     }
+    // Decimals for three significant digits.
     let text = match size {
         100.0.. => format!("{number:.0}"),
         10.0.. => format!("{number:.1}"),
@@ -32,7 +33,7 @@ pub fn brief(number: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// The heading of a row's group.
+/// Returns the heading of a row's group.
 #[must_use]
 pub fn heading(row: &Row) -> String {
     match row.group {
@@ -51,7 +52,7 @@ pub fn heading(row: &Row) -> String {
     }
 }
 
-/// The table as text, with the verdict above it and the meaning of the marks below.
+/// Writes the table as text, with the verdict above and a legend of the marks below.
 #[must_use]
 pub fn text(report: &Report) -> String {
     let mut text = head(report);
@@ -75,6 +76,7 @@ pub fn text(report: &Report) -> String {
         "FLIP"
     );
     let (front, current) = (report.front(), report.current());
+    // Print a heading wherever the group changes.
     let mut last = String::new();
     for row in report.rows() {
         let heading = heading(row);
@@ -82,6 +84,7 @@ pub fn text(report: &Report) -> String {
             let _ = writeln!(text, "{heading}");
             last = heading;
         }
+        // The marks are explained below the table.
         let marks = [
             if row.point == 0 { '*' } else { ' ' },
             if current == Some(row.point) { '>' } else { ' ' },
@@ -174,6 +177,7 @@ fn foot(text: &mut String, report: &Report) {
             if kernel.equal { "equal results" } else { "DIFFERENT RESULTS" }
         );
     }
+    // The answers to budgets follow, if the user set any.
     let answers = report.answers();
     if !answers.is_empty() {
         let _ = writeln!(text);
@@ -184,7 +188,7 @@ fn foot(text: &mut String, report: &Report) {
     let _ = writeln!(text, "\nagain: {}", report.command);
 }
 
-/// A sentence in lines of at most `width` letters.
+/// Wraps a sentence into lines of at most `width` characters.
 fn wrapped(sentence: &str, width: usize) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in sentence.split_whitespace() {
@@ -198,7 +202,7 @@ fn wrapped(sentence: &str, width: usize) -> String {
     lines.join("\n")
 }
 
-/// The rows of one axis as a table in Markdown, with its figures over all pixels.
+/// Writes the rows of one axis as a Markdown table, with figures over all pixels.
 #[must_use]
 pub fn markdown(report: &Report, axis: &Axis) -> String {
     let mut text = "| choice | time | interquartile range | maximum | RMSE | PSNR | differing \
@@ -208,6 +212,7 @@ pub fn markdown(report: &Report, axis: &Axis) -> String {
     for row in report.findings.rows_of(axis) {
         let (point, error) = (&report.findings.points[row.point], report.findings.error_of(row));
         let quartiles = &point.ratio.quartiles;
+        // The default is exactly 1x by definition; its own measurement is the control.
         let star = if row.point == 0 { " (default)" } else { "" };
         let time = match (row.point, point.verdict) {
             (0, _) => "1x".to_owned(),
@@ -231,13 +236,13 @@ pub fn markdown(report: &Report, axis: &Axis) -> String {
     text
 }
 
-/// The table as comma-separated values, with the choice of every axis in each row.
+/// Writes the table as comma-separated values, with the choice of every axis in each row.
 #[must_use]
 pub fn csv(report: &Report) -> String {
     joined(report, ",", quoted)
 }
 
-/// The same separated by tabs, for pasting into a spreadsheet.
+/// Writes the table separated by tabs, for pasting into a spreadsheet.
 #[must_use]
 pub fn tabs(report: &Report) -> String {
     joined(report, "\t", |field| field.replace(['\t', '\n'], " "))
@@ -251,7 +256,7 @@ fn joined(report: &Report, separator: &str, field: fn(&str) -> String) -> String
     cells(report).into_iter().map(line).collect()
 }
 
-/// The cells of the table; the first row has the names of the columns.
+/// Returns the cells of the table; the first row contains the column names.
 fn cells(report: &Report) -> Vec<Vec<String>> {
     const FIGURES: [&str; 23] = [
         "ms",
@@ -279,12 +284,14 @@ fn cells(report: &Report) -> Vec<Vec<String>> {
         "current",
     ];
     let (front, current) = (report.front(), report.current());
+    // One column per axis lets spreadsheets filter by choice.
     let axes = AXES.iter().map(|axis| axis.key);
     let head = ["group", "name"].into_iter().chain(axes).chain(FIGURES);
     let mut cells = vec![head.map(str::to_owned).collect()];
     for row in &report.findings.rows {
         let Measured { settings, ms, ratio, verdict, sampled, hash, .. } =
             &report.findings.points[row.point];
+        // Errors refer to the row's own reference, which the column `against` names.
         let error = report.findings.error_of(row);
         let (whole, inside) = (&error.whole, &error.inside);
         let quartiles = &ratio.quartiles;
@@ -322,7 +329,7 @@ fn cells(report: &Report) -> Vec<Vec<String>> {
     cells
 }
 
-/// A field that may hold commas (RFC 4180).
+/// Quotes a field if it contains commas, quotes or line ends (RFC 4180).
 fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n']) {
         format!("\"{}\"", field.replace('"', "\"\""))

@@ -1,27 +1,27 @@
-//! What the figures of a sweep say, in sentences, by rules.
+//! Summarises the figures of a sweep in sentences, by rules.
 //!
-//! A choice is compared with the default of its axis: its time by the verdict on their ratio
-//! ([`Findings::noise_of`](crate::sweep::Findings::noise_of) says what is noise), its error by
-//! the RMSE over all pixels against the reference of its axis. An error counts as cut or raised if
-//! it changes by a twentieth. Every choice that differs beyond the noise in time, or in error,
-//! falls under one of the rules, so that nothing is passed over in silence.
+//! Each choice is compared with the default of its axis: its time by the verdict on their ratio
+//! ([`Findings::noise_of`](crate::sweep::Findings::noise_of) defines the noise), its error by the
+//! RMSE over all pixels against the reference of the axis. An error counts as cut or raised if it
+//! changes by 5%. The rules cover every choice that differs in time or error beyond the noise, so
+//! none is omitted.
 
 use super::Report;
 use crate::sweep::{Measured, Row, Verdict};
 use marraztu_core::accuracy::{AXES, Axis, AxisKind};
 
-/// Changes of the error by less than this part of it mean nothing.
+/// Changes of the error below this fraction are ignored.
 const MARGIN: f64 = 0.05;
 
-/// The largest number of choices that a list names.
+/// The most choices that a list names.
 const LISTED: usize = 3;
 
-/// A choice that says something.
+/// A choice worth mentioning.
 struct Said<'a> {
     axis: &'static Axis,
     row: &'a Row,
     point: &'a Measured,
-    /// Its error and the default's.
+    /// The error of the choice, and the default's.
     error: f64,
     before: f64,
     kind: Kind,
@@ -29,21 +29,21 @@ struct Said<'a> {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// Slower, and cuts the error.
+    /// Slower, and reduces the error.
     Buys,
-    /// Slower and finer, but nothing is gained.
+    /// Slower and finer, but without a gain.
     NotWorth,
     /// Slower, coarser, and no more exact.
     Wasted,
     /// Faster, and raises the error.
     Saves,
-    /// Faster, or finer and more exact, at no cost.
+    /// Faster without more error, or finer and more exact at no cost.
     Free,
     /// No faster, but less exact.
     Worse,
 }
 
-/// A paragraph on one axis.
+/// Writes a paragraph on one axis.
 pub(super) fn verdict_on(report: &Report, axis: &Axis) -> String {
     if axis.kind == AxisKind::Model {
         return "A model: none of its choices is an error of another.".to_owned();
@@ -61,8 +61,9 @@ pub(super) fn verdict_on(report: &Report, axis: &Axis) -> String {
     format!("{} (At {width}x{height} on {}; noise {noise}.)", capital.join(" "), report.scene)
 }
 
-/// Why choices take longer than more exact ones, for those that do here.
+/// Explains why choices take longer than more exact ones, if this happens here.
 fn reasons(report: &Report, axis: &Axis) -> Vec<String> {
+    // Choices in the order of the table, from coarse to exact.
     let rows = report.findings.rows_of(axis);
     let mut measured: Vec<(usize, [f64; 2])> = rows
         .filter_map(|row| {
@@ -73,6 +74,7 @@ fn reasons(report: &Report, axis: &Axis) -> Vec<String> {
         })
         .collect();
     measured.sort_by_key(|(place, _)| *place);
+    // Slower than a later, more exact choice, beyond the noise of both.
     let is_slower = |i: usize| {
         let mut others = measured[i + 1..].iter();
         others.any(|(_, other)| Verdict::between(measured[i].1, *other) == Verdict::Slower)
@@ -85,7 +87,7 @@ fn reasons(report: &Report, axis: &Axis) -> Vec<String> {
     (0..measured.len()).filter_map(reason).collect()
 }
 
-/// The sentences on a report.
+/// Writes the sentences on a report.
 pub(super) fn verdict(report: &Report) -> Vec<String> {
     let said = said(report);
     let mut sentences = told(&said);
@@ -97,18 +99,18 @@ pub(super) fn verdict(report: &Report) -> Vec<String> {
     if let Some(first) = sentences.first_mut() {
         *first = format!("At {width}x{height} on {}: {first}", report.scene);
     }
-    // The first goes on after a colon.
+    // The first sentence continues after a colon.
     sentences.iter_mut().skip(1).for_each(|sentence| *sentence = capitalized(sentence));
     sentences
 }
 
-/// The noise of some points, in per cent: "1.2%", or "1.2 to 4.5%" if they differ.
+/// Formats the noise of some points in per cent: "1.2%", or "1.2 to 4.5%" if they differ.
 fn noise(report: &Report, points: impl Iterator<Item = usize>) -> String {
     let [least, most] = report.findings.noises(points).map(|it| digits((it * 100.0).max(0.1)));
     if least == most { format!("{most}%") } else { format!("{least} to {most}%") }
 }
 
-/// The sentences on some choices.
+/// Writes the sentences on some choices.
 fn told(said: &[Said<'_>]) -> Vec<String> {
     let of = |kind: Kind| -> Vec<&Said<'_>> { said.iter().filter(|it| it.kind == kind).collect() };
     let mut sentences = Vec::new();
@@ -128,7 +130,7 @@ fn told(said: &[Said<'_>]) -> Vec<String> {
     sentences
 }
 
-/// Every choice that differs from the default of its axis in time or error.
+/// Returns every choice that differs from the default of its axis in time or error.
 fn said(report: &Report) -> Vec<Said<'_>> {
     let mut said = Vec::new();
     for axis in AXES.iter().filter(|axis| axis.kind != AxisKind::Model) {
@@ -150,7 +152,7 @@ fn said(report: &Report) -> Vec<Said<'_>> {
 fn kind(point: &Measured, [error, before]: [f64; 2], is_finer: bool) -> Option<Kind> {
     let cut = error < before * (1.0 - MARGIN);
     let raised = error > before * (1.0 + MARGIN);
-    // One step is below what an eye sees.
+    // A single byte step is invisible.
     let seen = point.change.largest > 1;
     Some(match (point.verdict, cut, raised) {
         (Verdict::Slower, true, _) if seen => Kind::Buys,
@@ -158,7 +160,7 @@ fn kind(point: &Measured, [error, before]: [f64; 2], is_finer: bool) -> Option<K
         (Verdict::Slower, ..) => Kind::Wasted,
         (Verdict::Faster, _, true) => Kind::Saves,
         (Verdict::Faster, ..) => Kind::Free,
-        // A coarser choice that is closer to the reference is so in a few pixels.
+        // If a coarser choice is closer to the reference, then only in a few pixels.
         (Verdict::Alike, true, _) if seen && is_finer => Kind::Free,
         (Verdict::Alike, _, true) => Kind::Worse,
         (Verdict::Alike, ..) => return None,
@@ -174,7 +176,7 @@ impl Said<'_> {
         self.point.ratio.quartiles.median
     }
 
-    /// "cost" or "costs".
+    /// Adds an s to a verb for a singular name: "cost" or "costs".
     fn verb(&self, verb: &str) -> String {
         let name = self.name();
         let several = name.starts_with(|c: char| c.is_ascii_digit()) && !name.starts_with("1 ");
@@ -187,7 +189,8 @@ impl Said<'_> {
     }
 }
 
-/// Finer choices that are worth their time; of each axis the first in a sentence, others beside it.
+/// Writes about finer choices that are worth their time. The first of each axis gets a sentence,
+/// the others follow in brackets.
 fn bought(all: &[&Said<'_>]) -> Vec<String> {
     let mut sentences = Vec::new();
     for axis in AXES {
@@ -200,13 +203,14 @@ fn bought(all: &[&Said<'_>]) -> Vec<String> {
         let more = |it: &&Said<'_>| {
             format!("{}: {}, {}", it.row.name, times(it.ratio()), digits(it.error))
         };
+        // Finer choices of the same axis follow in brackets.
         let others: Vec<String> = own.map(more).collect();
         if !others.is_empty() {
             text += &format!(" ({})", others.join("; "));
         }
         sentences.push(text + ".");
     }
-    // Samples per pixel change the picture most.
+    // Samples per pixel change the picture most, so they come first.
     sentences.sort_by_key(|text| !text.contains("samples"));
     sentences
 }
@@ -244,7 +248,7 @@ fn saved(it: &Said<'_>) -> String {
     format!("{} {saves} {}% and {raises} {}.", it.name(), less(it), it.error_change())
 }
 
-/// The part of the time that is saved, in per cent.
+/// Returns the saved part of the time, in per cent.
 fn less(it: &Said<'_>) -> String {
     digits((1.0 - it.ratio()) * 100.0)
 }
@@ -257,7 +261,7 @@ fn sorted<'a, 'b>(
     all.into_iter()
 }
 
-/// "Slower and no more exact here: this, that and 4 others."
+/// Lists choices: "Slower and no more exact here: this, that and 4 others."
 fn listed(what: &str, all: &[String]) -> Option<String> {
     let (named, others) = all.split_at(all.len().min(LISTED));
     let more = match others.len() {
@@ -268,7 +272,7 @@ fn listed(what: &str, all: &[String]) -> Option<String> {
     (!all.is_empty()).then(|| format!("{what}: {}{more}.", named.join(", ")))
 }
 
-/// "2.1x".
+/// Formats a ratio as "2.1x".
 fn times(ratio: f64) -> String {
     match ratio {
         10.0.. => format!("{ratio:.0}x"),
@@ -277,7 +281,7 @@ fn times(ratio: f64) -> String {
     }
 }
 
-/// A number with two significant digits.
+/// Formats a number with two significant digits.
 fn digits(number: f64) -> String {
     if number == 0.0 {
         return "0".to_owned();

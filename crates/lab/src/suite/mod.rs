@@ -1,8 +1,8 @@
-//! The suite: scenes in which each axis of accuracy matters.
+//! The suite: scenes that make each axis of accuracy matter.
 //!
-//! On an ordinary scene most choices make no difference, because something else is what it costs.
-//! Each scene here is bound by one thing, and each axis is measured on the scene that is bound by
-//! what the axis decides. The scenes are made by generators, so they can be of any detail.
+//! In an ordinary scene, most choices make no difference because other work dominates the time.
+//! Each scene here has one bottleneck, and each axis is measured in a scene with a bottleneck that
+//! the axis affects. The scenes are procedural, so their detail can vary.
 
 mod scenes;
 
@@ -22,16 +22,16 @@ use std::time::Duration;
 /// A scene of the suite.
 #[derive(Debug)]
 pub struct SuiteScene {
-    /// Its word on the command line.
+    /// The name on the command line.
     pub word: &'static str,
-    /// What it shows, as a phrase.
+    /// A description as a phrase.
     pub what: &'static str,
     /// The keys of the axes that are measured on it.
     pub axes: &'static [&'static str],
     make: fn(u32) -> (Scene, View),
 }
 
-/// The scenes; each axis of accuracy is measured on at least one.
+/// The scenes; together they cover every axis of accuracy.
 pub const SUITE: &[SuiteScene] = &[
     SuiteScene {
         word: "first",
@@ -101,25 +101,25 @@ pub const SUITE: &[SuiteScene] = &[
     },
 ];
 
-/// How thoroughly the suite is measured, and in which detail.
+/// The size, thoroughness and detail of a suite run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SuiteDetail {
     /// The size of the pictures.
     pub size: Size,
-    /// How long each choice is measured.
+    /// The thoroughness of the measurements.
     pub thoroughness: Thoroughness,
-    /// The thousandths of the scenes' triangles.
+    /// The detail of the scenes, in thousandths of their full triangle count.
     pub detail: u32,
 }
 
 impl SuiteDetail {
-    /// Less than ten minutes on two cores.
+    /// Takes less than ten minutes on two cores.
     pub const WHOLE: Self = Self {
         size: Size::new(1280, 720),
         thoroughness: Thoroughness { combinations: 0, ..Thoroughness::QUICK },
         detail: 1000,
     };
-    /// A few seconds, to see that it works.
+    /// Takes a few seconds, for a smoke test.
     pub const TINY: Self = Self {
         size: Size::new(64, 36),
         thoroughness: Thoroughness {
@@ -133,35 +133,35 @@ impl SuiteDetail {
 }
 
 impl SuiteScene {
-    /// The scene with this word.
+    /// Finds a scene by name.
     #[must_use]
     pub fn named(word: &str) -> Option<&'static Self> {
         SUITE.iter().find(|scene| scene.word == word)
     }
 
-    /// The scene and its view, with this many thousandths of its triangles.
+    /// Builds the scene and its view; `detail` is in thousandths of the full triangle count.
     #[must_use]
     pub fn open(&self, detail: u32) -> (Scene, View) {
         (self.make)(detail.max(1))
     }
 
-    /// The axes that are measured on it.
+    /// Returns the axes that are measured on this scene.
     #[must_use]
     pub fn measured(&self) -> Vec<&'static Axis> {
         self.axes.iter().filter_map(|key| Axis::named(key)).collect()
     }
 
-    /// The command that measures it again.
+    /// Returns the command that repeats the measurement.
     #[must_use]
     pub fn command(&self) -> String {
         format!("marraztu lab --suite={}", self.word)
     }
 }
 
-/// Measures these scenes of the suite one after the other. `tell` is called after each.
+/// Measures scenes of the suite one after the other. `tell` is called after each.
 ///
 /// # Errors
-/// As [`super::sweep::sweep`].
+/// The same as [`super::sweep::sweep`].
 pub fn run(
     scenes: &[&'static SuiteScene],
     detail: &SuiteDetail,
@@ -171,6 +171,7 @@ pub fn run(
 ) -> Result<Vec<Report>, Unmeasured> {
     let mut reports = Vec::new();
     for (i, suite) in scenes.iter().enumerate() {
+        // Each scene is an equal part of the progress.
         let part = |i: usize| f64::from(u32::try_from(i).unwrap_or(0)) / scenes.len() as f64;
         let watch = watch.clone().with(&watch.progress.part(part(i), part(i + 1)));
         let report = measured(suite, detail, clock, &watch)?;
@@ -191,7 +192,8 @@ fn measured(
     let current = Settings::default();
     let question = Question { current, axes: suite.measured(), thoroughness: detail.thoroughness };
     let mut found = candidates(&scene, &view, &current, &question.axes, 0);
-    // The default comes first. The ancestors' algorithms would take minutes on some scenes.
+    // The default comes first. The ancestors' algorithms are skipped: on some scenes they would
+    // take minutes.
     let mut first = true;
     found.all.retain(|candidate| {
         std::mem::take(&mut first) || matches!(candidate.group, Group::Axis(_))

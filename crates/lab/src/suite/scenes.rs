@@ -1,4 +1,4 @@
-//! The generators of the suite's scenes. Space is right-handed, Y up; cameras look along -Z.
+//! Generates the suite's scenes. Space is right-handed with Y up; cameras look along -Z.
 
 #![expect(
     clippy::cast_possible_truncation,
@@ -20,14 +20,14 @@ use marraztu_core::scene::{
 };
 use marraztu_io::{default_scene, empty_scene, own_model};
 
-/// A mesh while it is made.
+/// A mesh under construction.
 #[derive(Default)]
 struct Maker {
     source: MeshSource,
 }
 
 impl Maker {
-    /// Adds a vertex, with texture coordinates if the mesh has them, and gives its number.
+    /// Adds a vertex, with texture coordinates if the mesh has them, and returns its index.
     fn vertex(&mut self, at: [f64; 3], uv: Option<[f64; 2]>) -> u32 {
         let number = self.source.positions.len() as u32;
         self.source.positions.push(at.map(|x| x as f32));
@@ -60,7 +60,7 @@ impl Maker {
     }
 }
 
-/// A ball of radius 1 with `rings` rings, smooth.
+/// Builds a smooth ball of radius 1 with `rings` rings.
 fn ball(rings: u32) -> Shared<Model> {
     let (rings, segments) = (rings.max(3), 2 * rings.max(3));
     let mut maker = Maker::default();
@@ -75,6 +75,7 @@ fn ball(rings: u32) -> Shared<Model> {
             maker.vertex([s * libm::sin(angle), c, s * libm::cos(angle)], None);
         }
     }
+    // The poles are vertices 0 and 1; the rings follow from top to bottom.
     let at = |ring: u32, segment: u32| 2 + (ring - 1) * segments + segment % segments;
     for segment in 0..segments {
         maker.polygon(&[0, at(1, segment), at(1, segment + 1)]);
@@ -104,7 +105,7 @@ fn object(model: Shared<Model>, material: MaterialChoice, placement: DMat4) -> O
     object
 }
 
-/// A scene of these objects, with ambient light, a sun and a lamp, seen from `eye`.
+/// Builds a scene of these objects, with ambient light, a sun and a bulb, seen from `eye`.
 fn stage(objects: Vec<Object>, eye: DVec3) -> (Scene, View) {
     let (mut scene, _) = empty_scene();
     let cameras = scene.cameras.iter().map(|(id, camera)| {
@@ -130,7 +131,8 @@ fn stage(objects: Vec<Object>, eye: DVec3) -> (Scene, View) {
     (scene, view)
 }
 
-/// One lit triangle over the whole picture, close to a lamp, so that its light changes everywhere.
+/// Builds one lit triangle over the whole picture. A bulb is close to it, so the light varies
+/// everywhere.
 pub(super) fn pixels(_: u32) -> (Scene, View) {
     let mut maker = Maker::default();
     let corners = [[-900.0, -500.0, 40.0], [900.0, -500.0, -60.0], [0.0, 1200.0, 0.0]];
@@ -140,13 +142,14 @@ pub(super) fn pixels(_: u32) -> (Scene, View) {
     stage(vec![placed], DVec3::new(0.0, 0.0, 220.0))
 }
 
-/// A million triangles in a grid of waves.
+/// Builds a million triangles in a wavy grid.
 pub(super) fn vertices(detail: u32) -> (Scene, View) {
     let side = libm::sqrt(500.0 * f64::from(detail)) as u32;
     let mut maker = Maker::default();
     for y in 0..=side {
         for x in 0..=side {
             let [u, v] = [x, y].map(|i| f64::from(i) / f64::from(side) - 0.5);
+            // Waves vary the normals, so lighting differs between triangles.
             let wave = libm::sin(u * 40.0) * libm::cos(v * 30.0);
             maker.vertex([u * 560.0, v * 330.0, wave * 6.0], None);
         }
@@ -161,8 +164,8 @@ pub(super) fn vertices(detail: u32) -> (Scene, View) {
     stage(vec![placed], DVec3::new(0.0, 0.0, 400.0))
 }
 
-/// Balls with exponents from 5 to 500, coarse enough for light at vertices to miss highlights; one
-/// is flattened.
+/// Builds balls with exponents from 5 to 500, coarse enough for vertex lighting to miss highlights;
+/// one is flattened.
 pub(super) fn highlights(_: u32) -> (Scene, View) {
     let model = ball(12);
     let exponents = [5.0, 16.0, 40.0, 76.8, 150.0, 500.0];
@@ -176,7 +179,7 @@ pub(super) fn highlights(_: u32) -> (Scene, View) {
     stage(balls.collect(), DVec3::new(0.0, 0.0, 260.0))
 }
 
-/// A floor with a texture of fine lines, from under the camera to the horizon.
+/// Builds a floor with a texture of fine lines, from below the camera to the horizon.
 pub(super) fn textures(_: u32) -> (Scene, View) {
     let mut maker = Maker::default();
     let (near, far) = (10.0, -1900.0);
@@ -188,6 +191,7 @@ pub(super) fn textures(_: u32) -> (Scene, View) {
     let mut picture = Picture::filled(Size::new(side, side), [225, 220, 205, 255]);
     for (i, pixel) in picture.pixels_mut().iter_mut().enumerate() {
         let (x, y) = (i % side, i / side);
+        // Thin joints between tiles alias strongly without filtering.
         if x % 32 < 3 || y % 32 < 3 {
             *pixel = [60, 50, 70, 255];
         } else if (x / 32 + y / 32) % 2 == 0 {
@@ -202,11 +206,12 @@ pub(super) fn textures(_: u32) -> (Scene, View) {
     stage(vec![floor], DVec3::ZERO)
 }
 
-/// Thin slats before a bright ground, all a little out of the vertical.
+/// Builds a fence of thin slats, all slightly off the vertical.
 pub(super) fn edges(_: u32) -> (Scene, View) {
     let mut maker = Maker::default();
     let mut slat = |from: [f64; 2], to: [f64; 2], width: f64, z: f64| {
         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        // A slat is a quad around its axis, as wide as `width`.
         let length = libm::hypot(dx, dy);
         let side = [-dy / length * width / 2.0, dx / length * width / 2.0];
         let corner = |[x, y]: [f64; 2], sign: f64| [x + sign * side[0], y + sign * side[1], z];
@@ -226,7 +231,7 @@ pub(super) fn edges(_: u32) -> (Scene, View) {
     stage(vec![fence], DVec3::new(0.0, 0.0, 300.0))
 }
 
-/// A ship of the first scene, with its camera beside it, 100,000 units from the origin.
+/// Places a ship of the first scene, with a camera next to it, 100,000 units from the origin.
 pub(super) fn far(_: u32) -> (Scene, View) {
     let away = DVec3::new(1e5, 3e4, -7e4);
     let (first, _) = default_scene();
@@ -238,7 +243,7 @@ pub(super) fn far(_: u32) -> (Scene, View) {
     stage(ship.into_iter().collect(), away + DVec3::new(0.0, 15.0, 120.0))
 }
 
-/// Pairs of plates 0.001 apart, the nearer one smaller, from 2 to 2000 units away.
+/// Builds pairs of plates 0.001 apart, the nearer one smaller, from 2 to 2000 units away.
 pub(super) fn depth(_: u32) -> (Scene, View) {
     let mut maker = Maker::default();
     for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
@@ -248,7 +253,7 @@ pub(super) fn depth(_: u32) -> (Scene, View) {
     let model = maker.model("plate");
     let mut plates = Vec::new();
     for i in 0..12 {
-        // From 2 to 1990 units in equal ratios.
+        // Distances from 2 to 1990 units, in equal ratios.
         let z = 2.0 * libm::pow(995.0, f64::from(i) / 11.0);
         let at = [f64::from(i % 4) - 1.5, 1.0 - f64::from(i / 4)].map(|k| k * 0.2 * z);
         for (size, lift, color) in [(0.09, 0.0, [0.9, 0.3, 0.2]), (0.06, 0.001, [0.2, 0.4, 0.9])] {
@@ -260,8 +265,7 @@ pub(super) fn depth(_: u32) -> (Scene, View) {
     stage(plates, DVec3::ZERO)
 }
 
-/// Balls of glass in eight groups, each of four that are one inside another; groups that stand side
-/// by side cut through each other.
+/// Builds eight groups of four nested glass balls; neighbouring groups intersect.
 pub(super) fn layers(detail: u32) -> (Scene, View) {
     let model = ball((detail / 25).clamp(8, 40));
     let balls = (0..32_u32).map(|i| {
@@ -279,7 +283,7 @@ pub(super) fn layers(detail: u32) -> (Scene, View) {
     stage(balls.collect(), DVec3::new(0.0, 0.0, 280.0))
 }
 
-/// Balls with a map of heights, the farther ones with many texels in a pixel.
+/// Builds balls with bump maps; far balls have many texels per pixel.
 pub(super) fn bumps(_: u32) -> (Scene, View) {
     let model = own_model("dimples").expect("the program has it");
     let balls = (0..9).map(|i| {
@@ -291,7 +295,7 @@ pub(super) fn bumps(_: u32) -> (Scene, View) {
     stage(balls.collect(), DVec3::new(0.0, 0.0, 260.0))
 }
 
-/// Balls of three sizes on a floor, under a sun, a bulb and a spot that cast shadows.
+/// Builds balls of three sizes on a floor, under a sun, a bulb and a spot with shadows.
 pub(super) fn shadows(detail: u32) -> (Scene, View) {
     let model = ball((detail / 25).clamp(8, 40));
     let mut maker = Maker::default();
@@ -310,6 +314,7 @@ pub(super) fn shadows(detail: u32) -> (Scene, View) {
     });
     let (mut scene, view) =
         stage(std::iter::once(floor).chain(balls).collect(), DVec3::new(0.0, 40.0, 230.0));
+    // The stage has a sun and a bulb; a spot adds the third kind of shadow.
     let aim = Aim { position: DVec3::new(150.0, 120.0, 120.0), direction: aimed_down() };
     let owner = SpotOwner::Fixed(Tracked::new(aim));
     let spot = LightKind::Spot { owner, half_aperture: 30.0, exponent: 3.0 };
@@ -323,7 +328,7 @@ pub(super) fn shadows(detail: u32) -> (Scene, View) {
     (scene, view)
 }
 
-/// A direction down and to the left.
+/// Returns a direction down and to the left.
 fn aimed_down() -> DVec3 {
     DVec3::new(-0.62, -0.62, -0.48).normalize_or(DVec3::NEG_Y)
 }

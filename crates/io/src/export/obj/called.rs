@@ -1,8 +1,8 @@
-//! What objects, groups and materials are called in an exported OBJ file.
+//! The names of objects, groups and materials in an exported OBJ file.
 //!
-//! A file's own names come back as they were. Objects of the scene that have the same name, or that
-//! are made from the same file, get numbered names, since readers merge equal ones. A file without
-//! `o` that is exported alone stays without, and so does one without `usemtl`.
+//! Names from a file survive unchanged. Objects of the scene that share a name or a file get
+//! numbered names, since readers merge equal ones. A file without `o` that is exported alone stays
+//! without, as does a file without `usemtl`.
 
 use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write;
@@ -11,10 +11,10 @@ use crate::export::look::{Looks, file_material, tint};
 use crate::export::names::{self, on_one_line};
 use marraztu_core::scene::{MaterialChoice, Object, Surface};
 
-/// The names given so far, and the names of the next face.
+/// The names in use, and the statements in effect.
 #[derive(Debug)]
 pub(super) struct Names {
-    /// Whether the file has one object of the scene, which needs no name of its own.
+    /// Whether the file has only one object of the scene, which then needs no name.
     alone: bool,
     objects: names::Names,
     groups: names::Names,
@@ -22,7 +22,7 @@ pub(super) struct Names {
     of_object: OfObject,
 }
 
-/// What the statements before a face say.
+/// The statements in effect for a face.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Called {
     object: Option<String>,
@@ -33,9 +33,9 @@ struct Called {
 /// The names within one object of the scene.
 #[derive(Debug, Default)]
 struct OfObject {
-    /// Whether the file's own names of objects are kept.
+    /// Whether the object names of the file are kept.
     keeps: bool,
-    /// By the file's own names.
+    /// Exported names, by the names in the file.
     objects: HashMap<Option<String>, Option<String>>,
     groups: HashMap<String, String>,
     parts: HashMap<u32, Called>,
@@ -44,7 +44,7 @@ struct OfObject {
 }
 
 impl Names {
-    /// The names of a file with this number of objects of the scene.
+    /// Creates the names for a file with this number of objects of the scene.
     pub(super) fn new(objects: usize) -> Self {
         Self {
             alone: objects == 1,
@@ -55,8 +55,8 @@ impl Names {
         }
     }
 
-    /// Begins an object of the scene. The name that the user gave it replaces that of the file's
-    /// only object, but not those of several.
+    /// Begins an object of the scene. A name from the user replaces the name of the file's only
+    /// object, but not the names of several.
     pub(super) fn begin(&mut self, object: &Object) {
         let mesh = &object.model.mesh;
         let parts = 0..u32::try_from(mesh.parts().len()).unwrap_or(u32::MAX);
@@ -66,7 +66,7 @@ impl Names {
         self.of_object = OfObject { keeps, ..OfObject::default() };
     }
 
-    /// Names an object of the scene without faces.
+    /// Names an object that has no faces.
     pub(super) fn object_without_faces(&mut self, object: &Object, text: &mut String) {
         if object.model.mesh.polygon_count() == 0 && !self.alone {
             let name = self.objects.take(&on_one_line(&object.name));
@@ -74,7 +74,7 @@ impl Names {
         }
     }
 
-    /// Writes the statements that the faces of a part need after those before.
+    /// Writes the statements that change between the last face and a face of a part.
     pub(super) fn part(
         &mut self,
         object: &Object,
@@ -98,7 +98,7 @@ impl Names {
 
     fn call(&mut self, called: Called, text: &mut String) {
         let Called { object, group, material } = &called;
-        // Only an object ends a group.
+        // In OBJ only a new object ends a group.
         let ends_group = group.is_none() && self.now.group.is_some();
         if let Some(object) = object
             && (ends_group || self.now.object.as_ref() != Some(object))
@@ -121,6 +121,7 @@ impl Names {
 
     fn called(&mut self, object: &Object, part: u32, looks: &mut Looks) -> Called {
         let names = object.model.mesh.part_names(part);
+        // The object's name is taken once and reused by its other parts.
         let own = match self.of_object.objects.get(&names.object) {
             Some(name) => name.clone(),
             None => {
@@ -134,6 +135,7 @@ impl Names {
             let name = || taken.take(&on_one_line(group));
             self.of_object.groups.entry(group.clone()).or_insert_with(name).clone()
         });
+        // Plain faces need no material, unless an earlier `usemtl` is still in effect.
         let asked = names.material.as_deref();
         let material = match asked.filter(|name| !name.is_empty()) {
             None if is_plain(object, part)
@@ -149,7 +151,7 @@ impl Names {
         Called { object: own, group, material }
     }
 
-    /// The name of an object of the file.
+    /// Returns the exported name of an object of the file.
     fn object(&mut self, object: &Object, own: Option<&str>) -> Option<String> {
         let name = match own {
             Some(own) if self.of_object.keeps => own,
@@ -160,7 +162,7 @@ impl Names {
     }
 }
 
-/// Whether a part looks as faces without any material do.
+/// Returns whether a part looks like faces without any material.
 fn is_plain(object: &Object, part: u32) -> bool {
     object.material == MaterialChoice::File
         && file_material(object, part).is_none()

@@ -6,7 +6,7 @@ use crate::export::SIGNATURE;
 use crate::export::look::{Look, Looks, Pictures};
 use marraztu_core::scene::{MapKind, Texture, Wrap};
 
-/// The files: textures, and the MTL file. Their names begin with `stem`.
+/// Writes the textures and the MTL file. Their names begin with `stem`.
 pub(super) fn written(stem: &str, looks: &Looks) -> Result<Vec<(String, Vec<u8>)>, String> {
     let mut mtl = String::from(SIGNATURE);
     let mut pictures = Pictures::default();
@@ -26,7 +26,7 @@ pub(super) fn written(stem: &str, looks: &Looks) -> Result<Vec<(String, Vec<u8>)
                 }
                 kind => map(kind.statement(), &of.texture),
             }
-            // Blender and others read a map of normals only from here.
+            // Blender and others read normal maps only from this statement.
             if *kind == MapKind::Normal && look.map(MapKind::Bump).is_none() {
                 map("map_Bump -bm 1", &of.texture);
             }
@@ -40,7 +40,7 @@ pub(super) fn written(stem: &str, looks: &Looks) -> Result<Vec<(String, Vec<u8>)
     Ok(files)
 }
 
-/// The name of the file of a picture, by its number from 0.
+/// Returns the file name of a picture by its index.
 fn texture_name(stem: &str, number: usize) -> String {
     format!("{stem}-texture-{}.png", number + 1)
 }
@@ -60,6 +60,7 @@ fn coefficients(mtl: &mut String, look: &Look) {
         let [r, g, b] = material.emission;
         let _ = writeln!(mtl, "Ke {r} {g} {b}");
     }
+    // Statements that this program does not draw pass through unchanged.
     for (word, numbers) in look.undrawn.iter().filter(|(word, _)| **word != "illum") {
         mtl.push_str(word);
         for number in numbers {
@@ -71,7 +72,7 @@ fn coefficients(mtl: &mut String, look: &Look) {
     let _ = writeln!(mtl, "illum {illumination}");
 }
 
-/// A statement of a map: how its picture is laid, and its file.
+/// Writes a map statement with the layout and the file of its picture.
 fn map_to(mtl: &mut String, statement: &str, texture: &Texture, file: &str) {
     mtl.push_str(statement);
     if texture.wrap == Wrap::Clamp {
