@@ -22,6 +22,9 @@ while waiting:
             found.add(dependency["pkg"])
             waiting.append(dependency["pkg"])
 
+# Our own crates have no registry.
+found = {package for package in found if packages[package]["source"]}
+
 lines = []
 for package in (packages[identity] for identity in found):
     licence = package["license"] or f"see {package['license_file']}"
