@@ -3,6 +3,7 @@
 
 use fearless_simd::Level;
 use glam::{DMat4, DVec3, DVec4};
+use marraztu_render::simd::levels;
 
 use super::hostile::Hostile;
 use super::{Proof, Tally};
@@ -33,7 +34,7 @@ const SCENES: u64 = 100;
 
 fn check(batch: u64) -> Result<Tally, String> {
     let mut tally = Tally::default();
-    let [mut plain, mut best] = [Level::baseline(), Level::new()].map(Renderer::new);
+    let [mut plain, mut best] = [levels()[0], Level::new()].map(Renderer::new);
     for i in 0..SCENES {
         let mut hostile = Hostile::new(batch * SCENES + i);
         let (scene, view) = hostile.scene(&mut tally);

@@ -39,15 +39,21 @@ pub struct TestPicture {
 }
 
 impl TestPicture {
-    /// Draws the picture with these instructions and this number of threads, and hashes it.
+    /// Draws the picture with these instructions and this number of threads.
     ///
     /// # Panics
     /// If the system cannot start that many threads.
     #[must_use]
-    pub fn sum(&self, level: Level, threads: usize) -> u64 {
+    pub fn draw(&self, level: Level, threads: usize) -> Picture {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.expect("the system gives threads");
-        pool.install(|| sum(Renderer::new(level).render(&self.plan)))
+        pool.install(|| Renderer::new(level).render(&self.plan).clone())
+    }
+
+    /// Returns the name of the picture as the name of a file without its ending.
+    #[must_use]
+    pub fn file_stem(&self) -> String {
+        self.name.replace(|letter: char| !letter.is_ascii_alphanumeric(), "-")
     }
 }
 

@@ -170,7 +170,7 @@ mod tests {
             }
             let picture = Picture { side, depths: &depths, slopes: &slopes };
             let limit = Limit { reach: 1.51, steepest: 0.1, is_perspective: round % 2 == 0 };
-            for level in [Level::baseline(), Level::new()] {
+            for level in crate::simd::levels() {
                 for tile in 0..4 {
                     let mut texels = [0.0; PIXELS];
                     Bordered::default().biased(level, picture, (tile, &limit), &mut texels);

@@ -80,7 +80,7 @@ fn traced(shadows: &Shadows, points: &[Point]) -> u64 {
     }
     let mask = u64::MAX >> (64 - points.len());
     let light = tracer.light(0).expect("it casts shadows");
-    let all = tracer.shaded(Level::baseline(), light, &mut scratch, mask);
+    let all = tracer.shaded(crate::simd::levels()[0], light, &mut scratch, mask);
     assert_eq!(all, tracer.shaded(Level::new(), light, &mut scratch, mask), "on another level");
     all
 }
