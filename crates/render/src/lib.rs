@@ -84,6 +84,7 @@ mod work_stealing;
 pub use damage::{Change, Damage, DamageCause};
 pub use exposure::fitted_exposure;
 pub use frame::FramePlan;
+pub use frame::color_path::PathPixels;
 pub use plan::{Effect, EffectState, EffectUse, explain_frame, plan_everything, plan_frame};
 pub use renderer::{Cancelled, Hit, Renderer};
 pub use shading::pixel_color::{LightRay, Part, PixelColor, SurfacePoint, Term};

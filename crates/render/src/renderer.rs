@@ -15,12 +15,13 @@ use super::shading::context::ShadingContext;
 use super::shading::corner_light::VertexLight;
 use super::shading::face_colors::FaceColors;
 use super::shading::light::Lit;
-use super::shading::painter::{Band, Filled, Painter, TileSums, is_quick};
-use super::shading::shown_faces::have_colors;
+use super::shading::painter::{Band, Filled, Painter, TileSums};
 use crate::cancellation::Cancellation;
 use crate::damage::kept_shadows::KeptShadows;
 use crate::damage::{Damage, DamageCause};
+use crate::frame::color_path::{ColorPaths, PathPixels};
 use crate::frame::{FramePlan, Rules};
+use crate::plan::color_path::choose;
 use crate::raster::geometry::ScreenGeometry;
 use crate::raster::hit_colors::CornerLight;
 use crate::screen::sample_positions::{SamplePositions, passes, shifts};
@@ -56,6 +57,7 @@ pub struct Renderer {
     built: bool,
     timings: Timings,
     rays: RayCount,
+    path_pixels: PathPixels,
     maps: ShadowMaps,
     shadows: KeptShadows,
 }
@@ -94,6 +96,7 @@ impl Renderer {
             built: false,
             timings: Timings::default(),
             rays: RayCount::default(),
+            path_pixels: PathPixels::default(),
             maps: ShadowMaps::default(),
             shadows: KeptShadows::default(),
         }
@@ -191,6 +194,7 @@ impl Renderer {
     fn draw_damage(&mut self, plan: &FramePlan, damage: &Damage, watch: &Cancellation<'_>) {
         self.timings = Timings::default();
         self.rays = RayCount::default();
+        self.path_pixels = PathPixels::default();
         self.shadows.update(plan);
         let passes = passes(plan.samples);
         let pictures = if plan.lit_by_sample { shifts(plan.samples).len() } else { passes.len() };
@@ -290,6 +294,13 @@ impl Renderer {
         self.rays
     }
 
+    /// Returns the number of pixels that each way of colouring has coloured in the last frame: those
+    /// drawn again, in each pass over several samples.
+    #[must_use]
+    pub const fn path_pixels(&self) -> PathPixels {
+        self.path_pixels
+    }
+
     /// The number of triangles of the last picture.
     #[must_use]
     pub fn triangles_drawn(&self) -> usize {
@@ -314,8 +325,9 @@ impl Renderer {
     ) {
         let mut laps = Laps::start();
         self.maps.update(self.level, plan, watch);
-        let ShadingCache { terms, lit, faces, painters } = T::cache(&mut self.caches);
-        let looks_up = have_colors(plan) && !self.frame.sample_positions().are_many();
+        let ShadingCache { terms, lit, faces, paths, painters } = T::cache(&mut self.caches);
+        choose(plan, paths);
+        let looks_up = paths.looks_up_faces && !self.frame.sample_positions().are_many();
         if looks_up {
             faces.begin(self.frame.triangle_numbers());
         }
@@ -323,8 +335,7 @@ impl Renderer {
         let tracer = Tracer::new(plan, &self.maps).map(|it| it.with_known(self.shadows.known()));
         let tracer = tracer.as_ref();
         let faces = looks_up.then_some(&*faces);
-        let quick = is_quick(plan);
-        let context = ShadingContext { level, plan, frame, lit, terms, faces, quick, tracer };
+        let context = ShadingContext { level, plan, frame, lit, terms, faces, paths, tracer };
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
         let bands: Vec<Mutex<Band<'_>>> = self
@@ -358,7 +369,9 @@ impl Renderer {
             }
         });
         for painter in painters {
-            self.rays += painter.into_inner().unwrap_or_else(PoisonError::into_inner).ray_count();
+            let painter = painter.into_inner().unwrap_or_else(PoisonError::into_inner);
+            self.rays += painter.ray_count();
+            self.path_pixels += painter.path_pixels();
         }
         self.timings.tiles += laps.lap();
     }
@@ -378,6 +391,7 @@ struct ShadingCache<T> {
     terms: LightTerms<T>,
     lit: Lit<T>,
     faces: FaceColors,
+    paths: ColorPaths,
     /// One for each thread.
     painters: Vec<Painter<T>>,
 }

@@ -1,5 +1,6 @@
 //! What a frame draws, as plain data. Nothing here makes a decision or touches a pixel.
 
+pub(crate) mod color_path;
 pub(crate) mod draw;
 pub(crate) mod extras;
 pub(crate) mod shadows;

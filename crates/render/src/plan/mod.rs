@@ -4,6 +4,7 @@
 //! What the scene does not need is left out of it; [`explain_frame`] says what, and why. Light that
 //! only some tiles need is culled tile by tile, when their depths are known (`TilePlan`).
 
+pub(crate) mod color_path;
 mod cover;
 pub(crate) mod features;
 mod ground;
@@ -50,7 +51,17 @@ pub fn plan_everything(shot: &Shot) -> FramePlan {
 #[must_use]
 pub fn explain_frame(shot: &Shot) -> (FramePlan, Vec<EffectUse>) {
     let Planning { plan, notes, .. } = planned(Rules::Applied, Notes::wanted, shot);
-    (plan, notes.into_uses())
+    let mut uses = notes.into_uses();
+    for one in uses.iter_mut().filter(|one| one.effect == Effect::Surfaces && one.state.is_on()) {
+        let item = one.on.as_ref().map(|thing| thing.item);
+        let Some(draw) = plan.draws.iter().find(|draw| Some(draw.item) == item) else { continue };
+        // Parts may have different paths; the first part speaks for all.
+        if let Some(pipeline) = draw.part_pipelines.iter().flatten().next() {
+            let path = color_path::color_path(&plan, draw, *pipeline);
+            one.state = EffectState::On(color_path::in_words(path).into());
+        }
+    }
+    (plan, uses)
 }
 
 /// Plans in the chosen arithmetic, or in f64 if the frame's numbers do not fit f32.

@@ -9,6 +9,8 @@ use std::ops::ControlFlow;
 use super::Renderer;
 use crate::cancellation::Cancellation;
 use crate::frame::FramePlan;
+use crate::frame::color_path::ColorPaths;
+use crate::plan::color_path::choose;
 use crate::plan::uses::EffectUse;
 use crate::raster::visibility_buffer::Visible;
 use crate::raster::{depth_format, entries, visibility_buffer};
@@ -101,9 +103,10 @@ impl Renderer {
         let (level, frame) = (self.level, &self.frame);
         let tracer = Tracer::new(plan, &self.maps);
         let tracer = tracer.as_ref();
-        let (lit, terms) = (&lit, &terms);
-        let context =
-            ShadingContext { level, plan, frame, lit, terms, faces: None, quick: true, tracer };
+        let mut paths = ColorPaths::default();
+        choose(plan, &mut paths);
+        let (lit, terms, paths) = (&lit, &terms, &paths);
+        let context = ShadingContext { level, plan, frame, lit, terms, faces: None, paths, tracer };
         let [x, y] = at;
         let [columns, _] = tiles_of(plan.size);
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");

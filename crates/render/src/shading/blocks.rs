@@ -8,13 +8,13 @@ use super::full_blocks::{BlockLight, Blocks, Canvas, Corners, ROW};
 use super::groups::{Group, group_of};
 use super::interpolated::ShadingNumber;
 use super::map_texels::{TexelSource, TexturePlacement};
-use super::shown_faces::is_uniform;
 use super::surface::{Out, Shader};
 use super::texels::PlacedTexture;
 use super::triangle_attributes::TriangleAttributes;
-use crate::frame::draw::{Back, Pipeline};
+use crate::frame::color_path::FullPath;
+use crate::frame::draw::Pipeline;
+use crate::screen::tiles::BLOCK_PIXELS;
 use crate::screen::weights::HomogeneousWeights;
-use marraztu_core::accuracy::{Interpolation, LightAt};
 
 /// How the corners of a triangle are weighted in this frame.
 fn by<'a, T>(
@@ -37,11 +37,22 @@ impl<T: ShadingNumber> Shader<T> {
         let group = group_of(context, number);
         let [x, y] = blocks.corner;
         self.fragments.list_full_block(number, [x, y]);
-        if self.fill_blocks(context, &group, blocks, canvas)
-            || self.mix_blocks(context, &group, blocks, canvas)
-            || self.light_blocks(context, &group, blocks, canvas)
-        {
-            return;
+        // A triangle that is clipped, wide or without area may need lists all the same.
+        let pixels = u64::from(blocks.which.count_ones()) * BLOCK_PIXELS as u64;
+        match group.path.full {
+            FullPath::Fill => {
+                self.path_pixels.filled += pixels;
+                return self.fill_blocks(context, &group, blocks, canvas);
+            }
+            FullPath::Corners if self.mix_blocks(context, &group, blocks, canvas) => {
+                self.path_pixels.corners += pixels;
+                return;
+            }
+            FullPath::Light if self.light_blocks(context, &group, blocks, canvas) => {
+                self.path_pixels.lit += pixels;
+                return;
+            }
+            FullPath::Corners | FullPath::Light | FullPath::List => {}
         }
         blocks.each(|[column, row]| {
             self.fragments.list_full_block(number, [x + column, y + row]);
@@ -61,31 +72,25 @@ impl<T: ShadingNumber> Shader<T> {
         is_cut.then(|| HomogeneousWeights::new(context.plan, group.draw, numbers[0], [0; 2]))
     }
 
-    /// Fills fully covered blocks, if all of their pixels have one colour. Returns whether that was
-    /// so.
+    /// Fills fully covered blocks with the colour of their triangle.
     fn fill_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
         group: &Group<'_>,
         blocks: Blocks,
         canvas: &mut Canvas<'_>,
-    ) -> bool {
-        let plan = context.plan;
-        let is_uniform = is_uniform(plan, &plan.pipelines[group.pipeline as usize]);
-        if is_uniform {
-            let color = self.first_color(context, group);
-            blocks.each(|[column, row]| {
-                let at = canvas.offset_of([column, row]);
-                for row in canvas.pixels[at..].chunks_mut(canvas.stride).take(ROW) {
-                    row[..ROW].fill(color);
-                }
-            });
-        }
-        is_uniform
+    ) {
+        let color = self.first_color(context, group);
+        blocks.each(|[column, row]| {
+            let at = canvas.offset_of([column, row]);
+            for row in canvas.pixels[at..].chunks_mut(canvas.stride).take(ROW) {
+                row[..ROW].fill(color);
+            }
+        });
     }
 
-    /// Colours fully covered blocks in one pass, if only the colours of the corners have to be
-    /// interpolated. Returns whether that was so.
+    /// Colours fully covered blocks in one pass, by interpolating the colours of the corners. Returns
+    /// whether that can be done for this triangle.
     fn mix_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -97,18 +102,7 @@ impl<T: ShadingNumber> Shader<T> {
         let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
             return false;
         };
-        let mixed = shaded.light.is_some()
-            && plan.light_at == LightAt::Vertex
-            && shaded.extras.is_empty()
-            && !plan.variants.are_linear();
-        let in_spans = plan.variants.interpolation == Interpolation::EverySixteen;
-        if !mixed || group.draw.back == Back::Red || in_spans {
-            return false;
-        }
         let tables = lit.tables(group.draw_index, group.pipeline);
-        if !tables[0].is_colored() {
-            return false;
-        }
         if self.take(context, group, true) {
             self.carry_diffuse(context, group, shaded, tables);
             self.attributes.spread(level);
@@ -117,10 +111,8 @@ impl<T: ShadingNumber> Shader<T> {
         T::mix_blocks(level, &self.attributes, blocks, by(context, cut.as_ref()), canvas)
     }
 
-    /// Colours fully covered blocks, a block at a time without a list of fragments, if they are lit
-    /// per pixel or not at all, with or without a texture and even light of their own, and nothing
-    /// else is done to them.
-    /// Returns whether that was so.
+    /// Colours fully covered blocks, a block at a time without a fragment list. Returns whether that
+    /// can be done for this triangle.
     fn light_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -133,14 +125,7 @@ impl<T: ShadingNumber> Shader<T> {
             return false;
         };
         let is_lit = shaded.light.is_some();
-        let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
         let Some(glow) = shaded.extras.even_glow() else { return false };
-        let otherwise = plan.variants.interpolation == Interpolation::EverySixteen
-            || (plan.variants.are_linear() && shaded.texture.is_some())
-            || plan.shadows.any_of(shaded.light.as_deref().unwrap_or_default());
-        if (is_lit && !pixels) || otherwise || group.draw.back == Back::Red {
-            return false;
-        }
         let texture = shaded.texture.as_deref();
         let source = shaded.texture.as_ref().map(|it| TexelSource::of_colors(context, it));
         let sampler = source.and_then(|source| source.sampler());

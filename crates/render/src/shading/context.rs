@@ -6,6 +6,7 @@ use super::face_colors::FaceColors;
 use super::light::Lit;
 use super::light_terms::LightTerms;
 use crate::frame::FramePlan;
+use crate::frame::color_path::ColorPaths;
 use crate::raster::geometry::ScreenGeometry;
 use crate::shadow::tracer::Tracer;
 
@@ -19,8 +20,8 @@ pub(crate) struct ShadingContext<'a, T> {
     pub(crate) terms: &'a LightTerms<T>,
     /// The colours of triangles, if they are looked up.
     pub(crate) faces: Option<&'a FaceColors>,
-    /// Whether little is computed for each pixel.
-    pub(crate) quick: bool,
+    /// How pixels are coloured.
+    pub(crate) paths: &'a ColorPaths,
     /// What casts shadows, if any light does.
     pub(crate) tracer: Option<&'a Tracer<'a>>,
 }

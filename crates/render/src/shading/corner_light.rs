@@ -12,16 +12,15 @@ use crate::accel::{DrawOrder, Points};
 use crate::frame::FramePlan;
 use crate::frame::draw::{Back, Draw, Pipeline};
 use crate::lights::Batch;
+use crate::plan::color_path::{colors_early, shows_corner_light};
 use crate::raster::hit_colors::{
     Conversion, CornerColors, CornerLight, Corners, LookUp, Triangles,
 };
 use crate::raster::hits::PACK;
 use crate::raster::starts::DrawCorners;
-use crate::screen::clip::{Screen, ScreenVertex};
+use crate::screen::clip::ScreenVertex;
 use crate::shadow::rays::RayScratch;
 use crate::simd::{Lanes as _, Sixteen};
-use marraztu_core::accuracy::{Arithmetic, Coverage, Interpolation, LightAt};
-use marraztu_core::base::image::Size;
 use marraztu_core::scene::Normals;
 
 /// The light at the vertices of a frame. See [`CornerLight`].
@@ -41,14 +40,7 @@ impl<'a> VertexLight<'a> {
         lit: &'a Lit<f32>,
         terms: &'a LightTerms<f32>,
     ) -> Option<Self> {
-        let variants = &plan.variants;
-        let is_usual = plan.light_at == LightAt::Vertex
-            && plan.arithmetic == Arithmetic::F32
-            && variants.coverage == Coverage::Exact
-            && variants.interpolation != Interpolation::EverySixteen
-            && !plan.shadows.are_cast();
-        let pays = is_usual && few_are_hidden(plan);
-        pays.then_some(Self { level, plan, lit, terms })
+        colors_early(plan).then_some(Self { level, plan, lit, terms })
     }
 }
 
@@ -95,10 +87,10 @@ impl<'a> LitDraw<'a> {
         let draw = &plan.draws[index as usize];
         let pipeline = draw.uniform.filter(|_| draw.back != Back::Red)?;
         let Pipeline::Shaded(shaded) = &plan.pipelines[pipeline as usize] else { return None };
-        let stages = shaded.light.as_deref().filter(|_| shaded.extras.is_empty())?;
+        let stages = shaded.light.as_deref().filter(|_| shows_corner_light(shaded))?;
         let tables = lit.tables(index, pipeline);
         let order = draw.model.mesh.draw_order();
-        tables[0].is_colored().then(|| Self {
+        Some(Self {
             draw,
             order,
             points: order.points(draw.normal_source),
@@ -185,38 +177,4 @@ fn put<S: Simd>(simd: S, colors: &[[[f32; 4]; PACK]; 3], to: &mut [[[f32; PACK];
         (b[i] - a[i]).store_slice(&mut to[1][i]);
         (c[i] - a[i]).store_slice(&mut to[2][i]);
     }
-}
-
-/// The pixels for each triangle of a model, in the box around it on the screen, from which on it
-/// pays to colour hidden pixels, too. A knot whose surfaces hide each other loses a third at 0.5
-/// and a sixth at 0.9; a sphere gains at both.
-const ENOUGH_PIXELS: f64 = 2.0;
-
-/// Whether few pixels are coloured in vain.
-fn few_are_hidden(plan: &FramePlan) -> bool {
-    let (mut pixels, mut triangles) = (0.0, 0.0);
-    for draw in &plan.draws {
-        pixels += box_on_screen(draw, plan.size);
-        triangles += draw.model.mesh.triangle_count() as f64;
-    }
-    pixels / triangles >= ENOUGH_PIXELS
-}
-
-/// The pixels of the box around a draw on the screen, also those outside of the picture; infinite
-/// if some of it is beside or behind the observer.
-fn box_on_screen(draw: &Draw, size: Size) -> f64 {
-    let Some(bounds) = draw.model.mesh.bounds() else { return 0.0 };
-    let screen = Screen::new(draw.clip_from_object, size);
-    let mut low = [f64::INFINITY; 2];
-    let mut high = [f64::NEG_INFINITY; 2];
-    for corner in bounds.corners() {
-        let clip = screen.clip(corner.to_array());
-        if clip[3] <= 0.0 {
-            return f64::INFINITY;
-        }
-        for (axis, at) in screen.pixels(clip).into_iter().enumerate() {
-            (low[axis], high[axis]) = (low[axis].min(at), high[axis].max(at));
-        }
-    }
-    (high[0] - low[0]) * (high[1] - low[1])
 }

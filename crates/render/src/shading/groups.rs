@@ -2,6 +2,7 @@
 
 use super::context::ShadingContext;
 use super::fragments::Fragments;
+use crate::frame::color_path::ColorPath;
 use crate::frame::draw::Draw;
 
 /// Fragments that are coloured together.
@@ -14,6 +15,7 @@ pub(crate) struct Group<'a> {
     /// The number after that of its last.
     pub(crate) end: u32,
     pub(crate) pipeline: u32,
+    pub(crate) path: ColorPath,
 }
 
 /// The group that a triangle belongs to.
@@ -21,7 +23,8 @@ pub(crate) fn group_of<'a, T>(context: &ShadingContext<'a, T>, number: u32) -> G
     let (draw_index, start) = context.frame.draw_of(number);
     let draw = &context.plan.draws[draw_index as usize];
     let pipeline = draw.pipeline_of(number - start.number);
-    Group { draw, draw_index, base: start.number, end: start.end, pipeline }
+    let path = context.paths.of(draw_index, pipeline);
+    Group { draw, draw_index, base: start.number, end: start.end, pipeline, path }
 }
 
 /// The group of all fragments of a list, if they belong to one.

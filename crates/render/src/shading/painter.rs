@@ -22,7 +22,7 @@ use super::resolve::Samples;
 use super::surface::{Out, Shader};
 use super::tiny_blocks::Tiny;
 use crate::frame::FramePlan;
-use crate::frame::draw::Pipeline;
+use crate::frame::color_path::PathPixels;
 use crate::raster::tile::Visibility;
 use crate::screen::coverage::PixelBox;
 use crate::screen::sample_positions::{ALL, FOUR};
@@ -118,15 +118,6 @@ const fn corner_in_tile(block: usize) -> [usize; 2] {
     [block % BLOCKS * ROW, block / BLOCKS * ROW]
 }
 
-/// Whether little is computed for a pixel: light and textures are not looked up for each.
-pub(crate) fn is_quick(plan: &FramePlan) -> bool {
-    let is_plain = |pipeline: &Pipeline| match pipeline {
-        Pipeline::Flat(_) => true,
-        Pipeline::Shaded(shaded) => shaded.texture.is_none() && !shaded.extras.reads_texels(),
-    };
-    matches!(plan.light_at, LightAt::Face | LightAt::Vertex) && plan.pipelines.iter().all(is_plain)
-}
-
 /// Draws one tile after another. It is aligned, so that no two painters share a cache line.
 #[derive(Debug)]
 #[repr(align(128))]
@@ -162,6 +153,11 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         self.shader.ray_count()
     }
 
+    /// The pixels of each path since the frame began.
+    pub(crate) const fn path_pixels(&self) -> PathPixels {
+        self.shader.path_pixels()
+    }
+
     /// Paints a tile of the picture into its band.
     pub(crate) fn paint(
         &mut self,
@@ -180,7 +176,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         let full = self.visibility.full_blocks().count_ones() as usize;
         let is_done = plan.light_at == LightAt::Vertex || full >= BLOCK_PIXELS / 4;
         if whole
-            && context.quick
+            && context.paths.quick
             && is_done
             && let Ok(mut band) = band.try_lock()
         {
@@ -258,6 +254,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
                 continue;
             } else if let Some((colors, are_known)) = self.visibility.colors(block) {
                 canvas.put(at, colors);
+                self.shader.path_pixels.early += BLOCK_PIXELS as u64;
                 if !are_known {
                     let (others, corner) =
                         (self.visibility.uncolored(block), self.visibility.corner(block));
@@ -273,6 +270,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
                     let faces = context.faces;
                     if faces.is_some_and(|all| all.of_block(runs, background, &mut colors)) {
                         canvas.put(at, &colors[..BLOCK_PIXELS]);
+                        self.shader.path_pixels.faces += BLOCK_PIXELS as u64;
                         visibility.iter().any(|word| *word != 0)
                     } else {
                         self.shader.block_later(context, visibility, corner, (canvas, at), fill)

@@ -11,38 +11,11 @@ use super::groups::{Group, group_of};
 use super::interpolated::ShadingNumber;
 use super::runs::Runs;
 use super::surface::Shader;
-use crate::frame::FramePlan;
+use crate::frame::color_path::FullPath;
 use crate::frame::draw::Pipeline;
 use crate::raster::tile::Visibility;
 use crate::screen::tiles::{BLOCK_PIXELS, PIXELS};
 use crate::simd::gather::SLOTS;
-use marraztu_core::accuracy::{LightAt, Rounding};
-
-/// Whether all pixels of a triangle have one colour.
-pub(crate) fn is_uniform(plan: &FramePlan, pipeline: &Pipeline) -> bool {
-    match pipeline {
-        Pipeline::Flat(_) => true,
-        Pipeline::Shaded(shaded) => {
-            shaded.texture.is_none()
-                && !shaded.vertex_colors
-                && !shaded.extras.reads_texels()
-                && plan.variants.rounding != Rounding::Dithered
-                && (shaded.light.is_none() || plan.light_at == LightAt::Face)
-        }
-    }
-}
-
-/// Whether looking up the colours of triangles pays in a frame: if those of most pixels are
-/// uniform.
-pub(crate) fn have_colors(plan: &FramePlan) -> bool {
-    let mut pipelines = plan.pipelines.iter();
-    match plan.light_at {
-        LightAt::Face => pipelines.any(|pipeline| is_uniform(plan, pipeline)),
-        LightAt::Vertex | LightAt::Pixel | LightAt::Sample => {
-            pipelines.all(|pipeline| is_uniform(plan, pipeline))
-        }
-    }
-}
 
 impl<T: ShadingNumber> Shader<T> {
     /// Lights the triangles that show in blocks which none of them covers fully, with one sample
@@ -66,11 +39,10 @@ impl<T: ShadingNumber> Shader<T> {
             let count = left.iter().take(SLOTS).take_while(|number| is_alike(number)).count();
             let (own, others) = left.split_at(count);
             left = others;
-            let pipeline = &context.plan.pipelines[group.pipeline as usize];
-            if !is_uniform(context.plan, pipeline) {
+            if group.path.full != FullPath::Fill {
                 continue;
             }
-            if is_lit(pipeline) {
+            if is_lit(&context.plan.pipelines[group.pipeline as usize]) {
                 prefetch_facets(&group, &left[..left.len().min(SLOTS)]);
             }
             self.fragments.list_faces(own);

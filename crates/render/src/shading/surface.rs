@@ -27,6 +27,7 @@ use super::tiny::{CornerRows, TinyTriangles};
 use super::triangle_attributes::{TriangleAttributes, asks_ahead};
 use crate::accel::Accelerated as _;
 use crate::frame::FramePlan;
+use crate::frame::color_path::PathPixels;
 use crate::frame::draw::{Back, Pipeline, Shaded, Stage};
 use crate::lights::{Batch, Rows};
 use crate::plan::tile::TilePlan;
@@ -49,6 +50,8 @@ pub(crate) struct Shader<T> {
     pub(crate) batch: Batch<T>,
     /// For rays of shadows.
     pub(super) rays: RayScratch,
+    /// The pixels of each path since the frame began.
+    pub(super) path_pixels: PathPixels,
     /// The positions of the triangles on their texture.
     pub(super) placed: TexturePlacement,
     pub(crate) texels: Rows<T>,
@@ -117,6 +120,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             barycentrics: Barycentrics::default(),
             batch: Batch::default(),
             rays: RayScratch::default(),
+            path_pixels: PathPixels::default(),
             placed: TexturePlacement::default(),
             texels: [[T::default(); BATCH]; 3],
             vertex_colors: [[[T::default(); SLOTS]; 3]; 3],
@@ -140,6 +144,12 @@ impl<T: ShadingNumber> Shader<T> {
         self.attributes.forget();
         self.look = None;
         self.rays.count = RayCount::default();
+        self.path_pixels = PathPixels::default();
+    }
+
+    /// The pixels of each path since the frame began.
+    pub(crate) const fn path_pixels(&self) -> PathPixels {
+        self.path_pixels
     }
 
     /// The rays of shadows since the frame began.
@@ -196,6 +206,11 @@ impl<T: ShadingNumber> Shader<T> {
         };
         self.colors.linear = context.plan.variants.are_linear();
         self.group(context, group);
+        let pixels = self.fragments.len as u64;
+        match out {
+            Out::Waiting(_) => self.path_pixels.joined += pixels,
+            _ => self.path_pixels.alone += pixels,
+        }
         match out {
             Out::Tile(canvas, at) => self.copy(canvas, *at),
             Out::Waiting(canvas) => self.copy_waiting(canvas),

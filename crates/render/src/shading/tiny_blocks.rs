@@ -14,37 +14,16 @@ use super::light::Lighting;
 use super::runs::Runs;
 use super::surface::{Out, Shader, Waiting};
 use super::tiny::{self, Weighing};
+use crate::frame::FramePlan;
+use crate::frame::color_path::ListPath;
 use crate::frame::draw::{Back, Pipeline, Shaded};
-use crate::frame::{Eye, FramePlan};
 use crate::raster::entries::word;
 use crate::screen::tiles::BLOCK_PIXELS;
-use marraztu_core::accuracy::{Coverage, Interpolation, LightAt};
+use marraztu_core::accuracy::LightAt;
 use marraztu_core::scene::Normals;
 
 /// The distinct triangles of a block, about, from which on they are drawn as tiny ones.
 const MANY: u32 = 32;
-
-/// Whether triangles of a group may be drawn as tiny ones: their light is looked up for pixels, or
-/// is the colour of vertices, and nothing else is computed from slots.
-fn may_be_tiny(context: &ShadingContext<'_, f32>, group: &Group<'_>) -> bool {
-    let plan = context.plan;
-    let Some(shaded) = lit(plan, group) else { return false };
-    let light = match plan.light_at {
-        LightAt::Pixel => true,
-        LightAt::Vertex => !plan.variants.are_linear(),
-        LightAt::Face | LightAt::Sample => false,
-    };
-    light
-        && plan.eye == Eye::Point
-        && plan.variants.coverage == Coverage::Exact
-        && plan.variants.interpolation != Interpolation::EverySixteen
-        && shaded.texture.is_none()
-        && shaded.opacity.is_none()
-        && !shaded.vertex_colors
-        && shaded.extras.is_empty()
-        && group.draw.back != Back::Red
-        && context.tracer_of(group.draw_index).is_none()
-}
 
 /// How the surface of a group is shaded, if it is lit.
 fn lit<'a>(plan: &'a FramePlan, group: &Group<'_>) -> Option<&'a Shaded> {
@@ -96,7 +75,7 @@ impl Shader<f32> {
         }
         if !self.fragments.have_room_for_tiny(runs) || self.waiting.is_empty() {
             self.finish_waiting(context, canvas);
-            if !may_be_tiny(context, &group_of(context, runs.first_triangle())) {
+            if group_of(context, runs.first_triangle()).path.list != ListPath::Tiny {
                 return false;
             }
             self.fragments.begin_tiny();
@@ -132,6 +111,7 @@ impl Shader<f32> {
             }
         };
         if is_done {
+            self.path_pixels.tiny += self.fragments.len as u64;
             self.copy_waiting(canvas);
         } else {
             self.color_one_by_one(context, canvas);

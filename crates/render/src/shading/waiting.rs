@@ -8,16 +8,15 @@
 
 use super::context::ShadingContext;
 use super::full_blocks::Canvas;
-use super::groups::{Group, are_of, group_of, one_group};
+use super::groups::{are_of, group_of, one_group};
 use super::interpolated::ShadingNumber;
 use super::runs::{Runs, Shown};
 use super::surface::{Out, Shader, Waiting, in_block};
 use super::tiny_blocks::Tiny;
-use crate::frame::draw::{Back, Pipeline};
+use crate::frame::color_path::ListPath;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::gather::most_gathered;
-use marraztu_core::accuracy::{Interpolation, LightAt};
 use marraztu_core::base::color::Color;
 
 /// A block that shows more triangles than this is coloured by itself.
@@ -57,7 +56,7 @@ impl<T: ShadingNumber + Tiny> Shader<T> {
             return shown.lines != 0;
         }
         match one_group(context, &self.fragments) {
-            Some(group) if self.has_room() && may_wait(context, &group) => {
+            Some(group) if self.has_room() && group.path.list != ListPath::Alone => {
                 self.waiting.push(Waiting { from: 0, at });
             }
             Some(group) => self.color_group(context, &group, &mut Out::Tile(canvas, at)),
@@ -137,19 +136,6 @@ impl<T: ShadingNumber> Shader<T> {
             }
         }
     }
-}
-
-/// Whether blocks of a group may be coloured together: nothing reads the block of a pixel, and no
-/// shadow is traced for it.
-fn may_wait<T: ShadingNumber>(context: &ShadingContext<'_, T>, group: &Group<'_>) -> bool {
-    let plan = context.plan;
-    let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else { return false };
-    !T::EXACT
-        && plan.light_at != LightAt::Face
-        && plan.variants.interpolation != Interpolation::EverySixteen
-        && shaded.extras.is_empty()
-        && group.draw.back != Back::Red
-        && context.tracer_of(group.draw_index).is_none()
 }
 
 /// Colours the pixels of a block that show no triangles, as [`Shader::block_later`].
