@@ -6,7 +6,7 @@ use super::region::Region;
 use super::shader::{LightShader, Which};
 use crate::simd::Lanes;
 
-/// The same light at every position and for every normal: Ia Ka.
+/// Light that is equal at every position and for every normal: Ia Ka.
 pub(crate) struct Ambient;
 
 impl LightShader for Ambient {

@@ -92,8 +92,7 @@ pub(crate) fn shifts(samples: Samples) -> impl ExactSizeIterator<Item = [i32; 2]
 
 const QUARTERS: [SamplePositions; 1] = [SamplePositions::new([[6, 2], [14, 6], [2, 10], [10, 14]])];
 
-/// Vulkan's sixteen positions, ordered such that each group of four surrounds the centre, the
-/// nearest first.
+/// Vulkan's sixteen positions, in groups of four around the centre, the nearest first.
 const SIXTEEN: [SamplePositions; 4] = [
     SamplePositions::new([[9, 9], [7, 5], [5, 10], [12, 7]]),
     SamplePositions::new([[3, 6], [10, 13], [2, 12], [11, 3]]),

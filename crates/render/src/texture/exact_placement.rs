@@ -7,7 +7,7 @@ use super::uv::Uvs;
 use marraztu_core::base::math::each;
 use marraztu_core::scene::{Texture, Wrap};
 
-/// The coordinates in repetitions beyond which positions are arbitrary even in f64.
+/// The coordinate, in repetitions, beyond which positions are arbitrary even in f64.
 const FARTHEST: f64 = 1e12;
 
 /// The texture mapping of one triangle.

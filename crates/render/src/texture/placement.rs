@@ -52,6 +52,7 @@ impl Default for Placement {
 }
 
 /// The steps of a triangle's N0, N1 and N2 for one pixel to the right and one pixel down. Ni is
+/// 1 / w of a pixel times the perspective-correct weight of corner i.
 pub(crate) type Steps = [[f64; 3]; 2];
 
 impl Placement {

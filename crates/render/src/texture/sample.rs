@@ -91,7 +91,7 @@ pub(crate) fn brightness<R: Real>(Vec3([r, g, b]): Vec3<R>) -> R {
     g + (r - g) * g.lift(0.2126) + (b - g) * g.lift(0.0722)
 }
 
-/// Wraps a coordinate to 0 to 1; NaN becomes 0.
+/// Wraps a coordinate to 0 to 1. NaN and infinities become 0.
 #[inline(always)]
 fn wrapped(coordinate: f64, wrap: Wrap) -> f64 {
     if !coordinate.is_finite() {
