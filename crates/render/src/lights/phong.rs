@@ -200,11 +200,11 @@ impl<H: Highlight> Highlight for Mapped<H> {
     }
 }
 
-/// Light at a grazing angle has no highlight, up to this cosine of its angle to the normal.
+/// The cosine between light and normal up to which a light has no highlight.
 ///
 /// A highlight starts abruptly as N.L rises above 0. If a light lies in the plane of a face, which
-/// is not rare, N.L is only a rounding error, which would decide whether all of the face has a
-/// highlight. The bound is a hundred times that error, and 0.0006 degrees.
+/// is not rare, N.L is only a rounding error, and that error would decide whether the whole face
+/// has a highlight. The bound is a hundred times the error, and 0.0006 degrees.
 const GRAZING: f64 = 1e-5;
 
 /// Multiplies light by a strength, if there is one.

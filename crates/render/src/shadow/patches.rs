@@ -163,7 +163,7 @@ mod tests {
             let len = 1 + rng.index(64);
             let mut number = |range: usize| rng.index(2 * range + 1) as f64 - range as f64;
             for i in 0..len {
-                // In clusters, so that gaps of every width come up.
+                // Clustered points, so gaps of every width occur.
                 let cluster = DVec3::new(number(1), number(1), number(1)) * (round % 50) as f64;
                 origins.set(i, cluster + DVec3::new(number(9), number(9), number(9)), [0; 2]);
             }

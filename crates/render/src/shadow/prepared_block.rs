@@ -97,8 +97,8 @@ fn placed<S: Simd>(
 }
 
 impl PreparedBlock {
-    /// Prepares the triangles of a block for points in a box; `reach` is the largest coordinate of
-    /// the points' own triangles. Returns those that may stand between, a bit for each.
+    /// Prepares the triangles of a block for the points in a box. `reach` is the largest coordinate
+    /// of the points' own triangles. Returns a bit mask of the triangles that may block a point.
     #[inline(always)]
     pub(super) fn set<S: Simd>(
         &mut self,
