@@ -329,7 +329,7 @@ impl Renderer {
         let tiles = bands.len() * columns;
         let shares = frame.shares_of_tiles(tiles);
         painters.resize_with(rayon::current_num_threads(), Painter::default);
-        // Also those of threads that come too late to paint.
+        // Every painter begins, even if its thread comes too late to paint a tile.
         painters.iter_mut().for_each(Painter::begin);
         let painters: Vec<Mutex<&mut Painter<T>>> = painters.iter_mut().map(Mutex::new).collect();
         together(painters.len(), || {

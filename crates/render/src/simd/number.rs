@@ -1,4 +1,4 @@
-//! The numbers that pictures can be computed in.
+//! The number types of pictures.
 
 use fearless_simd::{Level, dispatch};
 
@@ -9,17 +9,17 @@ use super::sixteen::Sixteen;
 use super::variant_lanes::VariantLanes;
 use marraztu_core::accuracy::{Normalising, SpecularPower};
 
-/// The numbers that pictures can be computed in.
+/// A number type that pictures can be computed in.
 pub trait Number:
     Real + Default + PartialEq + Into<f64> + Send + Sync + std::fmt::Debug + 'static
 {
-    /// The nearest such number.
+    /// Converts to the nearest number of this type.
     fn from_f64(number: f64) -> Self;
-    /// The byte nearest to 255 times the number, clamped and rounded; NaN gives 0.
+    /// Returns the byte nearest to 255 times the number, clamped and rounded. NaN gives 0.
     fn byte(self) -> u8;
     /// The default variant of powers for such numbers.
     const POWER: SpecularPower;
-    /// Runs a kernel with the lanes for such numbers and the instructions of this level.
+    /// Runs a kernel with the lanes for this type and the instructions of a level.
     fn run(level: Level, kernel: impl Kernel<Self>);
     /// The same by a variant of roots, if there is one.
     fn run_variant(level: Level, variant: Option<Normalising>, kernel: impl Kernel<Self>);
