@@ -1,4 +1,4 @@
-//! Parallel setup of a frame: all threads put triangles and lines into bins, each into its own.
+//! Sets up a frame in parallel: all threads put triangles and lines into separate bins.
 
 use std::sync::Mutex;
 use std::sync::atomic::AtomicU8;
@@ -23,7 +23,7 @@ use crate::screen::clip::{Screen, ScreenVertex};
 use crate::work_stealing::{WorkStealing, own, together};
 use marraztu_core::scene::CLUSTER;
 
-/// Runs the work on all threads, each with its own bins, unless it is cancelled.
+/// Runs the work on all threads, each with separate bins, unless cancelled.
 pub(crate) fn share_out(
     level: Level,
     work: &[Work<What>],
@@ -69,17 +69,17 @@ impl<'a> Parts<'a> {
         Self { plan, vertices, starts, outlines, holes: None, normals: &[], light: None }
     }
 
-    /// The same, with what is known of holes.
+    /// Adds the classification of holes.
     pub(crate) fn with_holes(self, holes: &'a HoleTables) -> Self {
         Self { holes: Some(holes), ..self }
     }
 
-    /// The same, with the normals that are drawn.
+    /// Adds the drawn normals.
     pub(crate) fn with_normals(self, normals: &'a [DrawnNormal]) -> Self {
         Self { normals, ..self }
     }
 
-    /// The same, with the light that hits are coloured by.
+    /// Adds the light for colouring hits.
     pub(crate) fn with_light(self, light: Option<&'a dyn CornerLight>) -> Self {
         Self { light, ..self }
     }

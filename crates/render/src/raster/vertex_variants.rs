@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn vertices_are_as_far_off_as_the_table_of_axes_says() {
-        // What f32 can hold of a place up to 800.
+        // The precision of f32 for a coordinate up to 800.
         assert!(worst(VertexArithmetic::F64, 1e5) < 5e-5);
         let composed = worst(VertexArithmetic::F32ComposedInF64, 1e5);
         assert!((1e-6..2e-4).contains(&composed), "{composed}");

@@ -20,7 +20,7 @@ use marraztu_core::base::math::each;
 /// The alpha test of a triangle in one block, one pixel at a time.
 struct Tested<'a, 'b, 'c> {
     test: &'c AlphaTest<'a, 'b>,
-    /// The first pixel of the block in the picture.
+    /// The first pixel of the block.
     first: [i32; 2],
 }
 
@@ -84,7 +84,7 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle by edge functions in f32.
+    /// Draws a triangle by f32 edge functions.
     #[inline(always)]
     fn draw_floats<S: Simd, const N: usize>(
         &mut self,
@@ -102,6 +102,7 @@ impl Visibility {
                 continue;
             }
             let whole = touched.whole >> block & 1 != 0;
+            // Alpha-tested blocks are always written; others can be noted as fully covered.
             if tests[0].is_some() {
                 self.write::<N>(simd.level(), block);
                 let (first, format) = (self.corner(block), Any(self.depth_format));
@@ -122,7 +123,7 @@ impl Visibility {
         }
     }
 
-    /// As `draw_full_block`.
+    /// See `draw_full_block`.
     #[inline(never)]
     fn draw_full_float_block<const N: usize>(
         &mut self,
@@ -143,7 +144,7 @@ impl Visibility {
         self.farthest[block] = self.farthest[block].max(low);
     }
 
-    /// Draws a triangle into a block that it covers fully or in part.
+    /// Draws a triangle into a block that it covers fully or partly.
     #[inline(never)]
     pub(super) fn draw_float_planes<const N: usize>(
         &mut self,
@@ -178,7 +179,7 @@ impl Visibility {
                 self.write::<N>(simd.level(), block);
                 let first = self.corner(block);
                 let plane = self.plane::<N>(block, sample);
-                // Compiled once, whatever `N` is.
+                // Compiled only once, for any `N`.
                 simd.vectorize(
                     #[inline(always)]
                     || match test {
@@ -192,7 +193,7 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle by points, as ancestor A's author wrote it: one after the other.
+    /// Draws a triangle by ancestor A's fill rule: points, one after the other.
     fn draw_points<const N: usize>(
         &mut self,
         level: Level,
