@@ -1,8 +1,8 @@
 //! Finds the tiles of a picture that another plan damages, which have to be painted again.
 //!
 //! Only plans are compared; no pixel is touched. A tile stays valid while everything that reaches
-//! into it is drawn as before. The damaged tiles are therefore those in the old and new bounds of
-//! every changed draw. Bounds are boxes of pixels: sometimes too large, never too small.
+//! into it is drawn as before. The old and new bounds of every changed draw are therefore damaged.
+//! Bounds are boxes of pixels: sometimes too large, never too small.
 //!
 //! Numbers are compared by their bits: 0 and -0 are equal, but their reciprocals are not.
 

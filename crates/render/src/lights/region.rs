@@ -1,8 +1,8 @@
 //! Regions: bounds of positions in view space, for light culling.
 //!
-//! A region is the convex hull of eight points, plus a distance by which a computed position may
-//! lie outside. Every statement about a region holds for every position as computed, in f32 or in
-//! f64, because all bounds are rounded outwards.
+//! A region is the convex hull of eight points, plus the largest distance of a computed position
+//! outside. Every statement about a region holds for every position as computed, in f32 or in f64,
+//! because all bounds are rounded outwards.
 
 use glam::{DMat4, DVec3};
 

@@ -138,8 +138,8 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
         self.surface.opacity.at(uv(self.uvs, self.weights.at(pixel))) >= 0.5
     }
 
-    /// Tests two rows in f32: returns a mask of opaque pixels and a mask of undecided ones. The
-    /// edge functions are those of the second and third corner in each row.
+    /// Tests two rows in f32: returns a mask of opaque pixels and a mask of undecided ones. It
+    /// needs the edge functions of the second and third corner in each row.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
     fn decide<S: Simd>(

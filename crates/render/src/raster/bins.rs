@@ -1,7 +1,7 @@
 //! Tile binning: lists the primitives that may be visible in each tile.
 //!
-//! Every thread fills separate bins, so no thread waits for another. Visibility does not depend on
-//! the order in which a tile reads them.
+//! Every thread fills separate bins, so no thread waits for another. The order of reading them does
+//! not change visibility.
 
 use super::covered::Covered;
 use super::hit_colors::CornerColors;

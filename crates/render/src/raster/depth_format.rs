@@ -1,8 +1,8 @@
 //! Depth formats: the key of a depth, which is the upper half of an entry in the visibility buffer.
 //!
-//! In every format the larger key is the nearer one. Formats in which 0 is near are stored as the
-//! difference from their largest number. Two depths still get equal keys exactly if they are equal
-//! after rounding. All formats round the same depths, sixteen pixels at a time.
+//! In every format the larger key is the nearer one. Formats with 0 at the near plane are stored as
+//! the difference from their largest number. Two depths still get equal keys exactly if they are
+//! equal after rounding. All formats round the same depths, sixteen pixels at a time.
 //!
 //! One step of depth at z 1000, between near 1 and far 2000, is 15.3 units in 16 bits and 0.06 in
 //! 24 bits. It is also 0.06 in f32, because the finest steps of f32 lie near 0 and are wasted on

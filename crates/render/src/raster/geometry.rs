@@ -154,7 +154,7 @@ impl ScreenGeometry {
             let position = |i| order.position(number(i));
             self.placing.add((i, draw), ((), order.x.len()), plan.size, position);
         }
-        // The output slices of all pieces, in the order in which they were added.
+        // The output slices of all pieces, in the order of adding.
         let (mut rest, mut pieces) = (&mut self.vertices.usual[..], Vec::new());
         pieces.reserve_exact(self.placing.len());
         for (start, held) in self.starts.iter().zip(&self.held) {

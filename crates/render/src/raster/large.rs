@@ -18,7 +18,7 @@ use crate::screen::sample_positions::SamplePositions;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use marraztu_core::base::math::each;
 
-/// The rounding error by which depths in a block may exceed those at its corners: a few steps of
+/// The bound of rounding for depths in a block, beyond the depths at its corners: a few steps of
 /// 2^-53, because all terms are at most 1 inside the triangle.
 const ROUNDING: f64 = 1e-14;
 

@@ -5,13 +5,12 @@
 //! number, which belongs to the older object or the earlier face. The result does not depend on the
 //! order of drawing.
 //!
-//! Coverage and depth are computed in one of two ways, selected only by the triangle's size: in
-//! f32, in which integers below 2^24 are exact, for bounding boxes up to 8 x 8 pixels; and in
-//! integers, with depths from f64, for all others. Boxes up to 16 x 16 pixels are rasterised
-//! sixteen at a time (`small`), here or during setup. All others are rasterised a block of 8 x 8
-//! pixels at a time: in 32 bits for boxes up to 64 x 64 pixels (`medium`), else in 64 bits
-//! (`large`), with the same result. Tiles, threads and instruction sets are therefore invisible in
-//! the picture.
+//! Coverage and depth are computed in one of two ways, selected only by the triangle's size: in f32
+//! (exact for integers below 2^24) for bounding boxes up to 8 x 8 pixels; and in integers, with
+//! depths from f64, for all others. Boxes up to 16 x 16 pixels are rasterised sixteen at a time
+//! (`small`), here or during setup. All others are rasterised a block of 8 x 8 pixels at a time: in
+//! 32 bits for boxes up to 64 x 64 pixels (`medium`), else in 64 bits (`large`), with the same
+//! result. Tiles, threads and instruction sets are therefore invisible in the picture.
 //!
 //! A block without primitives is never touched. If a single large triangle covers a block, only the
 //! triangle is noted, and no depths are computed until another primitive comes near. Bounds of each

@@ -8,7 +8,7 @@ use fearless_simd::{Level, Select as _, Simd, SimdBase as _, dispatch, f32x16};
 use super::map_face::place;
 use crate::screen::tiles::{BLOCK_PIXELS, TILE_SIDE};
 
-/// The relative amount by which depths are moved to allow for rounding in f32.
+/// The relative bias of depths that allows for rounding in f32.
 const ROUNDING: f32 = 4.0 * f32::EPSILON;
 
 /// The limits of the bias.

@@ -8,7 +8,7 @@
 //! **Bias against shadow acne.** A texel's depth is moved away from the light by the change of
 //! depth within the compared area: s = |dz/dx| + |dz/dy| times half a texel, or times one and a
 //! half if nine texels are compared (PCF). s is the largest slope among the planes of the texel and
-//! of those of its eight neighbours that continue its surface, because a point in the texel may lie
+//! of the neighbours that continue its surface, out of eight, because a point in the texel may lie
 //! on any of them. It is limited to [`STEEPEST`](super::map_draws) times the slope of a surface at
 //! 45 degrees. Up to that slope, no plane shades itself.
 //!

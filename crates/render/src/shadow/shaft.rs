@@ -91,7 +91,7 @@ const WIDEST: f64 = 1e3;
 /// The cosine of 45 degrees.
 const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// The eight directions across the rays in which a shaft is bounded.
+/// The eight directions across the rays that bound a shaft.
 const ACROSS: [[f64; 2]; 8] = [
     [1.0, 0.0],
     [DIAGONAL, DIAGONAL],

@@ -103,8 +103,8 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle into the given blocks, all fully covered, in which all its pixels are
-    /// opaque. Returns these blocks, and the ones in which all pixels are holes.
+    /// Draws a triangle into the fully covered blocks of a mask that are opaque everywhere. Returns
+    /// these blocks, together with blocks of holes only.
     #[inline(always)]
     fn draw_even_blocks<const N: usize>(
         &mut self,
