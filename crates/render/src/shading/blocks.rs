@@ -1,7 +1,7 @@
-//! Chooses how blocks that one triangle covers fully are coloured.
+//! Selects the colouring of blocks that one triangle covers fully.
 //!
-//! If only colours have to be interpolated, or only lit, that is one pass without a list of
-//! fragments; everything else is coloured like other blocks.
+//! If colours only have to be interpolated, or only lit, the block is coloured in one pass without
+//! a list of fragments. Everything else is coloured like other blocks.
 
 use super::context::ShadingContext;
 use super::full_blocks::{BlockLight, Blocks, Canvas, Corners, ROW};
@@ -16,7 +16,7 @@ use crate::frame::draw::{Back, Pipeline};
 use crate::screen::weights::HomogeneousWeights;
 use marraztu_core::accuracy::{Interpolation, LightAt};
 
-/// How the corners of a triangle are weighted in this frame.
+/// Returns the weighting of a triangle's corners in this frame.
 fn by<'a, T>(
     context: &'a ShadingContext<'_, T>,
     cut: Option<&'a HomogeneousWeights>,
@@ -37,6 +37,7 @@ impl<T: ShadingNumber> Shader<T> {
         let group = group_of(context, number);
         let [x, y] = blocks.corner;
         self.fragments.list_full_block(number, [x, y]);
+        // The fast paths from the cheapest to the most general; each returns whether it applies.
         if self.fill_blocks(context, &group, blocks, canvas)
             || self.mix_blocks(context, &group, blocks, canvas)
             || self.light_blocks(context, &group, blocks, canvas)
@@ -50,7 +51,7 @@ impl<T: ShadingNumber> Shader<T> {
         });
     }
 
-    /// The weights of the first triangle, if it is clipped.
+    /// Returns the weights of the first triangle, if it is clipped.
     fn cut_weights(
         &self,
         context: &ShadingContext<'_, T>,
@@ -61,8 +62,7 @@ impl<T: ShadingNumber> Shader<T> {
         is_cut.then(|| HomogeneousWeights::new(context.plan, group.draw, numbers[0], [0; 2]))
     }
 
-    /// Fills fully covered blocks, if all of their pixels have one colour. Returns whether that was
-    /// so.
+    /// Fills fully covered blocks, if all of their pixels have one colour. Returns whether it did.
     fn fill_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -85,7 +85,7 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Colours fully covered blocks in one pass, if only the colours of the corners have to be
-    /// interpolated. Returns whether that was so.
+    /// interpolated. Returns whether it did.
     fn mix_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -117,10 +117,9 @@ impl<T: ShadingNumber> Shader<T> {
         T::mix_blocks(level, &self.attributes, blocks, by(context, cut.as_ref()), canvas)
     }
 
-    /// Colours fully covered blocks, a block at a time without a list of fragments, if they are lit
-    /// per pixel or not at all, with or without a texture and even light of their own, and nothing
-    /// else is done to them.
-    /// Returns whether that was so.
+    /// Colours fully covered blocks, one block at a time without a list of fragments. Applies to
+    /// surfaces that are lit per pixel or unlit, with or without a texture and uniform emission,
+    /// and have no other effects. Returns whether it did.
     fn light_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -135,6 +134,7 @@ impl<T: ShadingNumber> Shader<T> {
         let is_lit = shaded.light.is_some();
         let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
         let Some(glow) = shaded.extras.even_glow() else { return false };
+        // Cases that need a list of fragments: spans, linear texels and shadows.
         let otherwise = plan.variants.interpolation == Interpolation::EverySixteen
             || (plan.variants.are_linear() && shaded.texture.is_some())
             || plan.shadows.any_of(shaded.light.as_deref().unwrap_or_default());
@@ -147,13 +147,14 @@ impl<T: ShadingNumber> Shader<T> {
         if texture.is_some() && sampler.is_none() {
             return false;
         }
+        // Attributes are only fetched if the triangle differs from the last one.
         let new = self.take(context, group, true);
         if let Some((texture, sampler)) = texture.zip(sampler.as_ref()) {
             if new {
                 self.place_texture(context, group, texture, sampler);
             }
             if self.placed.placement.known & 1 == 0 {
-                // The other way fetches what it needs.
+                // The fragment list fetches its own attributes.
                 self.attributes.forget();
                 return false;
             }

@@ -9,7 +9,7 @@ use crate::frame::FramePlan;
 use crate::raster::geometry::ScreenGeometry;
 use crate::shadow::tracer::Tracer;
 
-/// Everything that shading reads of a frame.
+/// The parts of a frame that shading reads.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShadingContext<'a, T> {
     pub(crate) level: Level,
@@ -19,14 +19,15 @@ pub(crate) struct ShadingContext<'a, T> {
     pub(crate) terms: &'a LightTerms<T>,
     /// The colours of triangles, if they are looked up.
     pub(crate) faces: Option<&'a FaceColors>,
-    /// Whether little is computed for each pixel.
+    /// Whether each pixel needs little computation.
     pub(crate) quick: bool,
-    /// What casts shadows, if any light does.
+    /// The tracer, if any light casts shadows.
     pub(crate) tracer: Option<&'a Tracer<'a>>,
 }
 
 impl<'a, T> ShadingContext<'a, T> {
-    /// What casts shadows on a draw, and the caster that it is itself; `None` if it takes none.
+    /// Returns the tracer for a draw, and the draw's own caster. `None` if the draw receives no
+    /// shadows.
     pub(crate) fn tracer_of(&self, draw: u32) -> Option<(&'a Tracer<'a>, u32)> {
         let tracer = self.tracer?;
         Some((tracer, tracer.caster_of(draw)?))

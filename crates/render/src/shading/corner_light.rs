@@ -1,4 +1,4 @@
-//! The light at vertices for pixels that are coloured when their triangles are set up or drawn.
+//! The light at vertices, for pixels coloured during triangle setup or drawing.
 
 use std::ops::Range;
 
@@ -31,7 +31,7 @@ pub(crate) struct VertexLight<'a> {
 }
 
 impl<'a> VertexLight<'a> {
-    /// The light of a frame with one sample per pixel, if colouring its triangles at once pays.
+    /// Creates the light of a frame with one sample per pixel, if colouring triangles early pays.
     pub(crate) fn new(
         level: Level,
         plan: &'a FramePlan,
@@ -65,16 +65,16 @@ impl CornerLight for VertexLight<'_> {
 struct Worker<'a> {
     frame: &'a VertexLight<'a>,
     corners: DrawCorners<'a>,
-    /// For lighting vertices.
+    /// The batch for lighting vertices.
     batch: Batch<f32>,
     rays: RayScratch,
     /// The triangles of the last draw, by their numbers in the frame.
     numbers: Range<u32>,
-    /// The last draw, if what its triangles show is light alone.
+    /// The last draw, if its triangles show interpolated light only.
     draw: Option<LitDraw<'a>>,
 }
 
-/// What the light at the corners of one draw's triangles is read from.
+/// The sources of the light at the corners of one draw's triangles.
 #[derive(Debug)]
 struct LitDraw<'a> {
     draw: &'a Draw,
@@ -86,7 +86,7 @@ struct LitDraw<'a> {
 }
 
 impl<'a> LitDraw<'a> {
-    /// `None` if a pixel of the draw shows more than interpolated light.
+    /// Returns `None` if a pixel of the draw shows more than interpolated light.
     fn new(frame: &'a VertexLight<'a>, corners: DrawCorners<'a>, index: u32) -> Option<Self> {
         let VertexLight { level, plan, lit, terms } = *frame;
         let draw = &plan.draws[index as usize];
@@ -107,7 +107,7 @@ impl<'a> LitDraw<'a> {
 }
 
 impl<'a> Worker<'a> {
-    /// The draw of a triangle, and the colours at its corners.
+    /// Returns the draw of a triangle, and the colours at its corners.
     #[inline(always)]
     fn look_up(
         &mut self,
@@ -115,6 +115,7 @@ impl<'a> Worker<'a> {
         vertices: [u32; 3],
         clockwise: bool,
     ) -> Option<(&LitDraw<'a>, CornerColors)> {
+        // Consecutive triangles mostly belong to one draw.
         if !self.numbers.contains(&number) {
             let (draw, start) = self.corners.draw_of(number);
             self.numbers = start.number..start.end;
@@ -184,12 +185,12 @@ fn put<S: Simd>(simd: S, colors: &[[[f32; 4]; PACK]; 3], to: &mut [[[f32; PACK];
     }
 }
 
-/// The pixels for each triangle of a model, in the box around it on the screen, from which on it
-/// pays to colour hidden pixels, too. A knot whose surfaces hide each other loses a third at 0.5
-/// and a sixth at 0.9; a sphere gains at both.
+/// The number of pixels per triangle of a model, counting its box on the screen, from which early
+/// colouring pays although hidden pixels are coloured too. A knot with surfaces that hide each
+/// other loses a third at 0.5 and a sixth at 0.9; a sphere gains at both.
 const ENOUGH_PIXELS: f64 = 2.0;
 
-/// Whether few pixels are coloured in vain.
+/// Returns whether few pixels would be coloured unnecessarily.
 fn few_are_hidden(plan: &FramePlan) -> bool {
     let (mut pixels, mut triangles) = (0.0, 0.0);
     for draw in &plan.draws {
@@ -199,8 +200,8 @@ fn few_are_hidden(plan: &FramePlan) -> bool {
     pixels / triangles >= ENOUGH_PIXELS
 }
 
-/// The pixels of the box around a draw on the screen, also those outside of the picture; infinite
-/// if some of it is beside or behind the observer.
+/// Returns the pixels of the box around a draw on the screen, including pixels outside of the
+/// picture. Infinite if a part of the draw is next to or behind the observer.
 fn box_on_screen(draw: &Draw, size: Size) -> f64 {
     let Some(bounds) = draw.model.mesh.bounds() else { return 0.0 };
     let screen = Screen::new(draw.clip_from_object, size);
