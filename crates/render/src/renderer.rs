@@ -318,7 +318,7 @@ impl Renderer {
         let context = ShadingContext { level, plan, frame, lit, terms, faces, quick, tracer };
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
-        // One band per row of tiles. Its lock is held only while a tile is copied into the picture.
+        // One band per row of tiles. A thread locks a band while it writes a tile to it.
         let bands: Vec<Mutex<Band<'_>>> = self
             .picture
             .pixels_mut()

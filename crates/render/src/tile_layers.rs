@@ -98,7 +98,7 @@ impl TileLayers {
             for (words, word) in words.iter_mut().zip(&opaque) {
                 words.push(*word);
             }
-            // Depth peeling: each round takes the next layers from far to near.
+            // Each round takes the next layers, from far to near.
             layers.open();
             let order = Transparency::Exact;
             while layers.take(level, (frame, order), (block, sample), &opaque) {

@@ -57,7 +57,8 @@ pub(crate) struct Bins {
     pub(crate) covered: Box<Covered>,
     /// The number of triangles, or pieces of clipped triangles, in the bins.
     pub(crate) drawn: usize,
-    /// The bins of transparent triangles, which hide nothing; `None` if the frame has none.
+    /// The bins of transparent triangles, which hide nothing; `None` in a frame without
+    /// transparency.
     transparent: Option<Box<Self>>,
 }
 

@@ -7,7 +7,7 @@
 //! hidden pixels is wasted, so this does not pay for triangles that are mostly smaller than a
 //! pixel. The creator of the [`CornerLight`] decides.
 //!
-//! The bits equal those of a pixel coloured later. An unknown colour is 0.
+//! A pixel coloured later gets the same bits. An unknown colour is 0.
 
 use std::fmt::Debug;
 

@@ -376,7 +376,7 @@ impl Hits {
         let mut page = self.last[tile];
         while page != FULL {
             let Page { place, word, count, previous } = &self.pages[page as usize];
-            // The next page is far away in memory.
+            // Fetched while this page is read.
             self.pages[*previous as usize].prefetch();
             if D::KEEPS_BITS {
                 take(page as usize, &place[..*count], word);

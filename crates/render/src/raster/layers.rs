@@ -373,8 +373,8 @@ impl Layers {
     }
 
     /// Returns layer `i` of each pixel of the block, or 0 if a pixel has fewer. The lower halves
-    /// are those of words of the visibility buffer. So are the upper halves, unless objects are
-    /// drawn one by one.
+    /// are the lower halves of words of the visibility buffer. So are the upper halves, unless
+    /// objects are drawn one by one.
     pub(crate) fn row(&self, order: Transparency, i: usize) -> [u64; BLOCK_PIXELS] {
         let flip = if order == Transparency::Objects { u64::from(u32::MAX) } else { 0 };
         let mut row = self.block.rows[i];

@@ -49,7 +49,7 @@ pub(crate) struct ScanLines {
 }
 
 impl ScanLines {
-    /// Finds the rows of a triangle with corners in pixels. `None` if there are none in the tile.
+    /// Finds the rows of a triangle with corners in pixels. `None` if no row is in the tile.
     #[expect(clippy::cast_possible_truncation, reason = "whole pixels are meant")]
     #[expect(clippy::cast_precision_loss, reason = "columns and rows are small")]
     pub(crate) fn new(

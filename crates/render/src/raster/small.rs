@@ -144,8 +144,8 @@ pub(super) fn each_in<S: Simd, E: Edges<S>, const N: usize>(
     lanes.each_pixel(Some(&shifts), covered, take);
 }
 
-/// Returns 1 / the doubled areas of sixteen triangles, and a mask of those that run clockwise on
-/// the screen.
+/// Returns 1 / the doubled areas of sixteen triangles, and a mask of the clockwise ones on the
+/// screen.
 #[inline(always)]
 fn areas<S: Simd>([x0, y0, x1, y1, x2, y2, ..]: &Pack<S>) -> (f32x16<S>, u64) {
     let area = (*x1 - *x0) * (*y2 - *y0) - (*y1 - *y0) * (*x2 - *x0);

@@ -73,7 +73,7 @@ impl<T: Number> TangentRows<T> {
                 let [x, y, z, _] = attributes.carried[corner][slot];
                 DVec3::new(x.into(), y.into(), z.into()) * turn
             };
-            // The sign is that of a front face, for either winding and for mirrored objects.
+            // The sign follows the vertex normals, for either winding and for mirrored objects.
             let sum = normal(0) + normal(1) + normal(2);
             let inward = (e1.cross(e2).dot(sum) < 0.0) != draw.mirrored;
             let sign = if inward { -1.0 } else { 1.0 };
@@ -157,7 +157,7 @@ fn turned<M: Lanes>(
 struct Bend<'a, T, const PAGES: usize> {
     points: (&'a Fragments, &'a TriangleAttributes<T>, &'a Barycentrics<T>),
     texels: &'a Rows<T>,
-    /// The tangents, and whether they are those of vertices.
+    /// The tangents, and whether they come from vertices.
     tangents: (&'a TangentRows<T>, bool),
     /// The factor of heights; `None` if texels are normals.
     gain: Option<f64>,

@@ -1,8 +1,8 @@
 //! Explains one pixel: the surfaces that it shows, and the light that makes up its colour.
 //!
 //! The pixel is shaded again by the code that shaded the picture, one light at a time, in the
-//! picture's arithmetic. The terms are therefore bit for bit those of the picture. The rounding
-//! error of their sum is a separate term, and with it the terms add up to the colour exactly.
+//! picture's arithmetic. The terms therefore equal the picture bit for bit. The rounding error of
+//! their sum is a separate term, and with it the terms add up to the colour exactly.
 
 mod light_ray;
 

@@ -256,7 +256,7 @@ impl Fragments {
         }
     }
 
-    /// Forgets the slots of the list before.
+    /// Drops the slots of the last list.
     #[inline(always)]
     fn begin_list(&mut self) {
         (self.count, self.goes_on) = (0, false);

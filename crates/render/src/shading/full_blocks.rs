@@ -1,8 +1,8 @@
 //! Blocks that one triangle covers fully.
 //!
 //! No list of fragments is made. Barycentric coordinates, interpolation and conversion to bytes are
-//! one pass over the tile, two rows of a block at a time. The bits equal those of listed fragments,
-//! because the same integers and quotients are used in the same order.
+//! one pass over the tile, two rows of a block at a time. The bits are the same as for listed
+//! fragments, because the same integers and quotients are used in the same order.
 
 use fearless_simd::{
     Level, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, dispatch, f32x16, f64x8, i32x16,

@@ -1,5 +1,5 @@
-//! Prepares a plan for shading: light terms in the shading arithmetic, tables of powers, and mip
-//! maps. Those of the last picture are reused.
+//! Prepares a plan for shading: light terms in the shading arithmetic, tables of powers, and
+//! mipmaps. Those of the last picture are reused.
 
 use super::colors::prepare_linear;
 use super::rounding::block_thresholds;
@@ -22,11 +22,11 @@ use marraztu_core::scene::Texture;
 pub(crate) struct LightTerms<T> {
     terms: Vec<Vec<LightTerm<T>>>,
     tables: Tables,
-    /// Mip maps, if the filter needs them.
+    /// The mipmaps, if the filter needs them.
     mips: Vec<Mips>,
     /// The rounding thresholds of a block's pixels.
     thresholds: Option<(Rounding, [f32; BLOCK_PIXELS])>,
-    /// How colours are encoded, if they are linear.
+    /// The encoding, if colours are linear.
     encoding: Option<Encoding>,
 }
 
@@ -38,7 +38,7 @@ impl<T> LightTerms<T> {
 }
 
 impl<T: Number> LightTerms<T> {
-    /// Prepares the light terms and mip maps of a plan.
+    /// Prepares the light terms and mipmaps of a plan.
     pub(crate) fn prepare(&mut self, plan: &FramePlan) {
         self.encoding = plan.variants.are_linear().then(Encoding::new);
         if self.encoding.is_some() {
@@ -65,7 +65,7 @@ impl<T: Number> LightTerms<T> {
         }
     }
 
-    /// Prepares mip maps, and reuses those of the last picture.
+    /// Prepares mipmaps, and reuses the mipmaps of the last picture.
     fn prepare_mips(&mut self, plan: &FramePlan) {
         let before = std::mem::take(&mut self.mips);
         let mut before: Vec<Option<Mips>> = before.into_iter().map(Some).collect();
@@ -83,12 +83,12 @@ impl<T: Number> LightTerms<T> {
         }
     }
 
-    /// The mip maps of a texture, if the filter needs them.
+    /// Returns the mipmaps of a texture, if the filter needs them.
     pub(crate) fn mips_of(&self, texture: &Shared<Texture>, decoding: Decoding) -> Option<&Mips> {
         self.mips.iter().find(|mips| mips.are_of(texture, decoding))
     }
 
-    /// How interpolated colours become bytes.
+    /// The conversion of interpolated colours to bytes.
     pub(crate) fn conversion(&self, plan: &FramePlan) -> Conversion<'_> {
         Conversion {
             interpolation: plan.variants.interpolation,
@@ -97,7 +97,7 @@ impl<T: Number> LightTerms<T> {
         }
     }
 
-    /// How colours are encoded, if they are linear.
+    /// The encoding, if colours are linear.
     pub(crate) const fn encoding(&self) -> Option<&Encoding> {
         self.encoding.as_ref()
     }
@@ -108,7 +108,7 @@ impl<T: Number> LightTerms<T> {
     }
 }
 
-/// The textures of a surface that are read from mip maps, and how these are averaged.
+/// Iterates over the textures of a surface that need mipmaps, with the decoding for averaging.
 fn mipped<'a>(
     plan: &FramePlan,
     shaded: &'a Shaded,

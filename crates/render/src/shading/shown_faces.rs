@@ -17,7 +17,7 @@ use crate::screen::tiles::{BLOCK_PIXELS, PIXELS};
 use crate::simd::gather::SLOTS;
 use marraztu_core::accuracy::{LightAt, Rounding};
 
-/// Whether all pixels of a triangle have one colour.
+/// Returns whether all pixels of a triangle have one colour.
 pub(crate) fn is_uniform(plan: &FramePlan, pipeline: &Pipeline) -> bool {
     match pipeline {
         Pipeline::Flat(_) => true,
@@ -31,8 +31,8 @@ pub(crate) fn is_uniform(plan: &FramePlan, pipeline: &Pipeline) -> bool {
     }
 }
 
-/// Whether looking up the colours of triangles pays in a frame: if those of most pixels are
-/// uniform.
+/// Returns whether looking up the colours of triangles pays in a frame: whether most pixels show
+/// triangles of uniform colour.
 pub(crate) fn have_colors(plan: &FramePlan) -> bool {
     let mut pipelines = plan.pipelines.iter();
     match plan.light_at {
@@ -44,8 +44,8 @@ pub(crate) fn have_colors(plan: &FramePlan) -> bool {
 }
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Lights the triangles that show in blocks which none of them covers fully, with one sample
-    /// per pixel, and whose colour is not known.
+    /// Lights the triangles without a known colour that are visible in blocks not fully covered by
+    /// one of them, with one sample per pixel.
     pub(crate) fn light_shown_faces(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -62,6 +62,7 @@ impl<T: ShadingNumber> Shader<T> {
                     && (group.draw.uniform.is_some()
                         || group.draw.pipeline_of(number - group.base) == group.pipeline)
             };
+            // Triangles of one group are lit together, as many as there are slots.
             let count = left.iter().take(SLOTS).take_while(|number| is_alike(number)).count();
             let (own, others) = left.split_at(count);
             left = others;
@@ -83,12 +84,12 @@ impl<T: ShadingNumber> Shader<T> {
     }
 }
 
-/// Whether a surface whose triangles have one colour each is lit.
+/// Returns whether a surface with one colour per triangle is lit.
 fn is_lit(pipeline: &Pipeline) -> bool {
     matches!(pipeline, Pipeline::Shaded(shaded) if shaded.light.is_some())
 }
 
-/// Asks the cache for what lighting some faces reads, if they are of a group.
+/// Prefetches the inputs for lighting some faces, if they belong to a group.
 fn prefetch_facets(group: &Group<'_>, numbers: &[u32]) {
     let mesh = &group.draw.model.mesh;
     let facets = mesh.facets();
@@ -98,8 +99,8 @@ fn prefetch_facets(group: &Group<'_>, numbers: &[u32]) {
     }
 }
 
-/// Lists the triangles of a tile that have to be lit, and finds where runs of pixels begin that
-/// show the same, a bit for each pixel of each block. Returns the number of those triangles.
+/// Lists the triangles of a tile that have to be lit, and finds the starts of runs of equal pixels,
+/// a bit for each pixel of each block. Returns the number of listed triangles.
 fn list(
     level: Level,
     faces: &FaceColors,
@@ -116,7 +117,8 @@ fn list_in<S: Simd>(
     visibility: &Visibility,
     (to, all_runs): (&mut Vec<u32>, &mut [u64; BLOCK_PIXELS]),
 ) -> usize {
-    // Each triangle is written, and the next one over it unless it is new.
+    // Each triangle is stored, and overwritten by the next one unless it is new: this avoids a
+    // branch.
     to.resize(PIXELS, 0);
     let mut count = 0;
     let mut claim = |runs: &Runs| {
@@ -129,7 +131,7 @@ fn list_in<S: Simd>(
         );
     };
     let shown = |block: &usize| visibility.shows(*block) && visibility.whole(*block).is_none();
-    // A block behind, so that the entries have arrived.
+    // One block behind, which gives the prefetched entries time to arrive.
     let mut before: Option<Runs> = None;
     for block in (0..BLOCK_PIXELS).filter(shown) {
         let runs = Runs::find(simd, visibility.block(block));

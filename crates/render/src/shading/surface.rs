@@ -37,44 +37,44 @@ use crate::simd::gather::{SLOTS, most_gathered};
 use marraztu_core::accuracy::{LightAt, Rounding};
 use marraztu_core::base::color::Color;
 
-/// Shades blocks. Each thread has its own.
+/// Shades blocks. Each thread has a separate one.
 #[derive(Debug)]
 pub(crate) struct Shader<T> {
-    /// The lights of the tile that is coloured.
+    /// The lights of the current tile.
     pub(crate) tile: TilePlan,
     pub(crate) fragments: Fragments,
     pub(crate) attributes: TriangleAttributes<T>,
     pub(crate) barycentrics: Barycentrics<T>,
     pub(crate) batch: Batch<T>,
-    /// For rays of shadows.
+    /// The memory for shadow rays.
     pub(super) rays: RayScratch,
     /// The positions of the triangles on their texture.
     pub(super) placed: TexturePlacement,
     pub(crate) texels: Rows<T>,
     /// The vertex colours of the triangles.
     pub(super) vertex_colors: CornerValues<T>,
-    /// For surfaces with further maps, or light of their own.
+    /// The memory for additional maps and emission.
     pub(super) maps: Box<MapRows<T>>,
     pub(super) colors: Colors,
     pub(super) thresholds: Thresholds<T>,
-    /// The triangles of a list in which each pixel has its own.
+    /// The triangles of a list with one triangle per pixel.
     pub(super) tiny: TinyTriangles,
     /// The colours of their corners, with light at vertices.
     pub(super) corner_colors: Box<CornerRows<T>>,
-    /// How pixels of a draw become positions and normals.
+    /// The conversion of a draw's pixels to positions and normals.
     look: Option<(u32, Look<T>)>,
-    /// Whether nothing but corners, normals and light is prepared for the triangles of the list.
+    /// Whether only corners, normals and light are prepared for the triangles of the list.
     prepares_little: bool,
     /// The triangles of a tile that have to be lit.
     pub(super) new_faces: Vec<u32>,
-    /// The blocks whose pixels are listed and wait to be coloured.
+    /// The blocks with listed pixels that wait to be coloured.
     pub(super) waiting: Vec<Waiting>,
-    /// Where runs of pixels that show the same begin in each block of a tile, if colours of
-    /// triangles are looked up.
+    /// The starts of runs of equal pixels in each block of a tile, if colours of triangles are
+    /// looked up.
     pub(super) runs: [u64; BLOCK_PIXELS],
 }
 
-/// A block whose pixels are listed: from a fragment on, for a place in the tile.
+/// A block with listed pixels: its first fragment, and its place in the tile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Waiting {
     pub(super) from: usize,
@@ -84,15 +84,16 @@ pub(super) struct Waiting {
 /// The destination of a block's colours.
 #[derive(Debug)]
 pub(crate) enum Out<'a, 'b> {
-    /// A tile, from an index on.
+    /// A tile, starting at an index.
     Tile(&'a mut Canvas<'b>, usize),
-    /// The blocks of a tile that wait.
+    /// The waiting blocks of a tile.
     Waiting(&'a mut Canvas<'b>),
     /// The sums over several samples.
     Sums(&'a mut Sums),
-    /// The same, and what later passes need not light again: this number of fragments, the first.
+    /// The sums, and the cache for later passes, which stores this number of fragments from the
+    /// first.
     Kept(&'a mut Sums, &'a mut Kept, usize),
-    /// What is behind a layer.
+    /// The colours behind a layer.
     Layer(&'a mut Blend),
 }
 
@@ -101,7 +102,7 @@ pub(crate) enum Out<'a, 'b> {
 enum Mixture {
     /// The bytes of the pixels.
     Bytes,
-    /// Their colours, as diffuse light: they are encoded after this.
+    /// Colours as diffuse light, to be encoded later.
     Colors,
     /// Diffuse and specular light.
     Light,
@@ -141,14 +142,14 @@ impl<T: ShadingNumber> Shader<T> {
         self.rays.count = RayCount::default();
     }
 
-    /// The rays of shadows since the frame began.
+    /// The shadow rays since the frame began.
     pub(crate) const fn ray_count(&self) -> RayCount {
         self.rays.count
     }
 
-    /// The number of slots up to which triangles of a list keep theirs for the next one, so that
-    /// those which reach into several blocks are prepared once; 0 if that does not pay: with light
-    /// per face, all slots are lit for each list.
+    /// Returns the number of slots up to which triangles keep their slots for the next list:
+    /// triangles in several blocks are then prepared once. Returns 0 if that does not pay: with
+    /// light per face, all slots are lit for each list.
     pub(super) fn most_slots(&self, context: &ShadingContext<'_, T>) -> usize {
         let is_lit_once = context.plan.light_at == LightAt::Face;
         let pays = !is_lit_once && self.prepares_little && self.attributes.may_go_on();
@@ -218,7 +219,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// The colour of the first fragment of a group.
+    /// Returns the colour of the first fragment of a group.
     pub(crate) fn first_color(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -250,7 +251,7 @@ impl<T: ShadingNumber> Shader<T> {
                 done[other] |= keep[other];
             }
             self.fragments.take_from(&all, &keep, corner);
-            // Triangles of the list before, which keep their slots, may show nowhere.
+            // Triangles of the last list that keep their slots may have no fragments.
             if self.fragments.len > 0 {
                 self.color_group(context, &group, out);
             }
@@ -296,11 +297,11 @@ impl<T: ShadingNumber> Shader<T> {
         let ShadingContext { level, plan, .. } = *context;
         let draw = group.draw;
         let extras = &shaded.extras;
-        // A map of opacity is read where the fragments are.
+        // An opacity map is read at the positions of fragments.
         let fades = shaded.opacity.is_some() && shaded.opacity_map.is_some();
         let textured =
             shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels() || fades;
-        // Every pixel has its own colour.
+        // Whether every pixel has a separate colour.
         let each = textured || plan.variants.rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let located = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
@@ -309,6 +310,8 @@ impl<T: ShadingNumber> Shader<T> {
             let numbers = &self.fragments.numbers[..self.fragments.count];
             numbers.iter().for_each(|number| mesh.prefetch_uv_places(number - group.base));
         }
+        // Without light per pixel or texels, colours are computed per slot and handed out at the
+        // end.
         let new = self.take(context, group, located);
         self.prepares_little = !textured && extras.is_empty();
         if located {
@@ -329,6 +332,7 @@ impl<T: ShadingNumber> Shader<T> {
             },
             Some((LightAt::Face, stages)) => self.light_faces(context, group, stages, each),
         }
+        // Maps come after light, because the map of Ks multiplies highlights.
         if textured {
             self.texels(context, group, shaded, new);
         }
@@ -346,7 +350,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Converts the light of the list, times a tint or the texels, and with what glows, to colours.
+    /// Converts the light of the list, times a tint or the texels, plus emission, to colours.
     pub(super) fn quantize(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -374,7 +378,7 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Fetches the triangles of the list, with their screen positions if they are to be `located`.
-    /// Returns whether they differ from those before.
+    /// Returns whether they differ from the last list's.
     pub(crate) fn take(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -399,7 +403,7 @@ impl<T: ShadingNumber> Shader<T> {
         new
     }
 
-    /// How pixels of a group become positions and normals; computed once for each draw in turn.
+    /// Returns the conversion of a group's pixels to positions and normals, computed once per draw.
     pub(super) fn look_of(&mut self, plan: &FramePlan, group: &Group<'_>) -> Look<T> {
         match self.look {
             Some((draw, look)) if draw == group.draw_index => look,
@@ -464,7 +468,7 @@ impl<T: ShadingNumber> Shader<T> {
         let ShadingContext { level, plan, .. } = *context;
         let tables = context.lit.tables(group.draw_index, group.pipeline);
         if !tables[0].is_colored() {
-            // The attributes are those of specular light.
+            // The attributes of the last block hold specular light.
             self.attributes.keep_none();
         }
         if new || !tables[0].is_colored() {
@@ -473,6 +477,8 @@ impl<T: ShadingNumber> Shader<T> {
         }
         let Self { fragments, attributes, barycentrics, batch, colors, thresholds, .. } = self;
         let colored = tables[0].is_colored();
+        // Final colours are interpolated and converted in one pass, unless something is added
+        // later.
         if colored && !plan.variants.are_linear() && shaded.extras.is_empty() {
             let thresholds = thresholds.of(plan.variants.rounding, fragments);
             mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors, thresholds));
@@ -515,7 +521,7 @@ impl<T: ShadingNumber> Shader<T> {
         );
     }
 
-    /// Flat shading: lights each face, and spreads the light to its pixels if they are `located`.
+    /// Flat shading: lights each face, and copies the light to its pixels if they are `located`.
     fn light_faces(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -547,7 +553,7 @@ impl<T: ShadingNumber> Shader<T> {
     }
 }
 
-/// Column and row of pixel `i` of a block.
+/// Returns the column and row of pixel `i` of a block.
 pub(super) const fn in_block(i: usize) -> [usize; 2] {
     [i % BLOCK as usize, i / BLOCK as usize]
 }

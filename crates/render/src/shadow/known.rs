@@ -74,7 +74,7 @@ impl KnownShadows {
         self.lights.iter_mut().flatten().map(|known| (known.source, known))
     }
 
-    /// Returns the cache of a light, or `None` if it has none.
+    /// Returns the cache of a light, or `None` without a cache.
     pub(crate) fn of(&self, light: u32) -> Option<&KnownLight> {
         self.lights.get(light as usize)?.as_ref()
     }

@@ -130,7 +130,6 @@ impl<S: Simd> Lanes for Eight<S> {
 
     #[inline(always)]
     fn load_four(self, rows: &[[f64; 4]], at: usize) -> [f64x8<S>; 4] {
-        // Transposed through memory: this arithmetic favours simplicity.
         let mut values = [[0.0; 8]; 4];
         for (lane, row) in rows[at..at + 8].iter().enumerate() {
             for (to, from) in values.iter_mut().zip(row) {

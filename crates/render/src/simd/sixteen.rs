@@ -32,7 +32,7 @@ impl<S: Simd> Lanes for Sixteen<S> {
         let second = f32x16::from_slice(self.0, &flat[16..32]);
         let third = f32x16::from_slice(self.0, &flat[32..48]);
         let fourth = f32x16::from_slice(self.0, &flat[48..]);
-        // A 4 x 16 transpose in registers: memory traffic would dominate.
+        // A 4 x 16 transpose in registers.
         let (even_low, odd_low) = first.deinterleave(second);
         let (even_high, odd_high) = third.deinterleave(fourth);
         let (a, c) = even_low.deinterleave(even_high);

@@ -52,7 +52,7 @@ impl ExactPlacement {
     pub(crate) fn at(&self, [second, third]: [f64; 2]) -> [f32; 2] {
         self.along.map(|it| {
             let u = it.first + it.second * second + it.third * third;
-            // Rounding must not leave the triangle's range: its border may be the texture's.
+            // Clamped to the triangle's range against rounding.
             let u = if u > it.low { u } else { it.low };
             let u = if u < it.high { u } else { it.high };
             let own = match self.wrap {
