@@ -1,8 +1,8 @@
-//! Plans shadows: which lights cast them, and which objects.
+//! Plans shadows: which lights and which objects cast them.
 //!
-//! Whatever is drawn filled casts shadows, seen by the observer or not, from both of its sides.
-//! What is not drawn casts none: hidden objects and parts, a wireframe, parts whose opacity is
-//! below one half, polygons that are left out, and the marks of cameras and bulbs. Light passes
+//! Everything drawn filled casts shadows, from both of its sides, even if the observer does not see
+//! it. Things that are not drawn cast no shadows: hidden objects and parts, a wireframe, parts with
+//! an opacity below one half, excluded polygons, and the marks of cameras and bulbs. Light passes
 //! through holes of textures.
 
 use std::collections::BTreeSet;
@@ -19,7 +19,7 @@ use marraztu_core::base::math;
 use marraztu_core::scene::{Fill, ItemId, MapKind, Object, ObjectId};
 
 impl Planner<'_> {
-    /// Adds what casts shadows, if any light casts them.
+    /// Adds the casters, if any light casts shadows.
     pub(super) fn add_shadows(&self, into: &mut Planning) {
         let is_filled = self.shot.view.fill == Fill::Filled;
         if is_filled && into.plan.shadows.sources.iter().any(Option::is_some) {
@@ -74,8 +74,8 @@ impl Planner<'_> {
         Some(Caster { item, model, world_from_object, parts, polygons })
     }
 
-    /// Notes whether the shadows of a light that casts them fall on an object; `no_light` is the
-    /// reason why its light does not, if there is one.
+    /// Notes whether the shadows of a light fall on an object. `no_light` is the reason why its
+    /// light does not reach the object, if there is one.
     pub(super) fn note_shadows(
         into: &mut Planning,
         ground: &Ground<'_>,
@@ -102,12 +102,12 @@ impl Planner<'_> {
     }
 }
 
-/// The name of a light's shadows in the plan.
+/// Returns the name of a light's shadows in the plan.
 fn name(shining: &Shining) -> String {
     format!("Shadows of {}", shining.name)
 }
 
-/// How a part of an object casts shadows; `None` if it is not drawn.
+/// Returns the caster of a part of an object. `None` if the part is not drawn.
 fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
     let look = object.part_look(part);
     if !object.shows_part(part) || look.opacity < 0.5 {

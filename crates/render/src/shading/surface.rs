@@ -310,13 +310,12 @@ impl<T: ShadingNumber> Shader<T> {
             let numbers = &self.fragments.numbers[..self.fragments.count];
             numbers.iter().for_each(|number| mesh.prefetch_uv_places(number - group.base));
         }
-        // Without light per pixel or texels, colours are computed per slot and handed out at the
-        // end.
         let new = self.take(context, group, located);
         self.prepares_little = !textured && extras.is_empty();
         if located {
             self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
         }
+        // If each triangle has one colour, colours are computed per slot and handed out at the end.
         let is_by_slot = !(located || each);
         self.batch.len = if is_by_slot { self.fragments.count } else { self.fragments.len };
         let mut tint = shaded.tint;
