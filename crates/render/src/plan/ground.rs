@@ -1,16 +1,16 @@
-//! What the surfaces of an object have in common.
+//! The shared properties of an object's surfaces.
 
 use super::uses;
 use crate::lights::region::Region;
 use crate::lights::turning::Turning;
 use marraztu_core::scene::{ItemId, Object};
 
-/// What the surfaces of an object have in common.
+/// The shared properties of an object's surfaces.
 #[derive(Debug)]
 pub(super) struct Ground<'a> {
     pub(super) item: ItemId,
     pub(super) object: &'a Object,
-    /// The region in which the surfaces are lit, if it is known.
+    /// The region of the lit points, if it is known.
     pub(super) region: Option<Region>,
     /// The normals of the surfaces, if they are known.
     pub(super) turning: Option<Turning>,

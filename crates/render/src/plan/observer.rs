@@ -25,9 +25,9 @@ fn unit(lens: &Lens, projection: Projection) -> f64 {
 
 /// The observer's spaces.
 ///
-/// View space has a separate unit, a power of two, in which the far plane is about a thousand units
-/// away. Lighting in f32 therefore works equally well for scenes of atoms and of stars. For scenes
-/// of ordinary size the unit equals the world's.
+/// View space has a separate unit, a power of two, with the far plane about a thousand units away.
+/// Lighting in f32 therefore works equally well for scenes of atoms and of stars. For scenes of
+/// ordinary size the unit equals the world's.
 #[derive(Debug)]
 pub(crate) struct ObserverSpace {
     /// The number of view space units per world unit.
@@ -166,7 +166,7 @@ const MARGIN: f64 = 1e-8;
 /// half a pixel of rounding.
 const LINE: f64 = 2.0;
 
-/// Twice the distance in pixels by which snapping may move a position.
+/// Twice the largest distance, in pixels, that snapping moves a position.
 const SNAPPED: f64 = 0.006;
 
 /// The error of interpolation in f32, relative to the largest value.

@@ -211,7 +211,7 @@ impl Planner<'_> {
             .collect()
     }
 
-    /// Returns the region in which an object is lit, if it is known, and whether nothing of it is
+    /// Returns the region of an object's lit points, if it is known, and whether nothing of it is
     /// clipped.
     fn region(&self, draw: &Draw, corners: [DVec3; 8]) -> (Option<Region>, bool) {
         if self.shot.settings.light != LightAt::Pixel {
