@@ -199,6 +199,7 @@ impl FramePlan {
         counts: &mut Counts,
     ) {
         let light = tile.light(self, pipeline, shaded);
+        // Only lights that the tile plan kept for this tile count.
         let stages: Vec<&Stage> = match light.kept {
             None => light.stages.iter().collect(),
             Some(kept) => kept.iter().map(|place| &light.stages[*place as usize]).collect(),

@@ -61,6 +61,7 @@ impl TileLayers {
         let [left, top] = self.visibility.corner(block);
         let is_layered = self.layers.touches(block);
         let mut tops = [[0; BLOCK_PIXELS]; FOUR];
+        // Without layers, a pixel has one word.
         if is_layered {
             self.find_layers(level, frame, block, &mut tops);
         }

@@ -131,6 +131,7 @@ impl Compared<'_> {
         } = after;
         let textures = Shared::both_same(texture.as_ref(), before.texture.as_ref())
             && Shared::both_same(opacity_map.as_ref(), before.opacity_map.as_ref());
+        // Lights are compared by value, because their indices may differ between plans.
         let stages = match (light, &before.light) {
             (Some(after), Some(before)) => {
                 after.len() == before.len()

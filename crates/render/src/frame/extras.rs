@@ -118,6 +118,7 @@ impl Extras {
     /// Returns whether both are drawn with the same bits; maps must be the same object.
     pub(crate) fn are_alike(&self, other: &Self) -> bool {
         let Self { emission, ambient, specular, exponent, bump } = self;
+        // Maps are compared by identity: comparing pixels would cost more than drawing.
         let maps = |a: &Option<Shared<Texture>>, b: &Option<Shared<Texture>>| match (a, b) {
             (Some(a), Some(b)) => Shared::same(a, b),
             (None, None) => true,

@@ -3,7 +3,6 @@
 //! The default of each stage is compiled separately. Every other choice of an axis is a variant of
 //! the stage and is selected once per batch, draw or tile. An unused variant costs a comparison
 //! there, and nothing at a pixel.
-//! there, and nothing at a pixel.
 
 use std::ops::Deref;
 

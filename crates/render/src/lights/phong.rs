@@ -93,6 +93,7 @@ impl<T: Number> LightTerm<T> {
     #[must_use]
     pub fn new(light: &ViewLight, material: &PhongMaterial) -> Self {
         let all = |numbers: [f64; 3]| numbers.map(T::from_f64);
+        // Each product is formed in f64 and rounded once.
         let times = |k: [f64; 3]| all([0, 1, 2].map(|i| light.color[i] * k[i]));
         Self {
             ambient: times(material.ambient),

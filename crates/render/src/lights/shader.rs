@@ -184,6 +184,7 @@ impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
                     false => lanes.lift(1.0),
                 },
             };
+            // Most lights reach only some positions; a light that adds nothing stores nothing.
             let Some(reflected) = E::shade::<M, H>(lanes, sample, self.term) else {
                 continue;
             };

@@ -33,6 +33,7 @@ where
                 exponent: lanes.lift(1.0),
             };
             let (mut diffuse, mut specular) = (Vec3([zero; 3]), Vec3([zero; 3]));
+            // The light kind is matched per batch of lanes, where the branch is well predicted.
             for (which, form, term) in lights.clone() {
                 let reflected = match form {
                     Form::Plain => reflected::<M, Nothing>(which, lanes, sample, term),

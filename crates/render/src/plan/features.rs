@@ -78,6 +78,7 @@ impl Planner<'_> {
             state,
             pixels: None,
         };
+        // Marks have no surface settings, so they get a single row.
         let presence = presence(draw.item);
         if presence == Effect::Marks {
             return notes.add(|| note(presence, EffectState::ON));

@@ -84,6 +84,7 @@ impl Planner<'_> {
                 BTreeSet::from([mode.current])
             }
         });
+        // Back-face culling depends on whether the surface is closed and on the view.
         let back = match (object.is_two_sided(), self.shot.view.back_faces) {
             (true, _) => Back::Lit,
             (false, true) => Back::Red,
@@ -112,6 +113,7 @@ impl Planner<'_> {
             model: model.clone(),
             clip_from_object,
             view_from_object,
+            // The cofactor matrix keeps normals perpendicular under non-uniform scale.
             view_from_normal: match self.shot.settings.stretched {
                 NormalMatrix::Cofactor => math::normal_matrix(linear),
                 NormalMatrix::AsItIs => math::at_power_of_two(linear),
@@ -246,6 +248,7 @@ impl Planner<'_> {
     pub(super) fn add_marks(&self, into: &mut Planning) {
         let object_looks = self.shot.view.observer == Observer::Object
             && self.shot.view.object.is_some_and(|id| self.shot.scene.objects.get(id).is_some());
+        // Cameras: a model at each one, except at the observer.
         for (id, camera) in self.shot.scene.cameras.iter() {
             let looks = !object_looks && self.shot.view.camera == id;
             let reason = match (looks, camera.visible) {
@@ -269,6 +272,7 @@ impl Planner<'_> {
             };
             self.add(into, &mark, draw);
         }
+        // Bulbs: a diamond at each light that is on and has a position.
         let on = self.shot.scene.lights.iter().filter(|(_, light)| light.on);
         for (id, position) in on.filter_map(|(id, _)| self.bulb_place(id)) {
             let Some(placement) = helpers::world_from_diamond(&self.observer, position) else {

@@ -32,6 +32,7 @@ impl Planner<'_> {
         if into.plan.shadows.casters.is_empty() {
             into.plan.shadows = Shadows::default();
         }
+        // Explains each light that could cast shadows and does not.
         for shining in &self.shining {
             let Some(light) = self.shot.scene.lights.get(shining.id) else { continue };
             let reason = match () {
@@ -54,6 +55,7 @@ impl Planner<'_> {
     fn caster(&self, id: ObjectId, object: &Object) -> Option<Caster> {
         let world_from_object = object.world_from_mesh(self.shot.view.time);
         let mesh = &object.model.mesh;
+        // An object with a flat placement is not drawn, so it casts no shadow.
         let is_flat = !math::has_full_rank(DMat3::from_mat4(world_from_object));
         if is_flat || mesh.polygon_count() == 0 {
             return None;
@@ -116,6 +118,7 @@ fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
     let mapped = !object.model.mesh.uvs().is_empty();
     let texture = look.texture.filter(|_| mapped);
     let map = look.map(MapKind::Opacity).filter(|_| mapped).map(|map| &map.texture);
+    // A map with the texture's alpha would count twice.
     let map = map.filter(|map| !holds_same_alpha(texture, map));
     let surface = TexturedSurface {
         texture: texture.map(|texture| &**texture),

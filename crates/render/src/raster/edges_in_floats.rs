@@ -72,6 +72,7 @@ impl FloatTriangle {
         number: u32,
         first: [i32; 2],
     ) -> Self {
+        // The sign makes edge functions positive inside for either winding.
         let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
         let sign = area.signum();
         let line = |p: [f32; 2], q: [f32; 2]| {
@@ -104,6 +105,7 @@ impl FloatTriangle {
         let reach = [in_pixels(from), in_pixels(to)];
         let (across, below) = (f32x16::from_slice(simd, &ACROSS), f32x16::from_slice(simd, &DOWN));
         let (first, last) = (area.left / BLOCK, (area.right - 1) / BLOCK);
+        // The columns of the area, for both rows of blocks that one register holds.
         let columns = 0x0101 * ((0xff_u64 << first) & (0xff >> (7 - last)));
         let mut touched = Touched::default();
         let (first, last) = (area.top / BLOCK, (area.bottom - 1) / BLOCK);

@@ -133,6 +133,7 @@ impl ScreenGeometry {
             outline += if draw.lines.edges { mesh.polygon_count() } else { 0 };
             self.starts.push(start);
         }
+        // Only object-wise blending needs an order of draws.
         self.far_to_near.clear();
         if plan.transparency == Transparency::Objects && plan.is_transparent() {
             self.far_to_near = plan.far_to_near();
@@ -200,6 +201,7 @@ impl ScreenGeometry {
         }
         fine.resize(if is_fine { usual.len() } else { 0 }, ScreenVertex::default());
         unsnapped.resize(if is_fine { 0 } else { usual.len() }, [0.0; 2]);
+        // Draws are transformed one after the other here, each in parallel pieces.
         for (draw, start) in plan.draws.iter().zip(&self.starts) {
             let screen = Screen::new(draw.clip_from_object, plan.size).on(grid);
             let screen = screen.seen_from(grid.offset(plan.shift));
@@ -276,6 +278,7 @@ impl ScreenGeometry {
                 return;
             }
             let edges = if draw.lines.edges { draw.model.mesh.edge_order().edges.len() } else { 0 };
+            // Edges come first, then normals: the number of a line tells its kind.
             let start = &mut self.starts[i];
             (start.line, start.normal) = (next, next + number(edges));
             start.normal_place = self.normals.len();

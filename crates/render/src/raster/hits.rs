@@ -190,6 +190,7 @@ impl Hits {
             right: (((pixels.right - 1) >> 6) + 1).min(columns),
             bottom: (((pixels.bottom - 1) >> 6) + 1).min(rows),
         };
+        // Only boxes inside the picture may skip the bounds test of each pixel.
         let whole =
             pixels.left >= 0 && pixels.top >= 0 && pixels.right <= width && pixels.bottom <= height;
         match (tiles.width(), tiles.height()) {

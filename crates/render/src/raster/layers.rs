@@ -134,6 +134,7 @@ impl Layers {
         (self.touched, self.depths) = (0, [f32::INFINITY, 0.0]);
         self.hits.iter_mut().for_each(Vec::clear);
         self.large.clear();
+        // Hits are sorted into lists per sample; larger triangles are only classified by block.
         for bins in frame.transparent_bins() {
             let samples = self.sample_positions.count();
             let format = Any(self.depth_format);
@@ -194,6 +195,7 @@ impl Layers {
         }
         match plan.variants.coverage {
             Coverage::Points => self.add_points(plan, frame, triangle.number),
+            // Scan lines round corners, so each sample has separate rows.
             Coverage::ScanLines => {
                 for sample in 0..self.sample_positions.count() {
                     let [dx, dy] = in_pixels(self.shift(sample));
@@ -231,6 +233,7 @@ impl Layers {
     fn add_points(&mut self, plan: &FramePlan, frame: &ScreenGeometry, number: u32) {
         let (draw, start) = frame.draw_of(number);
         let (draw, count) = (&plan.draws[draw as usize], self.sample_positions.count());
+        // A map keeps the nearest point of each sample.
         let mut all = BTreeMap::new();
         for sample in 0..count {
             let shift = self.shift(sample);
@@ -434,6 +437,7 @@ impl Held {
         if key <= self.floor[pixel] {
             return;
         }
+        // The pixel had too many layers: nearer ones wait for the next turn.
         if key > self.ceiling[pixel] {
             self.more |= 1 << pixel;
             return;

@@ -100,6 +100,7 @@ pub(crate) fn stretches(
     clip: PixelBox,
 ) -> impl Iterator<Item = PixelBox> {
     let [a, b] = line.ends.map(|end| end.at());
+    // u is the major axis: pixels are bounded per tile along it.
     let all = bounds([a, b], width).intersection(clip);
     let steep = (b.y - a.y).abs() > (b.x - a.x).abs();
     let (ua, va, ub, vb) = if steep { (a.y, a.x, b.y, b.x) } else { (a.x, a.y, b.x, b.y) };

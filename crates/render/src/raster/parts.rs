@@ -91,6 +91,7 @@ impl<'a> Parts<'a> {
         let (vertices, size) = (self.vertices_of(i), self.plan.size);
         match what {
             What::Triangles => {
+                // The screen corners of this draw, on the grid and with the variants of the frame.
                 let pipelines = &self.plan.pipelines;
                 let corners = self.corners().of(i);
                 let setup = Setup::new(draw, pipelines, corners, size, self.starts[i].number);
@@ -100,6 +101,7 @@ impl<'a> Parts<'a> {
                 if !self.vertices.unsnapped.is_empty() {
                     setup.unsnapped = &self.vertices.unsnapped[self.starts[i].vertex..];
                 }
+                // Cluster culling removes whole ranges before any triangle is set up.
                 let order = mesh.draw_order();
                 let triangles = &order.triangles[from..to];
                 with_rule!(self.plan.variants, R => if order.clusters.is_empty() {

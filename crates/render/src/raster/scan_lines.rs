@@ -62,6 +62,7 @@ impl ScanLines {
         let [columns, lines] = [0, 1].map(|axis| corners.map(|corner| corner[axis]));
         let least = |of: [i32; 3]| of[0].min(of[1]).min(of[2]);
         let most = |of: [i32; 3]| of[0].max(of[1]).max(of[2]);
+        // The end pixels are inclusive, hence the additional row and column.
         let own = PixelBox {
             left: least(columns),
             top: least(lines),
@@ -107,6 +108,7 @@ impl ScanLines {
         let (pairs, _) = visibility.as_chunks_mut::<16>();
         for (pair, visibility) in pairs.iter_mut().enumerate() {
             let (up, down) = (self.rows[row + 2 * pair], self.rows[row + 2 * pair + 1]);
+            // The upper half of the lanes holds one row, the lower half the next.
             let both = |of: fn(&ScanLine) -> f32| -> f32x16<S> {
                 f32x8::splat(simd, of(&up)).combine(f32x8::splat(simd, of(&down)))
             };
@@ -147,6 +149,7 @@ fn scan_line(corners: [[i32; 2]; 3], depths: [f32; 3], y: i32) -> ScanLine {
         if y < p[1].min(q[1]) || y > p[1].max(q[1]) {
             continue;
         }
+        // A level edge contributes both of its ends.
         let down = (q[1] - p[1]) as f32;
         let parts = if down == 0.0 { [0.0, 1.0] } else { [(y - p[1]) as f32 / down; 2] };
         for t in parts {

@@ -81,6 +81,7 @@ impl<'a> Setup<'a> {
     ) -> Self {
         let transparent =
             draw.uniform.is_some_and(|pipeline| pipelines[pipeline as usize].opacity().is_some());
+        // If no triangle differs from the others, none has to be looked at separately.
         let choosy = draw.polygons.is_some()
             || draw.part_pipelines.iter().any(|pipeline| {
                 pipeline.is_none_or(|pipeline| {
@@ -440,6 +441,7 @@ impl<'a> Setup<'a> {
 
     pub(crate) fn kind(&self, number: u32, pipelines: &[Pipeline]) -> Kind {
         let mesh = &self.draw.model.mesh;
+        // Excluded polygons first, then the pipeline of the part decides.
         let polygon = mesh.polygon_of(number);
         if self.draw.polygons.as_ref().is_some_and(|some| !some.contains(&polygon)) {
             return Kind::Not;

@@ -371,6 +371,7 @@ impl Visibility {
         with_format!(self.depth_format, D => for &place in &bins.tiles[tile].lines {
             let format = D::of(self.depth_format);
             for sample in 0..N {
+                // The line moves instead of the sample, which keeps the arithmetic exact.
                 let line =
                     bins.lines[place as usize].seen_from(self.sample_positions.shift::<N>(sample));
                 lines::pixels(

@@ -167,6 +167,7 @@ impl TileQueues {
         let pack = pack.map(<[i32; PACK]>::from);
         let [left, top, right, bottom] =
             [boxes.left, boxes.top, boxes.right, boxes.bottom].map(<[i32; PACK]>::from);
+        // Widely scattered triangles: one at a time, into every tile of its box.
         while some != 0 {
             let lane = some.trailing_zeros() as usize;
             some &= some - 1;

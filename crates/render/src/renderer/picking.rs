@@ -214,6 +214,7 @@ impl Renderer {
         let mut tile_seen = TileLayers::default();
         for tile in 0..usize::try_from(columns * rows).expect("not negative") {
             tile_seen.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
+            // Stops early once the caller has its answer.
             for block in 0..BLOCK_PIXELS {
                 let mut flow = ControlFlow::Continue(());
                 tile_seen.each(self.level, &self.frame, block, |at, nearest, words| {

@@ -43,6 +43,7 @@ impl Weights {
         let own = each(ids, |vertex| vertices[vertex as usize]);
         let screen = Screen::new(draw.clip_from_object, plan.size);
         let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
+        // Clipped triangles have corners without a screen position.
         let method = if !own.iter().all(ScreenVertex::is_inside) {
             Method::Cut(HomogeneousWeights::new(plan, draw, number, shift))
         } else {
@@ -126,6 +127,7 @@ impl Weights {
             Method::Edges(triangle, w) => {
                 let area = triangle.as_ref()?.doubled_area() as f64;
                 let by_w = [1.0 / w.x, 1.0 / w.y, 1.0 / w.z];
+                // The three edge functions add up to the doubled area.
                 let rest = f64x8::splat(simd, area) - second - third;
                 let (second, third) = (second * by_w[1], third * by_w[2]);
                 let per = f64x8::splat(simd, 1.0) / (rest * by_w[0] + second + third);

@@ -105,6 +105,7 @@ impl<T: ShadingNumber> Shader<T> {
         if !mixed || group.draw.back == Back::Red || in_spans {
             return false;
         }
+        // Colours of vertices are final only if no texture or map is involved.
         let tables = lit.tables(group.draw_index, group.pipeline);
         if !tables[0].is_colored() {
             return false;

@@ -108,6 +108,7 @@ pub(super) fn bend<T: ShadingNumber>(
             Tangents::Pixel => maps.tangents.of_pixels(group.draw, attributes),
         }
     }
+    // A negative texture scale reverses the direction of u or v.
     let directions = bump.map.scale.map(|scale| if scale < 0.0 { -1.0 } else { 1.0 });
     let (texels, tangents) = (&maps.texels, &maps.tangents);
     let spaces = Spaces::new(group.draw);

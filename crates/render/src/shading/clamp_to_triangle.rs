@@ -65,6 +65,7 @@ impl<T: Number> Hold<'_, T> {
             let shares = lanes.whole(&fragments.shares, at);
             let outside = lanes.lift(f64::from(ALL)).if_more(shares, outside, zero);
             let mut place = [x, y];
+            // Most groups have no pixel outside and skip the search.
             if lanes.any_more(outside, zero) {
                 let slots = lanes.slots(&fragments.slots, at);
                 let [x0, y0, ux, uy, vx, vy] = picked::<M, PAGES>(lanes, &corners, slots);

@@ -148,6 +148,7 @@ impl LookUp for Worker<'_> {
             left &= left - 1;
             let corners = vertices.map(|row| row[lane]);
             let clockwise = clockwise >> lane & 1 == 1;
+            // One unknown colour rejects the whole group: its pixels are coloured later.
             let Some((own, known)) = self.look_up(numbers[lane], corners, clockwise) else {
                 return false;
             };

@@ -108,6 +108,7 @@ fn one<T: ShadingNumber>(
         Visible::Background => (plain(Part::Background, plan.background.opaque()), 1.0),
         Visible::Line(line) => (plain(Part::Line, frame.line_color(plan, line)), 1.0),
         Visible::Triangle(number) => {
+            // The pixel is shaded alone, with the lights of its tile.
             let mut shader = Shader::<T>::default();
             shader.tile.begin(plan, asked.bounds, || asked.depths);
             let place = usize::try_from((y & 7) * 8 + (x & 7)).unwrap_or(0);
@@ -187,6 +188,7 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
     fn place(&mut self) -> SurfacePoint {
         let Self { context, group, shader, number, .. } = self;
         let ShadingContext { level, plan, .. } = **context;
+        // Forces a fresh fetch: the shader may hold attributes of another kind.
         shader.attributes.forget();
         shader.take(context, group, true);
         let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
@@ -321,6 +323,7 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
             let shine = Term { part: Part::Specular, ..term(specular) };
             return (vec![term(lit), shine], reflect(context, &sums, surface.own));
         }
+        // Without a texture, tables hold final colours, which are interpolated again here.
         let ShadingContext { level, plan, .. } = **context;
         let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
             return (Vec::new(), [0.0; 3]);

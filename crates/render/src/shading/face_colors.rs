@@ -94,6 +94,7 @@ impl FaceColors {
             } else {
                 let entry = self.entries.get(!(word as u32) as usize);
                 let entry = entry.map_or(0, |entry| entry.load(Ordering::Relaxed));
+                // Checked once at the end: a branch per run would be unpredictable.
                 unknown |= (entry >> MARK) ^ self.known;
                 entry | 0xff << MARK
             };

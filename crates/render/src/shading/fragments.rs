@@ -392,6 +392,7 @@ impl Fragments {
     pub(crate) fn take_from(&mut self, other: &Self, keep: &[bool; SLOTS], corner: [i32; 2]) {
         let mut new = [0; SLOTS];
         (self.count, self.goes_on) = (0, false);
+        // Kept triangles move to the first slots.
         for slot in (0..other.count).filter(|slot| keep[*slot]) {
             self.numbers[self.count] = other.numbers[slot];
             new[slot] = i32::try_from(self.count).expect("there are 64 slots");

@@ -535,6 +535,7 @@ fn mixed<S: Simd>(
         #[inline(always)]
         |[column, row]| {
             let mut at = canvas.offset([column as usize, row as usize]);
+            // Weights for the whole block, then two rows of pixels at a time.
             let pairs = points.block(simd, [left + column, top + row]);
             for (pair, (weights, _)) in pairs.into_iter().enumerate() {
                 let mut pixels = [0; 16];

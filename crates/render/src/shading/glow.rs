@@ -36,6 +36,7 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         self.maps.glow = [[T::default(); BATCH]; 3];
         let Extras { emission, ambient, .. } = &shaded.extras;
+        // Emission is independent of the lights.
         if let Some(emission) = emission {
             match &emission.map {
                 Some(map) => {
@@ -51,6 +52,7 @@ impl<T: ShadingNumber> Shader<T> {
                 }
             }
         }
+        // Mapped ambient light replaces the ambient stages of the surface.
         if let Some(ambient) = ambient {
             let tinted = std::array::from_fn(|i| ambient.color[i] * shaded.tint[i]);
             match &ambient.map {

@@ -257,6 +257,7 @@ impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
             ];
             let normal = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
             let half = lanes.lift(0.5);
+            // A shared pixel is lit where its triangle was clamped, others at their centre.
             let place = match SHARED {
                 true => [
                     lanes.load(&barycentrics.positions[0], at),

@@ -148,6 +148,7 @@ impl<T: Interpolated> Barycentrics<T> {
             let slot = slots.trailing_zeros();
             slots &= slots - 1;
             let number = attributes.numbers[slot as usize];
+            // One set of planes per triangle serves all of its pixels.
             let of = HomogeneousWeights::new(plan, draw, number, [0; 2]);
             for i in (0..fragments.len).filter(|i| fragments.slots[*i].cast_unsigned() == slot) {
                 let ([second, third], w) = of.at([fragments.x[i], fragments.y[i]]);
@@ -410,6 +411,7 @@ fn find_among<S: Simd, const PAGES: usize>(
 ) {
     let lanes = Sixteen(simd);
     let [[_, er, fr], [_, ed, fd]] = triangle.steps();
+    // Relative to the first fragment: the integers stay small enough for f64.
     let [left, top] = [fragments.x[0], fragments.y[0]];
     let [_, e, f] = triangle.edges_at(left, top);
     let per_area = 1.0 / triangle.doubled_area() as f64;
@@ -468,6 +470,7 @@ fn find_in_one<S: Simd>(
     let wide = Wide::new(simd, triangle);
     let [w0, w1, w2] = attributes.by_w;
     let by_w = set(lanes, [w0[0], w1[0], w2[0]]);
+    // A whole block needs no pixel positions.
     if fragments.is_whole() {
         for (pair, linear) in
             wide.block(simd, [fragments.x[0], fragments.y[0]]).into_iter().enumerate()

@@ -72,6 +72,7 @@ impl<T: ShadingNumber> Lit<T> {
                 if shaded.light.is_none() {
                     continue;
                 }
+                // A second table holds the light on the back, if backs are lit.
                 for back in [false, true] {
                     if back && draw.back != Back::Lit {
                         continue;
@@ -207,6 +208,7 @@ impl<T: ShadingNumber> Table<T> {
                     place_vertices(tracer, positions, count, origins);
                 }
             };
+            // Shadow rays start at the vertices in world space.
             let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, scratch, &mut place));
             run(stages, terms, level, batch, shadows);
             let mut diffuse = [[T::default(); 4]; CHUNK];
@@ -243,6 +245,7 @@ fn put_places<T: Number>(draw: &Draw, first: usize, batch: &mut Batch<T>) {
             let normals = &points.normals[own.clone()];
             let number = |x: f32| T::from_f64(f64::from(x));
             for (to, from) in batch.position.iter_mut().zip([&order.x, &order.y, &order.z]) {
+                // Without a table, points are vertices in draw order: a contiguous copy.
                 if points.vertices.is_empty() {
                     to.iter_mut().zip(&from[own.clone()]).for_each(|(to, x)| *to = number(*x));
                 } else {
@@ -257,6 +260,7 @@ fn put_places<T: Number>(draw: &Draw, first: usize, batch: &mut Batch<T>) {
             }
         }
         Normals::Face => {
+            // Corners are numbered polygon by polygon, so the polygon only moves forward.
             let mut polygon = polygon_of_corner(draw, first);
             for i in 0..batch.len {
                 while !mesh.corners_of(polygon).contains(&(first + i)) {

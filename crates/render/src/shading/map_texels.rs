@@ -137,6 +137,7 @@ impl<T: ShadingNumber> Points<'_, T> {
                 Texels::Slopes => T::find_slopes(context.level, attributes.count, &samples, to),
             };
         }
+        // The slots that lanes could not handle are read one by one.
         let slots = u64::MAX >> (SLOTS - attributes.count);
         if done & slots != slots {
             self.read_one_by_one(context, group, (source, what, done), (base, to));
@@ -221,6 +222,7 @@ pub(super) fn place<T: ShadingNumber>(
             mesh.prefetch_uvs(places);
         }
     }
+    // Coordinates of each corner, in rows that lanes load.
     for (slot, places) in uv_places[..attributes.count].iter().enumerate() {
         let own = places.and_then(|places| mesh.uvs_at(places));
         placement.known |= u64::from(own.is_some()) << slot;
@@ -231,6 +233,7 @@ pub(super) fn place<T: ShadingNumber>(
     let reads_mips = sampler.reads_mips();
     let uvs = (&rows, reads_mips);
     let done = T::place_texture(context.level, attributes, (texture, uvs), placement);
+    // Triangles that sixteen lanes could not place exactly.
     let mut others = placement.known & !done;
     // Dispatched so rounding down uses the processor's instruction, if it has one.
     dispatch!(context.level, _ => while others != 0 {

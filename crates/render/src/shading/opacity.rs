@@ -33,6 +33,7 @@ impl<T: ShadingNumber> Shader<T> {
             return opacities;
         }
         let Self { fragments, attributes, barycentrics, .. } = self;
+        // Texture coordinates are fetched once per triangle.
         let mut corners = [None; SLOTS];
         for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count]) {
             *corners = uvs(group.draw, *number);

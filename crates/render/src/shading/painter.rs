@@ -209,6 +209,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
             return false;
         }
         let Self { shader, visibility, layered: Layered { layers, .. }, .. } = self;
+        // Colours of hits are converted while they are drawn.
         let conversion = Some(context.terms.conversion(plan));
         visibility.draw(level, plan, frame, (tile, bounds), conversion);
         if frame.is_layered(tile) {
@@ -386,6 +387,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         } else if !visibility.shows(block) {
             *background += ALL;
         } else if let Some(number) = visibility.whole(block) {
+            // An earlier pass has lit this triangle in all pixels of the block.
             if kept.are_all_of(number) {
                 sums.add_to_all(context.level, kept.parts(), &[ALL; BLOCK_PIXELS]);
             } else {

@@ -77,6 +77,7 @@ impl<'a> BatchShadows<'a> {
             let KnownPixels { traced, shaded } = known.at(pixels.first);
             KnownPixels { traced: pixels.in_batch(traced), shaded: pixels.in_batch(shaded) }
         });
+        // Only pixels without a cached result need a ray.
         let unknown = mask & !before.traced;
         if unknown == 0 {
             return before.shaded & mask;

@@ -70,6 +70,7 @@ impl<T: ShadingNumber> Shader<T> {
             if !is_uniform(context.plan, pipeline) {
                 continue;
             }
+            // The next group is prefetched while this one is lit.
             if is_lit(pipeline) {
                 prefetch_facets(&group, &left[..left.len().min(SLOTS)]);
             }

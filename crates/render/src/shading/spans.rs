@@ -24,6 +24,7 @@ pub(crate) fn interpolate_spans<T: AttributeNumber>(
         }
         let (x, y) = (fragments.x[i], fragments.y[i]);
         let place = (slot, y);
+        // Row and span are reused while fragments stay in them.
         let own = match row {
             Some((known, own)) if known == place => own,
             _ => {

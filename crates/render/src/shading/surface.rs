@@ -190,6 +190,7 @@ impl<T: ShadingNumber> Shader<T> {
         group: &Group<'_>,
         out: &mut Out<'_, '_>,
     ) {
+        // The fixed-point form is summed; bytes are copied to the tile.
         self.colors.form = match out {
             Out::Tile(..) | Out::Waiting(_) => Form::Pixels,
             Out::Sums(_) | Out::Kept(..) | Out::Layer(_) => Form::Parts,
@@ -363,6 +364,7 @@ impl<T: ShadingNumber> Shader<T> {
             None => SurfaceColor::Texels(texels),
             Some(tint) => SurfaceColor::Tint(tint.map(T::from_f64)),
         };
+        // `Finish` handles glow and encoding; the common cases have smaller kernels.
         if glows || encoding.is_some() {
             let thresholds =
                 (rounding != Rounding::Nearest).then(|| thresholds.of(rounding, &self.fragments));
@@ -391,6 +393,7 @@ impl<T: ShadingNumber> Shader<T> {
         let new = self.attributes.take(&self.fragments, order, draw_index, base);
         if new {
             let vertices = frame.corners_of(draw_index);
+            // Normals are requested now and read after the corners.
             if located && plan.light_at == LightAt::Pixel && asks_ahead(self.fragments.count) {
                 self.attributes.prefetch_normals(draw);
             }
@@ -444,6 +447,7 @@ impl<T: ShadingNumber> Shader<T> {
             // The attributes were not fetched, so the next block must not reuse them.
             attributes.forget();
         }
+        // Shadow rays start at the exact points that the fragments show.
         let tracer = context.tracer_of(group.draw_index).filter(|_| light.needs_positions);
         let mut place = |origins: &mut Origins| {
             if let Some(tracer) = tracer {
@@ -540,6 +544,7 @@ impl<T: ShadingNumber> Shader<T> {
         };
         let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, rays, &mut place));
         run(stages, terms.of(group.pipeline), level, batch, shadows);
+        // Pixels that need separate colours get a copy of their face's light.
         if located {
             for row in batch.diffuse.iter_mut().chain(&mut batch.specular) {
                 let of_faces = *row;

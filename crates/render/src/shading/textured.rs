@@ -33,6 +33,7 @@ impl<T: ShadingNumber> Shader<T> {
             let of = (source, Texels::Colors, new);
             points.read(context, group, of, placed, (shaded.tint, texels));
         }
+        // Vertex colours multiply last: t is a product, and order only affects rounding.
         if shaded.vertex_colors {
             if new {
                 self.take_vertex_colors(group, context.plan.variants.decoding());

@@ -105,6 +105,7 @@ impl Shader<f32> {
         self.fragments.list_tiny(context.level, runs, corner);
         let each = self.fragments.each();
         let group = group_of(context, each[0]);
+        // Another draw or pipeline: the block is removed from the list again.
         if !are_of(context, &group, &each[from..]) {
             self.fragments.shorten(from);
             return false;
@@ -220,6 +221,7 @@ impl Shader<f32> {
         let tables = lit.tables(group.draw_index, group.pipeline);
         let list = (self.fragments.each(), group.base);
         let from = (order, frame.corners_of(group.draw_index));
+        // Light is stored by point, or by corner with face normals.
         match group.draw.normals {
             Normals::Face => {
                 let triangles = mesh.triangles();
@@ -248,6 +250,7 @@ impl Shader<f32> {
             thresholds,
             ..
         } = self;
+        // One table look-up per corner; unlit vertices are lit here.
         for (i, places) in tiny.places[..fragments.len].iter().enumerate() {
             let back = tiny.back[i / 16] >> (i % 16) & 1 != 0;
             let table = tables[usize::from(back)];

@@ -156,6 +156,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
             && (self.has_corners || order.is_none())
             && self.count <= count
             && before.fold(0, |all, pair| all | differ(pair)) == 0;
+        // Triangles at the front of the list that did not change stay prepared.
         self.kept = if goes_on { self.count } else { 0 };
         if self.kept == count {
             return false;
@@ -215,6 +216,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         if !T::EXACT && plan.eye == Eye::Point {
             return;
         }
+        // Exact arithmetic and orthographic depth need the positions themselves.
         let order = draw.model.mesh.draw_order();
         let screen = Screen::new(draw.clip_from_object, plan.size);
         for (slot, ids) in self.ids[..self.count].iter().enumerate().skip(self.kept) {
@@ -255,6 +257,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
                     each(of, |point| points.normals[point as usize])
                 }
             };
+            // Back faces are lit with reversed normals.
             let turn = if self.back >> slot & 1 == 1 { -1.0 } else { 1.0 };
             for (carried, normal) in self.carried.iter_mut().zip(normals) {
                 let [x, y, z] = each(normal, |x| T::from_f64(f64::from(x * turn)));

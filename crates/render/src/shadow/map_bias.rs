@@ -68,6 +68,7 @@ impl Bordered {
                 [(&mut self.depths, picture.depths), (&mut self.slopes, picture.slopes)]
             {
                 let to = &mut to[row * STRIDE..][..ROWS];
+                // Rows beyond the picture are empty and add no bias.
                 let Some(y) = (top + row).checked_sub(1).filter(|y| *y < side) else {
                     to.fill(0.0);
                     continue;

@@ -163,6 +163,7 @@ impl Tile<'_> {
         tiles.for_each_init(
             Visibility::default,
             |visibility, (tile, ((depths, slopes), drawn))| {
+                // Cleared only if the last picture drew this tile.
                 if *drawn {
                     depths.fill(0.0);
                     slopes.fill(0.0);
@@ -242,6 +243,7 @@ fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
     let part_pipelines: Vec<Option<u32>> =
         caster.parts.iter().map(|part| part.as_ref().map(&mut pipeline)).collect();
     let first = part_pipelines.first().copied().flatten();
+    // A single pipeline for all parts skips the look-up per triangle.
     let alike = part_pipelines.iter().all(|pipeline| *pipeline == first);
     Draw {
         item: caster.item,

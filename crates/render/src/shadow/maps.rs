@@ -51,6 +51,7 @@ impl ShadowMaps {
             return *self = Self::default();
         };
         let casters = &plan.shadows.casters;
+        // Any other caster, form or filter invalidates all maps.
         let are_same = self.form == Some(form)
             && self.filter == plan.filter
             && self.casters.len() == casters.len()
@@ -60,6 +61,7 @@ impl ShadowMaps {
             *self = Self { form: Some(form), filter: plan.filter, casters, lights: Vec::new() };
         }
         let sources: Vec<&ShadowSource> = plan.shadows.sources.iter().flatten().collect();
+        // Lights that moved lose their maps; the others keep them.
         self.lights.retain(|(source, _)| sources.iter().any(|other| source.is_same(other)));
         let missing = sources.iter().filter(|source| self.of(source).is_none());
         let missing: Vec<ShadowSource> = missing.map(|source| **source).collect();

@@ -75,6 +75,7 @@ fn placed<S: Simd>(
     corner: &[[f32; TREE_BLOCK]; 3],
 ) -> Eight<S> {
     let m = world_from_object;
+    // Widened by plain loops, which vectorise.
     let mut wide = [[0.0; TREE_BLOCK]; 3];
     for (wide, row) in wide.iter_mut().zip(corner) {
         for (wide, x) in wide.iter_mut().zip(row) {

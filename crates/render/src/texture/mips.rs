@@ -61,6 +61,7 @@ impl Mips {
                 [width, height]
             };
             let (whole, own) = (sides(&self.levels[0]), sides(&self.levels[level]));
+            // The offset shrinks with the level.
             #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 pixels a side")]
             let beside = [0, 1].map(|axis| beside[axis] * own[axis] as f64 / whole[axis] as f64);
             sample_as::<T>(&self.levels[level], (uv, beside), Filter::Bilinear, self.decoding)
@@ -102,6 +103,7 @@ fn halved(picture: &Picture, decoding: Decoding) -> Picture {
     let size = Size::new(half(from.width), half(from.height));
     let pixels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
     let mean = |(x, y): (usize, usize)| {
+        // Odd sides repeat their last column or row.
         let beside = |i: usize, side: usize| [2 * i, (2 * i + 1).min(side - 1)];
         let (columns, rows) = (beside(x, from.width), beside(y, from.height));
         std::array::from_fn(|channel| {

@@ -129,6 +129,7 @@ impl OpacityLayer<'_> {
             texels(ends, count, *wrap, filter)
         };
         let (columns, rows) = (along(0, size.width)?, along(1, size.height)?);
+        // A table of block-wise bounds answers any rectangle quickly.
         let bounds = match self.channel {
             Channel::Alpha => picture.alpha_bounds(),
             Channel::Brightness => picture.color_bounds(),

@@ -152,6 +152,7 @@ impl Visibility {
         for sample in 0..N {
             let shift = self.sample_positions.shift::<N>(sample);
             let mut blocks = some;
+            // First pass: list the pixels in front, block by block.
             fragments.forget();
             while blocks != 0 {
                 let block = blocks.trailing_zeros() as usize;
@@ -169,6 +170,7 @@ impl Visibility {
             if fragments.are_none() {
                 continue;
             }
+            // Second pass: the alpha test, for listed pixels only.
             let test = test(sample);
             if test.as_ref().is_some_and(|test| !test.has_edges()) {
                 return false;

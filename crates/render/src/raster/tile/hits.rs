@@ -51,6 +51,7 @@ impl Visibility {
             |place, word| {
                 let place = place as usize % (N * PIXELS);
                 let block = place / (N * BLOCK_PIXELS);
+                // Hits of one triangle are neighbours: the block is mostly valid already.
                 if self.written >> block & 1 == 0 {
                     self.write::<N>(simd.level(), block);
                 }

@@ -65,6 +65,7 @@ impl Visibility {
                 with_format!(self.depth_format, D => {
                     small.draw(simd, D::of(self.depth_format), (bins, tile));
                 });
+                // Only the blocks that were reached are moved to the planes.
                 let mut left = small.reached;
                 while left != 0 {
                     let block = left.trailing_zeros() as usize;

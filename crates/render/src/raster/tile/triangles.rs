@@ -76,6 +76,8 @@ impl Visibility {
             if high < self.farthest[block] {
                 continue;
             }
+            // A fully covered block may need no entries at all; `Large` is built for the first such
+            // block.
             if whole >> block & 1 != 0 {
                 large = large
                     .or_else(|| Some(Large::new(triangle, &Triangle::new(corners)?, first)));
@@ -84,6 +86,7 @@ impl Visibility {
                 }
             }
             let format = D::of(self.depth_format);
+            // Painting colours the pixels in front in the same pass.
             if let Some(paint) = paint {
                 self.color(simd.level(), block);
                 let entries = &mut self.buffer.0.as_chunks_mut().0[block];

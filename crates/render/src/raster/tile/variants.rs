@@ -59,6 +59,7 @@ impl Visibility {
                 true => AlphaSurface::of(&mut surface, plan, frame, number),
                 false => None,
             };
+            // One alpha test per sample: its texture position differs.
             let tests: [Option<AlphaTest<'_, '_>>; N] = std::array::from_fn(|sample| {
                 let shift = self.sample_positions.shift::<N>(sample);
                 AlphaTest::of(own?, (plan, frame), number, shift)
@@ -76,6 +77,7 @@ impl Visibility {
             let first = [self.bounds.left, self.bounds.top];
             let own = FloatTriangle::new(corners, depths, number, first);
             let at = each(triangle.corners, |corner| corner.at());
+            // Rounding may cover centres beyond the box, so the box is enlarged.
             let beyond = beyond(Coverage::F32Edges);
             let reach = reach(self.sample_positions.reach::<N>(), beyond);
             if let Some(area) = self.in_tile(PixelBox::reached(at, reach)) {

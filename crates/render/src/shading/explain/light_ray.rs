@@ -50,6 +50,7 @@ fn ray<T: ShadingNumber>(
     } else {
         (-travels, None)
     };
+    // The equations of Phong and Blinn for this point, in f64.
     let n_l = normal.dot(to_light);
     let reflected = normal * (2.0 * n_l) - to_light;
     let half_vector = stage.highlight == Form::HalfVector;
