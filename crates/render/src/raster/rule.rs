@@ -1,8 +1,8 @@
 //! Rules of coverage, as types for which setup and the kernels of small triangles are compiled.
 //!
-//! - Integers on the usual grid: the default.
-//! - Integers on a finer grid.
-//! - Unsnapped corners: edge functions in f32. Scan lines and points are drawn by tiles only.
+//! * Integers on the usual grid: the default.
+//! * Integers on a finer grid.
+//! * Unsnapped corners: edge functions in f32. Scan lines and points are drawn by tiles only.
 
 use fearless_simd::Simd;
 

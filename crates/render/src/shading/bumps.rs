@@ -6,9 +6,9 @@
 //!
 //! T and B come from one of two places:
 //!
-//! - vertices: T by MikkTSpace, and B = s N x T, both interpolated and not normalised, as normal
+//! * vertices: T by MikkTSpace, and B = s N x T, both interpolated and not normalised, as normal
 //!   maps are made for;
-//! - the pixel: the gradients of u and v on the triangle, perpendicular to N, each of length 1: T ~
+//! * the pixel: the gradients of u and v on the triangle, perpendicular to N, each of length 1: T ~
 //!   (du1 e2 - du2 e1) x N with the sides e1 and e2 and the steps of u along them; B likewise with
 //!   v. Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU", JGT 2010; Schueler,
 //!   "Followup: Normal Mapping Without Precomputed Tangents", 2013.

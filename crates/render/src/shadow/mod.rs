@@ -4,14 +4,14 @@
 //! work is done in world space. The corners of all triangles are rounded to f64 once, by one
 //! function, and every later decision is exact. Shadow acne therefore needs no bias:
 //!
-//! - The triangle of the point itself is left out.
-//! - A triangle shades a point only if point and light lie strictly on different sides of its
+//! * The triangle of the point itself is left out.
+//! * A triangle shades a point only if point and light lie strictly on different sides of its
 //!   plane. Nothing shades a point in its own plane, and no light is shaded by the surface it lies
 //!   on.
-//! - A point inherits the side of its triangle: if the whole triangle lies on the light's side of
+//! * A point inherits the side of its triangle: if the whole triangle lies on the light's side of
 //!   another triangle's plane, the other one does not shade the point, however its position was
 //!   rounded.
-//! - A ray through an edge or corner meets every triangle that shares it, so no ray passes between
+//! * A ray through an edge or corner meets every triangle that shares it, so no ray passes between
 //!   the triangles of a closed body.
 //!
 //! Up to 64 rays to one light are traced together ([`rays`]), each patch of a surface separately

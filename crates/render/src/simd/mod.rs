@@ -1,9 +1,9 @@
 //! The numbers that light is computed with, eight or sixteen at once.
 //!
-//! - [`Real`]: the operations used by the equations of light; `single` implements them in f32.
-//! - [`Lanes`]: loads numbers from memory and stores them; [`Eight`] handles eight f64 at a time,
+//! * [`Real`]: the operations used by the equations of light; `single` implements them in f32.
+//! * [`Lanes`]: loads numbers from memory and stores them; [`Eight`] handles eight f64 at a time,
 //!   [`Sixteen`] sixteen f32. A [`Kernel`] is work that is compiled for both.
-//! - `gather`: gathers numbers from short tables.
+//! * `gather`: gathers numbers from short tables.
 //! * [`Power`], `power_variants`, `reciprocal_root`: powers of cosines and reciprocal roots by each
 //!   variant that the settings choose; `variant_real` and `variant_lanes` bring them into
 //!   equations.
