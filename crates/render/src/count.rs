@@ -34,7 +34,7 @@ fn triangle(word: u64) -> Option<u32> {
     }
 }
 
-/// The pixels of each effect on each item, and the largest error.
+/// The pixels of each effect on each item, and the largest error of any of them.
 #[derive(Debug, Default)]
 struct Counts {
     pixels: BTreeMap<(Effect, ItemId), u64>,

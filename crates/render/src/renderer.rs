@@ -69,7 +69,7 @@ impl Default for Renderer {
 }
 
 impl Renderer {
-    /// Creates a renderer for a SIMD level. Pictures are the same on every level.
+    /// Makes a renderer for a SIMD level. Pictures are the same on every level.
     #[must_use]
     pub fn new(level: Level) -> Self {
         Self {

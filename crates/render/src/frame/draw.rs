@@ -200,7 +200,7 @@ pub(crate) struct Shaded {
     pub(crate) dropped: f64,
     /// An upper bound of what the tails of highlights that were cut off add, in steps of a byte.
     pub(crate) cut_off: f64,
-    /// Whether vertex colours multiply the surface colour.
+    /// Whether vertex colours are multiplied in.
     pub(crate) vertex_colors: bool,
     /// The tint as factors.
     pub(crate) tint: [f64; 3],

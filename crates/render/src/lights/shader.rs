@@ -45,8 +45,8 @@ pub trait LightShader {
     fn fraction_at(_: &ViewLight, _cosine: f64) -> f64 {
         1.0
     }
-    /// Returns the largest contribution to a channel at any position of a region, with or without a
-    /// highlight, as a factor. A texture can only reduce it.
+    /// The most that it adds to a channel at any position of a region, with its highlight or
+    /// without, as a factor. A texture can only reduce that.
     fn max_contribution(
         light: &ViewLight,
         material: &PhongMaterial,
@@ -61,7 +61,7 @@ pub trait LightShader {
         }
         max_channel(light.color, sent_back) * Self::max_falloff(light, region)
     }
-    /// Shades some positions. `None` if the light adds nothing at any of them.
+    /// Shades some positions; `None` if it adds nothing at any of them.
     fn shade<M: Lanes, H: Highlight>(
         lanes: M,
         sample: Sample<M::R>,

@@ -142,7 +142,7 @@ fn flat<T>(rows: &[[[T; BATCH]; 3]; 2]) -> impl Iterator<Item = &T> {
     rows.as_flattened().as_flattened().iter()
 }
 
-/// The SIMD levels of this processor, the oldest first.
+/// The levels that this processor has, the oldest first.
 fn levels() -> Vec<Level> {
     let best = Level::new();
     let mut levels = vec![Level::baseline()];

@@ -202,7 +202,7 @@ impl Notes {
         }
     }
 
-    /// Returns all uses: first those of the whole frame, then item by item.
+    /// All of them: first those of the whole frame, then item by item.
     pub(super) fn into_uses(self) -> Vec<EffectUse> {
         self.uses.into_values().collect()
     }

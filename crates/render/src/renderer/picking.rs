@@ -173,8 +173,8 @@ impl Renderer {
         (!items.is_empty()).then_some(pixels)
     }
 
-    /// Counts the pixels that each effect of the last picture contributes to, and returns the
-    /// largest error of a channel in steps of a byte. Takes about as long as rasterising the
+    /// Counts the pixels that each effect of the last picture takes part in, and returns the
+    /// largest error of a channel in steps of a byte. Takes about as long as rasterizing the
     /// picture.
     pub fn count(&mut self, uses: &mut [EffectUse]) -> f64 {
         self.build_again();

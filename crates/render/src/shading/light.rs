@@ -454,7 +454,6 @@ fn set_lights<'a, T: ShadingNumber>(
     level: Level,
     batch: &mut Batch<T>,
 ) {
-    // The usual lights share one pass, with sums in registers; others are added one by one.
     let is_usual = |(stage, term): (&Stage, &LightTerm<T>)| !stage.is_mapped && term.is_usual();
     if lights.clone().all(is_usual) {
         let lights = lights.map(

@@ -1,5 +1,5 @@
-//! Prepares a plan for shading: light terms in the shading arithmetic, tables of powers, and
-//! mipmaps. Those of the last picture are reused.
+//! Prepares a plan for shading: light terms in the shading arithmetic, tables of powers, and mip
+//! maps. Those of the last picture are reused.
 
 use super::colors::prepare_linear;
 use super::rounding::block_thresholds;
@@ -22,7 +22,7 @@ use marraztu_core::scene::Texture;
 pub(crate) struct LightTerms<T> {
     terms: Vec<Vec<LightTerm<T>>>,
     tables: Tables,
-    /// The mipmaps, if the filter needs them.
+    /// Mip maps, if the filter needs them.
     mips: Vec<Mips>,
     /// The rounding thresholds of a block's pixels.
     thresholds: Option<(Rounding, [f32; BLOCK_PIXELS])>,

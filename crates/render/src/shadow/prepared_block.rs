@@ -17,12 +17,12 @@ use marraztu_core::scene::{TREE_BLOCK, TreeBlock};
 #[derive(Debug, Default)]
 #[repr(align(64))]
 pub(crate) struct PreparedBlock {
-    /// The coordinates in world space, by corner and axis.
+    /// For each corner and axis the coordinates in world space.
     corners: [[[f64; TREE_BLOCK]; 3]; 3],
     /// The normals of the planes through the light and each edge, and of the triangle's plane: see
     /// [`Prepared`].
     normals: [[[f64; TREE_BLOCK]; 3]; 4],
-    /// The errors of the edge functions, and of the plane function including the points' own error.
+    /// The errors of the edge functions, and of the plane's with that of the points.
     errors: [[f64; TREE_BLOCK]; 4],
 }
 
@@ -75,7 +75,6 @@ fn placed<S: Simd>(
     corner: &[[f32; TREE_BLOCK]; 3],
 ) -> Eight<S> {
     let m = world_from_object;
-    // Widened by plain loops, which vectorise.
     let mut wide = [[0.0; TREE_BLOCK]; 3];
     for (wide, row) in wide.iter_mut().zip(corner) {
         for (wide, x) in wide.iter_mut().zip(row) {
@@ -234,7 +233,7 @@ fn rows<S: Simd>(simd: S, [x, y, z]: &[[f64; TREE_BLOCK]; 3]) -> Eight<S> {
 
 #[inline(always)]
 fn store<S: Simd, const N: usize>(to: &mut [[[f64; TREE_BLOCK]; 3]; N], vectors: [Eight<S>; N]) {
-    // By index: iterating over vectors would move them through memory.
+    // By index: moving vectors through iterators takes them through memory.
     for i in 0..N {
         for axis in 0..3 {
             vectors[i][axis].store_slice(&mut to[i][axis]);

@@ -119,7 +119,7 @@ pub(crate) struct RayScratch {
     pub(super) local: LocalRays,
     pub(super) shaft: Shaft,
     pub(super) prepared: PreparedBlock,
-    /// The stack of BVH nodes and leaves to visit, each with the rays that reach it.
+    /// Nodes and leaves that are still to be visited, with the rays that reach them.
     pub(super) stack: Vec<(TreeChild, u64)>,
 }
 

@@ -42,7 +42,7 @@ pub(crate) struct Tracer<'a> {
 #[derive(Debug)]
 struct InPlace<'a> {
     caster: &'a Caster,
-    /// The BVH; `None` with shadow maps.
+    /// `None` with shadow maps.
     tree: Option<&'a RayTree>,
     object_from_world: DMat4,
     /// The bounds in object space.

@@ -16,7 +16,7 @@ pub const BATCH: usize = 240;
 pub trait Lanes: Copy {
     /// The number type in memory.
     type Number: Copy;
-    /// The vector of [`Self::LANES`] numbers for computing.
+    /// The vector of [`Self::LANES`] numbers that equations compute with.
     type R: VariantReal;
     /// A vector of [`Self::LANES`] slots.
     type Slots: Copy;

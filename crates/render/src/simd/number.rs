@@ -19,7 +19,7 @@ pub trait Number:
     fn byte(self) -> u8;
     /// The default variant of powers for such numbers.
     const POWER: SpecularPower;
-    /// Runs a kernel with the lanes for this type and the instructions of a level.
+    /// Runs a kernel with the lanes for such numbers and the instructions of this level.
     fn run(level: Level, kernel: impl Kernel<Self>);
     /// The same by a variant of roots, if there is one.
     fn run_variant(level: Level, variant: Option<Normalising>, kernel: impl Kernel<Self>);
