@@ -132,13 +132,13 @@ impl Damage {
         Self { tiles, surfaces, geometry, cause }
     }
 
-    /// The number of painted tiles, of 64 x 64 pixels each.
+    /// Returns the number of painted tiles, of 64 x 64 pixels each.
     #[must_use]
     pub fn tiles(&self) -> usize {
         self.tiles.count()
     }
 
-    /// The number of tiles in the picture.
+    /// Returns the number of tiles in the picture.
     #[must_use]
     pub const fn tiles_in_all(&self) -> usize {
         self.tiles.painted.len()
@@ -150,7 +150,7 @@ impl Damage {
         self.tiles() == 0
     }
 
-    /// The cause of the damage.
+    /// Returns the cause of the damage.
     #[must_use]
     pub const fn cause(&self) -> &DamageCause {
         &self.cause

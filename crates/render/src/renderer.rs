@@ -262,25 +262,25 @@ impl Renderer {
         }
     }
 
-    /// The last picture drawn.
+    /// Returns the last picture drawn.
     #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.picture
     }
 
-    /// The time taken by each stage of the last picture.
+    /// Returns the time taken by each stage of the last picture.
     #[must_use]
     pub const fn timings(&self) -> Timings {
         self.timings
     }
 
-    /// The shadow rays of the last picture.
+    /// Returns the shadow rays of the last picture.
     #[must_use]
     pub const fn rays(&self) -> RayCount {
         self.rays
     }
 
-    /// The number of triangles in the last picture.
+    /// Returns the number of triangles in the last picture.
     #[must_use]
     pub fn triangles_drawn(&self) -> usize {
         self.frame.triangles()

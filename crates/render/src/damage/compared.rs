@@ -42,6 +42,7 @@ impl Compared<'_> {
             || !same_bits(view_from_object, &before.view_from_object)
             || !alike(&view_from_normal.to_cols_array(), &before.view_from_normal.to_cols_array())
             || *mirrored != before.mirrored;
+        // A different shape changes coverage, so more than the colours.
         let shape = !Shared::same(model, &before.model)
             || *back != before.back
             || *culls_opaque != before.culls_opaque

@@ -47,7 +47,7 @@ impl KeptShadows {
         }
     }
 
-    /// The cached shadows, if any are kept.
+    /// Returns the cached shadows, if any are kept.
     pub(crate) fn known(&self) -> Option<&KnownShadows> {
         self.plan.is_some().then_some(&self.known)
     }

@@ -84,7 +84,7 @@ impl Extras {
         self.glows().filter_map(|glow| glow.map.as_ref()).chain(&self.specular)
     }
 
-    /// The names of the stages, for [`FramePlan::keys`](super::FramePlan::keys).
+    /// Returns the names of the stages, for [`FramePlan::keys`](super::FramePlan::keys).
     pub(crate) fn key(&self) -> impl Iterator<Item = &'static str> {
         let Self { emission, ambient, specular, exponent, bump } = self;
         let mapped = |glow: &Option<Glow>| glow.as_ref().is_some_and(|glow| glow.map.is_some());

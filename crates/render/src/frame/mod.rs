@@ -118,7 +118,7 @@ impl FramePlan {
         places
     }
 
-    /// The size in pixels.
+    /// Returns the size in pixels.
     #[must_use]
     pub const fn size(&self) -> Size {
         self.size

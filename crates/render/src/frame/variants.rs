@@ -31,7 +31,7 @@ pub enum Grid {
 }
 
 impl Grid {
-    /// The number of grid steps per pixel, in each direction.
+    /// Returns the number of grid steps per pixel, in each direction.
     #[must_use]
     pub const fn parts(self) -> i32 {
         match self {
@@ -63,7 +63,7 @@ impl Deref for Variants {
 }
 
 impl Variants {
-    /// The variants that the settings choose.
+    /// Returns the variants that the settings choose.
     pub(crate) fn of(settings: &Settings) -> Self {
         // What is decided for each draw, or stands elsewhere in the plan, is left at its default.
         let Settings { arithmetic, light, samples, filter, .. } = Settings::default();
@@ -110,7 +110,7 @@ impl Variants {
         (!plain).then_some(self.normalising)
     }
 
-    /// The grid that corners of triangles are snapped to.
+    /// Returns the grid that corners of triangles are snapped to.
     pub(crate) const fn grid(&self) -> Grid {
         match (self.0.subpixels, self.0.coverage) {
             (Subpixels::Bits12, Coverage::Exact) => Grid::Fine,
@@ -118,7 +118,7 @@ impl Variants {
         }
     }
 
-    /// Whether vertices are transformed and snapped by the defaults.
+    /// Returns whether vertices are transformed and snapped by the defaults.
     pub(crate) fn has_default_vertices(&self) -> bool {
         self.vertices == VertexArithmetic::F64
             && matches!(self.subpixels, Subpixels::Bits8 | Subpixels::Bits12)

@@ -42,7 +42,7 @@ impl Region {
         Self::new(corners.map(|corner| view_from_object.transform_point3(corner)), error)
     }
 
-    /// The largest distance of a corner from the origin.
+    /// Returns the largest distance of a corner from the origin.
     pub(crate) const fn reach(&self) -> f64 {
         self.reach
     }
@@ -128,7 +128,7 @@ impl Region {
 mod tests {
     use super::*;
 
-    /// A cube around `middle`, `half` to each side.
+    /// Returns a cube around `middle`, `half` to each side.
     fn cube(middle: DVec3, half: f64) -> Region {
         let corner = |i: u32| {
             let side = |bit: u32| if i & bit == 0 { -half } else { half };

@@ -47,7 +47,7 @@ pub(super) fn world_from_diamond(observer: &ObserverSpace, bulb: DVec3) -> Optio
     Some(math::placed(axes * half, bulb))
 }
 
-/// A square on its corner, from -1 to 1, facing +Z.
+/// Returns a square on its corner, from -1 to 1, facing +Z.
 pub(super) fn diamond() -> &'static Shared<Model> {
     static DIAMOND: OnceLock<Shared<Model>> = OnceLock::new();
     get_or_compute(&DIAMOND, || {

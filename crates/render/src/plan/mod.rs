@@ -69,6 +69,7 @@ fn planned(rules: Rules, notes: fn() -> Notes, shot: &Shot) -> Planning {
 
 fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
     let observer = ObserverSpace::new(shot);
+    // Light per sample is light per pixel in a picture of each sample.
     let by_sample = shot.settings.light == LightAt::Sample;
     let light = if by_sample { LightAt::Pixel } else { shot.settings.light };
     let shot = &shot.with(Settings { light, ..shot.settings });

@@ -127,7 +127,7 @@ impl ObserverSpace {
         Region::placed(view_from_object, corners, beside + deeper)
     }
 
-    /// The size of a pixel in view space at w = 1.
+    /// Returns the size of a pixel in view space at w = 1.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     fn pixel(&self) -> f64 {
         let Size { width, height } = self.size;

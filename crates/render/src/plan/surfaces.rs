@@ -22,7 +22,7 @@ use marraztu_core::base::{
 };
 use marraztu_core::scene::{MapKind, PartLook, Surface, Texture, Wrap};
 
-/// A white texture, which does not change a surface.
+/// Returns a white texture, which does not change a surface.
 fn white() -> &'static Shared<Texture> {
     static WHITE: OnceLock<Shared<Texture>> = OnceLock::new();
     get_or_compute(&WHITE, || {

@@ -50,7 +50,7 @@ pub enum Effect {
 }
 
 impl Effect {
-    /// The label; for a light, use its name instead.
+    /// Returns the label. For a light, use its name instead.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -133,13 +133,13 @@ impl EffectState {
         Self::LeftOut { reason: reason.into(), class: Class::Exact }
     }
 
-    /// Whether it is computed.
+    /// Returns whether it is computed.
     #[must_use]
     pub const fn is_on(&self) -> bool {
         matches!(self, Self::On(_))
     }
 
-    /// The reason, or the remark.
+    /// Returns the reason, or the remark.
     #[must_use]
     pub fn why(&self) -> &str {
         match self {

@@ -101,17 +101,18 @@ impl Bins {
         self.transparent.take().unwrap_or_default()
     }
 
-    /// The bins of transparent triangles, if the frame has any.
+    /// Returns the bins of transparent triangles, if the frame has any.
     pub(crate) fn transparent(&self) -> Option<&Self> {
         self.transparent.as_deref()
     }
 
-    /// The bins of opaque or of transparent triangles.
+    /// Returns the bins of opaque or of transparent triangles.
     pub(crate) fn of(&mut self, transparent: bool) -> &mut Self {
         if transparent { self.transparent.get_or_insert_default() } else { self }
     }
 
-    /// The number of triangles, or pieces of clipped triangles, including the transparent ones.
+    /// Returns the number of triangles, or pieces of clipped triangles, including the transparent
+    /// ones.
     pub(crate) fn triangles(&self) -> usize {
         self.drawn + self.transparent().map_or(0, |bins| bins.drawn)
     }

@@ -170,7 +170,7 @@ mod tests {
         }
     }
 
-    /// A ball with corners displaced by at most `off`, so some triangles are slivers.
+    /// Returns a ball with corners displaced by at most `off`, so some triangles are slivers.
     fn ball(rows: u32, off: f64, rng: &mut Rng) -> Mesh {
         let columns = 2 * rows;
         let mut positions = Vec::new();

@@ -31,8 +31,8 @@ pub(crate) trait Format: Copy {
     const KEEPS_BITS: bool = false;
     /// Returns this format, if the type includes it.
     fn of(format: DepthFormat) -> Self;
-    /// The additional depth bias of lines in steps of the format, on top of the bias in default
-    /// steps.
+    /// Returns the additional depth bias of lines in steps of the format, on top of the bias in
+    /// default steps.
     fn lines_nearer(self) -> u32;
     /// Returns the key of a depth.
     fn key(self, depth: f32) -> u32;
@@ -192,7 +192,7 @@ mod tests {
         Any(format).key(depth)
     }
 
-    /// The distance at which two planes near z = 1000 are always distinguished.
+    /// Returns the distance at which two planes near z = 1000 are always distinguished.
     fn step(format: DepthFormat) -> f64 {
         let (near, far) = (1.0, 2000.0);
         let depth = |z: f64| (near * far / z - near) / (far - near);

@@ -129,7 +129,7 @@ impl EdgeSetup<'_> {
         LineNumber::new(self.first + edge.number, outline == Outline::Back)
     }
 
-    /// The depth bias of edges, in steps of depth.
+    /// Returns the depth bias of edges, in steps of depth.
     const fn nearer(&self) -> u32 {
         if self.draw.filled { NEARER } else { 0 }
     }

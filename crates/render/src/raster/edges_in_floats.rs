@@ -135,7 +135,7 @@ impl FloatTriangle {
         touched
     }
 
-    /// The rounding error bound of an edge function in the tile.
+    /// Returns the rounding error bound of an edge function in the tile.
     #[inline(always)]
     fn error(&self, [a, b, c]: [f32; 3]) -> f32 {
         let [x, y] = self.first;

@@ -303,18 +303,17 @@ impl ScreenGeometry {
         self.bins.iter_mut().for_each(|bins| bins.hits.forget_colors());
     }
 
-    /// Distributes the tiles of the picture, such that each thread mostly draws triangles it has
-    /// set up.
+    /// Distributes the tiles of the picture. Each thread mostly draws triangles it has set up.
     pub(crate) fn shares_of_tiles(&self, tiles: usize) -> WorkStealing {
         self.set_up.shares_of_tiles(tiles)
     }
 
-    /// The bins of all threads.
+    /// Returns the bins of all threads.
     pub(crate) fn bins(&self) -> &[Bins] {
         &self.bins
     }
 
-    /// The transparent bins of all threads.
+    /// Returns the transparent bins of all threads.
     pub(crate) fn transparent_bins(&self) -> impl Iterator<Item = &Bins> {
         self.bins.iter().filter_map(Bins::transparent)
     }
@@ -324,7 +323,7 @@ impl ScreenGeometry {
         self.transparent_bins().any(|bins| !bins.is_empty(tile))
     }
 
-    /// The samples of the pass.
+    /// Returns the samples of the pass.
     pub(crate) const fn sample_positions(&self) -> SamplePositions {
         self.sample_positions
     }
@@ -340,7 +339,7 @@ impl ScreenGeometry {
         self.corners().draw_of(triangle)
     }
 
-    /// The number after the last triangle's.
+    /// Returns the number after the last triangle's.
     pub(crate) fn triangle_numbers(&self) -> usize {
         self.starts.last().map_or(0, |start| start.end as usize)
     }
@@ -353,7 +352,7 @@ impl ScreenGeometry {
         (start.number..start.end, place)
     }
 
-    /// The corners of a draw's triangles, on the finer grid if there is one.
+    /// Returns the corners of a draw's triangles, on the finer grid if there is one.
     pub(crate) fn corners_of(&self, draw: u32) -> &[ScreenVertex] {
         self.corners().of(draw as usize)
     }
@@ -397,7 +396,7 @@ impl ScreenGeometry {
         self.starts.partition_point(|start| start.line_end <= line.line())
     }
 
-    /// The number of triangles that face the observer and may cover a pixel.
+    /// Returns the number of triangles that face the observer and may cover a pixel.
     pub(crate) fn triangles(&self) -> usize {
         self.bins.iter().map(Bins::triangles).sum()
     }

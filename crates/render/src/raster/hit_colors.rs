@@ -23,7 +23,7 @@ use marraztu_core::accuracy::Interpolation;
 
 /// The light at the vertices of a frame, as final colours.
 pub(crate) trait CornerLight: Debug + Sync {
-    /// The conversion of colours to bytes.
+    /// Returns the conversion of colours to bytes.
     fn conversion(&self) -> Conversion<'_>;
     /// Creates the look-up of one thread.
     fn begin<'a>(&'a self, corners: DrawCorners<'a>) -> Box<dyn LookUp + 'a>;

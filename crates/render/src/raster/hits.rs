@@ -166,7 +166,7 @@ impl Hits {
         self.colored
     }
 
-    /// The columns and rows of the picture.
+    /// Returns the columns and rows of the picture.
     #[inline(always)]
     pub(crate) const fn extent(&self) -> [i32; 2] {
         self.extent
@@ -289,7 +289,7 @@ impl Hits {
         self.page(tile).add(place, pixels, some);
     }
 
-    /// The colours of the sixteen hits added to a tile next.
+    /// Returns the colours of the sixteen hits added to a tile next.
     #[inline(always)]
     fn next_colors(&mut self, tile: usize) -> &mut [u32] {
         let at = self.page(tile).count;

@@ -45,7 +45,7 @@ pub(crate) struct Large {
 /// The treatment of pixels that pass the depth test: holes let the surface behind show through, and
 /// pixels with known light are coloured.
 pub(crate) trait InFront<S: Simd> {
-    /// Whether the treatment does anything.
+    /// Returns whether the treatment does anything.
     fn matters(&self) -> bool;
     /// Treats the pixels of two rows of a block that pass the depth test, and returns a bit mask of
     /// the opaque ones. The arguments are the mask of pixels, the edge functions of the second and

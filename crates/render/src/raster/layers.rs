@@ -64,7 +64,7 @@ enum Layer {
 }
 
 impl Layer {
-    /// The largest depth of the corners.
+    /// Returns the largest depth of the corners.
     const fn high(&self) -> f32 {
         match self {
             Self::Large(large) => large.high,
@@ -286,7 +286,7 @@ impl Layers {
         self.touched >> block & 1 != 0
     }
 
-    /// The blocks that any triangle touches, a bit for each.
+    /// Returns the blocks that any triangle touches, a bit for each.
     pub(crate) const fn touched(&self) -> u64 {
         self.touched
     }
@@ -352,6 +352,7 @@ impl Layers {
             if u64::from(format.key(large.high())) << 32 | u64::from(u32::MAX) < farthest {
                 continue;
             }
+            // The triangle is drawn alone, then its pixels in front of opaque entries are listed.
             plane.fill(0);
             let (at, whole) = ((block, shift), touched.whole >> block & 1 != 0);
             match large {
@@ -370,7 +371,7 @@ impl Layers {
         }
     }
 
-    /// The number of layers of the pixel that has the most.
+    /// Returns the number of layers of the pixel that has the most.
     pub(crate) const fn len(&self) -> usize {
         self.block.rows.len()
     }
@@ -491,7 +492,7 @@ impl Held {
 mod tests {
     use super::*;
 
-    /// The layers taken of one pixel, and the number of turns.
+    /// Returns the layers taken of one pixel, and the number of turns.
     fn taken(keys: &[u64]) -> (Vec<u64>, usize) {
         let mut held = Held { more: u64::MAX, floor: [0; BLOCK_PIXELS], ..Held::default() };
         let (mut all, mut turns) = (Vec::new(), 0);

@@ -46,7 +46,7 @@ impl LineNumber {
         if number & LINE == 0 { None } else { Some(Self(number)) }
     }
 
-    /// The line's number among the lines of the frame.
+    /// Returns the line's number among the lines of the frame.
     pub(crate) const fn line(self) -> u32 {
         (self.0 & !LINE) >> 1
     }
@@ -56,7 +56,7 @@ impl LineNumber {
         self.0 & 1 != 0
     }
 
-    /// The primitive number.
+    /// Returns the primitive number.
     pub(crate) const fn bits(self) -> u32 {
         self.0
     }
@@ -452,7 +452,7 @@ mod tests {
         }
     }
 
-    /// The diamond-exit rule itself, tested at many points: a line leaves a diamond if its last
+    /// Applies the diamond-exit rule itself, at many points: a line leaves a diamond if its last
     /// point inside is not its end.
     fn by_the_rule([from, to]: [(f64, f64); 2]) -> Vec<(i32, i32)> {
         let n = 200_000;

@@ -42,6 +42,7 @@ pub(crate) fn share_out(
             }
             parts.run(level, work, bins, brush);
         }
+        // The queues hold fewer than a full batch at the end.
         with_rule!(parts.plan.variants, R => setup::finish::<R>(level, bins, brush));
     });
 }
@@ -149,12 +150,12 @@ impl<'a> Parts<'a> {
         &self.vertices.usual[vertex..vertex_end]
     }
 
-    /// The corners of all triangles.
+    /// Returns the corners of all triangles.
     fn corners(&self) -> DrawCorners<'a> {
         DrawCorners { corners: self.vertices.corners(), starts: self.starts }
     }
 
-    /// The outlines of a draw; empty if its edges are not drawn.
+    /// Returns the outlines of a draw; empty if its edges are not drawn.
     pub(crate) fn outlines_of(&self, draw: usize) -> &'a [AtomicU8] {
         let Draw { model, lines, .. } = &self.plan.draws[draw];
         let count = if lines.edges { model.mesh.polygon_count() } else { 0 };

@@ -56,7 +56,7 @@ impl Queue {
         self.count >= WAITING
     }
 
-    /// The number of triangles drawn next.
+    /// Returns the number of triangles drawn next.
     #[inline(always)]
     pub(super) fn waiting(&self) -> usize {
         self.count.min(WAITING)

@@ -418,6 +418,7 @@ impl<'a> Setup<'a> {
             let corners = [pieces[0], pieces[i - 1], pieces[i]];
             let area = doubled_area(corners.map(|corner| corner.at()));
             let front = (area < 0) != self.draw.mirrored;
+            // Facing is tested on the clipped pieces, after snapping.
             if area == 0 || (!front && self.culls_back(kind)) {
                 continue;
             }

@@ -89,6 +89,7 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
     let simd = pack[0].simd;
     let sample_positions = bins.sample_positions;
     let lanes = Lanes::<S, E>::new(simd, pack, sample_positions.reach::<N>());
+    // The tiles are found once for all sixteen triangles.
     let reach = bins.hits.reach(lanes.bounds());
     let Bins { hits, covered, queues, .. } = bins;
     let shifts = lanes.edges.shifts::<N>(&sample_positions);
@@ -186,7 +187,7 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
         }
     }
 
-    /// The bounding box of all boxes.
+    /// Returns the bounding box of all boxes.
     #[inline(always)]
     fn bounds(&self) -> PixelBox {
         PixelBox {

@@ -197,17 +197,17 @@ impl Visibility {
         })
     }
 
-    /// The blocks that one triangle covers fully, a bit for each.
+    /// Returns the blocks that one triangle covers fully, a bit for each.
     pub(crate) const fn full_blocks(&self) -> u64 {
         self.whole
     }
 
-    /// The entries of a block that shows something, row by row, with one sample per pixel.
+    /// Returns the entries of a block that shows something, row by row, with one sample per pixel.
     pub(crate) fn block(&self, block: usize) -> &[u64; BLOCK_PIXELS] {
         &self.buffer.0.as_chunks().0[block]
     }
 
-    /// The entries of a block that shows something, with four samples per pixel.
+    /// Returns the entries of a block that shows something, with four samples per pixel.
     pub(crate) fn planes(&self, block: usize) -> &Planes {
         &self.buffer.0.as_chunks().0.as_chunks().0[block]
     }
@@ -319,7 +319,7 @@ impl Visibility {
         }
     }
 
-    /// The entries of a block for one of `N` samples.
+    /// Returns the entries of a block for one of `N` samples.
     #[inline(always)]
     fn plane<const N: usize>(&mut self, block: usize, sample: usize) -> &mut [u64; BLOCK_PIXELS] {
         &mut self.buffer.0.as_chunks_mut().0[block * N + sample]

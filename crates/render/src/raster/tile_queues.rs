@@ -216,6 +216,7 @@ impl TileQueues {
         self.handed_out += 1;
         let (before, after) = self.pages.split_at_mut(new);
         let (full, page) = (&mut before[previous as usize], &mut after[0]);
+        // The overflow of the full page moves to the new one.
         for (to, from) in page.rows.iter_mut().zip(&full.rows) {
             to[..PACK].copy_from_slice(&from[PAGE..]);
         }

@@ -50,7 +50,7 @@ pub(crate) fn to_pixels(
     }
 }
 
-/// The coordinates of some vertices.
+/// Returns the coordinates of some vertices.
 fn rows(order: &DrawOrder, first: usize, count: usize) -> [&[f32]; 3] {
     [&order.x, &order.y, &order.z].map(|row| &row[first..first + count])
 }
@@ -158,8 +158,8 @@ mod tests {
     use marraztu_core::base::image::Size;
     use marraztu_core::base::math;
 
-    /// The largest error on the screen, in pixels, of vertices 400 in front of a camera that is
-    /// `offset` from the origin.
+    /// Returns the largest error on the screen, in pixels, of vertices 400 in front of a camera
+    /// that is `offset` from the origin.
     fn worst(vertices: VertexArithmetic, offset: f64) -> f64 {
         let size = Size::new(800, 800);
         let clip_from_view = math::perspective(22.5_f64.to_radians(), 1.0, 2000.0, size);

@@ -20,7 +20,7 @@ pub(crate) struct Vertices {
 }
 
 impl Vertices {
-    /// The corners of triangles, on the finer grid if there is one.
+    /// Returns the corners of triangles, on the finer grid if there is one.
     pub(crate) fn corners(&self) -> &[ScreenVertex] {
         if self.fine.is_empty() { &self.usual } else { &self.fine }
     }

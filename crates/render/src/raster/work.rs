@@ -105,7 +105,7 @@ impl<W: Copy> WorkList<W> {
         &self.pieces
     }
 
-    /// The number of pieces.
+    /// Returns the number of pieces.
     pub(crate) fn len(&self) -> usize {
         self.pieces.len()
     }

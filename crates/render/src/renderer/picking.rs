@@ -197,7 +197,7 @@ impl Renderer {
         pixels
     }
 
-    /// The size of the last finished picture; 0 x 0 before the first.
+    /// Returns the size of the last finished picture; 0 x 0 before the first.
     fn seen_size(&self) -> Size {
         self.plan.as_ref().map_or(Size::new(0, 0), |plan| plan.size)
     }

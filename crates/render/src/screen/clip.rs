@@ -69,7 +69,7 @@ impl ScreenVertex {
         Self { x: self.x - x, y: self.y - y, ..self }
     }
 
-    /// The vertex's position in the picture.
+    /// Returns the vertex's position in the picture.
     #[inline(always)]
     pub(crate) const fn at(&self) -> Snapped {
         Snapped { x: self.x, y: self.y }
@@ -130,17 +130,17 @@ impl Screen {
         Self { shift, ..self }
     }
 
-    /// The sample's offset, in pixels.
+    /// Returns the sample's offset, in pixels.
     pub(crate) fn shift_in_pixels(&self) -> [f64; 2] {
         self.shift.map(|by| f64::from(by) / self.parts)
     }
 
-    /// The number of grid steps per pixel.
+    /// Returns the number of grid steps per pixel.
     pub(crate) const fn parts(&self) -> f64 {
         self.parts
     }
 
-    /// The guard band's half width and half height as factors of w.
+    /// Returns the guard band's half width and half height as factors of w.
     pub(crate) const fn guard(&self) -> [f64; 2] {
         self.guard
     }

@@ -96,13 +96,13 @@ impl PixelBox {
         }
     }
 
-    /// The number of columns, if the box is not empty.
+    /// Returns the number of columns, if the box is not empty.
     #[must_use]
     pub const fn width(self) -> i32 {
         self.right - self.left
     }
 
-    /// The number of rows, if the box is not empty.
+    /// Returns the number of rows, if the box is not empty.
     #[must_use]
     pub const fn height(self) -> i32 {
         self.bottom - self.top
@@ -133,9 +133,9 @@ impl Edge {
         Self { a: py - qy, b: qx - px, c: px * qy - py * qx }
     }
 
-    /// The top-left rule: 0 if a centre on the edge is covered, else -1. Centres on a top edge
-    /// (level, with the triangle below) and on a left edge (going up) are covered. Since e is an
-    /// integer, a bias of -1 moves no other centre across.
+    /// Returns the bias of the top-left rule: 0 if a centre on the edge is covered, else -1.
+    /// Centres on a top edge (level, with the triangle below) and on a left edge (going up) are
+    /// covered. Since e is an integer, a bias of -1 moves no other centre across.
     #[inline(always)]
     fn bias(self) -> i64 {
         if self.a > 0 || (self.a == 0 && self.b > 0) { 0 } else { -1 }
@@ -196,13 +196,13 @@ impl Triangle {
         Some(Self { edges, doubled_area: doubled_area.abs(), bounds, grid })
     }
 
-    /// Twice the area, in squared grid steps: more than 0.
+    /// Returns twice the area, in squared grid steps: more than 0.
     #[must_use]
     pub const fn doubled_area(&self) -> i64 {
         self.doubled_area
     }
 
-    /// The box of pixels with a centre in the triangle's bounding box.
+    /// Returns the box of pixels with a centre in the triangle's bounding box.
     #[must_use]
     pub const fn bounds(&self) -> PixelBox {
         self.bounds
@@ -217,7 +217,7 @@ impl Triangle {
         each(self.edges, |edge| edge.at(cx, cy))
     }
 
-    /// The steps of the edge functions for one pixel to the right and one pixel down.
+    /// Returns the steps of the edge functions for one pixel to the right and one pixel down.
     #[inline(always)]
     #[must_use]
     pub fn steps(&self) -> [[i64; 3]; 2] {
@@ -226,7 +226,7 @@ impl Triangle {
         [[p.a * step, q.a * step, r.a * step], [p.b * step, q.b * step, r.b * step]]
     }
 
-    /// The smallest values of the edge functions at covered centres.
+    /// Returns the smallest values of the edge functions at covered centres.
     #[inline(always)]
     #[must_use]
     pub fn least(&self) -> [i64; 3] {
@@ -234,7 +234,7 @@ impl Triangle {
         [-p.bias(), -q.bias(), -r.bias()]
     }
 
-    /// The centre of column or row `i`, in grid steps.
+    /// Returns the centre of column or row `i`, in grid steps.
     #[inline(always)]
     fn centre(&self, i: i32) -> i64 {
         let parts = i64::from(self.grid.parts());
@@ -262,7 +262,7 @@ impl Triangle {
     }
 }
 
-/// Twice the signed area: positive if the corners run clockwise on the screen, negative if
+/// Returns twice the signed area: positive if the corners run clockwise on the screen, negative if
 /// counter-clockwise.
 #[must_use]
 #[inline(always)]

@@ -50,7 +50,7 @@ impl SamplePositions {
         positions
     }
 
-    /// The number of samples: [`FOUR`], or one.
+    /// Returns the number of samples: [`FOUR`], or one.
     pub(crate) const fn count(&self) -> usize {
         if self.many { FOUR } else { 1 }
     }
@@ -60,13 +60,13 @@ impl SamplePositions {
         self.many
     }
 
-    /// The offset of sample `i` of `N` from the centre, in subpixels.
+    /// Returns the offset of sample `i` of `N` from the centre, in subpixels.
     #[inline(always)]
     pub(crate) const fn shift<const N: usize>(&self, i: usize) -> [i32; 2] {
         if N == 1 { [0; 2] } else { self.shifts[i % FOUR] }
     }
 
-    /// The smallest and largest offset on each axis.
+    /// Returns the smallest and largest offset on each axis.
     #[inline(always)]
     pub(crate) const fn reach<const N: usize>(&self) -> [[i32; 2]; 2] {
         if N == 1 { [[0; 2]; 2] } else { [self.least, self.most] }

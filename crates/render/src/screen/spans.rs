@@ -123,8 +123,8 @@ mod tests {
         Snapped { x: x * 256, y: y * 256 }
     }
 
-    /// The largest error of linear interpolation between two ends with distances in the ratio r,
-    /// relative to the length between them: (sqrt r - 1) / (sqrt r + 1).
+    /// Returns the largest error of linear interpolation between two ends with distances in the
+    /// ratio r, relative to the length between them: (sqrt r - 1) / (sqrt r + 1).
     fn most(ratio: f64) -> f64 {
         (ratio.sqrt() - 1.0) / (ratio.sqrt() + 1.0)
     }

@@ -20,7 +20,7 @@ pub(crate) const BLOCKS: i32 = TILE / BLOCK;
 /// The pixels in a tile.
 pub(crate) const PIXELS: usize = TILE_SIDE * TILE_SIDE;
 
-/// The number of columns and rows of tiles.
+/// Returns the number of columns and rows of tiles.
 pub(crate) fn tiles_of(size: Size) -> [i32; 2] {
     [size.width, size.height].map(|pixels| {
         i32::try_from(pixels.div_ceil(TILE_SIDE)).expect("pictures have 32-bit sizes")

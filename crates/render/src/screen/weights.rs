@@ -195,7 +195,7 @@ impl HomogeneousWeights {
         Self { planes, w: [p.z, q.z, r.z] }
     }
 
-    /// The steps of N0, N1 and N2 by a pixel to the right and by one down.
+    /// Returns the steps of N0, N1 and N2 for one pixel to the right and one pixel down.
     pub(crate) fn steps(&self) -> [[f64; 3]; 2] {
         let [p, q, r] = self.planes;
         [[p[0], q[0], r[0]], [p[1], q[1], r[1]]]

@@ -136,7 +136,7 @@ impl Mean {
     }
 }
 
-/// The weight of a layer: w = max(0.01, min(3000, 0.03 / (1e-5 + (z / 200)^4))).
+/// Computes the weight of a layer: w = max(0.01, min(3000, 0.03 / (1e-5 + (z / 200)^4))).
 #[inline(always)]
 fn weight(z: f64) -> f64 {
     let square = (z / 200.0) * (z / 200.0);
@@ -147,7 +147,7 @@ fn weight(z: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A byte in fixed point.
+    /// Returns a byte in fixed point.
     const fn parts(byte: u32) -> u32 {
         (byte << 16) + (1 << 15)
     }

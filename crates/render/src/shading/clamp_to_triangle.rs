@@ -162,7 +162,8 @@ fn clamped<R: Real>(t: R, [least, most]: [R; 2]) -> R {
     Real::min(Real::max(t, least), most)
 }
 
-/// The parameter along a triangle's side nearest to a point: 0 at its start and 1 at its end.
+/// Returns the parameter along a triangle's side nearest to a point: 0 at its start and 1 at its
+/// end.
 #[inline(always)]
 fn along<R: Real>(point: [R; 2], side: [R; 2]) -> R {
     (point[0] * side[0] + point[1] * side[1]) / (side[0] * side[0] + side[1] * side[1])

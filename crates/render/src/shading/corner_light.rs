@@ -44,6 +44,7 @@ impl<'a> VertexLight<'a> {
             && variants.coverage == Coverage::Exact
             && variants.interpolation != Interpolation::EverySixteen
             && !plan.shadows.are_cast();
+        // Early colouring only covers the usual settings, and wastes work on hidden pixels.
         let pays = is_usual && few_are_hidden(plan);
         pays.then_some(Self { level, plan, lit, terms })
     }
@@ -123,6 +124,7 @@ impl<'a> Worker<'a> {
         }
         let own = self.draw.as_ref()?;
         let number = number - self.numbers.start;
+        // Light is stored by corner with face normals, else by point.
         let places = match own.draw.normals {
             Normals::Face => own.draw.model.mesh.triangles()[number as usize].corners,
             Normals::Vertex => own.points.of(own.order, number, vertices),

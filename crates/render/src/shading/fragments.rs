@@ -212,7 +212,7 @@ impl Fragments {
         dispatch!(level, simd => self.put_tiny(simd, runs, corner));
     }
 
-    /// The triangles of the fragments of a list without slots.
+    /// Returns the triangles of the fragments of a list without slots.
     pub(crate) fn each(&self) -> &[u32] {
         &self.each[..self.len]
     }

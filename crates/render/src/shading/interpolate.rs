@@ -268,6 +268,7 @@ impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
                 }
             };
             let w = lanes.load(&barycentrics.w, at);
+            // z is only interpolated in orthographic projection.
             let sample = look.at(lanes, normal, place, w, || {
                 depth_between(picked::<M, PAGES>(lanes, &attributes.z, slots), weights)
             });

@@ -48,7 +48,7 @@ impl Kept {
         })
     }
 
-    /// The colours of all pixels.
+    /// Returns the colours of all pixels.
     pub(crate) const fn parts(&self) -> &[[u32; 4]; BLOCK_PIXELS] {
         &self.parts
     }

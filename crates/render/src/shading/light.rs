@@ -224,7 +224,7 @@ impl<T: ShadingNumber> Table<T> {
     }
 }
 
-/// The number of lit vertices of a draw: its points or, with face normals, its corners.
+/// Returns the number of lit vertices of a draw: its points or, with face normals, its corners.
 fn place_count(draw: &Draw) -> usize {
     let mesh = &draw.model.mesh;
     match draw.normals {

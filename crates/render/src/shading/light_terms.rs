@@ -31,7 +31,7 @@ pub(crate) struct LightTerms<T> {
 }
 
 impl<T> LightTerms<T> {
-    /// The rounding thresholds of a block's pixels; only after [`prepare`](Self::prepare).
+    /// Returns the rounding thresholds of a block's pixels; only after [`prepare`](Self::prepare).
     pub(crate) fn thresholds(&self) -> &[f32; BLOCK_PIXELS] {
         self.thresholds.as_ref().map_or(&[0.5; BLOCK_PIXELS], |(_, thresholds)| thresholds)
     }
@@ -88,7 +88,7 @@ impl<T: Number> LightTerms<T> {
         self.mips.iter().find(|mips| mips.are_of(texture, decoding))
     }
 
-    /// The conversion of interpolated colours to bytes.
+    /// Returns the conversion of interpolated colours to bytes.
     pub(crate) fn conversion(&self, plan: &FramePlan) -> Conversion<'_> {
         Conversion {
             interpolation: plan.variants.interpolation,
@@ -97,12 +97,12 @@ impl<T: Number> LightTerms<T> {
         }
     }
 
-    /// The encoding, if colours are linear.
+    /// Returns the encoding, if colours are linear.
     pub(crate) const fn encoding(&self) -> Option<&Encoding> {
         self.encoding.as_ref()
     }
 
-    /// The light terms of a pipeline.
+    /// Returns the light terms of a pipeline.
     pub(crate) fn of(&self, pipeline: u32) -> &[LightTerm<T>] {
         &self.terms[pipeline as usize]
     }

@@ -35,7 +35,7 @@ pub(super) struct TexelSource<'a> {
 }
 
 impl<'a> TexelSource<'a> {
-    /// A texture of colours, read by the filter of the frame.
+    /// Returns a texture of colours, read by the filter of the frame.
     pub(super) fn of_colors<T: Number>(
         context: &ShadingContext<'a, T>,
         texture: &'a Shared<Texture>,
@@ -45,7 +45,7 @@ impl<'a> TexelSource<'a> {
         Self { texture, mips, filter: context.plan.filter, decoding }
     }
 
-    /// A texture of numbers, which is never decoded, read by the filter of the frame.
+    /// Returns a texture of numbers, which is never decoded, read by the filter of the frame.
     pub(super) fn of_numbers<T: Number>(
         context: &ShadingContext<'a, T>,
         texture: &'a Shared<Texture>,
@@ -54,7 +54,7 @@ impl<'a> TexelSource<'a> {
         Self { texture, mips, filter: context.plan.filter, decoding: Decoding::Stored }
     }
 
-    /// A texture of heights or normals, read by the filter of bump maps.
+    /// Returns a texture of heights or normals, read by the filter of bump maps.
     pub(super) fn of_bumps<T: Number>(
         context: &ShadingContext<'a, T>,
         texture: &'a Shared<Texture>,

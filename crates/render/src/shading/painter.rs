@@ -156,7 +156,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         self.shader.begin();
     }
 
-    /// The shadow rays since the frame began.
+    /// Returns the shadow rays since the frame began.
     pub(crate) const fn ray_count(&self) -> RayCount {
         self.shader.ray_count()
     }

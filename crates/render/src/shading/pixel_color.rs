@@ -103,7 +103,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// The name.
+    /// Returns the name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -15,7 +15,7 @@ use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::{BATCH, Kernel, Lanes, Number, Vec3};
 use marraztu_core::accuracy::Rounding;
 
-/// The threshold added to 255 c at a pixel before truncating.
+/// Returns the threshold added to 255 c at a pixel before truncating.
 fn threshold(rounding: Rounding, x: i32, y: i32) -> f64 {
     match rounding {
         Rounding::Truncated => 0.0,
@@ -24,8 +24,8 @@ fn threshold(rounding: Rounding, x: i32, y: i32) -> f64 {
     }
 }
 
-/// The Bayer matrix at a pixel, from 0 to 63: the bits of x xor y and of y interleaved, the lowest
-/// first.
+/// Returns the entry of the Bayer matrix at a pixel, from 0 to 63: the bits of x xor y and of y
+/// interleaved, the lowest first.
 #[expect(clippy::cast_possible_truncation, reason = "the last bits are meant")]
 const fn bayer(x: i32, y: i32) -> u8 {
     let (x, y) = ((x ^ y) as u8, y as u8);

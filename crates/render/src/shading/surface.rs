@@ -142,7 +142,7 @@ impl<T: ShadingNumber> Shader<T> {
         self.rays.count = RayCount::default();
     }
 
-    /// The shadow rays since the frame began.
+    /// Returns the shadow rays since the frame began.
     pub(crate) const fn ray_count(&self) -> RayCount {
         self.rays.count
     }

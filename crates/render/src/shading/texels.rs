@@ -310,6 +310,7 @@ pub(super) fn lane_steps<S: Simd>(
     let [bx, by] = places(simd, &attributes.corners[1], at);
     let [cx, cy] = places(simd, &attributes.corners[2], at);
     let [w0, w1, w2] = &attributes.by_w;
+    // All corners as f64, for sixteen triangles in two halves.
     let by_w = [wide(simd, w0, at), wide(simd, w1, at), wide(simd, w2, at)];
     let (b, c) = ([less(bx, ax), less(by, ay)], [less(cx, ax), less(cy, ay)]);
     let parts = f64::from(attributes.grid.parts());

@@ -87,12 +87,12 @@ impl<T: Number> Default for TriangleAttributes<T> {
 }
 
 impl<T> TriangleAttributes<T> {
-    /// The slots of new triangles.
+    /// Returns the slots of new triangles.
     fn new_slots(&self) -> std::ops::Range<usize> {
         self.kept..self.count
     }
 
-    /// A bit for each slot that is not new.
+    /// Returns a bit for each slot that is not new.
     const fn kept_bits(&self) -> u64 {
         (1 << self.kept) - 1
     }
@@ -450,7 +450,7 @@ pub(super) struct Edges<S: Simd> {
     pub(super) area: i32x16<S>,
     /// The mask of clipped triangles.
     pub(super) cut: mask32x16<S>,
-    /// The mask of other triangles with edge functions of more than 31 bits.
+    /// The mask of unclipped triangles with edge functions of more than 31 bits.
     pub(super) wide: mask32x16<S>,
 }
 

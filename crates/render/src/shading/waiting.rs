@@ -110,6 +110,7 @@ impl<T: ShadingNumber> Shader<T> {
         let shown = self.fragments.list_more(context.level, runs, corner);
         let group = group_of(context, self.fragments.numbers[0]);
         if !are_of(context, &group, &self.fragments.numbers[count..self.fragments.count]) {
+            // The block shows another surface: its fragments are removed again.
             self.fragments.take_back(len, count);
             return None;
         }
@@ -129,6 +130,7 @@ impl<T: ShadingNumber> Shader<T> {
         let ends = self.waiting.iter().skip(1).map(|next| next.from).chain([self.fragments.len]);
         for (Waiting { from, at }, end) in self.waiting.iter().copied().zip(ends) {
             let colors = &self.colors.pixels[from..end];
+            // A block with all pixels is copied row by row.
             if let Some(all) = colors.first_chunk::<BLOCK_PIXELS>() {
                 canvas.put(at, all);
                 continue;

@@ -69,7 +69,7 @@ impl KnownShadows {
         self.lights = sources.iter().map(|source| source.as_ref().map(&mut kept)).collect();
     }
 
-    /// The lights that cast shadows, with their positions.
+    /// Returns the lights that cast shadows, with their positions.
     pub(crate) fn lights(&mut self) -> impl Iterator<Item = (ShadowSource, &mut KnownLight)> {
         self.lights.iter_mut().flatten().map(|known| (known.source, known))
     }

@@ -62,13 +62,13 @@ impl Around {
         Self { centre, halves }
     }
 
-    /// The half extent along each axis of the world.
+    /// Returns the half extent along each axis of the world.
     #[inline(always)]
     pub(super) fn extent(&self) -> DVec3 {
         self.halves.iter().fold(DVec3::ZERO, |sum, half| sum + half.abs())
     }
 
-    /// The largest coordinate.
+    /// Returns the largest coordinate.
     pub(super) fn farthest(&self) -> f64 {
         (self.centre.abs() + self.extent()).max_element()
     }

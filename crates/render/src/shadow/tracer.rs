@@ -420,7 +420,7 @@ impl<'a> InPlace<'a> {
         })
     }
 
-    /// The largest coordinate of the box.
+    /// Returns the largest coordinate of the box.
     fn reach(&self) -> f64 {
         self.low.abs().max(self.high.abs()).max_element()
     }

@@ -32,7 +32,8 @@ pub trait Real:
     /// Returns `yes` if `self` is more than `than`; else, or if either is NaN, `no`.
     #[must_use]
     fn if_more(self, than: Self, yes: Self, no: Self) -> Self;
-    /// The power of `self`, which is from 0 to 1; 0 if it is below the floor, or `self` is 0.
+    /// Returns the power of `self`, which is from 0 to 1; 0 if it is below the floor, or `self` is
+    /// 0.
     #[must_use]
     fn power(self, power: &Power) -> Self;
     /// The same with the exponent times `factor`, by the default of the arithmetic.

@@ -148,7 +148,7 @@ impl<'a> Sampler<'a> {
         number * (1.0 / 255.0)
     }
 
-    /// The pixels of a level, or an empty slice if the level does not exist.
+    /// Returns the pixels of a level, or an empty slice if the level does not exist.
     #[inline(always)]
     fn pixels_of(&self, level: i32) -> &[[u8; 4]] {
         let level = level.cast_unsigned() as usize % LEVELS;
@@ -340,7 +340,7 @@ impl Decode for Linear {
     }
 }
 
-/// The table of linear values: 255 times the linear value of each byte.
+/// Returns the table of linear values: 255 times the linear value of each byte.
 fn decoded_bytes() -> &'static [f32; 256] {
     static TABLE: OnceLock<[f32; 256]> = OnceLock::new();
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]

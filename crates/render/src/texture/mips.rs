@@ -42,7 +42,7 @@ impl Mips {
         Shared::same(&self.of, texture) && self.decoding == decoding
     }
 
-    /// The texture and its smaller copies, the largest first.
+    /// Returns the texture and its smaller copies, the largest first.
     pub(crate) fn levels(&self) -> &[Texture] {
         &self.levels
     }

@@ -69,12 +69,12 @@ impl<'a> Opacity<'a> {
         self.holes([[0.0; 2]; 2]);
     }
 
-    /// The material's opacity.
+    /// Returns the material's opacity.
     pub(crate) const fn of_material(&self) -> f64 {
         self.of_material
     }
 
-    /// The textures that scale the opacity.
+    /// Returns the textures that scale the opacity.
     pub(crate) const fn layers(&self) -> &[Option<OpacityLayer<'a>>; 2] {
         &self.layers
     }

@@ -78,7 +78,7 @@ const FACTORS: [f64; 256] = {
     factors
 };
 
-/// The linear value of each byte, from 0 to 1.
+/// Returns the linear value of each byte, from 0 to 1.
 pub(crate) fn linear_factors() -> &'static [f64; 256] {
     static TABLE: OnceLock<[f64; 256]> = OnceLock::new();
     get_or_compute(&TABLE, || FACTORS.map(linear))

@@ -27,7 +27,7 @@ impl Default for HitColors {
 }
 
 impl HitColors {
-    /// The colours of a block.
+    /// Returns the colours of a block.
     #[inline(always)]
     pub(super) fn block_mut(&mut self, block: usize) -> &mut [u32; BLOCK_PIXELS] {
         &mut self.0.as_chunks_mut().0[block]

@@ -22,12 +22,12 @@ const SIZE: Size = Size { width: 150, height: 140 };
 const PICTURE: PixelBox = PixelBox { left: 0, top: 0, right: 150, bottom: 140 };
 const TILE_BOX: PixelBox = PixelBox { left: 0, top: 0, right: TILE, bottom: TILE };
 
-/// The centre, and the samples farthest from it on all sides.
+/// Returns the centre, and the samples farthest from it on all sides.
 fn middle_and_others() -> [SamplePositions; 3] {
     [passes(Samples::One)[0], passes(Samples::Four)[0], passes(Samples::Sixteen)[3]]
 }
 
-/// The offset of sample `i`.
+/// Returns the offset of sample `i`.
 fn shift(sample_positions: &SamplePositions, i: usize) -> [i32; 2] {
     if sample_positions.are_many() { sample_positions.shift::<FOUR>(i) } else { [0; 2] }
 }
@@ -46,7 +46,7 @@ fn bins(sample_positions: SamplePositions) -> Bins {
     bins
 }
 
-/// The pixels that a triangle may cover in some of their samples.
+/// Returns the pixels that a triangle may cover in some of their samples.
 fn reached(corners: [Snapped; 3], sample_positions: &SamplePositions) -> PixelBox {
     match sample_positions.are_many() {
         true => PixelBox::reached(corners, sample_positions.reach::<FOUR>()),
@@ -54,7 +54,7 @@ fn reached(corners: [Snapped; 3], sample_positions: &SamplePositions) -> PixelBo
     }
 }
 
-/// The bins with some triangles of a queue, at most sixteen.
+/// Returns the bins with some triangles of a queue, at most sixteen.
 fn small(queue: usize, triangles: &[[ScreenVertex; 3]], sample_positions: SamplePositions) -> Bins {
     let number = |corner: ScreenVertex| ([corner.at().x, corner.at().y], corner.depth);
     let rows: Vec<_> = triangles.iter().map(|corners| corners.map(number)).collect();
@@ -96,7 +96,7 @@ fn rows_of(triangles: &[[([i32; 2], f32); 3]]) -> [[i32; 16]; ROWS] {
     rows
 }
 
-/// The bins with some triangles of a queue that wait for their tiles, at most sixteen.
+/// Returns the bins with some triangles of a queue that wait for their tiles, at most sixteen.
 fn waiting(
     queue: usize,
     triangles: &[[ScreenVertex; 3]],
@@ -123,7 +123,7 @@ fn waiting(
     bins
 }
 
-/// The samples that show primitive 0: pixels row by row, then the samples of each pixel.
+/// Returns the samples that show primitive 0: pixels row by row, then the samples of each pixel.
 fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
     let mut visibility = Visibility::default();
     let mut found = Vec::new();
@@ -153,7 +153,7 @@ fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
     found
 }
 
-/// A sample is covered if the pixel's centre is covered after moving the corners the opposite way.
+/// Finds covered samples: the pixel's centre is covered after moving the corners the opposite way.
 fn covered(corners: [Snapped; 3], sample_positions: &SamplePositions) -> Vec<(i32, i32, usize)> {
     covered_on(Grid::Usual, corners, sample_positions)
 }
@@ -228,7 +228,7 @@ fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
     assert_eq!(seen_in(&bins), want, "{corners:?} alone in 64 bits");
 }
 
-/// The entries of the first tile.
+/// Returns the entries of the first tile.
 fn entries(bins: &Bins) -> Vec<u64> {
     let mut visibility = Visibility::default();
     visibility.clear(TILE_BOX, bins.sample_positions);
@@ -317,7 +317,7 @@ fn on_the_fine_grid_small_and_large_triangles_cover_what_the_rule_says() {
     }
 }
 
-/// The pixels of a tile that a triangle covers by f32 edge functions: a x + b y + c.
+/// Returns the pixels of a tile that a triangle covers by f32 edge functions: a x + b y + c.
 fn by_floats([p, q, r]: [[f32; 2]; 3]) -> Vec<(i32, i32)> {
     let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     let inside = |p: [f32; 2], q: [f32; 2], x: f32, y: f32| {
@@ -332,7 +332,7 @@ fn by_floats([p, q, r]: [[f32; 2]; 3]) -> Vec<(i32, i32)> {
     .collect()
 }
 
-/// The pixels drawn block by block.
+/// Returns the pixels drawn block by block.
 fn drawn(mut draw: impl FnMut(usize, &mut [u64; BLOCK_PIXELS])) -> Vec<(i32, i32)> {
     let mut found = Vec::new();
     for (block, at) in (0..64_usize).zip(0_i32..) {
@@ -462,7 +462,7 @@ fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
     }
 }
 
-/// The visibility of each pixel's samples, found triangle by triangle and sample by sample.
+/// Returns the visibility of each pixel's samples, found triangle by triangle and sample by sample.
 #[expect(clippy::needless_range_loop, reason = "a sample is one of each pixel's")]
 fn one_by_one(triangles: &[LargeTriangle], sample_positions: &SamplePositions) -> Vec<[u64; FOUR]> {
     let mut words = vec![[0; FOUR]; PIXELS];

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A sample of the visibility buffer that shows a triangle.
+/// Returns a sample of the visibility buffer that shows a triangle.
 fn word(number: u32) -> u64 {
     1 << 62 | u64::from(!number)
 }

@@ -128,7 +128,7 @@ fn every_ray_is_decided_as_whole_numbers_decide_it() {
     assert!(stopped > rays / 10 && stopped < rays * 9 / 10, "{stopped} of {rays}");
 }
 
-/// An octahedron, each face divided into n^2 triangles: closed, with whole coordinates.
+/// Returns an octahedron, each face divided into n^2 triangles: closed, with whole coordinates.
 fn octahedron(n: i128) -> Vec<[Point; 3]> {
     let mut triangles = Vec::new();
     for signs in 0..8 {

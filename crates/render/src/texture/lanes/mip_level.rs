@@ -426,8 +426,8 @@ mod tests {
     use marraztu_core::base::rng::Rng;
     use marraztu_core::scene::Texture;
 
-    /// The texels around a position, one by one: left and right in the lower row, then in the
-    /// upper.
+    /// Returns the texels around a position, one by one: left and right in the lower row, then in
+    /// the upper.
     fn around(texture: &Texture, at: [f32; 2]) -> [[[u8; 4]; 2]; 2] {
         let Size { width, height } = texture.picture.size();
         let bring = |i: i64, count: usize| {
