@@ -110,7 +110,7 @@ impl Variants {
         (!plain).then_some(self.normalising)
     }
 
-    /// Returns the grid that corners of triangles are snapped to.
+    /// The grid that corners of triangles are snapped to.
     pub(crate) const fn grid(&self) -> Grid {
         match (self.0.subpixels, self.0.coverage) {
             (Subpixels::Bits12, Coverage::Exact) => Grid::Fine,

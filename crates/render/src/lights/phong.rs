@@ -111,7 +111,7 @@ impl<T: Number> LightTerm<T> {
         }
     }
 
-    /// Returns whether roots are computed by the default.
+    /// Whether roots are computed by the default.
     pub(crate) const fn is_usual(&self) -> bool {
         self.variant.is_none()
     }
@@ -256,12 +256,12 @@ pub(super) fn phong<M: Lanes, H: Highlight>(
     Some(Reflected { diffuse, specular })
 }
 
-/// Returns the largest of a surface's three channels in a light.
+/// The largest of a surface's three channels in a light.
 pub(super) fn max_channel(color: [f64; 3], sent_back: [f64; 3]) -> f64 {
     color.iter().zip(sent_back).map(|(color, part)| color * part).fold(0.0, f64::max)
 }
 
-/// Returns the largest attenuation factor of a light over a region.
+/// The largest attenuation factor of a light over a region.
 pub(super) fn max_attenuation(light: &ViewLight, region: Option<&Region>) -> f64 {
     let d = region.map_or(0.0, |region| region.least_distance(light.position.into()));
     let [a0, a1, a2] = light.attenuation;

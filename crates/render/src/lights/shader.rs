@@ -45,8 +45,8 @@ pub trait LightShader {
     fn fraction_at(_: &ViewLight, _cosine: f64) -> f64 {
         1.0
     }
-    /// Returns the most that it adds to a channel at any position of a region, with its highlight
-    /// or without, as a factor. A texture can only reduce that.
+    /// The most that it adds to a channel at any position of a region, with its highlight or
+    /// without, as a factor. A texture can only reduce that.
     fn max_contribution(
         light: &ViewLight,
         material: &PhongMaterial,

@@ -142,7 +142,7 @@ fn flat<T>(rows: &[[[T; BATCH]; 3]; 2]) -> impl Iterator<Item = &T> {
     rows.as_flattened().as_flattened().iter()
 }
 
-/// Returns the levels that this processor has, the oldest first.
+/// The levels that this processor has, the oldest first.
 fn levels() -> Vec<Level> {
     let best = Level::new();
     let mut levels = vec![Level::baseline()];
@@ -156,7 +156,7 @@ fn levels() -> Vec<Level> {
     levels
 }
 
-/// Returns scattered positions and normals, none of them at the border of a cone.
+/// Scattered positions and normals, none of them at the border of a cone.
 fn scattered() -> Batch<f64> {
     let mut batch = Batch { len: BATCH, ..Batch::default() };
     for i in 0..BATCH {

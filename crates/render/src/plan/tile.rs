@@ -124,7 +124,6 @@ impl TilePlan {
             };
             dropped += bounded::thin(&mut self.own, most, budget, |_, _| {});
         }
-        // Without a light that reads positions, the tile needs no normals either.
         let kept = self.own.iter().map(|place| &stages[*place as usize]);
         let needs_positions = plan.rules.positions(&Reading::of(kept)).is_none();
         let from = self.kept.len();

@@ -507,7 +507,7 @@ fn put_sample<S: Simd>(
     batch.put(lanes, sample, at);
 }
 
-/// Repeats three numbers of the first triangle in all lanes.
+/// Three numbers of the first triangle, the same for all lanes.
 #[inline(always)]
 fn of_first<S: Simd>(lanes: Sixteen<S>, rows: &[[f32; SLOTS]; 3]) -> Vec3<f32x16<S>> {
     set(lanes, [rows[0][0], rows[1][0], rows[2][0]])
