@@ -201,7 +201,6 @@ impl Shader<f32> {
             let normals = (normals, group.draw.back == Back::Lit);
             tiny::sample(level, &look, (fragments, tiny), normals, barycentrics, batch);
         }
-        // The tile may have culled lights, so the list is taken after the positions.
         let light = self.tile.light(plan, group.pipeline, shaded);
         light.light_batch(terms.of(group.pipeline), level, &mut self.batch, None);
         self.quantize(context, Some(shaded.tint), (true, false));

@@ -112,7 +112,7 @@ impl MapDraws {
         if (0..count).all(|tile| geometry.is_empty(tile)) {
             return None;
         }
-        // Only drawn tiles need slopes and bias.
+        // Slopes are computed from the corners of visible triangles in clip space.
         let screens: Vec<Screen> =
             plan.draws.iter().map(|draw| Screen::new(draw.clip_from_object, plan.size)).collect();
         Tile { level, plan, geometry, screens: &screens }.draw_all(count, shown);
