@@ -131,8 +131,9 @@ impl Renderer {
     /// Redraws the parts of the last picture that another plan changes, and returns the damage. The
     /// result equals the picture drawn by [`Self::render`].
     ///
-    /// # Errors [`Cancelled`] if `wanted`, which every thread calls between tiles, returns false.
-    /// The picture is then undefined until the next one is finished.
+    /// # Errors
+    /// [`Cancelled`] if `wanted`, which every thread calls between tiles, returns false. The
+    /// picture is then undefined until the next one is finished.
     pub fn redraw(
         &mut self,
         plan: &FramePlan,

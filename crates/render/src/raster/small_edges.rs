@@ -97,8 +97,8 @@ struct WholeEdge<S: Simd> {
     b: i32x16<S>,
 }
 
-/// Computes an edge function as in `coverage`: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y
-/// - p.y) at x = y = 0; multiplied by the sign of the area.
+/// Computes an edge function as in `coverage`, multiplied by the sign of the area: a = p.y - q.y,
+/// b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0.
 #[inline(always)]
 fn whole_edge<S: Simd>(
     [px, py]: [i32x16<S>; 2],

@@ -4,8 +4,8 @@
 //! and the same for every arithmetic of light. Triangles that share an edge leave no gap and cover
 //! no pixel twice.
 //!
-//! The edge functions are from Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH
-//! 1988. Centres on an edge follow the top-left rule of Direct3D and Vulkan.
+//! The edge functions: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988.
+//! Centres on an edge follow the top-left rule of Direct3D and Vulkan.
 //!
 //! Coordinates stay within 2^28 (the guard band of 2^20 pixels). Edge functions therefore stay
 //! below 2^59 and never overflow.

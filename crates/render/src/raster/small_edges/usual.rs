@@ -160,8 +160,8 @@ struct LanesEdge<S: Simd> {
     b: f32x16<S>,
 }
 
-/// Computes an edge function as in `coverage`: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y
-/// - p.y) at x = y = 0; multiplied by the sign of the area, with steps by whole pixels.
+/// Computes an edge function as in `coverage`, multiplied by the sign of the area, with steps by
+/// whole pixels: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0.
 #[inline(always)]
 fn edge<S: Simd>(
     [px, py]: [f32x16<S>; 2],
