@@ -1,7 +1,7 @@
-//! Whether a frame that is being drawn is still wanted.
+//! Cancellation of a frame in progress.
 //!
-//! Every thread asks between chunks and between tiles. Once the answer is no, it stays no: a frame
-//! is cancelled as a whole.
+//! Every thread asks between chunks and between tiles whether the frame is still wanted. Once the
+//! answer is no, it stays no, so a frame is cancelled completely.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -12,7 +12,7 @@ pub(crate) struct Cancellation<'a> {
     told: Option<Told<'a>>,
 }
 
-/// Reports how many tiles are painted, of how many.
+/// Reports the number of painted tiles and their total.
 struct Told<'a> {
     tell: &'a (dyn Fn(usize, usize) + Sync),
     painted: AtomicUsize,
@@ -24,13 +24,13 @@ impl<'a> Cancellation<'a> {
         Self { wanted, given_up: AtomicBool::new(false), told: None }
     }
 
-    /// The same, and calls `tell` with the painted tiles and all tiles, over all passes.
+    /// Adds a callback that receives the painted tiles and all tiles, over all passes.
     pub(crate) const fn telling(self, tell: &'a (dyn Fn(usize, usize) + Sync)) -> Self {
         let (painted, all) = (AtomicUsize::new(0), AtomicUsize::new(0));
         Self { told: Some(Told { tell, painted, all }), ..self }
     }
 
-    /// Announces how many tiles will be painted, over all passes.
+    /// Announces the total number of tiles, over all passes.
     pub(crate) fn expect_tiles(&self, all: usize) {
         if let Some(told) = &self.told {
             told.all.store(all, Ordering::Relaxed);
@@ -45,7 +45,7 @@ impl<'a> Cancellation<'a> {
         }
     }
 
-    /// Whether drawing goes on.
+    /// Returns whether drawing should continue.
     pub(crate) fn goes_on(&self) -> bool {
         if self.is_given_up() {
             return false;
@@ -57,7 +57,7 @@ impl<'a> Cancellation<'a> {
         wanted
     }
 
-    /// Whether the frame was cancelled.
+    /// Returns whether the frame was cancelled.
     pub(crate) fn is_given_up(&self) -> bool {
         self.given_up.load(Ordering::Relaxed)
     }

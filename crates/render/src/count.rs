@@ -1,9 +1,8 @@
-//! How many pixels each effect of a picture takes part in.
+//! Counts the pixels that each effect of a picture contributes to.
 //!
-//! A pixel with several samples counts for what most of them show.
+//! A pixel with several samples counts for the surface that most of them show.
 //!
-//! The count is made afterwards from the visibility of each pixel, so drawing itself pays nothing
-//! for it.
+//! The count is made afterwards, from the visibility of each pixel, so drawing itself pays nothing.
 
 use crate::accel::Accelerated as _;
 use std::collections::BTreeMap;
@@ -28,7 +27,7 @@ use crate::tile_layers::TileLayers;
 use marraztu_core::accuracy::LightAt;
 use marraztu_core::scene::ItemId;
 
-/// The triangle that a sample of the visibility buffer shows.
+/// Returns the triangle shown by a sample of the visibility buffer.
 fn triangle(word: u64) -> Option<u32> {
     match seen(word) {
         Visible::Triangle(number) => Some(number),
@@ -84,7 +83,7 @@ impl FramePlan {
         tile: &mut TilePlan,
     ) -> Counts {
         let mut counts = Counts::default();
-        // By draw and pipeline.
+        // The number of pixels by draw and pipeline, and by draw.
         let mut surfaces = BTreeMap::<(u32, u32), u64>::new();
         let mut draws = BTreeMap::<u32, u64>::new();
         let surface = |number: u32| {
@@ -93,8 +92,8 @@ impl FramePlan {
         };
         let rows = bounds.top..bounds.bottom;
         for (y, x) in rows.flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x))) {
-            // A surface that shows in some samples only counts towards the error, but not as a
-            // pixel.
+            // A surface that shows only in a minority of samples counts towards the error, but not
+            // as a pixel.
             let (samples, count) = tile_seen.visibility.samples(level, x, y);
             for number in samples[1..count].iter().filter_map(|word| triangle(*word)) {
                 surfaces.entry(surface(number)).or_default();
@@ -109,6 +108,7 @@ impl FramePlan {
                 own.clear();
                 own.extend(words.iter().filter_map(|word| triangle(*word)));
                 for number in &own {
+                    // Facing is reused while neighbouring pixels show the same triangle.
                     let same = last.filter(|(other, _)| other == number);
                     let back = same.map_or_else(
                         || {
@@ -123,6 +123,7 @@ impl FramePlan {
                         counts.add(Effect::BackFaces, self.draws[draw as usize].item, 1);
                     }
                 }
+                // Several triangles of one surface at a pixel count once.
                 let mut once: Vec<(u32, u32)> = own.iter().map(|number| surface(*number)).collect();
                 once.sort_unstable();
                 once.dedup();
@@ -148,7 +149,7 @@ impl FramePlan {
         counts
     }
 
-    /// Whether the observer sees the back of a triangle.
+    /// Returns whether the observer sees the back of a triangle.
     fn is_back(&self, frame: &ScreenGeometry, draw: u32, number: u32) -> bool {
         let own = &self.draws[draw as usize];
         let vertices = frame.corners_of(draw);
@@ -164,8 +165,8 @@ impl FramePlan {
         front == own.mirrored
     }
 
-    /// Counts a pixel of a line. Normals of faces and of vertices are not distinguished: it counts
-    /// for both.
+    /// Counts a pixel of a line. Face normals and vertex normals are not distinguished: a pixel
+    /// counts for both.
     fn count_line(&self, frame: &ScreenGeometry, line: LineNumber, counts: &mut Counts) {
         let Some((draw, _)) = frame.line_seen(self, line) else { return };
         let draw = &self.draws[draw as usize];
@@ -190,6 +191,7 @@ impl FramePlan {
         counts: &mut Counts,
     ) {
         let light = tile.light(self, pipeline, shaded);
+        // Only lights that the tile plan kept for this tile count.
         let stages: Vec<&Stage> = match light.kept {
             None => light.stages.iter().collect(),
             Some(kept) => kept.iter().map(|place| &light.stages[*place as usize]).collect(),

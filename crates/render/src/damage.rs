@@ -1,11 +1,10 @@
-//! Finds which tiles of a picture another plan damages, and so which have to be painted again.
+//! Finds the tiles of a picture that another plan damages, which have to be painted again.
 //!
-//! Only plans are compared; no pixel is touched. A tile stays valid as long as everything that
-//! reaches into it is drawn as before, so the damaged tiles are those in the old and in the new
-//! bounds of every draw that changed. Bounds are boxes of pixels: sometimes too large, never too
-//! small.
+//! Only plans are compared; no pixel is touched. A tile stays valid while everything that reaches
+//! into it is drawn as before. The old and new bounds of every changed draw are therefore damaged.
+//! Bounds are boxes of pixels: sometimes too large, never too small.
 //!
-//! Numbers are compared by their bits. 0 and -0 are equal, but one divided by them is not.
+//! Numbers are compared by their bits: 0 and -0 are equal, but their reciprocals are not.
 
 use std::collections::BTreeMap;
 
@@ -25,50 +24,50 @@ mod shadow_reach;
 
 use compared::Compared;
 
-/// The tiles that are painted again, and why.
+/// The tiles to be painted again, and the cause.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Damage {
     pub(crate) tiles: Tiles,
-    /// The tiles in which another triangle may show, or the same one elsewhere.
+    /// The tiles that may show another triangle, or the same one at another position.
     surfaces: Tiles,
     /// Whether the triangles and lines on the screen changed, or their numbers did.
     pub(crate) geometry: bool,
     cause: DamageCause,
 }
 
-/// Why tiles are painted.
+/// The reason why tiles are painted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DamageCause {
-    /// There is no finished picture yet.
+    /// No picture has been finished yet.
     First,
-    /// The picture has another size.
+    /// The size of the picture changed.
     Size,
-    /// Everything moved on the screen: another camera, lens or projection.
+    /// Everything moved on the screen: the camera, lens or projection changed.
     Camera,
-    /// The background has another colour.
+    /// The colour of the background changed.
     Background,
-    /// The settings of accuracy changed.
+    /// The accuracy settings changed.
     Settings,
-    /// A light that casts shadows changed, or something that casts them.
+    /// A shadow-casting light or a caster changed.
     Shadows,
     /// The order of draws changed, which decides between equal depths.
     Order,
-    /// These items changed; the list is empty if the picture stays as it is.
+    /// These items changed. An empty list means that the picture stays the same.
     Items(Vec<(ItemId, Change)>),
 }
 
-/// How the drawing of an item changed.
+/// The change in the drawing of an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
-    /// It was not drawn before.
+    /// The item was not drawn before.
     Came,
-    /// It is no longer drawn.
+    /// The item is no longer drawn.
     Went,
-    /// It moved.
+    /// The item moved.
     Moved,
-    /// Other polygons or lines of it are drawn.
+    /// Other polygons or lines of the item are drawn.
     Shape,
-    /// Its colours, its texture or the light on it changed.
+    /// The item's colours, texture or light changed.
     Look,
 }
 
@@ -84,6 +83,8 @@ impl Damage {
         if let Some(cause) = whole(before, after) {
             return Self::all(cause, after.size);
         }
+        // Draws are matched by item. Each match also has to keep the order, which breaks ties of
+        // depth.
         let mut old: BTreeMap<ItemId, usize> = BTreeMap::new();
         for (i, draw) in before.draws.iter().enumerate() {
             old.insert(draw.item, i);
@@ -108,17 +109,20 @@ impl Damage {
             let earlier = &before.draws[at];
             let Some(change) = compared.change(earlier, draw) else { continue };
             items.push((draw.item, change));
+            // Other pixels can only show through if a surface moved or its holes changed.
             let shows_others = change != Change::Look || compared.has_other_holes(earlier, draw);
             let changed = if shows_others { &mut surfaces } else { &mut tiles };
             changed.add(reach(earlier, before));
             changed.add(reach(draw, after));
             geometry |= change != Change::Look;
         }
+        // The remaining old draws have disappeared.
         for (item, at) in old {
             items.push((item, Change::Went));
             surfaces.add(reach(&before.draws[at], before));
             geometry = true;
         }
+        // Shadows come last: they add tiles of draws that did not change themselves.
         tiles.add_all(&surfaces);
         if !shadow_reach::add(before, after, &mut tiles) {
             return Self { surfaces, ..Self::all(DamageCause::Shadows, after.size) };
@@ -128,34 +132,34 @@ impl Damage {
         Self { tiles, surfaces, geometry, cause }
     }
 
-    /// How many tiles of 64 x 64 pixels are painted.
+    /// Returns the number of painted tiles, of 64 x 64 pixels each.
     #[must_use]
     pub fn tiles(&self) -> usize {
         self.tiles.count()
     }
 
-    /// How many tiles the picture has.
+    /// Returns the number of tiles in the picture.
     #[must_use]
     pub const fn tiles_in_all(&self) -> usize {
         self.tiles.painted.len()
     }
 
-    /// Whether the picture stays as it is.
+    /// Returns whether the picture stays the same.
     #[must_use]
     pub fn is_nothing(&self) -> bool {
         self.tiles() == 0
     }
 
-    /// The reason.
+    /// Returns the cause of the damage.
     #[must_use]
     pub const fn cause(&self) -> &DamageCause {
         &self.cause
     }
 }
 
-/// The reason why everything has to be painted, if there is one.
+/// Returns the reason to paint everything, if there is one.
 fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
-    // The other fields are compared draw by draw, or do not show in the picture.
+    // The other fields are compared draw by draw, or are not visible in the picture.
     let FramePlan {
         size,
         background,
@@ -202,10 +206,11 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
     }
 }
 
-/// The pixels that a draw may cover.
+/// Bounds the pixels that a draw may cover.
 ///
-/// The projection of what lies before the near plane is within the projection of any box about it.
-/// If the box reaches the near plane, or normals stick out of it, the bounds are the whole picture.
+/// The projection of everything in front of the near plane is within the projection of its bounding
+/// box. If the box reaches the near plane, or normals stick out of it, the bounds are the whole
+/// picture.
 fn reach(draw: &Draw, plan: &FramePlan) -> PixelBox {
     let [right, bottom] = [plan.size.width, plan.size.height]
         .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
@@ -216,12 +221,12 @@ fn reach(draw: &Draw, plan: &FramePlan) -> PixelBox {
         return all;
     }
     let corners = bounds.corners().map(|corner| draw.clip_from_object * corner.extend(1.0));
-    // The width of lines.
+    // The margin is the width of lines.
     around(plan, &corners, f64::from(plan.line_width)).unwrap_or(all)
 }
 
-/// The pixels that the convex hull of points in clip space may cover, with a margin; `None` if it
-/// reaches the near plane.
+/// Bounds the pixels that the convex hull of points in clip space may cover, plus a margin. `None`
+/// if the hull reaches the near plane.
 #[expect(
     clippy::cast_precision_loss,
     clippy::cast_possible_truncation,
@@ -243,7 +248,7 @@ fn around(plan: &FramePlan, points: &[DVec4], margin: f64) -> Option<PixelBox> {
             (low[axis], high[axis]) = (low[axis].min(at[axis]), high[axis].max(at[axis]));
         }
     }
-    // One pixel for rounding and snapping.
+    // One more pixel for rounding and snapping.
     let margin = margin + 1.0;
     let [left, top] = low.map(|at| (at - margin).floor().clamp(-1e6, 1e6) as i32);
     let [right, bottom] = high.map(|at| (at + margin).ceil().clamp(-1e6, 1e6) as i32);
@@ -283,7 +288,7 @@ impl Tiles {
         }
     }
 
-    /// Adds those of another set of the same picture.
+    /// Adds the tiles of another set of the same picture.
     fn add_all(&mut self, others: &Self) {
         for (own, other) in self.painted.iter_mut().zip(&others.painted) {
             *own |= other;
@@ -294,7 +299,7 @@ impl Tiles {
         self.painted.iter().filter(|painted| **painted).count()
     }
 
-    /// Whether a tile is in the set.
+    /// Returns whether a tile is in the set.
     pub(crate) fn contains(&self, tile: usize) -> bool {
         self.painted[tile]
     }

@@ -1,7 +1,7 @@
 //! Fits the exposure to a picture.
 //!
 //! Light is linear in the exposure until a channel is clamped at white. The picture is therefore
-//! made darker until its brightest surfaces are below white, and one multiplication gives the
+//! darkened until its brightest surfaces are below white. One multiplication then gives the
 //! exposure that brings them just below it.
 
 use super::{Renderer, without_ground};
@@ -11,11 +11,11 @@ use marraztu_core::scene::View;
 /// The share of a picture's surface that may be clamped: highlights are meant to be white.
 const CLAMPED: f64 = 0.01;
 
-/// The brightness, in steps of a byte, that the brightest surfaces are brought to.
+/// The target brightness of the brightest surfaces, in steps of a byte.
 const JUST_BELOW_WHITE: f64 = 250.0;
 
-/// The exposure at which all but the brightest hundredth of the visible surfaces is below white, in
-/// stops; that of the view if nothing is lit.
+/// Returns the exposure, in stops, at which all but the brightest hundredth of the visible surfaces
+/// is below white. If nothing is lit, it is the view's exposure.
 #[must_use]
 pub fn fitted_exposure(shot: &Shot) -> f64 {
     let mut renderer = Renderer::default();
@@ -28,7 +28,7 @@ pub fn fitted_exposure(shot: &Shot) -> f64 {
         if brightest >= 255.0 {
             stops -= 2.0;
         } else if brightest < 16.0 && stops >= 0.0 {
-            // Few steps of a byte would be a rough measure.
+            // A measurement in a few steps of a byte would be too coarse.
             stops += 2.0;
         } else {
             stops += (JUST_BELOW_WHITE / brightest).log2();
@@ -37,11 +37,11 @@ pub fn fitted_exposure(shot: &Shot) -> f64 {
             return stops.clamp(-View::MOST_EXPOSURE, View::MOST_EXPOSURE);
         }
     }
-    // Surfaces without light stay as they are at any exposure.
+    // Unlit surfaces look the same at any exposure.
     shot.view.exposure
 }
 
-/// The brightness of the brightest surfaces, except for the share that may be clamped; `None` if
+/// Measures the brightness of the brightest surfaces after the share that may be clamped. `None` if
 /// there is no surface.
 #[expect(
     clippy::cast_possible_truncation,

@@ -1,8 +1,8 @@
 //! Draws plans into a picture.
 //!
-//! A picture is drawn as a whole, or only the damaged tiles of the last one are drawn again, to the
-//! same bytes. No setting is read here: the plan holds every decision. What is asked of the last
-//! picture stands in [`picking`].
+//! A picture is either drawn completely, or only the damaged tiles of the last one are drawn again,
+//! with the same bytes as a result. No setting is read here: the plan holds every decision. Queries
+//! about the last picture are in [`picking`].
 
 mod picking;
 
@@ -40,20 +40,20 @@ use marraztu_core::base::image::{Picture, Size};
 
 pub use picking::Hit;
 
-/// Draws pictures, and keeps their memory from one frame to the next.
+/// Draws pictures, and reuses memory from one frame to the next.
 #[derive(Debug)]
 pub struct Renderer {
     level: Level,
     picture: Picture,
     frame: ScreenGeometry,
-    /// For each tile the blocks that are filled with one colour.
+    /// The blocks of each tile that are filled with one colour.
     filled: Vec<Filled>,
     caches: ShadingCaches,
     /// The plan of the last finished picture.
     plan: Option<FramePlan>,
-    /// Whether the picture is still that one: nothing has been painted over it.
+    /// Whether the picture still is the last finished one: nothing has been painted over it.
     finished: bool,
-    /// Whether the screen geometry is that of the last finished picture.
+    /// Whether the screen geometry belongs to the last finished picture.
     built: bool,
     timings: Timings,
     rays: RayCount,
@@ -102,13 +102,13 @@ impl Renderer {
         }
     }
 
-    /// Draws a plan from scratch, whatever was drawn before.
+    /// Draws a plan from scratch, independently of earlier pictures.
     pub fn render(&mut self, plan: &FramePlan) -> &Picture {
         self.render_watched(plan, &|_, _| {})
     }
 
     /// Draws a plan from scratch and reports progress between tiles: the number of painted tiles,
-    /// and of all. With several samples per pixel, each tile is painted in several passes and
+    /// and their total. With several samples per pixel, each tile is painted in several passes and
     /// counts in each.
     pub fn render_watched(
         &mut self,
@@ -121,10 +121,10 @@ impl Renderer {
         &self.picture
     }
 
-    /// Draws a plan from scratch, as [`Self::render`] does.
+    /// Draws a plan from scratch, like [`Self::render`].
     ///
     /// # Errors
-    /// As [`Self::redraw`].
+    /// See [`Self::redraw`].
     pub fn render_while(
         &mut self,
         plan: &FramePlan,
@@ -135,15 +135,15 @@ impl Renderer {
         Ok(&self.picture)
     }
 
-    /// Reuses nothing of the last picture for the next one.
+    /// Forces the next picture to be drawn completely.
     fn forget(&mut self) {
         self.finished = false;
         self.frame.forget();
         self.shadows.forget();
     }
 
-    /// Draws again what another plan changes of the last picture, and returns the damage. The
-    /// picture is the one that [`Self::render`] draws.
+    /// Redraws the parts of the last picture that another plan changes, and returns the damage. The
+    /// result equals the picture drawn by [`Self::render`].
     ///
     /// # Errors
     /// [`Cancelled`] if `wanted`, which every thread calls between tiles, returns false. The
@@ -166,7 +166,7 @@ impl Renderer {
         if plan.rules == Rules::Ignored || !damage.is_nothing() {
             self.resize(plan.size);
             self.finished = false;
-            // Runs on a drawing thread, so that the caller sleeps and wakes once per frame.
+            // Runs on a drawing thread, so the caller sleeps and wakes only once per frame.
             rayon::scope(|_| {
                 plan.prepare();
                 self.draw_damage(plan, &damage, watch);
@@ -174,7 +174,7 @@ impl Renderer {
             if watch.is_given_up() {
                 return Err(Cancelled);
             }
-            // If each sample was drawn by itself, the geometry is that of the last sample.
+            // If each sample was drawn separately, the geometry is that of the last sample.
             (self.finished, self.built) = (true, !plan.lit_by_sample);
         }
         self.plan = Some(plan.clone());
@@ -201,7 +201,7 @@ impl Renderer {
         watch.expect_tiles(pictures * damage.tiles());
         let mut sums = Vec::new();
         if passes.len() > 1 || plan.lit_by_sample {
-            // If this is cancelled, the geometry belongs to no finished picture.
+            // If this frame is cancelled, the geometry belongs to no finished picture.
             self.built = false;
             let [columns, rows] = tiles_of(plan.size);
             let tiles = usize::try_from(columns * rows).expect("not negative");
@@ -211,14 +211,15 @@ impl Renderer {
             return self.draw_each_sample(plan, damage, &sums, watch);
         }
         self.prepare(plan);
-        // The first pass comes last, so that picking reads its geometry.
+        // The first pass is drawn last, because picking reads its geometry.
         for (i, sample_positions) in passes.iter().enumerate().rev() {
             if self.built {
                 self.frame.forget_colors();
             } else {
                 let ShadingCache { lit, terms, .. } = &self.caches.fast;
                 let one = passes.len() == 1 && !sample_positions.are_many();
-                // Hits are coloured wherever they are: not if few of them are painted.
+                // Hits are coloured even in tiles that are not painted, so this only pays if most
+                // tiles are.
                 let pays = one && 2 * damage.tiles() >= self.filled.len();
                 let light = pays.then(|| VertexLight::new(self.level, plan, lit, terms)).flatten();
                 let light = light.as_ref().map(|light| light as &dyn CornerLight);
@@ -232,7 +233,8 @@ impl Renderer {
         }
     }
 
-    /// Draws a picture for each sample, as if it were the centre of its pixel, and averages them.
+    /// Draws a picture for each sample, as if it were the pixel's centre, and averages the
+    /// pictures.
     fn draw_each_sample(
         &mut self,
         plan: &FramePlan,
@@ -267,7 +269,7 @@ impl Renderer {
         }
     }
 
-    /// The damage that [`Self::redraw`] would repair.
+    /// Returns the damage that [`Self::redraw`] would repair.
     #[must_use]
     pub fn damage(&self, plan: &FramePlan) -> Damage {
         match &self.plan {
@@ -276,19 +278,19 @@ impl Renderer {
         }
     }
 
-    /// The picture that was drawn last.
+    /// Returns the last picture drawn.
     #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.picture
     }
 
-    /// The time that each stage of the last picture took.
+    /// Returns the time taken by each stage of the last picture.
     #[must_use]
     pub const fn timings(&self) -> Timings {
         self.timings
     }
 
-    /// The rays of shadows that the last picture took.
+    /// Returns the shadow rays of the last picture.
     #[must_use]
     pub const fn rays(&self) -> RayCount {
         self.rays
@@ -301,7 +303,7 @@ impl Renderer {
         self.path_pixels
     }
 
-    /// The number of triangles of the last picture.
+    /// Returns the number of triangles in the last picture.
     #[must_use]
     pub fn triangles_drawn(&self) -> usize {
         self.frame.triangles()
@@ -315,7 +317,7 @@ impl Renderer {
         }
     }
 
-    /// Draws tiles in parallel: each thread has its own painter.
+    /// Draws tiles in parallel, with a painter per thread.
     fn draw<T: Painted>(
         &mut self,
         plan: &FramePlan,
@@ -323,6 +325,7 @@ impl Renderer {
         pass: &Pass<'_>,
         watch: &Cancellation<'_>,
     ) {
+        // Shadow maps and the cache of face colours come first: all threads read them.
         let mut laps = Laps::start();
         self.maps.update(self.level, plan, watch);
         let ShadingCache { terms, lit, faces, paths, painters } = T::cache(&mut self.caches);
@@ -338,6 +341,7 @@ impl Renderer {
         let context = ShadingContext { level, plan, frame, lit, terms, faces, paths, tracer };
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
+        // One band per row of tiles. A thread locks a band while it writes a tile to it.
         let bands: Vec<Mutex<Band<'_>>> = self
             .picture
             .pixels_mut()
@@ -348,12 +352,13 @@ impl Renderer {
         let tiles = bands.len() * columns;
         let shares = frame.shares_of_tiles(tiles);
         painters.resize_with(rayon::current_num_threads(), Painter::default);
-        // Also those of threads that come too late to paint.
+        // Every painter begins, even if its thread comes too late to paint a tile.
         painters.iter_mut().for_each(Painter::begin);
         let painters: Vec<Mutex<&mut Painter<T>>> = painters.iter_mut().map(Mutex::new).collect();
         together(painters.len(), || {
             let painter = &mut own(&painters);
             loop {
+                // Each thread takes the next tile until none is left or the frame is cancelled.
                 let Some(tile) = shares.next().filter(|_| watch.goes_on()) else { return };
                 let row = tile / columns;
                 if damage.tiles.contains(tile) {
@@ -377,22 +382,23 @@ impl Renderer {
     }
 }
 
-/// One of the passes over a picture.
+/// One pass over a picture.
 #[derive(Debug)]
 struct Pass<'a> {
-    /// For each tile the colours of earlier passes, block by block; empty if there is one pass.
+    /// The summed colours of earlier passes for each tile, block by block; empty with a single
+    /// pass.
     sums: &'a [TileSums],
     is_last: bool,
 }
 
-/// What shading keeps from frame to frame, for one arithmetic.
+/// Shading results reused from frame to frame, for one arithmetic.
 #[derive(Debug, Default)]
 struct ShadingCache<T> {
     terms: LightTerms<T>,
     lit: Lit<T>,
     faces: FaceColors,
     paths: ColorPaths,
-    /// One for each thread.
+    /// One painter per thread.
     painters: Vec<Painter<T>>,
 }
 
@@ -409,7 +415,7 @@ struct ShadingCaches {
     exact: ShadingCache<f64>,
 }
 
-/// Numbers that pictures are painted in.
+/// A number type that pictures are painted in.
 trait Painted: ShadingNumber + Tiny {
     fn cache(caches: &mut ShadingCaches) -> &mut ShadingCache<Self>;
 }

@@ -1,5 +1,5 @@
-//! What the pixels of a tile show, from what is opaque to the nearest transparent triangle: for
-//! questions about a picture, not for drawing it.
+//! Lists the surfaces that each pixel of a tile shows, from the opaque one to the nearest
+//! transparent one: for queries about a picture, not for drawing it.
 
 use fearless_simd::Level;
 
@@ -13,13 +13,13 @@ use super::screen::sample_positions::FOUR;
 use super::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use marraztu_core::accuracy::Transparency;
 
-/// The tile that is looked at.
+/// The visibility and the layers of one tile.
 #[derive(Debug, Default)]
 pub(crate) struct TileLayers {
     pub(crate) visibility: Visibility,
     layers: Layers,
     bounds: Option<PixelBox>,
-    /// For each pixel of a block the words of all samples: what is opaque, and each layer.
+    /// The words of all samples of each pixel in a block: the opaque surface and each layer.
     words: Vec<Vec<u64>>,
 }
 
@@ -42,14 +42,14 @@ impl TileLayers {
         self.words.resize_with(BLOCK_PIXELS, Vec::new);
     }
 
-    /// The depths of all that the tile shows.
+    /// Returns the range of depths in the tile.
     pub(crate) fn depths(&self, level: Level) -> Option<[f32; 2]> {
         self.layers.depths_with(self.visibility.depths(level))
     }
 
-    /// Calls `take` with each pixel of a block that is in the picture: its column and row, its
-    /// nearest word (of several samples, what most of them show), and all that it shows, the
-    /// nearest among them.
+    /// Calls `take` with each pixel of a block that is inside the picture: its column and row, its
+    /// nearest word (with several samples, the one shown by most), and all of its words including
+    /// the nearest.
     pub(crate) fn each(
         &mut self,
         level: Level,
@@ -61,6 +61,7 @@ impl TileLayers {
         let [left, top] = self.visibility.corner(block);
         let is_layered = self.layers.touches(block);
         let mut tops = [[0; BLOCK_PIXELS]; FOUR];
+        // Without layers, a pixel has one word.
         if is_layered {
             self.find_layers(level, frame, block, &mut tops);
         }
@@ -81,7 +82,7 @@ impl TileLayers {
         }
     }
 
-    /// Finds the words of all samples of a block, and the nearest of each.
+    /// Finds the words of all samples of a block, and the nearest word of each sample.
     fn find_layers(
         &mut self,
         level: Level,
@@ -98,6 +99,7 @@ impl TileLayers {
             for (words, word) in words.iter_mut().zip(&opaque) {
                 words.push(*word);
             }
+            // Each round takes the next layers, from far to near.
             layers.open();
             let order = Transparency::Exact;
             while layers.take(level, (frame, order), (block, sample), &opaque) {
@@ -114,7 +116,7 @@ impl TileLayers {
     }
 }
 
-/// The word whose primitive most samples show, the first of equals.
+/// Returns the word with the primitive shown by most samples, the first one in a tie.
 fn most(samples: &[u64]) -> u64 {
     let alike = |word: &u64| samples.iter().filter(|other| seen(**other) == seen(*word)).count();
     samples.iter().rev().max_by_key(|word| alike(word)).copied().unwrap_or(0)

@@ -1,15 +1,15 @@
-//! The time that each stage of a frame takes.
+//! Measures the time of each stage of a frame.
 
 use std::time::{Duration, Instant};
 
-/// How long each stage of a frame took on the wall clock, over all threads.
+/// The wall-clock time of each stage of a frame, over all threads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timings {
-    /// Vertices to the screen.
+    /// Transforming vertices to the screen.
     pub vertices: Duration,
-    /// Setup of triangles: binning, and rasterizing the small ones.
+    /// Triangle setup: tile binning, and rasterising small triangles.
     pub set_up: Duration,
-    /// Setup of lines: binning, and rasterizing the short ones.
+    /// Line setup: tile binning, and rasterising short lines.
     pub lines: Duration,
     /// Visibility, shading and storing of each tile.
     pub tiles: Duration,
@@ -34,7 +34,7 @@ impl Laps {
         Self(Instant::now())
     }
 
-    /// The time since the last lap.
+    /// Returns the time since the last lap.
     pub(crate) fn lap(&mut self) -> Duration {
         let now = Instant::now();
         now - std::mem::replace(&mut self.0, now)

@@ -1,8 +1,8 @@
-//! Finds why a picture shows nothing of an object.
+//! Finds out why an object is not visible in a picture.
 //!
 //! The reason is found by elimination: the object is drawn alone, then alone from both sides, then
-//! alone and opaque. The first picture that shows it names what hid it before. Only objects that
-//! are not seen are drawn again; the picture itself costs nothing more.
+//! alone and opaque. The first picture that shows it identifies the reason. Only invisible objects
+//! are drawn again; the picture itself costs nothing extra.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,31 +17,30 @@ use marraztu_core::scene::{
     Fill, ItemId, List, MaterialChoice, Object, ObjectId, Scene, Sides, Surface, View,
 };
 
-/// Why nothing of an object is seen.
+/// The reason why an object is not visible.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unseen {
-    /// It is not drawn, for the plan's reason.
+    /// The plan leaves it out, for this reason.
     LeftOut(Cow<'static, str>),
-    /// Its faces are turned away, and only their fronts are drawn.
+    /// Its faces are turned away, and back-face culling is on.
     TurnedAway {
-        /// How many there are.
+        /// The number of faces.
         faces: usize,
     },
     /// Another item is in front of it.
     Covered {
-        /// The one that covers the most of it.
+        /// The item that covers most of it.
         by: ItemId,
     },
-    /// It is wholly transparent, or fails the alpha test, wherever it could be seen.
+    /// It is fully transparent, or fails the alpha test, at every pixel that could show it.
     Transparent,
-    /// It covers no pixel's centre: it is too small, or seen edge-on.
+    /// It covers no pixel centre: it is too small, or seen edge-on.
     BetweenPixels,
-    /// It is in the view, but its reason was not examined, since many other objects are not seen
-    /// either.
+    /// It is in the view, but its reason was not examined because too many objects are invisible.
     Unexamined,
 }
 
-/// The number of objects that are examined; each takes up to three pictures.
+/// The number of objects that are examined, with up to three pictures each.
 const EXAMINED: usize = 16;
 
 impl fmt::Display for Unseen {
@@ -58,10 +57,10 @@ impl fmt::Display for Unseen {
     }
 }
 
-/// Lists the objects that should be seen in the last picture of the renderer, but are not. `shot`
-/// has to be that picture's.
+/// Lists the objects that should be visible in the renderer's last picture, but are not. `shot`
+/// must belong to that picture.
 ///
-/// Objects that the user hid, as a whole or part by part, are left out of the list.
+/// Objects that the user hid, completely or part by part, are not listed.
 #[must_use]
 pub fn unseen(renderer: &mut Renderer, shot: &Shot) -> Vec<(ObjectId, Unseen)> {
     let Shot { scene, view, size, .. } = shot;
@@ -87,7 +86,7 @@ pub fn unseen(renderer: &mut Renderer, shot: &Shot) -> Vec<(ObjectId, Unseen)> {
     objects.enumerate().map(reason).collect()
 }
 
-/// The plan's reasons for the items that it does not draw.
+/// Returns the plan's reasons for the items it does not draw.
 fn left_out(shot: &Shot) -> BTreeMap<ItemId, Cow<'static, str>> {
     let (plan, uses) = explain_frame(shot);
     let is_drawn = |draw: &&Draw| draw.part_pipelines.iter().any(Option::is_some);
@@ -104,7 +103,7 @@ fn left_out(shot: &Shot) -> BTreeMap<ItemId, Cow<'static, str>> {
         .collect()
 }
 
-/// Whether the user expects to see an object.
+/// Returns whether the user expects to see an object.
 fn is_wanted(view: &View, id: ObjectId, object: &Object) -> bool {
     let parts = object.model.mesh.parts().len();
     object.visible
@@ -124,18 +123,21 @@ struct Alone<'a> {
 }
 
 impl Alone<'_> {
-    /// Why an object is not seen; `left_out` is the plan's reason if it leaves the object out.
+    /// Finds the reason why an object is not visible. `left_out` is the plan's reason if it leaves
+    /// the object out.
     fn reason(&mut self, id: ObjectId, left_out: Option<Cow<'static, str>>) -> Unseen {
         let Some(object) = self.scene.objects.get(id) else {
             return Unseen::LeftOut("it is not in the scene".into());
         };
         let faces = object.model.mesh.polygon_count();
+        // Alone: if it shows now, another item covered it.
         if left_out.is_none() {
             let seen = self.draw(id, |_| {});
             if let Some(by) = self.most_seen(&seen) {
                 return Unseen::Covered { by };
             }
         }
+        // From both sides: if it shows now, its faces are turned away. If not, try it opaque.
         if object.is_two_sided() || faces == 0 || self.is_empty(id, |o| o.sides = Sides::Two) {
             let opaque = |object: &mut Object| {
                 object.sides = Sides::Two;
@@ -152,7 +154,7 @@ impl Alone<'_> {
         Unseen::TurnedAway { faces }
     }
 
-    /// The item that the whole picture shows at the most of these pixels; `None` if it shows none.
+    /// Returns the item that the whole picture shows at most of these pixels, if it shows any.
     fn most_seen(&self, pixels: &[bool]) -> Option<ItemId> {
         let mut counts: BTreeMap<ItemId, usize> = BTreeMap::new();
         let chosen = self.whole.iter().zip(pixels).filter(|(_, chosen)| **chosen);
@@ -166,11 +168,11 @@ impl Alone<'_> {
         !self.draw(id, change).contains(&true)
     }
 
-    /// The pixels at which a changed object is seen if it is alone, as a flag for each pixel.
+    /// Returns the pixels that show a changed object drawn alone, as a flag for each pixel.
     fn draw(&mut self, id: ObjectId, change: impl FnOnce(&mut Object)) -> Vec<bool> {
         let mut own = self.scene.objects.get(id).expect("it is in the scene").clone();
         change(&mut own);
-        // The observer may be another object.
+        // The observer may be another object, which stays in the scene but invisible.
         let selected = self.view.object.filter(|other| *other != id);
         let selected = selected.and_then(|other| Some((other, self.scene.objects.get(other)?)));
         let hidden = selected.map(|(id, object)| (id, Object { visible: false, ..object.clone() }));
@@ -183,7 +185,7 @@ impl Alone<'_> {
             locked: self.scene.locked.clone(),
         };
         let view = View { marks: false, fill: Fill::Filled, ..self.view.clone() };
-        // Visibility does not depend on light; this is the fastest.
+        // Visibility does not depend on light, and light at faces is the fastest.
         let settings = Settings { light: LightAt::Face, ..Settings::default() };
         let plan = plan_frame(&Shot::new(&scene, &view, &settings, self.size));
         self.renderer.render(&plan);

@@ -1,8 +1,8 @@
-//! Pictures without their ground, for laying over others.
+//! Renders pictures with a transparent background, for compositing.
 //!
-//! The scene is drawn over black and over white. With a the share of a pixel that is covered and C
-//! its colour, the two are a C and a C + (1 - a): their difference is what of the ground is seen.
-//! So every effect that covers a pixel in part is right, whatever it is: samples, lines,
+//! The scene is drawn over black and over white. If a is the covered share of a pixel and C its
+//! colour, the two results are a C and a C + (1 - a), and their difference is the visible share of
+//! the background. Every effect that covers a pixel partly is therefore exact: samples, lines,
 //! transparency. Porter and Duff, "Compositing Digital Images", SIGGRAPH 1984.
 
 use super::Renderer;
@@ -12,7 +12,7 @@ use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Picture;
 use marraztu_core::scene::{Command, CommandError};
 
-/// Draws a picture whose ground is transparent; not premultiplied.
+/// Renders a picture with a transparent background; colours are not premultiplied.
 ///
 /// # Errors
 /// Never: a scene takes every background.
@@ -31,11 +31,11 @@ pub fn without_ground(renderer: &mut Renderer, shot: &Shot) -> Result<Picture, C
     Ok(picture)
 }
 
-/// A pixel over black and over white as colour and share.
+/// Converts a pixel over black and over white to colour and alpha.
 #[expect(clippy::cast_possible_truncation, reason = "at most 255")]
 fn covered(black: [u8; 4], white: [u8; 4]) -> [u8; 4] {
     let seen = |i: usize| u32::from(white[i].saturating_sub(black[i]));
-    // The ground is grey: its three channels tell the same but for rounding.
+    // The background is grey: its three channels are equal except for rounding.
     let ground = (seen(0) + seen(1) + seen(2) + 1) / 3;
     let share = 255 - ground.min(255);
     if share == 0 {

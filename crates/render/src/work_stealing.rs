@@ -1,8 +1,8 @@
-//! Distributes work among threads, so that each mostly gets the pieces that it had before.
+//! Distributes work among threads by work stealing.
 //!
-//! Each thread has a range of the work and takes pieces from its front; a thread that has none left
-//! takes them from the back of another's range. Its pieces are therefore often still in its core's
-//! cache from the last stage or the last frame, and need not be fetched from another core.
+//! Each thread has a range of the work and takes pieces from its front. A thread with an empty
+//! range steals pieces from the back of another one. Most pieces therefore stay on one thread from
+//! stage to stage and from frame to frame, and their data often is still in that core's cache.
 //!
 //! Blumofe and Leiserson, "Scheduling Multithreaded Computations by Work Stealing", JACM 1999.
 
@@ -13,21 +13,21 @@ use rayon::prelude::*;
 
 use marraztu_core::base::once::without_computing;
 
-/// Pieces of work, by their numbers, in one range for each thread.
+/// Numbered pieces of work, in one range per thread.
 #[derive(Debug)]
 pub(crate) struct WorkStealing {
-    /// What is left of each range: its beginning in the upper half, its end in the lower.
+    /// The rest of each range: its start in the upper half, its end in the lower half.
     left: Vec<AtomicU64>,
 }
 
 impl WorkStealing {
-    /// `count` pieces for a number of threads, in equal ranges.
+    /// Divides `count` pieces into equal ranges, one per thread.
     pub(crate) fn new(count: usize, threads: usize) -> Self {
         Self::beginning_at(count, (0..threads).map(|i| i * count / threads))
     }
 
-    /// `count` pieces, in ranges with these beginnings, in ascending order. The first range also
-    /// has the pieces before its beginning.
+    /// Divides `count` pieces into ranges with these starts, in ascending order. The first range
+    /// also holds the pieces before its start.
     pub(crate) fn beginning_at(
         count: usize,
         begins: impl DoubleEndedIterator<Item = usize> + ExactSizeIterator,
@@ -43,7 +43,7 @@ impl WorkStealing {
         Self { left }
     }
 
-    /// A piece that no thread has taken yet, if there is one.
+    /// Takes the next piece that no thread has taken yet, if there is one.
     pub(crate) fn next(&self) -> Option<usize> {
         let count = self.left.len();
         let own = rayon::current_thread_index().unwrap_or(0) % count;
@@ -71,9 +71,9 @@ impl WorkStealing {
 
 /// Runs the same work on each of a number of threads.
 ///
-/// The work holds locks on what it draws, so it calls nothing that waits for other threads: a
-/// thread that waits takes up other work, which may need the same locks. Everything that the work
-/// reads of a mesh is computed before (`FramePlan::prepare`).
+/// The work holds locks on its outputs, so it must not call anything that waits for other threads:
+/// a waiting thread picks up other work, which may need the same locks. All lazily computed parts
+/// of a mesh are therefore computed beforehand (`FramePlan::prepare`).
 pub(crate) fn together(threads: usize, work: impl Fn() + Sync) {
     if threads == 1 {
         without_computing(work);
@@ -83,8 +83,8 @@ pub(crate) fn together(threads: usize, work: impl Fn() + Sync) {
     }
 }
 
-/// Locks one of several values, one for each thread: this thread's own if it is free, since it is
-/// likely in this core's cache, else another.
+/// Locks one of several values, one per thread. This thread's value is likely in this core's cache,
+/// so it is tried first, then the others.
 pub(crate) fn own<T>(all: &[Mutex<T>]) -> MutexGuard<'_, T> {
     let own = rayon::current_thread_index().unwrap_or(0);
     let free = (0..all.len()).find_map(|i| all[(own + i) % all.len()].try_lock().ok());

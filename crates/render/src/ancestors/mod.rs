@@ -1,3 +1,3 @@
-//! The algorithms of the two ancestors that no stage shares.
+//! The ancestors' fill algorithms that share no stage with the rest.
 
 pub(crate) mod points;

@@ -1,12 +1,11 @@
-//! The fill algorithm of ancestor A: points every 0.1 unit of the observer's space, each drawn by
-//! itself.
+//! Ancestor A's fill algorithm: separate points every 0.1 unit of the observer's space.
 //!
-//! A row of points begins at every 0.1 unit of height, and on it a point every 0.1 unit to the
-//! right. At a distance of 400, with 800 pixels for 45 degrees, a pixel is written 17 times, at 966
-//! a hundred times; nearer than 97 the points are farther apart than pixels and leave holes.
+//! A row of points lies at every 0.1 unit of height, with a point every 0.1 unit along the row. At
+//! a distance of 400, with 800 pixels for 45 degrees, a pixel is written 17 times; at 966, a
+//! hundred times. Nearer than 97, points are farther apart than pixels and leave holes.
 //!
-//! Beyond the distance at which a pixel gets [`MOST`] points to a side, the step grows with the
-//! distance; A kept the step and took minutes.
+//! Beyond the distance at which a pixel gets [`MOST`] points along a side, the step grows with the
+//! distance. A kept the step constant and took minutes.
 
 use crate::accel::Accelerated as _;
 use glam::{DVec3, DVec4};
@@ -15,14 +14,14 @@ use crate::frame::draw::Draw;
 use crate::frame::{Eye, FramePlan};
 use crate::screen::coverage::{PixelBox, SUBPIXELS};
 
-/// The step, in units of the world.
+/// The step, in world units.
 const STEP: f64 = 0.1;
 
-/// The most points to a side of a pixel.
+/// The largest number of points along the side of a pixel.
 const MOST: f64 = 16.0;
 
-/// Calls `take` with the pixel and the depth of every point of a triangle that falls into `clip`,
-/// for a sample with an offset in 1/256 pixel.
+/// Calls `take` with the pixel and depth of every point of a triangle that falls into `clip`, for a
+/// sample with an offset in 1/256 pixel.
 pub(crate) fn cover(
     plan: &FramePlan,
     draw: &Draw,
@@ -35,12 +34,14 @@ pub(crate) fn cover(
         draw.view_from_object.transform_point3(DVec3::from_array(order.position(vertex)))
     });
     let Some(window) = Window::new(plan, (clip, shift), &corners) else { return };
+    // Rows and columns are multiples of the step, so all triangles share one lattice of points.
     let step = window.step;
     let rows = |y: f64| (y / step).ceil();
     let mut row = rows(window.low[1].max(least(&corners, |p| p.y)));
     let last = window.high[1].min(most(&corners, |p| p.y)) / step;
     while row <= last {
         let y = row * step;
+        // Depth is linear along a row of the observer's space.
         if let Some([from, to]) = span(&corners, y) {
             let mut column = rows(window.low[0].max(from.x));
             let end = window.high[0].min(to.x) / step;
@@ -64,7 +65,7 @@ fn most(corners: &[DVec3; 3], of: fn(&DVec3) -> f64) -> f64 {
     corners.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The ends of a triangle at a height, from left to right.
+/// Returns the left and right end of a triangle at a height.
 fn span(corners: &[DVec3; 3], y: f64) -> Option<[DVec3; 2]> {
     let mut ends: Option<[DVec3; 2]> = None;
     for i in 0..3 {
@@ -79,7 +80,7 @@ fn span(corners: &[DVec3; 3], y: f64) -> Option<[DVec3; 2]> {
     ends
 }
 
-/// Some pixels of the picture, and the part of the observer's space whose points may fall there.
+/// A box of pixels, and the part of the observer's space with points that may fall into it.
 struct Window<'a> {
     plan: &'a FramePlan,
     clip: PixelBox,
@@ -100,7 +101,7 @@ impl<'a> Window<'a> {
         let shift = shift.map(|shift| f64::from(shift) / f64::from(SUBPIXELS));
         let half = [plan.size.width as f64 / 2.0, plan.size.height as f64 / 2.0];
         let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
-        // View space has a unit of its own.
+        // The length of a world unit in view space.
         let unit = plan.view_from_world.x_axis.truncate().length();
         let distances = match plan.eye {
             Eye::Point => {
@@ -112,12 +113,13 @@ impl<'a> Window<'a> {
             }
             Eye::Parallel => [1.0; 2],
         };
+        // The step grows once a pixel has more than [`MOST`] points along a side.
         let pixel = distances[1] / (half[0] * px).min(half[1] * py);
         let step = (STEP * unit).max(pixel / MOST);
         if !step.is_finite() {
             return None;
         }
-        // A pixel more to each side, for rounding.
+        // One more pixel on each side, for rounding.
         let x = [clip.left - 1, clip.right + 1].map(|x| (f64::from(x) / half[0] - 1.0) / px);
         let y = [clip.bottom + 1, clip.top - 1].map(|y| (1.0 - f64::from(y) / half[1]) / py);
         let reach = |[low, high]: [f64; 2]| {

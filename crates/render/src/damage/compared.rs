@@ -1,4 +1,4 @@
-//! Whether two draws of two plans are alike, bit for bit, and what differs if they are not.
+//! Compares the draws of two plans bit for bit, and finds the kind of difference.
 
 use std::collections::BTreeMap;
 
@@ -9,16 +9,16 @@ use crate::lights::{PhongMaterial, ViewLight};
 use marraztu_core::base::Shared;
 use marraztu_core::base::math::same_bits;
 
-/// Two plans whose draws are compared.
+/// Two plans to be compared.
 pub(super) struct Compared<'a> {
     pub(super) before: &'a FramePlan,
     pub(super) after: &'a FramePlan,
-    /// Results of comparing pairs of pipelines, which parts share.
+    /// The results for pairs of pipelines, because parts share pipelines.
     pub(super) pipelines: BTreeMap<(u32, u32), bool>,
 }
 
 impl Compared<'_> {
-    /// What differs between two draws.
+    /// Returns the kind of difference between two draws, if they differ.
     pub(super) fn change(&mut self, before: &Draw, after: &Draw) -> Option<Change> {
         let Draw {
             item: _,
@@ -37,10 +37,12 @@ impl Compared<'_> {
             filled,
             lines,
         } = after;
+        // The three kinds in order of severity: the first one that applies is reported.
         let moved = !same_bits(clip_from_object, &before.clip_from_object)
             || !same_bits(view_from_object, &before.view_from_object)
             || !alike(&view_from_normal.to_cols_array(), &before.view_from_normal.to_cols_array())
             || *mirrored != before.mirrored;
+        // A different shape changes coverage, so more than the colours.
         let shape = !Shared::same(model, &before.model)
             || *back != before.back
             || *culls_opaque != before.culls_opaque
@@ -60,8 +62,8 @@ impl Compared<'_> {
         }
     }
 
-    /// Whether other parts are drawn, or a part has an alpha test or is transparent and was not
-    /// before, or the other way round.
+    /// Returns whether the set of drawn parts changed, or a part gained or lost its alpha test or
+    /// transparency.
     fn kinds(&self, after: &[Option<u32>], before: &[Option<u32>]) -> bool {
         let kinds = |plan: &FramePlan, parts: &[Option<u32>]| -> Vec<Option<[bool; 2]>> {
             let kind = |pipeline: u32| {
@@ -73,7 +75,8 @@ impl Compared<'_> {
         kinds(self.after, after) != kinds(self.before, before)
     }
 
-    /// Whether two draws of the same parts have other holes, so that other pixels may show them.
+    /// Returns whether two draws of the same parts differ in their holes, so other pixels may show
+    /// them.
     pub(super) fn has_other_holes(&self, before: &Draw, after: &Draw) -> bool {
         before.part_pipelines.iter().zip(&after.part_pipelines).any(|pair| match pair {
             (Some(before), Some(after)) => {
@@ -127,6 +130,7 @@ impl Compared<'_> {
         } = after;
         let textures = Shared::both_same(texture.as_ref(), before.texture.as_ref())
             && Shared::both_same(opacity_map.as_ref(), before.opacity_map.as_ref());
+        // Lights are compared by value, because their indices may differ between plans.
         let stages = match (light, &before.light) {
             (Some(after), Some(before)) => {
                 after.len() == before.len()
@@ -157,7 +161,7 @@ impl Compared<'_> {
     }
 }
 
-/// Whether surfaces have the same holes, and let the same through.
+/// Returns whether surfaces have the same holes and the same transparency.
 fn alike_holes(before: &Pipeline, after: &Pipeline) -> bool {
     match (before, after) {
         (Pipeline::Shaded(before), Pipeline::Shaded(after)) => {
@@ -175,7 +179,7 @@ fn alike_holes(before: &Pipeline, after: &Pipeline) -> bool {
     }
 }
 
-/// Whether all numbers have the same bits.
+/// Returns whether all numbers have the same bits.
 fn alike(a: &[f64], b: &[f64]) -> bool {
     a.iter().map(|a| a.to_bits()).eq(b.iter().map(|b| b.to_bits()))
 }

@@ -1,16 +1,16 @@
-//! Which of the shadows that are known from earlier frames hold in another one.
+//! Decides which cached shadows of earlier frames are still valid.
 //!
-//! They hold as long as the light is where it was, the same triangles show at the same pixels, and
-//! nothing that casts shadows changed between the two. So a light that moves is traced again by
-//! itself; one whose colour changes is not traced at all, nor is anything if a material changes;
-//! and for an object that moves, each light is traced again in the shadow volumes of that object.
+//! Cached shadows stay valid while the light does not move, the same triangles show at the same
+//! pixels, and no caster changed in between. A light that moves is therefore traced again, and no
+//! other light. A light with a new colour, or a new material, needs no rays. If an object moves,
+//! each light is traced again in the object's shadow volumes.
 
 use super::Damage;
 use super::shadow_reach::{self, Changed};
 use crate::frame::FramePlan;
 use crate::shadow::known::KnownShadows;
 
-/// The shadows that are known, and the plan that they belong to.
+/// The cached shadows, and the plan they belong to.
 #[derive(Debug, Default)]
 pub(crate) struct KeptShadows {
     known: KnownShadows,
@@ -18,13 +18,13 @@ pub(crate) struct KeptShadows {
 }
 
 impl KeptShadows {
-    /// Forgets everything.
+    /// Clears the cache.
     pub(crate) fn forget(&mut self) {
         *self = Self::default();
     }
 
-    /// Keeps what holds in another plan. What is known then belongs to that plan, even if it is not
-    /// drawn to the end.
+    /// Keeps the shadows that are valid in another plan. The cache then belongs to that plan, even
+    /// if drawing it is cancelled.
     pub(crate) fn update(&mut self, plan: &FramePlan) {
         if !plan.shadows.are_cast() || !shadow_reach::is_by_pixel(plan) {
             return self.forget();
@@ -37,6 +37,7 @@ impl KeptShadows {
             return self.known.keep(plan.size, &plan.shadows.sources);
         };
         self.known.keep(plan.size, &plan.shadows.sources);
+        // A tile is stale if its surfaces changed, or if a changed caster's shadow reaches it.
         let damage = Damage::between(&before, plan);
         let changed = Changed::between(&before, plan);
         for (source, light) in self.known.lights() {
@@ -46,7 +47,7 @@ impl KeptShadows {
         }
     }
 
-    /// What is known, if anything is kept.
+    /// Returns the cached shadows, if any are kept.
     pub(crate) fn known(&self) -> Option<&KnownShadows> {
         self.plan.is_some().then_some(&self.known)
     }

@@ -1,9 +1,9 @@
-//! The tiles in which shadows change if something that casts them does.
+//! Finds the tiles with changed shadows after a caster changed.
 //!
-//! With light at pixels, a point's shadow depends on a caster only if it lies in the caster's
-//! shadow volume: what the light sees behind its box, as far as anything is drawn. The volume is
-//! convex, so its corners bound its pixels. Lights that change need nothing of their own, since
-//! every surface that they are on is drawn again anyway.
+//! If light is computed per pixel, a point's shadow depends on a caster only if the point lies in
+//! the caster's shadow volume: the volume behind the caster's box as seen from the light, up to the
+//! farthest drawn point. The volume is convex, so its corners bound its pixels. Changed lights need
+//! no treatment here, because every surface they light is drawn again anyway.
 //!
 //! Crow, "Shadow Algorithms for Computer Graphics", SIGGRAPH 1977.
 
@@ -18,8 +18,8 @@ use crate::shadow::tracer::Tracer;
 use marraztu_core::accuracy::{LightAt, Samples, Terminator};
 use marraztu_core::scene::ItemId;
 
-/// Whether rays begin at the pixels themselves: only what a pixel shows decides where its rays
-/// begin.
+/// Returns whether rays start at the pixels themselves. Only the surface shown by a pixel then
+/// decides where its rays start.
 pub(super) fn is_by_pixel(plan: &FramePlan) -> bool {
     plan.light_at == LightAt::Pixel
         && plan.samples == Samples::One
@@ -29,8 +29,8 @@ pub(super) fn is_by_pixel(plan: &FramePlan) -> bool {
         && plan.variants.terminator == Terminator::Triangles
 }
 
-/// Whether the tiles of changed shadows can be told: rays begin at the pixels themselves, and
-/// nothing else depends on all casters together.
+/// Returns whether the tiles of changed shadows can be determined: rays start at the pixels
+/// themselves, and no other quantity depends on all casters together.
 pub(super) fn is_known(before: &FramePlan, after: &FramePlan) -> bool {
     is_by_pixel(after)
         && before.shadows.are_cast() == after.shadows.are_cast()
@@ -38,7 +38,7 @@ pub(super) fn is_known(before: &FramePlan, after: &FramePlan) -> bool {
             == Tracer::sun_distance(&after.shadows).to_bits()
 }
 
-/// Adds the tiles of the shadows of all casters that differ. Returns whether they are known.
+/// Adds the tiles of all changed casters' shadows. Returns whether these tiles are bounded.
 pub(super) fn add(before: &FramePlan, after: &FramePlan, tiles: &mut Tiles) -> bool {
     let changed = Changed::between(before, after);
     changed.all().all(|(seen, caster)| {
@@ -50,7 +50,7 @@ pub(super) fn add(before: &FramePlan, after: &FramePlan, tiles: &mut Tiles) -> b
 pub(super) struct Changed<'a> {
     before: Drawn<'a>,
     after: Drawn<'a>,
-    /// As they were, and as they are.
+    /// The changed casters before and after.
     old: Vec<&'a Caster>,
     new: Vec<&'a Caster>,
 }
@@ -73,13 +73,14 @@ impl<'a> Changed<'a> {
         Self { before, after, old, new }
     }
 
-    /// Each with the plan that it belongs to.
+    /// Iterates over the changed casters, each with the plan it belongs to.
     fn all(&self) -> impl Iterator<Item = (&Drawn<'a>, &'a Caster)> {
         let old = self.old.iter().map(|caster| (&self.before, *caster));
         old.chain(self.new.iter().map(|caster| (&self.after, *caster)))
     }
 
-    /// The tiles of their shadows by a light that both plans have; `None` if they are not known.
+    /// Returns the tiles of the changed shadows of a light in both plans. `None` if they are not
+    /// bounded.
     pub(super) fn tiles(&self, source: &ShadowSource) -> Option<Tiles> {
         let mut tiles = Tiles::none(self.after.plan.size);
         let mut all = self.all();
@@ -87,16 +88,17 @@ impl<'a> Changed<'a> {
     }
 }
 
-/// A plan, and what is drawn of it.
+/// A plan and the extent of its drawn objects.
 struct Drawn<'a> {
     plan: &'a FramePlan,
-    /// The corners of the boxes of all that is drawn, in world space.
+    /// The corners of the bounding boxes of all drawn objects, in world space.
     drawn: Vec<DVec3>,
     clip_from_world: DMat4,
 }
 
 impl<'a> Drawn<'a> {
-    /// `is_asked`: whether anything will be added.
+    /// Creates the extent of a plan; if `is_asked` is false, no caster will be added and it stays
+    /// empty.
     fn new(plan: &'a FramePlan, is_asked: bool) -> Self {
         let world_from_view = plan.view_from_world.inverse();
         let draws = if is_asked { &plan.draws[..] } else { &[] };
@@ -109,7 +111,7 @@ impl<'a> Drawn<'a> {
         Self { plan, drawn: drawn.flatten().collect(), clip_from_world }
     }
 
-    /// Adds the tiles of a caster's shadow volume. Returns whether it is bounded.
+    /// Adds the tiles of a caster's shadow volume. Returns whether the volume is bounded.
     fn add(&self, caster: &Caster, source: &ShadowSource, tiles: &mut Tiles) -> bool {
         let Some(bounds) = caster.model.mesh.bounds() else { return true };
         let corners =
@@ -121,17 +123,17 @@ impl<'a> Drawn<'a> {
         if seen.is_empty() {
             return true;
         }
-        // Points are lit up to a pixel away from where they are seen.
+        // The margin of two pixels: points are lit up to a pixel away from where they are seen.
         let Some(pixels) = around(self.plan, &seen, 2.0) else { return false };
         tiles.add(pixels);
         true
     }
 }
 
-/// Points in clip space whose convex hull is that of the given ones, as far as it is before the
-/// near plane: those that are, and where the way from one to one that is not meets the plane.
+/// Clips the convex hull of points in clip space to the near plane: returns the points in front of
+/// it, and the points where a segment from one of them to a point behind crosses the plane.
 fn before_the_near_plane(points: &[DVec4]) -> Vec<DVec4> {
-    // A little before it, so that rounding leaves no point behind it.
+    // Slightly in front of the plane, because rounding must not leave a point behind it.
     let distance = |p: &DVec4| p.w * (1.0 - 1e-6) - p.z;
     let mut seen = Vec::new();
     for p in points {
@@ -150,10 +152,10 @@ fn before_the_near_plane(points: &[DVec4]) -> Vec<DVec4> {
     seen
 }
 
-/// The far corners of a box's shadow volume, behind everything that is drawn; `None` if the light
-/// is in the box.
+/// Computes the far corners of a box's shadow volume, behind everything that is drawn. `None` if
+/// the light is inside the box.
 fn ends_of(source: &ShadowSource, corners: &[DVec3; 8], drawn: &[DVec3]) -> Option<[DVec3; 8]> {
-    // A little more, for all rounding.
+    // A margin for all rounding.
     const MORE: f64 = 1.0 + 1e-6;
     match source {
         ShadowSource::Direction(towards) => {
@@ -168,7 +170,7 @@ fn ends_of(source: &ShadowSource, corners: &[DVec3; 8], drawn: &[DVec3]) -> Opti
             let high = corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
             let nearest = at.distance(at.clamp(low, high));
             let farthest = drawn.iter().map(|p| p.distance(*at)).fold(0.0, f64::max);
-            // Nothing is drawn behind this many times the box, seen from the light.
+            // Scaled from the light by this factor, the box is behind every drawn object.
             let times = (farthest / nearest).max(1.0) * MORE;
             (times < 1e9).then(|| corners.map(|corner| *at + (corner - *at) * times))
         }

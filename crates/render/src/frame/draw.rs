@@ -1,4 +1,4 @@
-//! Draws of a frame, and the pipelines that colour them.
+//! The draws of a frame, and the pipelines that colour them.
 
 use crate::accel::{Accelerated as _, DrawOrder, EdgeOrder};
 use std::collections::BTreeSet;
@@ -16,18 +16,18 @@ use marraztu_core::scene::{Derived, ItemId, Model, NormalSource, Normals, Textur
 /// One mesh of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Draw {
-    /// The item that it draws.
+    /// The item to draw.
     pub(crate) item: ItemId,
-    /// Its shape.
+    /// The shape.
     pub(crate) model: Shared<Model>,
     pub(crate) clip_from_object: DMat4,
     pub(crate) view_from_object: DMat4,
     /// The normal transform: sign(det) cof.
     pub(crate) view_from_normal: DMat3,
-    /// Whether the placement mirrors, so that front faces run clockwise.
+    /// Whether the placement mirrors: front faces then run clockwise.
     pub(crate) mirrored: bool,
     pub(crate) back: Back,
-    /// Whether back faces of opaque parts are culled though those of transparent ones are lit.
+    /// Whether back faces of opaque parts are culled although those of transparent parts are lit.
     pub(crate) culls_opaque: bool,
     pub(crate) normals: Normals,
     pub(crate) normal_source: NormalSource,
@@ -35,22 +35,21 @@ pub(crate) struct Draw {
     pub(crate) part_pipelines: Vec<Option<u32>>,
     /// The pipeline of all parts, if they share one.
     pub(crate) uniform: Option<u32>,
-    /// The polygons that are drawn, if not all are.
+    /// The polygons to draw, if not all are drawn.
     pub(crate) polygons: Option<BTreeSet<u32>>,
     pub(crate) filled: bool,
     pub(crate) lines: Lines,
 }
 
 impl Draw {
-    /// Whether a polygon is shown: its part is, and it is among the polygons that are drawn.
+    /// Returns whether a polygon is shown: its part is shown, and it is among the drawn polygons.
     pub(crate) fn shows(&self, polygon: u32) -> bool {
         let part = self.model.mesh.polygon_parts()[polygon as usize];
         self.part_pipelines[part as usize].is_some()
             && self.polygons.as_ref().is_none_or(|some| some.contains(&polygon))
     }
 
-    /// Computes every derived table of the mesh that drawing reads, so that threads compute none of
-    /// them while they draw.
+    /// Computes every derived table of the mesh before drawing, so no thread has to wait for one.
     pub(crate) fn prepare(&self, plan: &FramePlan) {
         let pipelines = self.part_pipelines.iter().flatten();
         let shaded: Vec<&Shaded> = pipelines
@@ -60,15 +59,15 @@ impl Draw {
             })
             .collect();
         for shaded in shaded.iter().filter(|shaded| shaded.opacity.is_some()) {
-            // What alphas its pictures have is asked at every fragment.
+            // Fragments ask for the smallest alpha of the textures.
             let pictures = shaded.texture.iter().chain(&shaded.opacity_map);
             pictures.for_each(|texture| _ = texture.picture.least_alpha());
         }
         let lit = shaded.iter().any(|shaded| shaded.light.is_some());
         let flat = lit && plan.light_at == LightAt::Face;
         let by_face = lit && self.normals == Normals::Face;
-        // Whether a map of opacity counts by its alpha or its brightness, and whether the alpha of
-        // a texture beside it counts at all.
+        // An opacity map counts by its alpha or its brightness, and the alpha of a texture may not
+        // count at all: both depend on the smallest alpha.
         for shaded in &shaded {
             let texture = shaded.texture.as_ref().filter(|_| shaded.opacity.is_some());
             for map in shaded.opacity_map.iter().chain(texture) {
@@ -97,7 +96,7 @@ impl Draw {
         }
     }
 
-    /// The pipeline of a triangle that is drawn.
+    /// Returns the pipeline of a drawn triangle.
     #[inline(always)]
     pub(crate) fn pipeline_of(&self, triangle: u32) -> u32 {
         self.uniform.unwrap_or_else(|| {
@@ -109,27 +108,27 @@ impl Draw {
     }
 }
 
-/// How back faces are drawn.
+/// The drawing of back faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Back {
-    /// They are culled.
+    /// Back-face culling.
     Culled,
-    /// They are red, and not lit.
+    /// Red, without light.
     Red,
-    /// They are lit with reversed normals.
+    /// Lit, with reversed normals.
     Lit,
 }
 
-/// The lines that a draw has.
+/// The lines of a draw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lines {
     /// Whether the outlines of polygons are drawn.
     pub(crate) edges: bool,
-    /// How long the normals of faces are drawn, in object space.
+    /// The drawn length of face normals, in object space.
     pub(crate) face_normals: Option<f64>,
-    /// How long the normals of vertices are drawn, in object space.
+    /// The drawn length of vertex normals, in object space.
     pub(crate) vertex_normals: Option<f64>,
-    /// Their colour.
+    /// The colour of the lines.
     pub(crate) color: Color,
 }
 
@@ -137,7 +136,7 @@ pub(crate) struct Lines {
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a frame has few pipelines, most of them shaded")]
 pub(crate) enum Pipeline {
-    /// One colour, whatever the light.
+    /// One colour, independent of light.
     Flat(Color),
     /// Texture, tint and vertex colours, and light if the surface is lit.
     Shaded(Shaded),
@@ -165,7 +164,7 @@ impl Pipeline {
         key.join(" + ")
     }
 
-    /// A hash: equal pipelines share it, different ones hardly ever do.
+    /// Returns a hash: equal pipelines share it, different ones hardly ever do.
     pub(crate) fn fingerprint(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         match self {
@@ -175,12 +174,12 @@ impl Pipeline {
         hasher.finish()
     }
 
-    /// Whether it needs the alpha test.
+    /// Returns whether the pipeline needs the alpha test.
     pub(crate) const fn is_cutout(&self) -> bool {
         matches!(self, Self::Shaded(Shaded { cutout: Some(_), .. }))
     }
 
-    /// Its opacity, if it is transparent.
+    /// Returns the opacity, if the pipeline is transparent.
     pub(crate) const fn opacity(&self) -> Option<f64> {
         match self {
             Self::Shaded(Shaded { opacity, .. }) => *opacity,
@@ -196,7 +195,7 @@ pub(crate) struct Shaded {
     pub(crate) material: PhongMaterial,
     /// The lights that are evaluated; `None` if the surface is not lit.
     pub(crate) light: Option<Vec<Stage>>,
-    /// Whether any of them reads positions and normals.
+    /// Whether any light reads positions and normals.
     pub(crate) needs_positions: bool,
     /// Whether lights may be culled tile by tile: nothing of the surface is clipped, so each
     /// pixel's depth tells its position.
@@ -210,16 +209,16 @@ pub(crate) struct Shaded {
     /// For the alpha test: the material's opacity, if the texture's alpha may bring it below one
     /// half.
     pub(crate) cutout: Option<f64>,
-    /// If it is transparent: its opacity, which the texture's alpha multiplies.
+    /// For a transparent surface: its opacity, which multiplies the texture's alpha.
     pub(crate) opacity: Option<f64>,
-    /// The map of the material's opacity, which is multiplied with it for the alpha test.
+    /// The opacity map, which multiplies the opacity in the alpha test.
     pub(crate) opacity_map: Option<Shared<Texture>>,
-    /// Light of its own, and further maps.
+    /// Emission and additional maps.
     pub(crate) extras: Extras,
 }
 
 impl Shaded {
-    /// An opaque surface of a material that no light reaches, without any texture or map.
+    /// Creates an opaque, unlit surface of a material, without any texture or map.
     pub(crate) fn unlit(material: PhongMaterial) -> Self {
         Self {
             material,
@@ -236,7 +235,7 @@ impl Shaded {
         }
     }
 
-    /// Hashes what equal surfaces have in common; of a texture, only its source.
+    /// Hashes the properties that equal surfaces share; of a texture, only its source.
     fn hash_into(&self, hasher: &mut DefaultHasher) {
         let Self {
             material,
@@ -271,15 +270,15 @@ impl Shaded {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stage {
     pub(crate) effect: &'static LightRow,
-    /// The index of its light in the plan.
+    /// The index of the light in the plan.
     pub(crate) light: u32,
     pub(crate) highlight: Form,
-    /// Whether a map multiplies the exponent of its highlight.
+    /// Whether a map multiplies the exponent of the highlight.
     pub(crate) is_mapped: bool,
 }
 
 impl Stage {
-    /// The light shader, compiled for the stage's highlight.
+    /// Returns the light shader, compiled for the stage's highlight.
     pub(crate) const fn variant(&self) -> &'static lights::Variant {
         match (self.highlight, self.is_mapped) {
             (Form::Plain, _) => &self.effect.plain,

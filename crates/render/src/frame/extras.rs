@@ -1,32 +1,32 @@
-//! What a surface shows beside light, one texture and vertex colours: light of its own, and maps of
-//! its coefficients and normals.
+//! Additional properties of a surface beyond light, one texture and vertex colours: emission, and
+//! maps of its coefficients and normals.
 
 use std::hash::{Hash, Hasher};
 
 use marraztu_core::base::Shared;
 use marraztu_core::scene::Texture;
 
-/// What a surface shows beside light, one texture and vertex colours; by default nothing.
+/// The additional properties of a surface; by default there are none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Extras {
-    /// Light of its own: Ke.
+    /// Emission: Ke.
     pub(crate) emission: Option<Glow>,
-    /// Ambient light that is coloured by a map of its own: the sum of Ia Ka over all ambient
-    /// lights. They are not among the surface's stages then.
+    /// Ambient light coloured by a separate map: the sum of Ia Ka over all ambient lights, which
+    /// are then not among the surface's stages.
     pub(crate) ambient: Option<Glow>,
-    /// The map of Ks, by which highlights are multiplied.
+    /// The map of Ks, which multiplies highlights.
     pub(crate) specular: Option<Shared<Texture>>,
-    /// The map of Ns, whose brightness multiplies the exponent of highlights.
+    /// The map of Ns: its brightness multiplies the exponent of highlights.
     pub(crate) exponent: Option<Shared<Texture>>,
     /// The map that tilts normals.
     pub(crate) bump: Option<Bump>,
 }
 
-/// Light that does not depend on where it falls.
+/// Light that is independent of the point it falls on.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Glow {
     pub(crate) color: [f64; 3],
-    /// The map by which it is multiplied.
+    /// The map that multiplies it.
     pub(crate) map: Option<Shared<Texture>>,
 }
 
@@ -34,12 +34,12 @@ pub(crate) struct Glow {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Bump {
     pub(crate) map: Shared<Texture>,
-    /// For heights: how many texels high a white texel is. `None` for normals in tangent space.
+    /// For heights: the height of a white texel, in texels. `None` for normals in tangent space.
     pub(crate) gain: Option<f64>,
 }
 
 impl Extras {
-    /// Whether there are none.
+    /// Returns whether there are no additional properties.
     pub(crate) const fn is_empty(&self) -> bool {
         let Self { emission, ambient, specular, exponent, bump } = self;
         emission.is_none()
@@ -49,8 +49,8 @@ impl Extras {
             && bump.is_none()
     }
 
-    /// Light of its own that is the same at every pixel, 0 without any; `None` if there is
-    /// something else.
+    /// Returns the emission if it is the same at every pixel, or 0 without emission. `None` if
+    /// there is any other property.
     pub(crate) fn even_glow(&self) -> Option<[f64; 3]> {
         let Self { emission, ambient, specular, exponent, bump } = self;
         let is_else = ambient.is_some() || specular.is_some() || exponent.is_some();
@@ -64,27 +64,27 @@ impl Extras {
         }
     }
 
-    /// Whether the colour of a pixel depends on the map of a glow or of highlights.
+    /// Returns whether the colour of a pixel depends on the map of a glow or of highlights.
     pub(crate) fn reads_texels(&self) -> bool {
         self.specular.is_some() || self.glows().any(|glow| glow.map.is_some())
     }
 
-    /// Whether there is a map of Ka, Ks or Ns.
+    /// Returns whether there is a map of Ka, Ks or Ns.
     pub(crate) const fn has_maps(&self) -> bool {
         self.ambient.is_some() || self.specular.is_some() || self.exponent.is_some()
     }
 
-    /// Light that is added to the colour of a surface.
+    /// Iterates over the light added to the surface colour.
     pub(crate) fn glows(&self) -> impl Iterator<Item = &Glow> {
         self.emission.iter().chain(&self.ambient)
     }
 
-    /// The maps that are colours.
+    /// Iterates over the maps of colours.
     pub(crate) fn colors(&self) -> impl Iterator<Item = &Shared<Texture>> {
         self.glows().filter_map(|glow| glow.map.as_ref()).chain(&self.specular)
     }
 
-    /// The names of the stages, for [`FramePlan::keys`](super::FramePlan::keys).
+    /// Returns the names of the stages, for [`FramePlan::keys`](super::FramePlan::keys).
     pub(crate) fn key(&self) -> impl Iterator<Item = &'static str> {
         let Self { emission, ambient, specular, exponent, bump } = self;
         let mapped = |glow: &Option<Glow>| glow.as_ref().is_some_and(|glow| glow.map.is_some());
@@ -101,7 +101,7 @@ impl Extras {
         .filter_map(|(name, is)| is.then_some(name))
     }
 
-    /// Hashes what equal surfaces have in common; of maps, only their sources.
+    /// Hashes the properties that equal surfaces share; of maps, only their sources.
     pub(crate) fn hash_into(&self, hasher: &mut impl Hasher) {
         let Self { emission, ambient, specular, exponent, bump } = self;
         for glow in [emission, ambient] {
@@ -115,9 +115,10 @@ impl Extras {
         bump.as_ref().map(|bump| (&bump.map.source, bump.gain.map(bits))).hash(hasher);
     }
 
-    /// Whether both are drawn alike, bit for bit; maps are alike if they are the same.
+    /// Returns whether both are drawn with the same bits; maps must be the same object.
     pub(crate) fn are_alike(&self, other: &Self) -> bool {
         let Self { emission, ambient, specular, exponent, bump } = self;
+        // Maps are compared by identity: comparing pixels would cost more than drawing.
         let maps = |a: &Option<Shared<Texture>>, b: &Option<Shared<Texture>>| match (a, b) {
             (Some(a), Some(b)) => Shared::same(a, b),
             (None, None) => true,
@@ -145,7 +146,7 @@ impl Extras {
     }
 }
 
-/// The bits of a number, the same for 0 and -0, which are equal.
+/// Returns the bits of a number, equal for 0 and -0.
 pub(super) fn bits(x: f64) -> u64 {
     (x + 0.0).to_bits()
 }

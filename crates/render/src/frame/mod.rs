@@ -1,4 +1,4 @@
-//! What a frame draws, as plain data. Nothing here makes a decision or touches a pixel.
+//! The contents of a frame, as plain data. Nothing here makes a decision or touches a pixel.
 
 pub(crate) mod color_path;
 pub(crate) mod draw;
@@ -17,45 +17,45 @@ use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::LightId;
 
-/// Everything that a frame needs.
+/// All data of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
-    /// Pixels.
+    /// The size in pixels.
     pub(crate) size: Size,
-    /// The colour of pixels that show nothing.
+    /// The background colour.
     pub(crate) background: Color,
-    /// The kind of projection, which the direction V to the observer depends on.
+    /// The kind of projection, which determines the direction V to the observer.
     pub(crate) eye: Eye,
-    /// The numbers that light is computed in.
+    /// The arithmetic of light.
     pub(crate) arithmetic: Arithmetic,
     /// Whether light is evaluated at faces, vertices, pixels or samples.
     pub(crate) light_at: LightAt,
-    /// Samples per pixel.
+    /// The samples per pixel.
     pub(crate) samples: Samples,
-    /// Whether each sample is lit, as if it were the centre of a pixel; `light_at` is then `Pixel`.
+    /// Whether each sample is lit like the centre of a pixel; `light_at` is then `Pixel`.
     pub(crate) lit_by_sample: bool,
     /// The offset of the sample from the centre of its pixel, in subpixels, if each sample is drawn
-    /// as a picture of its own.
+    /// as a separate picture.
     pub(crate) shift: [i32; 2],
     /// The filter of textures.
     pub(crate) filter: Filter,
-    /// How transparent surfaces are laid over each other.
+    /// The blending method of transparent surfaces.
     pub(crate) transparency: Transparency,
-    /// The variants of stages that the settings choose.
+    /// The variants of stages selected by the settings.
     pub(crate) variants: Variants,
     /// The view transform.
     pub(crate) view_from_world: DMat4,
     /// `clip_from_view`.
     pub(crate) clip_from_view: DMat4,
-    /// Width of lines in pixels: 1 or 2.
+    /// The width of lines in pixels: 1 or 2.
     pub(crate) line_width: i32,
     /// The lights in view space, the oldest first.
     pub(crate) lights: Vec<ViewLight>,
     /// The ids of the lights, in the same order.
     pub(crate) light_ids: Vec<LightId>,
-    /// Which lights cast shadows, and what casts them.
+    /// The lights that cast shadows, and the casters.
     pub(crate) shadows: Shadows,
-    /// What is drawn, in the order that decides between equal depths.
+    /// The draws, in the order that decides between equal depths.
     pub(crate) draws: Vec<Draw>,
     /// The distinct pipelines of all draws.
     pub(crate) pipelines: Vec<Pipeline>,
@@ -63,7 +63,7 @@ pub struct FramePlan {
     pub(crate) rules: Rules,
 }
 
-/// How directions to the observer are found.
+/// The direction to the observer, by projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Eye {
     /// Perspective: to the origin of view space.
@@ -77,32 +77,32 @@ pub(crate) enum Eye {
 pub(crate) enum Rules {
     /// Such work is left out.
     Applied,
-    /// Everything that the scene names is computed; the rules are tested against this.
+    /// Everything the scene names is computed; the rules are tested against this.
     Ignored,
 }
 
 impl FramePlan {
-    /// The plan of the picture that one sample of each pixel sees, `shift` subpixels from the
+    /// Returns the plan of the picture seen by one sample of each pixel, `shift` subpixels from the
     /// centre: right and down, in 1/256 pixel.
     #[must_use]
     pub fn seen_from(&self, shift: [i32; 2]) -> Self {
         Self { shift, ..self.clone() }
     }
 
-    /// Computes every derived table of the meshes that drawing reads. Drawing threads compute none
-    /// of them themselves: see [`together`](crate::work_stealing::together).
+    /// Computes every derived table of the meshes. Drawing threads must not compute any of them:
+    /// see [`together`](crate::work_stealing::together).
     pub(crate) fn prepare(&self) {
         self.draws.iter().for_each(|draw| draw.prepare(self));
         self.shadows.prepare(self.variants.shadow_method);
     }
 
-    /// Whether any surface is transparent.
+    /// Returns whether any surface is transparent.
     pub(crate) fn is_transparent(&self) -> bool {
         self.pipelines.iter().any(|pipeline| pipeline.opacity().is_some())
     }
 
-    /// The place of each draw in the order from far to near, by the middles of their boxes; of
-    /// equals, the younger is the farther.
+    /// Returns the position of each draw in the order from far to near, by the centres of their
+    /// boxes. At equal distances, the younger one counts as farther.
     pub(crate) fn far_to_near(&self) -> Vec<u32> {
         let away = |draw: &Draw| {
             let middle = draw.model.mesh.bounds().map_or(DVec3::ZERO, |bounds| bounds.centre());
@@ -117,14 +117,14 @@ impl FramePlan {
         places
     }
 
-    /// Pixels.
+    /// Returns the size in pixels.
     #[must_use]
     pub const fn size(&self) -> Size {
         self.size
     }
 
-    /// The stages of each pipeline by name, in order: two frames with the same keys do the same
-    /// work for each pixel.
+    /// Returns the stages of each pipeline by name, in order: two frames with the same keys do the
+    /// same work for each pixel.
     #[must_use]
     pub fn keys(&self) -> Vec<String> {
         self.pipelines.iter().map(Pipeline::key).collect()

@@ -1,4 +1,4 @@
-//! Which lights of a frame cast shadows, and what casts them.
+//! The shadows of a frame: lights and casters.
 
 use crate::accel::Accelerated as _;
 use std::collections::BTreeSet;
@@ -14,30 +14,30 @@ use marraztu_core::scene::{Derived, ItemId, Model, Texture};
 /// The shadows of a frame; empty if no light casts any.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Shadows {
-    /// For each light of the plan, the end of the rays to it, if it casts shadows.
+    /// The end of the rays to each light of the plan, if it casts shadows.
     pub(crate) sources: Vec<Option<ShadowSource>>,
-    /// What casts shadows, the oldest first.
+    /// The casters, the oldest first.
     pub(crate) casters: Vec<Caster>,
 }
 
 /// The end of the rays to a light, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ShadowSource {
-    /// At a point.
+    /// A point.
     Point(DVec3),
-    /// At a point that shines along a direction, as far to each side as this cosine says.
+    /// A point that shines along a direction, in a cone with this cosine of its half-aperture.
     Cone { at: DVec3, direction: DVec3, cos_half_aperture: f64 },
     /// Infinitely far away in this direction.
     Direction(DVec3),
 }
 
 impl ShadowSource {
-    /// Whether it is the same, bit by bit.
+    /// Returns whether both are the same, bit for bit.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         self.numbers().map(f64::to_bits) == other.numbers().map(f64::to_bits)
     }
 
-    /// All that it is made of.
+    /// Returns all of its numbers.
     fn numbers(&self) -> [f64; 8] {
         match *self {
             Self::Point(at) => [0.0, at.x, at.y, at.z, 0.0, 0.0, 0.0, 0.0],
@@ -49,33 +49,33 @@ impl ShadowSource {
     }
 }
 
-/// An object that casts shadows, seen by the observer or not.
+/// An object that casts shadows, even if the observer does not see it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Caster {
     pub(crate) item: ItemId,
     pub(crate) model: Shared<Model>,
     pub(crate) world_from_object: DMat4,
-    /// Its parts; `None` for those that are not drawn.
+    /// The parts; `None` for parts that are not drawn.
     pub(crate) parts: Vec<Option<CasterPart>>,
-    /// The polygons that are drawn, if not all are.
+    /// The polygons to draw, if not all are drawn.
     pub(crate) polygons: Option<BTreeSet<u32>>,
 }
 
 /// A part of an object that casts shadows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct CasterPart {
-    /// The pictures whose holes let light through, if there are any.
+    /// The textures with holes for light, if there are any.
     pub(crate) holes: Option<Holes>,
 }
 
-/// What a part lets light through: wherever the product of all three is below one half.
+/// The holes of a part: light passes if the product of all three opacities is below one half.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Holes {
-    /// The texture, whose alpha counts.
+    /// The texture with its alpha.
     pub(crate) texture: Option<Shared<Texture>>,
-    /// The map of opacity: its alpha, or its brightness if all of it is opaque.
+    /// The opacity map: its alpha, or its brightness if the map is opaque everywhere.
     pub(crate) map: Option<Shared<Texture>>,
-    /// The opacity of the material and of the object.
+    /// The opacity of the material and the object.
     pub(crate) opacity: f64,
 }
 
@@ -94,7 +94,7 @@ impl Holes {
 }
 
 impl Caster {
-    /// The part of a triangle, if it is drawn.
+    /// Returns the part of a triangle, if it is drawn.
     #[inline(always)]
     pub(crate) fn part_of(&self, triangle: u32) -> Option<&CasterPart> {
         let mesh = &self.model.mesh;
@@ -105,14 +105,14 @@ impl Caster {
         self.parts[mesh.polygon_parts()[polygon as usize] as usize].as_ref()
     }
 
-    /// Whether all of its triangles are drawn and have no holes.
+    /// Returns whether all of its triangles are drawn and have no holes.
     pub(crate) fn is_solid(&self) -> bool {
         let solid =
             |part: &Option<CasterPart>| part.as_ref().is_some_and(|part| part.holes.is_none());
         self.polygons.is_none() && self.parts.iter().all(solid)
     }
 
-    /// Whether it casts the same shadows.
+    /// Returns whether both cast the same shadows.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         let Self { item, model, world_from_object, parts, polygons } = self;
         let holes = |a: &Option<CasterPart>, b: &Option<CasterPart>| match (a, b) {
@@ -134,23 +134,23 @@ impl Caster {
 }
 
 impl Shadows {
-    /// Whether any light casts a shadow.
+    /// Returns whether any light casts a shadow.
     pub(crate) fn are_cast(&self) -> bool {
         !self.casters.is_empty() && self.sources.iter().any(Option::is_some)
     }
 
-    /// The end of the rays to a light, if it casts shadows.
+    /// Returns the end of the rays to a light, if it casts shadows.
     #[inline(always)]
     pub(crate) fn source(&self, light: u32) -> Option<ShadowSource> {
         self.sources.get(light as usize).copied().flatten()
     }
 
-    /// Whether any of these lights casts shadows.
+    /// Returns whether any of these lights casts shadows.
     pub(crate) fn any_of(&self, stages: &[Stage]) -> bool {
         self.are_cast() && stages.iter().any(|stage| self.source(stage.light).is_some())
     }
 
-    /// Whether all shadows are where they are in another frame.
+    /// Returns whether all shadows equal those of another frame.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         let cast = |source: &&Option<ShadowSource>| source.is_some();
         let own = self.sources.iter().filter(cast).flatten();

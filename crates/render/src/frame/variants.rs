@@ -1,7 +1,7 @@
-//! The variant of each stage that the settings choose.
+//! The variant of each stage, selected by the settings.
 //!
-//! The default of each stage is compiled by itself. Every other choice of an axis stands beside it
-//! in its stage, and is selected once per batch, draw or tile: an unused variant costs a comparison
+//! The default of each stage is compiled separately. Every other choice of an axis is a variant of
+//! the stage and is selected once per batch, draw or tile. An unused variant costs a comparison
 //! there, and nothing at a pixel.
 
 use std::ops::Deref;
@@ -10,12 +10,12 @@ use marraztu_core::accuracy::{
     BumpFilter, Coverage, Filter, LightValues, Settings, Subpixels, VertexArithmetic,
 };
 
-/// How bytes of texels become numbers.
+/// The conversion from the bytes of texels to numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Decoding {
-    /// As they are stored.
+    /// Bytes used as they are stored.
     Stored,
-    /// Decoded from sRGB.
+    /// Bytes decoded from sRGB.
     Linear,
 }
 
@@ -30,7 +30,7 @@ pub enum Grid {
 }
 
 impl Grid {
-    /// The parts of a pixel, in each direction.
+    /// Returns the number of grid steps per pixel, in each direction.
     #[must_use]
     pub const fn parts(self) -> i32 {
         match self {
@@ -39,7 +39,7 @@ impl Grid {
         }
     }
 
-    /// An offset in 1/256 pixel, in parts of this grid.
+    /// Converts an offset in 1/256 pixel to steps of this grid.
     #[must_use]
     pub const fn offset(self, [x, y]: [i32; 2]) -> [i32; 2] {
         let times = self.parts() / Self::Usual.parts();
@@ -47,9 +47,9 @@ impl Grid {
     }
 }
 
-/// The variants of a frame's stages: a choice of each axis that a stage has variants for.
+/// The variants of a frame's stages: a choice for each axis that has variants.
 ///
-/// A new axis is among them by itself.
+/// A new axis is included automatically.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Variants(Settings);
 
@@ -62,7 +62,7 @@ impl Deref for Variants {
 }
 
 impl Variants {
-    /// The variants that the settings choose.
+    /// Returns the variants that the settings choose.
     pub(crate) fn of(settings: &Settings) -> Self {
         // What is decided for each draw, or stands elsewhere in the plan, is left at its default.
         let Settings { arithmetic, light, samples, filter, .. } = Settings::default();
@@ -71,12 +71,12 @@ impl Variants {
         Self(Settings { specular, stretched, transparency, ..settings })
     }
 
-    /// The same with light computed in the values that colours are stored in.
+    /// Returns the same variants with light computed in stored values.
     pub(crate) fn in_stored_values(self) -> Self {
         Self(Settings { light_values: LightValues::Stored, ..self.0 })
     }
 
-    /// How colours are decoded before light is computed.
+    /// Returns the decoding of colours before light is computed.
     pub(crate) const fn decoding(&self) -> Decoding {
         match self.0.light_values {
             LightValues::Stored => Decoding::Stored,
@@ -84,12 +84,12 @@ impl Variants {
         }
     }
 
-    /// Whether light is computed in linear values.
+    /// Returns whether light is computed in linear values.
     pub(crate) fn are_linear(&self) -> bool {
         self.light_values == LightValues::Linear
     }
 
-    /// The filter of the maps of bumps.
+    /// Returns the filter of bump maps.
     pub(crate) const fn bump_filter(&self) -> Filter {
         match self.0.bump_filter {
             BumpFilter::Nearest => Filter::Nearest,
@@ -105,13 +105,13 @@ impl Variants {
         }
     }
 
-    /// Whether vertices are transformed and snapped by the defaults.
+    /// Returns whether vertices are transformed and snapped by the defaults.
     pub(crate) fn has_default_vertices(&self) -> bool {
         self.vertices == VertexArithmetic::F64
             && matches!(self.subpixels, Subpixels::Bits8 | Subpixels::Bits12)
     }
 
-    /// Whether a variant may move geometry on the screen, so that nothing may be left out for its
+    /// Returns whether a variant may move geometry on the screen. If so, nothing may be culled by
     /// position.
     pub(crate) fn has_geometry_variant(&self) -> bool {
         !self.has_default_vertices()

@@ -5,7 +5,7 @@ use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight};
 use super::shader::{LightShader, Which};
 use crate::simd::Lanes;
 
-/// The same light at every position and for every normal: Ia Ka.
+/// Light that is equal at every position and for every normal: Ia Ka.
 pub(crate) struct Ambient;
 
 impl LightShader for Ambient {

@@ -2,8 +2,7 @@
 
 use crate::simd::{BATCH, Lanes, Number, Vec3};
 
-/// A batch of positions on surfaces, with their normals and their light: an array for each
-/// quantity.
+/// Positions on surfaces with their normals and their light: an array for each quantity.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub struct Batch<T> {
@@ -11,15 +10,15 @@ pub struct Batch<T> {
     pub len: usize,
     /// The positions, in view space.
     pub position: [[T; BATCH]; 3],
-    /// Their normals: of length 1, or zero at positions without a normal.
+    /// The normals: of length 1, or zero at positions without a normal.
     pub normal: [[T; BATCH]; 3],
     /// The directions to the observer, of length 1: V.
     pub to_eye: [[T; BATCH]; 3],
-    /// What a map multiplies the exponents of their highlights with, if there is one.
+    /// The factors of the highlight exponents from a map, if there is one.
     pub exponent: [T; BATCH],
-    /// Light that is multiplied with the colour of the surface: ambient and diffuse.
+    /// The light to be multiplied by the surface colour: ambient and diffuse.
     pub diffuse: [[T; BATCH]; 3],
-    /// Light that keeps its own colour: specular.
+    /// The light that keeps its colour: specular.
     pub specular: [[T; BATCH]; 3],
 }
 
@@ -49,7 +48,7 @@ impl<T: Copy + Default> Batch<T> {
 }
 
 impl<T: Number> Batch<T> {
-    /// Stores samples from `at` on.
+    /// Stores samples, starting at `at`.
     #[inline(always)]
     pub(crate) fn put<M: Lanes<Number = T>>(&mut self, lanes: M, sample: Sample<M::R>, at: usize) {
         store(lanes, sample.position, &mut self.position, at);
@@ -58,7 +57,7 @@ impl<T: Number> Batch<T> {
     }
 }
 
-/// A position on a surface, with its normal and direction to the observer; or several.
+/// A position on a surface with its normal and its direction to the observer; or several, in lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<R> {
     /// See [`Batch::position`].
@@ -71,7 +70,7 @@ pub struct Sample<R> {
     pub exponent: R,
 }
 
-/// The light that one light shader reflects from a position to the observer.
+/// The light that a light shader reflects from a position to the observer.
 #[derive(Clone, Copy, Debug)]
 pub struct Reflected<R> {
     /// See [`Batch::diffuse`].
@@ -80,7 +79,7 @@ pub struct Reflected<R> {
     pub specular: Option<Vec3<R>>,
 }
 
-/// Three numbers, the same for all lanes.
+/// Repeats three numbers in all lanes.
 #[inline(always)]
 pub(crate) fn set<M: Lanes>(lanes: M, numbers: [M::Number; 3]) -> Vec3<M::R> {
     Vec3([lanes.set(numbers[0]), lanes.set(numbers[1]), lanes.set(numbers[2])])

@@ -39,7 +39,7 @@ impl LightShader for Bulb {
     }
 }
 
-/// The direction to a light, and its attenuation at the distance d:
+/// Computes the direction to a light, and its attenuation at the distance d:
 ///
 ///   att(d) = 1 / (a0 + a1 d + a2 d^2);   0 at d = 0, where a light adds nothing
 #[inline(always)]
@@ -52,6 +52,7 @@ pub(crate) fn arriving<M: Lanes>(
     let square = to_light.dot(to_light);
     let per_d = square.reciprocal_root();
     let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
+    // The division is skipped for lights that do not fade.
     let mut left = one;
     if term.fades {
         let d = square * per_d;

@@ -1,8 +1,9 @@
-//! The kinds of light, and their table.
+//! The table of light kinds.
 //!
-//! A kind of light is one file in this folder and one row of [`LIGHT_SHADERS`]. It says when a
-//! scene needs it and how it lights a surface, once, over [`Real`](super::simd::Real); the row
-//! holds its compiled variants. A frame pays only for the lights that it has.
+//! Each kind of light is one file in this folder and one row of [`LIGHT_SHADERS`]. Its shader
+//! decides when a scene needs it, and computes the reflected light once, generically over
+//! [`Real`](super::simd::Real). The row holds the compiled variants. A frame pays only for the
+//! lights that it has.
 //!
 //! Light is computed in view space, for a batch of positions at a time: of pixels, vertices or
 //! faces.
@@ -42,7 +43,7 @@ pub static SPOT: LightRow = LightRow::of::<spot::Spot>();
 /// Every kind of light.
 pub static LIGHT_SHADERS: &[&LightRow] = &[&AMBIENT, &SUN, &BULB, &SPOT];
 
-/// The row of a light.
+/// Returns the row of a light.
 #[must_use]
 pub const fn row_of(kind: &LightKind) -> &'static LightRow {
     match kind {

@@ -11,17 +11,17 @@ use marraztu_core::accuracy::SpecularPower;
 /// A light of a frame, in view space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ViewLight {
-    /// Its colour as factors.
+    /// The colour, as factors.
     pub color: [f64; 3],
-    /// Its position.
+    /// The position.
     pub position: [f64; 3],
-    /// The direction in which its light travels, of length 1.
+    /// The direction of its light, of length 1.
     pub direction: [f64; 3],
-    /// The coefficients of 1, d and d^2 in its attenuation.
+    /// The coefficients of 1, d and d^2 in the attenuation.
     pub attenuation: [f64; 3],
-    /// The cosine of its cone's half-aperture.
+    /// The cosine of the cone's half-aperture.
     pub cos_half_aperture: f64,
-    /// The exponent by which its light is concentrated along the axis.
+    /// The exponent that concentrates the light along the axis.
     pub exponent: f64,
 }
 
@@ -43,7 +43,7 @@ pub struct PhongMaterial {
 }
 
 impl PhongMaterial {
-    /// Whether a light can have a highlight on it.
+    /// Returns whether a light can have a highlight on this material.
     #[must_use]
     pub fn mirrors(&self, light: &ViewLight) -> bool {
         self.specular.iter().zip(light.color).any(|(ks, color)| ks * color != 0.0)
@@ -59,7 +59,7 @@ impl PhongMaterial {
     }
 }
 
-/// The products of a light and a material, in the shading arithmetic.
+/// The products of a light and a material, in the arithmetic of shading.
 #[derive(Clone, Debug)]
 pub struct LightTerm<T> {
     /// I Ka.
@@ -70,11 +70,11 @@ pub struct LightTerm<T> {
     pub specular: [T; 3],
     /// See [`ViewLight::position`].
     pub position: [T; 3],
-    /// The reverse of the direction in which its light travels.
+    /// The direction against the light's travel.
     pub axis: [T; 3],
     /// See [`ViewLight::attenuation`].
     pub attenuation: [T; 3],
-    /// Whether its light fades with distance.
+    /// Whether the light fades with distance.
     pub fades: bool,
     /// See [`ViewLight::cos_half_aperture`].
     pub cos_half_aperture: T,
@@ -91,6 +91,7 @@ impl<T: Number> LightTerm<T> {
     #[must_use]
     pub fn new(light: &ViewLight, material: &PhongMaterial) -> Self {
         let all = |numbers: [f64; 3]| numbers.map(T::from_f64);
+        // Each product is formed in f64 and rounded once.
         let times = |k: [f64; 3]| all([0, 1, 2].map(|i| light.color[i] * k[i]));
         Self {
             ambient: times(material.ambient),
@@ -134,9 +135,10 @@ pub enum Form {
 
 /// The form of a specular highlight, as a type.
 pub trait Highlight {
-    /// Whether the exponent differs from position to position: see [`Sample::exponent`].
+    /// Whether the exponent varies from position to position: see [`Sample::exponent`].
     const IS_MAPPED: bool = false;
-    /// The cosine whose power is the highlight, if there is one; `n_l` is N.L, more than 0.
+    /// Computes the cosine to be raised to the exponent, if there is a highlight. `n_l` is N.L,
+    /// more than 0.
     fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R>;
 }
 
@@ -174,7 +176,7 @@ impl Highlight for HalfVector {
     }
 }
 
-/// A form of highlight whose exponent is multiplied by a map.
+/// A highlight with an exponent scaled by a map.
 #[derive(Debug)]
 pub(super) struct Mapped<H>(std::marker::PhantomData<H>);
 
@@ -187,11 +189,11 @@ impl<H: Highlight> Highlight for Mapped<H> {
     }
 }
 
-/// Light at a grazing angle has no highlight, up to this cosine of its angle to the normal.
+/// The cosine between light and normal up to which a light has no highlight.
 ///
 /// A highlight starts abruptly as N.L rises above 0. If a light lies in the plane of a face, which
-/// is not rare, N.L is only a rounding error, which would decide whether all of the face has a
-/// highlight. The bound is a hundred times that error, and 0.0006 degrees.
+/// is not rare, N.L is only a rounding error, and that error would decide whether the whole face
+/// has a highlight. The bound is a hundred times the error, and 0.0006 degrees.
 const GRAZING: f64 = 1e-5;
 
 /// Multiplies light by a strength, if there is one.
@@ -203,7 +205,7 @@ fn weakened<R: Real>(part: R, strength: Option<R>) -> R {
     }
 }
 
-/// Phong reflection of the light that arrives from a direction, diffuse and specular:
+/// Computes the diffuse and specular Phong reflection of light from a direction:
 ///
 ///   diffuse = s I Kd max(0, N.L),   specular = s I Ks [N.L > 0 and c > 0] c^Ns
 ///
@@ -219,6 +221,7 @@ pub(super) fn phong<M: Lanes, H: Highlight>(
 ) -> Option<Reflected<M::R>> {
     let zero = lanes.lift(0.0);
     let n_l = sample.normal.dot(to_light);
+    // Many batches face away from a light: nothing else is computed for them.
     if !lanes.any_more(n_l, zero) {
         return None;
     }
@@ -248,7 +251,7 @@ pub(super) fn max_attenuation(light: &ViewLight, region: Option<&Region>) -> f64
     1.0 / (a0 + (a1 + a2 * d) * d)
 }
 
-/// Why a light adds nothing to a material, if so.
+/// Returns why a light adds nothing to a material, if so.
 pub(super) fn light_is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
     let zero = |color: [f64; 3]| color == [0.0; 3];
     if zero(light.color) {

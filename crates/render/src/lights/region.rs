@@ -1,26 +1,26 @@
-//! Regions: bounds of positions in view space, which tell what no light reaches in them.
+//! Regions: bounds of positions in view space, for light culling.
 //!
-//! A region is the convex hull of eight points, and a distance by which a computed position may lie
-//! outside of it. Every statement about a region holds for every position as it is computed, in f32
-//! or in f64: all bounds are rounded outwards.
+//! A region is the convex hull of eight points, plus the largest distance of a computed position
+//! outside. Every statement about a region holds for every position as computed, in f32 or in f64,
+//! because all bounds are rounded outwards.
 
 use glam::{DMat4, DVec3};
 
-/// The relative error of a computed position, including the subtraction of a light's position: some
-/// 10 times the rounding of f32.
+/// The relative error of a computed position, including the subtraction of a light's position:
+/// about 10 times the rounding of f32.
 const ROUNDING: f64 = 2e-6;
 
-/// The error of a computed cosine: some 10 times the largest that was measured.
+/// The error of a computed cosine: about 10 times the largest measured error.
 const COSINE_ROUNDING: f64 = 4e-6;
 
-/// How far a region's centre has to lie off a cone's axis, relative to its distance: nearer to it,
-/// the direction away from the axis is a rounding error.
+/// The smallest distance of a region's centre from a cone's axis, relative to its distance from the
+/// apex. Closer to the axis, the direction away from it is only a rounding error.
 const LEAST_ASIDE: f64 = 1e-6;
 
 /// The cosine up to which light along a face may count as coming from either side.
 pub(crate) const EDGE_ON: f64 = 1e-4;
 
-/// The convex hull of eight positions in view space, and how far others may lie outside of it.
+/// The convex hull of eight positions in view space, and the error of others around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
     corners: [DVec3; 8],
@@ -30,30 +30,30 @@ pub struct Region {
 }
 
 impl Region {
-    /// The hull of these points, with positions up to `error` outside.
+    /// Creates the hull of these points, with positions up to `error` outside.
     #[must_use]
     pub fn new(corners: [DVec3; 8], error: f64) -> Self {
         let reach = corners.iter().map(|corner| corner.length()).fold(0.0, f64::max);
         Self { corners, error, reach }
     }
 
-    /// The hull of points of object space.
+    /// Creates the hull of points in object space.
     pub(crate) fn placed(view_from_object: DMat4, corners: [DVec3; 8], error: f64) -> Self {
         Self::new(corners.map(|corner| view_from_object.transform_point3(corner)), error)
     }
 
-    /// The largest distance of a corner from the origin.
+    /// Returns the largest distance of a corner from the origin.
     pub(crate) const fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// The error of the vector from a light to a position.
+    /// Returns the error of the vector from a light to a position.
     fn error_from(&self, light: DVec3) -> f64 {
         self.error + ROUNDING * (self.reach + light.length())
     }
 
-    /// Whether a face with this normal (of length 1), anywhere in the region, is turned away from a
-    /// light.
+    /// Returns whether a face with this normal (of length 1) is turned away from a light, anywhere
+    /// in the region.
     pub(crate) fn faces_away(&self, normal: DVec3, light: DVec3) -> bool {
         let error = self.error_from(light);
         self.corners.iter().all(|corner| {
@@ -62,22 +62,23 @@ impl Region {
         })
     }
 
-    /// A lower bound of the distance from a point to every position; 0 if none is known.
+    /// Returns a lower bound of the distance from a point to every position; 0 if no bound is
+    /// known.
     #[must_use]
     pub fn least_distance(&self, from: DVec3) -> f64 {
         let low = self.corners.iter().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
         let high = self.corners.iter().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
         let to_box = (from.clamp(low, high) - from).length();
         let least = to_box - self.error_from(from);
-        // NaN gives no bound.
+        // NaN gives the bound 0.
         if least > 0.0 { least } else { 0.0 }
     }
 
-    /// An upper bound of the cosine between `axis` (of length 1) and the direction from `apex` to
-    /// any position; 1 if none is known.
+    /// Returns an upper bound of the cosine between `axis` (of length 1) and the direction from
+    /// `apex` to any position; 1 if no bound is known.
     ///
-    /// With a ball around the corners, of radius r and at the distance d: the angle to its centre,
-    /// less asin(r / d).
+    /// The bound uses a ball around the corners, with radius r at the distance d: the angle to its
+    /// centre, minus asin(r / d).
     #[must_use]
     pub fn most_cosine(&self, apex: DVec3, axis: DVec3) -> f64 {
         let middle = self.corners.iter().sum::<DVec3>() / 8.0;
@@ -89,16 +90,16 @@ impl Region {
             let least = (angle - libm::asin(radius / distance)).max(0.0);
             (libm::cos(least) + COSINE_ROUNDING).min(1.0)
         } else {
-            // The apex is inside, or NaN.
+            // The apex is inside the ball, or NaN.
             1.0
         }
     }
 
-    /// Whether no position lies in the cone with the half-angle acos `border` around `axis` (of
-    /// length 1) from `apex`; the border counts as outside.
+    /// Returns whether no position lies in the cone around `axis` (of length 1) from `apex` with
+    /// the half-angle acos `border`. The border counts as outside.
     ///
-    /// Either by the bound of the cosine, or by a plane through the apex that touches the cone and
-    /// has all corners on its other side.
+    /// The proof is either the bound of the cosine, or a plane through the apex that touches the
+    /// cone with all corners on its other side.
     #[must_use]
     pub fn misses_cone(&self, apex: DVec3, axis: DVec3, border: f64) -> bool {
         if self.most_cosine(apex, axis) <= border {
@@ -106,7 +107,7 @@ impl Region {
         }
         let wider = border - COSINE_ROUNDING;
         if wider <= 0.0 {
-            // So wide a cone is not convex: no plane touches it.
+            // A cone this wide is not convex: no plane touches it.
             return false;
         }
         let sine = (1.0 - wider * wider).max(0.0).sqrt();
@@ -127,7 +128,7 @@ impl Region {
 mod tests {
     use super::*;
 
-    /// A cube around `middle`, `half` to each side.
+    /// Returns a cube around `middle`, `half` to each side.
     fn cube(middle: DVec3, half: f64) -> Region {
         let corner = |i: u32| {
             let side = |bit: u32| if i & bit == 0 { -half } else { half };
@@ -156,7 +157,7 @@ mod tests {
             let (axis, far) = (axis.normalize_or_zero(), 300.0);
             let region = cube(axis * far, 0.5);
             assert!(!region.misses_cone(DVec3::ZERO, axis, 0.9999), "{axis}");
-            // As far off the axis as rounding errors, or more.
+            // Up to rounding errors off the axis, and more.
             for off in [1e-13, 1e-10, 1e-7, 1e-3] {
                 let turned = (axis + DVec3::new(off, -off, off)).normalize_or_zero();
                 assert!(!region.misses_cone(DVec3::ZERO, turned, 0.9999), "{axis} {off}");

@@ -1,4 +1,4 @@
-//! How one kind of light reaches a surface, and its compiled variants.
+//! The shader trait of a kind of light, and its compiled variants.
 
 use std::marker::PhantomData;
 
@@ -14,33 +14,33 @@ use crate::simd::{Kernel, Lanes, Number};
 
 /// The shader of a kind of light.
 pub trait LightShader {
-    /// Its name in the plan.
+    /// The name in the plan.
     const NAME: &'static str;
-    /// Which of the shaders it is.
+    /// The shader as an enum.
     const WHICH: Which;
-    /// Whether it reads positions, normals or directions to the observer.
+    /// Whether the shader reads positions, normals or directions to the observer.
     const READS_POSITIONS: bool = true;
-    /// Whether it has a position, and fades with the distance from it.
+    /// Whether the light has a position, and fades with the distance from it.
     const HAS_POSITION: bool = true;
-    /// Whether its reach is limited, so that `is_culled` may cull it.
+    /// Whether the light's reach is limited; only then can `is_culled` cull it.
     const HAS_REACH: bool = false;
-    /// Why it adds nothing to a material, if so: leaving it out then changes no bit.
+    /// Returns why the light adds nothing to a material, if so. Leaving it out then changes no bit.
     fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str>;
-    /// Why none of it arrives in a region, if so: leaving it out there then changes no bit.
+    /// Returns why no light arrives in a region, if so. Leaving it out there then changes no bit.
     fn is_culled(_: &ViewLight, _: &Region) -> Option<&'static str> {
         None
     }
-    /// Whether it comes from behind all faces of a region, whose normals are `turning`: leaving it
-    /// out there then changes no bit.
+    /// Returns whether the light comes from behind all faces of a region, given their normals
+    /// `turning`. Leaving it out there then changes no bit.
     fn is_behind(_: &ViewLight, _: &Region, _: &Turning) -> bool {
         false
     }
-    /// The largest fraction of its light that arrives in a region, or anywhere without one.
+    /// Returns the largest fraction of the light that arrives in a region, or anywhere without one.
     fn max_falloff(_: &ViewLight, _: Option<&Region>) -> f64 {
         1.0
     }
-    /// The fraction of its light that goes in a direction, by the cosine between that and its axis;
-    /// for explanations.
+    /// Returns the fraction of the light in a direction, by the cosine between the direction and
+    /// the axis, for explanations.
     fn fraction_at(_: &ViewLight, _cosine: f64) -> f64 {
         1.0
     }
@@ -109,7 +109,7 @@ pub struct LightRow {
 }
 
 impl LightRow {
-    /// Makes the row of a shader.
+    /// Creates the row of a shader.
     pub(super) const fn of<E: LightShader>() -> Self {
         Self {
             name: E::NAME,
@@ -164,6 +164,7 @@ impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
                     false => lanes.lift(1.0),
                 },
             };
+            // Most lights reach only some positions; a light that adds nothing stores nothing.
             let Some(reflected) = E::shade::<M, H>(lanes, sample, self.term) else {
                 continue;
             };
@@ -175,9 +176,9 @@ impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
     }
 }
 
-/// Numbers that light shaders are compiled for.
+/// A number type that light shaders are compiled for.
 pub trait Light: Number {
-    /// Adds the light of a shader at every position of the batch.
+    /// Adds the light of a shader at every position of a batch.
     fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>);
 }
 

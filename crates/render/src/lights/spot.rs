@@ -25,7 +25,7 @@ impl LightShader for Spot {
     fn is_culled(light: &ViewLight, region: &Region) -> Option<&'static str> {
         let (apex, axis) = (light.position.into(), light.direction.into());
         if light.cos_half_aperture >= 1.0 {
-            // No cosine is more than 1.
+            // A cosine never exceeds 1.
             Some("its cone is closed")
         } else if region.misses_cone(apex, axis, light.cos_half_aperture) {
             Some("nothing is within its cone")
@@ -49,9 +49,9 @@ impl LightShader for Spot {
         if inside { libm::pow(cosine, light.exponent) } else { 0.0 }
     }
 
-    /// With c = min(1, F.(-L)), F the axis: c^n of the light arrives if c is more than the cosine
-    /// of the half-aperture, and none otherwise. Warn, "Lighting Controls for Synthetic Images",
-    /// SIGGRAPH 1983.
+    /// With c = min(1, F.(-L)), F the axis: the fraction c^n of the light arrives if c exceeds the
+    /// cosine of the half-aperture; if not, nothing arrives. Warn, "Lighting Controls for Synthetic
+    /// Images", SIGGRAPH 1983.
     #[inline(always)]
     fn shade<M: Lanes, H: Highlight>(
         lanes: M,
@@ -61,6 +61,7 @@ impl LightShader for Spot {
         let (to_light, strength) = arriving(lanes, sample.position, term);
         let c = Real::min(set(lanes, term.axis).dot(to_light), lanes.lift(1.0));
         let border = lanes.set(term.cos_half_aperture);
+        // The power is only computed if a position is inside the cone.
         if !lanes.any_more(c, border) {
             return None;
         }

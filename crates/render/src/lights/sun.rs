@@ -9,7 +9,7 @@ use super::shader::{LightShader, Which};
 use super::turning::Turning;
 use crate::simd::Lanes;
 
-/// The same direction at every position, and no attenuation.
+/// A light with the same direction at every position and no attenuation.
 pub(crate) struct Sun;
 
 impl LightShader for Sun {

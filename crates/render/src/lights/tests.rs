@@ -1,4 +1,4 @@
-//! Tests of light shaders against numbers from outside: the two arithmetics cannot check each
+//! Compares light shaders with numbers from external sources: the two arithmetics cannot check each
 //! other's equations.
 
 #![expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
@@ -106,7 +106,7 @@ fn a_bulb_fades_by_its_coefficients_and_adds_nothing_at_its_own_place() {
 
 #[test]
 fn a_spot_gives_the_fifth_power_of_the_cosine_inside_its_cone_and_nothing_outside() {
-    // Axis along -Z from (0, 0, 1); the position is so far aside that the cosine is 0.8 or 0.95.
+    // The axis runs along -Z from (0, 0, 1). The position is aside so the cosine is 0.8 or 0.95.
     for (cosine, border, part) in [(0.8_f64, 0.9, 0.0), (0.8, 0.79, 0.8_f64.powi(5))] {
         let aside = (1.0 / (cosine * cosine) - 1.0).sqrt();
         let spot = ViewLight { position: [aside, 0.0, 1.0], cos_half_aperture: border, ..light() };

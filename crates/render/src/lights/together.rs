@@ -1,5 +1,5 @@
-//! Several lights on a batch in one pass: positions, normals and sums stay in registers from light
-//! to light.
+//! Adds several lights to a batch in one pass: positions, normals and sums stay in registers from
+//! light to light.
 
 use super::ambient::Ambient;
 use super::batch::{Batch, Reflected, Sample, load, store};
@@ -10,7 +10,7 @@ use super::spot::Spot;
 use super::sun::Sun;
 use crate::simd::{Kernel, Lanes, Number, Vec3};
 
-/// Sets the light at every position of a batch to that of several shaders, added in the order of an
+/// Computes the light at every position of a batch from several shaders, added in the order of an
 /// iterator.
 pub(crate) struct Together<'a, T, I> {
     pub(crate) batch: &'a mut Batch<T>,
@@ -33,6 +33,7 @@ where
                 exponent: lanes.lift(1.0),
             };
             let (mut diffuse, mut specular) = (Vec3([zero; 3]), Vec3([zero; 3]));
+            // The light kind is matched per batch of lanes, where the branch is well predicted.
             for (which, form, term) in lights.clone() {
                 let reflected = match form {
                     Form::Plain => reflected::<M, Nothing>(which, lanes, sample, term),

@@ -7,7 +7,7 @@ use glam::DVec3;
 pub struct Turning(pub(crate) Vec<DVec3>);
 
 impl Turning {
-    /// Whether a predicate holds for all normals.
+    /// Returns whether a predicate holds for all normals.
     pub(crate) fn all(&self, is: impl Fn(DVec3) -> bool) -> bool {
         self.0.iter().all(|normal| is(*normal))
     }

@@ -1,25 +1,27 @@
-//! How a surface covers what is behind it: wholly, with holes, as a transparent one, or not at all.
+//! Decides how a surface covers the surfaces behind it: opaque, with holes, transparent, or not
+//! drawn.
 
 use marraztu_core::accuracy::Transparency;
 use marraztu_core::scene::{MapKind, Object, PartLook};
 
-/// How a part of an object covers what is behind it.
+/// The way a part of an object covers the surfaces behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cover {
-    /// Not at all: it is not drawn, for this reason.
+    /// Not drawn, for this reason.
     Nothing(&'static str),
-    /// Wherever its texture, multiplied by this opacity, is at least one half.
+    /// Opaque at points where its texture's alpha, multiplied by this opacity, is at least one
+    /// half.
     Threshold(f64),
-    /// By this opacity, multiplied by the texture's alpha and the map of opacity.
+    /// Transparent: this opacity, multiplied by the texture's alpha and the opacity map.
     Transparent(f64),
 }
 
 impl Cover {
-    /// The cover of a part.
+    /// Returns the cover of a part.
     ///
-    /// If all texels of a texture, or of a map of opacity, are wholly opaque or wholly transparent,
-    /// it is a stencil: it cuts holes, as with [`Transparency::Threshold`], however its edges are
-    /// filtered.
+    /// If all texels of a texture, or of an opacity map, are fully opaque or fully transparent, it
+    /// is a stencil: it cuts holes, as with [`Transparency::Threshold`], regardless of how its
+    /// edges are filtered.
     pub(super) fn of(look: &PartLook<'_>, textured: bool, transparency: Transparency) -> Self {
         // NaN counts as opaque.
         let opacity = if look.opacity < 1.0 { look.opacity.max(0.0) } else { 1.0 };
@@ -44,7 +46,7 @@ impl Cover {
         }
     }
 
-    /// Whether a part of an object that is shown is transparent.
+    /// Returns whether a visible part of an object is transparent.
     pub(super) fn is_any_transparent(object: &Object, transparency: Transparency) -> bool {
         let mesh = &object.model.mesh;
         let parts = u32::try_from(mesh.parts().len()).unwrap_or(u32::MAX);

@@ -1,7 +1,7 @@
-//! Explains the effects of an object's surface and lines, finds the pixels that they take part in,
-//! and removes them: one row for each effect that is not a light.
+//! Explains the effects of an object's surface and lines, finds the pixels they contribute to, and
+//! removes them: one row for each effect other than lights.
 //!
-//! The rows read the finished draw, so the explanation agrees with what is drawn.
+//! The rows read the finished draw, so the explanation agrees with the picture.
 
 use std::borrow::Cow;
 
@@ -14,16 +14,17 @@ use crate::lights::Form;
 use marraztu_core::accuracy::{Filter, LightAt, Settings, Tangents, Transparency};
 use marraztu_core::scene::{ItemId, MapKind, Normals, Object, Sides, Surface};
 
-/// What a row reads.
+/// The inputs of a row.
 struct Facts<'a> {
     settings: &'a Settings,
     object: &'a Object,
     draw: &'a Draw,
-    /// The pipelines of its lit or textured parts.
+    /// The pipelines of the draw's lit or textured parts.
     shaded: Vec<&'a Shaded>,
 }
 
-/// A row of the table: an effect, its explanation, and whether a surface has it, if surfaces do.
+/// A row of the table: an effect, its explanation, and, for effects of surfaces, a test for a
+/// surface.
 struct Feature(Effect, fn(&Facts<'_>) -> EffectState, Option<fn(&Shaded) -> bool>);
 
 /// The table: one row for each effect of surfaces or lines.
@@ -43,7 +44,7 @@ const FEATURES: &[Feature] = &[
     Feature(Effect::VertexNormals, |it| switched(it.draw.lines.vertex_normals.is_some()), None),
 ];
 
-/// The effect that stands for an item being drawn at all.
+/// Returns the effect that represents the presence of an item.
 pub(crate) const fn presence(item: ItemId) -> Effect {
     match item {
         ItemId::Object(_) => Effect::Surfaces,
@@ -51,14 +52,14 @@ pub(crate) const fn presence(item: ItemId) -> Effect {
     }
 }
 
-/// The effects of a surface that are not lights.
+/// Iterates over the effects of a surface, except lights.
 pub(crate) fn of_surface(shaded: &Shaded) -> impl Iterator<Item = Effect> {
     let there = |row: &&Feature| row.2.is_some_and(|is_in| is_in(shaded));
     FEATURES.iter().filter(there).map(|row| row.0)
 }
 
 impl Planner<'_> {
-    /// Notes the effects of a draw that are not lights.
+    /// Notes the effects of a draw, except lights.
     pub(super) fn note_features(&self, into: &mut Planning, object: &Object, draw: &Draw) {
         let Planning { plan, notes, .. } = into;
         let facts = || {
@@ -77,6 +78,7 @@ impl Planner<'_> {
             state,
             pixels: None,
         };
+        // Marks have no surface settings, so they get a single row.
         let presence = presence(draw.item);
         if presence == Effect::Marks {
             return notes.add(|| note(presence, EffectState::ON));
@@ -88,8 +90,8 @@ impl Planner<'_> {
 }
 
 impl FramePlan {
-    /// The plan without an effect: another picture, and less work. `None` if it does not use the
-    /// effect, or cannot do without it.
+    /// Returns the plan without an effect: another picture, and less work. `None` if the plan does
+    /// not use the effect, or needs it.
     #[must_use]
     pub fn without(&self, effect: Effect) -> Option<Self> {
         let mut plan = self.clone();
@@ -127,7 +129,7 @@ impl FramePlan {
                 }
             }),
             Effect::Bumps => plan.for_each_shaded(|shaded| shaded.extras.bump = None),
-            // A factor of the lights costs nothing.
+            // Exposure is a factor of the lights and costs nothing.
             Effect::Exposure => return None,
             Effect::LinearLight => plan.variants = plan.variants.in_stored_values(),
             Effect::BackFaces => plan.draws.iter_mut().for_each(|draw| draw.back = Back::Culled),
@@ -178,7 +180,7 @@ fn surfaces(it: &Facts<'_>) -> EffectState {
     }
 }
 
-/// On if `is` holds for any part of the object.
+/// Returns the state "on" if `is` holds for any part of the object.
 fn any(
     it: &Facts<'_>,
     is: impl Fn(&Shaded) -> bool,
@@ -243,7 +245,7 @@ fn transparency(it: &Facts<'_>) -> EffectState {
         .unwrap_or(EffectState::left_out("it is opaque"))
 }
 
-/// Whether a part of the object names a map of one of these kinds.
+/// Returns whether a part of the object names a map of one of these kinds.
 fn names(it: &Facts<'_>, kinds: &[MapKind]) -> bool {
     let parts = u32::try_from(it.object.model.mesh.parts().len()).unwrap_or(u32::MAX);
     let named = |part: u32| kinds.iter().any(|kind| it.object.part_look(part).map(*kind).is_some());

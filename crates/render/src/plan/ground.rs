@@ -1,22 +1,22 @@
-//! What the surfaces of an object have in common.
+//! The shared properties of an object's surfaces.
 
 use super::uses;
 use crate::lights::region::Region;
 use crate::lights::turning::Turning;
 use marraztu_core::scene::{ItemId, Object};
 
-/// What the surfaces of an object have in common.
+/// The shared properties of an object's surfaces.
 #[derive(Debug)]
 pub(super) struct Ground<'a> {
     pub(super) item: ItemId,
     pub(super) object: &'a Object,
-    /// The region in which they are lit, if it is known.
+    /// The region of the lit points, if it is known.
     pub(super) region: Option<Region>,
-    /// Their normals, if they are known.
+    /// The normals of the surfaces, if they are known.
     pub(super) turning: Option<Turning>,
-    /// Whether lights may be culled tile by tile, since nothing of it is clipped.
+    /// Whether lights may be culled tile by tile, because no part of the object is clipped.
     pub(super) tiled: bool,
-    /// Whether their colours are visible at all.
+    /// Whether the colours of the surfaces are visible.
     pub(super) seen: bool,
 }
 
@@ -26,5 +26,5 @@ impl Ground<'_> {
     }
 }
 
-/// The largest coefficient and exponent: far beyond any other light, and it fits f32.
+/// The largest coefficient and exponent: far beyond any real light, and within f32.
 pub(super) const LARGEST: f64 = 1e30;

@@ -1,4 +1,4 @@
-//! Helpers: models that stand for cameras and bulbs, which have no surface of their own.
+//! Helpers: models that represent cameras and bulbs, which have no mesh in the scene.
 
 use std::sync::OnceLock;
 
@@ -14,13 +14,13 @@ use marraztu_core::scene::{
 /// The colour of a bulb's diamond.
 pub(super) const YELLOW: Color = Color([255, 255, 0]);
 
-/// The size of a camera model: its longest side, in units of the world.
+/// The size of a camera model: its longest side, in world units.
 const CAMERA_MARK: f64 = 24.0;
 
-/// Half of a diamond's diagonal in units of the world.
+/// Half of a diamond's diagonal in world units.
 const DIAMOND: f64 = 1.0;
 
-/// The least length of a diamond's diagonal in pixels.
+/// The smallest length of a diamond's diagonal in pixels.
 const DIAMOND_PIXELS: f64 = 9.0;
 
 /// Places a camera model at the camera's eye, in its frame.
@@ -38,7 +38,7 @@ pub(super) fn world_from_diamond(observer: &ObserverSpace, bulb: DVec3) -> Optio
     if w <= 0.0 {
         return None;
     }
-    // The size of a unit of the world at that distance, in pixels.
+    // The size of a world unit at that distance, in pixels.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 rows")]
     let pixels =
         observer.clip_from_view.y_axis.y * observer.unit / w * observer.size.height as f64 / 2.0;
@@ -47,7 +47,7 @@ pub(super) fn world_from_diamond(observer: &ObserverSpace, bulb: DVec3) -> Optio
     Some(math::placed(axes * half, bulb))
 }
 
-/// A square on its corner, from -1 to 1, facing +Z.
+/// Returns a square on its corner, from -1 to 1, facing +Z.
 pub(super) fn diamond() -> &'static Shared<Model> {
     static DIAMOND: OnceLock<Shared<Model>> = OnceLock::new();
     get_or_compute(&DIAMOND, || {

@@ -1,4 +1,4 @@
-//! Plans the light that surfaces have of their own, and their maps beside the texture.
+//! Plans the emission of surfaces, and their maps in addition to the texture.
 
 use super::ground::{Ground, LARGEST};
 use super::planning::{Planner, Planning};
@@ -11,7 +11,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::color::linear;
 use marraztu_core::scene::{MapKind, Material, PartLook, SurfaceMap, Texture};
 
-/// A map of a part, if its mesh has texture coordinates.
+/// Returns a map of a part, if its mesh has texture coordinates.
 pub(super) fn mapped<'a>(
     ground: &Ground<'_>,
     look: &PartLook<'a>,
@@ -20,7 +20,7 @@ pub(super) fn mapped<'a>(
     look.map(kind).filter(|_| !ground.object.model.mesh.uvs().is_empty())
 }
 
-/// A material whose colours are decoded from sRGB.
+/// Returns a material with colours decoded from sRGB.
 pub(super) fn decoded(material: &Material) -> Material {
     let Material { ambient, diffuse, specular, exponent, emission } = *material;
     let [ambient, diffuse, specular, emission] =
@@ -28,7 +28,8 @@ pub(super) fn decoded(material: &Material) -> Material {
     Material { ambient, diffuse, specular, exponent, emission }
 }
 
-/// Whether a map of opacity is the texture itself, laid out alike: its alpha counts already.
+/// Returns whether an opacity map is the texture itself with the same layout: its alpha counts
+/// already.
 pub(super) fn holds_same_alpha(texture: Option<&Shared<Texture>>, map: &Shared<Texture>) -> bool {
     texture.is_some_and(|texture| {
         let is_same = Shared::same(texture, map)
@@ -39,7 +40,7 @@ pub(super) fn holds_same_alpha(texture: Option<&Shared<Texture>>, map: &Shared<T
     })
 }
 
-/// The light of the surface's own, if it shines.
+/// Returns the emission of a surface, if it has any.
 pub(super) fn emission(
     rules: Rules,
     ground: &Ground<'_>,
@@ -55,8 +56,8 @@ pub(super) fn emission(
     Some(Glow { color, map })
 }
 
-/// The ambient light of a surface with a map of its own for it, whose stages are removed. `None` if
-/// there is no such light, or the map is the texture, which it is multiplied with anyway.
+/// Replaces the ambient stages of a surface with a separate ambient map by one glow. `None` if
+/// there is no such light, or the map is the texture, which multiplies ambient light anyway.
 pub(super) fn mapped_ambient(
     into: &Planning,
     ground: &Ground<'_>,
@@ -81,8 +82,8 @@ pub(super) fn mapped_ambient(
 }
 
 impl Planner<'_> {
-    /// The map that tilts the normals of a part: that of normals, if it has both. Only light that
-    /// is evaluated at pixels can show it.
+    /// Returns the map that tilts the normals of a part: the normal map, if it has both kinds. Only
+    /// light per pixel can show it.
     pub(super) fn bump(
         &self,
         rules: Rules,
@@ -101,7 +102,7 @@ impl Planner<'_> {
         (!is_flat).then(|| Bump { map: heights.texture.clone(), gain: Some(gain) })
     }
 
-    /// The maps of highlights, if there are any.
+    /// Sets the maps of highlights, if there are any.
     pub(super) fn map_highlights(
         &self,
         ground: &Ground<'_>,

@@ -1,8 +1,9 @@
-//! Decides what a frame draws, and says why. No pixel is touched here.
+//! Decides what a frame draws, and explains the decisions. No pixel is touched here.
 //!
 //! A [`FramePlan`] holds a snapshot of everything that drawing reads, transformed to view space.
-//! What the scene does not need is left out of it; [`explain_frame`] says what, and why. Light that
-//! only some tiles need is culled tile by tile, when their depths are known (`TilePlan`).
+//! Effects that the scene does not need are left out; [`explain_frame`] lists them with reasons.
+//! Lights needed by some tiles only are culled tile by tile, after the depths of a tile are known
+//! (`TilePlan`).
 
 pub(crate) mod color_path;
 mod cover;
@@ -39,7 +40,7 @@ pub fn plan_frame(shot: &Shot) -> FramePlan {
     planned(Rules::Applied, Notes::default, shot).plan
 }
 
-/// Plans the same picture with everything that the scene names, needed or not. It is slower;
+/// Plans the same picture with everything the scene names, needed or not. Drawing it is slower;
 /// [`plan_frame`] is tested against it.
 #[must_use]
 pub fn plan_everything(shot: &Shot) -> FramePlan {
@@ -64,7 +65,7 @@ pub fn explain_frame(shot: &Shot) -> (FramePlan, Vec<EffectUse>) {
     (plan, uses)
 }
 
-/// Plans in the chosen arithmetic, or in f64 if the frame's numbers do not fit f32.
+/// Plans in the selected arithmetic, or in f64 if the frame's numbers do not fit f32.
 fn planned(rules: Rules, notes: fn() -> Notes, shot: &Shot) -> Planning {
     let as_asked = planned_in(rules, notes(), shot);
     if shot.settings.arithmetic == Arithmetic::F64 || as_asked.plan.has_room() {
@@ -76,6 +77,7 @@ fn planned(rules: Rules, notes: fn() -> Notes, shot: &Shot) -> Planning {
 
 fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
     let observer = ObserverSpace::new(shot);
+    // Light per sample is light per pixel in a picture of each sample.
     let by_sample = shot.settings.light == LightAt::Sample;
     let light = if by_sample { LightAt::Pixel } else { shot.settings.light };
     let shot = &shot.with(Settings { light, ..shot.settings });

@@ -1,4 +1,4 @@
-//! The observer's spaces, and what is outside the view.
+//! The observer's spaces, and view frustum culling.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -12,7 +12,7 @@ use marraztu_core::scene::{Lens, Projection, Spheres};
 /// The distance of the far plane in units of view space: at least this, and less than twice this.
 const FAR: f64 = 1024.0;
 
-/// The unit of view space for a lens, clamped so that its square fits f64.
+/// Returns the unit of view space for a lens, clamped to keep its square within f64.
 fn unit(lens: &Lens, projection: Projection) -> f64 {
     let far = match projection {
         Projection::Perspective => lens.far,
@@ -25,12 +25,12 @@ fn unit(lens: &Lens, projection: Projection) -> f64 {
 
 /// The observer's spaces.
 ///
-/// View space has a unit of its own, a power of two, in which the far plane is about a thousand
-/// units away. So lighting in f32 works alike for scenes of atoms and of stars; for scenes of
-/// ordinary size the unit is that of the world.
+/// View space has a separate unit, a power of two, with the far plane about a thousand units away.
+/// Lighting in f32 therefore works equally well for scenes of atoms and of stars. For scenes of
+/// ordinary size the unit equals the world's.
 #[derive(Debug)]
 pub(crate) struct ObserverSpace {
-    /// Units of view space per unit of the world.
+    /// The number of view space units per world unit.
     pub(crate) unit: f64,
     pub(crate) world_from_view: DMat4,
     pub(crate) view_from_world: DMat4,
@@ -43,7 +43,7 @@ impl ObserverSpace {
         let Shot { scene, view, size, .. } = shot;
         let size = *size;
         let world_from_view = scene.observer_frame(view);
-        // The axes are orthonormal, so the inverse rotation is the transposed one.
+        // The axes are orthonormal, so the inverse of the rotation is its transpose.
         let turn = DMat3::from_mat4(world_from_view).transpose();
         let eye = world_from_view.w_axis.truncate();
         let lens = scene.selected_camera(view).lens;
@@ -66,14 +66,14 @@ impl ObserverSpace {
         }
     }
 
-    /// Whether a box lies wholly outside one of the view's planes, so far that no line along its
-    /// border reaches in.
+    /// Returns whether a box is completely outside one of the frustum's planes, far enough that no
+    /// line along its border reaches in.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     pub(super) fn misses(&self, clip_from_object: DMat4, corners: [DVec3; 8]) -> bool {
         let clip = corners.map(|corner| clip_from_object * corner.extend(1.0));
         let aside = |pixels: usize| 1.0 + 2.0 * LINE / pixels as f64;
         let (x, y) = (aside(self.size.width), aside(self.size.height));
-        // Some margin for rounding, so that nothing is culled that geometry would keep.
+        // A margin for rounding: nothing may be culled that geometry would keep.
         let beyond = |distance: &dyn Fn(DVec4) -> f64| {
             clip.iter().all(|p| distance(*p) < -1e-9 * (p.w.abs() + p.abs().max_element()))
         };
@@ -85,7 +85,8 @@ impl ObserverSpace {
             || beyond(&|p| p.w - p.z)
     }
 
-    /// The view's planes for spheres in the world, each moved outwards as for [`Self::misses`].
+    /// Returns the frustum's planes for spheres in the world, moved outwards as in
+    /// [`Self::misses`].
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     pub(super) fn spheres_outside(&self) -> SpherePlanes {
         let rows = (self.clip_from_view * self.view_from_world).transpose();
@@ -102,17 +103,18 @@ impl ObserverSpace {
         }
     }
 
-    /// Whether a box lies so far inside the clipping planes that nothing in it is clipped.
+    /// Returns whether a box is far enough inside the clipping planes that nothing in it is
+    /// clipped.
     pub(super) fn holds(&self, clip_from_object: DMat4, corners: [DVec3; 8]) -> bool {
         let screen = Screen::new(clip_from_object, self.size);
         corners.iter().all(|corner| screen.holds(screen.clip(corner.to_array())))
     }
 
-    /// The region of the positions at which a box's content is lit per pixel, provided that nothing
-    /// of it is clipped.
+    /// Returns the region of positions at which a box's content is lit per pixel, provided that
+    /// nothing of it is clipped.
     ///
-    /// A pixel's position is the point of its ray at the depth of the snapped triangle: part of a
-    /// pixel beside the true one, and in perspective its w is as inexact as 1/w is at the
+    /// A pixel's position is the point of its ray at the depth of the snapped triangle: a fraction
+    /// of a pixel aside from the true position. In perspective, its w has the error of 1/w at the
     /// triangle's nearest corner.
     pub(super) fn seen_region(&self, view_from_object: DMat4, corners: [DVec3; 8]) -> Region {
         let placed = Region::placed(view_from_object, corners, 0.0);
@@ -125,7 +127,7 @@ impl ObserverSpace {
         Region::placed(view_from_object, corners, beside + deeper)
     }
 
-    /// The size of a pixel in view space at w = 1.
+    /// Returns the size of a pixel in view space at w = 1.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     fn pixel(&self) -> f64 {
         let Size { width, height } = self.size;
@@ -134,19 +136,19 @@ impl ObserverSpace {
     }
 }
 
-/// The planes of a view in the world, whose inside is positive.
+/// The planes of a view frustum in the world, positive inside.
 #[derive(Debug)]
 pub(super) struct SpherePlanes {
-    /// Each with the length of its normal.
+    /// The planes, each with the length of its normal.
     planes: [(DVec4, f64); 6],
-    /// The margin for rounding: this much for each unit of distance from the origin,
+    /// The margin for rounding, per unit of distance from the origin,
     per_distance: f64,
-    /// and this much everywhere.
+    /// plus this constant margin.
     fixed: f64,
 }
 
 impl SpherePlanes {
-    /// Whether sphere `i` lies wholly outside one of the planes.
+    /// Returns whether sphere `i` is completely outside one of the planes.
     pub(super) fn misses(&self, spheres: &Spheres, i: usize) -> bool {
         let [x, y, z] = math::each([0, 1, 2], |axis| spheres.centres[axis][i]);
         let radius = spheres.radii[i];
@@ -157,14 +159,14 @@ impl SpherePlanes {
     }
 }
 
-/// More than the margin of [`ObserverSpace::misses`], so that both agree.
+/// The margin of spheres: larger than that of [`ObserverSpace::misses`], so both tests agree.
 const MARGIN: f64 = 1e-8;
 
-/// How many pixels beside its position a line may be drawn: half of its width, and half a pixel of
-/// rounding.
+/// The distance in pixels at which a line may be drawn from its position: half of its width, and
+/// half a pixel of rounding.
 const LINE: f64 = 2.0;
 
-/// Twice the distance in pixels by which snapping may move a position.
+/// Twice the largest distance, in pixels, that snapping moves a position.
 const SNAPPED: f64 = 0.006;
 
 /// The error of interpolation in f32, relative to the largest value.

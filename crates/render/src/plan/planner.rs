@@ -1,4 +1,4 @@
-//! Turns the items of a scene into draws.
+//! Converts the items of a scene to draws.
 
 use std::collections::BTreeSet;
 
@@ -47,8 +47,8 @@ impl Planner<'_> {
         }
     }
 
-    /// Whether objects whose spheres are outside the view are skipped: nothing of them can be
-    /// seen, and no one asks why.
+    /// Returns whether objects with spheres outside the view are skipped: nothing of them is
+    /// visible, and no explanation was requested.
     fn culls_spheres(&self, into: &Planning) -> bool {
         let view = &self.shot.view;
         into.plan.rules == Rules::Applied
@@ -58,7 +58,7 @@ impl Planner<'_> {
             && !view.vertex_normals
     }
 
-    /// The reason why the view does not show an object, if there is one.
+    /// Returns the reason why the view does not show an object, if there is one.
     fn not_asked_for(&self, id: ObjectId, object: &Object) -> Option<&'static str> {
         let alone = self.shot.view.only_selected || self.shot.view.polygons.is_some();
         if !object.visible {
@@ -70,7 +70,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Whether the view shows an object.
+    /// Returns whether the view shows an object.
     pub(super) fn is_asked_for(&self, id: ObjectId, object: &Object) -> bool {
         self.not_asked_for(id, object).is_none()
     }
@@ -84,6 +84,7 @@ impl Planner<'_> {
                 BTreeSet::from([mode.current])
             }
         });
+        // Back-face culling depends on whether the surface is closed and on the view.
         let back = match (object.is_two_sided(), self.shot.view.back_faces) {
             (true, _) => Back::Lit,
             (false, true) => Back::Red,
@@ -103,7 +104,7 @@ impl Planner<'_> {
         self.add(into, object, draw);
     }
 
-    /// A draw of a placed mesh, whose surface is not decided yet.
+    /// Creates the draw of a placed mesh, without a decision about its surface.
     fn draw(&self, item: ItemId, model: &Shared<Model>, world_from_object: DMat4) -> Draw {
         let Placement { view_from_object, clip_from_object } = self.placement(world_from_object);
         let linear = DMat3::from_mat4(view_from_object);
@@ -112,6 +113,7 @@ impl Planner<'_> {
             model: model.clone(),
             clip_from_object,
             view_from_object,
+            // The cofactor matrix keeps normals perpendicular under non-uniform scale.
             view_from_normal: match self.shot.settings.stretched {
                 NormalMatrix::Cofactor => math::normal_matrix(linear),
                 NormalMatrix::AsItIs => math::at_power_of_two(linear),
@@ -146,20 +148,21 @@ impl Planner<'_> {
         Placement { view_from_object, clip_from_object: clip_from_view * view_from_object }
     }
 
-    /// Adds the draw of an object, or of a helper that was made into one, unless nothing of it can
-    /// be seen.
+    /// Adds the draw of an object, or of a helper converted to one, unless nothing of it is
+    /// visible.
     fn add(&self, into: &mut Planning, object: &Object, mut draw: Draw) {
         let item = draw.item;
         let mesh = &object.model.mesh;
         let Some(bounds) = mesh.bounds() else {
             return left_out(into, item, &object.name, "it has no vertices");
         };
+        // Decides which faces are drawn before anything else is decided about the object.
         let transparency = self.shot.settings.transparency;
         if draw.back == Back::Culled
             && draw.filled
             && Cover::is_any_transparent(object, transparency)
         {
-            // What is behind its front shows through it.
+            // The back is visible through its transparent front.
             (draw.back, draw.culls_opaque) = (Back::Lit, true);
         }
         let moves = into.plan.variants.has_geometry_variant();
@@ -185,6 +188,7 @@ impl Planner<'_> {
         if let Some(reason) = reason {
             return left_out(into, item, &object.name, reason);
         }
+        // Surfaces are only planned for objects; bulbs come with a flat pipeline.
         if draw.part_pipelines.is_empty() {
             let seen = rules.surfaces(&thing).is_none();
             let (region, tiled) = self.region(&draw, bounds.corners());
@@ -199,7 +203,7 @@ impl Planner<'_> {
         into.plan.draws.push(draw);
     }
 
-    /// The pipeline of each part; `None` for parts that are hidden or not opaque enough.
+    /// Returns the pipeline of each part; `None` for parts that are hidden or not opaque enough.
     fn part_pipelines(&self, into: &mut Planning, ground: &Ground<'_>) -> Vec<Option<u32>> {
         let shown = |part: &u32| ground.object.shows_part(*part);
         (0..ground.object.model.mesh.parts().len())
@@ -209,7 +213,8 @@ impl Planner<'_> {
             .collect()
     }
 
-    /// The region in which an object is lit, if it is known, and whether nothing of it is clipped.
+    /// Returns the region of an object's lit points, if it is known, and whether nothing of it is
+    /// clipped.
     fn region(&self, draw: &Draw, corners: [DVec3; 8]) -> (Option<Region>, bool) {
         if self.shot.settings.light != LightAt::Pixel {
             // Lit at vertices or faces: clipping does not matter.
@@ -243,6 +248,7 @@ impl Planner<'_> {
     pub(super) fn add_marks(&self, into: &mut Planning) {
         let object_looks = self.shot.view.observer == Observer::Object
             && self.shot.view.object.is_some_and(|id| self.shot.scene.objects.get(id).is_some());
+        // Cameras: a model at each one, except at the observer.
         for (id, camera) in self.shot.scene.cameras.iter() {
             let looks = !object_looks && self.shot.view.camera == id;
             let reason = match (looks, camera.visible) {
@@ -266,6 +272,7 @@ impl Planner<'_> {
             };
             self.add(into, &mark, draw);
         }
+        // Bulbs: a diamond at each light that is on and has a position.
         let on = self.shot.scene.lights.iter().filter(|(_, light)| light.on);
         for (id, position) in on.filter_map(|(id, _)| self.bulb_place(id)) {
             let Some(placement) = helpers::world_from_diamond(&self.observer, position) else {

@@ -1,4 +1,4 @@
-//! The state of planning: the plan so far, and what planning reads.
+//! The state of planning: the plan so far, and the inputs.
 
 use std::collections::HashMap;
 
@@ -24,7 +24,7 @@ impl Planning {
         Self { plan, notes, places: HashMap::new() }
     }
 
-    /// The index of a pipeline in the frame; adds it if it is new.
+    /// Returns the index of a pipeline in the frame, and adds it if it is new.
     pub(super) fn pipeline(&mut self, pipeline: Pipeline) -> u32 {
         let pipelines = &mut self.plan.pipelines;
         let alike = self.places.entry(pipeline.fingerprint()).or_default();
@@ -38,7 +38,7 @@ impl Planning {
     }
 }
 
-/// What planning reads.
+/// The inputs of planning.
 pub(super) struct Planner<'a> {
     pub(super) shot: &'a Shot,
     pub(super) observer: ObserverSpace,
@@ -51,8 +51,8 @@ pub(super) struct Shining {
     pub(super) id: LightId,
     pub(super) name: String,
     pub(super) effect: &'static LightRow,
-    /// The index of its light in the plan.
+    /// The index of the light in the plan.
     pub(super) light: u32,
-    /// Whether it is on and has a position.
+    /// Whether the light is on and has a position.
     pub(super) shines: bool,
 }

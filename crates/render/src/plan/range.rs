@@ -1,26 +1,26 @@
 //! Decides whether the numbers of a frame fit f32.
 //!
 //! Lighting squares distances, and squares fit f32 only for numbers from 1e-19 to 1e19. In the unit
-//! of view space the far plane is some thousand units away, so distances fit, unless a lens has an
-//! extreme range: then near distances are too small beside the far plane. Such a frame is planned
-//! in f64, so no pixel has to check.
+//! of view space the far plane is about a thousand units away, so distances fit, unless a lens has
+//! an extreme range: near distances are then too small relative to the far plane. Such a frame is
+//! planned in f64, so no pixel needs a check.
 
 use glam::DVec3;
 
 use crate::frame::{Eye, FramePlan};
 
-/// The least and the largest length in view space whose square, and all that is computed from it,
-/// fits f32.
+/// The smallest and largest length in view space for which the square, and everything computed from
+/// it, fits f32.
 const ROOM: [f64; 2] = [1e-12, 1e15];
 
 impl FramePlan {
-    /// Whether all distances of the frame fit f32.
+    /// Returns whether all distances of the frame fit f32.
     pub(super) fn has_room(&self) -> bool {
         let m = &self.clip_from_view;
         let [low, high] = ROOM;
         match self.eye {
             Eye::Point => {
-                // The depth is zw / w - zz: 1 at the near plane, 0 at the far one.
+                // The depth is zw / w - zz: 1 at the near plane, 0 at the far plane.
                 let (zz, zw) = (m.z_axis.z, m.w_axis.z);
                 let (near, far) = (zw / (1.0 + zz), zw / zz);
                 far <= high && (near >= low || self.ways_off().all(|off| off >= low))
@@ -36,7 +36,7 @@ impl FramePlan {
         }
     }
 
-    /// The distances along the view axis at which items begin and end.
+    /// Iterates over the distances along the view axis at which items begin and end.
     fn ways_off(&self) -> impl Iterator<Item = f64> {
         self.draws.iter().flat_map(|draw| {
             let corners = draw.model.mesh.bounds().map(|bounds| bounds.corners());

@@ -1,8 +1,8 @@
 //! The rules that leave work out of a frame because it changes no bit of the picture.
 //!
-//! All rules are here, one function for each decision, and planning uses no others. Each gives the
-//! reason why something is left out. [`Rules::Ignored`] leaves nothing out and has to give the same
-//! picture, which is how the rules are tested.
+//! All rules are here, one function per decision, and planning uses no others. Each returns the
+//! reason for leaving something out. [`Rules::Ignored`] leaves nothing out and must give the same
+//! picture: this is how the rules are tested.
 
 use super::observer::ObserverSpace;
 use super::turning::is_turned_away;
@@ -14,7 +14,7 @@ use crate::lights::{LightRow, PhongMaterial, ViewLight};
 use marraztu_core::accuracy::Transparency;
 use marraztu_core::scene::{Bounds, Light, SpotOwner, Texture};
 
-/// Why something is left out; `None` if it is not.
+/// The reason for leaving something out; `None` if it is kept.
 type Verdict = Option<&'static str>;
 
 /// A light, and whether it has a position.
@@ -22,7 +22,7 @@ type Verdict = Option<&'static str>;
 pub(crate) struct LightFacts<'a> {
     /// The light.
     pub light: &'a Light,
-    /// Whether the item that it is fixed to exists, if it is fixed to one.
+    /// Whether the item the light is fixed to exists, if it is fixed to one.
     pub is_placed: bool,
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct LitSurface<'a> {
 pub(crate) struct Reading {
     /// The number of lights.
     pub lights: usize,
-    /// How many of them read positions, normals or directions to the observer.
+    /// The number of lights that read positions, normals or directions to the observer.
     pub of_positions: usize,
 }
 
@@ -68,21 +68,21 @@ pub(crate) struct Thing<'a> {
 }
 
 impl Thing<'_> {
-    /// Whether all of it lies outside the view: its box does, and no drawn normals stick out of the
-    /// box.
+    /// Returns whether it is completely outside the view: its box is, and no drawn normals stick
+    /// out of the box.
     #[must_use]
     pub(crate) fn is_outside(&self) -> bool {
         let corners = self.bounds.corners();
         !self.draws_normals() && self.observer.misses(self.draw.clip_from_object, corners)
     }
 
-    /// Whether all of its faces are culled as back faces; only answered for small meshes.
+    /// Returns whether all of its faces are culled as back faces; only tested for small meshes.
     #[must_use]
     pub(crate) fn is_turned_away(&self) -> bool {
         !self.draws_normals() && is_turned_away(self.draw, self.observer.size)
     }
 
-    /// Whether its polygons are filled.
+    /// Returns whether its polygons are filled.
     #[must_use]
     pub(crate) const fn is_filled(&self) -> bool {
         self.draw.filled
@@ -98,20 +98,21 @@ impl Thing<'_> {
 pub(crate) struct TexturedSurface<'a> {
     /// The texture, if there is one.
     pub texture: Option<&'a Texture>,
-    /// The map of its opacity, if there is one.
+    /// The opacity map, if there is one.
     pub opacity_map: Option<&'a Texture>,
-    /// What its alpha is multiplied with. If the product is below one half, the alpha test fails.
+    /// The factor of alpha. If the product is below one half, the alpha test fails.
     pub opacity: f64,
 }
 
 impl TexturedSurface<'_> {
-    /// Whether each of its texels passes the alpha test, and so anything interpolated between them.
+    /// Returns whether each texel passes the alpha test, and thus anything interpolated between
+    /// texels.
     #[must_use]
     pub(crate) fn passes_everywhere(&self) -> bool {
         let least = |byte: u8| f64::from(byte) / 255.0;
         let texture = self.texture.map_or(1.0, |texture| least(texture.picture.least_alpha()));
         let map = self.opacity_map.map_or(1.0, |map| match map.picture.least_alpha() {
-            // Its brightness counts, which may be 0.
+            // The brightness counts, and may be 0.
             255 => 0.0,
             alpha => least(alpha),
         });
@@ -120,7 +121,7 @@ impl TexturedSurface<'_> {
 }
 
 impl Rules {
-    /// Whether a light is left out of the whole frame.
+    /// Decides whether to leave a light out of the whole frame.
     pub(super) fn light(self, it: &LightFacts<'_>) -> Verdict {
         self.verdict(|| {
             because(!it.light.on, "switched off")
@@ -129,37 +130,37 @@ impl Rules {
         })
     }
 
-    /// Whether a light is left out on a surface, wherever that is.
+    /// Decides whether to leave a light out on a surface, at any position.
     pub(super) fn reflection(self, it: &LitSurface<'_>) -> Verdict {
         self.verdict(|| (it.effect.is_noop)(it.light, it.material))
     }
 
-    /// Whether a light's highlight is left out on a surface.
+    /// Decides whether to leave a light's highlight out on a surface.
     pub(super) fn highlight(self, it: &LitSurface<'_>) -> Verdict {
         self.verdict(|| because(!it.material.mirrors(it.light), "Ks is 0"))
     }
 
-    /// Whether a light is left out on an object.
+    /// Decides whether to leave a light out on an object.
     pub(super) fn object(self, it: &LitSurface<'_>) -> Verdict {
         self.verdict(|| (it.effect.is_culled)(it.light, it.region?).or_else(|| behind(it)))
     }
 
-    /// Whether a light is left out on what a tile of the picture shows.
+    /// Decides whether to leave a light out on the surfaces of a tile.
     pub(super) fn tile(self, it: &LitSurface<'_>) -> Verdict {
         self.verdict(|| (it.effect.is_culled)(it.light, it.region?))
     }
 
-    /// Whether the positions and normals of fragments are left out.
+    /// Decides whether to leave out the positions and normals of fragments.
     pub(super) fn positions(self, it: &Reading) -> Verdict {
         self.verdict(|| because(it.of_positions == 0, "no light reads them"))
     }
 
-    /// Whether the colours of surfaces are left out.
+    /// Decides whether to leave out the colours of surfaces.
     pub(super) fn surfaces(self, it: &Thing<'_>) -> Verdict {
         self.verdict(|| because(!it.is_filled(), "edges only"))
     }
 
-    /// Whether an object is left out.
+    /// Decides whether to leave out an object.
     pub(super) fn thing(self, it: &Thing<'_>) -> Verdict {
         self.verdict(|| {
             because(it.is_outside(), "outside the view")
@@ -167,34 +168,34 @@ impl Rules {
         })
     }
 
-    /// Whether a texture is left out.
+    /// Decides whether to leave out a texture.
     pub(super) fn texture(self, it: Option<&Texture>) -> Verdict {
         self.verdict(|| because(it.is_none(), "there is none"))
     }
 
-    /// Whether a surface whose opacity is 1 hides what is behind it, and is not laid over it. With
-    /// other ways than the exact one that is not the same.
+    /// Decides whether a surface with an opacity of 1 is drawn as opaque instead of being blended.
+    /// Only exact transparency gives the same picture for both.
     pub(super) fn layer(self, transparency: Transparency) -> Verdict {
         let exact = transparency == Transparency::Exact;
         self.verdict(|| Some("it is opaque")).or_else(|| because(!exact, "it is opaque"))
     }
 
-    /// Whether the alpha test of a texture is left out.
+    /// Decides whether to leave out the alpha test of a texture.
     pub(super) fn alpha_test(self, it: &TexturedSurface<'_>) -> Verdict {
         self.verdict(|| because(it.passes_everywhere(), "it has no holes"))
     }
 
-    /// Whether light of a surface's own is left out.
+    /// Decides whether to leave out the emission of a surface.
     pub(super) fn emission(self, color: [f64; 3]) -> Verdict {
         self.verdict(|| because(color == [0.0; 3], "Ke is 0"))
     }
 
-    /// Whether bumps of heights are left out.
+    /// Decides whether to leave out a bump map.
     pub(super) fn bumps(self, gain: f64) -> Verdict {
         self.verdict(|| because(gain == 0.0, "its -bm is 0"))
     }
 
-    /// The verdict of a rule, if rules apply.
+    /// Returns the verdict of a rule, if rules apply.
     fn verdict(self, rule: impl FnOnce() -> Verdict) -> Verdict {
         match self {
             Self::Applied => rule(),

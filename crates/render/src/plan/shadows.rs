@@ -1,8 +1,8 @@
-//! Plans shadows: which lights cast them, and which objects.
+//! Plans shadows: which lights and which objects cast them.
 //!
-//! Whatever is drawn filled casts shadows, seen by the observer or not, from both of its sides.
-//! What is not drawn casts none: hidden objects and parts, a wireframe, parts whose opacity is
-//! below one half, polygons that are left out, and the marks of cameras and bulbs. Light passes
+//! Everything drawn filled casts shadows, from both of its sides, even if the observer does not see
+//! it. Things that are not drawn cast no shadows: hidden objects and parts, a wireframe, parts with
+//! an opacity below one half, excluded polygons, and the marks of cameras and bulbs. Light passes
 //! through holes of textures.
 
 use std::collections::BTreeSet;
@@ -19,7 +19,7 @@ use marraztu_core::base::math;
 use marraztu_core::scene::{Fill, ItemId, MapKind, Object, ObjectId};
 
 impl Planner<'_> {
-    /// Adds what casts shadows, if any light casts them.
+    /// Adds the casters, if any light casts shadows.
     pub(super) fn add_shadows(&self, into: &mut Planning) {
         let is_filled = self.shot.view.fill == Fill::Filled;
         if is_filled && into.plan.shadows.sources.iter().any(Option::is_some) {
@@ -32,6 +32,7 @@ impl Planner<'_> {
         if into.plan.shadows.casters.is_empty() {
             into.plan.shadows = Shadows::default();
         }
+        // Explains each light that could cast shadows and does not.
         for shining in &self.shining {
             let Some(light) = self.shot.scene.lights.get(shining.id) else { continue };
             let reason = match () {
@@ -54,6 +55,7 @@ impl Planner<'_> {
     fn caster(&self, id: ObjectId, object: &Object) -> Option<Caster> {
         let world_from_object = object.world_from_mesh(self.shot.view.time);
         let mesh = &object.model.mesh;
+        // An object with a flat placement is not drawn, so it casts no shadow.
         let is_flat = !math::has_full_rank(DMat3::from_mat4(world_from_object));
         if is_flat || mesh.polygon_count() == 0 {
             return None;
@@ -74,8 +76,8 @@ impl Planner<'_> {
         Some(Caster { item, model, world_from_object, parts, polygons })
     }
 
-    /// Notes whether the shadows of a light that casts them fall on an object; `no_light` is the
-    /// reason why its light does not, if there is one.
+    /// Notes whether the shadows of a light fall on an object. `no_light` is the reason why its
+    /// light does not reach the object, if there is one.
     pub(super) fn note_shadows(
         into: &mut Planning,
         ground: &Ground<'_>,
@@ -102,12 +104,12 @@ impl Planner<'_> {
     }
 }
 
-/// The name of a light's shadows in the plan.
+/// Returns the name of a light's shadows in the plan.
 fn name(shining: &Shining) -> String {
     format!("Shadows of {}", shining.name)
 }
 
-/// How a part of an object casts shadows; `None` if it is not drawn.
+/// Returns the caster of a part of an object. `None` if the part is not drawn.
 fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
     let look = object.part_look(part);
     if !object.shows_part(part) || look.opacity < 0.5 {
@@ -116,6 +118,7 @@ fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
     let mapped = !object.model.mesh.uvs().is_empty();
     let texture = look.texture.filter(|_| mapped);
     let map = look.map(MapKind::Opacity).filter(|_| mapped).map(|map| &map.texture);
+    // A map with the texture's alpha would count twice.
     let map = map.filter(|map| !holds_same_alpha(texture, map));
     let surface = TexturedSurface {
         texture: texture.map(|texture| &**texture),

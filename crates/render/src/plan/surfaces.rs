@@ -1,4 +1,4 @@
-//! Turns materials, textures and lights into pipelines.
+//! Converts materials, textures and lights to pipelines.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -21,7 +21,7 @@ use marraztu_core::base::{
 };
 use marraztu_core::scene::{MapKind, PartLook, Surface, Texture, Wrap};
 
-/// A white texture, which leaves a surface as it is.
+/// Returns a white texture, which does not change a surface.
 fn white() -> &'static Shared<Texture> {
     static WHITE: OnceLock<Shared<Texture>> = OnceLock::new();
     get_or_compute(&WHITE, || {
@@ -36,7 +36,7 @@ fn white() -> &'static Shared<Texture> {
 }
 
 impl Planner<'_> {
-    /// The pipeline of one part of an object; `None` if it is too transparent to be drawn.
+    /// Returns the pipeline of one part of an object. `None` if it is too transparent to be drawn.
     pub(super) fn pipeline_of_part(
         &self,
         into: &mut Planning,
@@ -72,6 +72,7 @@ impl Planner<'_> {
             opacity_map: opacity_map.map(|map| &**map),
             opacity: look.opacity,
         };
+        // A textured part may have holes; an untextured one has the same opacity everywhere.
         let is_textured = texture.is_some() || opacity_map.is_some();
         let has_holes = is_textured && rules.alpha_test(&surface).is_none();
         let colored = object.surface != Surface::Material;
@@ -93,8 +94,8 @@ impl Planner<'_> {
             },
             opacity: match cover {
                 Cover::Transparent(opacity) => Some(opacity),
-                // One with a texture has an alpha test then. Linear values are kept in fixed point
-                // while they are blended, which may round to another byte.
+                // With a texture, this is an alpha test. Linear values are blended in fixed point,
+                // which may round to another byte.
                 Cover::Threshold(opacity) => Some(opacity).filter(|_| {
                     !is_textured && !linear && rules.layer(settings.transparency).is_none()
                 }),
@@ -108,7 +109,7 @@ impl Planner<'_> {
         Some(into.pipeline(Pipeline::Shaded(shaded)))
     }
 
-    /// The light of a material.
+    /// Plans the light of a material.
     fn lit(
         &self,
         into: &mut Planning,
@@ -142,7 +143,7 @@ impl Planner<'_> {
         shaded
     }
 
-    /// The floor of highlights: powers below 2^floor count as 0.
+    /// Computes the floor of highlights: powers below 2^floor count as 0.
     fn floor(&self, into: &Planning, region: Option<&Region>, material: &PhongMaterial) -> f64 {
         // Computed from the scene, before anything is left out.
         let with_highlight = |shining: &&Shining| {
@@ -152,10 +153,10 @@ impl Planner<'_> {
                 && (shining.effect.is_noop)(light, material).is_none()
         };
         let lit = || self.shining.iter().filter(with_highlight);
-        // A highlight that is stronger than its light needs a lower floor, and so does a light that
-        // is stronger where it arrives than at its source.
+        // A highlight that is stronger than its light needs a lower floor. So does a light that is
+        // stronger on arrival than at its source.
         let strongest = material.specular.iter().fold(1.0_f64, |most, ks| most.max(ks.abs()));
-        // Not at vertices: a vertex very near to a light receives unbounded light, and the little
+        // Not at vertices: a vertex very close to a light receives unbounded light, and the little
         // that is cut off here would be all that its polygons show.
         let arriving = |shining: &Shining| {
             let light = &into.plan.lights[shining.light as usize];
@@ -165,7 +166,7 @@ impl Planner<'_> {
             LightAt::Face | LightAt::Vertex => 1.0,
             LightAt::Pixel | LightAt::Sample => lit().map(arriving).fold(1.0, f64::max),
         };
-        // The curve of sRGB is steepest at black: it multiplies differences by 12.92.
+        // The sRGB curve is steepest at black: it multiplies differences by 12.92.
         let steepest = if into.plan.variants.are_linear() { 12.92 } else { 1.0 };
         let exposed = self.shot.view.light_factor().max(1.0);
         let times = strongest * arriving * steepest * exposed;
@@ -175,12 +176,12 @@ impl Planner<'_> {
         }
         let count = lit().count().max(1);
         let count = u32::try_from(count).unwrap_or(u32::MAX);
-        // 2^-10 divided among the highlights, so that all that is left out stays below a quarter of
-        // a step of a byte.
+        // 2^-10 divided among the highlights keeps the sum of all omissions below a quarter of a
+        // step of a byte.
         deeper(-10.0 - libm::log2(f64::from(count)))
     }
 
-    /// The lights that a material needs, in the order of the scene.
+    /// Returns the lights that a material needs, in the order of the scene.
     fn stages(
         &self,
         into: &mut Planning,
@@ -192,7 +193,7 @@ impl Planner<'_> {
         for shining in &self.shining {
             let Shining { id, name, effect, light, .. } = shining;
             let source = into.plan.lights[*light as usize];
-            // Bumps turn normals any way.
+            // Bump maps turn normals in any direction.
             let turning = ground.turning.as_ref().filter(|_| !is_bumpy);
             let region = ground.region.as_ref();
             let meeting = LitSurface { effect, light: &source, material, region, turning };
@@ -239,11 +240,11 @@ impl Planner<'_> {
     }
 }
 
-/// The lowest floor that powers are computed down to.
+/// The lowest floor for computing powers.
 const LOWEST: f64 = -60.0;
 
-/// The Phong material of a part. A file may hold any number: NaN counts as 0, and exponents below 0
-/// are raised to 0.
+/// Returns the Phong material of a part. Files may hold any number: NaN counts as 0, and exponents
+/// below 0 are raised to 0.
 fn coefficients(look: &PartLook<'_>) -> PhongMaterial {
     let material = look.material;
     let number = |k: f64| if k.is_nan() { 0.0 } else { k };

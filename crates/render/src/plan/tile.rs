@@ -1,8 +1,8 @@
-//! Culls the lights of a tile, once its depths are known and before it is coloured.
+//! Light culling per tile, after the depths of the tile are known and before it is coloured.
 //!
-//! The pixels of a tile and its nearest and farthest depth bound a piece of the view frustum, which
-//! holds all that the tile shows. A light that does not reach the piece is removed from the stages
-//! of the tile, so no pixel has to check.
+//! The pixels of a tile and its nearest and farthest depth bound a piece of the view frustum that
+//! contains everything the tile shows. A light that does not reach the piece is removed from the
+//! stages of the tile, so no pixel has to check.
 
 use glam::DVec3;
 
@@ -16,18 +16,18 @@ use marraztu_core::accuracy::Samples;
 /// The error of interpolating a depth or 1/w in f32, relative to the largest value.
 const ROUNDING: f64 = 2e-6;
 
-/// The stages of a tile. Each thread keeps its own from tile to tile.
+/// The stages of a tile. Each thread reuses one from tile to tile.
 #[derive(Debug, Default)]
 pub(crate) struct TilePlan {
-    /// The region that holds all that the tile shows, if any pipeline needs it.
+    /// The region that contains everything the tile shows, if any pipeline needs it.
     region: Option<Region>,
-    /// For each pipeline, the decision for this tile, if it was made already.
+    /// The decision about each pipeline in this tile, if it was made already.
     decided: Vec<Option<Decided>>,
     /// The pipelines with a decision for this tile.
     seen: Vec<usize>,
-    /// The indices of the stages that are kept, one list after another.
+    /// The indices of the kept stages, one list after another.
     kept: Vec<u32>,
-    /// The list that is being made.
+    /// The list under construction.
     own: Vec<u32>,
 }
 
@@ -39,19 +39,19 @@ struct Decided {
     needs_positions: bool,
 }
 
-/// The lights that a tile is coloured by, with one pipeline.
+/// The lights that colour a tile, for one pipeline.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TileLight<'a> {
     /// All stages of the pipeline, in the order of the scene.
     pub(crate) stages: &'a [Stage],
-    /// The indices of the stages that are evaluated, if not all are.
+    /// The indices of the evaluated stages, if not all are.
     pub(crate) kept: Option<&'a [u32]>,
     /// Whether any of them reads positions and normals.
     pub(crate) needs_positions: bool,
 }
 
 impl TilePlan {
-    /// Begins a tile. `depths` gives the least and the largest depth of its triangles, if it has
+    /// Begins a tile. `depths` returns the smallest and largest depth of its triangles, if it has
     /// any.
     pub(crate) fn begin(
         &mut self,
@@ -72,7 +72,7 @@ impl TilePlan {
         self.decided.resize(plan.pipelines.len(), None);
     }
 
-    /// The lights of a surface in this tile.
+    /// Returns the lights of a surface in this tile.
     pub(crate) fn light<'a>(
         &'a mut self,
         plan: &FramePlan,
@@ -120,7 +120,7 @@ impl TilePlan {
     }
 }
 
-/// The region of view space that projects to these pixels and depths.
+/// Computes the region of view space that projects to these pixels and depths.
 fn region(plan: &FramePlan, bounds: PixelBox, [low, high]: [f64; 2]) -> Region {
     let m = &plan.clip_from_view;
     let (zz, zw) = (m.z_axis.z, m.w_axis.z);
@@ -139,7 +139,8 @@ fn region(plan: &FramePlan, bounds: PixelBox, [low, high]: [f64; 2]) -> Region {
     let place: [fn([f64; 2], f64) -> DVec3; 2] =
         [|[x, y], w| DVec3::new(x * w, y * w, -w), |[x, y], z| DVec3::new(x, y, z)];
     let (ends, place) = match plan.eye {
-        // The depth is zw / w - zz, and 1/w is at most that of the near plane, where it is 1.
+        // The depth is zw / w - zz. 1/w is at most its value at the near plane, where the depth is
+        // 1.
         Eye::Point => {
             let inverse = |depth: f64| (depth + zz) / zw;
             let error = ROUNDING * inverse(1.0);

@@ -1,5 +1,5 @@
-//! Finds small meshes whose faces are all turned away from the observer or from a light: a wall, a
-//! floor, a leaf. A closed shape never is, so larger meshes are not examined.
+//! Finds small meshes with all faces turned away from the observer or from a light: a wall, a
+//! floor, a leaf. A closed shape never qualifies, so larger meshes are not examined.
 
 use crate::accel::Accelerated as _;
 use glam::DVec3;
@@ -13,11 +13,11 @@ use marraztu_core::base::image::Size;
 use marraztu_core::base::math;
 use marraztu_core::scene::{Normals, Projection, dvec3};
 
-/// The most triangles or normals of a mesh that is examined.
+/// The largest number of triangles or normals of an examined mesh.
 const FEW: usize = 64;
 
-/// The normals of a draw. `None` if there are many, if back faces are lit, or if the placement
-/// stretches some so much more than others that interpolated normals are uncertain.
+/// Returns the normals of a draw. `None` if there are many, if back faces are lit, or if the
+/// placement stretches some normals so much more than others that interpolated ones are uncertain.
 pub(super) fn turning_of(draw: &Draw, light_at: LightAt) -> Option<Turning> {
     let mesh = &draw.model.mesh;
     let normals = match (light_at, draw.normals) {
@@ -37,11 +37,11 @@ pub(super) fn turning_of(draw: &Draw, light_at: LightAt) -> Option<Turning> {
     placed.into_iter().map(math::unit).collect::<Option<_>>().map(Turning)
 }
 
-/// Whether the observer is in front of all polygons of a small mesh, which are flat.
+/// Returns whether the observer is in front of all polygons of a small mesh, and all are flat.
 ///
-/// A polygon of many corners is cut into slivers. Snapped to the grid of the screen, some of them
-/// turn over, and where both sides are lit they would show the light of the back. If no back can be
-/// seen, they are culled.
+/// A polygon with many corners is cut into slivers. Snapping to the screen grid turns some of them
+/// over, and with both sides lit they would show the light of the back. If no back can be visible,
+/// they are culled.
 pub(super) fn shows_fronts_only(draw: &Draw, projection: Projection) -> bool {
     let mesh = &draw.model.mesh;
     let count = u32::try_from(mesh.polygon_count()).unwrap_or(u32::MAX);
@@ -65,12 +65,12 @@ fn shows_front(draw: &Draw, polygon: u32, projection: Projection) -> bool {
         Projection::Perspective => -draw.view_from_object.transform_point3(middle),
         Projection::Orthographic => DVec3::Z,
     };
-    // Farther in front than a polygon that is not quite flat can reach.
+    // Farther in front than a nearly flat polygon can reach.
     is_flat && normal.dot(to_observer) > 1e-4 * normal.length() * to_observer.length()
 }
 
-/// Whether all triangles of a small mesh are culled as back faces, with corners snapped as in the
-/// rasterizer.
+/// Returns whether all triangles of a small mesh are culled as back faces, with corners snapped as
+/// in the rasteriser.
 pub(super) fn is_turned_away(draw: &Draw, size: Size) -> bool {
     let order = draw.model.mesh.draw_order();
     if draw.back != Back::Culled || order.triangles.len() > FEW {

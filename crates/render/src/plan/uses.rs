@@ -1,4 +1,4 @@
-//! Explains which effects a frame uses and which it leaves out, and why.
+//! Explains which effects a frame uses, which it leaves out, and why.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ pub enum Effect {
     Surfaces,
     /// A light.
     Light(LightId),
-    /// The shadows in a light.
+    /// The shadows of a light.
     Shadows(LightId),
     /// The highlights of all lights.
     Highlights,
@@ -27,7 +27,7 @@ pub enum Effect {
     Transparency,
     /// The colours of vertices.
     VertexColors,
-    /// Light of the surface's own.
+    /// The emission of surfaces.
     Emission,
     /// The maps of Ka, Ks and Ns.
     Maps,
@@ -35,7 +35,7 @@ pub enum Effect {
     Bumps,
     /// Light in linear sRGB.
     LinearLight,
-    /// Light that is made brighter or darker as a whole.
+    /// Exposure: a common factor of all light.
     Exposure,
     /// Back faces.
     BackFaces,
@@ -50,7 +50,7 @@ pub enum Effect {
 }
 
 impl Effect {
-    /// Its label; a light has a name of its own.
+    /// Returns the label. For a light, use its name instead.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -77,27 +77,27 @@ impl Effect {
     }
 }
 
-/// An effect on an item, or on the frame as a whole.
+/// An effect on an item, or on the whole frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectUse {
     /// The effect.
     pub effect: Effect,
-    /// Its label, or the name of a light.
+    /// The label, or the name of a light.
     pub name: String,
-    /// The object or camera that it is on; `None` if it belongs to the frame as a whole.
+    /// The object or camera; `None` if the effect belongs to the whole frame.
     pub on: Option<Thing>,
-    /// Whether it is used.
+    /// Whether the effect is used.
     pub state: EffectState,
-    /// How many pixels it takes part in, if they were counted.
+    /// The number of pixels it contributes to, if they were counted.
     pub pixels: Option<u64>,
 }
 
-/// An object, or a camera that is drawn as a helper.
+/// An object, or a camera drawn as a helper.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Thing {
-    /// Its id.
+    /// The id.
     pub item: ItemId,
-    /// Its name in the outline.
+    /// The name in the outline.
     pub name: String,
 }
 
@@ -119,13 +119,13 @@ impl EffectState {
         Self::LeftOut(reason.into())
     }
 
-    /// Whether it is computed.
+    /// Returns whether it is computed.
     #[must_use]
     pub const fn is_on(&self) -> bool {
         matches!(self, Self::On(_))
     }
 
-    /// The reason, or the remark.
+    /// Returns the reason, or the remark.
     #[must_use]
     pub fn why(&self) -> &str {
         match self {
@@ -141,11 +141,11 @@ impl fmt::Display for EffectState {
     }
 }
 
-/// The explanations that planning collects while it decides; empty if they were not requested.
+/// The explanations collected while planning decides; empty if they were not requested.
 #[derive(Debug, Default)]
 pub(super) struct Notes {
     wanted: bool,
-    /// By effect, then by item.
+    /// The uses by effect, then by item.
     uses: BTreeMap<(Effect, Option<ItemId>), EffectUse>,
 }
 
@@ -154,12 +154,12 @@ impl Notes {
         Self { wanted: true, ..Self::default() }
     }
 
-    /// Whether decisions are noted.
+    /// Returns whether decisions are noted.
     pub(super) const fn are_wanted(&self) -> bool {
         self.wanted
     }
 
-    /// Notes a decision. What is on for one part of an object is on for the object.
+    /// Notes a decision. An effect that is on for one part of an object is on for the object.
     pub(super) fn add(&mut self, make: impl FnOnce() -> EffectUse) {
         if !self.wanted {
             return;

@@ -23,8 +23,8 @@ pub(super) fn view_lights(
     let mut shining = Vec::new();
     let linear = into.plan.variants.are_linear();
     let factor = exposure(into, view);
-    // The oldest first, as with objects, so that the order of the list does not change the last bit
-    // of a sum.
+    // The oldest first, as with objects: the order of the list must not change the last bit of a
+    // sum.
     let mut lights: Vec<_> = scene.lights.iter().collect();
     lights.sort_by_key(|(id, _)| *id);
     for (id, light) in lights {
@@ -41,7 +41,7 @@ pub(super) fn view_lights(
             });
             continue;
         }
-        // A light that is off or has no position is black, so that it can be computed, too.
+        // A light that is off or has no position is black, which lets it be computed, too.
         let shines = light.on && source.is_some();
         let source = source.unwrap_or_else(|| Source::new(&lights::SPOT));
         let index = u32::try_from(into.plan.lights.len()).expect("fewer than 2^32 lights");
@@ -73,7 +73,7 @@ pub(super) fn view_lights(
     shining
 }
 
-/// The factor of all light, with its row in the explanation.
+/// Returns the factor of all light, and adds its row to the explanation.
 fn exposure(into: &mut Planning, view: &View) -> f64 {
     let factor = view.light_factor();
     into.notes.add(|| EffectUse {
@@ -89,7 +89,7 @@ fn exposure(into: &mut Planning, view: &View) -> f64 {
     factor
 }
 
-/// The end of the rays of shadows, if the light casts any.
+/// Returns the end of shadow rays, if the light casts shadows.
 fn shadow_source(light: &Light, source: &Source) -> Option<ShadowSource> {
     let end = if light.kind.has_position() && light.kind.has_direction() {
         match math::unit(source.direction) {
@@ -110,19 +110,19 @@ fn shadow_source(light: &Light, source: &Source) -> Option<ShadowSource> {
     light.shadows.then_some(end)
 }
 
-/// The largest distance of a light, in units of view space, whose square fits f32.
+/// The largest distance of a light, in units of view space, with a square that fits f32.
 const REACH: f64 = 1e15;
 
-/// The largest exponent of a spot: everything off its axis is dark long before.
+/// The largest exponent of a spot: at this exponent, everything off its axis is dark.
 const LARGEST: f64 = 1e30;
 
-/// A light's position and attenuation in view space. A light that is farther than [`REACH`] is
-/// moved to that distance, with its attenuation in proportion: within a view of some thousand
+/// Returns a light's position and attenuation in view space. A light farther than [`REACH`] is
+/// moved to that distance, with its attenuation in proportion: within a view of about a thousand
 /// units, neither its direction nor its light changes by a part in 10^11.
 fn within_reach(place: DVec3, fades: &Attenuation, unit: f64) -> (DVec3, [f64; 3]) {
     let largest = place.abs().max_element();
     let nearer = if largest > REACH { largest / REACH } else { 1.0 };
-    // Clamped, so that its square fits f64.
+    // Clamped to keep its square within f64.
     let step = (nearer / unit).min(1e150);
     // A coefficient beyond the largest number is dark at any distance.
     let clamped = |coefficient: f64| coefficient.min(f64::MAX);
@@ -141,7 +141,7 @@ struct Source {
 }
 
 impl Source {
-    /// Light that goes everywhere from the origin.
+    /// Creates light that goes everywhere from the origin.
     const fn new(effect: &'static LightRow) -> Self {
         Self {
             effect,
@@ -153,7 +153,7 @@ impl Source {
     }
 }
 
-/// The source of a light at the view's time; `None` for a spot whose owner does not exist.
+/// Returns the source of a light at the view's time. `None` for a spot without an existing owner.
 fn source(scene: &Scene, view: &View, kind: &LightKind) -> Option<Source> {
     let LightOrigin { position, direction } = scene.light_origin(view, kind)?;
     let everywhere = Source::new(lights::row_of(kind));

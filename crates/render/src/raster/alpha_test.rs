@@ -1,9 +1,9 @@
-//! The alpha test: a pixel whose opacity is below one half shows what is behind it. The opacity is
-//! the material's, times the texture's alpha, times the map of opacity.
+//! The alpha test: a pixel with an opacity below one half shows the surface behind. The opacity is
+//! the material's, times the texture's alpha, times the opacity map.
 //!
-//! Alpha is sampled sixteen pixels at a time in f32. Where that could decide otherwise than f64, it
-//! is sampled again in f64. Triangles and blocks whose texels are all opaque, or all holes, are not
-//! sampled at all: see [`Opacity::holes`].
+//! Alpha is sampled sixteen pixels at a time in f32. Pixels that f32 cannot decide reliably are
+//! sampled again in f64. Triangles and blocks are classified first: if all of their texels are
+//! opaque, or all holes, they are not sampled: see [`Opacity::holes`].
 
 use fearless_simd::{
     Simd, SimdBase as _, SimdFloat as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8,
@@ -20,33 +20,33 @@ use crate::texture::lanes::Sampler;
 use crate::texture::opacity::{Channel, Holes, Opacity, between};
 use crate::texture::uv::{Uvs, uv, uvs};
 
-/// How near to one half an alpha in f32 decides nothing.
+/// An f32 alpha closer to one half than this is undecided.
 const NEAR: f32 = 1.0 / 128.0;
-/// How near to a border, in texels, a position does not tell the texel. Positions in f32 are off by
-/// 1/1024 texel at most.
+/// A position closer to a texel's border than this, in texels, is undecided. Positions in f32 are
+/// off by at most 1/1024 texel.
 const BORDER: f32 = 1.0 / 512.0;
 
-/// The surfaces of a pipeline that need the alpha test.
+/// The alpha-tested surface of a pipeline.
 #[derive(Debug)]
 pub(crate) struct AlphaSurface<'a> {
     pipeline: u32,
     opacity: Opacity<'a>,
-    /// How lanes sample each of its pictures.
+    /// The samplers of its textures.
     samplers: [Option<Sampler<'a>>; 2],
 }
 
-/// A triangle that needs the alpha test.
+/// The alpha test of one triangle.
 #[derive(Debug)]
 pub(crate) struct AlphaTest<'a, 'b> {
     surface: &'b AlphaSurface<'a>,
     weights: Weights,
     uvs: Uvs,
-    /// The triangle on each picture; `None` if it is too large for lanes.
+    /// The triangle's position on each texture; `None` if it is too large for lanes.
     placements: [Option<ExactPlacement>; 2],
 }
 
 impl<'a> AlphaSurface<'a> {
-    /// That of a triangle, which `last` becomes if it is another one; `None` if it has no holes.
+    /// Returns the surface of a triangle, cached in `last`. `None` if it has no holes.
     pub(crate) fn of<'b>(
         last: &'b mut Option<Self>,
         plan: &'a FramePlan,
@@ -72,8 +72,8 @@ impl<'a> AlphaSurface<'a> {
 }
 
 impl<'a, 'b> AlphaTest<'a, 'b> {
-    /// The alpha test of a triangle at samples with this offset; `None` if it has no texture
-    /// coordinates.
+    /// Sets up the alpha test of a triangle at samples with this offset. `None` if it has no
+    /// texture coordinates.
     pub(crate) fn of(
         surface: &'b AlphaSurface<'a>,
         (plan, frame): (&FramePlan, &ScreenGeometry),
@@ -90,7 +90,7 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
         Some(Self { surface, weights, uvs, placements })
     }
 
-    /// Where in a block there are holes, by its first pixel.
+    /// Classifies a block, given by its first pixel.
     #[inline(always)]
     pub(crate) fn holes_in_block(&self, [x, y]: [i32; 2]) -> Holes {
         let [right, bottom] = [x + BLOCK - 1, y + BLOCK - 1];
@@ -103,14 +103,15 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
         self.surface.opacity.holes(between(uvs))
     }
 
-    /// Whether its weights follow from edge functions alone.
+    /// Returns whether the weights follow from edge functions alone.
     pub(crate) fn has_edges(&self) -> bool {
         self.weights.follow_from_edges()
     }
 
-    /// Which of sixteen pixels are opaque, a bit for each, by eight and eight edge functions of the
-    /// second and the third corner. `pixel` gives the pixel of a lane. They are those of two rows
-    /// that begin at `first`; or any, if its weights follow from edge functions.
+    /// Returns a bit mask of the opaque pixels out of sixteen, from the edge functions of the
+    /// second and third corner in two rows of eight. `pixel` returns the pixel of a lane. The
+    /// pixels must be two rows starting at `first`, or any pixels if the weights follow from edge
+    /// functions.
     #[inline(always)]
     pub(crate) fn opaque<S: Simd>(
         &self,
@@ -120,6 +121,7 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
         pixels: u64,
         pixel: impl Fn(usize) -> [i32; 2],
     ) -> u64 {
+        // f32 decides most pixels; the rest are sampled one by one in f64.
         let [solid, open] = self.decide(simd, first, edges).unwrap_or([0, u64::MAX]);
         let (mut solid, mut open) = (solid & !open & pixels, open & pixels);
         while open != 0 {
@@ -130,14 +132,14 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
         solid
     }
 
-    /// Whether it passes the test at a pixel.
+    /// Returns whether the triangle is opaque at a pixel.
     #[inline(always)]
     pub(crate) fn is_opaque(&self, pixel: [i32; 2]) -> bool {
         self.surface.opacity.at(uv(self.uvs, self.weights.at(pixel))) >= 0.5
     }
 
-    /// The pixels of two rows that are opaque and those that f32 cannot decide, a bit for each. The
-    /// edge functions are those of the second and the third corner in each row.
+    /// Tests two rows in f32: returns a mask of opaque pixels and a mask of undecided ones. It
+    /// needs the edge functions of the second and third corner in each row.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
     fn decide<S: Simd>(
@@ -161,6 +163,8 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
                 Channel::Alpha => sampler.alpha(simd, position) * alpha,
                 Channel::Brightness => sampler.brightness(simd, position) * alpha,
             };
+            // Nearest filtering jumps at the border of a texel, so a position close to it is
+            // undecided.
             if sampler.shows_texels() {
                 for at in position {
                     border |= ((at - at.floor()) - 0.5).abs().simd_gt(0.5 - BORDER);
@@ -175,7 +179,7 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
 /// The alpha test of a triangle in one block.
 pub(crate) struct BlockHoles<'a, 'b, 'c> {
     pub(crate) test: &'c AlphaTest<'a, 'b>,
-    /// The first pixel of the block in the picture.
+    /// The first pixel of the block.
     pub(crate) first: [i32; 2],
 }
 

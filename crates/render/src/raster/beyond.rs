@@ -1,8 +1,9 @@
-//! How far beyond their bounding boxes triangles may cover centres, by the variants of coverage.
+//! The distance beyond their bounding boxes at which triangles may cover centres, by coverage
+//! variant.
 
 use marraztu_core::accuracy::Coverage;
 
-/// How far beyond its bounding box a triangle may cover centres, in 1/256 pixel.
+/// Returns how far beyond its bounding box a triangle may cover centres, in 1/256 pixel.
 pub(crate) const fn beyond(coverage: Coverage) -> i32 {
     match coverage {
         Coverage::Exact => 0,
@@ -11,7 +12,7 @@ pub(crate) const fn beyond(coverage: Coverage) -> i32 {
     }
 }
 
-/// The least and the largest offsets of samples, with those of centres beyond a box.
+/// Extends the range of sample offsets by centres up to `by` beyond a box.
 #[inline(always)]
 pub(crate) const fn reach([least, most]: [[i32; 2]; 2], by: i32) -> [[i32; 2]; 2] {
     [[least[0] - by, least[1] - by], [most[0] + by, most[1] + by]]

@@ -1,7 +1,7 @@
-//! Bins: the primitives that may be visible in each tile.
+//! Tile binning: lists the primitives that may be visible in each tile.
 //!
-//! Every thread that sets up triangles and lines has bins of its own, so no thread waits for
-//! another. Visibility does not depend on the order in which a tile reads them.
+//! Every thread fills separate bins, so no thread waits for another. The order of reading them does
+//! not change visibility.
 
 use super::covered::Covered;
 use super::hit_colors::CornerColors;
@@ -20,11 +20,11 @@ use marraztu_core::base::image::Size;
 pub(crate) struct LargeTriangle {
     pub(crate) corners: [ScreenVertex; 3],
     pub(crate) number: u32,
-    /// Whether it needs the alpha test.
+    /// Whether the triangle needs the alpha test.
     pub(crate) cutout: bool,
 }
 
-/// The primitives of one tile, besides its hits.
+/// The primitives of one tile, except its hits.
 #[derive(Debug, Default)]
 pub(crate) struct Bin {
     /// Triangles, as indices into [`Bins::large`].
@@ -33,7 +33,7 @@ pub(crate) struct Bin {
     pub(crate) lines: Vec<u32>,
 }
 
-/// The bins of one thread, aligned so that no other thread's share a cache line.
+/// The bins of one thread, aligned so threads never share a cache line.
 #[derive(Debug, Default)]
 #[repr(align(128))]
 pub(crate) struct Bins {
@@ -43,27 +43,27 @@ pub(crate) struct Bins {
     pub(crate) sample_positions: SamplePositions,
     pub(crate) tiles: Vec<Bin>,
     pub(crate) hits: Hits,
-    /// Small triangles that are rasterized when their tile is drawn.
+    /// Small triangles that are rasterised when their tile is drawn.
     pub(crate) tile_queues: TileQueues,
     pub(crate) large: Vec<LargeTriangle>,
-    /// The colours at their corners, if they are known; empty if hits have no colours.
+    /// The colours at the corners of large triangles, if known; empty if hits have no colours.
     pub(crate) large_colors: Vec<Option<CornerColors>>,
-    /// The corners of those triangles in pixels, before they were snapped, if the rule of coverage
-    /// needs them.
+    /// The corners of large triangles in pixels before snapping, if the coverage rule needs them.
     pub(crate) unsnapped: Vec<[[f32; 2]; 3]>,
     pub(crate) lines: Vec<ScreenLine>,
-    /// Small triangles that wait to be drawn together, by the size of their boxes.
+    /// Small triangles waiting to be drawn together, by the size of their boxes.
     pub(crate) queues: Box<[Queue; SMALL.len()]>,
-    /// The pixels that some of them cover.
+    /// The pixels covered by the triangles of a queue.
     pub(crate) covered: Box<Covered>,
-    /// The number of triangles, or of pieces of clipped ones, in the bins.
+    /// The number of triangles, or pieces of clipped triangles, in the bins.
     pub(crate) drawn: usize,
-    /// The transparent triangles, which hide nothing; `None` if the frame has none.
+    /// The bins of transparent triangles, which hide nothing; `None` in a frame without
+    /// transparency.
     transparent: Option<Box<Self>>,
 }
 
 impl Bins {
-    /// Empties the bins, for a picture of this size and a pass with these samples.
+    /// Empties the bins for a picture of this size and a pass with these samples.
     pub(crate) fn clear(&mut self, size: Size, sample_positions: SamplePositions) {
         self.sample_positions = sample_positions;
         [self.columns, self.rows] = tiles_of(size);
@@ -81,7 +81,7 @@ impl Bins {
         self.large_colors.clear();
         self.unsnapped.clear();
         self.lines.clear();
-        // A cancelled frame leaves some behind.
+        // A cancelled frame leaves triangles in the queues.
         for queue in self.queues.iter_mut() {
             queue.clear();
         }
@@ -89,34 +89,35 @@ impl Bins {
         self.transparent = None;
     }
 
-    /// Empties the bins of transparent triangles, or makes them.
+    /// Empties or creates the bins of transparent triangles.
     pub(crate) fn clear_transparent(&mut self, mut bins: Box<Self>, size: Size) {
         bins.clear(size, self.sample_positions);
         bins.tile_queues.clear([0; 2], false);
         self.transparent = Some(bins);
     }
 
-    /// Takes the memory of the bins of transparent triangles, for the next frame.
+    /// Takes the memory of the transparent bins, for the next frame.
     pub(crate) fn take_transparent(&mut self) -> Box<Self> {
         self.transparent.take().unwrap_or_default()
     }
 
-    /// The bins of transparent triangles, if the frame has any.
+    /// Returns the bins of transparent triangles, if the frame has any.
     pub(crate) fn transparent(&self) -> Option<&Self> {
         self.transparent.as_deref()
     }
 
-    /// The bins of opaque or of transparent triangles.
+    /// Returns the bins of opaque or of transparent triangles.
     pub(crate) fn of(&mut self, transparent: bool) -> &mut Self {
         if transparent { self.transparent.get_or_insert_default() } else { self }
     }
 
-    /// The number of triangles, or of pieces of clipped ones, in these bins and the transparent.
+    /// Returns the number of triangles, or pieces of clipped triangles, including the transparent
+    /// ones.
     pub(crate) fn triangles(&self) -> usize {
         self.drawn + self.transparent().map_or(0, |bins| bins.drawn)
     }
 
-    /// Whether nothing reaches into a tile.
+    /// Returns whether no primitive reaches into a tile.
     pub(crate) fn is_empty(&self, tile: usize) -> bool {
         let bin = &self.tiles[tile];
         self.hits.is_empty(tile)
@@ -126,7 +127,7 @@ impl Bins {
             && self.transparent().is_none_or(|bins| bins.is_empty(tile))
     }
 
-    /// Adds a triangle of any size with its bounding box.
+    /// Adds a triangle of any size to the tiles of its bounding box.
     pub(crate) fn add_large(&mut self, triangle: LargeTriangle, bounds: PixelBox) {
         let number = u32::try_from(self.large.len()).expect("fewer than 2^32 triangles");
         self.drawn += 1;
@@ -134,20 +135,19 @@ impl Bins {
         self.each(bounds, |bin| bin.large.push(number));
     }
 
-    /// Sets the colours at the corners of the triangle that [`Self::add_large`] adds next, if they
-    /// are known.
+    /// Sets the corner colours, if known, of the triangle that [`Self::add_large`] adds next.
     pub(crate) fn color_next(&mut self, colors: Option<CornerColors>) {
         self.large_colors.resize(self.large.len(), None);
         self.large_colors.push(colors);
     }
 
-    /// Adds a line of a width in pixels to the tiles that it crosses.
+    /// Adds a line of this width in pixels to the tiles it crosses.
     pub(crate) fn add_line(&mut self, line: ScreenLine, width: i32) {
         let number = u32::try_from(self.lines.len()).expect("fewer than 2^32 lines");
         self.lines.push(line);
         let picture =
             PixelBox { left: 0, top: 0, right: self.columns * TILE, bottom: self.rows * TILE };
-        // At a sample off the centre, it may cover the next pixel.
+        // At a sample off the centre, the line may cover the next pixel.
         let width = if self.sample_positions.are_many() { width + 1 } else { width };
         for bounds in lines::stretches(&line, width, picture) {
             self.each(bounds, |bin| bin.lines.push(number));
@@ -166,7 +166,7 @@ impl Bins {
     }
 }
 
-/// The tiles of one axis, out of `count`, that a range of pixels reaches into.
+/// Returns the tiles along an axis of `count` tiles that a range of pixels reaches into.
 #[inline(always)]
 fn tiles(low: i32, high: i32, count: i32) -> std::ops::Range<i32> {
     low.div_euclid(TILE).max(0)..((high - 1).div_euclid(TILE) + 1).min(count)

@@ -1,16 +1,16 @@
-//! Lists of the pixels that sixteen small triangles cover.
+//! The list of pixels covered by sixteen small triangles.
 
 use super::hits::PACK;
 
-/// The most pixels that sixteen triangles cover.
+/// The largest number of pixels covered by sixteen triangles.
 pub(super) const MOST: usize = PACK * 16 * 16;
 
-/// The number of bits in a listed pixel that are below those of samples.
+/// The number of bits below the sample bits in a listed pixel.
 pub(super) const SAMPLES: u32 = 12;
 
-/// Pixels that sixteen triangles cover: in bits, from the lowest, 4 for the lane, 4 for the column
-/// and 4 for the row in the box of the triangle, and one for each of several samples that it
-/// covers. There is room for sixteen more.
+/// The pixels covered by sixteen triangles. From the lowest bit, an entry has 4 bits for the lane,
+/// 4 for the column and 4 for the row in the triangle's box, and, with several samples, a bit for
+/// each covered sample. There is room for sixteen more.
 #[derive(Debug)]
 pub(crate) struct Covered {
     pub(super) pixels: [i32; MOST + PACK],
@@ -24,7 +24,7 @@ impl Default for Covered {
 }
 
 impl Covered {
-    /// The lanes of the triangles that cover any, a bit for each.
+    /// Returns a bit mask of the lanes that cover any pixel.
     #[inline(always)]
     pub(super) fn lanes(&self) -> u64 {
         let mut lanes = 0_u32;

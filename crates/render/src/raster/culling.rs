@@ -1,8 +1,8 @@
-//! Culls clusters of triangles that are out of view or turned away.
+//! Culls clusters of triangles outside the view frustum, and back-facing ones.
 //!
-//! Every triangle that is culled here would also be culled by itself during setup; nothing else
-//! changes. So a cluster is culled only if that holds for each of its triangles after snapping to
-//! the subpixel grid, which reverses some of the thinnest.
+//! A culled triangle would also be culled individually during setup, so no pixel changes. A cluster
+//! is therefore culled only if this holds for each of its triangles after snapping, which reverses
+//! some of the thinnest ones.
 
 use glam::{DMat3, DVec3};
 
@@ -11,33 +11,32 @@ use crate::frame::draw::{Back, Draw};
 use crate::screen::clip::{Clip, Screen};
 use crate::screen::coverage::SUBPIXELS;
 
-/// How thin triangles may be on the screen, as height in pixels over their longest side, and how
-/// small, as doubled area in square pixels, so that snapping reverses none of them.
+/// The thinnest and the smallest triangles on the screen that snapping cannot reverse: height in
+/// pixels over the longest side, and doubled area in square pixels.
 ///
-/// Snapping moves a corner by half a subpixel on each axis, so sides e and f change by at most sqrt
-/// 2 subpixels, and their product, twice the area, by 2 sqrt 2 subpixels times the longer side and
-/// 2 square subpixels. Half of the area has to exceed each of the two; a fifth more is for
-/// rounding.
+/// Snapping moves a corner by half a subpixel on each axis. Sides e and f change by at most sqrt 2
+/// subpixels, and their product (twice the area) by 2 sqrt 2 subpixels times the longer side plus 2
+/// square subpixels. Half of the area has to exceed each of the two; another fifth covers rounding.
 const THINNEST: f64 = 1.2 * 2.0 * 2.0 * std::f64::consts::SQRT_2 / SUBPIXELS as f64;
 const SMALLEST: f64 = 1.2 * 2.0 * 2.0 / (SUBPIXELS as f64 * SUBPIXELS as f64);
 
-/// A margin around the picture, in pixels, in which nothing counts as out of view.
+/// A margin around the picture, in pixels; nothing inside it counts as out of view.
 const MARGIN: f64 = 2.0;
 
 /// The culling of one draw.
 #[derive(Debug)]
 pub(crate) struct Culling {
     screen: Screen,
-    /// The same with planes close to the picture's border.
+    /// The same transform with clipping planes close to the picture's border.
     view: Screen,
-    /// The lengths of the gradients of their distances, and of the rows of clip space.
+    /// The gradient lengths of both sets of distances, and the lengths of the rows of clip space.
     slopes: [[f64; 6]; 2],
     rows: [f64; 4],
-    /// g(p) = `at_origin` + `along` p: a face is turned away if the dot product of g and its normal
-    /// is more than 0.
+    /// The function g(p) = `at_origin` + `along` p. A face is turned away if the dot product of g
+    /// and its normal is positive.
     at_origin: DVec3,
     along: f64,
-    /// Whether faces that are turned away are left out.
+    /// Whether back-facing triangles are culled.
     one_sided: bool,
 }
 
@@ -48,12 +47,12 @@ impl Culling {
 
     fn with(screen: Screen, mirrored: bool, one_sided: bool) -> Self {
         let view = screen.close_to_picture(MARGIN);
-        // Twice the area of a triangle on the screen, with the corners (x, y, w) = M p + t:
+        // Twice the area of a triangle on the screen, with the corners (x, y, w) = M p + t, is
         //
         //   -half_x half_y det[M p_i + t] / (w0 w1 w2),   det = (h p0 - e) . n,
         //
-        // n = (p1 - p0) x (p2 - p0), h = det M, and e = -adj(M) t, which is h times the observer's
-        // place.
+        // with n = (p1 - p0) x (p2 - p0), h = det M, and e = -adj(M) t, which is h times the
+        // observer's position.
         let row = |i: usize| DVec3::from_slice(&screen.rows[i][..3]);
         let (x, y, w) = (row(0), row(1), row(3));
         let t = DVec3::new(screen.rows[0][3], screen.rows[1][3], screen.rows[3][3]);
@@ -71,8 +70,8 @@ impl Culling {
         }
     }
 
-    /// Calls `each` with the ranges of triangles that are not culled. Adjacent clusters are mostly
-    /// kept together, and set up together.
+    /// Calls `each` with the ranges of triangles that are not culled. Adjacent clusters are merged
+    /// into one range, to be set up together.
     pub(crate) fn each_left(
         &self,
         clusters: &[Cluster],
@@ -93,23 +92,25 @@ impl Culling {
         }
     }
 
-    /// Whether a cluster is culled.
+    /// Returns whether a cluster is culled.
     pub(crate) fn leaves_out(&self, cluster: &Cluster) -> bool {
         let centre = cluster.centre.map(f64::from);
         let radius = f64::from(cluster.radius);
         let clip = self.screen.clip(centre);
         let far = |slope: &f64| slope * radius;
+        // Frustum culling: the bounding sphere is outside one of the planes close to the picture.
         let distances = self.view.distances(clip);
         if distances.iter().zip(&self.slopes[1]).any(|(at, slope)| *at < -far(slope)) {
             return true;
         }
+        // Back-face culling only works for clusters that are not clipped.
         let distances = self.screen.distances(clip);
         let uncut = distances.iter().zip(&self.slopes[0]).all(|(at, slope)| *at > far(slope));
         self.one_sided && uncut && self.is_turned_away(cluster, (centre.into(), radius), clip)
     }
 
-    /// Whether all triangles of a cluster are turned away, and still are once they are snapped.
-    /// None of them may be clipped.
+    /// Returns whether all triangles of a cluster are back-facing, even after snapping. None of
+    /// them may be clipped.
     fn is_turned_away(
         &self,
         cluster: &Cluster,
@@ -120,7 +121,7 @@ impl Culling {
         let axis = DVec3::from(cluster.axis.map(f64::from)).normalize_or_zero();
         let (reach, cosine) = (g.length(), f64::from(cluster.cosine));
         let off_axis = axis.dot(g) / reach;
-        // cos(a + b), with both angles less than 90 degrees.
+        // The smallest cosine to any normal of the cone: cos(a + b), both angles below 90 degrees.
         let sines = ((1.0 - off_axis * off_axis) * (1.0 - cosine * cosine)).max(0.0).sqrt();
         let least = reach * (off_axis * cosine - sines) - self.along.abs() * radius;
         let [rx, ry, _, rw] = self.rows.map(|row| row * radius);
@@ -132,10 +133,10 @@ impl Culling {
             half_x * (self.rows[0] + most[0] * self.rows[3]),
             half_y * (self.rows[1] + most[1] * self.rows[3]),
         ];
-        // No `hypot`, whose call takes a hundredth of a frame of a million triangles.
+        // Not `hypot`: calling it takes a hundredth of a frame of a million triangles.
         let longest = (across * across + down * down).sqrt() / nearest;
         let per_area = least / (farthest * farthest * farthest);
-        // With NaN nothing is culled.
+        // Any NaN makes a comparison false, and the cluster is kept.
         off_axis > 0.0
             && cosine > 0.0
             && nearest > 0.0
@@ -170,7 +171,7 @@ mod tests {
         }
     }
 
-    /// A ball whose corners are displaced by `off` at most, so that some triangles are slivers.
+    /// Returns a ball with corners displaced by at most `off`, so some triangles are slivers.
     fn ball(rows: u32, off: f64, rng: &mut Rng) -> Mesh {
         let columns = 2 * rows;
         let mut positions = Vec::new();
@@ -207,7 +208,7 @@ mod tests {
             let rough = [0.0, 0.001, 0.01, 0.05][round % 4];
             let mesh = ball([12, 24, 60][round % 3], rough, &mut rng);
             let order = mesh.draw_order();
-            // From afar, where triangles are smaller than a subpixel, to inside of the ball.
+            // From far away, where triangles are smaller than a subpixel, to inside the ball.
             let far = libm::exp(4.0 + 5.0 * rng.real());
             let stretch = DVec3::ONE + rng.place() * 0.9;
             let mirror = if round % 5 == 0 { -1.0 } else { 1.0 };

@@ -1,12 +1,13 @@
-//! Depth formats: the upper half of a pixel's entry in the visibility buffer.
+//! Depth formats: the key of a depth, which is the upper half of an entry in the visibility buffer.
 //!
-//! In every format the larger key is the nearer. Formats in which 0 is near are stored as the
-//! difference from their largest number, which keeps exactly those depths equal that are equal
-//! after rounding. All formats round the same depths, those of sixteen pixels at once.
+//! In every format the larger key is the nearer one. Formats with 0 at the near plane are stored as
+//! the difference from their largest number. Two depths still get equal keys exactly if they are
+//! equal after rounding. All formats round the same depths, sixteen pixels at a time.
 //!
-//! One step of depth at z 1000, between near 1 and far 2000, is 15.3 units in 16 bits, 0.06 in 24,
-//! and 0.06 in f32 too, whose finest steps are near 0 and wasted on the near plane; with reversed
-//! depth, 0 at the far plane, it is 5.8e-5. Reed, "Depth Precision Visualized", 2015.
+//! One step of depth at z 1000, between near 1 and far 2000, is 15.3 units in 16 bits and 0.06 in
+//! 24 bits. It is also 0.06 in f32, because the finest steps of f32 lie near 0 and are wasted on
+//! the near plane. With reversed depth, 0 at the far plane, it is 5.8e-5. Reed, "Depth Precision
+//! Visualized", 2015.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, f32x16, i32x16,
@@ -18,27 +19,28 @@ use marraztu_core::accuracy::DepthFormat;
 /// The bits of 1.
 const ONE: u32 = 1.0_f32.to_bits();
 
-/// Added to the keys of all formats but the default, so that no entry is a subnormal f64.
+/// The offset of the keys of all formats but the default, so no entry is a subnormal f64.
 const FIRST: u32 = 1 << 29;
 
-/// A format of depths. Depths are 1 at the near plane and 0 at the far one.
+/// A depth format. Depths are 1 at the near plane and 0 at the far plane.
 ///
-/// Kernels are compiled for the default, and for all others together: which of these it is, is
-/// asked once for sixteen pixels.
+/// Kernels are compiled twice: for the default, and for all other formats together. The latter
+/// select the format once for sixteen pixels.
 pub(crate) trait Format: Copy {
     /// Whether keys are the bits of depths.
     const KEEPS_BITS: bool = false;
-    /// This format, if it is among those of the type.
+    /// Returns this format, if the type includes it.
     fn of(format: DepthFormat) -> Self;
-    /// The depth bias of lines, in steps of the format, beside that in steps of the default.
+    /// Returns the additional depth bias of lines in steps of the format, on top of the bias in
+    /// default steps.
     fn lines_nearer(self) -> u32;
-    /// The key of a depth.
+    /// Returns the key of a depth.
     fn key(self, depth: f32) -> u32;
-    /// The keys of sixteen depths.
+    /// Returns the keys of sixteen depths.
     fn keys<S: Simd>(self, depth: f32x16<S>) -> u32x16<S>;
 }
 
-/// The depth itself: the default.
+/// The default format: the bits of the depth itself.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reversed;
 
@@ -65,7 +67,7 @@ impl Format for Reversed {
     }
 }
 
-/// Any of the formats.
+/// Any format, selected at run time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Any(pub(crate) DepthFormat);
 
@@ -104,12 +106,12 @@ impl Format for Any {
     }
 }
 
-/// The largest number of some bits.
+/// Returns the largest number with this many bits.
 const fn largest(bits: u32) -> u32 {
     (1 << bits) - 1
 }
 
-/// The largest number less the rounded 1 - depth.
+/// Returns the key of an integer format: the largest number minus the rounded 1 - depth.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "up to 2^24")]
 fn whole(depth: f32, bits: u32) -> u32 {
@@ -117,13 +119,13 @@ fn whole(depth: f32, bits: u32) -> u32 {
     FIRST + largest - ((1.0 - f64::from(depth)) * f64::from(largest)).round() as u32
 }
 
-/// The same for sixteen depths. With L = 2^BITS - 1, the key is L - round(L - L d), halves away
-/// from 0: the least integer that is not less than L d - 1/2. With 2^BITS d = i + f, where i is
-/// whole and f below 1, that is
+/// Computes the integer keys of sixteen depths. With L = 2^BITS - 1, the key is L - round(L - L d),
+/// halves away from 0, which is the smallest integer not less than L d - 1/2. With 2^BITS d = i +
+/// f, i an integer and f below 1, that is
 ///
 ///   i + 1 if f - 1/2 > d,   i - 1 if f + 1/2 <= d,   else i
 ///
-/// and all of these numbers are exact in f32 where they decide.
+/// and all of these numbers are exact in f32 whenever they decide.
 #[inline(always)]
 #[expect(clippy::cast_precision_loss, reason = "a power of two")]
 fn whole_keys<S: Simd>(depth: f32x16<S>, bits: u32) -> u32x16<S> {
@@ -138,7 +140,7 @@ fn whole_keys<S: Simd>(depth: f32x16<S>, bits: u32) -> u32x16<S> {
     (whole + up.select(more, down.select(less, first))).bitcast()
 }
 
-/// The depth of a key, and the largest error of it.
+/// Returns the depth of a key, and its largest error.
 #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
 fn depth_and_error(format: DepthFormat, key: u32) -> (f32, f32) {
     let part = |bits: u32| {
@@ -153,7 +155,7 @@ fn depth_and_error(format: DepthFormat, key: u32) -> (f32, f32) {
     }
 }
 
-/// Evaluates an expression with the type that a format belongs to.
+/// Evaluates an expression with the type of a depth format.
 macro_rules! with_format {
     ($format:expr, $name:ident => $what:expr) => {
         if $format == marraztu_core::accuracy::DepthFormat::F32Reversed {
@@ -167,12 +169,12 @@ macro_rules! with_format {
 }
 pub(crate) use with_format;
 
-/// The depth of a key, 1 at the near plane and 0 at the far one.
+/// Returns the depth of a key: 1 at the near plane, 0 at the far plane.
 pub(crate) fn depth(format: DepthFormat, key: u32) -> f32 {
     depth_and_error(format, key).0
 }
 
-/// Bounds of the depths whose keys lie between two others.
+/// Returns bounds of the depths with keys between two keys.
 pub(crate) fn depths_between(format: DepthFormat, [low, high]: [u32; 2]) -> [f32; 2] {
     let (low, below) = depth_and_error(format, low);
     let (high, above) = depth_and_error(format, high);
@@ -191,7 +193,7 @@ mod tests {
         Any(format).key(depth)
     }
 
-    /// The distance at which two planes about z = 1000 are always told apart.
+    /// Returns the distance at which two planes near z = 1000 are always distinguished.
     fn step(format: DepthFormat) -> f64 {
         let (near, far) = (1.0, 2000.0);
         let depth = |z: f64| (near * far / z - near) / (far - near);
@@ -229,10 +231,10 @@ mod tests {
                 let random = (state >> 40) as u32;
                 match round % 4 {
                     0 => random as f32 / 16_777_216.0,
-                    // Next to where a whole number begins.
+                    // Next to a step between two integers.
                     1 => (random % 65_536) as f32 / 65_535.0,
                     2 => (((random % 65_536) as f32 + 0.5) / 65_535.0).min(1.0),
-                    // Of every size.
+                    // Of every magnitude.
                     _ => f32::from_bits(random % 1024 + (random >> 10) * (ONE / 16_384)).min(1.0),
                 }
             });

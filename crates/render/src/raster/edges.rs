@@ -1,7 +1,7 @@
-//! Line setup: from edges of polygons and drawn normals to lines in bins.
+//! Line setup: from polygon edges and drawn normals to lines in bins.
 //!
-//! Sixteen edges at a time: short ones become hits at once, the others go to the tiles that they
-//! cross. Edges with an end beyond the clipping planes are clipped.
+//! Sixteen edges are set up at a time. Short ones become hits immediately, the others are added to
+//! the tiles they cross. Edges with an end beyond the clipping planes are clipped.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -20,16 +20,17 @@ use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::sample_positions::FOUR;
 use marraztu_core::scene::{Corner, NONE, NormalSource, dvec3};
 
-/// The depth bias: how many steps of depth lines are nearer than the surfaces that they lie on.
+/// The depth bias: lines are drawn this many steps of depth nearer than the surface below them,
+/// against z-fighting.
 const NEARER: u32 = 2;
 
-/// The inputs of setting up the lines of one draw.
+/// The inputs of line setup for one draw.
 #[derive(Debug)]
 pub(crate) struct EdgeSetup<'a> {
     pub(crate) draw: &'a Draw,
     pub(crate) vertices: &'a [ScreenVertex],
     pub(crate) screen: Screen,
-    /// An [`Outline`] for each polygon.
+    /// The [`Outline`] of each polygon.
     pub(crate) outlines: &'a [AtomicU8],
     /// The number of the draw's first line in the frame.
     pub(crate) first: u32,
@@ -68,6 +69,8 @@ impl EdgeSetup<'_> {
         count: usize,
         bins: &mut Bins,
     ) {
+        // Visibility and colour of each edge. An edge without vertices in draw order is set up
+        // singly.
         let mut numbers = [0; PACK];
         let (mut shown, mut odd) = (0_u64, 0_u64);
         for (lane, edge) in edges[..count].iter().enumerate() {
@@ -79,6 +82,7 @@ impl EdgeSetup<'_> {
         if shown == 0 {
             return;
         }
+        // The rest is done in lanes: clipping test, length, and rasterising the short edges.
         let (a, b) = (self.ends(simd, edges, 0), self.ends(simd, edges, 1));
         let beyond = a[0].simd_eq(ScreenVertex::BEYOND) | b[0].simd_eq(ScreenVertex::BEYOND);
         odd = (odd | beyond.to_bitmask()) & shown;
@@ -94,6 +98,7 @@ impl EdgeSetup<'_> {
             let short = Short { some, number, width, nearer, sample };
             lines::draw_short::<S, N>(seen[0], seen[1], &short, &mut bins.hits);
         }
+        // Long edges go to the tiles they cross, odd ones through clipping first.
         let mut long = shown & !some.to_bitmask();
         while long != 0 {
             let lane = long.trailing_zeros() as usize;
@@ -124,17 +129,17 @@ impl EdgeSetup<'_> {
         LineNumber::new(self.first + edge.number, outline == Outline::Back)
     }
 
-    /// The depth bias of edges, in steps of depth.
+    /// Returns the depth bias of edges, in steps of depth.
     const fn nearer(&self) -> u32 {
         if self.draw.filled { NEARER } else { 0 }
     }
 
-    /// Adds a line that may be of any length.
+    /// Adds a line of any length.
     fn add(&self, ends: [ScreenVertex; 2], number: u32, nearer: u32, bins: &mut Bins) {
         bins.add_line(ScreenLine { ends, number, nearer }, self.width);
     }
 
-    /// Adds an edge that may have to be clipped.
+    /// Adds an edge that may need clipping.
     fn add_odd(&self, edge: &DrawEdge, number: u32, bins: &mut Bins) {
         let mesh = &self.draw.model.mesh;
         let ends = mesh.edges()[edge.number as usize].ends;
@@ -150,7 +155,7 @@ impl EdgeSetup<'_> {
         }
     }
 
-    /// Sets up some of the draw's normals into bins; the number of the first is `first`.
+    /// Sets up some of the draw's normals into bins. `first` is the number of the first one.
     pub(crate) fn add_normals(
         &self,
         level: Level,
@@ -158,7 +163,7 @@ impl EdgeSetup<'_> {
         bins: &mut Bins,
     ) {
         let placed = NormalsInObject::new(self.draw);
-        // Dispatched so that rounding uses the processor's instruction, if it has one.
+        // Dispatched so rounding uses the processor's instruction, if it has one.
         dispatch!(level, _ => for (number, normal) in (first..).zip(normals) {
             let number = LineNumber::new(number, false);
             self.add_segment(placed.ends(normal), number.bits(), NEARER, bins);
@@ -166,7 +171,7 @@ impl EdgeSetup<'_> {
     }
 }
 
-/// The outline of an edge: the largest of its polygons'.
+/// Returns the outline of an edge: the largest outline of its polygons.
 #[inline(always)]
 fn outline_of(draw: &Draw, edge: &DrawEdge, outlines: &[AtomicU8]) -> Outline {
     let outline = |polygon: u32| outlines[polygon as usize].load(Ordering::Relaxed);
@@ -179,7 +184,7 @@ fn outline_of(draw: &Draw, edge: &DrawEdge, outlines: &[AtomicU8]) -> Outline {
     Outline::of(all.iter().map(|polygon| outline(*polygon)).max().unwrap_or(0))
 }
 
-/// The polygon that an edge is drawn for: the first of those with the largest outline.
+/// Returns the polygon that an edge is drawn for: the first one with the largest outline.
 pub(crate) fn polygon_of(draw: &Draw, edge: u32, outlines: &[AtomicU8]) -> Option<u32> {
     let mesh = &draw.model.mesh;
     let all = mesh.edge_polygons(&mesh.edges()[edge as usize]).iter().copied();
@@ -187,16 +192,16 @@ pub(crate) fn polygon_of(draw: &Draw, edge: u32, outlines: &[AtomicU8]) -> Optio
     all.min_by_key(|polygon| (u8::MAX - outline(*polygon), *polygon))
 }
 
-/// A normal that is drawn as a line.
+/// A normal drawn as a line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DrawnNormal {
-    /// The polygon that it belongs to; of a point, the first one that is shown.
+    /// The polygon the normal belongs to; for a point, its first visible polygon.
     pub(crate) polygon: u32,
     /// The point of a vertex normal, or [`NONE`].
     point: u32,
 }
 
-/// Adds the normals of polygons that are shown, whichever way they face, to a list.
+/// Lists the normals of drawn polygons, front-facing or back-facing.
 pub(crate) fn list_normals(draw: &Draw, to: &mut Vec<DrawnNormal>) {
     let Lines { face_normals, vertex_normals, .. } = draw.lines;
     if face_normals.is_none() && vertex_normals.is_none() {
@@ -210,6 +215,7 @@ pub(crate) fn list_normals(draw: &Draw, to: &mut Vec<DrawnNormal>) {
             to.push(DrawnNormal { polygon, point: NONE });
         }
         if vertex_normals.is_some() {
+            // Each point is listed once, with the first polygon that uses it.
             for corner in mesh.polygon(polygon) {
                 let point = point_of(draw, corner);
                 if !std::mem::replace(&mut drawn[point as usize], true) {
@@ -220,7 +226,7 @@ pub(crate) fn list_normals(draw: &Draw, to: &mut Vec<DrawnNormal>) {
     }
 }
 
-/// The point of a corner with the vertex normals that the draw uses.
+/// Returns the point of a corner with the vertex normals used by the draw.
 fn point_of(draw: &Draw, corner: &Corner) -> u32 {
     match draw.normal_source {
         NormalSource::File => corner.filed,
@@ -241,7 +247,7 @@ impl<'a> NormalsInObject<'a> {
         Self { draw, view_from_object, object_from_view: view_from_object.inverse() }
     }
 
-    /// The two ends of a normal.
+    /// Returns the two ends of a normal.
     #[inline(always)]
     fn ends(&self, normal: &DrawnNormal) -> [DVec3; 2] {
         let DrawnNormal { polygon, point } = *normal;
@@ -257,8 +263,8 @@ impl<'a> NormalsInObject<'a> {
         [from, from + self.placed(dvec3(normal), length.unwrap_or(0.0))]
     }
 
-    /// A normal perpendicular to the placed surface, and as long as `length` units of object space
-    /// along the normal before placement.
+    /// Returns a normal perpendicular to the placed surface. Its length equals that of the
+    /// undistorted normal, `length` units of object space, after placement.
     #[inline(always)]
     fn placed(&self, normal: DVec3, length: f64) -> DVec3 {
         let across = self.object_from_view * (self.draw.view_from_normal * normal);

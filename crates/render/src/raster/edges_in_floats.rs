@@ -1,8 +1,9 @@
-//! Rasterizes a triangle in one tile by edge functions in f32, of corners that are not snapped.
+//! Rasterises a triangle in one tile by f32 edge functions of unsnapped corners.
 //!
-//! A centre on an edge is covered by both sides, and a centre near to it may by rounding be covered
-//! by both or by neither: that is what such edge functions cost. Blocks are touched or fully
-//! covered only if rounding cannot decide otherwise at any of their pixels.
+//! A centre on an edge is covered by both sides. A centre near an edge may be covered by both sides
+//! or by neither because of rounding: that is the error of such edge functions. Blocks are
+//! classified as touched or fully covered only if rounding cannot change the result at any of their
+//! pixels.
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, f32x16, mask32x16};
 
@@ -13,11 +14,12 @@ use crate::screen::coverage::{PixelBox, SUBPIXELS};
 use crate::screen::sample_positions::SamplePositions;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
 
-/// The error of an edge function relative to the sum of its terms' sizes: more than three roundings
-/// of products and sums.
+/// The error of an edge function relative to the sum of the magnitudes of its terms: more than
+/// three roundings of products and sums.
 const ERROR: f32 = 1.0 / 2_097_152.0;
 
-/// Columns and rows of the pixels of two rows of a block, or of the blocks of two rows of a tile.
+/// The columns and rows of the pixels in two rows of a block, or of the blocks in two rows of a
+/// tile.
 const ACROSS: [f32; 16] =
     [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 const DOWN: [f32; 16] =
@@ -26,30 +28,30 @@ const DOWN: [f32; 16] =
 /// A triangle, relative to the first pixel of the picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FloatTriangle {
-    /// a, b and c of e = a x + b y + c, not negative inside.
+    /// The coefficients a, b and c of e = a x + b y + c, 0 or positive inside.
     lines: [[f32; 3]; 3],
     area: f32,
     depth: f32,
     second: f32,
     third: f32,
     low: f32,
-    /// The largest depth of its corners.
+    /// The largest depth of the corners.
     pub(crate) high: f32,
-    /// Its number in the frame.
+    /// The triangle's number in the frame.
     pub(crate) number: u32,
     /// The first pixel of the tile.
     first: [f32; 2],
 }
 
-/// Which of the pixels of two rows of a block are opaque, out of some: a bit for each.
+/// Decides which pixels in two rows of a block are opaque, as a bit mask.
 pub(crate) trait Opaque {
-    /// Whether all are.
+    /// Whether all pixels are opaque.
     const ALL: bool;
-    /// Those that are, of the rows with this number among the pairs of the block.
+    /// Returns the opaque pixels of a mask, in this pair of rows of the block.
     fn of(&self, pair: usize, pixels: u64) -> u64;
 }
 
-/// No holes.
+/// A surface without holes.
 pub(crate) struct Everywhere;
 
 impl Opaque for Everywhere {
@@ -70,6 +72,7 @@ impl FloatTriangle {
         number: u32,
         first: [i32; 2],
     ) -> Self {
+        // The sign makes edge functions positive inside for either winding.
         let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
         let sign = area.signum();
         let line = |p: [f32; 2], q: [f32; 2]| {
@@ -89,8 +92,8 @@ impl FloatTriangle {
     }
 
     /// Finds the blocks of the tile that the triangle may touch in any of the `N` samples of their
-    /// pixels, out of those that `area` reaches into. `area` must not be empty, and is in pixels
-    /// from the tile's first.
+    /// pixels, restricted to blocks that `area` reaches into. `area` must not be empty; it is in
+    /// pixels relative to the tile's first.
     #[inline(always)]
     pub(crate) fn blocks<S: Simd, const N: usize>(
         &self,
@@ -102,6 +105,7 @@ impl FloatTriangle {
         let reach = [in_pixels(from), in_pixels(to)];
         let (across, below) = (f32x16::from_slice(simd, &ACROSS), f32x16::from_slice(simd, &DOWN));
         let (first, last) = (area.left / BLOCK, (area.right - 1) / BLOCK);
+        // The columns of the area, for both rows of blocks that one register holds.
         let columns = 0x0101 * ((0xff_u64 << first) & (0xff >> (7 - last)));
         let mut touched = Touched::default();
         let (first, last) = (area.top / BLOCK, (area.bottom - 1) / BLOCK);
@@ -112,7 +116,7 @@ impl FloatTriangle {
             let mut whole = some;
             for [a, b, c] in self.lines {
                 let error = self.error([a, b, c]);
-                // The corners of the block at which it is largest and least.
+                // The block's corner with the largest, or smallest, value of this edge function.
                 let end = |step: f32, axis: usize, most: bool| match (step > 0.0) == most {
                     true => 7.0 + reach[1][axis],
                     false => reach[0][axis],
@@ -131,14 +135,14 @@ impl FloatTriangle {
         touched
     }
 
-    /// The most that rounding changes an edge function in the tile.
+    /// Returns the rounding error bound of an edge function in the tile.
     #[inline(always)]
     fn error(&self, [a, b, c]: [f32; 3]) -> f32 {
         let [x, y] = self.first;
         ((a * (x.abs() + 66.0)).abs() + (b * (y.abs() + 66.0)).abs() + c.abs()) * ERROR
     }
 
-    /// The least and the largest depth that it may have in the `N` samples of a block.
+    /// Bounds the triangle's depth in the `N` samples of a block: smallest and largest.
     #[inline(always)]
     pub(crate) fn depths<const N: usize>(&self, block: usize) -> [f32; 2] {
         let at = |x: f32, y: f32| {
@@ -147,7 +151,7 @@ impl FloatTriangle {
             let edge = |[a, b, c]: [f32; 3]| (a * x + b * y + c) / self.area;
             self.depth + edge(second) * self.second + edge(third) * self.third
         };
-        // From half a pixel before the first centre to half a pixel behind the last.
+        // From half a pixel before the first centre to half a pixel after the last.
         let (from, to) = if N == 1 { (0.0, 7.0) } else { (-0.5, 7.5) };
         let [a, b, c, d] = [at(from, from), at(from, to), at(to, from), at(to, to)];
         let [_, second, third] = self.lines;
@@ -159,21 +163,21 @@ impl FloatTriangle {
         [low.max(self.low).min(self.high), high.min(self.high).max(self.low)]
     }
 
-    /// The position of a pixel's centre, by column and row in a block.
+    /// Returns the position of a pixel's centre, by column and row in a block.
     #[inline(always)]
     fn place(&self, block: usize, [x, y]: [f32; 2]) -> [f32; 2] {
         let (column, row) = ((block % 8 * 8) as f32, (block / 8 % 8 * 8) as f32);
         [self.first[0] + column + x, self.first[1] + row + y]
     }
 
-    /// An edge function, from its part along x.
+    /// Computes an edge function from its part along x.
     #[inline(always)]
     fn edge<S: Simd>(&self, i: usize, along: f32x16<S>, y: f32x16<S>) -> f32x16<S> {
         along + y * self.lines[i][1] + self.lines[i][2]
     }
 
     /// Draws the triangle into a block of the visibility buffer, for the sample with this offset.
-    /// `whole` says that it covers the block fully.
+    /// `whole` tells that it covers the block fully.
     #[inline(always)]
     pub(crate) fn draw<S: Simd, O: Opaque>(
         &self,
@@ -204,9 +208,11 @@ impl FloatTriangle {
             }
             let depth =
                 second / self.area * self.second + self.depth + third / self.area * self.third;
+            // Rounding must not move a depth beyond the depths of the corners.
             let (low, high) = (f32x16::splat(simd, self.low), f32x16::splat(simd, self.high));
             let depth = depth.simd_gt(low).select(depth, low);
             let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
+            // The alpha test only runs for pixels that pass the depth test.
             if !O::ALL {
                 let front = in_front(format, simd, covered, depth, self.number, visibility);
                 if front == 0 {
@@ -219,7 +225,7 @@ impl FloatTriangle {
     }
 }
 
-/// An offset in pixels.
+/// Converts an offset to pixels.
 #[inline(always)]
 #[expect(clippy::cast_precision_loss, reason = "below 256")]
 pub(crate) fn in_pixels([x, y]: [i32; 2]) -> [f32; 2] {

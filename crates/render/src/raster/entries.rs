@@ -1,19 +1,19 @@
 //! Entries of the visibility buffer.
 //!
-//! A sample's entry is one 64-bit word: the key of the depth above, the inverted number of the
-//! primitive below. So the depth test is a maximum: the larger entry is visible.
+//! A sample's entry is one 64-bit word: the depth key in the upper half, the inverted number of the
+//! primitive in the lower half. The depth test is then a maximum: the larger entry is visible.
 
 use fearless_simd::{Bytes as _, Simd, SimdBase as _, f64x8, u32x16};
 
 use crate::screen::sample_positions::FOUR;
 
-/// The entry of a primitive with a key of the depth format.
+/// Returns the entry of a primitive with a key of the depth format.
 #[inline(always)]
 pub(crate) fn word(key: u32, number: u32) -> u64 {
     u64::from(key) << 32 | u64::from(!number)
 }
 
-/// The depth of an entry, as a key of the depth format.
+/// Returns the depth of an entry, as a key of the depth format.
 pub(crate) const fn key(word: u64) -> u32 {
     (word >> 32) as u32
 }
@@ -27,7 +27,7 @@ pub(crate) fn put_words<S: Simd>(keys: u32x16<S>, numbers: u32x16<S>, to: &mut [
     last.store_slice(&mut to[8..16]);
 }
 
-/// The same for four samples of sixteen pixels: the entries of a pixel's samples lie side by side.
+/// Stores four samples of sixteen pixels, with the entries of a pixel's samples side by side.
 #[inline(always)]
 pub(crate) fn put_samples<S: Simd>(
     keys: [u32x16<S>; FOUR],
@@ -41,6 +41,7 @@ pub(crate) fn put_samples<S: Simd>(
         halves(keys[3], numbers[3]),
     ];
     let to: &mut [f64] = bytemuck::cast_slice_mut(to);
+    // A 4 x 8 transpose in registers.
     for half in 0..2 {
         let (even_low, even_high) = a[half].interleave(c[half]);
         let (odd_low, odd_high) = b[half].interleave(d[half]);
@@ -53,14 +54,14 @@ pub(crate) fn put_samples<S: Simd>(
     }
 }
 
-/// The first eight and the last eight of sixteen entries.
+/// Returns the first eight and the last eight of sixteen entries.
 #[inline(always)]
 fn halves<S: Simd>(keys: u32x16<S>, numbers: u32x16<S>) -> [f64x8<S>; 2] {
     let (low, high) = (!numbers).interleave(keys);
     [low.bitcast(), high.bitcast()]
 }
 
-/// The keys and the numbers of sixteen entries.
+/// Returns the keys and numbers of sixteen entries.
 #[inline(always)]
 pub(crate) fn keys_and_numbers<S: Simd>(simd: S, words: &[u64]) -> (u32x16<S>, u32x16<S>) {
     let halves: &[u32] = bytemuck::cast_slice(words);

@@ -1,8 +1,8 @@
-//! Finds the colour of the outlines of polygons.
+//! Finds the colour of polygon outlines.
 //!
-//! It depends on the side that the observer sees, which the sign of the area on the screen gives.
-//! If all polygons are triangles, they are computed sixteen at a time in draw order; others one by
-//! one.
+//! The colour depends on the side that the observer sees, given by the sign of the area on the
+//! screen. If all polygons are triangles, sixteen are computed at a time in draw order; other
+//! polygons are computed one by one.
 
 use crate::accel::Accelerated as _;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -20,19 +20,19 @@ use crate::screen::coverage::doubled_area;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::Mesh;
 
-/// The colour of an outline. An edge has the largest of its polygons'.
+/// The colour of an outline. An edge gets the largest one of its polygons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Outline {
-    /// It is not drawn.
+    /// The outline is not drawn.
     Not,
     /// The colour of back faces.
     Back,
-    /// The draw's own colour.
+    /// The draw's line colour.
     Own,
 }
 
 impl Outline {
-    /// The outline with a number.
+    /// Returns the outline with this number.
     #[inline(always)]
     pub(crate) const fn of(number: u8) -> Self {
         match number {
@@ -43,14 +43,14 @@ impl Outline {
     }
 }
 
-/// The inputs of finding the outlines of one draw.
+/// The inputs for finding the outlines of one draw.
 #[derive(Debug)]
 pub(crate) struct Facing<'a> {
     draw: &'a Draw,
     mesh: &'a Mesh,
     vertices: &'a [ScreenVertex],
     screen: Screen,
-    /// The outlines of polygons with a negative and with a positive area.
+    /// The outlines of polygons with a negative and a positive area.
     outlines: [Outline; 2],
 }
 
@@ -87,6 +87,8 @@ impl<'a> Facing<'a> {
         let [x0, y0] = self.corners(simd, triangles, 0);
         let [x1, y1] = self.corners(simd, triangles, 1);
         let [x2, y2] = self.corners(simd, triangles, 2);
+        // A triangle beyond the clipping planes, or with an area of more than 32 bits, is done
+        // singly.
         let (low_x, high_x) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
         let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
         let beyond = low_x.simd_eq(ScreenVertex::BEYOND);
@@ -143,7 +145,7 @@ impl<'a> Facing<'a> {
         }
     }
 
-    /// Twice the area of a triangle on the screen after clipping, in square subpixels.
+    /// Computes twice the area of a triangle on the screen after clipping, in square subpixels.
     fn area_on_screen(&self, triangle: u32) -> i64 {
         let order = self.mesh.draw_order();
         let corners = order.vertices_of(triangle);

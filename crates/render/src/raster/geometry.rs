@@ -41,29 +41,30 @@ use marraztu_core::scene::Model;
 pub(crate) struct ScreenGeometry {
     /// The vertices of all draws, in the draw order of their meshes.
     vertices: Vertices,
-    /// What the vertices of each draw were made of; `None` if they have to be transformed.
+    /// The inputs that the vertices of each draw were made from; `None` if they must be
+    /// transformed.
     held: Vec<Option<Held>>,
     starts: Vec<Start>,
-    /// For each polygon of draws with edges, the number of an [`Outline`](super::facing::Outline).
+    /// The number of an [`Outline`](super::facing::Outline) for each polygon of draws with edges.
     outlines: Vec<AtomicU8>,
-    /// The normals that are drawn.
+    /// The drawn normals.
     normals: Vec<DrawnNormal>,
-    /// Where triangles have holes.
+    /// The classification of triangles by their holes.
     holes: HoleTables,
     /// The vertices to transform.
     placing: WorkList<()>,
-    /// The triangles to set up, and the polygons whose outlines are needed.
+    /// The triangles to set up, and the polygons to find outlines of.
     set_up: WorkList<What>,
     /// The edges and normals to set up.
     lines: WorkList<What>,
     bins: Vec<Bins>,
     /// The samples of the pass.
     sample_positions: SamplePositions,
-    /// The place of each draw in the order from far to near, if the frame needs it.
+    /// The position of each draw in the order from far to near, if the frame needs it.
     far_to_near: Vec<u32>,
 }
 
-/// What the screen vertices of a draw were made of.
+/// The inputs that the screen vertices of a draw were made from.
 #[derive(Debug)]
 struct Held {
     model: Shared<Model>,
@@ -90,14 +91,14 @@ impl Held {
 }
 
 impl ScreenGeometry {
-    /// Forgets all vertices.
+    /// Invalidates all vertices.
     pub(crate) fn forget(&mut self) {
         self.held.clear();
     }
 
-    /// Transforms and bins everything that the plan draws, for a pass with these samples, unless it
-    /// is cancelled; hits are coloured by the `light` at vertices, if there is any. Vertices that
-    /// are still valid are kept. Returns how long it took.
+    /// Transforms and bins everything that the plan draws, for a pass with these samples, unless
+    /// cancelled. If there is a `light` at vertices, hits are coloured with it. Vertices that are
+    /// still valid are reused. Returns the time taken.
     pub(crate) fn build(
         &mut self,
         level: Level,
@@ -118,7 +119,7 @@ impl ScreenGeometry {
         Timings { vertices, set_up, lines: laps.lap(), ..Timings::default() }
     }
 
-    /// Finds where the numbers of each draw begin.
+    /// Assigns the first numbers of each draw.
     fn number(&mut self, plan: &FramePlan) {
         self.starts.clear();
         let mut start = Start::default();
@@ -133,11 +134,12 @@ impl ScreenGeometry {
             outline += if draw.lines.edges { mesh.polygon_count() } else { 0 };
             self.starts.push(start);
         }
+        // Only object-wise blending needs an order of draws.
         self.far_to_near.clear();
         if plan.transparency == Transparency::Objects && plan.is_transparent() {
             self.far_to_near = plan.far_to_near();
         }
-        // Vertices that are not kept are overwritten from here on.
+        // From here on, vertices that are not reused are overwritten.
         self.held.resize_with(plan.draws.len(), || None);
         for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
             *held = held.take().filter(|held| held.is_of(draw, plan, start.vertex));
@@ -146,7 +148,7 @@ impl ScreenGeometry {
         self.outlines.resize_with(outline, AtomicU8::default);
     }
 
-    /// Transforms the vertices of all draws together.
+    /// Transforms the vertices of all draws in one parallel section.
     fn place(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
         self.placing.clear();
         for (i, draw) in plan.draws.iter().enumerate().filter(|(i, _)| self.held[*i].is_none()) {
@@ -154,7 +156,7 @@ impl ScreenGeometry {
             let position = |i| order.position(number(i));
             self.placing.add((i, draw), ((), order.x.len()), plan.size, position);
         }
-        // The slices of all pieces, in the order in which they were added.
+        // The output slices of all pieces, in the order of adding.
         let (mut rest, mut pieces) = (&mut self.vertices.usual[..], Vec::new());
         pieces.reserve_exact(self.placing.len());
         for (start, held) in self.starts.iter().zip(&self.held) {
@@ -164,6 +166,7 @@ impl ScreenGeometry {
                 pieces.extend(own.chunks_mut(piece_of(own.len())).map(Mutex::new));
             }
         }
+        // Threads take pieces sorted by position on the screen, so neighbours stay on one core.
         let threads = self.placing.threads(FEW_VERTICES);
         let work = self.placing.sorted();
         let shares = WorkStealing::new(work.len(), threads);
@@ -187,7 +190,7 @@ impl ScreenGeometry {
         }
     }
 
-    /// Transforms vertices to a finer grid, or to pixels, if the settings need that.
+    /// Transforms vertices to a finer grid, or to unsnapped pixels, if the settings need them.
     fn place_otherwise(&mut self, level: Level, plan: &FramePlan) {
         let Vertices { usual, fine, unsnapped } = &mut self.vertices;
         fine.clear();
@@ -199,6 +202,7 @@ impl ScreenGeometry {
         }
         fine.resize(if is_fine { usual.len() } else { 0 }, ScreenVertex::default());
         unsnapped.resize(if is_fine { 0 } else { usual.len() }, [0.0; 2]);
+        // Draws are transformed one after the other here, each in parallel pieces.
         for (draw, start) in plan.draws.iter().zip(&self.starts) {
             let screen = Screen::new(draw.clip_from_object, plan.size).on(grid);
             let screen = screen.seen_from(grid.offset(plan.shift));
@@ -219,8 +223,8 @@ impl ScreenGeometry {
         }
     }
 
-    /// Sets up triangles into bins, one set for each thread, and finds which polygons face the
-    /// observer, for their outlines.
+    /// Sets up triangles into bins, one set per thread, and finds the facing of polygons for their
+    /// outlines.
     fn set_up(
         &mut self,
         level: Level,
@@ -229,6 +233,7 @@ impl ScreenGeometry {
         watch: &Cancellation<'_>,
     ) {
         self.set_up.clear();
+        // Lists the work: triangles, then the facing of polygons with edges.
         for (i, draw) in plan.draws.iter().enumerate() {
             let mesh = &draw.model.mesh;
             let triangles = mesh.draw_order().triangles.len();
@@ -245,12 +250,13 @@ impl ScreenGeometry {
                 add(What::FacingOneByOne, mesh.polygon_count());
             }
         }
+        // Empties one set of bins per thread.
         self.bins.resize_with(self.set_up.threads(FEW), Bins::default);
         for bins in &mut self.bins {
             let transparent = plan.is_transparent().then(|| bins.take_transparent());
             bins.clear(plan.size, self.sample_positions);
             if light.is_some() {
-                // Of every thread: one that takes no triangles may still take lines.
+                // For every thread: one that takes no triangles may still take lines.
                 bins.hits.begin_colors();
             }
             if let Some(transparent) = transparent {
@@ -273,6 +279,7 @@ impl ScreenGeometry {
                 return;
             }
             let edges = if draw.lines.edges { draw.model.mesh.edge_order().edges.len() } else { 0 };
+            // Edges come first, then normals: the number of a line tells its kind.
             let start = &mut self.starts[i];
             (start.line, start.normal) = (next, next + number(edges));
             start.normal_place = self.normals.len();
@@ -292,61 +299,61 @@ impl ScreenGeometry {
         }
     }
 
-    /// Forgets the colours of hits, which belong to the frame that the geometry was built for.
+    /// Drops the colours of hits, which belong to the frame that the geometry was built for.
     pub(crate) fn forget_colors(&mut self) {
         self.bins.iter_mut().for_each(|bins| bins.hits.forget_colors());
     }
 
-    /// Distributes the tiles of the picture, so that each thread mostly draws what it has set up.
+    /// Distributes the tiles of the picture. Each thread mostly draws triangles it has set up.
     pub(crate) fn shares_of_tiles(&self, tiles: usize) -> WorkStealing {
         self.set_up.shares_of_tiles(tiles)
     }
 
-    /// The bins of all threads.
+    /// Returns the bins of all threads.
     pub(crate) fn bins(&self) -> &[Bins] {
         &self.bins
     }
 
-    /// The bins of transparent triangles of all threads.
+    /// Returns the transparent bins of all threads.
     pub(crate) fn transparent_bins(&self) -> impl Iterator<Item = &Bins> {
         self.bins.iter().filter_map(Bins::transparent)
     }
 
-    /// Whether a transparent triangle reaches into a tile.
+    /// Returns whether a transparent triangle reaches into a tile.
     pub(crate) fn is_layered(&self, tile: usize) -> bool {
         self.transparent_bins().any(|bins| !bins.is_empty(tile))
     }
 
-    /// The samples of the pass.
+    /// Returns the samples of the pass.
     pub(crate) const fn sample_positions(&self) -> SamplePositions {
         self.sample_positions
     }
 
-    /// Whether nothing reaches into a tile.
+    /// Returns whether no primitive reaches into a tile.
     pub(crate) fn is_empty(&self, tile: usize) -> bool {
         self.bins.iter().all(|bins| bins.is_empty(tile))
     }
 
-    /// The draw that a triangle belongs to, and where its numbers begin.
+    /// Returns the draw of a triangle, and the draw's first numbers.
     #[inline(always)]
     pub(crate) fn draw_of(&self, triangle: u32) -> (u32, Start) {
         self.corners().draw_of(triangle)
     }
 
-    /// The number after that of the last triangle.
+    /// Returns the number after the last triangle's.
     pub(crate) fn triangle_numbers(&self) -> usize {
         self.starts.last().map_or(0, |start| start.end as usize)
     }
 
-    /// The triangles of the draw to which one belongs, and the draw's place in the order from far
-    /// to near, if draws are laid over each other as wholes.
+    /// Returns the triangles of a triangle's draw, and the draw's position in the order from far to
+    /// near if draws are blended as a whole.
     pub(crate) fn place_of_draw(&self, triangle: u32) -> (Range<u32>, u64) {
         let (draw, start) = self.draw_of(triangle);
         let place = self.far_to_near.get(draw as usize).map_or(0, |place| u64::from(*place) + 1);
         (start.number..start.end, place)
     }
 
-    /// The corners of a draw's triangles: on the finer grid, if there is one.
+    /// Returns the corners of a draw's triangles, on the finer grid if there is one.
     pub(crate) fn corners_of(&self, draw: u32) -> &[ScreenVertex] {
         self.corners().of(draw as usize)
     }
@@ -355,7 +362,7 @@ impl ScreenGeometry {
         DrawCorners { corners: self.vertices.corners(), starts: &self.starts }
     }
 
-    /// The colour of a line.
+    /// Returns the colour of a line.
     pub(crate) fn line_color(&self, plan: &FramePlan, line: LineNumber) -> [u8; 4] {
         if line.is_back() {
             return Color::BACK_FACE.opaque();
@@ -363,12 +370,12 @@ impl ScreenGeometry {
         plan.draws[self.draw_of_line(line)].lines.color.opaque()
     }
 
-    /// Whether a line is an edge, and not a normal.
+    /// Returns whether a line is an edge and not a normal.
     pub(crate) fn is_edge(&self, line: LineNumber) -> bool {
         line.line() < self.starts[self.draw_of_line(line)].normal
     }
 
-    /// The draw of a line, and the polygon that it is drawn for.
+    /// Returns the draw of a line, and the polygon it is drawn for.
     pub(crate) fn line_seen(&self, plan: &FramePlan, line: LineNumber) -> Option<(u32, u32)> {
         let draw = self.draw_of_line(line);
         let start = self.starts[draw];
@@ -390,13 +397,13 @@ impl ScreenGeometry {
         self.starts.partition_point(|start| start.line_end <= line.line())
     }
 
-    /// The number of triangles that face the observer and may cover a pixel.
+    /// Returns the number of triangles that face the observer and may cover a pixel.
     pub(crate) fn triangles(&self) -> usize {
         self.bins.iter().map(Bins::triangles).sum()
     }
 }
 
-/// Moves vertices to where a sample with this offset in subpixels sees them.
+/// Moves vertices relative to a sample with this offset in subpixels.
 fn see_from(vertices: &mut [ScreenVertex], shift: [i32; 2]) {
     if shift != [0; 2] {
         for vertex in vertices.iter_mut().filter(|vertex| vertex.is_inside()) {

@@ -1,13 +1,13 @@
-//! Colours of hits: with light at vertices, the pixels of small triangles are coloured when they
-//! are found, and not once it is known which of them are visible.
+//! Colours of hits: with light at vertices, the pixels of small triangles are coloured during
+//! rasterisation, before it is known which of them are visible.
 //!
-//! That is when the triangle, its neighbours and the light of their vertices are in the nearest
-//! cache, and when its edge functions are at hand. A visible pixel that has a colour needs no list
-//! of triangles any more, and nothing is fetched for it: a model of 70,000 triangles takes 0.8 to
-//! 0.9 of the time. What is hidden is coloured in vain, so this does not pay for triangles that are
-//! mostly smaller than a pixel: whoever makes the [`CornerLight`] decides.
+//! At that time the triangle, its neighbours and the light of their vertices are in the L1 cache,
+//! and the edge functions are available. A visible pixel with a colour needs no list of triangles
+//! and no further loads: a model of 70,000 triangles takes 0.8 to 0.9 of the time. The work on
+//! hidden pixels is wasted, so this does not pay for triangles that are mostly smaller than a
+//! pixel. The creator of the [`CornerLight`] decides.
 //!
-//! The bits are those of a pixel that is coloured later. A colour that is not known is 0.
+//! A pixel coloured later gets the same bits. An unknown colour is 0.
 
 use std::fmt::Debug;
 
@@ -23,36 +23,37 @@ use marraztu_core::accuracy::Interpolation;
 
 /// The light at the vertices of a frame, as final colours.
 pub(crate) trait CornerLight: Debug + Sync {
-    /// How they become bytes.
+    /// Returns the conversion of colours to bytes.
     fn conversion(&self) -> Conversion<'_>;
-    /// What one thread looks them up with.
+    /// Creates the look-up of one thread.
     fn begin<'a>(&'a self, corners: DrawCorners<'a>) -> Box<dyn LookUp + 'a>;
 }
 
 /// Looks up the light at corners of triangles.
 pub(crate) trait LookUp: Debug {
-    /// Sets the colours at the corners of some triangles. Returns whether all of these are known;
-    /// if not, none is set.
+    /// Sets the colours at the corners of some triangles. Returns whether all of them are known; if
+    /// not, none is set.
     fn set(&mut self, triangles: &Triangles<'_>, to: &mut Corners) -> bool;
-    /// The colours at the corners of one triangle, if they are known: its number in the frame, its
-    /// vertices in the draw order of its mesh, and whether it runs clockwise on the screen.
+    /// Returns the colours at the corners of one triangle, if known. The triangle is given by its
+    /// number in the frame, its vertices in the draw order of its mesh, and whether it runs
+    /// clockwise on the screen.
     fn corners(&mut self, number: u32, vertices: [u32; 3], clockwise: bool)
     -> Option<CornerColors>;
 }
 
-/// Red, green and blue at the corners of a triangle, and a fourth number of no meaning.
+/// Red, green and blue at the corners of a triangle; the fourth number is unused.
 pub(crate) type CornerColors = [[f32; 4]; 3];
 
 /// Some of sixteen triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangles<'a> {
-    /// Their numbers in the frame.
+    /// The triangles' numbers in the frame.
     pub(crate) numbers: &'a [u32; PACK],
-    /// The vertices of each corner, in the draw order of their mesh.
+    /// The vertices of each corner, in the draw order of the mesh.
     pub(crate) vertices: &'a [[u32; PACK]; 3],
-    /// Which of the sixteen, a bit for each.
+    /// The bit mask of the triangles meant.
     pub(crate) some: u64,
-    /// Which of them run clockwise on the screen.
+    /// The bit mask of triangles that run clockwise on the screen.
     pub(crate) clockwise: u64,
 }
 
@@ -62,24 +63,24 @@ pub(crate) struct Triangles<'a> {
 pub(crate) struct Corners {
     /// 1/w of each corner.
     pub(crate) by_w: [[f32; PACK]; 3],
-    /// Red, green and blue of the first corner, and the differences of the others from them.
+    /// Red, green and blue of the first corner, and the differences of the others from it.
     pub(crate) colors: [[[f32; PACK]; 3]; 3],
 }
 
-/// How interpolated colours become bytes.
+/// The conversion of interpolated colours to bytes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Conversion<'a> {
     pub(crate) interpolation: Interpolation,
     /// The rounding thresholds of a block's pixels.
     pub(crate) thresholds: &'a [f32; BLOCK_PIXELS],
-    /// How colours are encoded, if they are linear.
+    /// The encoding, if colours are linear.
     pub(crate) encoding: Option<&'a Encoding>,
 }
 
-/// What one thread colours hits with; by default nothing.
+/// One thread's means to colour hits; by default none.
 #[derive(Debug, Default)]
 pub(crate) struct Brush<'a> {
-    /// `None` if hits have no colours.
+    /// The look-up and conversion; `None` if hits have no colours.
     own: Option<(Box<dyn LookUp + 'a>, Conversion<'a>)>,
     corners: Corners,
 }
@@ -90,7 +91,7 @@ impl<'a> Brush<'a> {
         Self { own, corners: Corners::default() }
     }
 
-    /// What colours the pixels of some triangles, if their colours are known.
+    /// Returns a mixer for the pixels of some triangles, if their colours are known.
     #[inline(always)]
     pub(crate) fn mix<S: Simd>(
         &mut self,
@@ -102,7 +103,7 @@ impl<'a> Brush<'a> {
         is_known.then(|| Mix::new(&self.corners, per_area, *conversion))
     }
 
-    /// The colours at the corners of one triangle, as [`LookUp::corners`].
+    /// Returns the colours at the corners of one triangle, like [`LookUp::corners`].
     pub(crate) fn corners(
         &mut self,
         number: u32,
@@ -114,14 +115,14 @@ impl<'a> Brush<'a> {
     }
 }
 
-/// Colours pixels of sixteen triangles.
+/// Colours the pixels of sixteen triangles.
 #[derive(Clone, Copy)]
 pub(crate) struct Mix<'a, S: Simd> {
     per_area: f32x16<S>,
     by_w: [f32x16<S>; 3],
     colors: [[f32x16<S>; 3]; 3],
     conversion: Conversion<'a>,
-    /// The threshold of all pixels, if they share one.
+    /// The rounding threshold, if all pixels share one.
     threshold: Option<f32>,
 }
 
@@ -147,8 +148,8 @@ impl<'a, S: Simd> Mix<'a, S> {
         }
     }
 
-    /// The colours of sixteen pixels of the triangles in some lanes, with the edge functions of the
-    /// second and the third corner there.
+    /// Computes the colours of sixteen pixels of the triangles in these lanes, from the edge
+    /// functions of the second and third corner there.
     #[inline(always)]
     pub(crate) fn colors(
         &self,
@@ -162,6 +163,7 @@ impl<'a, S: Simd> Mix<'a, S> {
         let linear = [second * per_area, third * per_area];
         let by_w = Vec3([of_lanes(*w0, lanes), of_lanes(*w1, lanes), of_lanes(*w2, lanes)]);
         let corners = [colors(a, lanes), colors(b, lanes), colors(c, lanes)];
+        // Ordered dithering uses a threshold per pixel of the block.
         let threshold = match self.threshold {
             Some(threshold) => f32x16::splat(simd, threshold),
             None => {
@@ -175,9 +177,9 @@ impl<'a, S: Simd> Mix<'a, S> {
 }
 
 impl Conversion<'_> {
-    /// The colours of sixteen pixels, from the linear coordinates of the second and the third
-    /// corner there, and from 1/w and the colours of the corners: those of the first, and the
-    /// differences of the others from them.
+    /// Computes the colours of sixteen pixels from the linear coordinates of the second and third
+    /// corner there, from 1/w, and from the colours of the corners: the first one's, and the
+    /// differences of the others from it.
     #[inline(always)]
     pub(super) fn pixels<S: Simd>(
         &self,
@@ -203,13 +205,13 @@ fn row<S: Simd>(simd: S, numbers: &[f32; PACK]) -> f32x16<S> {
     f32x16::from_slice(simd, numbers)
 }
 
-/// The colours at one corner of the triangles in some lanes.
+/// Returns the colours at one corner of the triangles in these lanes.
 #[inline(always)]
 fn colors<S: Simd>([r, g, b]: &[f32x16<S>; 3], lanes: i32x16<S>) -> Vec3<f32x16<S>> {
     Vec3([of_lanes(*r, lanes), of_lanes(*g, lanes), of_lanes(*b, lanes)])
 }
 
-/// The numbers of some lanes.
+/// Picks the numbers of some lanes.
 #[inline(always)]
 pub(super) fn of_lanes<S: Simd>(of: f32x16<S>, lanes: i32x16<S>) -> f32x16<S> {
     permute(of.bitcast(), lanes).bitcast()

@@ -1,8 +1,8 @@
-//! Hits: pixels that small primitives cover, tile by tile.
+//! Hits: pixels covered by small primitives, tile by tile.
 //!
-//! Small triangles and short lines are rasterized sixteen at a time, one in each lane, before tiles
-//! are drawn. The pixels that they cover are hits. They are stored in pages, which are allocated to
-//! tiles as needed and reused in the next frame.
+//! Small triangles and short lines are rasterised sixteen at a time, one per lane, before tiles are
+//! drawn. The covered pixels are hits. They are stored in pages, which are allocated to tiles as
+//! needed and reused in the next frame.
 
 use fearless_simd::{Bytes as _, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16, u32x16};
 
@@ -13,27 +13,27 @@ use super::entries::{keys_and_numbers, put_words, word};
 use crate::screen::coverage::PixelBox;
 use crate::screen::tiles::{TILE, lanes_place};
 
-/// Primitives that are rasterized at once.
+/// The number of primitives rasterised at once.
 pub(crate) const PACK: usize = 16;
 
-/// Hits of a page.
+/// The number of hits in a page.
 const PAGE: usize = 512;
 
-/// The page that is never written: it counts as full, and ends every chain.
+/// A sentinel page that is never written: it counts as full, and ends every chain.
 const FULL: u32 = 0;
 
-/// The most tiles that sixteen primitives may reach into to be added tile by tile.
+/// The largest number of tiles for which sixteen primitives are added tile by tile.
 const FEW_TILES: i32 = 6;
 
-/// Some hits of one tile.
+/// A page of hits of one tile.
 #[derive(Clone, Debug)]
 struct Page {
     /// The index of the sample in the tile's visibility buffer.
     place: [u32; PAGE],
-    /// The entry in the visibility buffer, if keys are the bits of depths.
+    /// The entry in the visibility buffer, for formats with the bits of depths as keys.
     word: [u64; PAGE],
     count: usize,
-    /// The page before it of the same tile, or [`FULL`].
+    /// The tile's page before this one, or [`FULL`].
     previous: u32,
 }
 
@@ -42,7 +42,7 @@ impl Page {
         Self { place: [0; PAGE], word: [0; PAGE], count, previous: FULL }
     }
 
-    /// Asks the cache for its first lines; processors fetch the lines after them by themselves.
+    /// Prefetches the first cache lines; the hardware prefetcher follows with the rest.
     #[inline(always)]
     fn prefetch(&self) {
         for at in (0..64).step_by(16) {
@@ -53,7 +53,7 @@ impl Page {
         }
     }
 
-    /// Adds those of sixteen hits that are in a mask.
+    /// Adds the hits of a mask, out of sixteen.
     #[inline(always)]
     fn add<S: Simd>(&mut self, place: u32x16<S>, pixels: &Pixels<S>, some: mask32x16<S>) {
         let to = self.count..self.count + PACK;
@@ -73,8 +73,8 @@ impl Page {
     }
 }
 
-/// The [colours](super::hit_colors) of the hits of a page. They begin in other lines of the cache
-/// than those of the page before.
+/// The [colours](super::hit_colors) of the hits of a page. The extra entries shift each page to
+/// other cache sets than the page before.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 struct ColorRow([u32; PAGE + PACK]);
@@ -83,7 +83,7 @@ impl ColorRow {
     const NONE: Self = Self([0; PAGE + PACK]);
 }
 
-/// A pixel of each of sixteen primitives.
+/// One pixel of each of sixteen primitives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pixels<S: Simd> {
     pub(crate) x: i32x16<S>,
@@ -92,34 +92,34 @@ pub(crate) struct Pixels<S: Simd> {
     pub(crate) depth: u32x16<S>,
     /// The number of the primitive.
     pub(crate) number: u32x16<S>,
-    /// The colour, or 0 if it is not known; `None` if hits have none.
+    /// The colour, or 0 if unknown; `None` if hits have no colours.
     pub(crate) color: Option<u32x16<S>>,
 }
 
-/// Which tiles sixteen primitives may reach into.
+/// The tiles that sixteen primitives may reach into.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Reach {
-    /// One tile, and nothing of them lies outside the picture.
+    /// One tile, with all pixels inside the picture.
     One(usize),
-    /// A few of them.
+    /// A few tiles.
     Few(PixelBox),
-    /// Many of them.
+    /// Many tiles.
     Many,
 }
 
-/// The hits that one thread has found.
+/// The hits found by one thread.
 #[derive(Debug)]
 pub(crate) struct Hits {
-    /// Columns and rows of the picture.
+    /// The columns and rows of the picture.
     extent: [i32; 2],
-    /// Columns and rows of tiles.
+    /// The columns and rows of tiles.
     tiles: [i32; 2],
     /// The last page of each tile.
     last: Vec<u32>,
     pages: Vec<Page>,
-    /// The colours of the hits of each page, if hits have colours.
+    /// The colours of each page's hits, if hits have colours.
     colors: Vec<ColorRow>,
-    /// How many pages are handed out.
+    /// The number of pages in use.
     used: usize,
     /// Whether hits have colours.
     colored: bool,
@@ -150,35 +150,36 @@ impl Hits {
         self.colored = false;
     }
 
-    /// From now on, the hits that are added have colours.
+    /// Starts to store colours with the added hits.
     pub(crate) const fn begin_colors(&mut self) {
         self.colored = true;
     }
 
-    /// Forgets the colours of all hits.
+    /// Drops the colours of all hits.
     pub(crate) const fn forget_colors(&mut self) {
         self.colored = false;
     }
 
-    /// Whether hits have colours.
+    /// Returns whether hits have colours.
     #[inline(always)]
     pub(crate) const fn are_colored(&self) -> bool {
         self.colored
     }
 
-    /// Columns and rows of the picture.
+    /// Returns the columns and rows of the picture.
     #[inline(always)]
     pub(crate) const fn extent(&self) -> [i32; 2] {
         self.extent
     }
 
-    /// Whether a tile has no hits.
+    /// Returns whether a tile has no hits.
     #[inline(always)]
     pub(crate) fn is_empty(&self, tile: usize) -> bool {
         self.last[tile] == FULL
     }
 
-    /// The tiles that a box of pixels reaches into; it may be empty, or reach beyond the picture.
+    /// Finds the tiles that a box of pixels reaches into. The box may be empty, or reach beyond the
+    /// picture.
     #[inline(always)]
     pub(crate) fn reach(&self, pixels: PixelBox) -> Reach {
         let [columns, rows] = self.tiles;
@@ -189,6 +190,7 @@ impl Hits {
             right: (((pixels.right - 1) >> 6) + 1).min(columns),
             bottom: (((pixels.bottom - 1) >> 6) + 1).min(rows),
         };
+        // Only boxes inside the picture may skip the bounds test of each pixel.
         let whole =
             pixels.left >= 0 && pixels.top >= 0 && pixels.right <= width && pixels.bottom <= height;
         match (tiles.width(), tiles.height()) {
@@ -200,8 +202,8 @@ impl Hits {
         }
     }
 
-    /// Adds those of the first `count` of sixteen pixels, covered in one of their `N` samples, that
-    /// are in the picture.
+    /// Adds the first `count` of sixteen pixels, covered in one of their `N` samples, except pixels
+    /// outside the picture.
     #[inline(always)]
     pub(crate) fn add_first<S: Simd, const N: usize>(
         &mut self,
@@ -222,7 +224,7 @@ impl Hits {
         }
     }
 
-    /// Adds those of sixteen pixels that are covered in one of their `N` samples and in the
+    /// Adds the pixels, of sixteen, that are covered in one of their `N` samples and inside the
     /// picture.
     #[inline(always)]
     pub(crate) fn add<S: Simd, const N: usize>(
@@ -237,6 +239,7 @@ impl Hits {
         let [width, height] = self.extent;
         match *reach {
             Reach::One(tile) => self.add_to(tile, place, pixels, covered),
+            // A few tiles: the mask of each tile is compressed separately.
             Reach::Few(tiles) => {
                 let covered = covered & x.simd_lt(width) & y.simd_lt(height);
                 for own_row in tiles.top..tiles.bottom {
@@ -249,6 +252,7 @@ impl Hits {
                     }
                 }
             }
+            // Many tiles: one pixel at a time, because most masks would be nearly empty.
             Reach::Many => {
                 let inside = x.simd_ge(0) & y.simd_ge(0) & x.simd_lt(width) & y.simd_lt(height);
                 let tile = row * self.tiles[0] + column;
@@ -270,7 +274,7 @@ impl Hits {
         }
     }
 
-    /// Adds those of sixteen hits of a tile that are in a mask.
+    /// Adds the hits of a mask, out of sixteen, to a tile.
     #[inline(always)]
     fn add_to<S: Simd>(
         &mut self,
@@ -285,14 +289,14 @@ impl Hits {
         self.page(tile).add(place, pixels, some);
     }
 
-    /// The colours of the sixteen hits that are added to a tile next.
+    /// Returns the colours of the sixteen hits added to a tile next.
     #[inline(always)]
     fn next_colors(&mut self, tile: usize) -> &mut [u32] {
         let at = self.page(tile).count;
         &mut self.colors[self.last[tile] as usize].0[at..at + PACK]
     }
 
-    /// The last page of a tile, which has room for sixteen hits.
+    /// Returns a page of a tile with room for sixteen hits.
     #[inline(always)]
     fn page(&mut self, tile: usize) -> &mut Page {
         let page = self.last[tile] as usize;
@@ -302,7 +306,7 @@ impl Hits {
         &mut self.pages[page]
     }
 
-    /// A new page for a tile.
+    /// Starts a new page for a tile.
     #[cold]
     #[inline(never)]
     fn turn(&mut self, tile: usize) -> &mut Page {
@@ -320,7 +324,7 @@ impl Hits {
         page
     }
 
-    /// Calls `take` with the index and the entry of each hit in a tile.
+    /// Calls `take` with the index and entry of each hit in a tile.
     #[inline(always)]
     pub(crate) fn each<S: Simd, D: Format>(
         &self,
@@ -341,8 +345,7 @@ impl Hits {
         );
     }
 
-    /// Calls `take` with the index, the entry and the colour of each hit in a tile, if hits have
-    /// colours.
+    /// Calls `take` with the index, entry and colour of each hit in a tile, if hits have colours.
     #[inline(always)]
     pub(crate) fn each_colored<S: Simd, D: Format>(
         &self,
@@ -363,7 +366,7 @@ impl Hits {
         );
     }
 
-    /// Calls `take` with each page of a tile: its number, the indices and the entries of its hits.
+    /// Calls `take` with each page of a tile: its number, and the indices and entries of its hits.
     #[inline(always)]
     fn each_page<S: Simd, D: Format>(
         &self,
@@ -374,10 +377,13 @@ impl Hits {
         let mut page = self.last[tile];
         while page != FULL {
             let Page { place, word, count, previous } = &self.pages[page as usize];
+            // Fetched while this page is read.
             self.pages[*previous as usize].prefetch();
             if D::KEEPS_BITS {
                 take(page as usize, &place[..*count], word);
             } else {
+                // Hits store the bits of depths. Other formats convert them here, where each is
+                // read once.
                 let mut words = [0; PAGE];
                 for at in (0..*count).step_by(PACK) {
                     let (depth, number) = keys_and_numbers(simd, &word[at..at + PACK]);

@@ -1,7 +1,7 @@
-//! Which triangles of surfaces with holes have none, and which are nothing else.
+//! Classifies alpha-tested triangles as opaque, empty or mixed.
 //!
-//! That depends on a mesh and its textures, not on the observer: it is found once, and kept from
-//! frame to frame. What is left needs the alpha test in each frame.
+//! The result depends on the mesh and its textures, not on the observer. It is computed once and
+//! kept from frame to frame. Only mixed triangles need the alpha test in each frame.
 
 use rayon::prelude::*;
 
@@ -18,11 +18,11 @@ use marraztu_core::scene::{Model, Texture};
 #[derive(Debug, Default)]
 pub(crate) struct HoleTables {
     tables: Vec<HoleTable>,
-    /// For each draw the index of its table, if it has holes.
+    /// The index of each draw's table, if the draw has holes.
     of_draws: Vec<Option<usize>>,
 }
 
-/// The triangles of a mesh with its surfaces.
+/// The classification of a mesh's triangles with its surfaces.
 #[derive(Debug)]
 struct HoleTable {
     model: Shared<Model>,
@@ -30,11 +30,11 @@ struct HoleTable {
     surfaces: Vec<Option<Surface>>,
     filter: Filter,
     holes: Vec<Holes>,
-    /// Whether the frame needs it.
+    /// Whether the current frame uses the table.
     is_used: bool,
 }
 
-/// What the holes of a surface follow from.
+/// The inputs that determine the holes of a surface.
 #[derive(Clone, Debug)]
 struct Surface {
     opacity: f64,
@@ -54,7 +54,7 @@ impl Surface {
     }
 }
 
-/// The surface with holes of each part of a draw.
+/// Iterates over the parts of a draw: the surface, if it has holes.
 fn with_holes<'a>(
     draw: &'a Draw,
     plan: &'a FramePlan,
@@ -102,7 +102,7 @@ impl HoleTable {
 }
 
 impl HoleTables {
-    /// Makes the tables that a frame needs, and forgets all others.
+    /// Creates the tables that a frame needs, and drops all others.
     pub(crate) fn update(&mut self, plan: &FramePlan) {
         let last = std::mem::take(&mut self.of_draws);
         self.tables.iter_mut().for_each(|table| table.is_used = false);
@@ -111,7 +111,7 @@ impl HoleTables {
                 self.of_draws.push(None);
                 continue;
             }
-            // Mostly the one of the last frame.
+            // Usually the table of the last frame still fits.
             let last = last.get(i).copied().flatten();
             let found = last.filter(|table| self.tables[*table].is_of(draw, plan));
             let found = found.or_else(|| self.tables.iter().position(|it| it.is_of(draw, plan)));
@@ -143,7 +143,7 @@ impl HoleTables {
         }
     }
 
-    /// What is known of each triangle of a draw; empty if the draw has no holes.
+    /// Returns the classification of each triangle of a draw; empty if the draw has no holes.
     pub(crate) fn of_draw(&self, draw: usize) -> &[Holes] {
         let table = self.of_draws.get(draw).copied().flatten();
         table.map_or(&[], |table| &self.tables[table].holes)

@@ -1,9 +1,9 @@
-//! Rasterizes a large triangle in one tile.
+//! Rasterises a large triangle in one tile.
 //!
-//! Its edge functions are 64-bit integers. First all blocks of the tile are tested at once for
-//! which of them it may touch and which it covers fully; then only the blocks that it touches are
-//! rasterized, a row of eight pixels at a time. So a large triangle costs by its blocks, not its
-//! pixels, until its depths are needed.
+//! The edge functions are 64-bit integers. First, all blocks of the tile are classified at once as
+//! untouched, touched or fully covered. Then only the touched blocks are rasterised, a row of eight
+//! pixels at a time. The cost of a large triangle is therefore per block, not per pixel, until its
+//! depths are needed.
 
 use fearless_simd::{
     Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _, SimdNarrow as _,
@@ -18,8 +18,8 @@ use crate::screen::sample_positions::SamplePositions;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use marraztu_core::base::math::each;
 
-/// The rounding error by which depths in a block may lie beyond those at its corners: a few steps
-/// of 2^-53, since all terms are at most 1 inside the triangle.
+/// The bound of rounding for depths in a block, beyond the depths at its corners: a few steps of
+/// 2^-53, because all terms are at most 1 inside the triangle.
 const ROUNDING: f64 = 1e-14;
 
 /// A triangle relative to a tile.
@@ -27,29 +27,29 @@ const ROUNDING: f64 = 1e-14;
 pub(crate) struct Large {
     /// The edge functions at the first pixel of the tile.
     edges: [i64; 3],
-    /// Their steps by a pixel to the right, and by one down.
+    /// The steps of the edge functions for one pixel to the right and one pixel down.
     right: [i64; 3],
     down: [i64; 3],
-    /// Their least values at covered centres.
+    /// The smallest values of the edge functions at covered centres.
     least: [i64; 3],
     depth: f64,
     to_second: f64,
     to_third: f64,
     low: f32,
-    /// The largest depth of its corners.
+    /// The largest depth of the corners.
     pub(crate) high: f32,
-    /// Its number in the frame.
+    /// The triangle's number in the frame.
     pub(crate) number: u32,
 }
 
-/// What happens where a triangle is in front: holes let through what is behind, and what is lit
-/// already is coloured.
+/// The treatment of pixels that pass the depth test: holes let the surface behind show through, and
+/// pixels with known light are coloured.
 pub(crate) trait InFront<S: Simd> {
-    /// Whether anything happens.
+    /// Returns whether the treatment does anything.
     fn matters(&self) -> bool;
-    /// Which of the pixels in which the triangle is in front are opaque: those of two rows of a
-    /// block, a bit for each, with their depths and the edge functions of the second and the third
-    /// corner in each row.
+    /// Treats the pixels of two rows of a block that pass the depth test, and returns a bit mask of
+    /// the opaque ones. The arguments are the mask of pixels, the edge functions of the second and
+    /// third corner in each row, and the depths.
     fn opaque(
         &mut self,
         simd: S,
@@ -60,7 +60,7 @@ pub(crate) trait InFront<S: Simd> {
     ) -> u64;
 }
 
-/// Nothing happens.
+/// An opaque triangle without colours: no treatment.
 pub(crate) struct Solid;
 
 impl<S: Simd> InFront<S> for Solid {
@@ -78,9 +78,9 @@ impl<S: Simd> InFront<S> for Solid {
 /// Blocks of a tile, a bit for each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Touched {
-    /// Those in which some pixels may be covered.
+    /// The blocks with possibly covered pixels.
     pub(crate) some: u64,
-    /// Those that are fully covered.
+    /// The blocks that are fully covered.
     pub(crate) whole: u64,
 }
 
@@ -105,7 +105,7 @@ impl Large {
         }
     }
 
-    /// The change of the edge functions by an offset in subpixels.
+    /// Returns the change of the edge functions for an offset in subpixels.
     #[inline(always)]
     pub(crate) fn gain(&self, [x, y]: [i32; 2]) -> [i64; 3] {
         let (x, y) = (i64::from(x), i64::from(y));
@@ -114,8 +114,8 @@ impl Large {
     }
 
     /// Finds the blocks of the tile that the triangle touches in any of the `N` samples of their
-    /// pixels, out of those that `area` reaches into. `area` must not be empty, and is in pixels
-    /// from the tile's first.
+    /// pixels, restricted to blocks that `area` reaches into. `area` must not be empty; it is in
+    /// pixels relative to the tile's first.
     #[inline(always)]
     pub(crate) fn blocks<S: Simd, const N: usize>(
         &self,
@@ -127,7 +127,7 @@ impl Large {
         let columns = eight_bits(area.left / BLOCK, (area.right - 1) / BLOCK);
         let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
         let side = i64::from(BLOCK);
-        // The largest and the least change of the edge functions from the centre to a sample.
+        // The largest and smallest change of the edge functions from the centre to a sample.
         let (mut most, mut least) = ([0; 3], [0; 3]);
         if N > 1 {
             (most, least) = ([i64::MIN; 3], [i64::MAX; 3]);
@@ -140,6 +140,8 @@ impl Large {
         for row in area.top / BLOCK..(area.bottom - 1) / BLOCK + 1 {
             let (mut some, mut whole) = (columns, columns);
             for i in 0..3 {
+                // Tests a row of eight blocks at the corner with the largest, and with the
+                // smallest, value.
                 let first = self.edges[i] + i64::from(row) * side * self.down[i] - self.least[i];
                 let (x, y) = (7 * self.right[i], 7 * self.down[i]);
                 let first = across * (side * self.right[i]) + first;
@@ -152,7 +154,7 @@ impl Large {
         touched
     }
 
-    /// The edge functions at the first pixel of a block.
+    /// Evaluates the edge functions at the first pixel of a block.
     #[inline(always)]
     fn edges_at(&self, block: usize) -> [i64; 3] {
         let (x, y) = ((block % 8 * 8) as i64, (block / 8 * 8) as i64);
@@ -160,8 +162,8 @@ impl Large {
         [at(0), at(1), at(2)]
     }
 
-    /// The least and the largest depth that it may have in the `N` samples of a fully covered
-    /// block.
+    /// Bounds the triangle's depth in the `N` samples of a fully covered block: smallest and
+    /// largest.
     #[inline(always)]
     #[expect(
         clippy::cast_precision_loss,
@@ -177,7 +179,7 @@ impl Large {
         let (mut x, mut y) = (gain(&self.right), gain(&self.down));
         let mut first = first;
         if N > 1 {
-            // From half a pixel before the first centre to half a pixel behind the last.
+            // From half a pixel before the first centre to half a pixel after the last.
             first -= (x + y) / 14.0;
             (x, y) = (x * (8.0 / 7.0), y * (8.0 / 7.0));
         }
@@ -186,8 +188,8 @@ impl Large {
         [low.max(self.low), high.min(self.high)]
     }
 
-    /// Draws the triangle into a block of the visibility buffer, for the sample with this offset;
-    /// the triangle covers the block fully or in part.
+    /// Draws the triangle into a block of the visibility buffer, for the sample with this offset.
+    /// `whole` tells that it covers the block fully.
     #[inline(always)]
     pub(crate) fn draw<S: Simd>(
         &self,
@@ -202,6 +204,7 @@ impl Large {
         let (first, gain) = (self.edges_at(block), self.gain(shift));
         let first = [first[0] + gain[0], first[1] + gain[1], first[2] + gain[2]];
         let [a, b, c] = self.right;
+        // Edge functions are stepped from row to row, two rows per iteration.
         let mut edges = [across * a + first[0], across * b + first[1], across * c + first[2]];
         let (two, _) = visibility.as_chunks_mut::<16>();
         for (pair, visibility) in two.iter_mut().enumerate() {
@@ -214,11 +217,13 @@ impl Large {
                 continue;
             }
             let depth = self.depth_at(upper).narrow(self.depth_at(lower));
+            // Rounding must not move a depth beyond the depths of the corners.
             let (low, high) = (f32x16::splat(simd, self.low), f32x16::splat(simd, self.high));
             let depth = depth.simd_gt(low).select(depth, low);
             let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
             let covered = (covered[0] & 0xff) | (covered[1] & 0xff) << 8;
             let mut covered = mask32x16::from_bitmask(simd, covered);
+            // Holes and colours only matter in pixels that pass the depth test.
             if in_front_of.matters() {
                 let front = in_front(format, simd, covered, depth, self.number, visibility);
                 if front == 0 {
@@ -247,14 +252,15 @@ impl Large {
         (a.simd_ge(x) & b.simd_ge(y) & c.simd_ge(z)).to_bitmask()
     }
 
-    /// The depths at points with these edge functions, before they are clamped to the corners'.
+    /// Computes the depths at points with these edge functions, before clamping to the corners'
+    /// depths.
     #[inline(always)]
     fn depth_at<S: Simd>(&self, [_, second, third]: [i64x8<S>; 3]) -> f64x8<S> {
         let (second, third) = (second.to_float::<f64x8<S>>(), third.to_float::<f64x8<S>>());
         second * self.to_second + self.depth + third * self.to_third
     }
 
-    /// The depth at a point with these edge functions.
+    /// Computes the depth at a point with these edge functions.
     #[cfg(test)]
     #[expect(
         clippy::cast_precision_loss,
@@ -269,10 +275,10 @@ impl Large {
     }
 }
 
-/// Numbers of columns.
+/// The column numbers of eight pixels.
 const UP_TO_EIGHT: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
-/// The bits from `first` to `last`.
+/// Returns the bits from `first` to `last`.
 #[inline(always)]
 const fn eight_bits(first: i32, last: i32) -> u64 {
     (0xff << first) & (0xff >> (7 - last))

@@ -1,13 +1,14 @@
-//! Layers: the transparent triangles of a tile that are in front of what is opaque.
+//! Layers for order-independent transparency: the transparent triangles of a tile in front of
+//! opaque surfaces.
 //!
-//! Transparent triangles have bins of their own and hide nothing. Block by block, every pixel gets
-//! the list of those that cover it in front of its entry in the visibility buffer, sorted from far
-//! to near. So neither the order of objects nor of triangles shows, and triangles that cut through
-//! each other change places at the pixel where they do. Of equal depths the lower number is in
-//! front, as among opaque triangles: it belongs to the older object or is the earlier face.
+//! Transparent triangles have separate bins and hide nothing. Block by block, every pixel gets the
+//! list of transparent triangles in front of its entry in the visibility buffer, sorted from far to
+//! near. The order of objects and triangles is therefore invisible, and triangles that intersect
+//! change their order at the right pixel. At equal depths the lower number is in front, as among
+//! opaque triangles: it belongs to the older object or the earlier face.
 //!
 //! A list holds [`MOST`] layers. If a pixel has more, the farthest are taken first, and the block
-//! is gathered again for the next, so memory is bounded whatever the number of layers.
+//! is gathered again for the next ones. Memory is thus bounded for any number of layers.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -31,25 +32,25 @@ use crate::screen::tiles::{BLOCK_PIXELS, block_at, within};
 use marraztu_core::accuracy::{Coverage, DepthFormat, Transparency};
 use marraztu_core::base::math::each;
 
-/// The layers of a pixel that are held at once.
+/// The largest number of layers of a pixel held at once.
 const MOST: usize = 1024;
-/// Those that are kept when they become more: the farthest.
+/// The number of layers, the farthest ones, kept after an overflow.
 const KEPT: usize = MOST / 2;
 
-/// The layers of one tile, and of the block that was gathered last.
+/// The layers of one tile, and of the last gathered block.
 #[derive(Debug)]
 pub(crate) struct Layers {
     sample_positions: SamplePositions,
     bounds: PixelBox,
     /// The blocks that any triangle touches, a bit for each.
     touched: u64,
-    /// The pixels of small triangles, for each sample of each block: the pixel of the block and the
-    /// word that the visibility buffer would hold.
+    /// The pixels of small triangles for each sample of each block: the pixel's index in the block,
+    /// and the word for the visibility buffer.
     hits: Vec<Vec<(u8, u64)>>,
     large: Vec<(Layer, Touched)>,
     depth_format: DepthFormat,
     grid: Grid,
-    /// The least and the largest depth.
+    /// The smallest and largest depth.
     depths: [f32; 2],
     block: Held,
 }
@@ -59,12 +60,12 @@ pub(crate) struct Layers {
 enum Layer {
     Large(Large),
     Floats(FloatTriangle),
-    /// Scan lines, of one sample.
+    /// Scan lines of one sample.
     Rows(Box<ScanLines>, usize),
 }
 
 impl Layer {
-    /// The largest depth of its corners.
+    /// Returns the largest depth of the corners.
     const fn high(&self) -> f32 {
         match self {
             Self::Large(large) => large.high,
@@ -79,11 +80,11 @@ impl Layer {
 struct Held {
     rows: Vec<[u64; BLOCK_PIXELS]>,
     counts: [usize; BLOCK_PIXELS],
-    /// Keys up to these were taken before.
+    /// The keys up to this one were taken before.
     floor: [u64; BLOCK_PIXELS],
-    /// Keys above these are taken later.
+    /// The keys above this one are taken later.
     ceiling: [u64; BLOCK_PIXELS],
-    /// The pixels that have such keys, a bit for each.
+    /// The pixels that have later keys, a bit for each.
     more: u64,
 }
 
@@ -116,7 +117,7 @@ impl Default for Layers {
 }
 
 impl Layers {
-    /// Begins a tile without any layers.
+    /// Begins a tile without layers.
     pub(crate) fn begin_none(&mut self) {
         self.touched = 0;
     }
@@ -134,6 +135,7 @@ impl Layers {
         (self.touched, self.depths) = (0, [f32::INFINITY, 0.0]);
         self.hits.iter_mut().for_each(Vec::clear);
         self.large.clear();
+        // Hits are sorted into lists per sample; larger triangles are only classified by block.
         for bins in frame.transparent_bins() {
             let samples = self.sample_positions.count();
             let format = Any(self.depth_format);
@@ -181,7 +183,7 @@ impl Layers {
         self.large.push((Layer::Large(large), touched));
     }
 
-    /// Adds a triangle by the chosen variant of coverage.
+    /// Adds a triangle by the selected variant of coverage.
     fn add_variant(
         &mut self,
         level: Level,
@@ -194,6 +196,7 @@ impl Layers {
         }
         match plan.variants.coverage {
             Coverage::Points => self.add_points(plan, frame, triangle.number),
+            // Scan lines round corners, so each sample has separate rows.
             Coverage::ScanLines => {
                 for sample in 0..self.sample_positions.count() {
                     let [dx, dy] = in_pixels(self.shift(sample));
@@ -226,10 +229,12 @@ impl Layers {
         }
     }
 
-    /// Adds the points of a triangle. They cover a pixel more than once: the nearest counts.
+    /// Adds the points of a triangle. They may cover a pixel more than once; the nearest one
+    /// counts.
     fn add_points(&mut self, plan: &FramePlan, frame: &ScreenGeometry, number: u32) {
         let (draw, start) = frame.draw_of(number);
         let (draw, count) = (&plan.draws[draw as usize], self.sample_positions.count());
+        // A map keeps the nearest point of each sample.
         let mut all = BTreeMap::new();
         for sample in 0..count {
             let shift = self.shift(sample);
@@ -248,7 +253,7 @@ impl Layers {
         }
     }
 
-    /// The offset of a sample.
+    /// Returns the offset of a sample.
     fn shift(&self, sample: usize) -> [i32; 2] {
         if self.sample_positions.are_many() {
             self.sample_positions.shift::<FOUR>(sample)
@@ -257,7 +262,7 @@ impl Layers {
         }
     }
 
-    /// How far from centres of pixels samples lie.
+    /// Returns the range of sample offsets from pixel centres.
     fn reach(&self) -> [[i32; 2]; 2] {
         match self.sample_positions.are_many() {
             true => self.sample_positions.reach::<FOUR>(),
@@ -265,7 +270,7 @@ impl Layers {
         }
     }
 
-    /// The pixels of the tile in a box, counted from the tile's first; `None` if there are none.
+    /// Intersects a box with the tile, relative to the tile's first pixel. `None` if it is empty.
     fn in_tile(&self, pixels: PixelBox) -> Option<PixelBox> {
         let area = pixels.intersection(self.bounds);
         let PixelBox { left, top, .. } = self.bounds;
@@ -277,17 +282,17 @@ impl Layers {
         })
     }
 
-    /// Whether a triangle touches a block.
+    /// Returns whether a triangle touches a block.
     pub(crate) const fn touches(&self, block: usize) -> bool {
         self.touched >> block & 1 != 0
     }
 
-    /// The blocks that any triangle touches, a bit for each.
+    /// Returns the blocks that any triangle touches, a bit for each.
     pub(crate) const fn touched(&self) -> u64 {
         self.touched
     }
 
-    /// Bounds of the depths of all layers, and of these of what is opaque.
+    /// Returns bounds of the depths of all layers, combined with the bounds of opaque surfaces.
     pub(crate) fn depths_with(&self, opaque: Option<[f32; 2]>) -> Option<[f32; 2]> {
         let [low, high] = self.depths;
         let own = Some([low, high]).filter(|_| self.touched != 0);
@@ -303,8 +308,8 @@ impl Layers {
         self.block.more = u64::MAX;
     }
 
-    /// Gathers the farthest layers of a sample of a block that were not taken before, in front of
-    /// the `opaque` entries. Returns whether there are any.
+    /// Gathers the farthest layers in front of the `opaque` entries, of one sample of a block, that
+    /// were not taken before. Returns whether there are any.
     pub(crate) fn take(
         &mut self,
         level: Level,
@@ -319,6 +324,7 @@ impl Layers {
         let mut key = Keys { by_draw, frame, last: (0..0, 0) };
         self.block.begin();
         let samples = self.sample_positions;
+        // Small triangles were rasterised during setup; large ones are drawn into an empty plane.
         for (pixel, word) in &self.hits[block * samples.count() + sample] {
             let pixel = usize::from(*pixel) % BLOCK_PIXELS;
             if *word > opaque[pixel] {
@@ -343,9 +349,11 @@ impl Layers {
         let farthest = opaque.iter().fold(u64::MAX, |least, word| *word.min(&least));
         let mut plane = [0; BLOCK_PIXELS];
         for (large, touched) in large.iter().filter(|(_, touched)| touched.some >> block & 1 != 0) {
+            // A triangle behind all opaque pixels of the block is skipped.
             if u64::from(format.key(large.high())) << 32 | u64::from(u32::MAX) < farthest {
                 continue;
             }
+            // The triangle is drawn alone, then its pixels in front of opaque entries are listed.
             plane.fill(0);
             let (at, whole) = ((block, shift), touched.whole >> block & 1 != 0);
             match large {
@@ -364,14 +372,14 @@ impl Layers {
         }
     }
 
-    /// The number of layers of the pixel that has the most.
+    /// Returns the number of layers of the pixel that has the most.
     pub(crate) const fn len(&self) -> usize {
         self.block.rows.len()
     }
 
-    /// The layers `i` of a block's pixels, 0 where a pixel has fewer. The lower halves are those of
-    /// words of the visibility buffer, and so are the upper halves unless objects are drawn one by
-    /// one.
+    /// Returns layer `i` of each pixel of the block, or 0 if a pixel has fewer. The lower halves
+    /// are the lower halves of words of the visibility buffer. So are the upper halves, unless
+    /// objects are drawn one by one.
     pub(crate) fn row(&self, order: Transparency, i: usize) -> [u64; BLOCK_PIXELS] {
         let flip = if order == Transparency::Objects { u64::from(u32::MAX) } else { 0 };
         let mut row = self.block.rows[i];
@@ -381,23 +389,23 @@ impl Layers {
         row
     }
 
-    /// Whether all layers of the block's sample were gathered at once.
+    /// Returns whether all layers of the block's sample were gathered at once.
     pub(crate) const fn are_all(&self) -> bool {
         self.block.more == 0
     }
 }
 
-/// By what layers are sorted: the larger key is laid over the smaller.
+/// The sort key of layers: larger keys are blended over smaller ones.
 struct Keys<'a> {
     by_draw: bool,
     frame: &'a ScreenGeometry,
-    /// The triangles of the draw that was asked for last, and its place above.
+    /// The triangles of the last requested draw, and the upper half of its key.
     last: (Range<u32>, u64),
 }
 
 impl Keys<'_> {
-    /// The key of a word of the visibility buffer: itself, or the draw's place in the order from
-    /// far to near above and the triangle's number below.
+    /// Returns the key of a word of the visibility buffer: the word itself, or the draw's position
+    /// from far to near in the upper half and the triangle's number in the lower half.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the lower half is the number")]
     fn of(&mut self, word: u64) -> u64 {
@@ -416,7 +424,7 @@ impl Held {
     fn begin(&mut self) {
         self.rows.clear();
         self.counts = [0; BLOCK_PIXELS];
-        // Pixels whose layers were all taken are left out.
+        // Pixels without further layers are excluded.
         for (pixel, floor) in self.floor.iter_mut().enumerate() {
             if self.more >> pixel & 1 == 0 {
                 *floor = u64::MAX;
@@ -431,6 +439,7 @@ impl Held {
         if key <= self.floor[pixel] {
             return;
         }
+        // The pixel had too many layers: nearer ones wait for the next turn.
         if key > self.ceiling[pixel] {
             self.more |= 1 << pixel;
             return;
@@ -464,6 +473,7 @@ impl Held {
     fn end(&mut self) -> bool {
         let mut column = Vec::new();
         for (pixel, count) in self.counts.iter().enumerate() {
+            // Layers often arrive in order already.
             let sorted = (1..*count).all(|i| self.rows[i - 1][pixel] < self.rows[i][pixel]);
             if !sorted {
                 column.clear();
@@ -483,7 +493,7 @@ impl Held {
 mod tests {
     use super::*;
 
-    /// The layers that are taken of one pixel, in as many turns as it needs.
+    /// Returns the layers taken of one pixel, and the number of turns.
     fn taken(keys: &[u64]) -> (Vec<u64>, usize) {
         let mut held = Held { more: u64::MAX, floor: [0; BLOCK_PIXELS], ..Held::default() };
         let (mut all, mut turns) = (Vec::new(), 0);

@@ -1,13 +1,13 @@
-//! Rasterizes lines: which pixels a line covers.
+//! Rasterises lines: decides which pixels a line covers.
 //!
-//! A line covers, in each column that it crosses (or in each row, if it is steep), the pixel that
+//! In each column that it crosses (or each row, if it is steep), a line covers the pixel that
 //! contains it at the column's centre. At its ends the diamond-exit rule of Vulkan and Direct3D
-//! decides: a pixel is covered if the line leaves the diamond |x| + |y| < 1/2 around its centre. So
-//! a line of length 0 covers none, and two consecutive lines cover no pixel twice. The ends are
-//! snapped and everything is computed in integers.
+//! decides: a pixel is covered if the line leaves the diamond |x| + |y| < 1/2 around its centre. A
+//! line of length 0 therefore covers no pixel, and two consecutive lines cover no pixel twice. The
+//! ends are snapped, and all arithmetic is in integers.
 //!
-//! Short lines are drawn sixteen at a time, one in each lane, and become hits; the others are
-//! stepped through in each tile. Both cover the same pixels at the same depths.
+//! Short lines are drawn sixteen at a time, one per lane, and become hits. Other lines are stepped
+//! through in each tile. Both cover the same pixels at the same depths.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _,
@@ -22,41 +22,41 @@ use crate::screen::tiles::TILE;
 /// Half of a pixel.
 const HALF: i32 = SUBPIXELS / 2;
 
-/// The longest line, in subpixels along its major axis, that counts as short: dividends stay below
-/// 2^23, so that f32 gives the integer part of quotients exactly.
+/// The longest short line, in subpixels along its major axis. Dividends stay below 2^23, so f32
+/// gives the integer part of quotients exactly.
 pub(crate) const SHORT: i32 = 8 * SUBPIXELS;
 
-/// Numbers of lines have this bit.
+/// The bit set in every line's number.
 const LINE: u32 = 1 << 31;
 
-/// The number of a line in the frame, and whether it has the colour of back faces, as stored in the
-/// visibility buffer. Of two lines the one with the lower number is the older.
+/// The number of a line in the frame and a flag for the colour of back faces, as stored in the
+/// visibility buffer. A lower number belongs to an older line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LineNumber(u32);
 
 impl LineNumber {
-    /// The number of the line, and whether it has the colour of back faces.
+    /// Creates the number of a line, with or without the colour of back faces.
     pub(crate) fn new(line: u32, back: bool) -> Self {
         assert!(line < LINE / 2, "fewer than 2^30 lines");
         Self(LINE | line << 1 | u32::from(back))
     }
 
-    /// The line with this primitive number, if it is a line's.
+    /// Returns the line with this primitive number, if the number belongs to a line.
     pub(crate) const fn of(number: u32) -> Option<Self> {
         if number & LINE == 0 { None } else { Some(Self(number)) }
     }
 
-    /// Its number among the lines of the frame.
+    /// Returns the line's number among the lines of the frame.
     pub(crate) const fn line(self) -> u32 {
         (self.0 & !LINE) >> 1
     }
 
-    /// Whether it has the colour of back faces.
+    /// Returns whether the line has the colour of back faces.
     pub(crate) const fn is_back(self) -> bool {
         self.0 & 1 != 0
     }
 
-    /// Its primitive number.
+    /// Returns the primitive number.
     pub(crate) const fn bits(self) -> u32 {
         self.0
     }
@@ -66,21 +66,21 @@ impl LineNumber {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ScreenLine {
     pub(crate) ends: [ScreenVertex; 2],
-    /// Its number, as [`LineNumber::bits`].
+    /// The number, as [`LineNumber::bits`].
     pub(crate) number: u32,
-    /// The depth bias: by how many steps of depth it is drawn nearer.
+    /// The depth bias: the line is drawn this many steps of depth nearer.
     pub(crate) nearer: u32,
 }
 
 impl ScreenLine {
-    /// The line relative to a sample with this offset in subpixels.
+    /// Returns the line relative to a sample with this offset in subpixels.
     #[inline(always)]
     pub(crate) fn seen_from(&self, shift: [i32; 2]) -> Self {
         Self { ends: self.ends.map(|end| end.seen_from(shift)), ..*self }
     }
 }
 
-/// The bounding box of the pixels that a line may cover.
+/// Returns the bounding box of the pixels that a line may cover.
 pub(crate) fn bounds([a, b]: [Snapped; 2], width: i32) -> PixelBox {
     let low = |p: i32, q: i32| p.min(q).div_euclid(SUBPIXELS) - width;
     let high = |p: i32, q: i32| p.max(q).div_euclid(SUBPIXELS) + 1 + width;
@@ -92,7 +92,7 @@ pub(crate) fn bounds([a, b]: [Snapped; 2], width: i32) -> PixelBox {
     }
 }
 
-/// Bounding boxes of a line's pixels in `clip`: one for each column of tiles, or for each row if it
+/// Returns bounding boxes of a line's pixels in `clip`: one per column of tiles, or per row if it
 /// is steep.
 pub(crate) fn stretches(
     line: &ScreenLine,
@@ -100,12 +100,13 @@ pub(crate) fn stretches(
     clip: PixelBox,
 ) -> impl Iterator<Item = PixelBox> {
     let [a, b] = line.ends.map(|end| end.at());
+    // u is the major axis: pixels are bounded per tile along it.
     let all = bounds([a, b], width).intersection(clip);
     let steep = (b.y - a.y).abs() > (b.x - a.x).abs();
     let (ua, va, ub, vb) = if steep { (a.y, a.x, b.y, b.x) } else { (a.x, a.y, b.x, b.y) };
     let (du, dv) = (i64::from(ub) - i64::from(ua), i64::from(vb) - i64::from(va));
     let (first, last) = if steep { (all.top, all.bottom) } else { (all.left, all.right) };
-    // The line's minor coordinate at a major one, rounded down to pixels.
+    // The line's minor coordinate at a major coordinate, rounded down to pixels.
     let across = move |pixel: i32| {
         let along = i64::from(pixel) * i64::from(SUBPIXELS) - i64::from(ua);
         let v = i64::from(va) + along * dv / if du == 0 { 1 } else { du };
@@ -126,7 +127,7 @@ pub(crate) fn stretches(
     })
 }
 
-/// Calls `take` with every pixel of a line inside `clip`, and with the depth there.
+/// Calls `take` with each pixel of a line inside `clip`, and the depth there.
 #[inline(always)]
 #[expect(
     clippy::cast_possible_truncation,
@@ -141,7 +142,7 @@ pub(crate) fn pixels(
 ) {
     let [a, b] = line.ends;
     let steep = (b.at().y - a.at().y).abs() > (b.at().x - a.at().x).abs();
-    // Along the major axis u, and across it v. A wide line is centred on the segment: the segment
+    // u runs along the major axis, v across it. A wide line is centred on the segment: the segment
     // is moved back by half of the added width, and each of its pixels is repeated.
     let shift = (width - 1) * SUBPIXELS / 2;
     let turn = |p: ScreenVertex| {
@@ -167,6 +168,7 @@ pub(crate) fn pixels(
         if v >= high || v <= low - width {
             continue;
         }
+        // The diamond test only matters near the ends.
         let is_end = along.abs() <= pixel || (along - du).abs() <= pixel;
         if is_end && !leaves(u, v, along, du, (ua, va), (ub, vb)) {
             continue;
@@ -181,19 +183,20 @@ pub(crate) fn pixels(
     }
 }
 
-/// v where a line crosses the centres of columns: (va du + dv along) / du, rounded down. From one
-/// column to the next the quotient and the remainder grow by the same, so that none is divided.
+/// The v at which a line crosses the centres of columns: (va du + dv along) / du, rounded down.
+/// Quotient and remainder grow by constants from column to column, so no further division is
+/// needed.
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
     quotient: i64,
     remainder: i64,
-    /// What both grow by.
+    /// The growth of the quotient and the remainder.
     step: [i64; 2],
     divisor: i64,
 }
 
 impl Crossing {
-    /// From a dividend, its growth and a divisor, which is not 0.
+    /// Starts with a dividend, its growth and a divisor other than 0.
     const fn new(dividend: i64, growth: i64, divisor: i64) -> Self {
         let (dividend, growth) = (dividend * divisor.signum(), growth * divisor.signum());
         let divisor = divisor.abs();
@@ -205,7 +208,7 @@ impl Crossing {
         }
     }
 
-    /// The quotient in this column; goes on to the next one.
+    /// Returns the quotient in this column, and advances to the next column.
     #[inline(always)]
     const fn next(&mut self) -> i64 {
         let Self { quotient, remainder, step, divisor } = *self;
@@ -216,7 +219,7 @@ impl Crossing {
     }
 }
 
-/// Whether a line leaves the diamond of the pixel in this column.
+/// Returns whether a line leaves the diamond of the pixel in this column.
 fn leaves(u: i32, v: i32, along: i64, du: i64, from: (i32, i32), to: (i32, i32)) -> bool {
     let within = |(pu, pv): (i32, i32)| {
         let (cu, cv) = (u * SUBPIXELS + HALF, v * SUBPIXELS + HALF);
@@ -229,7 +232,7 @@ fn leaves(u: i32, v: i32, along: i64, du: i64, from: (i32, i32), to: (i32, i32))
     crosses || within(from)
 }
 
-/// A depth that is some steps nearer.
+/// Moves a depth nearer by some steps.
 fn nearer(depth: f32, steps: u32) -> f32 {
     f32::from_bits(depth.to_bits() + steps).min(1.0)
 }
@@ -237,20 +240,20 @@ fn nearer(depth: f32, steps: u32) -> f32 {
 /// One end of sixteen lines: x, y and depth.
 pub(crate) type Ends<S> = [i32x16<S>; 3];
 
-/// What sixteen short lines have in common, and the mask of those that are drawn.
+/// The shared properties of sixteen short lines, and the mask of drawn ones.
 pub(crate) struct Short<S: Simd> {
     pub(crate) some: mask32x16<S>,
     pub(crate) number: u32x16<S>,
     pub(crate) width: i32,
     /// The depth bias, in steps of depth.
     pub(crate) nearer: u32,
-    /// The sample that they are drawn for.
+    /// The sample that the lines are drawn for.
     pub(crate) sample: usize,
 }
 
-/// Draws sixteen lines that are at most [`SHORT`], for one of `N` samples per pixel.
+/// Draws sixteen lines of at most [`SHORT`], for one of `N` samples per pixel.
 ///
-/// In the turned axes of [`pixels`]: v = floor((va du + dv along) / (256 du)).
+/// In the axes of [`pixels`]: v = floor((va du + dv along) / (256 du)).
 #[inline(always)]
 pub(crate) fn draw_short<S: Simd, const N: usize>(
     a: Ends<S>,
@@ -260,6 +263,7 @@ pub(crate) fn draw_short<S: Simd, const N: usize>(
 ) {
     let simd = a[0].simd;
     let ([xa, ya, da], [xb, yb, db]) = (a, b);
+    // Steep lines swap their axes, so every lane steps along its major axis u.
     let steep = (yb - ya).abs().simd_gt((xb - xa).abs());
     let shift = (lines.width - 1) * SUBPIXELS / 2;
     let (ua, va) = (steep.select(ya, xa), steep.select(xa, ya) - shift);
@@ -273,6 +277,7 @@ pub(crate) fn draw_short<S: Simd, const N: usize>(
     let reach = hits.reach(bounds_of([xa, ya], [xb, yb], some, lines.width));
     let below = (du.abs() << 8).max(1).to_float::<f32x16<S>>();
     let depths = Depths::new(da, db, du);
+    // One column per step. Lanes with shorter lines are masked out.
     for column in 0..columns {
         let u = begin + column;
         let along = (u << 8) + HALF - ua;
@@ -280,6 +285,7 @@ pub(crate) fn draw_short<S: Simd, const N: usize>(
         let above = backward.select(-above, above).to_float::<f32x16<S>>();
         let v = (va >> 8) + (above / below).floor().to_int::<i32x16<S>>();
         let across = (v << 8) + HALF;
+        // The diamond-exit rule: the end must not lie in the diamond, and the line must reach it.
         let within_a = (along.abs() + (va - across).abs()).simd_lt(HALF);
         let within_b = ((along - du).abs() + (vb - across).abs()).simd_lt(HALF);
         let passed = backward.select(-along, along);
@@ -290,6 +296,7 @@ pub(crate) fn draw_short<S: Simd, const N: usize>(
         }
         let depth = (depths.at(along) + lines.nearer.cast_signed()).min(ONE.cast_signed());
         let depth = depth.bitcast();
+        // A wide line repeats each pixel across its major axis.
         for side in 0..lines.width {
             let v = v + side;
             let (x, y) = (steep.select(v, u), steep.select(u, v));
@@ -322,7 +329,7 @@ impl<S: Simd> Depths<S> {
         Self { from: [a_low, a_high], gain, length: wide(du) }
     }
 
-    /// The bits of the depths.
+    /// Returns the bits of the depths.
     #[inline(always)]
     fn at(&self, along: i32x16<S>) -> i32x16<S> {
         let [low, high] = wide(along);
@@ -345,7 +352,7 @@ fn wide<S: Simd>(x: i32x16<S>) -> [f64x8<S>; 2] {
     [low.to_float(), high.to_float()]
 }
 
-/// The bounding box of the pixels that some of sixteen lines may cover.
+/// Returns the bounding box of the pixels that some of sixteen lines may cover.
 #[inline(always)]
 fn bounds_of<S: Simd>(
     [xa, ya]: [i32x16<S>; 2],
@@ -353,7 +360,7 @@ fn bounds_of<S: Simd>(
     some: mask32x16<S>,
     width: i32,
 ) -> PixelBox {
-    // If the mask is empty, the box is inverted, but far from overflow.
+    // With an empty mask the box is inverted, but far from overflow.
     let far = i32x16::splat(xa.simd, 1 << 29);
     let first = Snapped {
         x: some.select(xa.min(xb), far).reduce_min(),
@@ -395,7 +402,7 @@ mod tests {
         pixels
     }
 
-    /// The same, drawn in a lane.
+    /// The same line, drawn in a lane.
     fn drawn_short(ends: [(f64, f64); 2], width: i32) -> Vec<(i32, i32)> {
         let mut hits = Hits::default();
         hits.clear([99, 99], [2, 2]);
@@ -446,8 +453,8 @@ mod tests {
         }
     }
 
-    /// The rule itself, tested at many points of the line: it leaves a diamond if its last point
-    /// inside is not its end.
+    /// Applies the diamond-exit rule itself, at many points: a line leaves a diamond if its last
+    /// point inside is not its end.
     fn by_the_rule([from, to]: [(f64, f64); 2]) -> Vec<(i32, i32)> {
         let n = 200_000;
         let mut entered = Vec::new();

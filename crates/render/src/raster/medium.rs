@@ -1,8 +1,8 @@
-//! Rasterizes a triangle whose bounding box has at most 64 x 64 pixels, in one tile.
+//! Rasterises a triangle with a bounding box of at most 64 x 64 pixels, in one tile.
 //!
-//! It does what [`large`](super::large) does, to the same bits: edge functions relative to the tile
-//! fit 32 bits, so that sixteen pixels or blocks are tested at once. Depths are computed from edge
-//! functions in f64, which holds these integers exactly.
+//! The result has the same bits as [`large`](super::large). Edge functions relative to the tile fit
+//! 32 bits, so sixteen pixels or blocks are tested at once. Depths are computed from edge functions
+//! in f64, which holds these integers exactly.
 
 use fearless_simd::{
     Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8,
@@ -20,44 +20,44 @@ use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE};
 use crate::simd::in_f64;
 use marraztu_core::base::math::each;
 
-/// The longest sides of the bounding box, in pixels.
+/// The largest side of the bounding box, in pixels.
 pub(crate) const LONGEST: i32 = TILE;
 
-/// Columns and rows of the pixels of two rows of a block, or of the blocks of two rows of a tile.
+/// The columns and rows of the pixels in two rows of a block, or of the blocks in two rows of a
+/// tile.
 const ACROSS: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const DOWN: [i32; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
 
-/// Two rows of a block at a time.
+/// The pairs of rows in a block.
 const PAIRS: i32 = BLOCK / 2;
 
 /// A triangle relative to a tile.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Medium<S: Simd> {
-    /// The edge functions at the first pixel of the tile, less their least values at covered
-    /// centres.
+    /// The edge functions at the first pixel of the tile, minus their smallest covered values.
     edges: [i32; 3],
-    /// The least values of the second and the third corner's, which depth needs.
+    /// The smallest covered values of the second and third edge function, needed for depth.
     least: [i32; 2],
-    /// Their steps by a subpixel to the right, and by one down.
+    /// The steps of the edge functions for one subpixel to the right and one down.
     right: [i32; 3],
     down: [i32; 3],
-    /// Their offsets within two rows of a block.
+    /// The offsets of the edge functions within two rows of a block.
     gains: [i32x16<S>; 3],
     depth: f64,
     to_second: f64,
     to_third: f64,
     low: f32,
-    /// The largest depth of its corners.
+    /// The largest depth of the corners.
     pub(crate) high: f32,
     number: u32,
 }
 
 impl<S: Simd> Medium<S> {
-    /// Sets up a triangle for the tile with this first pixel; `None` if it has no area. Its
+    /// Sets up a triangle for the tile with this first pixel. `None` if it has no area. Its
     /// bounding box must reach into the tile.
     #[inline(always)]
     pub(crate) fn new(simd: S, large: &LargeTriangle, [left, top]: [i32; 2]) -> Option<Self> {
-        // Relative to the centre of the first pixel, so that e(0, 0) is the constant term.
+        // Relative to the centre of the first pixel: e(0, 0) is then the constant term.
         let half = SUBPIXELS / 2;
         let (cx, cy) = (left * SUBPIXELS + half, top * SUBPIXELS + half);
         let [p, q, r] = each(large.corners, |corner| {
@@ -97,15 +97,15 @@ impl<S: Simd> Medium<S> {
         })
     }
 
-    /// The change of an edge function by an offset in subpixels.
+    /// Returns the change of an edge function for an offset in subpixels.
     #[inline(always)]
     fn gain(&self, i: usize, [x, y]: [i32; 2]) -> i32 {
         self.right[i] * x + self.down[i] * y
     }
 
     /// Finds the blocks of the tile that the triangle touches in any of the `N` samples of their
-    /// pixels, out of those that `area` reaches into. `area` must not be empty, and is in pixels
-    /// from the tile's first.
+    /// pixels, restricted to blocks that `area` reaches into. `area` must not be empty; it is in
+    /// pixels relative to the tile's first.
     #[inline(always)]
     pub(crate) fn blocks<const N: usize>(
         &self,
@@ -119,6 +119,7 @@ impl<S: Simd> Medium<S> {
         let (across, below) = (i32x16::from_slice(simd, &ACROSS), i32x16::from_slice(simd, &DOWN));
         let mut gains = [i32x16::splat(simd, 0); 3];
         let (mut most, mut least) = ([0; 3], [0; 3]);
+        // The largest and smallest change of each edge function within a block, over all samples.
         for i in 0..3 {
             if N > 1 {
                 (most[i], least[i]) = (i32::MIN, i32::MAX);
@@ -137,7 +138,7 @@ impl<S: Simd> Medium<S> {
         for row in (first..=last).step_by(2) {
             let at = |i: usize| gains[i] + (self.edges[i] + row * side * self.down[i]);
             let [a, b, c] = [at(0), at(1), at(2)];
-            // Bits of signs: an edge function is negative outside.
+            // Only the sign bits matter: an edge function is negative outside.
             let some = (a + most[0]) | (b + most[1]) | (c + most[2]);
             let whole = (a + least[0]) | (b + least[1]) | (c + least[2]);
             let rows = if row == last { 0xff } else { 0xffff };
@@ -149,9 +150,9 @@ impl<S: Simd> Medium<S> {
         touched
     }
 
-    /// Draws the triangle into those rows of a block that `area` reaches into, for the sample with
-    /// this offset, and paints those pixels in which it is in front. `area` is in pixels from the
-    /// tile's first.
+    /// Draws the triangle into the rows of a block that `area` reaches into, for the sample with
+    /// this offset, and paints the pixels that pass the depth test. `area` is in pixels relative to
+    /// the tile's first.
     #[inline(always)]
     pub(crate) fn draw(
         &self,
@@ -167,6 +168,7 @@ impl<S: Simd> Medium<S> {
         let place = [column * SUBPIXELS + shift[0], row * SUBPIXELS + shift[1]];
         let gain = [self.gain(0, place), self.gain(1, place), self.gain(2, place)];
         let (pairs, _) = visibility.as_chunks_mut::<16>();
+        // Rows above and below the area are skipped, which matters for small triangles.
         let first = (area.top - row).max(0) / 2;
         let end = ((area.bottom - row + 1) / 2).min(PAIRS);
         let above = 2 * first * SUBPIXELS;
@@ -180,6 +182,7 @@ impl<S: Simd> Medium<S> {
                 let depth = self.depths(simd, second, third);
                 let pair = pair as usize % 4;
                 let entries = &mut pairs[pair];
+                // Painting needs the depth test before the entries are overwritten.
                 if let Some(painted) = &mut painted {
                     let front = in_front(format, simd, covered, depth, self.number, entries);
                     if front != 0 {
@@ -192,7 +195,7 @@ impl<S: Simd> Medium<S> {
         }
     }
 
-    /// The depths of two rows of a block, from their edge functions.
+    /// Computes the depths of two rows of a block from their edge functions.
     #[inline(always)]
     fn depths(&self, simd: S, second: i32x16<S>, third: i32x16<S>) -> f32x16<S> {
         let (second, third) = (in_f64(second), in_f64(third));
@@ -203,7 +206,7 @@ impl<S: Simd> Medium<S> {
         depth.simd_lt(high).select(depth, high)
     }
 
-    /// The depths of a row, before they are clamped to the corners'.
+    /// Computes the depths of a row, before clamping to the corners' depths.
     #[inline(always)]
     fn depth_at(&self, second: f64x8<S>, third: f64x8<S>) -> f64x8<S> {
         second * self.to_second + self.depth + third * self.to_third

@@ -1,16 +1,16 @@
-//! Rasterization: from the meshes of a plan to the visibility of each pixel.
+//! Rasterisation: from the meshes of a plan to the visibility of each pixel.
 //!
-//! `geometry` transforms the `vertices` of a frame; threads then set up its `parts`, one piece of
-//! `work` after another: `setup` and `edges` put primitives that may be visible into `bins`, and
-//! `small` rasterizes small triangles at once, to `hits`, which may have `hit_colors`, or, with
-//! several samples per pixel, they wait for their tile in `tile_queues`. A `tile` then draws its
-//! hits and queues, `large` triangles, which may have a `paint`, and `lines` with a depth test; the
-//! nearest primitive stays in the `visibility_buffer`. `layers` are the transparent triangles in
-//! front of it.
+//! `geometry` transforms the `vertices` of a frame. Threads then set up its `parts`, one piece of
+//! `work` after another: `setup` and `edges` put possibly visible primitives into `bins` (tile
+//! binning). `small` rasterises small triangles immediately, to `hits`, which may have
+//! `hit_colors`. With several samples per pixel, they wait for their tile in `tile_queues` instead.
+//! A `tile` then draws its hits and queues, `large` triangles, which may have a `paint`, and
+//! `lines`, all with a depth test. The nearest primitive stays in the `visibility_buffer`. `layers`
+//! are the transparent triangles in front of it.
 //!
-//! What the settings can choose beside the defaults are variants of the same kernels: each `rule`
-//! of coverage and each `depth_format` is a type for which they are compiled. `vertex_variants`
-//! transforms vertices otherwise; `edges_in_floats` and `scan_lines` cover blocks by other rules.
+//! Alternatives selected by the settings are variants of the same kernels: each `rule` of coverage
+//! and each `depth_format` is a type that kernels are compiled for. `vertex_variants` transforms
+//! vertices by other arithmetics; `edges_in_floats` and `scan_lines` cover blocks by other rules.
 
 pub(crate) mod alpha_test;
 mod beyond;

@@ -1,6 +1,5 @@
-//! Colours of triangles that are not small: with light at vertices, their pixels are coloured when
-//! they are drawn, like [hits](super::hit_colors), and to the same bits as pixels that are coloured
-//! later.
+//! Colours of triangles that are not small: with light at vertices, their pixels are coloured while
+//! they are drawn, like [hits](super::hit_colors), with the same bits as pixels coloured later.
 
 use fearless_simd::{
     Select as _, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8, mask32x16,
@@ -16,20 +15,20 @@ use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::Vec3;
 use marraztu_core::base::math::each;
 
-/// Colours pixels of one triangle.
+/// Colours the pixels of one triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Paint<'a> {
-    /// 1 / the doubled area, in f64 if it is wide.
+    /// 1 / the doubled area, also in f64 if the triangle is wide.
     per_area: f32,
     wide: Option<f64>,
     by_w: [f32; 3],
-    /// Of the first corner, and the differences of the others from it.
+    /// The colours of the first corner, and the differences of the others from it.
     colors: [[f32; 3]; 3],
     conversion: Conversion<'a>,
 }
 
 impl<'a> Paint<'a> {
-    /// Of a triangle that is not clipped.
+    /// Sets up a triangle that is not clipped.
     #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
     pub(crate) fn new(
         triangle: &LargeTriangle,
@@ -48,7 +47,7 @@ impl<'a> Paint<'a> {
         }
     }
 
-    /// The colours of two rows of a block, from the edge functions of the second and the third
+    /// Computes the colours of two rows of a block from the edge functions of the second and third
     /// corner there.
     #[inline(always)]
     fn rows<S: Simd>(&self, pair: usize, [second, third]: [f32x16<S>; 2]) -> u32x16<S> {
@@ -62,7 +61,7 @@ impl<'a> Paint<'a> {
     }
 }
 
-/// What a triangle shows in a block, and how it is coloured.
+/// A block being painted, and the colours of the triangle.
 #[derive(Debug)]
 pub(crate) struct Painted<'a> {
     pub(super) paint: &'a Paint<'a>,
@@ -70,8 +69,8 @@ pub(crate) struct Painted<'a> {
 }
 
 impl Painted<'_> {
-    /// Colours those of two rows of a block that have a bit in `pixels`, from the edge functions of
-    /// the second and the third corner there. The triangle must not be wide.
+    /// Colours the pixels of a mask in two rows of a block, from the edge functions of the second
+    /// and third corner there. The triangle must not be wide.
     #[inline(always)]
     pub(super) fn put<S: Simd>(&mut self, pair: usize, pixels: u64, edges: [f32x16<S>; 2]) {
         let linear = [edges[0] * self.paint.per_area, edges[1] * self.paint.per_area];

@@ -1,4 +1,4 @@
-//! Parallel setup of a frame: all threads put triangles and lines into bins, each into its own.
+//! Sets up a frame in parallel: all threads put triangles and lines into separate bins.
 
 use crate::accel::Accelerated as _;
 use std::sync::Mutex;
@@ -24,7 +24,7 @@ use crate::frame::draw::Draw;
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::work_stealing::{WorkStealing, own, together};
 
-/// Runs the work on all threads, each with its own bins, unless it is cancelled.
+/// Runs the work on all threads, each with separate bins, unless cancelled.
 pub(crate) fn share_out(
     level: Level,
     work: &[Work<What>],
@@ -43,6 +43,7 @@ pub(crate) fn share_out(
             }
             parts.run(level, work, bins, brush);
         }
+        // The queues hold fewer than a full batch at the end.
         with_rule!(parts.plan.variants, R => setup::finish::<R>(level, bins, brush));
     });
 }
@@ -70,17 +71,17 @@ impl<'a> Parts<'a> {
         Self { plan, vertices, starts, outlines, holes: None, normals: &[], light: None }
     }
 
-    /// The same, with what is known of holes.
+    /// Adds the classification of holes.
     pub(crate) fn with_holes(self, holes: &'a HoleTables) -> Self {
         Self { holes: Some(holes), ..self }
     }
 
-    /// The same, with the normals that are drawn.
+    /// Adds the drawn normals.
     pub(crate) fn with_normals(self, normals: &'a [DrawnNormal]) -> Self {
         Self { normals, ..self }
     }
 
-    /// The same, with the light that hits are coloured by.
+    /// Adds the light for colouring hits.
     pub(crate) fn with_light(self, light: Option<&'a dyn CornerLight>) -> Self {
         Self { light, ..self }
     }
@@ -92,6 +93,7 @@ impl<'a> Parts<'a> {
         let (vertices, size) = (self.vertices_of(i), self.plan.size);
         match what {
             What::Triangles => {
+                // The screen corners of this draw, on the grid and with the variants of the frame.
                 let pipelines = &self.plan.pipelines;
                 let corners = self.corners().of(i);
                 let setup = Setup::new(draw, pipelines, corners, size, self.starts[i].number);
@@ -101,6 +103,7 @@ impl<'a> Parts<'a> {
                 if !self.vertices.unsnapped.is_empty() {
                     setup.unsnapped = &self.vertices.unsnapped[self.starts[i].vertex..];
                 }
+                // Cluster culling removes whole ranges before any triangle is set up.
                 let order = mesh.draw_order();
                 let triangles = &order.triangles[from..to];
                 with_rule!(self.plan.variants, R => if order.clusters.is_empty() {
@@ -148,12 +151,12 @@ impl<'a> Parts<'a> {
         &self.vertices.usual[vertex..vertex_end]
     }
 
-    /// The corners of all triangles.
+    /// Returns the corners of all triangles.
     fn corners(&self) -> DrawCorners<'a> {
         DrawCorners { corners: self.vertices.corners(), starts: self.starts }
     }
 
-    /// The outlines of a draw; empty if its edges are not drawn.
+    /// Returns the outlines of a draw; empty if its edges are not drawn.
     pub(crate) fn outlines_of(&self, draw: usize) -> &'a [AtomicU8] {
         let Draw { model, lines, .. } = &self.plan.draws[draw];
         let count = if lines.edges { model.mesh.polygon_count() } else { 0 };

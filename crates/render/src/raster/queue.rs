@@ -4,26 +4,26 @@ use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, i32x16, mas
 
 use super::hits::PACK;
 
-/// The sizes of bounding boxes, in pixels to a side, that the queues hold.
+/// The sizes of bounding boxes, in pixels along a side, with a queue each.
 pub(crate) const SMALL: [i32; 5] = [1, 2, 4, 8, 16];
 
-/// Numbers stored per triangle: x and y of its corners, their depths, its own number.
+/// The numbers stored per triangle: x and y of its corners, their depths, the triangle's number.
 pub(crate) const ROWS: usize = 10;
 
 /// Sixteen triangles, row by row.
 pub(crate) type Pack<S> = [i32x16<S>; ROWS];
 
-/// Triangles that wait until there are [`WAITING`] of them.
+/// A queue of up to [`WAITING`] triangles.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(crate) struct Queue {
     rows: [[i32; WAITING + PACK]; ROWS],
-    /// The vertices of their corners, if hits have colours.
+    /// The vertices of the triangles' corners, if hits have colours.
     vertices: [[i32; WAITING + PACK]; 3],
     pub(super) count: usize,
 }
 
-/// The most triangles that wait: enough that those which are read were written long before.
+/// The largest number of waiting triangles: enough that triangles are read long after their stores.
 pub(super) const WAITING: usize = 128;
 
 impl Default for Queue {
@@ -34,7 +34,7 @@ impl Default for Queue {
 }
 
 impl Queue {
-    /// Adds some of sixteen triangles, with the vertices of their corners if hits have colours.
+    /// Adds some of sixteen triangles, and the vertices of their corners if hits have colours.
     /// Returns whether the queue is full.
     #[inline(always)]
     pub(crate) fn add<S: Simd>(
@@ -56,7 +56,7 @@ impl Queue {
         self.count >= WAITING
     }
 
-    /// The number of triangles that are drawn next.
+    /// Returns the number of triangles drawn next.
     #[inline(always)]
     pub(super) fn waiting(&self) -> usize {
         self.count.min(WAITING)
@@ -67,7 +67,8 @@ impl Queue {
         self.count = 0;
     }
 
-    /// Sixteen of them, from `at` on; of the last, fewer, beside triangles without pixels.
+    /// Returns sixteen triangles, starting at `at`. The last pack is filled up with empty
+    /// triangles.
     #[inline(always)]
     pub(super) fn pack<S: Simd>(&self, simd: S, at: usize) -> Pack<S> {
         let mut pack = [i32x16::splat(simd, 0); ROWS];
@@ -86,7 +87,7 @@ impl Queue {
         pack
     }
 
-    /// The vertices of sixteen of them, corner by corner, from `at` on.
+    /// Returns the vertices of sixteen triangles, corner by corner, starting at `at`.
     #[inline(always)]
     pub(super) fn vertices(&self, at: usize) -> [[u32; PACK]; 3] {
         let mut vertices = [[0; PACK]; 3];
@@ -96,7 +97,7 @@ impl Queue {
         vertices
     }
 
-    /// Removes up to [`WAITING`] triangles; the others move up.
+    /// Removes up to [`WAITING`] triangles and moves the rest to the front.
     #[inline(always)]
     pub(super) fn forget(&mut self) {
         if self.count < WAITING {

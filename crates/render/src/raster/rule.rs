@@ -1,9 +1,8 @@
-//! Rules of coverage: what kernels of set-up and of small triangles are compiled for.
+//! Rules of coverage, as types for which setup and the kernels of small triangles are compiled.
 //!
-//! * By whole numbers on the usual grid: the default.
-//! * By whole numbers on a finer grid.
-//! * From corners that are not snapped: edge functions in f32; and scan lines and points, which
-//!   tiles draw alone.
+//! * Integers on the usual grid: the default.
+//! * Integers on a finer grid.
+//! * Unsnapped corners: edge functions in f32. Scan lines and points are drawn by tiles only.
 
 use fearless_simd::Simd;
 
@@ -17,19 +16,19 @@ use marraztu_core::accuracy::Coverage;
 pub(crate) trait Rule: Copy {
     /// The grid of corners.
     const GRID: Grid = Grid::Usual;
-    /// Whether corners are needed as they were before they were snapped.
+    /// Whether the rule needs corners before snapping.
     const UNSNAPPED: bool = false;
-    /// The number of queues of small triangles that are used.
+    /// The number of queues of small triangles in use.
     const QUEUES: usize = SMALL.len() - 1;
     /// Whether small triangles may wait for their tiles.
     const IN_TILES: bool = false;
     /// The edge functions of small triangles.
     type Edges<S: Simd>: Edges<S>;
-    /// Those of the last queue, whose boxes are larger.
+    /// The edge functions of the last queue, which has larger boxes.
     type LastEdges<S: Simd>: Edges<S>;
 }
 
-/// Whole numbers on the usual grid.
+/// Integers on the usual grid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Usual;
 
@@ -40,7 +39,7 @@ impl Rule for Usual {
     type LastEdges<S: Simd> = WholeEdges<S>;
 }
 
-/// Whole numbers on the fine grid.
+/// Integers on the fine grid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fine;
 
@@ -50,9 +49,9 @@ impl Rule for Fine {
     type LastEdges<S: Simd> = FineEdges<S>;
 }
 
-/// Corners that are not snapped: of small triangles, edge functions in f32. By rounding they may
-/// cover centres that are a little outside; scan lines, whose corners are whole pixels, up to one
-/// and a half.
+/// Unsnapped corners, with f32 edge functions for small triangles. Because of rounding, these may
+/// cover centres slightly outside. Scan lines have corners at whole pixels, and may cover centres
+/// up to one and a half pixels outside.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unsnapped;
 
@@ -83,14 +82,14 @@ macro_rules! with_rule {
 }
 pub(crate) use with_rule;
 
-/// The kinds of rules.
+/// The rules of coverage as values.
 pub(crate) enum Kind {
     Usual,
     Fine,
     Unsnapped,
 }
 
-/// The rule of a frame.
+/// Returns the rule of a frame.
 pub(crate) fn kind(variants: Variants) -> Kind {
     match (variants.coverage, variants.grid()) {
         (Coverage::Exact, Grid::Usual) => Kind::Usual,

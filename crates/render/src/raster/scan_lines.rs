@@ -1,9 +1,9 @@
-//! Rasterizes a triangle in one tile by scan lines, as ancestor B's author wrote it.
+//! Rasterises a triangle in one tile by scan lines: ancestor B's fill rule, vectorised.
 //!
-//! As in software before edge functions, corners are rounded to whole pixels, and each row runs
-//! from the left edge to the right edge, rounded and inclusive. So neighbours cover the pixels that
-//! they share twice, and pixels are covered whose centres lie outside. Rows are found one by one;
-//! then they are filled sixteen pixels at a time.
+//! As in software before edge functions, corners are rounded to whole pixels. Each row runs from
+//! the left edge to the right edge, rounded and inclusive. Neighbours therefore cover shared pixels
+//! twice, and some covered pixels have their centres outside. Rows are found one by one and then
+//! filled sixteen pixels at a time.
 
 use fearless_simd::{
     Select as _, Simd, SimdBase as _, SimdCombine as _, SimdMask as _, f32x8, f32x16, mask32x16,
@@ -15,14 +15,14 @@ use super::visibility_buffer::{in_front, put_rows};
 use crate::screen::coverage::PixelBox;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE_SIDE};
 
-/// Columns of the pixels of two rows of a block.
+/// The columns of the pixels in two rows of a block.
 const ACROSS: [f32; 16] =
     [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// A row of a triangle.
 #[derive(Clone, Copy, Debug)]
 struct ScanLine {
-    /// The first and the last column that are covered.
+    /// The first and last covered column.
     first: f32,
     last: f32,
     /// The left end, the depth there, and its step to the right.
@@ -31,7 +31,7 @@ struct ScanLine {
     per_pixel: f32,
 }
 
-/// No pixel.
+/// A row without pixels.
 const EMPTY: ScanLine = ScanLine { first: 1.0, last: 0.0, left: 0.0, depth: 0.0, per_pixel: 0.0 };
 
 /// The rows of a triangle in a tile.
@@ -41,15 +41,15 @@ pub(crate) struct ScanLines {
     /// The first column of the tile.
     left: f32,
     low: f32,
-    /// The largest depth of its corners.
+    /// The largest depth of the corners.
     pub(crate) high: f32,
     number: u32,
-    /// The pixels that may be covered, from the tile's first.
+    /// The possibly covered pixels, relative to the tile's first.
     pub(crate) area: PixelBox,
 }
 
 impl ScanLines {
-    /// The rows of a triangle, whose corners are in pixels; `None` if there are none in the tile.
+    /// Finds the rows of a triangle with corners in pixels. `None` if no row is in the tile.
     #[expect(clippy::cast_possible_truncation, reason = "whole pixels are meant")]
     #[expect(clippy::cast_precision_loss, reason = "columns and rows are small")]
     pub(crate) fn new(
@@ -62,6 +62,7 @@ impl ScanLines {
         let [columns, lines] = [0, 1].map(|axis| corners.map(|corner| corner[axis]));
         let least = |of: [i32; 3]| of[0].min(of[1]).min(of[2]);
         let most = |of: [i32; 3]| of[0].max(of[1]).max(of[2]);
+        // The end pixels are inclusive, hence the additional row and column.
         let own = PixelBox {
             left: least(columns),
             top: least(lines),
@@ -107,6 +108,7 @@ impl ScanLines {
         let (pairs, _) = visibility.as_chunks_mut::<16>();
         for (pair, visibility) in pairs.iter_mut().enumerate() {
             let (up, down) = (self.rows[row + 2 * pair], self.rows[row + 2 * pair + 1]);
+            // The upper half of the lanes holds one row, the lower half the next.
             let both = |of: fn(&ScanLine) -> f32| -> f32x16<S> {
                 f32x8::splat(simd, of(&up)).combine(f32x8::splat(simd, of(&down)))
             };
@@ -127,7 +129,7 @@ impl ScanLines {
         }
     }
 
-    /// The blocks that may be covered.
+    /// Returns the possibly covered blocks.
     pub(crate) fn blocks(&self) -> impl Iterator<Item = usize> {
         let PixelBox { left, top, right, bottom } = self.area;
         let columns = left / BLOCK..(right - 1) / BLOCK + 1;
@@ -136,7 +138,7 @@ impl ScanLines {
     }
 }
 
-/// One row, from its left edge to its right edge.
+/// Finds one row, from its left edge to its right edge.
 #[expect(clippy::cast_precision_loss, reason = "columns and rows are small")]
 fn scan_line(corners: [[i32; 2]; 3], depths: [f32; 3], y: i32) -> ScanLine {
     // The ends of the row: column and depth.
@@ -147,6 +149,7 @@ fn scan_line(corners: [[i32; 2]; 3], depths: [f32; 3], y: i32) -> ScanLine {
         if y < p[1].min(q[1]) || y > p[1].max(q[1]) {
             continue;
         }
+        // A level edge contributes both of its ends.
         let down = (q[1] - p[1]) as f32;
         let parts = if down == 0.0 { [0.0, 1.0] } else { [(y - p[1]) as f32 / down; 2] };
         for t in parts {

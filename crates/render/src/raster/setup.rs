@@ -1,9 +1,9 @@
 //! Triangle setup: from vertices on the screen to triangles in bins.
 //!
-//! Sixteen triangles at a time: those that face away, cover no pixel's centre (or sample) or lie
-//! outside the picture are culled before anything of theirs is copied. Triangles with a corner
-//! beyond the clipping planes are clipped, and those whose area needs 64 bits are set up one by
-//! one.
+//! Sixteen triangles are set up at a time. Triangles that face away, cover no pixel centre (or
+//! sample) or lie outside the picture are culled before any of their data is copied. Triangles with
+//! a corner beyond the clipping planes are clipped, and triangles with an area that needs 64 bits
+//! are set up one by one.
 
 use crate::accel::Accelerated as _;
 use crate::simd::dispatch;
@@ -28,10 +28,10 @@ use marraztu_core::accuracy::Coverage;
 use marraztu_core::base::image::Size;
 use marraztu_core::base::math::each;
 
-/// The largest bounding box, in subpixels, whose doubled area fits 31 bits.
+/// The largest bounding box, in subpixels, with a doubled area of at most 31 bits.
 pub(crate) const NARROW: i32 = 1 << 14;
 
-/// The inputs of setting up the triangles of one draw.
+/// The inputs of triangle setup for one draw.
 #[derive(Debug)]
 pub(crate) struct Setup<'a> {
     pub(crate) draw: &'a Draw,
@@ -40,31 +40,31 @@ pub(crate) struct Setup<'a> {
     pub(crate) screen: Screen,
     /// The number of the draw's first triangle in the frame.
     pub(crate) base: u32,
-    /// Whether some triangles are not drawn, need the alpha test or are transparent, so that each
-    /// has to be checked.
+    /// Whether triangles must be checked one by one, because some are not drawn, need the alpha
+    /// test or are transparent.
     pub(crate) choosy: bool,
-    /// The vertices in pixels, before they were snapped, if the rule of coverage needs them.
+    /// The vertices in pixels before snapping, if the rule of coverage needs them.
     pub(crate) unsnapped: &'a [[f32; 2]],
     pub(crate) coverage: Coverage,
-    /// Where its triangles have holes, if any has.
+    /// The classification of triangles by their holes, if any has holes.
     pub(crate) holes: &'a [Holes],
-    /// Whether all triangles that are drawn are transparent.
+    /// Whether all drawn triangles are transparent.
     pub(crate) transparent: bool,
 }
 
-/// Those of sixteen triangles that may be visible.
+/// The possibly visible ones of sixteen triangles.
 #[derive(Clone, Copy, Debug)]
 struct Visible<S: Simd> {
-    /// Those that need no alpha test, and those that do.
+    /// The triangles without and with the alpha test.
     plain: mask32x16<S>,
     cutout: u64,
-    /// Those that run clockwise on the screen.
+    /// The triangles that run clockwise on the screen.
     clockwise: u64,
-    /// Their bounding boxes: left, top, right and bottom.
+    /// The bounding boxes: left, top, right and bottom.
     boxes: [i32x16<S>; 4],
 }
 
-/// How a triangle is drawn.
+/// The kind of drawing of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Not,
@@ -83,6 +83,7 @@ impl<'a> Setup<'a> {
     ) -> Self {
         let transparent =
             draw.uniform.is_some_and(|pipeline| pipelines[pipeline as usize].opacity().is_some());
+        // If no triangle differs from the others, none has to be looked at separately.
         let choosy = draw.polygons.is_some()
             || draw.part_pipelines.iter().any(|pipeline| {
                 pipeline.is_none_or(|pipeline| {
@@ -106,7 +107,8 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// The same for vertices relative to a sample with this offset in 1/256 pixel, on a grid.
+    /// Returns the same setup for vertices on a grid, relative to a sample with this offset in
+    /// 1/256 pixel.
     pub(crate) fn seen_from(self, shift: [i32; 2], grid: Grid) -> Self {
         Self { screen: self.screen.on(grid).seen_from(grid.offset(shift)), ..self }
     }
@@ -157,6 +159,7 @@ impl<'a> Setup<'a> {
         let [x0, y0, d0, _] = self.corners(simd, triangles, 0);
         let [x1, y1, d1, _] = self.corners(simd, triangles, 1);
         let [x2, y2, d2, _] = self.corners(simd, triangles, 2);
+        // Bounding boxes in pixels. A triangle without a centre (or sample) in its box is culled.
         let (low_x, high_x) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
         let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
 
@@ -174,8 +177,11 @@ impl<'a> Setup<'a> {
             & bottom.simd_gt(0)
             & left.simd_lt(width)
             & top.simd_lt(height);
+        // BEYOND is the smallest integer, so one minimum finds corners beyond the planes.
         let beyond = low_x.simd_eq(ScreenVertex::BEYOND);
         let wide = (high_x - low_x).simd_gt(NARROW) | (high_y - low_y).simd_gt(NARROW);
+        // Back-face culling by the sign of the area. 32 bits are enough for triangles that are not
+        // wide.
         let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
         let faces = match (self.draw.back, self.draw.mirrored) {
             (Back::Culled, false) => area.simd_lt(0),
@@ -185,6 +191,7 @@ impl<'a> Setup<'a> {
         let there = mask32x16::from_bitmask(simd, (1 << count) - 1);
         let odd = (beyond | (wide & seen)) & there;
         let plain = seen & faces & there & !odd;
+        // Only the surviving triangles are copied into queues or bins.
         if plain.any_true() {
             let [v0, v1, v2, number] = fetch(
                 simd,
@@ -213,6 +220,7 @@ impl<'a> Setup<'a> {
                 }
             }
         }
+        // Triangles that need clipping or 64 bits are set up one by one.
         let mut odd = odd.to_bitmask();
         while odd != 0 {
             let lane = odd.trailing_zeros() as usize;
@@ -221,7 +229,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// x, y, depth and 1/w of one corner of sixteen triangles.
+    /// Fetches x, y, depth and 1/w of one corner of sixteen triangles.
     #[inline(always)]
     fn corners<S: Simd>(
         &self,
@@ -237,7 +245,7 @@ impl<'a> Setup<'a> {
         )
     }
 
-    /// x and y of one corner of sixteen triangles, in pixels and before they were snapped, as bits.
+    /// Fetches unsnapped x and y in pixels of one corner of sixteen triangles, as bits.
     #[inline(always)]
     fn unsnapped_corners<S: Simd>(
         &self,
@@ -257,8 +265,9 @@ impl<'a> Setup<'a> {
         [x, y]
     }
 
-    /// Sorts visible triangles by the larger sides of their bounding boxes: into the queues of
-    /// small ones, of this thread or of the tiles that they reach into, or to the large ones.
+    /// Sorts visible triangles by the larger side of their bounding boxes: into this thread's
+    /// queues of small triangles, into the queues of the tiles they reach into, or to the large
+    /// triangles.
     #[inline(always)]
     fn sort<S: Simd, R: Rule, const N: usize>(
         &self,
@@ -274,6 +283,7 @@ impl<'a> Setup<'a> {
         let tiles = bins.tile_queues.boxes(boxes);
         let mut above = 0;
         let queues = if self.has_small::<R>() { R::QUEUES } else { 0 };
+        // The queues in ascending size; a full queue is drawn immediately.
         for (queue, limit) in SMALL[..queues].iter().copied().enumerate() {
             let some = plain & side.simd_gt(above) & side.simd_le(limit);
             above = limit;
@@ -291,6 +301,7 @@ impl<'a> Setup<'a> {
                 small::draw_queue::<S, R, N>(side.simd, queue, bins, brush);
             }
         }
+        // The remaining triangles are large or alpha-tested.
         let mut large = (plain & side.simd_gt(above)).to_bitmask() | cutout;
         while large != 0 {
             let lane = large.trailing_zeros() as usize;
@@ -311,7 +322,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// Adds a triangle that is not small, or not drawn with small ones.
+    /// Adds a triangle that is large, or is not drawn together with small ones.
     #[inline(always)]
     fn add_large<R: Rule, const N: usize>(&self, triangle: LargeTriangle, bins: &mut Bins) {
         let at = each(triangle.corners, |corner| corner.at());
@@ -319,21 +330,22 @@ impl<'a> Setup<'a> {
         bins.add_large(triangle, PixelBox::reached_on(R::GRID, at, reach));
     }
 
-    /// How far from centres of pixels they may be covered.
+    /// Returns the range of offsets from pixel centres at which triangles may cover.
     #[inline(always)]
     fn reach<R: Rule, const N: usize>(&self, bins: &Bins) -> [[i32; 2]; 2] {
         let reach = bins.sample_positions.reach::<N>();
         if R::UNSNAPPED { beyond::reach(reach, beyond::beyond(self.coverage)) } else { reach }
     }
 
-    /// Whether small triangles are drawn sixteen at a time.
+    /// Returns whether small triangles are drawn sixteen at a time.
     #[inline(always)]
     fn has_small<R: Rule>(&self) -> bool {
         !R::UNSNAPPED || self.coverage == Coverage::F32Edges
     }
 
-    /// Which of the triangles in a mask are drawn: without the alpha test, with it, and whether
-    /// these are the transparent ones; `front` says which face the camera.
+    /// Splits the triangles of a mask by kind of drawing: the masks without and with the alpha
+    /// test, for opaque triangles and for transparent ones. `front` is the mask of front-facing
+    /// triangles.
     #[inline(always)]
     fn kinds(
         &self,
@@ -354,8 +366,7 @@ impl<'a> Setup<'a> {
         [(plain, cutout, false), (transparent, 0, true)]
     }
 
-    /// The masks of the triangles that are drawn without and with the alpha test, and of those that
-    /// are transparent.
+    /// Returns the masks of triangles drawn without the alpha test, with it, and as transparent.
     fn kinds_one_by_one(
         &self,
         triangles: &[DrawTriangle; PACK],
@@ -377,7 +388,7 @@ impl<'a> Setup<'a> {
         kinds
     }
 
-    /// Adds a triangle that has to be clipped, or whose area needs 64 bits.
+    /// Adds a triangle that needs clipping, or 64 bits for its area.
     fn add_odd<R: Rule, const N: usize>(
         &self,
         triangle: &DrawTriangle,
@@ -389,6 +400,7 @@ impl<'a> Setup<'a> {
             return;
         }
         let vertices = triangle.vertices.map(|vertex| self.vertices[vertex as usize]);
+        // Clipping returns a convex polygon, drawn as a fan of triangles around its first corner.
         let (mut pieces, mut unsnapped) = (Vec::new(), Vec::new());
         let is_whole = vertices.iter().all(ScreenVertex::is_inside);
         if is_whole {
@@ -408,6 +420,7 @@ impl<'a> Setup<'a> {
             let corners = [pieces[0], pieces[i - 1], pieces[i]];
             let area = doubled_area(corners.map(|corner| corner.at()));
             let front = (area < 0) != self.draw.mirrored;
+            // Facing is tested on the clipped pieces, after snapping.
             if area == 0 || (!front && self.culls_back(kind)) {
                 continue;
             }
@@ -424,13 +437,14 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// The corners of a triangle in clip space.
+    /// Returns the corners of a triangle in clip space.
     fn clip_corners(&self, vertices: [u32; 3]) -> [crate::screen::clip::Clip; 3] {
         vertices.map(|vertex| self.screen.clip(self.order.position(vertex)))
     }
 
     pub(crate) fn kind(&self, number: u32, pipelines: &[Pipeline]) -> Kind {
         let mesh = &self.draw.model.mesh;
+        // Excluded polygons first, then the pipeline of the part decides.
         let polygon = mesh.polygon_of(number);
         if self.draw.polygons.as_ref().is_some_and(|some| !some.contains(&polygon)) {
             return Kind::Not;
@@ -451,7 +465,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// Whether the back faces of a kind are culled.
+    /// Returns whether the back faces of a kind are culled.
     pub(crate) fn culls_back(&self, kind: Kind) -> bool {
         self.draw.back == Back::Culled || (kind != Kind::Transparent && self.draw.culls_opaque)
     }

@@ -1,4 +1,4 @@
-//! Edge functions of sixteen small triangles, one in each lane, by each rule of coverage.
+//! Edge functions of sixteen small triangles, one per lane, for each rule of coverage.
 
 use fearless_simd::{Bytes as _, Select as _, Simd, SimdBase as _, f32x16, i32x16, mask32x16};
 
@@ -19,39 +19,42 @@ mod whole;
 /// The bounding boxes of sixteen triangles: left, top, right and bottom.
 type Boxes<S> = [i32x16<S>; 4];
 
-/// Their corners: snapped, or the bits of positions in pixels.
+/// The corners of sixteen triangles: snapped, or the bits of positions in pixels.
 type Corners<S> = [[i32x16<S>; 2]; 3];
 
-/// The edge functions of sixteen triangles, positive inside whatever the winding.
+/// The edge functions of sixteen triangles, positive inside for either winding.
 pub(crate) trait Edges<S: Simd>: Copy {
-    /// Their values at a pixel.
+    /// The values of the edge functions at a pixel.
     type At: Copy;
-    /// What the offset of a sample changes of them.
+    /// The change of the values by the offset of a sample.
     type Shift: Copy;
-    /// The pixels that triangles may cover in samples that lie this far from centres.
+    /// Returns boxes of the pixels that triangles may cover in samples at these offsets from
+    /// centres.
     fn bounds(corners: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S>;
     /// Sets triangles up, with the depths of their corners.
     fn new(simd: S, corners: Corners<S>, boxes: Boxes<S>, depths: [f32x16<S>; 3]) -> Self;
-    /// At the first pixel of the boxes.
+    /// Returns the values at the first pixel of the boxes.
     fn first(&self) -> Self::At;
-    /// One pixel to the right.
+    /// Steps one pixel to the right.
     fn right(&self, at: Self::At) -> Self::At;
-    /// One pixel down.
+    /// Steps one pixel down.
     fn below(&self, at: Self::At) -> Self::At;
-    /// What the offsets of samples change.
+    /// Returns the changes by the offsets of samples.
     fn shifts<const N: usize>(&self, sample_positions: &SamplePositions) -> [Self::Shift; N];
-    /// At a sample.
+    /// Moves the values to a sample.
     fn moved(&self, at: Self::At, shift: Self::Shift) -> Self::At;
-    /// Which triangles cover it.
+    /// Returns which triangles cover the point with these values.
     fn covered(&self, at: Self::At) -> mask32x16<S>;
-    /// The edge functions of the second and the third corner of the triangles in some lanes, at
-    /// pixels this far from the first of their boxes; `None` if hits have no colours by this rule.
+    /// Returns the edge functions of the second and third corner of the triangles in these lanes,
+    /// at pixels at this distance from the first of their boxes. `None` if hits have no colours by
+    /// this rule.
     #[inline(always)]
     fn functions(&self, _: i32x16<S>, _: [i32x16<S>; 2]) -> Option<[f32x16<S>; 2]> {
         None
     }
-    /// The depths, linear on the screen, of the triangles in some lanes at pixels this far from the
-    /// first of their boxes, in the sample with an offset, if there are several.
+    /// Returns the depths, linear on the screen, of the triangles in these lanes at pixels at this
+    /// distance from the first of their boxes. With several samples, `shift` is the sample's
+    /// offset.
     fn depths(
         &self,
         lanes: i32x16<S>,
@@ -60,13 +63,13 @@ pub(crate) trait Edges<S: Simd>: Copy {
     ) -> f32x16<S>;
 }
 
-/// The numbers of some lanes.
+/// Picks the numbers of some lanes.
 #[inline(always)]
 fn of_lanes<S: Simd>(of: f32x16<S>, lanes: i32x16<S>) -> f32x16<S> {
     permute(of.bitcast(), lanes).bitcast()
 }
 
-/// The pixels that snapped triangles may cover.
+/// Returns boxes of the pixels that snapped triangles may cover.
 #[inline(always)]
 fn snapped_bounds<S: Simd>(
     grid: Grid,
@@ -83,19 +86,19 @@ fn snapped_bounds<S: Simd>(
     ]
 }
 
-/// An edge function of sixteen triangles in whole numbers.
+/// An integer edge function of sixteen triangles.
 #[derive(Clone, Copy)]
 struct WholeEdge<S: Simd> {
-    /// Less the least value that counts as covered.
+    /// The value minus the smallest covered value.
     value: i32x16<S>,
     least: i32x16<S>,
-    /// The steps by a part of a pixel to the right, and by one down.
+    /// The steps for one grid step to the right and one down.
     a: i32x16<S>,
     b: i32x16<S>,
 }
 
-/// As in `coverage`: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0;
-/// multiplied by the sign of the area.
+/// Computes an edge function as in `coverage`, multiplied by the sign of the area: a = p.y - q.y,
+/// b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0.
 #[inline(always)]
 fn whole_edge<S: Simd>(
     [px, py]: [i32x16<S>; 2],

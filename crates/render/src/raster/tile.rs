@@ -1,23 +1,24 @@
-//! Visibility of a tile: rasterizes its primitives with a depth test.
+//! The visibility of a tile: rasterises its primitives with a depth test (z-buffer).
 //!
-//! Each sample has an entry in the [visibility buffer](crate::raster::visibility_buffer),
-//! and the depth test keeps the larger entry: the nearer primitive and, at equal depth, the one
-//! with the lower number, which belongs to the older object or is the earlier face. So the order in
-//! which primitives are drawn does not show.
+//! Each sample has an entry in the [visibility buffer](crate::raster::visibility_buffer). The depth
+//! test keeps the larger entry: the nearer primitive and, at equal depth, the one with the lower
+//! number, which belongs to the older object or the earlier face. The result does not depend on the
+//! order of drawing.
 //!
-//! Coverage and depth are computed in one of two ways, chosen by the triangle's size alone: in f32,
-//! in which integers below 2^24 are exact, for bounding boxes up to 8 x 8 pixels; and in integers,
-//! with depths from f64, for all others. Boxes up to 16 x 16 pixels are rasterized sixteen at a
-//! time (`small`), here or when they are set up, all others a block of 8 x 8 pixels at a time: in
+//! Coverage and depth are computed in one of two ways, selected only by the triangle's size: in f32
+//! (exact for integers below 2^24) for bounding boxes up to 8 x 8 pixels; and in integers, with
+//! depths from f64, for all others. Boxes up to 16 x 16 pixels are rasterised sixteen at a time
+//! (`small`), here or during setup. All others are rasterised a block of 8 x 8 pixels at a time: in
 //! 32 bits for boxes up to 64 x 64 pixels (`medium`), else in 64 bits (`large`), with the same
-//! result. So neither tiles nor threads nor instruction sets show in the picture.
+//! result. Tiles, threads and instruction sets are therefore invisible in the picture.
 //!
-//! A block that nothing reaches is never touched. For a block that a single large triangle covers
-//! no depths are computed: only the triangle is noted, until another primitive comes near.
+//! A block without primitives is never touched. If a single large triangle covers a block, only the
+//! triangle is noted, and no depths are computed until another primitive comes near. Bounds of each
+//! block's depths skip hidden triangles early, as in hierarchical Z.
 //!
-//! With four samples per pixel, a block has four planes of entries, one for each sample. A
-//! primitive covers a sample if it covers the centre of the pixel once it is moved by the sample's
-//! offset.
+//! With four samples per pixel, a block has four planes of entries, one per sample. A primitive
+//! covers a sample if it covers the centre of the pixel after the primitive is moved by the
+//! sample's offset.
 
 use crate::simd::dispatch;
 use fearless_simd::{Level, Simd};
@@ -46,13 +47,13 @@ use marraztu_core::accuracy::{Coverage, DepthFormat};
 #[derive(Debug)]
 pub(crate) struct Visibility {
     buffer: Box<Buffer>,
-    /// For drawing small triangles with four samples per pixel, once that is needed.
+    /// The means to draw small triangles with four samples per pixel, created when first needed.
     small: Option<Box<SmallTriangles>>,
     /// The samples of the pass.
     sample_positions: SamplePositions,
-    /// The blocks whose entries are valid, a bit for each.
+    /// The blocks with valid entries, a bit for each.
     written: u64,
-    /// The blocks that one triangle covers fully, and that have no entries yet.
+    /// The blocks that one triangle covers fully and that have no entries yet.
     whole: u64,
     /// The triangles of those blocks, as indices into `large`.
     shown: [u32; BLOCK_PIXELS],
@@ -60,22 +61,22 @@ pub(crate) struct Visibility {
     large: Vec<Shown>,
     /// The colours of pixels in the blocks of `colored`.
     colors: Box<HitColors>,
-    /// The blocks in which what was drawn last has colours, a bit for each.
+    /// The blocks in which the last drawn primitives have colours, a bit for each.
     colored: u64,
-    /// The colour of pixels that show nothing.
+    /// The colour of pixels without a primitive.
     background: u32,
-    /// The format of the depths.
+    /// The depth format.
     depth_format: DepthFormat,
     /// The grid of corners.
     grid: Grid,
-    /// For each block a lower bound of its depths' keys: all pixels are at least as near.
+    /// A lower bound of each block's depth keys: all pixels are at least as near.
     farthest: [u32; BLOCK_PIXELS],
-    /// For each fully covered block an upper bound of its depths' keys: no pixel is nearer.
+    /// An upper bound of each fully covered block's depth keys: no pixel is nearer.
     nearest: [u32; BLOCK_PIXELS],
     bounds: PixelBox,
 }
 
-/// Entries. Rows of eight begin with a cache line, since those that cross one are read and written
+/// Entries. Rows of eight start at a cache line, because rows that cross one are read and written
 /// twice: 4% of a frame of 70,000 triangles, flat, at 1920 x 1080.
 #[derive(Debug)]
 #[repr(align(64))]
@@ -137,6 +138,7 @@ impl Visibility {
         frame: &ScreenGeometry,
         (tile, conversion): (usize, Option<Conversion<'_>>),
     ) {
+        // Large opaque triangles come first: a block without entries can be noted as fully covered.
         if plan.variants.coverage == Coverage::Exact {
             for bins in frame.bins() {
                 dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, (tile, conversion)));
@@ -145,6 +147,8 @@ impl Visibility {
         if N == FOUR {
             dispatch!(level, simd => self.draw_small(simd, frame.bins(), tile));
         }
+        // Alpha-tested triangles come after large opaque ones, because hidden pixels are not
+        // sampled.
         let mut cutouts = Cutouts::default();
         for bins in frame.bins() {
             dispatch!(level, simd => self.draw_hits::<_, N>(simd, bins, tile));
@@ -175,18 +179,18 @@ impl Visibility {
         self.bounds = bounds;
     }
 
-    /// Whether a block shows anything; `block` counts along rows of blocks.
+    /// Returns whether a block shows anything; `block` counts along rows of blocks.
     pub(crate) const fn shows(&self, block: usize) -> bool {
         (self.written | self.whole) >> block & 1 != 0
     }
 
-    /// Whether no block shows anything.
+    /// Returns whether no block shows anything.
     pub(crate) const fn is_empty(&self) -> bool {
         self.written | self.whole == 0
     }
 
-    /// The triangle that covers a block fully, if there is one; the block's entries are meaningless
-    /// then.
+    /// Returns the triangle that covers a block fully, if there is one. The block's entries are
+    /// meaningless then.
     pub(crate) fn whole(&self, block: usize) -> Option<u32> {
         (self.whole >> block & 1 != 0).then(|| match &self.large[self.shown[block] as usize] {
             Shown::Large(large) => large.number,
@@ -194,17 +198,17 @@ impl Visibility {
         })
     }
 
-    /// The blocks that one triangle covers fully, a bit for each.
+    /// Returns the blocks that one triangle covers fully, a bit for each.
     pub(crate) const fn full_blocks(&self) -> u64 {
         self.whole
     }
 
-    /// The entries of a block that shows something, row by row, with one sample per pixel.
+    /// Returns the entries of a block that shows something, row by row, with one sample per pixel.
     pub(crate) fn block(&self, block: usize) -> &[u64; BLOCK_PIXELS] {
         &self.buffer.0.as_chunks().0[block]
     }
 
-    /// The entries of a block that shows something, with four samples per pixel.
+    /// Returns the entries of a block that shows something, with four samples per pixel.
     pub(crate) fn planes(&self, block: usize) -> &Planes {
         &self.buffer.0.as_chunks().0.as_chunks().0[block]
     }
@@ -215,8 +219,8 @@ impl Visibility {
         &self.buffer.0[block * count..][..count]
     }
 
-    /// Bounds of the depths of all visible triangles: the farthest and the nearest; `None` if no
-    /// triangle is visible.
+    /// Returns the farthest and nearest depth of all visible triangles. `None` if no triangle is
+    /// visible.
     pub(crate) fn depths(&self, level: Level) -> Option<[f32; 2]> {
         let (mut low, mut high) = (u32::MAX, 0);
         for block in (0..BLOCK_PIXELS).filter(|block| self.shows(*block)) {
@@ -230,14 +234,14 @@ impl Visibility {
         (low <= high).then(|| depths_between(self.depth_format, [low, high]))
     }
 
-    /// The upper left pixel of a block.
+    /// Returns the upper left pixel of a block.
     pub(crate) fn corner(&self, block: usize) -> [i32; 2] {
         let at = i32::try_from(block).expect("a tile has few blocks");
         [self.bounds.left + at % BLOCKS * BLOCK, self.bounds.top + at / BLOCKS * BLOCK]
     }
 
-    /// The entry of a pixel of the tile: that of the sample whose primitive most samples show, the
-    /// first of equals.
+    /// Returns the entry of a pixel of the tile. With several samples, it is the entry with the
+    /// primitive shown by most samples, the first one in a tie.
     pub(crate) fn word(&mut self, level: Level, x: i32, y: i32) -> u64 {
         let (samples, count) = self.samples(level, x, y);
         let alike =
@@ -251,7 +255,7 @@ impl Visibility {
         most
     }
 
-    /// The entries of the samples of a pixel of the tile, and their number.
+    /// Returns the entries of the samples of a pixel of the tile, and their number.
     pub(crate) fn samples(&mut self, level: Level, x: i32, y: i32) -> ([u64; FOUR], usize) {
         let count = self.sample_positions.count();
         let (x, y) = (x - self.bounds.left, y - self.bounds.top);
@@ -269,7 +273,8 @@ impl Visibility {
         (samples, count)
     }
 
-    /// The entries of a block for one of its samples; 0 where nothing is opaque.
+    /// Returns the entries of a block for one of its samples; 0 in pixels without an opaque
+    /// primitive.
     pub(crate) fn entries(
         &mut self,
         level: Level,
@@ -288,8 +293,8 @@ impl Visibility {
         }
     }
 
-    /// Ensures that a block has valid entries for `N` samples per pixel, before something is drawn
-    /// into it. Its colours are forgotten.
+    /// Makes the entries of a block valid for `N` samples per pixel, before something is drawn into
+    /// it. Drops the block's colours.
     #[inline(always)]
     fn write<const N: usize>(&mut self, level: Level, block: usize) {
         let bit = 1 << block;
@@ -315,13 +320,13 @@ impl Visibility {
         }
     }
 
-    /// The entries of a block for one of `N` samples.
+    /// Returns the entries of a block for one of `N` samples.
     #[inline(always)]
     fn plane<const N: usize>(&mut self, block: usize, sample: usize) -> &mut [u64; BLOCK_PIXELS] {
         &mut self.buffer.0.as_chunks_mut().0[block * N + sample]
     }
 
-    /// Draws a triangle into a block that it covers fully or in part.
+    /// Draws a triangle into a block that it covers fully or partly.
     #[inline(never)]
     fn draw_planes<const N: usize>(
         &mut self,
@@ -355,18 +360,19 @@ impl Visibility {
         *old = word.max(*old);
     }
 
-    /// The key of a depth.
+    /// Returns the key of a depth.
     #[inline(always)]
     fn key(&self, depth: f32) -> u32 {
         Any(self.depth_format).key(depth)
     }
 
-    /// Draws the lines of a tile that are not short.
+    /// Draws the long lines of a tile.
     #[inline(always)]
     fn draw_lines<const N: usize>(&mut self, level: Level, bins: &Bins, width: i32, tile: usize) {
         with_format!(self.depth_format, D => for &place in &bins.tiles[tile].lines {
             let format = D::of(self.depth_format);
             for sample in 0..N {
+                // The line moves instead of the sample, which keeps the arithmetic exact.
                 let line =
                     bins.lines[place as usize].seen_from(self.sample_positions.shift::<N>(sample));
                 lines::pixels(
@@ -383,7 +389,7 @@ impl Visibility {
         });
     }
 
-    /// Draws the large triangles of a tile that need no alpha test.
+    /// Draws the large triangles of a tile without the alpha test.
     #[inline(always)]
     fn draw_plain<S: Simd, const N: usize>(
         &mut self,
@@ -405,7 +411,7 @@ impl Visibility {
         }
     }
 
-    /// The same, with colours where they are known.
+    /// Draws the same triangles, with colours if they are known.
     #[inline(always)]
     fn paint_plain<S: Simd>(
         &mut self,

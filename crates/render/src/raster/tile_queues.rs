@@ -1,9 +1,9 @@
-//! Small triangles that wait for the tiles that they reach into.
+//! Small triangles that wait for the tiles they reach into.
 //!
-//! With several samples per pixel, hits take more memory than the triangles whose pixels they are:
-//! a triangle of ten pixels has some forty of twelve bytes, which were written when triangles are
-//! set up and read when tiles are drawn, from a far cache. So triangles of more than a few pixels
-//! are sorted by tiles instead, and rasterized when their tile is drawn.
+//! With several samples per pixel, hits take more memory than the triangles themselves. A triangle
+//! of ten pixels has about forty hits of twelve bytes, which would be written during setup and read
+//! from a distant cache when tiles are drawn. Triangles of more than a few pixels are therefore
+//! binned by tile instead, and rasterised when their tile is drawn.
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16};
 
@@ -11,29 +11,29 @@ use super::hits::PACK;
 use super::queue::{Pack, ROWS, SMALL};
 use crate::screen::coverage::PixelBox;
 
-/// The first size of bounding boxes, of those in [`SMALL`], whose triangles wait for tiles. With
-/// the size before it, a model of a million triangles takes 1.1 times as long, and none less.
+/// The first size of bounding boxes in [`SMALL`] that waits for tiles. With the next smaller size,
+/// a model of a million triangles takes 1.1 times as long, and no model gets faster.
 pub(crate) const FIRST_SIZE: usize = 3;
 
 /// The number of sizes.
 pub(super) const SIZES: usize = SMALL.len() - FIRST_SIZE;
 
-/// Triangles of a page.
+/// The number of triangles in a page.
 const PAGE: usize = 64;
 
-/// The page that is never written: it counts as full, and ends every chain.
+/// A sentinel page that is never written: it counts as full, and ends every chain.
 const FULL: u32 = 0;
 
-/// The most tiles that sixteen triangles may reach into to be added tile by tile.
+/// The largest number of tiles for which sixteen triangles are added tile by tile.
 const FEW_TILES: i64 = 6;
 
-/// Some triangles of one tile and size, with room for sixteen more.
+/// A page of triangles of one tile and size, with room for sixteen more.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 struct Page {
     rows: [[i32; PAGE + PACK]; ROWS],
     count: usize,
-    /// The page before it, or [`FULL`].
+    /// The page before this one, or [`FULL`].
     previous: u32,
 }
 
@@ -53,17 +53,17 @@ pub(crate) struct TileBoxes<S: Simd> {
     bottom: i32x16<S>,
 }
 
-/// The triangles that one thread has set up.
+/// The waiting triangles set up by one thread.
 #[derive(Debug)]
 pub(crate) struct TileQueues {
-    /// Whether triangles wait for tiles at all.
+    /// Whether triangles wait for tiles.
     used: bool,
-    /// Columns and rows of tiles.
+    /// The columns and rows of tiles.
     tiles: [i32; 2],
     /// The last page of each tile and size.
     last: Vec<[u32; SIZES]>,
     pages: Vec<Page>,
-    /// How many pages are handed out.
+    /// The number of pages in use.
     handed_out: usize,
 }
 
@@ -75,8 +75,8 @@ impl Default for TileQueues {
 }
 
 impl TileQueues {
-    /// Removes all triangles, for a picture of this many columns and rows of tiles, and says
-    /// whether there will be others.
+    /// Removes all triangles, for a picture of this many columns and rows of tiles. `used` tells
+    /// whether triangles will be added.
     pub(crate) fn clear(&mut self, tiles: [i32; 2], used: bool) {
         (self.tiles, self.used, self.handed_out) = (tiles, used, 1);
         let count = if used { tiles[0] * tiles[1] } else { 0 };
@@ -84,19 +84,19 @@ impl TileQueues {
         self.last.resize(usize::try_from(count).expect("not negative"), [FULL; SIZES]);
     }
 
-    /// Whether triangles wait for tiles.
+    /// Returns whether triangles wait for tiles.
     #[inline(always)]
     pub(crate) const fn are_used(&self) -> bool {
         self.used
     }
 
-    /// Whether a tile has none.
+    /// Returns whether a tile has no waiting triangles.
     pub(crate) fn is_empty(&self, tile: usize) -> bool {
         self.last.get(tile).is_none_or(|last| *last == [FULL; SIZES])
     }
 
-    /// The tiles of sixteen boxes of pixels, which may reach beyond the picture: left, top, right
-    /// and bottom.
+    /// Returns the tiles of sixteen boxes of pixels (left, top, right, bottom), which may reach
+    /// beyond the picture.
     #[inline(always)]
     pub(crate) fn boxes<S: Simd>(
         &self,
@@ -111,7 +111,7 @@ impl TileQueues {
         }
     }
 
-    /// Adds those of sixteen triangles that are in a mask, to every tile that they reach into.
+    /// Adds the triangles of a mask, out of sixteen, to every tile they reach into.
     #[inline(always)]
     pub(crate) fn add<S: Simd>(
         &mut self,
@@ -121,6 +121,7 @@ impl TileQueues {
     ) {
         let all = self.reach(boxes, some);
         let columns = self.tiles[0];
+        // The common case: all sixteen reach into a single tile.
         if (all.width(), all.height()) == (1, 1) {
             return self.add_to((all.top * columns + all.left) as usize, size, pack, some);
         }
@@ -141,7 +142,7 @@ impl TileQueues {
         }
     }
 
-    /// The tiles that some of sixteen triangles reach into.
+    /// Returns the tiles that some of sixteen triangles reach into.
     #[inline(always)]
     fn reach<S: Simd>(&self, boxes: &TileBoxes<S>, some: mask32x16<S>) -> PixelBox {
         let [columns, rows] = self.tiles;
@@ -166,6 +167,7 @@ impl TileQueues {
         let pack = pack.map(<[i32; PACK]>::from);
         let [left, top, right, bottom] =
             [boxes.left, boxes.top, boxes.right, boxes.bottom].map(<[i32; PACK]>::from);
+        // Widely scattered triangles: one at a time, into every tile of its box.
         while some != 0 {
             let lane = some.trailing_zeros() as usize;
             some &= some - 1;
@@ -191,7 +193,7 @@ impl TileQueues {
         page.count = at + some.to_bitmask().count_ones() as usize;
     }
 
-    /// The last page of a tile and size, which has room for sixteen triangles.
+    /// Returns a page of a tile and size with room for sixteen triangles.
     #[inline(always)]
     fn page(&mut self, tile: usize, size: usize) -> &mut Page {
         let page = self.last[tile][size] as usize;
@@ -201,7 +203,7 @@ impl TileQueues {
         &mut self.pages[page]
     }
 
-    /// A new page of a tile and size, with what is too much for the one before.
+    /// Starts a new page of a tile and size with the overflow of the page before.
     #[cold]
     #[inline(never)]
     fn turn(&mut self, tile: usize, size: usize) -> &mut Page {
@@ -214,6 +216,7 @@ impl TileQueues {
         self.handed_out += 1;
         let (before, after) = self.pages.split_at_mut(new);
         let (full, page) = (&mut before[previous as usize], &mut after[0]);
+        // The overflow of the full page moves to the new one.
         for (to, from) in page.rows.iter_mut().zip(&full.rows) {
             to[..PACK].copy_from_slice(&from[PAGE..]);
         }
@@ -222,7 +225,8 @@ impl TileQueues {
         page
     }
 
-    /// Calls `take` with the triangles of a tile and size, sixteen at a time; the last are fewer.
+    /// Calls `take` with the triangles of a tile and size, sixteen at a time; the last pack may be
+    /// shorter.
     #[inline(always)]
     pub(super) fn each<S: Simd>(
         &self,
@@ -266,7 +270,7 @@ mod tests {
             queues.clear([columns, rows], true);
             let mut want = vec![vec![Vec::new(); SIZES]; (columns * rows).cast_unsigned() as usize];
             for first in (0..400).step_by(PACK) {
-                // Near each other, or spread over the picture and beyond it.
+                // Close together, or spread over the picture and beyond.
                 let spread = if round % 2 == 0 { 40 } else { 64 * 6 };
                 let at = [random(64 * columns), random(64 * rows)];
                 let mut boxes = [[0; PACK]; 4];

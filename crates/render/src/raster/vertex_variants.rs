@@ -51,7 +51,7 @@ pub(crate) fn to_pixels(
     }
 }
 
-/// The coordinates of some vertices.
+/// Returns the coordinates of some vertices.
 fn rows(order: &DrawOrder, first: usize, count: usize) -> [&[f32]; 3] {
     [&order.x, &order.y, &order.z].map(|row| &row[first..first + count])
 }
@@ -159,8 +159,8 @@ mod tests {
     use marraztu_core::base::image::Size;
     use marraztu_core::base::math;
 
-    /// The largest error on the screen, in pixels, of vertices 400 in front of a camera that is
-    /// `offset` from the origin.
+    /// Returns the largest error on the screen, in pixels, of vertices 400 in front of a camera
+    /// that is `offset` from the origin.
     fn worst(vertices: VertexArithmetic, offset: f64) -> f64 {
         let size = Size::new(800, 800);
         let clip_from_view = math::perspective(22.5_f64.to_radians(), 1.0, 2000.0, size);
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn vertices_are_as_far_off_as_the_table_of_axes_says() {
-        // What f32 can hold of a place up to 800.
+        // The precision of f32 for a coordinate up to 800.
         assert!(worst(VertexArithmetic::F64, 1e5) < 5e-5);
         let throughout = worst(VertexArithmetic::F32, 1e5);
         assert!((0.01..2.5).contains(&throughout), "{throughout}");

@@ -1,7 +1,7 @@
 //! Transforms the vertices of a mesh to the screen, and fetches them sixteen at a time.
 //!
-//! The loop is plain arithmetic over rows of coordinates, compiled for each instruction set: it
-//! does to eight vertices at once what [`Screen::vertex`] does to one, with the same bits.
+//! The loop is plain arithmetic over rows of coordinates, compiled for each instruction set. It
+//! handles eight vertices at once with the same bits as [`Screen::vertex`].
 
 use crate::simd::dispatch;
 use fearless_simd::{Level, Simd, SimdBase as _, SimdCombine as _, i32x4, i32x16};
@@ -12,22 +12,22 @@ use crate::screen::clip::{Screen, ScreenVertex};
 /// The vertices of a frame on the screen.
 #[derive(Debug, Default)]
 pub(crate) struct Vertices {
-    /// On the usual grid.
+    /// The vertices on the usual grid.
     pub(crate) usual: Vec<ScreenVertex>,
-    /// On a finer grid, if the settings choose one.
+    /// The vertices on a finer grid, if the settings choose one.
     pub(crate) fine: Vec<ScreenVertex>,
-    /// In pixels, before they were snapped, if the rule of coverage needs them.
+    /// The vertices in pixels before snapping, if the rule of coverage needs them.
     pub(crate) unsnapped: Vec<[f32; 2]>,
 }
 
 impl Vertices {
-    /// The corners of triangles: on the finer grid, if there is one.
+    /// Returns the corners of triangles, on the finer grid if there is one.
     pub(crate) fn corners(&self) -> &[ScreenVertex] {
         if self.fine.is_empty() { &self.usual } else { &self.fine }
     }
 }
 
-/// Transforms vertices of a mesh to the screen, from number `first` on.
+/// Transforms vertices of a mesh to the screen, starting at number `first`.
 pub(crate) fn transform(
     level: Level,
     screen: &Screen,
@@ -47,8 +47,8 @@ fn chunk<S: Simd>(_: S, screen: &Screen, [x, y, z]: [&[f32]; 3], out: &mut [Scre
     }
 }
 
-/// Fetches x, y, depth and 1/w of sixteen vertices, by their numbers. A number beyond the last
-/// counts as the last, which saves a check in each lane.
+/// Fetches x, y, depth and 1/w of sixteen vertices by their numbers. A number beyond the last one
+/// counts as the last one, which saves a bounds check per lane.
 #[inline(always)]
 pub(crate) fn fetch_vertices<S: Simd>(
     simd: S,
@@ -76,7 +76,7 @@ pub(crate) fn fetch<S: Simd>(simd: S, row: impl Fn(usize) -> [i32; 4]) -> [i32x1
     [a, b, c, d]
 }
 
-/// Four rows of four numbers, one after another.
+/// Loads four rows of four numbers one after another.
 #[inline(always)]
 fn four<S: Simd>(simd: S, at: usize, row: &impl Fn(usize) -> [i32; 4]) -> i32x16<S> {
     let a = i32x4::from_slice(simd, &row(at));

@@ -10,7 +10,7 @@ use super::lines::LineNumber;
 use crate::screen::sample_positions::FOUR;
 use crate::screen::tiles::BLOCK_PIXELS;
 
-/// The primitive that is visible at a sample.
+/// The primitive visible at a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Visible {
     /// No primitive.
@@ -21,18 +21,17 @@ pub(crate) enum Visible {
     Line(LineNumber),
 }
 
-/// The number of the background, whose entry is 0.
+/// The number of the background, which has the entry 0.
 pub(crate) const BACKGROUND: u32 = u32::MAX;
 
-/// The primitive of an entry.
+/// Returns the primitive of an entry.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
 pub(crate) const fn seen(word: u64) -> Visible {
     seen_number(!(word as u32))
 }
 
-/// The primitive with a number. The background has the number of entry 0, which is not that of any
-/// line.
+/// Returns the primitive with a number. The background's number belongs to no line.
 #[inline(always)]
 pub(crate) const fn seen_number(number: u32) -> Visible {
     match LineNumber::of(number) {
@@ -42,10 +41,10 @@ pub(crate) const fn seen_number(number: u32) -> Visible {
     }
 }
 
-/// The depth test of sixteen entries, those of two rows of a block: writes the ones that a triangle
-/// with these depths covers, where it is in front.
+/// Runs the depth test on two rows of a block: writes the sixteen entries of a triangle with these
+/// depths, in covered pixels that pass the test.
 ///
-/// Entries are compared as f64: their bits are in the order of the numbers, since keys are below
+/// Entries are compared as f64. Their bits are in the order of the numbers, because keys are below
 /// the bits of infinity, and every processor has a maximum of f64.
 #[inline(always)]
 pub(crate) fn put_rows<S: Simd>(
@@ -64,7 +63,7 @@ pub(crate) fn put_rows<S: Simd>(
     }
 }
 
-/// Those among sixteen pixels that a triangle covers and where it is in front, a bit for each. See
+/// Returns a bit mask of the covered pixels, out of sixteen, that pass the depth test. See
 /// [`put_rows`].
 #[inline(always)]
 pub(crate) fn in_front<S: Simd>(
@@ -81,7 +80,7 @@ pub(crate) fn in_front<S: Simd>(
     front(upper, up) | front(lower, down) << 8
 }
 
-/// Entries as f64, where a triangle covers pixels, else 0.
+/// Returns entries as f64 for covered pixels, and 0 for all others.
 #[inline(always)]
 fn entries<S: Simd>(
     format: impl Format,
@@ -100,7 +99,7 @@ fn entries<S: Simd>(
 /// The entries of a block for each of four samples.
 pub(crate) type Planes = [[u64; BLOCK_PIXELS]; FOUR];
 
-/// The keys of the least and of the largest depth of the triangles in the entries of whole blocks.
+/// Returns the smallest and largest key of the triangles in the entries of whole blocks.
 #[inline(always)]
 pub(crate) fn depths_of<S: Simd>(simd: S, visibility: &[u64]) -> [u32; 2] {
     let (none, all) = (u32x16::splat(simd, 0), u32x16::splat(simd, u32::MAX));
@@ -109,7 +108,7 @@ pub(crate) fn depths_of<S: Simd>(simd: S, visibility: &[u64]) -> [u32; 2] {
     for sixteen in halves.chunks_exact(32) {
         let upper = u32x16::from_slice(simd, &sixteen[..16]);
         let (number, key) = upper.deinterleave(u32x16::from_slice(simd, &sixteen[16..]));
-        // The numbers of lines are the upper half of all; the background has the lowest entry.
+        // Lines have the upper half of all numbers; the background has the lowest entry.
         let is_triangle = number.simd_ge(1 << 31);
         low = low.min(is_triangle.select(key, all));
         high = high.max(is_triangle.select(key, none));

@@ -1,9 +1,9 @@
 //! Divides the setup of a frame into pieces of work for threads.
 //!
-//! A piece is a range of vertices, triangles or edges of one draw. They are neighbours, so a piece
-//! has a home tile on the screen: the one that contains its middle element. Pieces are distributed
-//! in the order of their homes, and tiles in the same order, so that each thread mostly draws what
-//! it has set up itself.
+//! A piece is a range of vertices, triangles or edges of one draw. Its elements are neighbours, so
+//! a piece has a home tile on the screen: the tile of its middle element. Pieces are distributed in
+//! the order of their homes, and tiles in the same order, so each thread mostly draws triangles it
+//! has set up.
 
 use crate::accel::Accelerated as _;
 use crate::accel::CLUSTER;
@@ -14,24 +14,23 @@ use crate::work_stealing::WorkStealing;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::NONE;
 
-/// The number of pieces that many vertices, triangles, polygons or edges are divided into: the
-/// smaller they are, the more of them are drawn near their home.
+/// The target number of pieces: smaller pieces are drawn closer to their homes.
 const PIECES: usize = 256;
 
-/// The least and the largest size of a piece.
+/// The smallest and largest size of a piece.
 const LEAST: usize = 4 * CLUSTER;
 const MOST: usize = 32 * CLUSTER;
 
-/// The size of a piece of `count` elements; a multiple of clusters.
+/// Returns the size of a piece of `count` elements: a multiple of clusters.
 pub(crate) fn piece_of(count: usize) -> usize {
     (count / PIECES).next_multiple_of(CLUSTER).clamp(LEAST, MOST)
 }
 
-/// Fewer triangles, polygons or edges than this are set up by one thread: waking the others would
-/// take longer.
+/// The number of triangles, polygons or edges below which a single thread sets them up, because
+/// waking the others takes longer.
 pub(crate) const FEW: usize = 512;
 
-/// The same for vertices, which take a few nanoseconds each.
+/// The same limit for vertices, which take a few nanoseconds each.
 pub(crate) const FEW_VERTICES: usize = 8192;
 
 /// A piece of work.
@@ -41,9 +40,9 @@ pub(crate) struct Work<W> {
     pub(crate) what: W,
     pub(crate) from: usize,
     pub(crate) to: usize,
-    /// The number of pieces that were added before it.
+    /// The index of the piece in the order of adding.
     pub(crate) place: usize,
-    /// The tile that contains its middle element, or is nearest to it.
+    /// The tile that contains the middle element, or is nearest to it.
     home: usize,
 }
 
@@ -52,13 +51,13 @@ pub(crate) struct Work<W> {
 pub(crate) enum What {
     /// Setup of triangles.
     Triangles,
-    /// The outlines of polygons that are one triangle each, in draw order.
+    /// Outlines of polygons that are single triangles, in draw order.
     Facing,
-    /// The outlines of polygons.
+    /// Outlines of polygons.
     FacingOneByOne,
     /// Setup of edges.
     Edges,
-    /// Setup of the normals of polygons.
+    /// Setup of polygon normals.
     Normals,
 }
 
@@ -83,7 +82,7 @@ impl<W: Copy> WorkList<W> {
         self.count = 0;
     }
 
-    /// Adds `count` elements of a draw, whose positions in object space give their homes.
+    /// Adds `count` elements of a draw. Their positions in object space determine their homes.
     pub(crate) fn add(
         &mut self,
         (i, draw): (usize, &Draw),
@@ -102,23 +101,23 @@ impl<W: Copy> WorkList<W> {
         }));
     }
 
-    /// All pieces, in the order of their homes.
+    /// Returns all pieces, in the order of their homes.
     pub(crate) fn sorted(&mut self) -> &[Work<W>] {
         self.pieces.sort_unstable_by_key(|work| work.home);
         &self.pieces
     }
 
-    /// The number of pieces.
+    /// Returns the number of pieces.
     pub(crate) fn len(&self) -> usize {
         self.pieces.len()
     }
 
-    /// The number of threads that are worth waking, if it is not for fewer than `few` elements.
+    /// Returns the number of threads worth waking: one for fewer than `few` elements.
     pub(crate) fn threads(&self, few: usize) -> usize {
         if self.count < few { 1 } else { rayon::current_num_threads() }
     }
 
-    /// Distributes `tiles` tiles, starting each thread where its pieces are at home.
+    /// Distributes `tiles` tiles: each thread starts at the home of its pieces.
     pub(crate) fn shares_of_tiles(&self, tiles: usize) -> WorkStealing {
         let threads = rayon::current_num_threads();
         if self.pieces.len() < 4 * threads {
@@ -132,7 +131,8 @@ impl<W: Copy> WorkList<W> {
 }
 
 impl What {
-    /// The position of element `i` in object space; of normals, that of polygon `i`.
+    /// Returns the position of element `i` in object space; for normals, the position of polygon
+    /// `i`.
     pub(crate) fn position(self, draw: &Draw, i: usize) -> [f64; 3] {
         let mesh = &draw.model.mesh;
         let order = mesh.draw_order();
@@ -151,7 +151,7 @@ impl What {
     }
 }
 
-/// The tile of the picture that contains a position, or is nearest to it.
+/// Returns the tile of the picture that contains a position, or is nearest to it.
 #[expect(clippy::cast_possible_truncation, reason = "held to the picture")]
 fn home(screen: &Screen, size: Size, place: [f64; 3]) -> usize {
     let at = screen.pixels(screen.clip(place));

@@ -1,7 +1,7 @@
-//! What is asked of the last picture: what a pixel shows and why, and which pixels show an item.
+//! Queries the last picture: what a pixel shows and why, and which pixels show an item.
 //!
-//! The last finished picture is asked, even after a frame was cancelled: its geometry is built
-//! again if need be.
+//! Queries refer to the last finished picture, even after a cancelled frame. Its geometry is
+//! rebuilt if necessary.
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -32,16 +32,16 @@ use marraztu_core::scene::ItemId;
 /// The polygon that a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// The object, the camera whose mark it is, or the bulb's light.
+    /// The object, the camera if its mark is shown, or the light if its bulb is shown.
     pub item: ItemId,
-    /// The polygon of its mesh.
+    /// The polygon of the item's mesh.
     pub polygon: u32,
-    /// The depth: 1 at the near plane, 0 at the far one.
+    /// The depth: 1 at the near plane, 0 at the far plane.
     pub depth: f32,
 }
 
 impl Renderer {
-    /// Builds the geometry of the last finished picture again, if another frame was begun since.
+    /// Rebuilds the geometry of the last finished picture if another frame has been started since.
     fn build_again(&mut self) {
         if let (false, Some(plan)) = (self.built, &self.plan) {
             let sample_positions = passes(plan.samples)[0];
@@ -52,8 +52,9 @@ impl Renderer {
         }
     }
 
-    /// What the last picture shows in column `x` of row `y`; `None` for the background. If the
-    /// pixel has several samples, it is what most of the four nearest to its centre show.
+    /// Returns the polygon shown in column `x` of row `y`, or `None` for the background. With
+    /// several samples per pixel, it is the one shown by most of the four samples nearest to the
+    /// centre.
     #[must_use]
     pub fn hit(&mut self, x: usize, y: usize) -> Option<Hit> {
         self.build_again();
@@ -65,6 +66,7 @@ impl Renderer {
         let [x, y] = [x, y].map(|i| i32::try_from(i).expect("inside the picture"));
         let [columns, _] = tiles_of(plan.size);
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
+        // Only this pixel's tile is rasterised again.
         let mut tile_seen = TileLayers::default();
         tile_seen.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
         let mut word = 0;
@@ -78,8 +80,8 @@ impl Renderer {
         Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
     }
 
-    /// What the last picture shows in column `x` of row `y`, and what its colour is made of. A
-    /// pixel of several samples is explained by the light at its centre.
+    /// Returns the contents of the pixel in column `x` of row `y` and the parts of its colour. A
+    /// pixel with several samples is explained by the light at its centre.
     #[must_use]
     pub fn explain(&mut self, x: usize, y: usize) -> Option<PixelColor> {
         self.build_again();
@@ -117,7 +119,7 @@ impl Renderer {
         let mut shown = Vec::new();
         tile_seen.each(level, frame, block_at(x % TILE, y % TILE), |place, nearest, words| {
             if place == at {
-                // Of several samples, what most of them show.
+                // With several samples: the word that most of them show.
                 let one = plan.samples == Samples::One;
                 shown = if one { words.to_vec() } else { vec![nearest] };
             }
@@ -127,15 +129,14 @@ impl Renderer {
         explain(&context, &Asked { at, bounds, depths, words: &shown, bytes: [r, g, b] })
     }
 
-    /// Marks the pixels at which the last picture shows an item, also through transparent ones: a
-    /// flag for each pixel, row by row from the top.
+    /// Marks the pixels that show an item, also through transparent surfaces: a flag for each
+    /// pixel, row by row from the top.
     #[must_use]
     pub fn pixels_of(&mut self, item: ItemId) -> Vec<bool> {
         self.pixels_of_any(&[item])
     }
 
-    /// Marks the pixels at which the last picture shows any of these items, as
-    /// [`Self::pixels_of`].
+    /// Marks the pixels that show any of these items, like [`Self::pixels_of`].
     #[must_use]
     pub fn pixels_of_any(&mut self, items: &[ItemId]) -> Vec<bool> {
         let mut pixels = vec![false; self.seen_size().area()];
@@ -149,8 +150,8 @@ impl Renderer {
         pixels
     }
 
-    /// The item that the last picture shows at each pixel, row by row from the top; nothing if all
-    /// of these items are seen.
+    /// Returns the item shown at each pixel, row by row from the top, or `None` if every one of
+    /// these items is visible.
     pub(crate) fn items_unless_all_seen(
         &mut self,
         mut items: BTreeSet<ItemId>,
@@ -162,6 +163,8 @@ impl Renderer {
                 renderer.seen(plan, word).map(|(draw, _)| plan.draws[draw as usize].item)
             };
             pixels[at] = item(nearest);
+            // Neighbouring pixels mostly show the same item: the set is only searched when it
+            // changes.
             if pixels[at] != last || words.len() > 1 {
                 last = pixels[at];
                 words.iter().filter_map(|word| item(*word)).for_each(|item| {
@@ -182,8 +185,8 @@ impl Renderer {
         }
     }
 
-    /// The primitive that each pixel of the last picture shows, row by row from the top: 0 for the
-    /// background, else a number that is unique to each triangle and line of the scene.
+    /// Returns the primitive shown by each pixel, row by row from the top: 0 for the background,
+    /// else a number that is unique to each triangle and line of the scene.
     #[must_use]
     #[expect(
         clippy::cast_possible_truncation,
@@ -198,13 +201,13 @@ impl Renderer {
         pixels
     }
 
-    /// The size of the last finished picture; 0 x 0 before the first.
+    /// Returns the size of the last finished picture; 0 x 0 before the first.
     fn seen_size(&self) -> Size {
         self.plan.as_ref().map_or(Size::new(0, 0), |plan| plan.size)
     }
 
-    /// Calls `each` with the index of each pixel of the last picture, its nearest word and all that
-    /// it shows, tile by tile, until it breaks. See [`TileLayers::each`].
+    /// Calls `each` with the index of each pixel of the last picture, its nearest word and all of
+    /// its words, tile by tile, until it breaks. See [`TileLayers::each`].
     fn look(
         &mut self,
         mut each: impl FnMut(&Self, &FramePlan, usize, u64, &[u64]) -> ControlFlow<()>,
@@ -215,6 +218,7 @@ impl Renderer {
         let mut tile_seen = TileLayers::default();
         for tile in 0..usize::try_from(columns * rows).expect("not negative") {
             tile_seen.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
+            // Stops early once the caller has its answer.
             for block in 0..BLOCK_PIXELS {
                 let mut flow = ControlFlow::Continue(());
                 tile_seen.each(self.level, &self.frame, block, |at, nearest, words| {
@@ -230,7 +234,7 @@ impl Renderer {
         }
     }
 
-    /// The draw and the polygon that a sample of the visibility buffer names.
+    /// Returns the draw and the polygon named by a sample of the visibility buffer.
     fn seen(&self, plan: &FramePlan, word: u64) -> Option<(u32, u32)> {
         match visibility_buffer::seen(word) {
             Visible::Background => None,

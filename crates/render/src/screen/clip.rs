@@ -1,22 +1,23 @@
-//! From object space to the screen: transform, clip, project and snap.
+//! Transforms vertices from object space to the screen: model-view-projection, clipping, projection
+//! and snapping.
 //!
-//! Placement is composed and applied in f64; clipping is done in homogeneous space, before any
-//! division, against the near and the far plane and a guard band of 2^20 pixels to each side; what
-//! is left is projected and snapped to 1/256 pixel.
+//! The matrix is composed and applied in f64. Clipping is done in homogeneous space, before any
+//! division, against the near and far planes and a guard band of 2^20 pixels to each side. The
+//! clipped polygon is projected and snapped to 1/256 pixel.
 //!
 //! Clipping: Blinn and Newell, "Clipping Using Homogeneous Coordinates", SIGGRAPH 1978; Sutherland
 //! and Hodgman, "Reentrant Polygon Clipping", CACM 1974. A cut is computed from the inner end of
-//! its edge, so that two triangles that share the edge get the same bits.
+//! its edge. Two triangles that share the edge therefore get the same bits.
 
 use glam::{DMat4, DVec3};
 
 use super::coverage::{Grid, SUBPIXELS, Snapped};
 use marraztu_core::base::image::Size;
 
-/// The guard band: the largest distance of coordinates from the picture's centre, in pixels.
+/// The guard band: the largest distance of a coordinate from the picture's centre, in pixels.
 const GUARD: f64 = 1_048_576.0;
 
-/// Added to a number below 2^51, this leaves the nearest integer in the lowest bits.
+/// The rounding constant: a number below 2^51 plus this has its nearest integer in the lowest bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// A vertex on the screen.
@@ -32,41 +33,43 @@ pub(crate) struct ScreenVertex {
 }
 
 impl ScreenVertex {
-    /// In place of x: the vertex is beyond the near plane, the far plane or the guard band.
+    /// A marker in place of x: the vertex is beyond the near plane, the far plane or the guard
+    /// band.
     pub(crate) const BEYOND: i32 = i32::MIN;
 
-    /// Its numbers as stored in memory: x, y, and the bits of the depth and of 1/w.
+    /// Returns the vertex as stored in memory: x, y, and the bits of the depth and of 1/w.
     #[inline(always)]
     pub(crate) const fn row(&self) -> [i32; 4] {
         let (depth, inverse_w) = (self.depth.to_bits(), self.inverse_w.to_bits());
         [self.x, self.y, depth.cast_signed(), inverse_w.cast_signed()]
     }
 
-    /// Whether it is inside the clipping planes; otherwise its position is meaningless.
+    /// Returns whether the vertex is inside the clipping planes. If not, its position is
+    /// meaningless.
     #[inline(always)]
     pub(crate) const fn is_inside(&self) -> bool {
         self.x != Self::BEYOND
     }
 
-    /// A vertex at a position.
+    /// Creates a vertex at a position.
     pub(crate) const fn placed(at: Snapped, depth: f32, inverse_w: f32) -> Self {
         Self { x: at.x, y: at.y, depth, inverse_w }
     }
 
-    /// A vertex at a position, for tests.
+    /// Creates a vertex at a position, for tests.
     #[cfg(test)]
     pub(crate) const fn new(at: Snapped, depth: f32) -> Self {
         Self { x: at.x, y: at.y, depth, inverse_w: 1.0 }
     }
 
-    /// The vertex relative to a sample with this offset in subpixels; it must be
+    /// Returns the vertex relative to a sample with this offset in subpixels. The vertex must be
     /// [inside](Self::is_inside).
     #[inline(always)]
     pub(crate) const fn seen_from(self, [x, y]: [i32; 2]) -> Self {
         Self { x: self.x - x, y: self.y - y, ..self }
     }
 
-    /// Its position in the picture.
+    /// Returns the vertex's position in the picture.
     #[inline(always)]
     pub(crate) const fn at(&self) -> Snapped {
         Snapped { x: self.x, y: self.y }
@@ -84,18 +87,17 @@ pub(crate) struct Screen {
     /// Half of the picture's width and height.
     pub(crate) half: [f64; 2],
     guard: [f64; 2],
-    /// The sample's offset in subpixels, which is subtracted from clipped corners once they are
-    /// snapped.
+    /// The sample's offset in subpixels, subtracted from clipped corners after snapping.
     shift: [i32; 2],
-    /// The parts of a pixel on the grid.
+    /// The number of grid steps per pixel.
     parts: f64,
 }
 
 /// The guard band of the fine grid, in pixels: edge functions stay below 2^62.
 const FINE_GUARD: f64 = 131_072.0;
 
-/// The integer nearest to a number below 2^31, of two the even one: the lowest bits of a sum with
-/// [`ROUND`]. Unlike a conversion, it is done in lanes.
+/// Rounds a number below 2^31 to the nearest integer, ties to even. The result is in the lowest
+/// bits of the sum with [`ROUND`]. Unlike a conversion, this compiles to SIMD code.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lowest bits are the integer")]
 pub(crate) fn snapped(number: f64) -> i32 {
@@ -115,7 +117,7 @@ impl Screen {
         }
     }
 
-    /// The same with corners on this grid.
+    /// Returns the same transform with corners snapped to this grid.
     pub(crate) fn on(self, grid: Grid) -> Self {
         match grid {
             Grid::Usual => self,
@@ -123,32 +125,32 @@ impl Screen {
         }
     }
 
-    /// The same for a sample with this offset in subpixels.
+    /// Returns the same transform for a sample with this offset in subpixels.
     pub(crate) const fn seen_from(self, shift: [i32; 2]) -> Self {
         Self { shift, ..self }
     }
 
-    /// The sample's offset, in pixels.
+    /// Returns the sample's offset, in pixels.
     pub(crate) fn shift_in_pixels(&self) -> [f64; 2] {
         self.shift.map(|by| f64::from(by) / self.parts)
     }
 
-    /// The parts of a pixel on its grid.
+    /// Returns the number of grid steps per pixel.
     pub(crate) const fn parts(&self) -> f64 {
         self.parts
     }
 
-    /// The factors of w at the sides of the guard band.
+    /// Returns the guard band's half width and half height as factors of w.
     pub(crate) const fn guard(&self) -> [f64; 2] {
         self.guard
     }
 
-    /// The same with a guard band of this many pixels.
+    /// Returns the same transform with a guard band of this many pixels around the centre.
     fn guarded(self, pixels: f64) -> Self {
         Self { guard: self.half.map(|half| pixels / half - 1.0), ..self }
     }
 
-    /// The same with a guard band that ends this many pixels beyond the picture.
+    /// Returns the same transform with a guard band that ends this many pixels beyond the picture.
     pub(crate) fn close_to_picture(self, pixels: f64) -> Self {
         Self { guard: self.half.map(|half| 1.0 + pixels / half), ..self }
     }
@@ -163,22 +165,22 @@ impl Screen {
         [row(0), row(1), row(2), row(3)]
     }
 
-    /// Signed distances to the near plane, the far plane and the four sides of the guard band; not
-    /// negative inside.
+    /// Returns the signed distances to the near plane, the far plane and the four sides of the
+    /// guard band. Distances are 0 or positive inside.
     #[inline(always)]
     pub(crate) fn distances(&self, [x, y, z, w]: Clip) -> [f64; 6] {
         let [gx, gy] = self.guard;
         [w - z, z, gx * w + x, gx * w - x, gy * w + y, gy * w - y]
     }
 
-    /// The most that each of these distances changes over a length of 1 in object space.
+    /// Returns the largest change of each distance per unit of length in object space.
     pub(crate) fn slopes(&self) -> [f64; 6] {
         let along = |axis: usize| self.distances(self.rows.map(|row| row[axis]));
         let [x, y, z] = [along(0), along(1), along(2)];
         std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]).length())
     }
 
-    /// Whether a position is inside the clipping planes by more than rounding errors.
+    /// Returns whether a position is inside the clipping planes by more than rounding errors.
     pub(crate) fn holds(&self, clip: Clip) -> bool {
         let least = 1e-9 * clip.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         self.distances(clip).iter().all(|distance| *distance > least)
@@ -188,18 +190,20 @@ impl Screen {
     #[inline(always)]
     pub(crate) fn vertex(&self, clip: Clip) -> ScreenVertex {
         let [a, b, c, d, e, f] = self.distances(clip);
+        // `&` instead of `&&`: six comparisons without a branch compile to SIMD code.
         let inside = (a >= 0.0) & (b >= 0.0) & (c >= 0.0) & (d >= 0.0) & (e >= 0.0) & (f >= 0.0);
         let vertex = self.project(clip);
         ScreenVertex { x: if inside { vertex.x } else { ScreenVertex::BEYOND }, ..vertex }
     }
 
-    /// Projects and snaps a position that is inside, up to rounding.
+    /// Projects and snaps a position that is inside the planes, up to rounding.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
     fn project(&self, [x, y, z, w]: Clip) -> ScreenVertex {
         let inverse_w = 1.0 / w;
         let snap = |pixels: f64| snapped(pixels * self.parts);
         let depth = z * inverse_w;
+        // Rounding can leave a depth just outside 0 to 1. Comparisons also turn NaN into 0.
         let depth = if depth > 0.0 { depth } else { 0.0 };
         let depth = if depth < 1.0 { depth } else { 1.0 };
         ScreenVertex {
@@ -210,14 +214,14 @@ impl Screen {
         }
     }
 
-    /// The position in the picture, in pixels, of a position that is inside.
+    /// Projects a position that is inside the planes to pixels, without snapping.
     #[inline(always)]
     pub(crate) fn pixels(&self, [x, y, _, w]: Clip) -> [f64; 2] {
         let inverse_w = 1.0 / w;
         [(x * inverse_w + 1.0) * self.half[0], (1.0 - y * inverse_w) * self.half[1]]
     }
 
-    /// The same relative to the sample, in f32.
+    /// Projects a position to pixels relative to the sample, in f32.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
     pub(crate) fn pixels_seen(&self, clip: Clip) -> [f32; 2] {
@@ -226,22 +230,25 @@ impl Screen {
         [(x - dx) as f32, (y - dy) as f32]
     }
 
-    /// A corner of a triangle that was clipped.
+    /// Projects a corner of a clipped triangle.
     pub(crate) fn piece(&self, corner: Clip) -> ScreenVertex {
         self.project(corner).seen_from(self.shift)
     }
 
-    /// Clips a triangle: the corners of the convex polygon that is left of it.
+    /// Clips a triangle and returns the corners of the remaining convex polygon.
     pub(crate) fn cut(&self, corners: [Clip; 3]) -> Vec<Clip> {
         let mut polygon = corners.to_vec();
         if !polygon.as_flattened().iter().all(|x| x.is_finite()) {
             return Vec::new();
         }
+        // Sutherland and Hodgman: each plane cuts the polygon that the planes before it left.
         for plane in 0..6 {
             let inner = |corner: &Clip| self.distances(*corner)[plane];
             let mut kept = Vec::with_capacity(polygon.len() + 1);
             for (i, to) in polygon.iter().enumerate() {
                 let from = &polygon[(i + polygon.len() - 1) % polygon.len()];
+                // A crossing is always computed from the inner end, so neighbours get the same
+                // corner.
                 let (df, dt) = (inner(from), inner(to));
                 match (df >= 0.0, dt >= 0.0) {
                     (true, true) => kept.push(*to),
@@ -262,6 +269,7 @@ impl Screen {
         if !ends.as_flattened().iter().all(|x| x.is_finite()) {
             return None;
         }
+        // Each plane moves the end that lies outside; two ends outside leave no line.
         for plane in 0..6 {
             let inner = |end: Clip| self.distances(end)[plane];
             let (da, db) = (inner(a), inner(b));
@@ -281,7 +289,7 @@ fn between(inner: &Clip, outer: &Clip, t: f64) -> Clip {
     std::array::from_fn(|i| inner[i] + (outer[i] - inner[i]) * t)
 }
 
-/// Whether the corners of a triangle of clip space run counter-clockwise for the observer.
+/// Returns whether the corners of a triangle in clip space run counter-clockwise for the observer.
 pub(crate) fn faces_observer(corners: [Clip; 3]) -> bool {
     let [p, q, r] = corners.map(|[x, y, _, w]| DVec3::new(x, y, w));
     p.dot(q.cross(r)) > 0.0

@@ -1,32 +1,32 @@
-//! Decides which pixels a triangle covers, by integer edge functions.
+//! Decides which pixels a triangle covers, with integer edge functions.
 //!
-//! Corners are snapped to 1/256 pixel; everything after that is integer arithmetic, so coverage is
-//! exact, and the same for every arithmetic of light. Triangles that share an edge leave no gap and
-//! cover no pixel twice.
+//! Corners are snapped to 1/256 pixel. All later steps use integer arithmetic: coverage is exact
+//! and the same for every arithmetic of light. Triangles that share an edge leave no gap and cover
+//! no pixel twice.
 //!
-//! The edge functions are those of Pineda, "A Parallel Algorithm for Polygon Rasterization",
-//! SIGGRAPH 1988; the rule for centres on an edge is the top-left rule of Direct3D and Vulkan.
+//! The edge functions: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988.
+//! Centres on an edge follow the top-left rule of Direct3D and Vulkan.
 //!
-//! Coordinates stay within 2^28 (the guard band of 2^20 pixels), so that an edge function stays
-//! below 2^59 and nothing overflows.
+//! Coordinates stay within 2^28 (the guard band of 2^20 pixels). Edge functions therefore stay
+//! below 2^59 and never overflow.
 
 pub use crate::frame::variants::Grid;
 use marraztu_core::base::math::each;
 
-/// Subpixels per pixel, in each direction.
+/// The number of subpixels per pixel, in each direction.
 pub const SUBPIXELS: i32 = Grid::Usual.parts();
 
-/// A snapped point of the picture in subpixels, x to the right and y down.
+/// A snapped point of the picture in subpixels: x to the right, y down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Snapped {
-    /// To the right of the left border.
+    /// The distance from the left border.
     pub x: i32,
-    /// Below the upper border.
+    /// The distance from the upper border.
     pub y: i32,
 }
 
 impl Snapped {
-    /// The point relative to a sample with this shift.
+    /// Returns the point relative to a sample with this shift.
     #[inline(always)]
     #[must_use]
     pub const fn seen_from(self, [x, y]: [i32; 2]) -> Self {
@@ -34,7 +34,7 @@ impl Snapped {
     }
 }
 
-/// A rectangle of pixels: columns `left..right` of rows `top..bottom`; by default none.
+/// A rectangle of pixels: columns `left..right` of rows `top..bottom`. The default is empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PixelBox {
     /// The first column.
@@ -48,22 +48,22 @@ pub struct PixelBox {
 }
 
 impl PixelBox {
-    /// The pixels whose centres lie in the bounding box of three points.
+    /// Returns the box of pixels with a centre in the bounding box of three points.
     #[inline(always)]
     #[must_use]
     pub fn of(corners: [Snapped; 3]) -> Self {
         Self::reached(corners, [[0; 2]; 2])
     }
 
-    /// The pixels with a sample that may lie in the bounding box of three points, if samples lie
-    /// from `least` to `most` off the centre.
+    /// Returns the box of pixels with a sample that may lie in the bounding box of three points.
+    /// Samples are `least` to `most` subpixels from the centre.
     #[inline(always)]
     #[must_use]
     pub fn reached(corners: [Snapped; 3], reach: [[i32; 2]; 2]) -> Self {
         Self::reached_on(Grid::Usual, corners, reach)
     }
 
-    /// The same for points of a grid; samples lie in 1/256 pixel.
+    /// Returns the same box for points on a grid; sample offsets are in 1/256 pixel.
     #[inline(always)]
     #[must_use]
     pub fn reached_on(grid: Grid, [a, b, c]: [Snapped; 3], [least, most]: [[i32; 2]; 2]) -> Self {
@@ -85,7 +85,7 @@ impl PixelBox {
         }
     }
 
-    /// The intersection of both; empty boxes have `left >= right` or `top >= bottom`.
+    /// Returns the intersection of two boxes. Empty boxes have `left >= right` or `top >= bottom`.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
         Self {
@@ -96,26 +96,26 @@ impl PixelBox {
         }
     }
 
-    /// The number of columns, if it is not empty.
+    /// Returns the number of columns, if the box is not empty.
     #[must_use]
     pub const fn width(self) -> i32 {
         self.right - self.left
     }
 
-    /// The number of rows, if it is not empty.
+    /// Returns the number of rows, if the box is not empty.
     #[must_use]
     pub const fn height(self) -> i32 {
         self.bottom - self.top
     }
 
-    /// Whether it holds no pixel.
+    /// Returns whether the box holds no pixel.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.left >= self.right || self.top >= self.bottom
     }
 }
 
-/// An edge function: the line from one corner to the next, not negative inside.
+/// An edge function: the line from one corner to the next, 0 or positive inside.
 ///
 ///   e(x, y) = a x + b y + c,   a = p.y - q.y,   b = q.x - p.x,   c = p.x q.y - p.y q.x
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,9 +133,9 @@ impl Edge {
         Self { a: py - qy, b: qx - px, c: px * qy - py * qx }
     }
 
-    /// The top-left rule: 0 if a centre on the edge is covered, which holds for a top edge (level,
-    /// with the triangle below) and for a left one (going up); else -1, which moves no other centre
-    /// across, since e is an integer.
+    /// Returns the bias of the top-left rule: 0 if a centre on the edge is covered, else -1.
+    /// Centres on a top edge (level, with the triangle below) and on a left edge (going up) are
+    /// covered. Since e is an integer, a bias of -1 moves no other centre across.
     #[inline(always)]
     fn bias(self) -> i64 {
         if self.a > 0 || (self.a == 0 && self.b > 0) { 0 } else { -1 }
@@ -150,8 +150,8 @@ impl Edge {
 /// A triangle with area, set up to decide which pixels it covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Triangle {
-    /// `edges[i]` is opposite to corner i, and its value is twice the area of the part of the
-    /// triangle that lies between it and a point.
+    /// The edge functions. `edges[i]` is opposite to corner i; its value at a point is twice the
+    /// area of the triangle between the edge and the point.
     edges: [Edge; 3],
     doubled_area: i64,
     bounds: PixelBox,
@@ -161,24 +161,24 @@ pub struct Triangle {
 /// A covered pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Covered {
-    /// Its column.
+    /// The column.
     pub x: i32,
-    /// Its row.
+    /// The row.
     pub y: i32,
-    /// The edge functions at its centre: divided by [`Triangle::doubled_area`] they are its
-    /// barycentric coordinates, in the order in which the corners were given.
+    /// The edge functions at the pixel's centre. Divided by [`Triangle::doubled_area`] they are the
+    /// barycentric coordinates, in the order of the given corners.
     pub edges: [i64; 3],
 }
 
 impl Triangle {
-    /// Sets up a triangle of either winding; `None` if it has no area.
+    /// Sets up a triangle of either winding. Returns `None` if it has no area.
     #[must_use]
     #[inline(always)]
     pub fn new(corners: [Snapped; 3]) -> Option<Self> {
         Self::on(Grid::Usual, corners)
     }
 
-    /// The same for corners on a grid.
+    /// Sets up a triangle with corners on this grid.
     #[must_use]
     #[inline(always)]
     pub fn on(grid: Grid, [p, q, r]: [Snapped; 3]) -> Option<Self> {
@@ -186,7 +186,7 @@ impl Triangle {
         if doubled_area == 0 {
             return None;
         }
-        // Clockwise on the screen (y down) is positive; the other winding has its edges turned.
+        // Clockwise on the screen (y down) is positive. The other winding gets reversed edges.
         let edges = if doubled_area > 0 {
             [Edge::new(q, r), Edge::new(r, p), Edge::new(p, q)]
         } else {
@@ -196,19 +196,20 @@ impl Triangle {
         Some(Self { edges, doubled_area: doubled_area.abs(), bounds, grid })
     }
 
-    /// Twice the area, in square parts of a pixel: more than 0.
+    /// Returns twice the area, in squared grid steps: more than 0.
     #[must_use]
     pub const fn doubled_area(&self) -> i64 {
         self.doubled_area
     }
 
-    /// The pixels whose centres lie in the triangle's bounding box.
+    /// Returns the box of pixels with a centre in the triangle's bounding box.
     #[must_use]
     pub const fn bounds(&self) -> PixelBox {
         self.bounds
     }
 
-    /// The edge functions at the centre of a pixel, in the order of the corners opposite to them.
+    /// Evaluates the edge functions at the centre of a pixel, in the order of their opposite
+    /// corners.
     #[must_use]
     #[inline(always)]
     pub fn edges_at(&self, x: i32, y: i32) -> [i64; 3] {
@@ -216,7 +217,7 @@ impl Triangle {
         each(self.edges, |edge| edge.at(cx, cy))
     }
 
-    /// The steps of the edge functions by a pixel to the right, and by one down.
+    /// Returns the steps of the edge functions for one pixel to the right and one pixel down.
     #[inline(always)]
     #[must_use]
     pub fn steps(&self) -> [[i64; 3]; 2] {
@@ -225,7 +226,7 @@ impl Triangle {
         [[p.a * step, q.a * step, r.a * step], [p.b * step, q.b * step, r.b * step]]
     }
 
-    /// The least values of the edge functions at covered centres.
+    /// Returns the smallest values of the edge functions at covered centres.
     #[inline(always)]
     #[must_use]
     pub fn least(&self) -> [i64; 3] {
@@ -233,19 +234,20 @@ impl Triangle {
         [-p.bias(), -q.bias(), -r.bias()]
     }
 
-    /// The centre of column or row `i`.
+    /// Returns the centre of column or row `i`, in grid steps.
     #[inline(always)]
     fn centre(&self, i: i32) -> i64 {
         let parts = i64::from(self.grid.parts());
         i64::from(i) * parts + parts / 2
     }
 
-    /// Calls `cover` with every pixel inside `clip` that the triangle covers, row by row.
+    /// Calls `cover` for every pixel of `clip` that the triangle covers, row by row.
     #[inline(always)]
     pub fn covered(&self, clip: PixelBox, mut cover: impl FnMut(Covered)) {
         let area = self.bounds.intersection(clip);
         let step = i64::from(self.grid.parts());
         for y in area.top..area.bottom {
+            // Edge functions are linear: one evaluation per row, then one addition per pixel.
             let mut edges = self.edges_at(area.left, y);
             for x in area.left..area.right {
                 let inside = |i: usize| edges[i] + self.edges[i].bias() >= 0;
@@ -260,7 +262,7 @@ impl Triangle {
     }
 }
 
-/// Twice the signed area: positive if the corners run clockwise on the screen, negative if they run
+/// Returns twice the signed area: positive if the corners run clockwise on the screen, negative if
 /// counter-clockwise.
 #[must_use]
 #[inline(always)]
@@ -271,12 +273,13 @@ pub fn doubled_area([p, q, r]: [Snapped; 3]) -> i64 {
     (qx - px) * (ry - py) - (qy - py) * (rx - px)
 }
 
-/// The largest doubled area, in square subpixels, whose edge functions fit 31 bits at every pixel
-/// of the triangle, and the longest side whose products fit.
+/// The limits of 32-bit edge functions: the largest doubled area, in square subpixels, at which
+/// edge functions fit 31 bits at every pixel of the triangle, and the longest side at which
+/// products fit.
 pub(crate) const NARROW_AREA: f32 = (1 << 30) as f32;
 pub(crate) const NARROW_SIDE: i32 = 1 << 20;
 
-/// Whether a triangle exceeds one of them.
+/// Returns whether a triangle exceeds one of these limits.
 #[expect(clippy::cast_precision_loss, reason = "as it is found for sixteen triangles at a time")]
 pub(crate) fn is_wide([p, q, r]: [Snapped; 3]) -> bool {
     let (ux, uy, vx, vy) = (q.x - p.x, q.y - p.y, r.x - p.x, r.y - p.y);

@@ -1,10 +1,10 @@
-//! From clip space to the pixels that a triangle covers: clipping, snapping, coverage.
+//! Turns clip space into covered pixels: clipping, snapping, coverage.
 //!
-//! `clip` clips triangles to what the fixed-point grid can hold, divides by w and snaps;
-//! [`coverage`] decides with integer edge functions which pixels a triangle covers;
-//! `sample_positions` holds the positions of samples in a pixel; `tiles` divides the picture.
-//! `weights` and `spans` compute barycentric coordinates, one pixel at a time; `perspective` makes
-//! weights of corners from them, for many pixels.
+//! `clip` clips triangles to the range of the fixed-point grid, divides by w and snaps.
+//! [`coverage`] decides with integer edge functions which pixels a triangle covers.
+//! `sample_positions` holds the positions of samples in a pixel, and `tiles` the layout of tiles.
+//! `weights` and `spans` compute barycentric coordinates one pixel at a time; `perspective` turns
+//! them into perspective-correct weights for many pixels at once.
 
 pub(crate) mod clip;
 pub mod coverage;

@@ -1,5 +1,5 @@
-//! From barycentric coordinates that are linear on the screen to the weights of corners, and to
-//! what they mix.
+//! Turns barycentric coordinates that are linear on the screen into perspective-correct weights,
+//! and interpolates attributes with them.
 //!
 //! Perspective: Heckbert and Moreton, "Interpolation for Polygon Texture Mapping and Shading",
 //! 1991.
@@ -7,14 +7,13 @@
 use crate::simd::{Lanes, Real, Vec3};
 use marraztu_core::accuracy::Interpolation;
 
-/// The weights of the second and the third corner, and w, from coordinates that are linear on the
-/// screen. With perspective:
+/// Computes the weights of the second and third corner, and w, from coordinates l that are linear
+/// on the screen. With perspective:
 ///
-///   m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; and 1 / the sum, which is the
-///   pixel's own w.
+///   m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; 1 / the sum is the pixel's w.
 ///
-/// Affine weights are the coordinates themselves. The distance is exact nevertheless: what is lit,
-/// is lit where it is. Spans of sixteen pixels begin with perspective.
+/// Affine weights are the coordinates themselves. Even then w is exact, because light is computed
+/// at the true position. Spans of sixteen pixels start with perspective.
 #[inline(always)]
 pub(crate) fn weighed<M: Lanes>(
     interpolation: Interpolation,
@@ -31,7 +30,7 @@ pub(crate) fn weighed<M: Lanes>(
     }
 }
 
-/// The attribute of the first corner, plus the weighted differences of the others from it.
+/// Interpolates an attribute: the first corner's value plus weighted differences to the others.
 #[inline(always)]
 pub(crate) fn between<R: Real>([a, b, c]: [Vec3<R>; 3], [second, third]: [R; 2]) -> Vec3<R> {
     a.plus(b.times(second)).plus(c.times(third))

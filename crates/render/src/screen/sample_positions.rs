@@ -1,37 +1,37 @@
 //! The positions of samples in a pixel.
 //!
-//! A sample is the centre of its pixel moved by whole subpixels, so it shows what the centre would
-//! show if all corners were moved the other way: everything that is exact with one sample is exact
-//! with many. Samples are drawn four at a time, each four around the centre; sixteen and sixty-four
-//! samples take four and sixteen passes, whose colours are added.
+//! A sample is the pixel's centre moved by whole subpixels. It shows what the centre would show if
+//! all corners were moved the opposite way, so everything that is exact with one sample is exact
+//! with several. Samples are drawn four at a time, each group of four around the centre. Sixteen
+//! and sixty-four samples take four and sixteen passes, and the MSAA resolve adds their colours.
 //!
 //! Four and sixteen samples are at Vulkan's "Standard sample locations", multiples of 1/16 pixel;
 //! sixty-four are on a grid of 8 x 8.
 
 use marraztu_core::accuracy::Samples;
 
-/// The samples of a pass, if it has more than the centre.
+/// The number of samples in a pass, unless the centre is the only sample.
 pub(crate) const FOUR: usize = 4;
 
 /// The share of a fragment that all samples of a pass show.
 pub(crate) const ALL: i32 = 4;
 
-/// The samples of one pass in every pixel.
+/// The positions of one pass's samples in every pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct SamplePositions {
     /// Offsets from the centre, in subpixels; all 0 if the centre is the only sample.
     shifts: [[i32; 2]; FOUR],
-    /// The least and the largest offset on each axis.
+    /// The smallest and largest offset on each axis.
     least: [i32; 2],
     most: [i32; 2],
     many: bool,
 }
 
 impl SamplePositions {
-    /// The centre alone.
+    /// A single sample at the centre.
     const MIDDLE: Self = Self { shifts: [[0; 2]; FOUR], least: [0; 2], most: [0; 2], many: false };
 
-    /// Four samples, in sixteenths of a pixel from the upper left corner.
+    /// Creates four samples, given in sixteenths of a pixel from the upper left corner.
     const fn new(sixteenths: [[i32; 2]; FOUR]) -> Self {
         let mut positions = Self { least: [128; 2], most: [-128; 2], many: true, ..Self::MIDDLE };
         let mut i = 0;
@@ -50,30 +50,30 @@ impl SamplePositions {
         positions
     }
 
-    /// The number of samples: [`FOUR`], or one.
+    /// Returns the number of samples: [`FOUR`], or one.
     pub(crate) const fn count(&self) -> usize {
         if self.many { FOUR } else { 1 }
     }
 
-    /// Whether there are four of them.
+    /// Returns whether the pass has four samples.
     pub(crate) const fn are_many(&self) -> bool {
         self.many
     }
 
-    /// The offset of sample `i` of `N` from the centre, in subpixels.
+    /// Returns the offset of sample `i` of `N` from the centre, in subpixels.
     #[inline(always)]
     pub(crate) const fn shift<const N: usize>(&self, i: usize) -> [i32; 2] {
         if N == 1 { [0; 2] } else { self.shifts[i % FOUR] }
     }
 
-    /// The least and the largest offsets.
+    /// Returns the smallest and largest offset on each axis.
     #[inline(always)]
     pub(crate) const fn reach<const N: usize>(&self) -> [[i32; 2]; 2] {
         if N == 1 { [[0; 2]; 2] } else { [self.least, self.most] }
     }
 }
 
-/// The passes that draw this number of samples per pixel.
+/// Returns the passes that draw this number of samples per pixel.
 pub(crate) const fn passes(samples: Samples) -> &'static [SamplePositions] {
     match samples {
         Samples::One => &[SamplePositions::MIDDLE],
@@ -83,7 +83,7 @@ pub(crate) const fn passes(samples: Samples) -> &'static [SamplePositions] {
     }
 }
 
-/// The offset of each sample from the centre of its pixel, in subpixels.
+/// Returns the offset of each sample from the centre of its pixel, in subpixels.
 pub(crate) fn shifts(samples: Samples) -> impl ExactSizeIterator<Item = [i32; 2]> {
     let passes = passes(samples);
     let count = passes[0].count();
@@ -92,7 +92,7 @@ pub(crate) fn shifts(samples: Samples) -> impl ExactSizeIterator<Item = [i32; 2]
 
 const QUARTERS: [SamplePositions; 1] = [SamplePositions::new([[6, 2], [14, 6], [2, 10], [10, 14]])];
 
-/// Vulkan's sixteen, in an order in which each four lie around the centre, the nearest first.
+/// Vulkan's sixteen positions, in groups of four around the centre, the nearest first.
 const SIXTEEN: [SamplePositions; 4] = [
     SamplePositions::new([[9, 9], [7, 5], [5, 10], [12, 7]]),
     SamplePositions::new([[3, 6], [10, 13], [2, 12], [11, 3]]),
@@ -100,8 +100,8 @@ const SIXTEEN: [SamplePositions; 4] = [
     SamplePositions::new([[0, 8], [15, 4], [14, 15], [1, 0]]),
 ];
 
-/// Each position in the grid's upper left quarter and its rotations by quarter turns; the nearest
-/// first.
+/// A grid of 8 x 8: each position in the upper left quarter with its rotations by quarter turns,
+/// the nearest first.
 const SIXTY_FOUR: [SamplePositions; 16] = {
     let mut passes = [SamplePositions::MIDDLE; 16];
     let mut i = 0;

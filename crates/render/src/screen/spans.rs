@@ -1,12 +1,13 @@
-//! Interpolation with perspective at every sixteenth pixel alone.
+//! Interpolates with perspective at every sixteenth pixel only.
 //!
-//! A division per pixel was too slow for games of 1996, so a row of a triangle was divided into
-//! spans of sixteen pixels from its left end, the last one shorter, with perspective at their ends
-//! and linear interpolation between. Abrash, "Graphics Programming Black Book", 1997, chapter 70.
+//! A division per pixel was too slow for games of 1996. They divided each row of a triangle into
+//! spans of sixteen pixels from its left end, the last one shorter, with perspective at the ends of
+//! a span and linear interpolation between. Abrash, "Graphics Programming Black Book", 1997,
+//! chapter 70.
 
 use super::coverage::{Grid, Snapped, doubled_area};
 
-/// Pixels of a span.
+/// The number of pixels in a span.
 const PIECE: i64 = 16;
 
 /// The weights of a triangle's second and third corner.
@@ -15,7 +16,7 @@ type Weights = [f64; 2];
 /// A row of pixels in a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
-    /// The columns of the first and the last pixel whose centres are inside.
+    /// The columns of the first and last pixel with a centre inside.
     first: i64,
     last: i64,
     /// The linear weights at column 0, and their steps to the right.
@@ -25,7 +26,7 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// Row `y` of a triangle, whose corners have these 1/w.
+    /// Sets up row `y` of a triangle with these corners and their 1/w.
     #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
     pub(crate) fn new(corners: [Snapped; 3], by_w: [f64; 3], y: i32, grid: Grid) -> Self {
         let parts = i64::from(grid.parts());
@@ -47,6 +48,7 @@ impl Row {
                 1.. => first = first.max(-(b.div_euclid(a))),
                 _ => last = last.min(b.div_euclid(-a)),
             }
+            // The signed edge value over the area is the barycentric coordinate.
             let area = (sign * area) as f64;
             (at_start[i], step[i]) = (b as f64 / area, a as f64 / area);
         }
@@ -54,7 +56,7 @@ impl Row {
         Self { first, last, at_start, step, by_w }
     }
 
-    /// The span of a pixel; `None` if it is a single pixel, or not inside the triangle.
+    /// Returns the span of a pixel. `None` if the row is a single pixel or the pixel is outside.
     #[expect(clippy::cast_precision_loss, reason = "columns are small numbers")]
     pub(crate) fn span(&self, x: i32) -> Option<Span> {
         let (Self { first, last, .. }, x) = (*self, i64::from(x));
@@ -71,12 +73,12 @@ impl Row {
         Some(Span { from, to, start, step })
     }
 
-    /// The weights at a column, whether it has a span or not.
+    /// Returns the weights at a column, with or without a span.
     pub(crate) fn at(&self, x: i32) -> Weights {
         self.span(x).map_or_else(|| self.weights(f64::from(x)), |span| span.at(x))
     }
 
-    /// The perspective-correct weights at a column.
+    /// Computes the perspective-correct weights at a column.
     fn weights(&self, x: f64) -> Weights {
         let [second, third] = [0, 1].map(|i| self.at_start[i] + x * self.step[i]);
         let [w0, w1, w2] = self.by_w;
@@ -95,14 +97,14 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    /// Whether a column belongs to it.
+    /// Returns whether a column belongs to the span.
     #[inline(always)]
     pub(crate) fn holds(&self, x: i32) -> bool {
         let x = i64::from(x);
         self.from <= x && x < self.to
     }
 
-    /// The weights at a column.
+    /// Interpolates the weights at a column.
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "columns are small numbers")]
     pub(crate) fn at(&self, x: i32) -> Weights {
@@ -121,8 +123,8 @@ mod tests {
         Snapped { x: x * 256, y: y * 256 }
     }
 
-    /// The largest error of linear interpolation between two ends whose distances have the ratio r,
-    /// relative to the length between them: (sqrt r - 1) / (sqrt r + 1).
+    /// Returns the largest error of linear interpolation between two ends with distances in the
+    /// ratio r, relative to the length between them: (sqrt r - 1) / (sqrt r + 1).
     fn most(ratio: f64) -> f64 {
         (ratio.sqrt() - 1.0) / (ratio.sqrt() + 1.0)
     }

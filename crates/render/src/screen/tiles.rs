@@ -7,39 +7,39 @@ use fearless_simd::{Simd, i32x16};
 
 use marraztu_core::base::image::Size;
 
-/// Pixels to a side of a tile.
+/// The pixels along a side of a tile.
 pub(crate) const TILE_SIDE: usize = 64;
-/// The same, in the type of coordinates.
+/// The tile side in the type of coordinates.
 pub(crate) const TILE: i32 = 64;
-/// Pixels to a side of a block.
+/// The pixels along a side of a block.
 pub(crate) const BLOCK: i32 = 8;
-/// Pixels of a block.
+/// The pixels in a block.
 pub(crate) const BLOCK_PIXELS: usize = 64;
-/// Blocks in a row of a tile.
+/// The blocks in a row of a tile.
 pub(crate) const BLOCKS: i32 = TILE / BLOCK;
-/// Pixels of a tile.
+/// The pixels in a tile.
 pub(crate) const PIXELS: usize = TILE_SIDE * TILE_SIDE;
 
-/// The number of columns and rows of tiles.
+/// Returns the number of columns and rows of tiles.
 pub(crate) fn tiles_of(size: Size) -> [i32; 2] {
     [size.width, size.height].map(|pixels| {
         i32::try_from(pixels.div_ceil(TILE_SIDE)).expect("pictures have 32-bit sizes")
     })
 }
 
-/// The block of a pixel, by column and row of the tile.
+/// Returns the block of a pixel, given by its column and row in the tile.
 #[inline(always)]
 pub(crate) const fn block_at(x: i32, y: i32) -> usize {
     (y / BLOCK * BLOCKS + x / BLOCK) as usize
 }
 
-/// The index of a pixel in its block.
+/// Returns the index of a pixel in its block.
 #[inline(always)]
 pub(crate) const fn within(x: i32, y: i32) -> usize {
     (y % BLOCK * BLOCK + x % BLOCK) as usize
 }
 
-/// The indices of sixteen pixels in the visibility buffer of a tile, for one of `N` samples.
+/// Computes the indices of sixteen pixels in a tile's visibility buffer, for one of `N` samples.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 pub(crate) fn lanes_place<S: Simd, const N: usize>(

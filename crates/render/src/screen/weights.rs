@@ -1,5 +1,5 @@
-//! Perspective-correct weights of single pixels in one triangle, in f64: for the alpha test, and
-//! for clipped triangles.
+//! Perspective-correct weights of single pixels in one triangle, in f64: for the alpha test and for
+//! clipped triangles.
 
 use crate::accel::Accelerated as _;
 use fearless_simd::{Select as _, Simd, SimdBase as _, f64x8};
@@ -13,8 +13,8 @@ use crate::frame::draw::Draw;
 use marraztu_core::accuracy::Interpolation;
 use marraztu_core::base::math::each;
 
-/// The perspective-correct weights of a triangle's corners at pixels, in f64, `shift` subpixels
-/// from their centres.
+/// Perspective-correct weights of a triangle's corners at pixels, in f64, `shift` subpixels from
+/// pixel centres.
 #[derive(Debug)]
 pub(crate) struct Weights {
     method: Method,
@@ -23,11 +23,11 @@ pub(crate) struct Weights {
 /// The method that computes the weights.
 #[derive(Debug)]
 enum Method {
-    /// The triangle is clipped.
+    /// Homogeneous coordinates, for a clipped triangle.
     Cut(HomogeneousWeights),
-    /// In spans of sixteen pixels, from its corners and 1/w of each.
+    /// Spans of sixteen pixels, from the corners and their 1/w.
     Spans([Snapped; 3], [f64; 3], Grid),
-    /// From edge functions, if it has an area, and w of each corner; 1 if there is no perspective.
+    /// Edge functions, if the triangle has an area, and w of each corner (1 without perspective).
     Edges(Option<Triangle>, DVec3),
 }
 
@@ -44,6 +44,7 @@ impl Weights {
         let own = each(ids, |vertex| vertices[vertex as usize]);
         let screen = Screen::new(draw.clip_from_object, plan.size);
         let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
+        // Clipped triangles have corners without a screen position.
         let method = if !own.iter().all(ScreenVertex::is_inside) {
             Method::Cut(HomogeneousWeights::new(plan, draw, number, shift))
         } else {
@@ -60,12 +61,12 @@ impl Weights {
         Self { method }
     }
 
-    /// Whether they follow from edge functions alone.
+    /// Returns whether the weights follow from edge functions alone.
     pub(crate) const fn follow_from_edges(&self) -> bool {
         matches!(self.method, Method::Edges(Some(_), _))
     }
 
-    /// The weights at a pixel.
+    /// Computes the weights at a pixel.
     #[inline(always)]
     pub(crate) fn at(&self, pixel: [i32; 2]) -> DVec3 {
         match &self.method {
@@ -90,11 +91,12 @@ impl Weights {
 }
 
 impl Weights {
-    /// The weights at a pixel that need not be in the triangle: of the point of its plane that is
-    /// seen there. `None` if no such point is in front of the observer, or it is very far away.
+    /// Computes the weights at a pixel that need not be in the triangle, for the point of the
+    /// triangle's plane seen through it. `None` if that point is behind the observer or very far
+    /// away.
     ///
-    /// If there are weights at the corners of a rectangle, those in it lie between them, since a
-    /// projection keeps lines and what is between.
+    /// If all four corners of a rectangle have weights, the weights inside lie between them,
+    /// because a projection maps lines to lines and keeps the order of points on them.
     #[inline(always)]
     pub(crate) fn projected(&self, pixel: [i32; 2]) -> Option<DVec3> {
         match &self.method {
@@ -109,8 +111,9 @@ impl Weights {
         }
     }
 
-    /// The weights of the second and the third corner at eight pixels of a row, from its first on,
-    /// to a few last places; `edges` are the edge functions of both there. `None` for spans.
+    /// Computes the weights of the second and third corner at eight pixels of a row, starting at
+    /// `first`, accurate to a few units in the last place. The array holds the edge functions of
+    /// both corners there. `None` for spans.
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
     pub(crate) fn of_row<S: Simd>(
@@ -125,6 +128,7 @@ impl Weights {
             Method::Edges(triangle, w) => {
                 let area = triangle.as_ref()?.doubled_area() as f64;
                 let by_w = [1.0 / w.x, 1.0 / w.y, 1.0 / w.z];
+                // The three edge functions add up to the doubled area.
                 let rest = f64x8::splat(simd, area) - second - third;
                 let (second, third) = (second * by_w[1], third * by_w[2]);
                 let per = f64x8::splat(simd, 1.0) / (rest * by_w[0] + second + third);
@@ -134,10 +138,10 @@ impl Weights {
     }
 }
 
-/// How much farther away than the farthest corner points are very far, inverted.
+/// The limit for very distant points: the farthest corner's distance over the point's.
 const FAR: f64 = 1e-3;
 
-/// The second and third barycentric coordinate of a pixel, linear on the screen.
+/// Computes the second and third barycentric coordinate of a pixel, linear on the screen.
 #[inline(always)]
 #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
 pub(crate) fn barycentric(triangle: &Triangle, [x, y]: [i32; 2]) -> [f64; 2] {
@@ -146,14 +150,14 @@ pub(crate) fn barycentric(triangle: &Triangle, [x, y]: [i32; 2]) -> [f64; 2] {
     [second as f64 * per_area, third as f64 * per_area]
 }
 
-/// The perspective-correct weights of a triangle's corners at any pixel, in f64 and from its
-/// corners in clip space: for clipped triangles, and wherever f32 is not enough.
+/// Perspective-correct weights of a triangle's corners at any pixel, in f64, from the corners in
+/// clip space: for clipped triangles, and wherever f32 is not accurate enough.
 ///
 ///   N0 = (q x r) . s / (p . (q x r)), N1 and N2 alike, for corners p, q, r and the position s,
 ///   each as (x, y, w)
 ///
-/// Their sum is 1 / w of the position, and each divided by the sum is the weight of a corner.
-/// Weights are clamped to the triangle, and their sum is 1.
+/// The sum of the three is 1 / w of the position. Each divided by the sum is the weight of a
+/// corner. Weights are clamped to the triangle, and their sum is 1.
 ///
 /// Olano and Greer, "Triangle Scan Conversion Using 2D Homogeneous Coordinates", 1997.
 #[derive(Clone, Copy, Debug)]
@@ -165,7 +169,7 @@ pub(crate) struct HomogeneousWeights {
 }
 
 impl HomogeneousWeights {
-    /// Those of a triangle, `shift` subpixels from the centres of pixels.
+    /// Sets up a triangle, `shift` subpixels from pixel centres.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     pub(crate) fn new(plan: &FramePlan, draw: &Draw, number: u32, shift: [i32; 2]) -> Self {
         let screen = Screen::new(draw.clip_from_object, plan.size);
@@ -175,6 +179,7 @@ impl HomogeneousWeights {
             let [x, y, _, w] = screen.clip(order.position(vertex));
             DVec3::new(x, y, w)
         });
+        // The triple product normalises the weights; a triangle without volume keeps scale 1.
         let normals = [q.cross(r), r.cross(p), p.cross(q)];
         let volume = p.dot(normals[0]);
         let scale = if volume == 0.0 { 1.0 } else { 1.0 / volume };
@@ -183,6 +188,7 @@ impl HomogeneousWeights {
             |axis: usize| 0.5 + f64::from(shift[axis] + plan.shift[axis]) / f64::from(SUBPIXELS);
         // The position of the first pixel, from -1 to 1.
         let (x, y) = (centre(0) * right - 1.0, centre(1) * down + 1.0);
+        // Folds the step per pixel and the first position in: N is then linear in column and row.
         let planes = each(normals, |n| {
             let n = n * scale;
             [n.x * right, n.y * down, n.x * x + n.y * y + n.z]
@@ -190,13 +196,13 @@ impl HomogeneousWeights {
         Self { planes, w: [p.z, q.z, r.z] }
     }
 
-    /// The steps of N0, N1 and N2 by a pixel to the right and by one down.
+    /// Returns the steps of N0, N1 and N2 for one pixel to the right and one pixel down.
     pub(crate) fn steps(&self) -> [[f64; 3]; 2] {
         let [p, q, r] = self.planes;
         [[p[0], q[0], r[0]], [p[1], q[1], r[1]]]
     }
 
-    /// The weights of the second and the third corner at a pixel, and w.
+    /// Computes the weights of the second and third corner at a pixel, and w.
     #[inline(always)]
     pub(crate) fn at(&self, [x, y]: [i32; 2]) -> ([f64; 2], f64) {
         let (x, y) = (f64::from(x), f64::from(y));
@@ -204,6 +210,7 @@ impl HomogeneousWeights {
             let n = a * x + (b * y + c);
             if n > 0.0 { n } else { 0.0 }
         });
+        // Without any positive weight the pixel is outside all edges: the centroid is used.
         let sum = m0 + m1 + m2;
         let ([m0, m1, m2], sum) = if sum > 0.0 { ([m0, m1, m2], sum) } else { ([1.0; 3], 3.0) };
         let per = 1.0 / sum;
@@ -211,7 +218,7 @@ impl HomogeneousWeights {
         ([m1 * per, m2 * per], (w0 * m0 + w1 * m1 + w2 * m2) * per)
     }
 
-    /// The weights at a pixel, if it is in the triangle.
+    /// Computes the weights at a pixel if it is in the triangle.
     #[inline(always)]
     fn inside(&self, [x, y]: [i32; 2]) -> Option<DVec3> {
         let (x, y) = (f64::from(x), f64::from(y));
@@ -219,7 +226,7 @@ impl HomogeneousWeights {
         (parts.min_element() > 0.0).then(|| parts / parts.element_sum())
     }
 
-    /// The same at eight pixels of a row, from its first on: the same bits.
+    /// Computes [`Self::at`] for eight pixels of a row, starting at `[x, y]`, with the same bits.
     #[inline(always)]
     pub(crate) fn of_row<S: Simd>(&self, simd: S, [x, y]: [i32; 2]) -> ([f64x8<S>; 2], f64x8<S>) {
         let x = f64x8::from_slice(simd, &COLUMNS) + f64::from(x);
@@ -242,11 +249,11 @@ impl HomogeneousWeights {
     }
 }
 
-/// Numbers of columns.
+/// The column numbers of eight pixels.
 const COLUMNS: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
-/// The screen position, in pixels, of a clipped triangle's point with these weights. Points in the
-/// observer's own plane have none: then the position is arbitrary.
+/// Projects the point of a clipped triangle with these weights to pixels. Points in the observer's
+/// own plane have no screen position; the result is then arbitrary.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 pub(crate) fn cut_place(plan: &FramePlan, draw: &Draw, number: u32, weights: DVec3) -> [f64; 2] {
     let screen = Screen::new(draw.clip_from_object, plan.size);

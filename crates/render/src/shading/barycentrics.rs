@@ -1,6 +1,6 @@
 //! Barycentric coordinates of pixels in the triangles that they show.
 //!
-//! First linear on the screen, from integer edge functions; then perspective-correct.
+//! They are first linear on the screen, from integer edge functions; then perspective-correct.
 
 use glam::DVec3;
 
@@ -16,12 +16,12 @@ use marraztu_core::accuracy::Interpolation;
 pub(crate) struct Barycentrics<T> {
     /// The second and third barycentric coordinate, linear on the screen.
     pub(crate) linear: [[T; BATCH]; 2],
-    /// The same, perspective-correct.
+    /// The second and third barycentric coordinate, perspective-correct.
     pub(crate) weights: [[T; BATCH]; 2],
     /// The distance along the observer's axis.
     pub(crate) w: [T; BATCH],
-    /// The positions at which they are lit, in pixels; only set if they [share](Fragments::shared)
-    /// their pixels.
+    /// The positions at which fragments are lit, in pixels; only set if fragments
+    /// [share](Fragments::shared) their pixels.
     pub(crate) positions: [[T; BATCH]; 2],
 }
 
@@ -33,15 +33,15 @@ impl<T: Number> Default for Barycentrics<T> {
 }
 
 impl<T: Number> Barycentrics<T> {
-    /// The weights of the three corners in fragment `i`.
+    /// Returns the weights of the three corners in fragment `i`.
     pub(crate) fn weights(&self, i: usize) -> DVec3 {
         let (b, c): (f64, f64) = (self.weights[0][i].into(), self.weights[1][i].into());
         DVec3::new(1.0 - b - c, b, c)
     }
 }
 
-/// Clamps linear coordinates of pixels whose centres lie outside of their triangles: negative ones
-/// count as 0, and the sum stays 1.
+/// Clamps linear coordinates of pixels with centres outside of their triangles: negative
+/// coordinates become 0, and the sum stays 1.
 pub(super) struct Clamp<'a, T> {
     pub(super) len: usize,
     pub(super) linear: &'a mut [[T; BATCH]; 2],
@@ -63,7 +63,7 @@ impl<T: Number> Kernel<T> for Clamp<'_, T> {
     }
 }
 
-/// Makes linear coordinates the weights of corners.
+/// Converts linear coordinates to perspective-correct weights of corners.
 pub(super) struct Weigh<'a, T, const PAGES: usize> {
     pub(super) interpolation: Interpolation,
     pub(super) fragments: &'a Fragments,
@@ -85,7 +85,7 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Weigh<'_, T, PAGES> {
 }
 
 impl<T: Number> Barycentrics<T> {
-    /// Stores the weights that belong to linear coordinates.
+    /// Computes and stores the weights for linear coordinates.
     #[inline(always)]
     pub(super) fn put<M: Lanes<Number = T>>(
         &mut self,

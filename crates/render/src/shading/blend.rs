@@ -1,43 +1,43 @@
-//! Blends layers over what is behind them.
+//! Alpha blending: blends layers over the surface behind them.
 //!
-//! Colours are those of [`Colors`](super::colors::Colors) in fixed point, units of 2^-16 of a step
-//! of a byte, and stay so: a thousand layers are within a hundredth of a step of the true sum.
+//! Colours have the fixed-point format of [`Colors`](super::colors::Colors), units of 2^-16 of a
+//! step of a byte, and keep it: after a thousand layers the error is below a hundredth of a step.
 //!
-//! Over: c' = a f + (1 - a) c, with the colour f of the layer and its opacity a, the farthest layer
-//! first. Porter and Duff, "Compositing Digital Images", SIGGRAPH 1984. With a = 1 that is f and
-//! with a = 0 it is c, bit for bit.
+//! Over: c' = a f + (1 - a) c, with the layer's colour f and opacity a, the farthest layer first.
+//! Porter and Duff, "Compositing Digital Images", SIGGRAPH 1984. The result is f for a = 1 and c
+//! for a = 0, bit for bit.
 //!
-//! Weighted: c' = (sum of w a f) / (sum of w a) (1 - T) + T c, where T is the product of all
-//! 1 - a, and w falls with the distance z: equation (9) of McGuire and Bavoil, "Weighted Blended
-//! Order-Independent Transparency", JCGT 2(2), 2013, with z in units of view space, whose far plane
-//! is between 1024 and 2048 units away.
+//! Weighted: c' = (sum of w a f) / (sum of w a) (1 - T) + T c, where T is the product of all 1 - a,
+//! and w falls with the distance z: equation (9) of McGuire and Bavoil, "Weighted Blended
+//! Order-Independent Transparency", JCGT 2(2), 2013. z is in units of view space, which has its far
+//! plane between 1024 and 2048 units away.
 
 use crate::simd::dispatch;
 use fearless_simd::Level;
 
 use crate::screen::tiles::BLOCK_PIXELS;
 
-/// A colour of each pixel of a block.
+/// A colour for each pixel of a block.
 type Rows = [[f32; BLOCK_PIXELS]; 3];
 
-/// The pixels of a block while layers are laid over them.
+/// The pixels of a block while layers are blended over them.
 #[derive(Debug)]
 pub(crate) struct Blend {
     colors: Rows,
-    /// The sums of a weighted mean, if that is chosen.
+    /// The sums of a weighted mean, if weighted blending is selected.
     mean: Option<Box<Mean>>,
 }
 
 /// The sums of a weighted mean.
 #[derive(Debug)]
 struct Mean {
-    /// w of the layer that comes next.
+    /// The weight w of the next layer.
     next: [f64; BLOCK_PIXELS],
-    /// Of w a f.
+    /// The sum of w a f.
     colors: [[f64; BLOCK_PIXELS]; 3],
-    /// Of w a.
+    /// The sum of w a.
     weights: [f64; BLOCK_PIXELS],
-    /// T: what is seen through all layers.
+    /// T: the transmittance of all layers together.
     through: [f64; BLOCK_PIXELS],
 }
 
@@ -54,17 +54,17 @@ impl Default for Mean {
     }
 }
 
-/// How layers are blended.
+/// The method of blending layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way {
-    /// One over another.
+    /// Each layer over the ones behind it.
     Over,
-    /// As a weighted mean.
+    /// A weighted mean of all layers.
     Weighted,
 }
 
 impl Blend {
-    /// Begins with what is behind all layers.
+    /// Begins with the colours behind all layers.
     #[expect(clippy::cast_precision_loss, reason = "below 2^24")]
     pub(crate) fn begin(&mut self, behind: impl Fn(usize) -> [u32; 3], way: Way) {
         for place in 0..BLOCK_PIXELS {
@@ -78,7 +78,7 @@ impl Blend {
         }
     }
 
-    /// Sets the distances of the layer that comes next, if they matter.
+    /// Sets the distances of the next layer, if the method needs them.
     pub(crate) fn place(&mut self, level: Level, distances: impl FnOnce() -> [f64; BLOCK_PIXELS]) {
         if let Some(mean) = &mut self.mean {
             mean.next = distances();
@@ -86,7 +86,7 @@ impl Blend {
         }
     }
 
-    /// Lays a colour over a pixel.
+    /// Blends a colour over a pixel.
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "below 2^24")]
     pub(crate) fn put(&mut self, place: usize, color: [u32; 3], opacity: f32) {
@@ -101,7 +101,7 @@ impl Blend {
         }
     }
 
-    /// The blended colours of a pixel.
+    /// Returns the blended colour of a pixel.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -137,7 +137,7 @@ impl Mean {
     }
 }
 
-/// w = max(0.01, min(3000, 0.03 / (1e-5 + (z / 200)^4)))
+/// Computes the weight of a layer: w = max(0.01, min(3000, 0.03 / (1e-5 + (z / 200)^4))).
 #[inline(always)]
 fn weight(z: f64) -> f64 {
     let square = (z / 200.0) * (z / 200.0);
@@ -148,7 +148,7 @@ fn weight(z: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A byte in fixed point.
+    /// Returns a byte in fixed point.
     const fn parts(byte: u32) -> u32 {
         (byte << 16) + (1 << 15)
     }
@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn the_weight_is_that_of_the_paper() {
-        // 0.03 / (1e-5 + 1), at its largest and at its least.
+        // 0.03 / (1e-5 + 1), at its largest and smallest.
         assert!((weight(200.0) - 0.029_999_7).abs() < 1e-7);
         assert!((weight(0.0) - 3000.0).abs() < 1e-9 && weight(500.0) == 0.01);
     }

@@ -1,7 +1,7 @@
-//! Chooses how blocks that one triangle covers fully are coloured.
+//! Selects the colouring of blocks that one triangle covers fully.
 //!
-//! If only colours have to be interpolated, or only lit, that is one pass without a list of
-//! fragments; everything else is coloured like other blocks.
+//! If colours only have to be interpolated, or only lit, the block is coloured in one pass without
+//! a list of fragments. Everything else is coloured like other blocks.
 
 use super::context::ShadingContext;
 use super::full_blocks::{BlockLight, Blocks, Canvas, Corners, ROW};
@@ -16,7 +16,7 @@ use crate::frame::draw::Pipeline;
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::screen::weights::HomogeneousWeights;
 
-/// How the corners of a triangle are weighted in this frame.
+/// Returns the weighting of a triangle's corners in this frame.
 fn by<'a, T>(
     context: &'a ShadingContext<'_, T>,
     cut: Option<&'a HomogeneousWeights>,
@@ -61,7 +61,7 @@ impl<T: ShadingNumber> Shader<T> {
         });
     }
 
-    /// The weights of the first triangle, if it is clipped.
+    /// Returns the weights of the first triangle, if it is clipped.
     fn cut_weights(
         &self,
         context: &ShadingContext<'_, T>,
@@ -72,7 +72,7 @@ impl<T: ShadingNumber> Shader<T> {
         is_cut.then(|| HomogeneousWeights::new(context.plan, group.draw, numbers[0], [0; 2]))
     }
 
-    /// Fills fully covered blocks with the colour of their triangle.
+    /// Fills fully covered blocks, if all of their pixels have one colour. Returns whether it did.
     fn fill_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -89,8 +89,8 @@ impl<T: ShadingNumber> Shader<T> {
         });
     }
 
-    /// Colours fully covered blocks in one pass, by interpolating the colours of the corners. Returns
-    /// whether that can be done for this triangle.
+    /// Colours fully covered blocks in one pass, if only the colours of the corners have to be
+    /// interpolated. Returns whether it did.
     fn mix_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -111,8 +111,9 @@ impl<T: ShadingNumber> Shader<T> {
         T::mix_blocks(level, &self.attributes, blocks, by(context, cut.as_ref()), canvas)
     }
 
-    /// Colours fully covered blocks, a block at a time without a fragment list. Returns whether that
-    /// can be done for this triangle.
+    /// Colours fully covered blocks, one block at a time without a list of fragments. Applies to
+    /// surfaces that are lit per pixel or unlit, with or without a texture and uniform emission,
+    /// and have no other effects. Returns whether it did.
     fn light_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -132,13 +133,14 @@ impl<T: ShadingNumber> Shader<T> {
         if texture.is_some() && sampler.is_none() {
             return false;
         }
+        // Attributes are only fetched if the triangle differs from the last one.
         let new = self.take(context, group, true);
         if let Some((texture, sampler)) = texture.zip(sampler.as_ref()) {
             if new {
                 self.place_texture(context, group, texture, sampler);
             }
             if self.placed.placement.known & 1 == 0 {
-                // The other way fetches what it needs.
+                // The fragment list fetches its own attributes.
                 self.attributes.forget();
                 return false;
             }

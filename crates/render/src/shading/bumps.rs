@@ -1,19 +1,19 @@
-//! Tilts the normals of pixels by maps of heights or normals.
+//! Bump and normal mapping: tilts the normals of pixels by maps of heights or normals.
 //!
-//! In tangent space, with T along u, B along v and N across the surface, the normal is that of the
-//! map, or (-g dh/du, -g dh/dv, 1) with the slopes of heights h per texel and their factor g: a
+//! In tangent space, with T along u, B along v and N across the surface, the normal comes from the
+//! map, or is (-g dh/du, -g dh/dv, 1) with the slopes of heights h per texel and their factor g: a
 //! white texel is g texels high. Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978.
 //!
 //! T and B come from one of two places:
 //!
 //! * vertices: T by MikkTSpace, and B = s N x T, both interpolated and not normalised, as normal
 //!   maps are made for;
-//! * the pixel: the gradients of u and v on the triangle, perpendicular to N, each of length 1:
-//!   T ~ (du1 e2 - du2 e1) x N with the sides e1 and e2 and the steps of u along them; B likewise
-//!   with v. Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU", JGT 2010; Schueler,
+//! * the pixel: the gradients of u and v on the triangle, perpendicular to N, each of length 1: T ~
+//!   (du1 e2 - du2 e1) x N with the sides e1 and e2 and the steps of u along them; B likewise with
+//!   v. Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU", JGT 2010; Schueler,
 //!   "Followup: Normal Mapping Without Precomputed Tangents", 2013.
 //!
-//! The back of a surface has the opposite of the normal on its front.
+//! The back of a surface has the negated normal of its front.
 
 use glam::{DMat3, DVec3};
 
@@ -43,7 +43,7 @@ impl<T: Number> TangentRows<T> {
         }
     }
 
-    /// The tangents at the vertices of the triangles of a list.
+    /// Sets the tangents at the vertices of the triangles of a list.
     fn of_vertices(&mut self, draw: &Draw, attributes: &TriangleAttributes<T>) {
         let all = draw.model.mesh.tangents(draw.normal_source);
         for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
@@ -57,7 +57,7 @@ impl<T: Number> TangentRows<T> {
         }
     }
 
-    /// The gradients of the texture coordinates on the triangles of a list.
+    /// Sets the gradients of the texture coordinates on the triangles of a list.
     fn of_pixels(&mut self, draw: &Draw, attributes: &TriangleAttributes<T>) {
         let mesh = &draw.model.mesh;
         for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
@@ -73,6 +73,7 @@ impl<T: Number> TangentRows<T> {
                 let [x, y, z, _] = attributes.carried[corner][slot];
                 DVec3::new(x.into(), y.into(), z.into()) * turn
             };
+            // The sign follows the vertex normals, for either winding and for mirrored objects.
             let sum = normal(0) + normal(1) + normal(2);
             let inward = (e1.cross(e2).dot(sum) < 0.0) != draw.mirrored;
             let sign = if inward { -1.0 } else { 1.0 };
@@ -86,8 +87,8 @@ impl<T: Number> TangentRows<T> {
     }
 }
 
-/// Tilts the normals of a batch, which were interpolated before. `new` says whether the triangles
-/// differ from those before.
+/// Tilts the interpolated normals of a batch. `new` tells whether the triangles differ from the
+/// last batch's.
 pub(super) fn bend<T: ShadingNumber>(
     context: &ShadingContext<'_, T>,
     group: &Group<'_>,
@@ -107,6 +108,7 @@ pub(super) fn bend<T: ShadingNumber>(
             Tangents::Pixel => maps.tangents.of_pixels(group.draw, attributes),
         }
     }
+    // A negative texture scale reverses the direction of u or v.
     let directions = bump.map.scale.map(|scale| if scale < 0.0 { -1.0 } else { 1.0 });
     let (texels, tangents) = (&maps.texels, &maps.tangents);
     let spaces = Spaces::new(group.draw);
@@ -121,7 +123,7 @@ pub(super) fn bend<T: ShadingNumber>(
     }));
 }
 
-/// The transforms of normals and tangents to view space, both without their scale.
+/// The transforms of normals and tangents to view space, both without scale.
 #[derive(Clone, Copy)]
 struct Spaces<T> {
     normals: [[T; 3]; 3],
@@ -142,7 +144,7 @@ impl<T: Number> Spaces<T> {
     }
 }
 
-/// A vector times a matrix that is given by its columns.
+/// Multiplies a vector by a matrix given by its columns.
 #[inline(always)]
 fn turned<M: Lanes>(
     lanes: M,
@@ -155,7 +157,7 @@ fn turned<M: Lanes>(
 struct Bend<'a, T, const PAGES: usize> {
     points: (&'a Fragments, &'a TriangleAttributes<T>, &'a Barycentrics<T>),
     texels: &'a Rows<T>,
-    /// The tangents, and whether they are those of vertices.
+    /// The tangents, and whether they come from vertices.
     tangents: (&'a TangentRows<T>, bool),
     /// The factor of heights; `None` if texels are normals.
     gain: Option<f64>,
@@ -177,13 +179,14 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Bend<'_, T, PAGES> {
             let [x, y, z] = load(lanes, texels, at).0;
             let [x, y, z] = match gain {
                 Some(gain) => [x * lanes.lift(-gain), y * lanes.lift(-gain), lanes.lift(1.0)],
-                // Bytes less 128, over 127: 128 is exactly 0, and 255 is 1.
+                // Bytes minus 128, divided by 127: 128 is exactly 0, and 255 is 1.
                 None => {
                     let (scale, middle) = (lanes.lift(255.0 / 127.0), lanes.lift(128.0 / 127.0));
                     [x * scale - middle, y * scale - middle, z * scale - middle]
                 }
             };
             let (x, y) = (x * lanes.lift(directions[0]), y * lanes.lift(directions[1]));
+            // The tangent frame: interpolated from vertices, or from the gradients on the triangle.
             let [a, b, c] = [
                 picked::<M, PAGES>(lanes, &rows.vectors[0], slots),
                 picked::<M, PAGES>(lanes, &rows.vectors[1], slots),
@@ -207,7 +210,7 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Bend<'_, T, PAGES> {
                 (cross(a, unbent).unit(), cross(b, unbent).unit(), unbent)
             };
             let bent = tangent.times(x).plus(bitangent.times(y)).plus(normal.times(z)).unit();
-            // A flat texel changes no bit. Rounding of what is filtered counts as flat, too.
+            // A flat texel changes no bit. Rounding errors of filtering also count as flat.
             let slope = x * x + y * y;
             let flat = lanes.lift(1e-12);
             let select = |bent: M::R, unbent: M::R| slope.if_more(flat, bent, unbent);
@@ -219,7 +222,7 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Bend<'_, T, PAGES> {
     }
 }
 
-/// The cross product.
+/// Computes the cross product.
 #[inline(always)]
 fn cross<R: Real>(Vec3([a, b, c]): Vec3<R>, Vec3([x, y, z]): Vec3<R>) -> Vec3<R> {
     Vec3([b * z - c * y, c * x - a * z, a * y - b * x])

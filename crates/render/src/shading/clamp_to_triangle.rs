@@ -1,11 +1,11 @@
 //! Clamps the position at which a pixel is lit to the triangle that it shows.
 //!
-//! A pixel with several samples may show a triangle that does not cover its centre. There
-//! attributes would be extrapolated: a colour below black, a position beyond the triangle. So such
-//! a pixel is lit at the point of the triangle that is nearest to its centre.
+//! A pixel with several samples may show a triangle that does not cover its centre. Attributes
+//! would be extrapolated there: to a colour below black or a position beyond the triangle. Such a
+//! pixel is therefore lit at the triangle's point nearest to the centre.
 //!
-//! That point lies on an edge whose edge function is negative at the centre. Of two such edges it
-//! is the one, if any, whose nearest point is not the corner between them.
+//! That point lies on an edge with a negative edge function at the centre. Of two such edges it is
+//! the one, if any, with a nearest point that is not the corner between them.
 
 use fearless_simd::Level;
 
@@ -26,7 +26,7 @@ impl<T: AttributeNumber> Barycentrics<T> {
         fragments: &Fragments,
         attributes: &TriangleAttributes<T>,
     ) {
-        // The same for all pixels of a block, so that a pixel does not depend on its neighbours.
+        // One origin for all pixels of a block: a pixel must not depend on its neighbours.
         let origin = [fragments.x[0] & !(BLOCK - 1), fragments.y[0] & !(BLOCK - 1)];
         T::run(level, Hold { fragments, attributes, origin, to: self });
     }
@@ -47,7 +47,7 @@ impl<T: Number> Kernel<T> for Hold<'_, T> {
 }
 
 impl<T: Number> Hold<'_, T> {
-    /// The same for triangles in the first `PAGES` pages of slots.
+    /// Clamps triangles in the first `PAGES` pages of slots.
     #[inline(always)]
     fn hold<M: Lanes<Number = T>, const PAGES: usize>(self, lanes: M) {
         let Self { fragments, attributes, origin, to } = self;
@@ -61,10 +61,11 @@ impl<T: Number> Hold<'_, T> {
             let [second, third] = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
             let first = lanes.lift(1.0) - second - third;
             let outside = Real::max(Real::max(-first, -second), -third);
-            // A triangle that all samples show covers the centre, whatever rounding says.
+            // A triangle shown by all samples covers the centre, despite rounding.
             let shares = lanes.whole(&fragments.shares, at);
             let outside = lanes.lift(f64::from(ALL)).if_more(shares, outside, zero);
             let mut place = [x, y];
+            // Most groups have no pixel outside and skip the search.
             if lanes.any_more(outside, zero) {
                 let slots = lanes.slots(&fragments.slots, at);
                 let [x0, y0, ux, uy, vx, vy] = picked::<M, PAGES>(lanes, &corners, slots);
@@ -84,8 +85,8 @@ impl<T: Number> Hold<'_, T> {
     }
 }
 
-/// The corners of triangles in subpixels: the first, relative to a point of the picture,
-/// and the vectors from it to the second and the third; x and y of each.
+/// Computes the corners of triangles in subpixels: the first relative to a point of the picture,
+/// and the vectors from it to the second and third; x and y of each.
 #[inline(always)]
 fn corners<T: Number, M: Lanes<Number = T>>(
     lanes: M,
@@ -97,7 +98,7 @@ fn corners<T: Number, M: Lanes<Number = T>>(
     for axis in 0..2 {
         let from = origin[axis];
         for slot in 0..SLOTS {
-            // Corners of clipped triangles have no screen position; they are not read.
+            // Corners of clipped triangles have no screen position; they are never read.
             ways[axis][slot] = first[axis][slot].wrapping_sub(from);
             ways[2 + axis][slot] = second[axis][slot].wrapping_sub(first[axis][slot]);
             ways[4 + axis][slot] = third[axis][slot].wrapping_sub(first[axis][slot]);
@@ -112,7 +113,7 @@ fn corners<T: Number, M: Lanes<Number = T>>(
     corners
 }
 
-/// The corners of the triangles in some slots.
+/// Gathers the corners of the triangles in some slots.
 #[inline(always)]
 fn picked<M: Lanes, const PAGES: usize>(
     lanes: M,
@@ -129,9 +130,9 @@ fn picked<M: Lanes, const PAGES: usize>(
     ]
 }
 
-/// The second and third coordinate of the point of a triangle (with the sides u and v from its
-/// first corner) that is nearest to a point outside, which lies at d from the first corner and has
-/// these coordinates.
+/// Computes the second and third barycentric coordinate of the triangle's point that is nearest to
+/// a point outside. The triangle has the sides u and v from its first corner; the outside point is
+/// at d from that corner, with the coordinates given last.
 ///
 /// On the side from a corner p along g: p + t g, t = (d - p).g / g.g, clamped to 0..1.
 #[inline(always)]
@@ -144,7 +145,7 @@ fn nearest<R: Real>(d: [R; 2], u: [R; 2], v: [R; 2], [first, second, third]: [R;
     let on_g = along(from_second, g);
     let (beyond_u, beyond_v) = (-third, -second);
     // A side is taken if the point lies beyond it. If the point also lies beyond an earlier side,
-    // it is taken only if its nearest point is not the corner between the two.
+    // this side is taken only if its nearest point is not the corner between the two.
     let take_v = beyond_u.if_more(zero, on_v, one);
     let take_v = beyond_v.if_more(zero, take_v, zero);
     let end = clamped(on_v, [zero, one]);
@@ -161,7 +162,8 @@ fn clamped<R: Real>(t: R, [least, most]: [R; 2]) -> R {
     Real::min(Real::max(t, least), most)
 }
 
-/// The parameter along a triangle's side nearest to a point: 0 at its beginning and 1 at its end.
+/// Returns the parameter along a triangle's side nearest to a point: 0 at its start and 1 at its
+/// end.
 #[inline(always)]
 fn along<R: Real>(point: [R; 2], side: [R; 2]) -> R {
     (point[0] * side[0] + point[1] * side[1]) / (side[0] * side[0] + side[1] * side[1])

@@ -1,9 +1,9 @@
-//! Colours of a list of fragments: bytes to store, or fixed-point numbers to add up.
+//! Colours of a list of fragments: bytes to store, or fixed-point numbers for the MSAA resolve.
 //!
-//! A pixel that shows one triangle becomes four bytes at once. One that shows several gets the mean
-//! of their colours: each is clamped and kept in units of 2^-16 of a step of a byte, before it is
-//! rounded down, and these are added as integers. So the sum does not depend on its order, and the
-//! mean of equal colours is the byte that each of them would be.
+//! A pixel that shows one triangle becomes four bytes immediately. A pixel that shows several gets
+//! the mean of their colours. Each colour is clamped and kept in units of 2^-16 of a step of a
+//! byte, before rounding down, and colours are added as integers. The sum is therefore independent
+//! of its order, and the mean of equal colours is the byte that each of them would become.
 
 use std::sync::OnceLock;
 
@@ -16,7 +16,7 @@ use crate::simd::{BATCH, Lanes, Vec3};
 use marraztu_core::base::color::linear;
 use marraztu_core::base::once::get_or_compute;
 
-/// The form of colours.
+/// The format of colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Form {
     /// Bytes, to be stored.
@@ -26,20 +26,20 @@ pub(crate) enum Form {
     Parts,
 }
 
-/// Colours of a list of pixels.
+/// The colours of a list of pixels.
 #[derive(Debug)]
 #[repr(align(64))]
 pub(crate) struct Colors {
     pub(crate) form: Form,
-    /// Whether fixed-point numbers are linear values, which are encoded when they are added up.
+    /// Whether fixed-point numbers are linear values, which are encoded after summing.
     pub(crate) linear: bool,
-    /// Red, green, blue and 255 in the order of memory.
+    /// Red, green, blue and 255 in memory order.
     pub(crate) pixels: [u32; BATCH],
     /// Red, green and blue, in fixed point.
     parts: [[u32; BATCH]; 3],
 }
 
-/// The fractional bits of the fixed-point form.
+/// The fractional bits of the fixed-point format.
 const BITS: u32 = 16;
 
 impl Default for Colors {
@@ -49,20 +49,20 @@ impl Default for Colors {
 }
 
 impl Colors {
-    /// Stores colours from `at` on.
+    /// Stores colours, starting at `at`.
     #[inline(always)]
     pub(crate) fn store<M: Lanes>(&mut self, lanes: M, color: Vec3<M::R>, at: usize) {
         match self.form {
             Form::Pixels => lanes.store_pixels(color, &mut self.pixels, at),
             Form::Parts => {
-                // Linear values are rounded when they are encoded.
+                // Linear values are rounded later, when they are encoded.
                 let half = if self.linear { 0.0 } else { 0.5 };
                 lanes.store_parts(color, lanes.lift(half), &mut self.parts, at);
             }
         }
     }
 
-    /// The same, with a rounding threshold for each instead of one half.
+    /// Stores colours with a rounding threshold for each instead of one half.
     #[inline(always)]
     pub(crate) fn store_by<M: Lanes>(
         &mut self,
@@ -77,7 +77,7 @@ impl Colors {
         }
     }
 
-    /// Sets all of them to one colour.
+    /// Sets all colours to one.
     pub(crate) fn fill(&mut self, color: [u8; 4]) {
         match self.form {
             Form::Pixels => self.pixels.fill(u32::from_le_bytes(color)),
@@ -89,7 +89,7 @@ impl Colors {
         }
     }
 
-    /// Sets one of them.
+    /// Sets one colour.
     pub(crate) fn set(&mut self, i: usize, color: [u8; 4]) {
         match self.form {
             Form::Pixels => self.pixels[i] = u32::from_le_bytes(color),
@@ -101,7 +101,7 @@ impl Colors {
         }
     }
 
-    /// One of them, in fixed point.
+    /// Returns one colour in fixed point.
     #[inline(always)]
     pub(crate) fn part(&self, i: usize) -> [u32; 3] {
         let [red, green, blue] = &self.parts;
@@ -109,7 +109,7 @@ impl Colors {
         [red[i], green[i], blue[i]]
     }
 
-    /// Replaces the colours of triangles, one for each slot, by those of pixels with these slots.
+    /// Replaces the colours of triangles, one per slot, by the colours of pixels with these slots.
     pub(crate) fn hand_out(&mut self, slots: &[i32]) {
         let hand_out = |row: &mut [u32; BATCH]| {
             let before: [u32; SLOTS] = std::array::from_fn(|slot| row[slot]);
@@ -124,7 +124,7 @@ impl Colors {
     }
 }
 
-/// A byte in fixed point: in the middle of its step, or its linear value.
+/// Converts a byte to fixed point: the middle of its step, or its linear value.
 fn parts(byte: u8, linear: bool) -> u32 {
     if linear {
         return linear_parts().of_bytes[usize::from(byte)];
@@ -132,12 +132,12 @@ fn parts(byte: u8, linear: bool) -> u32 {
     (u32::from(byte) << BITS) + (1 << (BITS - 1))
 }
 
-/// Linear values in fixed point: 255 times 2^16 is white.
+/// Linear values in fixed point: white is 255 times 2^16.
 #[derive(Debug)]
 struct LinearParts {
-    /// The value of each byte.
+    /// The linear value of each byte.
     of_bytes: [u32; 256],
-    /// The least value that is encoded as each byte but the first.
+    /// The smallest value that is encoded as each byte but the first.
     least: [u32; 255],
 }
 
@@ -158,28 +158,28 @@ fn linear_parts() -> &'static LinearParts {
     })
 }
 
-/// Computes the tables of linear values, so that threads compute none while they draw.
+/// Computes the tables of linear values before drawing, so no thread has to wait for them.
 pub(crate) fn prepare_linear() {
     linear_parts();
 }
 
-/// The byte that a linear value in fixed point is encoded as.
+/// Returns the byte that encodes a linear value in fixed point.
 fn encoded_byte(value: u32) -> u32 {
     let least = &linear_parts().least;
     u32::try_from(least.partition_point(|least| *least <= value)).unwrap_or(255)
 }
 
-/// The colours of a block's pixels, added up over their samples: at most 2^6 samples, each below
+/// The colours of a block's pixels, summed over their samples: at most 2^6 samples, each below
 /// 2^24.
 #[derive(Clone, Debug)]
 pub(crate) struct Sums {
     sums: [[u32; 4]; BLOCK_PIXELS],
-    /// Whether they are sums of linear values.
+    /// Whether the sums are sums of linear values.
     linear: bool,
 }
 
 impl Sums {
-    /// No samples yet, of colours as they are stored or of linear values.
+    /// Creates empty sums of stored colours or of linear values.
     pub(crate) const fn new(linear: bool) -> Self {
         Self { sums: [[0; 4]; BLOCK_PIXELS], linear }
     }
@@ -194,7 +194,7 @@ impl Sums {
         }
     }
 
-    /// The sum of a pixel.
+    /// Returns the sum of a pixel.
     pub(crate) const fn parts(&self, place: usize) -> [u32; 3] {
         let [red, green, blue, _] = self.sums[place % BLOCK_PIXELS];
         [red, green, blue]
@@ -248,7 +248,7 @@ impl Sums {
         }
     }
 
-    /// The means of 2^`log2` samples, as pixels, row by row.
+    /// Returns the means of 2^`log2` samples as pixels, row by row (MSAA resolve).
     #[inline(always)]
     pub(crate) fn means(&self, log2: u32) -> [u32; BLOCK_PIXELS] {
         let shift = BITS + log2;
@@ -272,7 +272,7 @@ mod tests {
     use crate::simd::Sixteen;
     use crate::simd::{Exact, Number};
 
-    /// Colours of both forms, from numbers that are the same for all three channels.
+    /// Colours of both formats, from numbers that are equal for all three channels.
     fn both(numbers: &[f32; BATCH]) -> [Colors; 2] {
         [Form::Pixels, Form::Parts].map(|form| {
             let mut colors = Colors { form, ..Colors::default() };

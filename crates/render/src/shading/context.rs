@@ -10,7 +10,7 @@ use crate::frame::color_path::ColorPaths;
 use crate::raster::geometry::ScreenGeometry;
 use crate::shadow::tracer::Tracer;
 
-/// Everything that shading reads of a frame.
+/// The parts of a frame that shading reads.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShadingContext<'a, T> {
     pub(crate) level: Level,
@@ -22,12 +22,13 @@ pub(crate) struct ShadingContext<'a, T> {
     pub(crate) faces: Option<&'a FaceColors>,
     /// How pixels are coloured.
     pub(crate) paths: &'a ColorPaths,
-    /// What casts shadows, if any light does.
+    /// The tracer, if any light casts shadows.
     pub(crate) tracer: Option<&'a Tracer<'a>>,
 }
 
 impl<'a, T> ShadingContext<'a, T> {
-    /// What casts shadows on a draw, and the caster that it is itself; `None` if it takes none.
+    /// Returns the tracer for a draw, and the draw's own caster. `None` if the draw receives no
+    /// shadows.
     pub(crate) fn tracer_of(&self, draw: u32) -> Option<(&'a Tracer<'a>, u32)> {
         let tracer = self.tracer?;
         Some((tracer, tracer.caster_of(draw)?))

@@ -1,4 +1,4 @@
-//! The light at vertices for pixels that are coloured when their triangles are set up or drawn.
+//! The light at vertices, for pixels coloured during triangle setup or drawing.
 
 use crate::accel::Accelerated as _;
 use std::ops::Range;
@@ -33,7 +33,7 @@ pub(crate) struct VertexLight<'a> {
 }
 
 impl<'a> VertexLight<'a> {
-    /// The light of a frame with one sample per pixel, if colouring its triangles at once pays.
+    /// Creates the light of a frame with one sample per pixel, if colouring triangles early pays.
     pub(crate) fn new(
         level: Level,
         plan: &'a FramePlan,
@@ -60,16 +60,16 @@ impl CornerLight for VertexLight<'_> {
 struct Worker<'a> {
     frame: &'a VertexLight<'a>,
     corners: DrawCorners<'a>,
-    /// For lighting vertices.
+    /// The batch for lighting vertices.
     batch: Batch<f32>,
     rays: RayScratch,
     /// The triangles of the last draw, by their numbers in the frame.
     numbers: Range<u32>,
-    /// The last draw, if what its triangles show is light alone.
+    /// The last draw, if its triangles show interpolated light only.
     draw: Option<LitDraw<'a>>,
 }
 
-/// What the light at the corners of one draw's triangles is read from.
+/// The sources of the light at the corners of one draw's triangles.
 #[derive(Debug)]
 struct LitDraw<'a> {
     draw: &'a Draw,
@@ -81,7 +81,7 @@ struct LitDraw<'a> {
 }
 
 impl<'a> LitDraw<'a> {
-    /// `None` if a pixel of the draw shows more than interpolated light.
+    /// Returns `None` if a pixel of the draw shows more than interpolated light.
     fn new(frame: &'a VertexLight<'a>, corners: DrawCorners<'a>, index: u32) -> Option<Self> {
         let VertexLight { level, plan, lit, terms } = *frame;
         let draw = &plan.draws[index as usize];
@@ -102,7 +102,7 @@ impl<'a> LitDraw<'a> {
 }
 
 impl<'a> Worker<'a> {
-    /// The draw of a triangle, and the colours at its corners.
+    /// Returns the draw of a triangle, and the colours at its corners.
     #[inline(always)]
     fn look_up(
         &mut self,
@@ -110,6 +110,7 @@ impl<'a> Worker<'a> {
         vertices: [u32; 3],
         clockwise: bool,
     ) -> Option<(&LitDraw<'a>, CornerColors)> {
+        // Consecutive triangles mostly belong to one draw.
         if !self.numbers.contains(&number) {
             let (draw, start) = self.corners.draw_of(number);
             self.numbers = start.number..start.end;
@@ -117,6 +118,7 @@ impl<'a> Worker<'a> {
         }
         let own = self.draw.as_ref()?;
         let number = number - self.numbers.start;
+        // Light is stored by corner with face normals, else by point.
         let places = match own.draw.normals {
             Normals::Face => own.draw.model.mesh.triangles()[number as usize].corners,
             Normals::Vertex => own.points.of(own.order, number, vertices),
@@ -142,6 +144,7 @@ impl LookUp for Worker<'_> {
             left &= left - 1;
             let corners = vertices.map(|row| row[lane]);
             let clockwise = clockwise >> lane & 1 == 1;
+            // One unknown colour rejects the whole group: its pixels are coloured later.
             let Some((own, known)) = self.look_up(numbers[lane], corners, clockwise) else {
                 return false;
             };

@@ -1,8 +1,8 @@
-//! What one pixel shows, and the light that its colour is made of.
+//! Explains one pixel: the surfaces that it shows, and the light that makes up its colour.
 //!
 //! The pixel is shaded again by the code that shaded the picture, one light at a time, in the
-//! picture's own arithmetic. So the terms are those of the picture bit for bit; what their sum
-//! loses by rounding is a term of its own, and with it they add up to the colour exactly.
+//! picture's arithmetic. The terms therefore equal the picture bit for bit. The rounding error of
+//! their sum is a separate term, and with it the terms add up to the colour exactly.
 
 mod light_ray;
 
@@ -25,16 +25,16 @@ use crate::screen::coverage::PixelBox;
 use crate::shadow::rays::{Origins, RayScratch};
 use marraztu_core::accuracy::LightAt;
 
-/// The pixel of a tile that is explained.
+/// The pixel of a tile to be explained.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Asked<'a> {
-    /// Its column and row.
+    /// The column and row.
     pub(crate) at: [i32; 2],
-    /// The pixels of its tile.
+    /// The pixels of the tile.
     pub(crate) bounds: PixelBox,
-    /// The depths of all that the tile shows.
+    /// The range of depths in the tile.
     pub(crate) depths: Option<[f32; 2]>,
-    /// What the pixel shows: what is opaque, and the layers over it, the nearest last.
+    /// The pixel's words: the opaque surface, and the layers over it, the nearest last.
     pub(crate) words: &'a [u64],
     /// The bytes of the picture.
     pub(crate) bytes: [u8; 3],
@@ -51,6 +51,8 @@ pub(crate) fn explain<T: ShadingNumber>(
         return whole;
     }
     clamp(&mut whole);
+    // Alpha blending scales the terms of a layer by its opacity, and all terms behind it by the
+    // rest.
     for word in &asked.words[1..] {
         let (mut layer, opacity) = one(context, asked, *word);
         clamp(&mut layer);
@@ -69,7 +71,7 @@ pub(crate) fn explain<T: ShadingNumber>(
         }));
         whole = layer;
     }
-    // Layers that are not blended exactly one over another have another mean.
+    // Other blending methods have a different mean; the difference is a separate term.
     let other = [0, 1, 2].map(|i| f64::from(asked.bytes[i]) / 255.0 - whole.color[i]);
     if other.iter().any(|x| x.abs() > 1.0 / 255.0) && !whole.linear {
         whole.terms.push(Term::new(Part::Blending, other));
@@ -78,7 +80,7 @@ pub(crate) fn explain<T: ShadingNumber>(
     PixelColor { bytes: asked.bytes, ..whole }
 }
 
-/// Takes what is above 1 off a colour that is blended.
+/// Clamps a colour to be blended, and records the clipped light as a term.
 fn clamp(of: &mut PixelColor) {
     let cut = of.color.map(|x| x.clamp(0.0, 1.0) - x);
     if cut != [0.0; 3] {
@@ -87,7 +89,7 @@ fn clamp(of: &mut PixelColor) {
     }
 }
 
-/// The colour of one of the primitives that a pixel shows, and its opacity.
+/// Returns the colour of one primitive that a pixel shows, and its opacity.
 fn one<T: ShadingNumber>(
     context: &ShadingContext<'_, T>,
     asked: &Asked<'_>,
@@ -106,6 +108,7 @@ fn one<T: ShadingNumber>(
         Visible::Background => (plain(Part::Background, plan.background.opaque()), 1.0),
         Visible::Line(line) => (plain(Part::Line, frame.line_color(plan, line)), 1.0),
         Visible::Triangle(number) => {
+            // The pixel is shaded alone, with the lights of its tile.
             let mut shader = Shader::<T>::default();
             shader.tile.begin(plan, asked.bounds, || asked.depths);
             let place = usize::try_from((y & 7) * 8 + (x & 7)).unwrap_or(0);
@@ -133,7 +136,7 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         let plan = self.context.plan;
         let [r, g, b, _] = self.shader.first_color(self.context, &self.group);
         let bytes = [r, g, b];
-        // What first_color left: the light of the pixel, and its texel.
+        // The results left by first_color: the light of the pixel, and its texel.
         let of_all = [first(&self.shader.batch.diffuse), first(&self.shader.batch.specular)];
         let texel = first(&self.shader.texels);
         let glow = first(&self.shader.maps.glow);
@@ -161,6 +164,7 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         let tint = shaded.tint.map(|x| T::from_f64(x).into());
         surface.own = if textured { texel } else { tint };
         surface.light_at = shaded.light.is_some().then_some(plan.light_at);
+        // The terms depend on where light is computed.
         let (mut terms, mut color) = match (&shaded.light, plan.light_at) {
             (None, _) => (vec![Term::new(Part::Unlit, surface.own)], surface.own),
             (Some(_), LightAt::Vertex) => self.of_corners(&surface, textured, of_all),
@@ -179,10 +183,12 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         (PixelColor { at, surface, terms, rounding, color, linear, bytes }, opacity)
     }
 
-    /// Where the point is. Afterwards the batch holds its position and its normal.
+    /// Returns the point's position on the surface. Afterwards the batch holds its position and
+    /// normal.
     fn place(&mut self) -> SurfacePoint {
         let Self { context, group, shader, number, .. } = self;
         let ShadingContext { level, plan, .. } = **context;
+        // Forces a fresh fetch: the shader may hold attributes of another kind.
         shader.attributes.forget();
         shader.take(context, group, true);
         let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
@@ -215,7 +221,7 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         }
     }
 
-    /// The terms of every light that is evaluated, and their sum.
+    /// Returns the terms of every evaluated light, and their sum.
     fn of_lights(
         &mut self,
         surface: &mut SurfacePoint,
@@ -236,7 +242,7 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         }
         let lit_places = shader.tile.light(plan, group.pipeline, shaded).needs_positions;
         if !by_face && lit_places {
-            // With normals that bumps have bent, and exponents from a map.
+            // With normals tilted by bump maps, and exponents from a map.
             shader.batch.clone_from(drawn);
             surface.normal = World::new(plan).direction(vec3(&shader.batch.normal));
         }
@@ -259,6 +265,7 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         };
         let mut scratch = RayScratch::default();
         let shades = tracer.filter(|_| by_face || lit_places);
+        // Each light alone, with and without shadows, gives its terms.
         for i in (0..stages.len()).filter(evaluated) {
             let of = (&stages[i..=i], &lights[i..=i]);
             run(of.0, of.1, level, batch, None);
@@ -273,7 +280,7 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
             }
             terms.extend(own);
         }
-        // All together, in the order of the picture.
+        // All lights together, in the order of the picture, give the exact sum.
         let all = (0..stages.len()).filter(evaluated);
         let (stages, lights): (Vec<_>, Vec<_>) =
             all.map(|i| (stages[i], lights[i].clone())).unzip();
@@ -296,7 +303,8 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         (terms, color)
     }
 
-    /// The light of vertices, which was interpolated when its lights were added up already.
+    /// Returns the interpolated light of vertices as one term, because its lights were summed
+    /// before.
     fn of_corners(
         &mut self,
         surface: &SurfacePoint,
@@ -315,6 +323,7 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
             let shine = Term { part: Part::Specular, ..term(specular) };
             return (vec![term(lit), shine], reflect(context, &sums, surface.own));
         }
+        // Without a texture, tables hold final colours, which are interpolated again here.
         let ShadingContext { level, plan, .. } = **context;
         let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
             return (Vec::new(), [0.0; 3]);

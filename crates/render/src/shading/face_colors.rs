@@ -1,10 +1,9 @@
-//! The colours of faces that were lit before in the same frame.
+//! The colours of faces that were already lit in the same frame.
 //!
-//! With light per face, a triangle has the same colour wherever it shows. A table of the frame,
-//! which all threads share, holds the colours by the numbers of the triangles. Before a tile is
-//! coloured, the triangles that it shows and that are not in the table are lit, as many at a time
-//! as a batch holds; then its pixels are looked up. If two threads light the same triangle, both
-//! get the same colour.
+//! With light per face, a triangle has the same colour everywhere. A table of the frame, shared by
+//! all threads, holds the colours by triangle number. Before a tile is coloured, its triangles that
+//! are not in the table are lit, a batch at a time; then its pixels are looked up. If two threads
+//! light the same triangle, both compute the same colour.
 
 use std::hint::select_unpredictable;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -14,17 +13,17 @@ use prefetch_index::prefetch_index;
 use super::full_blocks::ROW;
 use crate::screen::tiles::BLOCK_PIXELS;
 
-/// The lowest of the bits, those of alpha, that say which frame an entry belongs to.
+/// The lowest bit of the mark, stored in place of alpha, that tells the frame of an entry.
 const MARK: u32 = 24;
 
 /// The table of a frame.
 #[derive(Debug)]
 pub(crate) struct FaceColors {
     /// Red, green and blue, and in place of alpha the mark of the frame: an even number if the
-    /// colour is known, the odd one below it if some thread is about to light the triangle. The
-    /// last entry is no triangle's.
+    /// colour is known, the odd number below it if some thread is about to light the triangle. The
+    /// last entry is a sentinel.
     entries: Vec<AtomicU32>,
-    /// The mark of entries whose colour is known.
+    /// The mark of entries with a known colour.
     known: u32,
 }
 
@@ -35,7 +34,7 @@ impl Default for FaceColors {
 }
 
 impl FaceColors {
-    /// Begins a frame of this many triangles: forgets all colours.
+    /// Begins a frame of this many triangles: invalidates all colours.
     pub(crate) fn begin(&mut self, triangles: usize) {
         self.known += 2;
         if self.known > 0xff || self.entries.capacity() <= triangles {
@@ -45,20 +44,21 @@ impl FaceColors {
         *self.entries[triangles].get_mut() = self.known << MARK;
     }
 
-    /// Asks the cache for a triangle's entry.
+    /// Prefetches a triangle's entry.
     #[inline(always)]
     pub(crate) fn prefetch(&self, number: u32) {
         prefetch_index(&self.entries, number as usize);
     }
 
-    /// Whether a triangle has to be lit; if so, no later call for this tile says so again.
+    /// Returns whether a triangle has to be lit. If so, later calls for this tile return false.
     ///
-    /// Without a branch: which triangles are new cannot be predicted.
+    /// Written without a branch, because new triangles are unpredictable.
     #[inline(always)]
     pub(crate) fn claim(&self, number: u32) -> bool {
         let last = self.entries.len() - 1;
         let place = (number as usize).min(last);
         let is_new = self.entries[place].load(Ordering::Relaxed) >> MARK < self.known - 1;
+        // The sentinel takes the store if nothing has to be marked.
         let to = select_unpredictable(is_new, place, last);
         self.entries[to].store((self.known - 1) << MARK, Ordering::Relaxed);
         is_new
@@ -71,10 +71,11 @@ impl FaceColors {
         self.entries[number as usize].store(color, Ordering::Relaxed);
     }
 
-    /// Looks up the colours of a block's pixels, from their entries in the visibility buffer, once
-    /// for each run of pixels that show the same: a third of what looking up every pixel takes. No
-    /// run that begins at one of `starts` is longer than a row. Pixels that show nothing get
-    /// `background`; the last row of `colors` is room for a run. Returns whether all are known.
+    /// Looks up the colours of a block's pixels from their entries in the visibility buffer, once
+    /// per run of pixels with the same entry: a third of the time of looking up every pixel. No run
+    /// that starts at one of `starts` is longer than a row. Pixels without a triangle get
+    /// `background`; the last row of `colors` is room for a run. Returns whether all colours are
+    /// known.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
     pub(crate) fn of_block(
@@ -93,6 +94,7 @@ impl FaceColors {
             } else {
                 let entry = self.entries.get(!(word as u32) as usize);
                 let entry = entry.map_or(0, |entry| entry.load(Ordering::Relaxed));
+                // Checked once at the end: a branch per run would be unpredictable.
                 unknown |= (entry >> MARK) ^ self.known;
                 entry | 0xff << MARK
             };

@@ -1,5 +1,5 @@
-//! Triangles over more texels than f32 can tell apart: their positions on the texture are computed
-//! in f64, and reduced to one repetition before they are rounded to f32.
+//! Triangles that span more texels than f32 can tell apart: their texture positions are computed in
+//! f64, and reduced to one repetition before rounding to f32.
 
 use fearless_simd::{Simd, SimdNarrow as _, f32x16};
 
@@ -8,7 +8,7 @@ use crate::texture::exact_placement::ExactPlacement;
 use crate::texture::uv::Uvs;
 use marraztu_core::scene::Texture;
 
-/// A texture on one triangle.
+/// A texture on one such triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FarTexture {
     /// The slot of the triangle.
@@ -18,7 +18,7 @@ pub(crate) struct FarTexture {
 }
 
 impl FarTexture {
-    /// Sets up the triangle of a slot; `None` if its coordinates are too large.
+    /// Sets up the triangle of a slot. `None` if its coordinates are too large.
     pub(crate) fn new(
         slot: usize,
         uvs: Uvs,
@@ -29,12 +29,12 @@ impl FarTexture {
         Some(Self { slot, weights: weights(), placement })
     }
 
-    /// The position at a pixel, in texels.
+    /// Computes the position at a pixel, in texels.
     pub(crate) fn at(&self, pixel: [i32; 2]) -> [f32; 2] {
         self.placement.at(self.weights.at(pixel).0)
     }
 
-    /// The same at two rows of eight pixels, from the first on: the same bits.
+    /// Computes the positions in two rows of eight pixels, with the same bits as [`Self::at`].
     #[inline(always)]
     pub(crate) fn of_two_rows<S: Simd>(&self, simd: S, [x, y]: [i32; 2]) -> [f32x16<S>; 2] {
         let (upper, _) = self.weights.of_row(simd, [x, y]);

@@ -1,10 +1,10 @@
 //! The fragments of a block: its pixels that show triangles, and the triangle of each.
 //!
-//! A block shows few triangles on many pixels. Each triangle gets a slot, which holds its
-//! attributes once; fragments gather them from there. A pixel mostly shows the same triangle as its
-//! left neighbour. At the beginning of a run of pixels, the slot is looked up in a small hash table
-//! by the low bits of the triangle's number. If another triangle has replaced it in the table, it
-//! gets a second slot, which costs a little time and changes nothing else.
+//! A block shows few triangles on many pixels. Each triangle gets a slot that holds its attributes
+//! once; fragments gather them from there. A pixel mostly shows the same triangle as its left
+//! neighbour. At the start of a run of pixels, the slot is looked up in a small hash table by the
+//! low bits of the triangle's number. If another triangle has replaced it in the table, the
+//! triangle gets a second slot, which only costs a little time.
 
 use std::hint::select_unpredictable;
 
@@ -22,47 +22,49 @@ use crate::simd::{BATCH, UP_TO_SIXTEEN};
 pub(crate) struct Fragments {
     /// The number of fragments.
     pub(crate) len: usize,
-    /// Their pixels in the block, counted row by row.
+    /// The index of each fragment's pixel in the block, row by row.
     pub(crate) pixels: [u8; BATCH + AT_ONCE],
-    /// Their columns and rows in the picture.
+    /// The columns and rows in the picture.
     pub(crate) x: [i32; BATCH + AT_ONCE],
     pub(crate) y: [i32; BATCH + AT_ONCE],
-    /// The slots of the triangles that they show. Entries beyond the last are valid slots, too.
+    /// The slots of the fragments' triangles. Entries beyond the last fragment are valid slots,
+    /// too.
     pub(crate) slots: [i32; BATCH + AT_ONCE],
-    /// The same for each pixel of the block that is listed, if it shows a triangle. The last row is
-    /// room for a run that begins at the last pixel.
+    /// The slot of each pixel of the listed block, if it shows a triangle. The last row is room for
+    /// a run that starts at the last pixel.
     own_slots: [i32; BLOCK_PIXELS + ROW],
-    /// Whether they are of several blocks.
+    /// Whether the fragments belong to several blocks.
     several: bool,
-    /// Whether several fragments may share a pixel: then `shares` says how many samples of its
-    /// pixel each of them has.
+    /// Whether fragments may share a pixel. If so, `shares` holds each fragment's number of samples
+    /// of its pixel.
     pub(crate) shared: bool,
     pub(crate) shares: [i32; BATCH],
     /// The number of slots in use.
     pub(crate) count: usize,
     /// The triangles of the slots, by their numbers in the frame.
     pub(crate) numbers: [u32; SLOTS],
-    /// By the low bits of a triangle's number: above, the number of the triangle that was put last,
-    /// in the middle that of the list, and in the lowest byte its slot.
+    /// A hash table indexed by the low bits of a triangle's number. An entry has, from the top, the
+    /// number of the last triangle put there, the number of the list, and the slot in the lowest
+    /// byte.
     table: [u64; TABLE],
-    /// The number of the list, as it stands in the table.
+    /// The number of the list, as stored in the table.
     list: u64,
-    /// Whether the next list may go on with these slots.
+    /// Whether the next list may continue with these slots.
     goes_on: bool,
-    /// Whether triangles have no slots: each fragment has its own in `each`.
+    /// Whether triangles have no slots: `each` holds each fragment's triangle.
     tiny: bool,
     each: [u32; BATCH + AT_ONCE],
 }
 
-/// Entries of the table that maps triangles to slots. Of two triangles with the same entry, the
-/// later one has it.
+/// The number of entries in the table from triangles to slots. A later triangle replaces an earlier
+/// one in the same entry.
 const TABLE: usize = 128;
 
-/// The numbers of lists in the table, and what one is more than that before.
+/// The bits of list numbers in the table, and the step from one list to the next.
 const LISTS: u64 = 0xffff_ff00;
 const NEXT_LIST: u64 = 0x100;
 
-/// Fragments that are listed at once, for which there is room after the last.
+/// The number of fragments listed at once; there is room for this many after the last.
 const AT_ONCE: usize = 16;
 
 const ROW: usize = BLOCK as usize;
@@ -101,8 +103,8 @@ impl Fragments {
         self.list_on(level, visibility, corner, 0)
     }
 
-    /// The same, but triangles of the list before keep their slots if no more than about `most` are
-    /// then in use.
+    /// Lists the pixels of a block, but keeps the slots of the last list's triangles if about
+    /// `most` slots suffice.
     pub(crate) fn list_on(
         &mut self,
         level: Level,
@@ -116,7 +118,7 @@ impl Fragments {
         })
     }
 
-    /// Lists the pixels of a block as [`Self::list_on`], from its runs.
+    /// Lists the pixels of a block like [`Self::list_on`], from its runs.
     pub(crate) fn list_runs(
         &mut self,
         level: Level,
@@ -127,7 +129,7 @@ impl Fragments {
         dispatch!(level, simd => self.find(simd, runs, corner, most))
     }
 
-    /// Whether the pixels of another block have room in the list: in a batch, and in about `most`
+    /// Returns whether another block's pixels fit in the list: in a batch, and in about `most`
     /// slots.
     pub(crate) const fn have_room(&self, runs: &Runs, most: usize) -> bool {
         self.goes_on
@@ -135,7 +137,7 @@ impl Fragments {
             && self.slots_suffice(runs, most)
     }
 
-    /// Adds the pixels of another block to the list. They must have room.
+    /// Adds the pixels of another block to the list. They must fit.
     pub(crate) fn list_more(&mut self, level: Level, runs: &Runs, corner: [i32; 2]) -> Shown {
         self.several = true;
         dispatch!(level, simd => self.put_runs(simd, runs, corner))
@@ -154,10 +156,10 @@ impl Fragments {
         self.put_runs(simd, runs, corner)
     }
 
-    /// Whether about `most` slots suffice for these runs, too.
+    /// Returns whether about `most` slots also suffice for these runs.
     #[inline(always)]
     const fn slots_suffice(&self, runs: &Runs, most: usize) -> bool {
-        // Of triangles that replace each other in the table, each run takes another slot.
+        // Triangles that replace each other in the table take a slot per run.
         let room = self.count + runs.starts().count_ones() as usize <= SLOTS;
         room && self.count + runs.new_starts().count_ones() as usize <= most
     }
@@ -182,8 +184,7 @@ impl Fragments {
         (self.len, self.several, self.shared, self.tiny) = (0, false, false, false);
     }
 
-    /// Takes back what [`Self::list_more`] has listed: before, there were `len` fragments and
-    /// `count` slots.
+    /// Reverts [`Self::list_more`] to the `len` fragments and `count` slots before it.
     pub(crate) const fn take_back(&mut self, len: usize, count: usize) {
         (self.len, self.count, self.goes_on) = (len, count, false);
     }
@@ -194,23 +195,23 @@ impl Fragments {
         (self.count, self.goes_on, self.tiny) = (0, false, true);
     }
 
-    /// Whether the list has no slots.
+    /// Returns whether the list has no slots.
     pub(crate) const fn are_tiny(&self) -> bool {
         self.tiny
     }
 
-    /// Whether the pixels of another block have room in a list without slots.
+    /// Returns whether another block's pixels fit in a list without slots.
     pub(crate) const fn have_room_for_tiny(&self, runs: &Runs) -> bool {
         self.tiny && self.len + runs.triangles.count_ones() as usize <= BATCH
     }
 
-    /// Adds the pixels of a block to a list without slots. They must have room.
+    /// Adds the pixels of a block to a list without slots. They must fit.
     pub(crate) fn list_tiny(&mut self, level: Level, runs: &Runs, corner: [i32; 2]) {
         self.several = true;
         dispatch!(level, simd => self.put_tiny(simd, runs, corner));
     }
 
-    /// The triangles of the fragments of a list without slots.
+    /// Returns the triangles of the fragments of a list without slots.
     pub(crate) fn each(&self) -> &[u32] {
         &self.each[..self.len]
     }
@@ -220,7 +221,7 @@ impl Fragments {
         self.len = len;
     }
 
-    /// Lists some triangles, each as if it showed in one pixel of no position.
+    /// Lists some triangles, each with one fragment without a position.
     pub(crate) fn list_faces(&mut self, numbers: &[u32]) {
         self.begin_block();
         self.goes_on = false;
@@ -240,19 +241,21 @@ impl Fragments {
         self.put_all(corner);
     }
 
-    /// Assigns slots to the runs of pixels that begin at `starts`.
+    /// Assigns slots to the runs of pixels that start at `starts`.
     #[inline(always)]
     fn share_out(&mut self, numbers: &[u32; MARGIN + BLOCK_PIXELS], mut starts: u64) {
         self.goes_on = true;
         while starts != 0 {
             let at = starts.trailing_zeros() as usize % BLOCK_PIXELS;
             starts &= starts - 1;
+            // A run is at most a row long, so a whole row is filled; the next run overwrites the
+            // rest.
             let slot = self.slot_of(numbers[MARGIN + at]);
             self.own_slots[at..][..ROW].fill(slot);
         }
     }
 
-    /// Forgets the slots of the list before.
+    /// Drops the slots of the last list.
     #[inline(always)]
     fn begin_list(&mut self) {
         (self.count, self.goes_on) = (0, false);
@@ -262,7 +265,7 @@ impl Fragments {
         }
     }
 
-    /// The slot of a triangle; a new one if it has none.
+    /// Returns the slot of a triangle, or a new one.
     #[inline(always)]
     #[expect(
         clippy::cast_possible_truncation,
@@ -272,7 +275,7 @@ impl Fragments {
     fn slot_of(&mut self, number: u32) -> i32 {
         let entry = &mut self.table[number as usize % TABLE];
         let new = u64::from(number) << 32 | self.list;
-        // If it is this triangle's in this list, nothing but the slot is left.
+        // If the entry belongs to this triangle in this list, only the slot remains after the XOR.
         let known = *entry ^ new;
         let is_known = known < SLOTS as u64;
         let slot = select_unpredictable(is_known, known, self.count as u64) as usize % SLOTS;
@@ -282,7 +285,7 @@ impl Fragments {
         slot as i32
     }
 
-    /// Adds all pixels of a block. They must have room.
+    /// Adds all pixels of a block. They must fit.
     #[inline(always)]
     fn put_all(&mut self, [left, top]: [i32; 2]) {
         let from = self.len.min(BATCH - BLOCK_PIXELS);
@@ -317,8 +320,8 @@ impl Fragments {
         }
     }
 
-    /// Adds the places of some of a block's sixteen pixels from `at` on. Returns which they are,
-    /// and where they are listed.
+    /// Adds the places of some of a block's sixteen pixels, starting at `at`. Returns their mask,
+    /// and their position in the list.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 64")]
     fn put_places<S: Simd>(
@@ -352,7 +355,7 @@ impl Fragments {
         i
     }
 
-    /// Sets how many samples of its pixel each fragment has.
+    /// Sets each fragment's number of samples of its pixel.
     pub(crate) fn share(&mut self, of_positions: &[i32; BLOCK_PIXELS]) {
         self.shared = true;
         for (share, place) in self.shares.iter_mut().zip(&self.pixels[..self.len]) {
@@ -370,12 +373,12 @@ impl Fragments {
         }
     }
 
-    /// Whether the list has `most` fragments, or no slot for the triangle of another.
+    /// Returns whether the list has `most` fragments, or no slot for another triangle.
     pub(crate) const fn is_full(&self, most: usize) -> bool {
         self.len == most || self.count == SLOTS
     }
 
-    /// Adds a fragment that has `share` samples of its pixel. The list must not be full, and its
+    /// Adds a fragment with `share` samples of its pixel. The list must not be full, and its
     /// triangles must have slots.
     #[inline(always)]
     pub(crate) fn add(&mut self, number: u32, corner: [i32; 2], place: usize, share: i32) {
@@ -384,10 +387,11 @@ impl Fragments {
         self.shares[i] = share;
     }
 
-    /// Copies the fragments of another list whose slots have a true `keep`.
+    /// Copies the fragments of another list that have slots marked in `keep`.
     pub(crate) fn take_from(&mut self, other: &Self, keep: &[bool; SLOTS], corner: [i32; 2]) {
         let mut new = [0; SLOTS];
         (self.count, self.goes_on) = (0, false);
+        // Kept triangles move to the first slots.
         for slot in (0..other.count).filter(|slot| keep[*slot]) {
             self.numbers[self.count] = other.numbers[slot];
             new[slot] = i32::try_from(self.count).expect("there are 64 slots");
@@ -404,7 +408,7 @@ impl Fragments {
         }
     }
 
-    /// Whether the list is one whole block, pixel by pixel in order.
+    /// Returns whether the list is one whole block, pixel by pixel in order.
     pub(crate) const fn is_whole(&self) -> bool {
         self.len == BLOCK_PIXELS && !self.several
     }

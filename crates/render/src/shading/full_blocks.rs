@@ -1,8 +1,8 @@
 //! Blocks that one triangle covers fully.
 //!
-//! No list of fragments is made: barycentric coordinates, interpolation and bytes are one pass over
-//! the tile, two rows of a block at a time. The bits are the same as for listed fragments: the same
-//! integers and the same quotients, in the same order.
+//! No list of fragments is made. Barycentric coordinates, interpolation and conversion to bytes are
+//! one pass over the tile, two rows of a block at a time. The bits are the same as for listed
+//! fragments, because the same integers and quotients are used in the same order.
 
 use crate::simd::dispatch;
 use fearless_simd::{
@@ -25,7 +25,7 @@ use crate::texture::lanes::Stored;
 use marraztu_core::accuracy::Interpolation;
 use marraztu_core::base::color::Color;
 
-/// The pixels of a tile, in rows that begin `stride` pixels apart.
+/// The pixels of a tile, in rows that are `stride` pixels apart.
 #[derive(Debug)]
 pub(crate) struct Canvas<'a> {
     pub(crate) pixels: &'a mut [[u8; 4]],
@@ -52,20 +52,20 @@ impl Canvas<'_> {
         }
     }
 
-    /// The index of the first pixel of a block, as [`Blocks::each`] gives it.
+    /// Returns the index of the first pixel of a block from [`Blocks::each`].
     #[inline(always)]
     pub(crate) fn offset_of(&self, first: [i32; 2]) -> usize {
         self.offset(first.map(|i| usize::try_from(i).expect("in the tile")))
     }
 
-    /// The index of a pixel of the tile, by its column and row.
+    /// Returns the index of a pixel of the tile, by column and row.
     #[inline(always)]
     pub(crate) const fn offset(&self, [x, y]: [usize; 2]) -> usize {
         y * self.stride + x
     }
 }
 
-/// Blocks of a tile that one triangle covers fully.
+/// The blocks of a tile that one triangle covers fully.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blocks {
     /// A bit for each block.
@@ -75,7 +75,7 @@ pub(crate) struct Blocks {
 }
 
 impl Blocks {
-    /// Calls `each` with the column and the row of the first pixel of each block, in the tile.
+    /// Calls `each` with the column and row in the tile of the first pixel of each block.
     #[inline(always)]
     pub(crate) fn each(self, mut each: impl FnMut([i32; 2])) {
         let mut left = self.which;
@@ -87,29 +87,29 @@ impl Blocks {
     }
 }
 
-/// Pixels to a side of a block.
+/// The pixels along a side of a block.
 pub(crate) const ROW: usize = BLOCK as usize;
-/// Two rows of a block at a time.
+/// The pairs of rows in a block.
 const PAIRS: usize = ROW / 2;
 const COLUMNS: [f64; ROW] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-/// Columns and rows of the pixels of two rows of a block.
+/// The columns and rows of the pixels in two rows of a block.
 const ACROSS: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const DOWN: [i32; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
 
 /// Computes the second and third barycentric coordinate of pixels in one triangle, linear on the
 /// screen.
 pub(crate) trait Linear<S: Simd>: Copy {
-    /// The coordinates of a whole block, two rows at a time, from its first pixel.
+    /// Computes the coordinates of a whole block, two rows at a time, from its first pixel.
     fn block(&self, simd: S, first: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS];
 }
 
-/// A triangle whose edge functions fit 31 bits at its pixels.
+/// A triangle with edge functions of at most 31 bits at its pixels.
 #[derive(Clone, Copy, Debug)]
 struct Narrow<S: Simd> {
-    /// The edge functions at the first pixel of the picture, and their steps by a pixel to the
-    /// right and by one down.
+    /// The edge functions at the first pixel of the picture, and their steps for one pixel to the
+    /// right and one pixel down.
     edges: [[i32; 3]; 2],
-    /// Their offsets within two rows.
+    /// The offsets of the edge functions within two rows.
     gains: [i32x16<S>; 2],
     per_area: f32,
 }
@@ -125,10 +125,10 @@ impl<S: Simd> Narrow<S> {
         Self { edges, gains, per_area: attributes.per_area[0] }
     }
 
-    /// A coordinate of two rows of pixels, from their first.
+    /// Computes a coordinate in two rows of pixels, from their first.
     #[inline(always)]
     fn at(&self, i: usize, [x, y]: [i32; 2]) -> f32x16<S> {
-        // Modulo 2^32: products may wrap around, but the sum fits.
+        // Modulo 2^32: products may wrap, but the sum fits.
         let [c, a, b] = self.edges[i];
         let first = a.wrapping_mul(x).wrapping_add(b.wrapping_mul(y));
         (self.gains[i] + first.wrapping_add(c)).to_float::<f32x16<S>>() * self.per_area
@@ -148,15 +148,15 @@ impl<S: Simd> Linear<S> for Narrow<S> {
     }
 }
 
-/// A triangle whose edge functions need more bits. They are integers below 2^53, which f64 holds
-/// exactly.
+/// A triangle with edge functions of more than 31 bits. They are integers below 2^53, which f64
+/// holds exactly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wide<'a, S: Simd> {
     triangle: &'a Triangle,
     per_area: f64,
-    /// The offsets of the edge functions in the first row of a block, and in the second.
+    /// The offsets of the edge functions in the first and second row of a block.
     gains: [[f64x8<S>; 2]; 2],
-    /// Their steps by two pixels down.
+    /// The steps of the edge functions for two pixels down.
     down: [f64x8<S>; 2],
 }
 
@@ -175,19 +175,19 @@ impl<'a, S: Simd> Wide<'a, S> {
         }
     }
 
-    /// An edge function in the two rows below.
+    /// Steps an edge function to the two rows below.
     #[inline(always)]
     fn below(&self, i: usize, [a, b]: [f64x8<S>; 2]) -> [f64x8<S>; 2] {
         [a + self.down[i], b + self.down[i]]
     }
 
-    /// A coordinate of two rows, from the edge function.
+    /// Computes a coordinate in two rows, from the edge function.
     #[inline(always)]
     fn linear(&self, [a, b]: [f64x8<S>; 2]) -> f32x16<S> {
         (a * self.per_area).narrow(b * self.per_area)
     }
 
-    /// The coordinates of sixteen arbitrary pixels.
+    /// Computes the coordinates of sixteen arbitrary pixels.
     #[inline(always)]
     #[expect(
         clippy::cast_precision_loss,
@@ -224,16 +224,16 @@ impl<S: Simd> Linear<S> for Wide<'_, S> {
     }
 }
 
-/// The perspective-correct weights of the second and the third corner, and w.
+/// The perspective-correct weights of the second and third corner, and w.
 type Weighted<S> = ([f32x16<S>; 2], f32x16<S>);
 
 /// Computes the perspective-correct weights of pixels in one triangle.
 trait Points<S: Simd>: Copy {
-    /// Those of a whole block, two rows at a time, from its first pixel.
+    /// Computes the weights of a whole block, two rows at a time, from its first pixel.
     fn block(&self, simd: S, first: [i32; 2]) -> [Weighted<S>; PAIRS];
 }
 
-/// From linear coordinates and 1/w of each corner.
+/// The weights from linear coordinates and 1/w of each corner.
 #[derive(Clone, Copy)]
 struct Inside<S: Simd, L> {
     interpolation: Interpolation,
@@ -255,7 +255,7 @@ impl<S: Simd, L: Linear<S>> Points<S> for Inside<S, L> {
     }
 }
 
-/// Those of a clipped triangle.
+/// The weights of a clipped triangle.
 impl<S: Simd> Points<S> for &HomogeneousWeights {
     #[inline(always)]
     fn block(&self, simd: S, [x, y]: [i32; 2]) -> [Weighted<S>; PAIRS] {
@@ -275,8 +275,8 @@ fn two_rows<S: Simd>(simd: S, of: &HomogeneousWeights, [x, y]: [i32; 2]) -> Weig
     ([b.narrow(b_below), c.narrow(c_below)], w.narrow(w_below))
 }
 
-/// Evaluates an expression with the [`Points`] of the first triangle, and returns whether it has
-/// any: a triangle without area has not.
+/// Evaluates an expression with the [`Points`] of the first triangle. Returns false for a triangle
+/// without area, which has no points.
 macro_rules! with_points {
     ($level:expr, $attributes:expr, $by:expr, $simd:ident, $points:ident => $what:expr) => {{
         let attributes: &TriangleAttributes<f32> = $attributes;
@@ -305,19 +305,19 @@ macro_rules! with_points {
     }};
 }
 
-/// How the corners of a triangle are weighted.
+/// The weighting of a triangle's corners.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Corners<'a> {
-    /// Their weights, if it is clipped.
+    /// The weights, if the triangle is clipped.
     pub(crate) cut: Option<&'a HomogeneousWeights>,
-    /// By which interpolation, if not.
+    /// The interpolation, if it is not clipped.
     pub(crate) interpolation: Interpolation,
     /// The rounding thresholds of a block's pixels.
     pub(crate) thresholds: &'a [f32; BLOCK_PIXELS],
 }
 
-/// Interpolates the colours of the first triangle in blocks that it covers fully. Returns false,
-/// with nothing done, if it has no area.
+/// Interpolates the colours of the first triangle in blocks that it covers fully. Does nothing and
+/// returns false if the triangle has no area.
 pub(crate) fn mix(
     level: Level,
     attributes: &TriangleAttributes<f32>,
@@ -330,31 +330,31 @@ pub(crate) fn mix(
     })
 }
 
-/// The lights of fully covered blocks.
+/// The lighting of fully covered blocks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BlockLight<'a, T> {
-    /// How the corners of the triangle are weighted.
+    /// The weighting of the triangle's corners.
     pub(crate) by: Corners<'a>,
-    /// How pixels become positions and normals; `None` if no light reads them.
+    /// The conversion from pixels to positions and normals; `None` if no light reads them.
     pub(crate) look: Option<Look<T>>,
     /// The colour of the surface itself.
     pub(crate) tint: [T; 3],
-    /// The texture by which it is multiplied.
+    /// The texture that multiplies it.
     pub(crate) texture: Option<PlacedTexture<'a>>,
-    /// The vertex colours by which it is multiplied.
+    /// The vertex colours that multiply it.
     pub(crate) vertex_colors: Option<&'a CornerValues<T>>,
-    /// The lights, if it is lit.
+    /// The lights, if the surface is lit.
     pub(crate) lights: Option<TileLight<'a>>,
     /// The products of the lights and the material.
     pub(crate) terms: &'a [LightTerm<T>],
-    /// What is added to every colour, if the surface has light of its own.
+    /// The emitted light added to every colour, if the surface has any.
     pub(crate) glow: Option<[T; 3]>,
-    /// How linear colours are encoded, if they are linear.
+    /// The encoding, if colours are linear.
     pub(crate) encoding: Option<&'a Encoding>,
 }
 
-/// Lights blocks that the first triangle, whose corners carry normals, covers fully. Returns false,
-/// with nothing done, if it has no area.
+/// Lights blocks that the first triangle, with normals at its corners, covers fully. Does nothing
+/// and returns false if the triangle has no area.
 pub(crate) fn light(
     level: Level,
     attributes: &TriangleAttributes<f32>,
@@ -393,6 +393,7 @@ fn lit<S: Simd>(
         #[inline(always)]
         |[column, row]| {
             let [x, y] = [left + column, top + row];
+            // First pass over the block: positions, normals, texture positions and vertex colours.
             if look.is_some() || is_colored {
                 let pairs = points.block(simd, [x, y]);
                 for ((pair, point), y) in pairs.into_iter().enumerate().zip((y..).step_by(2)) {
@@ -421,6 +422,7 @@ fn lit<S: Simd>(
                     }
                 }
             }
+            // Texels, and then light, for the whole block at once.
             if let Some(texture) = &texture {
                 texture.sampler.sample::<S, Stored>(simd, places, BLOCK_PIXELS, texels);
             }
@@ -431,6 +433,7 @@ fn lit<S: Simd>(
                 lights.light_batch(terms, simd.level(), batch, None);
             }
             let mut at = canvas.offset([column as usize, row as usize]);
+            // Second pass: surface colour times light, two rows at a time.
             for pair in 0..PAIRS {
                 let mut pixels = [0; 16];
                 let mut own = tint;
@@ -456,7 +459,7 @@ fn lit<S: Simd>(
     );
 }
 
-/// A colour with what is added to it, encoded if it is linear.
+/// Adds the glow to a colour, and encodes it if it is linear.
 #[inline(always)]
 fn finished<S: Simd>(
     lanes: Sixteen<S>,
@@ -464,7 +467,7 @@ fn finished<S: Simd>(
     glow: Option<[f32; 3]>,
     encoding: Option<&Encoding>,
 ) -> Vec3<f32x16<S>> {
-    // No closures here: they would not be compiled for the instruction set of their caller.
+    // No closures here: they would not be compiled for the caller's instruction set.
     if let Some(glow) = glow {
         color = color.plus(set(lanes, glow));
     }
@@ -481,7 +484,7 @@ fn of_first<S: Simd>(lanes: Sixteen<S>, rows: &[[f32; SLOTS]; 3]) -> Vec3<f32x16
     set(lanes, [rows[0][0], rows[1][0], rows[2][0]])
 }
 
-/// The values at the corners of the first triangle.
+/// Returns the values at the corners of the first triangle.
 #[inline(always)]
 fn corners<S: Simd>(lanes: Sixteen<S>, values: &CornerValues<f32>) -> [Vec3<f32x16<S>>; 3] {
     let [a, b, c] = values;
@@ -503,6 +506,7 @@ fn mixed<S: Simd>(
         #[inline(always)]
         |[column, row]| {
             let mut at = canvas.offset([column as usize, row as usize]);
+            // Weights for the whole block, then two rows of pixels at a time.
             let pairs = points.block(simd, [left + column, top + row]);
             for (pair, (weights, _)) in pairs.into_iter().enumerate() {
                 let mut pixels = [0; 16];

@@ -1,4 +1,4 @@
-//! What surfaces add to their colour beside the light of lamps, and the maps of their highlights.
+//! The light that surfaces emit, and the maps of their highlights.
 
 use super::context::ShadingContext;
 use super::groups::Group;
@@ -13,7 +13,7 @@ use crate::simd::{BATCH, Vec3};
 use crate::texture::sample::brightness;
 
 impl<T: ShadingNumber> Shader<T> {
-    /// As [`MapRows::read`], at the fragments of the list.
+    /// Calls [`MapRows::read`] for the fragments of the list.
     fn read_map(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -25,8 +25,8 @@ impl<T: ShadingNumber> Shader<T> {
         maps.read(context, group, &Points { fragments, attributes, barycentrics }, of, base);
     }
 
-    /// Finds what is added to the colour of each pixel: Ke times its map, and the ambient light
-    /// that has a map of its own, times tint and vertex colours.
+    /// Computes the light added to the colour of each pixel: Ke times its map, and mapped ambient
+    /// light times tint and vertex colours.
     pub(super) fn find_glow(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -36,6 +36,7 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         self.maps.glow = [[T::default(); BATCH]; 3];
         let Extras { emission, ambient, .. } = &shaded.extras;
+        // Emission is independent of the lights.
         if let Some(emission) = emission {
             match &emission.map {
                 Some(map) => {
@@ -51,6 +52,7 @@ impl<T: ShadingNumber> Shader<T> {
                 }
             }
         }
+        // Mapped ambient light replaces the ambient stages of the surface.
         if let Some(ambient) = ambient {
             let tinted = std::array::from_fn(|i| ambient.color[i] * shaded.tint[i]);
             match &ambient.map {
@@ -74,7 +76,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Adds the texels that were read last to the glow.
+    /// Adds the last read texels to the glow.
     fn add_glow(&mut self) {
         let MapRows { glow, texels, .. } = &mut *self.maps;
         for (row, more) in glow.iter_mut().zip(texels) {

@@ -1,4 +1,4 @@
-//! Groups the fragments of a block that are coloured together: those of one draw and one pipeline.
+//! Groups fragments that are coloured together, because they share a draw and a pipeline.
 
 use super::context::ShadingContext;
 use super::fragments::Fragments;
@@ -12,13 +12,13 @@ pub(crate) struct Group<'a> {
     pub(crate) draw_index: u32,
     /// The number of the draw's first triangle.
     pub(crate) base: u32,
-    /// The number after that of its last.
+    /// The number after the draw's last triangle.
     pub(crate) end: u32,
     pub(crate) pipeline: u32,
     pub(crate) path: ColorPath,
 }
 
-/// The group that a triangle belongs to.
+/// Returns the group of a triangle.
 pub(crate) fn group_of<'a, T>(context: &ShadingContext<'a, T>, number: u32) -> Group<'a> {
     let (draw_index, start) = context.frame.draw_of(number);
     let draw = &context.plan.draws[draw_index as usize];
@@ -27,7 +27,7 @@ pub(crate) fn group_of<'a, T>(context: &ShadingContext<'a, T>, number: u32) -> G
     Group { draw, draw_index, base: start.number, end: start.end, pipeline, path }
 }
 
-/// The group of all fragments of a list, if they belong to one.
+/// Returns the group of all fragments of a list, if they belong to one.
 pub(crate) fn one_group<'a, T>(
     context: &ShadingContext<'a, T>,
     fragments: &Fragments,
@@ -36,7 +36,7 @@ pub(crate) fn one_group<'a, T>(
     are_of(context, &group, &fragments.numbers[..fragments.count]).then_some(group)
 }
 
-/// Whether all of some triangles belong to a group.
+/// Returns whether all of some triangles belong to a group.
 pub(crate) fn are_of<T>(
     context: &ShadingContext<'_, T>,
     group: &Group<'_>,
@@ -47,7 +47,7 @@ pub(crate) fn are_of<T>(
     if is_uniform && context.plan.draws.len() == 1 {
         return true;
     }
-    // Without a branch for each, so that several are compared at once.
+    // Without a branch per triangle, so the comparisons vectorise.
     let of_draw = |number: &u32| (base <= *number) & (*number < end);
     let alike = |number: &u32| draw.pipeline_of(number - base) == pipeline;
     numbers.iter().fold(true, |all, number| all & of_draw(number))

@@ -1,11 +1,11 @@
 //! Interpolates attributes: from fragments and their triangles to positions, normals and light.
 //!
 //! Attributes at corners are weighted by the barycentric coordinates of each pixel
-//! ([`Barycentrics`]). A value that all corners share comes out unchanged, bit for bit, since only
-//! differences are weighted.
+//! ([`Barycentrics`]). Only differences are weighted, so a value shared by all corners is returned
+//! unchanged, bit for bit.
 //!
-//! The position of a pixel in space is the point of its ray at its depth, so the direction to the
-//! observer is exact for any triangle.
+//! The position of a pixel in space is the point of its ray at its depth. The direction to the
+//! observer is therefore exact for any triangle.
 
 use fearless_simd::Level;
 use glam::DMat3;
@@ -23,11 +23,11 @@ use crate::screen::perspective::between;
 use crate::simd::gather::{SLOTS, paged};
 use crate::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 
-/// Three numbers at the corners of some triangles: those of the first corner, and the differences
-/// of the second and the third from them.
+/// Three numbers at the corners of some triangles: the first corner's numbers, and the differences
+/// of the second and third from them.
 pub(crate) type CornerValues<T> = [[[T; SLOTS]; 3]; 3];
 
-/// Attributes at some pixels, interpolated between the corners.
+/// Interpolates attributes at some pixels.
 #[inline(always)]
 fn mixed<M: Lanes, const PAGES: usize>(
     lanes: M,
@@ -46,7 +46,7 @@ fn mixed<M: Lanes, const PAGES: usize>(
 pub(crate) enum Mixed<'a, T> {
     /// Light.
     Rows(&'a mut Rows<T>),
-    /// Colours, with the thresholds of their rounding.
+    /// Colours, with their rounding thresholds.
     Colors(&'a mut Colors, &'a [T; BATCH]),
 }
 
@@ -92,7 +92,7 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Mix<'_, T, PAGES> {
     }
 }
 
-/// Multiplies colours by others that are interpolated between the corners.
+/// Multiplies colours by colours that are interpolated between the corners.
 pub(crate) fn multiply<T: Number>(
     (level, count): (Level, usize),
     fragments: &Fragments,
@@ -151,12 +151,12 @@ pub(crate) fn surface_samples<T: Number>(
     }
 }
 
-/// The columns of a matrix.
+/// Returns the columns of a matrix.
 fn matrix<T: Number>(m: DMat3) -> [[T; 3]; 3] {
     [m.x_axis, m.y_axis, m.z_axis].map(|column| column.to_array().map(T::from_f64))
 }
 
-/// The rays of pixels: x = column a + b, y = row c + d, each times w in perspective, where z = -w.
+/// The rays of pixels: x = column a + b, y = row c + d, each times w in perspective; z = -w.
 #[derive(Clone, Copy, Debug)]
 struct Rays<T> {
     parallel: bool,
@@ -171,7 +171,7 @@ impl<T: Number> Rays<T> {
         let (width, height) = (plan.size.width as f64, plan.size.height as f64);
         let mut x = [2.0 / width / px, -1.0 / px];
         let mut y = [-2.0 / height / py, 1.0 / py];
-        // A sample lies beside the centre of its pixel.
+        // A sample is offset from the centre of its pixel.
         for (ray, shift) in [&mut x, &mut y].into_iter().zip(plan.shift) {
             if shift != 0 {
                 ray[1] += ray[0] * f64::from(shift) / f64::from(SUBPIXELS);
@@ -195,9 +195,9 @@ impl<T: Number> Look<T> {
         Self { rays: Rays::new(plan), normals: matrix(draw.view_from_normal) }
     }
 
-    /// Position, normal and direction to the observer of some pixels, from their normals in object
-    /// space, their positions in the picture and their w; in orthographic projection `depth` gives
-    /// z.
+    /// Computes position, normal and direction to the observer of some pixels, from their normals
+    /// in object space, their positions in the picture and their w. In orthographic projection
+    /// `depth` returns z.
     #[inline(always)]
     pub(crate) fn at<M: Lanes<Number = T>>(
         &self,
@@ -213,6 +213,8 @@ impl<T: Number> Look<T> {
         let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
         let x = column * lanes.set(rays.x[0]) + lanes.set(rays.x[1]);
         let y = row * lanes.set(rays.y[0]) + lanes.set(rays.y[1]);
+        // In perspective all rays start at the observer; in orthographic projection they are
+        // parallel.
         let (position, to_eye) = if rays.parallel {
             (Vec3([x, y, depth()]), Vec3([zero, zero, one]))
         } else {
@@ -244,6 +246,7 @@ impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
             ];
             let normal = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
             let half = lanes.lift(0.5);
+            // A shared pixel is lit where its triangle was clamped, others at their centre.
             let place = match SHARED {
                 true => [
                     lanes.load(&barycentrics.positions[0], at),
@@ -254,6 +257,7 @@ impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
                 }
             };
             let w = lanes.load(&barycentrics.w, at);
+            // z is only interpolated in orthographic projection.
             let sample = look.at(lanes, normal, place, w, || {
                 depth_between(picked::<M, PAGES>(lanes, &attributes.z, slots), weights)
             });
@@ -262,7 +266,7 @@ impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
     }
 }
 
-/// z interpolated between corners, in orthographic projection.
+/// Interpolates z between corners, for orthographic projection.
 #[inline(always)]
 pub(crate) fn depth_between<R: Real>(Vec3([z0, z1, z2]): Vec3<R>, weights: [R; 2]) -> R {
     z0 + (z1 - z0) * weights[0] + (z2 - z0) * weights[1]

@@ -26,9 +26,9 @@ use crate::texture::placement::{Placement, UvRows};
 use marraztu_core::accuracy::{Coverage, Interpolation, Settings};
 use marraztu_core::scene::Texture;
 
-/// Numbers in which attributes are interpolated.
+/// A number type in which attributes are interpolated.
 pub(crate) trait Interpolated: AttributeNumber {
-    /// Computes all barycentric coordinates sixteen pixels at a time, if the triangles allow that.
+    /// Computes all barycentric coordinates sixteen pixels at a time, if the triangles allow it.
     /// Returns whether they do.
     fn find(
         interpolation: Interpolation,
@@ -44,8 +44,8 @@ pub(crate) trait Interpolated: AttributeNumber {
         attributes: &TriangleAttributes<Self>,
         to: &mut Barycentrics<Self>,
     );
-    /// Interpolates the colours of one triangle in blocks that it covers fully, if that can be done
-    /// in one pass. Returns whether it can.
+    /// Interpolates the colours of one triangle in blocks that it covers fully, if one pass is
+    /// enough. Returns whether it did.
     fn mix_blocks(
         level: Level,
         attributes: &TriangleAttributes<Self>,
@@ -53,8 +53,8 @@ pub(crate) trait Interpolated: AttributeNumber {
         by: Corners<'_>,
         to: &mut Canvas<'_>,
     ) -> bool;
-    /// Lights blocks that one triangle covers fully, if that can be done in one pass per block.
-    /// Returns whether it can.
+    /// Lights blocks that one triangle covers fully, if one pass per block is enough. Returns
+    /// whether it did.
     fn light_blocks(
         level: Level,
         attributes: &TriangleAttributes<Self>,
@@ -62,24 +62,24 @@ pub(crate) trait Interpolated: AttributeNumber {
         light: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
         to: &mut Canvas<'_>,
     ) -> bool;
-    /// Places a texture on triangles whose corners have these texture coordinates, sixteen at a
-    /// time; steps are only needed for mip maps. Returns the slots, a bit for each, of the
-    /// triangles that it was done for.
+    /// Places a texture on triangles with these texture coordinates, sixteen at a time. Steps are
+    /// only needed for mipmaps. Returns a bit mask of the slots that were handled.
     fn place_texture(
         level: Level,
         attributes: &TriangleAttributes<Self>,
         texture: (&Texture, (&UvRows, bool)),
         to: &mut Placement,
     ) -> u64;
-    /// Multiplies the colours of fragments by those of a texture, if that can be done sixteen
-    /// pixels at a time. Returns the slots, a bit for each, of the triangles that it was done for.
+    /// Multiplies the colours of fragments by texels, if this works sixteen pixels at a time.
+    /// Returns a bit mask of the slots that were handled.
     fn multiply_texels(
         level: Level,
         count: usize,
         samples: &TextureSamples<'_, Self>,
         to: (&mut TexelScratch, &mut Rows<Self>),
     ) -> u64;
-    /// The slopes of heights at fragments, as [`TextureSamples::slopes`], likewise.
+    /// Computes the slopes of heights at fragments, like [`TextureSamples::slopes`]. Returns a bit
+    /// mask of the slots that were handled.
     fn find_slopes(
         level: Level,
         count: usize,
@@ -107,7 +107,7 @@ impl<T: Interpolated> Barycentrics<T> {
         }
     }
 
-    /// The same for all kinds of triangles, and for pixels whose centres lie outside.
+    /// Computes the coordinates for all kinds of triangles, and for pixels with centres outside.
     fn find_step_by_step(
         &mut self,
         level: Level,
@@ -116,6 +116,7 @@ impl<T: Interpolated> Barycentrics<T> {
         (plan, draw): (&FramePlan, &Draw),
     ) {
         let interpolation = plan.variants.interpolation;
+        // Linear coordinates first; then pixels outside are clamped; then perspective is applied.
         T::find_linear(level, fragments, attributes, self);
         self.find_wide(fragments, attributes);
         if fragments.shared {
@@ -133,7 +134,8 @@ impl<T: Interpolated> Barycentrics<T> {
         }
     }
 
-    /// Computes those in clipped triangles, one pixel at a time, in homogeneous coordinates.
+    /// Computes the coordinates in clipped triangles, one pixel at a time, by homogeneous
+    /// coordinates.
     #[cold]
     fn find_cut(
         &mut self,
@@ -147,6 +149,7 @@ impl<T: Interpolated> Barycentrics<T> {
             let slot = slots.trailing_zeros();
             slots &= slots - 1;
             let number = attributes.numbers[slot as usize];
+            // One set of planes per triangle serves all of its pixels.
             let of = HomogeneousWeights::new(plan, draw, number, [0; 2]);
             for i in (0..fragments.len).filter(|i| fragments.slots[*i].cast_unsigned() == slot) {
                 let ([second, third], w) = of.at([fragments.x[i], fragments.y[i]]);
@@ -259,6 +262,7 @@ impl Interpolated for f32 {
         attributes: &TriangleAttributes<Self>,
         to: &mut Barycentrics<Self>,
     ) -> bool {
+        // A list of a single wide triangle needs no gathering.
         let wide = attributes.count == 1 && attributes.wide == 1;
         if wide && let Some(triangle) = Triangle::on(attributes.grid, attributes.corners(0)) {
             dispatch!(level, simd => {
@@ -274,6 +278,7 @@ impl Interpolated for f32 {
                 find_narrow::<_, PAGES>(interpolation, simd, fragments, attributes, to);
             });
         });
+        // Wide triangles among others are computed again in f64.
         let mut wide = attributes.wide;
         while wide != 0 {
             let slot = wide.trailing_zeros();
@@ -393,8 +398,8 @@ fn find_narrow<S: Simd, const PAGES: usize>(
     }
 }
 
-/// Computes the coordinates in one triangle, whose edge functions need more bits, of a list that
-/// shows others, too. Those in the others are known.
+/// Computes the coordinates in one wide triangle of a list that shows others, too. The coordinates
+/// in the other triangles are already known.
 #[inline(always)]
 #[expect(clippy::cast_precision_loss, reason = "they have fewer than 53 bits")]
 fn find_among<S: Simd, const PAGES: usize>(
@@ -407,6 +412,7 @@ fn find_among<S: Simd, const PAGES: usize>(
 ) {
     let lanes = Sixteen(simd);
     let [[_, er, fr], [_, ed, fd]] = triangle.steps();
+    // Relative to the first fragment: the integers stay small enough for f64.
     let [left, top] = [fragments.x[0], fragments.y[0]];
     let [_, e, f] = triangle.edges_at(left, top);
     let per_area = 1.0 / triangle.doubled_area() as f64;
@@ -429,15 +435,15 @@ fn find_among<S: Simd, const PAGES: usize>(
     }
 }
 
-/// (a x + b y + c) d at sixteen places: the sum is of integers that f64 holds exactly.
+/// Computes (a x + b y + c) d at sixteen places. The sum has integers that f64 holds exactly.
 #[inline(always)]
 fn plane<S: Simd>([a, b, c, d]: [f64; 4], x: [f64x8<S>; 2], y: [f64x8<S>; 2]) -> f32x16<S> {
     let low = (x[0] * a + y[0] * b + c) * d;
     low.narrow((x[1] * a + y[1] * b + c) * d)
 }
 
-/// An edge function of narrow triangles. It is exact in 32 bits: products may wrap around, but the
-/// sum fits.
+/// Computes an edge function of narrow triangles. It is exact in 32 bits: products may wrap, but
+/// the sum fits.
 #[inline(always)]
 fn edge<S: Simd, const PAGES: usize>(
     simd: S,
@@ -451,7 +457,7 @@ fn edge<S: Simd, const PAGES: usize>(
     (a * x + b * y + c).to_float()
 }
 
-/// Computes the coordinates in one triangle whose edge functions need more bits.
+/// Computes the coordinates in one wide triangle.
 #[inline(always)]
 fn find_in_one<S: Simd>(
     interpolation: Interpolation,
@@ -465,6 +471,7 @@ fn find_in_one<S: Simd>(
     let wide = Wide::new(simd, triangle);
     let [w0, w1, w2] = attributes.by_w;
     let by_w = set(lanes, [w0[0], w1[0], w2[0]]);
+    // A whole block needs no pixel positions.
     if fragments.is_whole() {
         for (pair, linear) in
             wide.block(simd, [fragments.x[0], fragments.y[0]]).into_iter().enumerate()
@@ -479,7 +486,7 @@ fn find_in_one<S: Simd>(
     }
 }
 
-/// Numbers that fragments are shaded in.
+/// A number type that fragments are shaded in.
 pub(crate) trait ShadingNumber: Light + Interpolated {}
 
 impl<T: Light + Interpolated> ShadingNumber for T {}

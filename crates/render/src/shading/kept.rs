@@ -1,9 +1,9 @@
-//! The colours that earlier passes over a picture have lit.
+//! A cache of colours from earlier passes over a picture.
 //!
 //! Sixteen and sixty-four samples per pixel are drawn four at a time. Light is evaluated at the
-//! centre of a pixel, or at the point of the triangle that is nearest to it, so that every pass
-//! would compute the same colour of a triangle in a pixel. It is kept, and only what earlier passes
-//! did not show is lit.
+//! centre of a pixel, or at the triangle's point nearest to it. Every pass would therefore compute
+//! the same colour for a triangle in a pixel. The colour is cached, and only triangles that earlier
+//! passes did not show are lit.
 
 use crate::simd::dispatch;
 use fearless_simd::{Level, SimdBase as _, SimdMask as _, u32x16};
@@ -11,16 +11,16 @@ use fearless_simd::{Level, SimdBase as _, SimdMask as _, u32x16};
 use super::colors::Colors;
 use crate::screen::tiles::BLOCK_PIXELS;
 
-/// For each pixel of a block the colour of one triangle.
+/// The colour of one triangle for each pixel of a block.
 #[derive(Clone, Debug)]
 pub(crate) struct Kept {
-    /// The triangles' numbers; [`NOTHING`] if nothing is kept.
+    /// The triangles' numbers; [`NOTHING`] without a cached colour.
     numbers: [u32; BLOCK_PIXELS],
-    /// Their colours in the fixed-point form of [`Colors`].
+    /// The colours, in the fixed-point format of [`Colors`].
     parts: [[u32; 4]; BLOCK_PIXELS],
 }
 
-/// The number of the background, whose colour is not kept.
+/// The number of the background, which is never cached.
 const NOTHING: u32 = u32::MAX;
 
 impl Default for Kept {
@@ -30,12 +30,12 @@ impl Default for Kept {
 }
 
 impl Kept {
-    /// Whether the colours of all pixels are those of one triangle.
+    /// Returns whether all pixels hold the colour of one triangle.
     pub(crate) fn are_all_of(&self, number: u32) -> bool {
         self.numbers.iter().all(|own| *own == number)
     }
 
-    /// The pixels whose colour is that of the triangle with their number.
+    /// Returns the pixels that hold the colour of the triangle with their number.
     pub(crate) fn known(&self, level: Level, numbers: &[u32; BLOCK_PIXELS]) -> u64 {
         dispatch!(level, simd => {
             let mut known = 0;
@@ -49,12 +49,12 @@ impl Kept {
         })
     }
 
-    /// The colours of all pixels.
+    /// Returns the colours of all pixels.
     pub(crate) const fn parts(&self) -> &[[u32; 4]; BLOCK_PIXELS] {
         &self.parts
     }
 
-    /// Keeps the colours of some fragments, each in its pixel and for the triangle of its slot.
+    /// Caches the colours of some fragments, each in its pixel and for the triangle of its slot.
     pub(crate) fn keep(&mut self, colors: &Colors, pixels: &[u8], slots: &[i32], numbers: &[u32]) {
         for (i, (place, slot)) in pixels.iter().zip(slots).enumerate() {
             let place = usize::from(*place) % BLOCK_PIXELS;

@@ -1,8 +1,8 @@
-//! Colours blocks that transparent triangles reach: first what is opaque, then layer by layer from
-//! far to near.
+//! Colours blocks that transparent triangles reach: first the opaque surface, then layer by layer
+//! from far to near.
 //!
-//! Every layer is shaded as any block is, so all that surfaces can have works alike on transparent
-//! ones. With four samples per pixel, each sample has layers of its own; samples that show the same
+//! Every layer is shaded like any block, so transparent surfaces support all surface properties.
+//! With four samples per pixel, each sample has separate layers. Samples that show the same
 //! triangles in the same order throughout a block are coloured once.
 
 use crate::simd::dispatch;
@@ -28,10 +28,10 @@ use marraztu_core::accuracy::Transparency;
 pub(super) struct Layered {
     pub(super) layers: Layers,
     blend: Blend,
-    /// The numbers of all that the sample shows, layer by layer from what is opaque; empty if that
-    /// is not known.
+    /// The numbers of the sample's primitives, layer by layer from the opaque one; empty if they
+    /// are not known.
     sequence: Vec<u64>,
-    /// The same of the sample before.
+    /// The sequence of the sample before.
     before: Vec<u64>,
 }
 
@@ -55,6 +55,7 @@ impl Layered {
             let mut more = self.layers.take(level, order, at, &opaque);
             self.note_sequence(plan, samples, &opaque);
             let Self { layers, blend, sequence, before } = self;
+            // A sample with the same sequence as the one before has the same colours.
             if sequence.is_empty() || sequence != before {
                 let mut behind = Sums::new(plan.variants.are_linear());
                 shader.add_entries(context, &opaque, corner, &mut behind);
@@ -74,11 +75,11 @@ impl Layered {
         shader.rays.paints_layers = false;
     }
 
-    /// Notes what a sample shows, if another sample may be compared with it.
+    /// Records the primitives of a sample, if another sample may be compared with it.
     fn note_sequence(&mut self, plan: &FramePlan, samples: usize, opaque: &[u64; BLOCK_PIXELS]) {
         let Self { layers, sequence, .. } = self;
         sequence.clear();
-        // The weights of a mean differ from sample to sample.
+        // The weights of a mean differ between samples.
         if samples > 1 && layers.are_all() && way(plan) == Way::Over {
             let number = |word: &u64| word & u64::from(u32::MAX);
             sequence.extend(opaque.iter().map(number));
@@ -89,7 +90,7 @@ impl Layered {
     }
 }
 
-/// How the layers of a frame are blended.
+/// Returns the blending method of a frame's layers.
 const fn way(plan: &FramePlan) -> Way {
     match plan.transparency {
         Transparency::Weighted => Way::Weighted,
@@ -97,7 +98,8 @@ const fn way(plan: &FramePlan) -> Way {
     }
 }
 
-/// The distances of words of the visibility buffer along the observer's axis, in view space.
+/// Returns the distances of words of the visibility buffer along the observer's axis, in view
+/// space.
 fn distances(level: Level, plan: &FramePlan, words: &[u64; BLOCK_PIXELS]) -> [f64; BLOCK_PIXELS] {
     let format = plan.variants.depth;
     let mut depths = [0.0; BLOCK_PIXELS];
@@ -109,7 +111,7 @@ fn distances(level: Level, plan: &FramePlan, words: &[u64; BLOCK_PIXELS]) -> [f6
     depths
 }
 
-/// Turns depths into distances; zz and zw are entries of the projection.
+/// Converts depths to distances; zz and zw are entries of the projection.
 #[inline(always)]
 fn in_view(eye: Eye, [zz, zw]: [f64; 2], depths: &mut [f64; BLOCK_PIXELS]) {
     match eye {
@@ -143,7 +145,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Lays the triangles of some words, none where they are 0, over a block.
+    /// Blends the triangles of some words over a block; words of 0 have no triangle.
     fn layer(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -158,7 +160,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Gives every fragment one share. With several samples its pixel's centre may lie outside of
+    /// Gives every fragment one share. With several samples, its pixel's centre may be outside of
     /// its triangle.
     fn share_evenly(&mut self, context: &ShadingContext<'_, T>) {
         const ONE: [i32; BLOCK_PIXELS] = [1; BLOCK_PIXELS];

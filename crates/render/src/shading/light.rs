@@ -1,7 +1,7 @@
 //! Lighting: per face (flat), per vertex (Gouraud), and of batches of pixels (Phong).
 //!
-//! Vertices are lit when the first pixel needs one of them, in batches of neighbours, so back
-//! faces, hidden parts and anything outside of the picture are never lit. The light is the same
+//! Vertices are lit when the first pixel needs one of them, in batches of neighbours. Back faces,
+//! hidden parts and vertices outside of the picture are therefore never lit. The light is the same,
 //! whichever thread needs it first.
 
 use crate::accel::Accelerated as _;
@@ -25,17 +25,17 @@ use marraztu_core::accuracy::LightAt;
 use marraztu_core::base::math::each;
 use marraztu_core::scene::{Facet, Normals, dvec3};
 
-/// Light at the vertices of a frame, and the transforms that lighting faces needs.
+/// The light at the vertices of a frame, and the transforms for lighting faces.
 #[derive(Debug, Default)]
 pub(crate) struct Lit<T> {
     tables: Vec<Table<T>>,
-    /// How many of the tables belong to this frame.
+    /// The number of tables used by this frame.
     used: usize,
     /// The transform of each draw to view space.
     to_view: Vec<ToView<T>>,
 }
 
-/// The number of vertices that are lit together: few enough that most of them are needed.
+/// The number of vertices lit together: few enough that most of them are needed.
 const CHUNK: usize = 64;
 
 /// The light of some vertices.
@@ -51,7 +51,7 @@ pub(crate) struct Table<T> {
     to_view: Option<ToView<T>>,
     /// The tint t, if the table holds final colours t D + S instead of light.
     tint: Option<[T; 3]>,
-    /// Diffuse light D; if `specular` is empty, final colours.
+    /// Diffuse light D; or final colours, if `specular` is empty.
     diffuse: Vec<OnceLock<Lights<T>>>,
     /// Specular light S, set together with diffuse light.
     specular: Vec<OnceLock<Lights<T>>>,
@@ -73,6 +73,7 @@ impl<T: ShadingNumber> Lit<T> {
                 if shaded.light.is_none() {
                     continue;
                 }
+                // A second table holds the light on the back, if backs are lit.
                 for back in [false, true] {
                     if back && draw.back != Back::Lit {
                         continue;
@@ -90,10 +91,10 @@ impl<T: ShadingNumber> Lit<T> {
         }
     }
 
-    /// The light of a draw by a pipeline, on the front and on the back; both are the same if only
-    /// one side is lit.
+    /// Returns the light of a draw by a pipeline, on the front and on the back. Both are the same
+    /// if only one side is lit.
     pub(crate) fn tables(&self, draw: u32, pipeline: u32) -> [&Table<T>; 2] {
-        // They were prepared in this order.
+        // The tables are sorted by draw and pipeline, because they were prepared in this order.
         let of = |table: &Table<T>| (table.draw, table.pipeline);
         let tables = &self.tables[..self.used];
         let first = tables.partition_point(|table| of(table) < (draw, pipeline));
@@ -102,7 +103,7 @@ impl<T: ShadingNumber> Lit<T> {
         [front, own.next().unwrap_or(front)]
     }
 
-    /// Fills a batch with the centres and the normals of some faces of a draw, in view space.
+    /// Fills a batch with the centres and normals of some faces of a draw, in view space.
     pub(crate) fn place_faces(
         &self,
         level: Level,
@@ -132,19 +133,19 @@ fn put<T: Number>(batch: &mut Batch<T>, i: usize, position: [f32; 3], normal: [f
     }
 }
 
-/// What lighting the vertices of a draw reads.
+/// The inputs for lighting the vertices of a draw.
 #[derive(Debug)]
 pub(crate) struct Lighting<'a, T> {
     pub(crate) level: Level,
     pub(crate) draw: &'a Draw,
     pub(crate) stages: &'a [Stage],
     pub(crate) terms: &'a [LightTerm<T>],
-    /// What casts shadows on the draw, and the caster that it is itself.
+    /// The tracer, and the draw's own caster, if the draw receives shadows.
     pub(crate) tracer: Option<(&'a Tracer<'a>, u32)>,
 }
 
 impl<T: ShadingNumber> Table<T> {
-    /// Whether the table holds final colours instead of light.
+    /// Returns whether the table holds final colours instead of light.
     pub(crate) const fn is_colored(&self) -> bool {
         self.tint.is_some()
     }
@@ -161,7 +162,8 @@ impl<T: ShadingNumber> Table<T> {
         self.specular.resize_with(if colored { 0 } else { count }, OnceLock::new);
     }
 
-    /// The diffuse light or final colour of a vertex, which is lit in `batch` if it was not yet.
+    /// Returns the diffuse light or final colour of a vertex, and lights it in `batch` if
+    /// necessary.
     #[inline(always)]
     pub(crate) fn diffuse(
         &self,
@@ -176,7 +178,7 @@ impl<T: ShadingNumber> Table<T> {
         }
     }
 
-    /// The specular light of a vertex whose diffuse light was read before.
+    /// Returns the specular light of a vertex. Its diffuse light must have been read before.
     #[inline(always)]
     pub(crate) fn specular(&self, place: u32) -> [T; 4] {
         let lights = self.specular[place as usize / CHUNK].get();
@@ -207,6 +209,7 @@ impl<T: ShadingNumber> Table<T> {
                     place_vertices(tracer, positions, count, origins);
                 }
             };
+            // Shadow rays start at the vertices in world space.
             let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, scratch, &mut place));
             run(stages, terms, level, batch, shadows);
             let mut diffuse = [[T::default(); 4]; CHUNK];
@@ -214,7 +217,7 @@ impl<T: ShadingNumber> Table<T> {
             let (tint, batch) = (self.tint, &*batch);
             T::run(level, Keep { batch, tint, to: [&mut diffuse, &mut specular] });
             if let Some(place) = self.specular.get(chunk) {
-                // The thread that initializes diffuse light is the only one here.
+                // Only the thread that initialises diffuse light gets here.
                 place.get_or_init(|| specular);
             }
             diffuse
@@ -222,7 +225,7 @@ impl<T: ShadingNumber> Table<T> {
     }
 }
 
-/// The number of vertices of a draw that are lit: its points or, with face normals, its corners.
+/// Returns the number of lit vertices of a draw: its points or, with face normals, its corners.
 fn place_count(draw: &Draw) -> usize {
     let mesh = &draw.model.mesh;
     match draw.normals {
@@ -231,7 +234,7 @@ fn place_count(draw: &Draw) -> usize {
     }
 }
 
-/// Fills a batch with vertices of a draw, from `first` on.
+/// Fills a batch with vertices of a draw, starting at `first`.
 fn put_places<T: Number>(draw: &Draw, first: usize, batch: &mut Batch<T>) {
     let mesh = &draw.model.mesh;
     batch.len = (place_count(draw) - first).min(CHUNK);
@@ -243,6 +246,7 @@ fn put_places<T: Number>(draw: &Draw, first: usize, batch: &mut Batch<T>) {
             let normals = &points.normals[own.clone()];
             let number = |x: f32| T::from_f64(f64::from(x));
             for (to, from) in batch.position.iter_mut().zip([&order.x, &order.y, &order.z]) {
+                // Without a table, points are vertices in draw order: a contiguous copy.
                 if points.vertices.is_empty() {
                     to.iter_mut().zip(&from[own.clone()]).for_each(|(to, x)| *to = number(*x));
                 } else {
@@ -257,6 +261,7 @@ fn put_places<T: Number>(draw: &Draw, first: usize, batch: &mut Batch<T>) {
             }
         }
         Normals::Face => {
+            // Corners are numbered polygon by polygon, so the polygon only moves forward.
             let mut polygon = polygon_of_corner(draw, first);
             for i in 0..batch.len {
                 while !mesh.corners_of(polygon).contains(&(first + i)) {
@@ -269,7 +274,7 @@ fn put_places<T: Number>(draw: &Draw, first: usize, batch: &mut Batch<T>) {
     }
 }
 
-/// The polygon that a corner belongs to.
+/// Returns the polygon of a corner, by binary search.
 fn polygon_of_corner(draw: &Draw, corner: usize) -> u32 {
     let mesh = &draw.model.mesh;
     let (mut low, mut high) =
@@ -312,8 +317,8 @@ impl<T: Number> Kernel<T> for Keep<'_, T> {
 /// The largest distance at which a vertex is lit, in units of view space.
 const FARTHEST: f64 = 1e15;
 
-/// The transform from object space to view space. Positions are first moved near the origin, so
-/// that f32 keeps their digits.
+/// The transform from object space to view space. Positions are first moved near the origin, which
+/// keeps their digits in f32.
 #[derive(Clone, Copy, Debug)]
 struct ToView<T> {
     middle: [T; 3],
@@ -337,7 +342,7 @@ impl<T: Number> ToView<T> {
         }
     }
 
-    /// The transform for one side of the surface.
+    /// Returns the transform for one side of the surface.
     fn seen_from(self, back: bool) -> Self {
         let normals =
             if back { self.normals.map(|column| column.map(|x| -x)) } else { self.normals };
@@ -345,10 +350,10 @@ impl<T: Number> ToView<T> {
     }
 }
 
-/// The point of a mesh's bounds that is nearest to the observer, in object space. Visible parts are
-/// near it, wherever the mesh has its origin and however large it is.
+/// Returns the point of a mesh's bounds nearest to the observer, in object space. Visible parts are
+/// near it, for any origin and any size of the mesh.
 ///
-/// Its coordinates are f32 numbers, so that subtracting it is exact near to it.
+/// Its coordinates are f32 numbers, so subtracting it is exact for positions near it.
 fn near_observer(draw: &Draw) -> DVec3 {
     let Some(bounds) = draw.model.mesh.bounds() else { return DVec3::ZERO };
     let observer = draw.view_from_object.inverse().w_axis.truncate();
@@ -356,7 +361,7 @@ fn near_observer(draw: &Draw) -> DVec3 {
     dvec3(near.as_vec3().to_array())
 }
 
-/// Multiplies vectors by a matrix, which is given by its columns.
+/// Multiplies vectors by a matrix given by its columns.
 #[inline(always)]
 fn turned<M: Lanes>(
     lanes: M,
@@ -380,8 +385,8 @@ impl<T: Number> Kernel<T> for Place<'_, T> {
         let (middle, origin) = (set(lanes, to_view.middle), set(lanes, to_view.middle_in_view));
         for at in (0..batch.len).step_by(M::LANES) {
             let near = load(lanes, &batch.position, at).minus(middle);
-            // Positions far beyond the view are clamped, so that the square of their distance to a
-            // light is finite.
+            // Positions far beyond the view are clamped, to keep the square of their distance to a
+            // light finite.
             let (low, high) = (lanes.lift(-FARTHEST), lanes.lift(FARTHEST));
             let clamped = |x: M::R| Real::min(Real::max(x, low), high);
             let [x, y, z] = turned(lanes, to_view.linear, near).plus(origin).0;
@@ -399,7 +404,7 @@ impl<T: Number> Kernel<T> for Place<'_, T> {
     }
 }
 
-/// Sets the light at every position of a batch to that of the stages which it sees.
+/// Sets the light at every position of a batch to the sum of the stages visible from it.
 pub(crate) fn run<T: ShadingNumber>(
     stages: &[Stage],
     terms: &[LightTerm<T>],
@@ -417,8 +422,8 @@ pub(crate) fn run<T: ShadingNumber>(
 }
 
 impl TileLight<'_> {
-    /// Sets the light at every position of a batch to that which reaches the tile and is seen
-    /// there.
+    /// Sets the light at every position of a batch to the light that reaches the tile and the
+    /// position.
     pub(crate) fn light_batch<T: ShadingNumber>(
         &self,
         terms: &[LightTerm<T>],
@@ -441,7 +446,7 @@ impl TileLight<'_> {
     }
 }
 
-/// Sets the light at every position of a batch to that of some stages.
+/// Sets the light at every position of a batch to the sum of some stages.
 fn set_lights<'a, T: ShadingNumber>(
     lights: impl Iterator<Item = (&'a Stage, &'a LightTerm<T>)> + Clone,
     level: Level,

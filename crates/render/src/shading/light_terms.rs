@@ -24,19 +24,19 @@ pub(crate) struct LightTerms<T> {
     mips: Vec<Mips>,
     /// The rounding thresholds of a block's pixels.
     thresholds: Option<(Rounding, [f32; BLOCK_PIXELS])>,
-    /// How colours are encoded, if they are linear.
+    /// The encoding, if colours are linear.
     encoding: Option<Encoding>,
 }
 
 impl<T> LightTerms<T> {
-    /// The rounding thresholds of a block's pixels; only after [`prepare`](Self::prepare).
+    /// Returns the rounding thresholds of a block's pixels; only after [`prepare`](Self::prepare).
     pub(crate) fn thresholds(&self) -> &[f32; BLOCK_PIXELS] {
         self.thresholds.as_ref().map_or(&[0.5; BLOCK_PIXELS], |(_, thresholds)| thresholds)
     }
 }
 
 impl<T: Number> LightTerms<T> {
-    /// Prepares the light terms and mip maps of a plan.
+    /// Prepares the light terms and mipmaps of a plan.
     pub(crate) fn prepare(&mut self, plan: &FramePlan) {
         self.encoding = plan.variants.are_linear().then(Encoding::new);
         if self.encoding.is_some() {
@@ -61,7 +61,7 @@ impl<T: Number> LightTerms<T> {
         }
     }
 
-    /// Prepares mip maps, and reuses those of the last picture.
+    /// Prepares mipmaps, and reuses the mipmaps of the last picture.
     fn prepare_mips(&mut self, plan: &FramePlan) {
         let before = std::mem::take(&mut self.mips);
         let mut before: Vec<Option<Mips>> = before.into_iter().map(Some).collect();
@@ -79,12 +79,12 @@ impl<T: Number> LightTerms<T> {
         }
     }
 
-    /// The mip maps of a texture, if the filter needs them.
+    /// Returns the mipmaps of a texture, if the filter needs them.
     pub(crate) fn mips_of(&self, texture: &Shared<Texture>, decoding: Decoding) -> Option<&Mips> {
         self.mips.iter().find(|mips| mips.are_of(texture, decoding))
     }
 
-    /// How interpolated colours become bytes.
+    /// Returns the conversion of interpolated colours to bytes.
     pub(crate) fn conversion(&self, plan: &FramePlan) -> Conversion<'_> {
         Conversion {
             interpolation: plan.variants.interpolation,
@@ -93,18 +93,18 @@ impl<T: Number> LightTerms<T> {
         }
     }
 
-    /// How colours are encoded, if they are linear.
+    /// Returns the encoding, if colours are linear.
     pub(crate) const fn encoding(&self) -> Option<&Encoding> {
         self.encoding.as_ref()
     }
 
-    /// The light terms of a pipeline.
+    /// Returns the light terms of a pipeline.
     pub(crate) fn of(&self, pipeline: u32) -> &[LightTerm<T>] {
         &self.terms[pipeline as usize]
     }
 }
 
-/// The textures of a surface that are read from mip maps, and how these are averaged.
+/// Iterates over the textures of a surface that need mipmaps, with the decoding for averaging.
 fn mipped<'a>(
     plan: &FramePlan,
     shaded: &'a Shaded,

@@ -1,8 +1,8 @@
-//! The points of triangles at which fragments are lit, in world space: rays of shadows begin there.
+//! The points of triangles at which fragments are lit, in world space: shadow rays start there.
 //!
-//! They are computed in f64 from whole edge functions, in either arithmetic, and lie inside their
-//! triangles: see [`INSIDE`]. On request they are lifted to the surface that vertex normals
-//! suggest: see [`lift`].
+//! The points are computed in f64 from integer edge functions, for either arithmetic, and lie
+//! inside their triangles: see [`INSIDE`]. On request they are lifted to the smooth surface
+//! suggested by vertex normals: see [`lift`].
 
 use crate::accel::Accelerated as _;
 use glam::{DMat3, DVec3};
@@ -40,6 +40,7 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
     for i in 0..fragments.len {
         let slot = fragments.slots[i].cast_unsigned() as usize;
         let number = attributes.numbers[slot];
+        // Corners, normals and weights are only computed when the triangle changes.
         if slot != last {
             last = slot;
             let corners = tracer.corners_of(caster, number);
@@ -54,7 +55,7 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
         }
         let Some((corners, normals, weights)) = &known else { continue };
         let at_centre = weights.at([fragments.x[i], fragments.y[i]]);
-        // Lit at the centre of its pixel, unless that is outside of the triangle.
+        // Lit at the centre of the pixel, unless the centre is outside of the triangle.
         let is_inside = at_centre.min_element() >= 0.0;
         let weights =
             if is_inside || !fragments.shared { at_centre } else { barycentrics.weights(i) };
@@ -70,7 +71,7 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
     }
 }
 
-/// The normals of a triangle's corners in world space, of length 1.
+/// Returns the normals of a triangle's corners in world space, of length 1.
 fn normals_of(draw: &Draw, tracer: &Tracer<'_>, caster: u32, number: u32) -> [DVec3; 3] {
     let order = draw.model.mesh.draw_order();
     let points = order.points(draw.normal_source);
@@ -80,8 +81,8 @@ fn normals_of(draw: &Draw, tracer: &Tracer<'_>, caster: u32, number: u32) -> [DV
     })
 }
 
-/// How far a point of a triangle is below the curved surface that the normals N of its corners V
-/// suggest: sum of w max(0, (V - P) . N) N, with the weights w. No point is moved inwards.
+/// Returns the offset of a triangle's point to the curved surface suggested by the normals N of its
+/// corners V: sum of w max(0, (V - P) . N) N, with the weights w. No point is moved inwards.
 ///
 /// Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, chapter 4.
 fn lift(corners: &Corners, normals: &[DVec3; 3], weights: [f64; 3], p: DVec3) -> DVec3 {
@@ -92,19 +93,20 @@ fn lift(corners: &Corners, normals: &[DVec3; 3], weights: [f64; 3], p: DVec3) ->
     lift
 }
 
-/// The least weight of a corner. A point on an edge may be rounded to either side of the face
-/// beyond it, which would then shade the point; a millionth of the triangle inwards, it is on the
-/// right side of all faces that share the edge.
+/// The smallest weight of a corner. A point on an edge may be rounded to either side of the face
+/// beyond it, and that face would then shade the point. A millionth of the triangle inwards, the
+/// point is on the right side of all faces that share the edge.
 const INSIDE: f64 = 1e-6;
 
-/// The weights of the second and third corner, clamped with that of the first. NaN is clamped, too.
+/// Returns the weights of the second and third corner, clamped together with the first. NaN is
+/// clamped, too.
 fn shares(weights: DVec3) -> [f64; 2] {
     let [x, y, z] = each(weights.to_array(), |weight| weight.max(INSIDE));
     let sum = x + y + z;
     if sum.is_finite() { [y / sum, z / sum] } else { [1.0 / 3.0; 2] }
 }
 
-/// The point of a triangle with these weights of its second and third corner.
+/// Returns the point of a triangle with these weights of its second and third corner.
 fn within([a, b, c]: &Corners, [y, z]: [f64; 2]) -> DVec3 {
     *a + (*b - *a) * y + (*c - *a) * z
 }

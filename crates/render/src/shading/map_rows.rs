@@ -1,4 +1,4 @@
-//! Working memory for the further maps of surfaces, and for surfaces with light of their own.
+//! Working memory for the additional maps of surfaces, and for surfaces with emission.
 
 use super::context::ShadingContext;
 use super::groups::Group;
@@ -8,20 +8,20 @@ use crate::lights::Rows;
 use crate::simd::gather::SLOTS;
 use crate::simd::{BATCH, Number};
 
-/// Working memory for the further maps of surfaces; allocated when a surface first has one.
+/// Working memory for additional maps, allocated when a surface first has one.
 #[derive(Debug)]
 pub(crate) struct MapRows<T> {
-    /// What is added to the colour of each pixel.
+    /// The light added to the colour of each pixel.
     pub(super) glow: Rows<T>,
-    /// The texels of the map that is read.
+    /// The texels of the current map.
     pub(super) texels: Rows<T>,
-    /// Where each map lies.
+    /// The placement of each map.
     placements: [TexturePlacement; Map::COUNT],
-    /// The tangents of the triangles, if they have bumps.
+    /// The tangents of the triangles, if they have bump maps.
     pub(super) tangents: TangentRows<T>,
 }
 
-/// The maps of a surface beside its texture.
+/// The maps of a surface in addition to its texture.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Map {
     Emission,
@@ -48,7 +48,7 @@ impl<T: ShadingNumber> Default for MapRows<T> {
 }
 
 impl<T: ShadingNumber> MapRows<T> {
-    /// Reads a map into the rows for texels, which are all `base` at first.
+    /// Reads a map into the rows of texels, which start as `base`.
     pub(super) fn read(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -70,9 +70,9 @@ impl<T: ShadingNumber> MapRows<T> {
 #[derive(Debug)]
 pub(super) struct TangentRows<T> {
     /// At vertices: T of the first corner, and the differences of the others from it. At pixels:
-    /// the vectors whose products with N are T and B, and nothing.
+    /// the vectors that give T and B in a cross product with N; the third is unused.
     pub(super) vectors: [[[T; SLOTS]; 3]; 3],
-    /// At vertices: s.
+    /// At vertices: the sign s.
     pub(super) signs: [T; SLOTS],
 }
 

@@ -1,4 +1,4 @@
-//! The texels of maps on fragments: sixteen pixels at a time, or one by one if that cannot be.
+//! Reads the texels of maps at fragments: sixteen pixels at a time, or one by one if necessary.
 
 use crate::simd::dispatch;
 
@@ -25,7 +25,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::math::each;
 use marraztu_core::scene::Texture;
 
-/// A texture, and how its texels are read.
+/// A texture, and the method of reading its texels.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TexelSource<'a> {
     texture: &'a Texture,
@@ -35,7 +35,7 @@ pub(super) struct TexelSource<'a> {
 }
 
 impl<'a> TexelSource<'a> {
-    /// A picture of colours, by the filter of the frame.
+    /// Returns a texture of colours, read by the filter of the frame.
     pub(super) fn of_colors<T: Number>(
         context: &ShadingContext<'a, T>,
         texture: &'a Shared<Texture>,
@@ -45,7 +45,7 @@ impl<'a> TexelSource<'a> {
         Self { texture, mips, filter: context.plan.filter, decoding }
     }
 
-    /// A picture of numbers, which is never decoded, by the filter of the frame.
+    /// Returns a texture of numbers, which is never decoded, read by the filter of the frame.
     pub(super) fn of_numbers<T: Number>(
         context: &ShadingContext<'a, T>,
         texture: &'a Shared<Texture>,
@@ -54,7 +54,7 @@ impl<'a> TexelSource<'a> {
         Self { texture, mips, filter: context.plan.filter, decoding: Decoding::Stored }
     }
 
-    /// A picture of heights or normals, by the filter of bumps.
+    /// Returns a texture of heights or normals, read by the filter of bump maps.
     pub(super) fn of_bumps<T: Number>(
         context: &ShadingContext<'a, T>,
         texture: &'a Shared<Texture>,
@@ -63,13 +63,13 @@ impl<'a> TexelSource<'a> {
         Self { filter, ..Self::of_numbers(context, texture) }
     }
 
-    /// How lanes sample it; `None` if they cannot.
+    /// Returns a sampler for lanes. `None` if the texture has no texels.
     pub(super) fn sampler(&self) -> Option<Sampler<'a>> {
         let levels = self.mips.map_or(std::slice::from_ref(self.texture), Mips::levels);
         Sampler::new(levels, self.filter)
     }
 
-    /// Its texel at `uv`, and `beside` texels from there.
+    /// Samples the texture at an offset of `beside` texels from `uv`.
     fn texel<T: ShadingNumber>(
         &self,
         (uv, beside): ([f64; 2], [f64; 2]),
@@ -84,26 +84,26 @@ impl<'a> TexelSource<'a> {
     }
 }
 
-/// Where a texture lies on the triangles of a list.
+/// The placement of a texture on the triangles of a list.
 #[derive(Debug, Default)]
 pub(crate) struct TexturePlacement {
     pub(super) placement: Placement,
-    /// The triangles that f32 is not enough for.
+    /// The triangles for which f32 is not accurate enough.
     pub(super) far: Vec<FarTexture>,
-    /// For reading it.
+    /// The memory for reading it.
     pub(super) scratch: TexelScratch,
 }
 
-/// What is read from a map.
+/// The kind of data read from a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Texels {
-    /// Red, green and blue, by which rows are multiplied.
+    /// Red, green and blue, multiplied into the rows.
     Colors,
     /// The slopes of heights along u and v, per texel, which replace the first two rows.
     Slopes,
 }
 
-/// The fragments whose texels are read.
+/// The fragments to read texels for.
 pub(super) struct Points<'a, T> {
     pub(super) fragments: &'a Fragments,
     pub(super) attributes: &'a TriangleAttributes<T>,
@@ -111,8 +111,8 @@ pub(super) struct Points<'a, T> {
 }
 
 impl<T: ShadingNumber> Points<'_, T> {
-    /// Reads a map at all fragments: sixteen pixels at a time, and one by one if that cannot be
-    /// done. `base` is what rows of colours held before.
+    /// Reads a map at all fragments: sixteen pixels at a time, and one by one for the rest. `base`
+    /// is the previous content of rows of colours.
     pub(super) fn read(
         &self,
         context: &ShadingContext<'_, T>,
@@ -137,13 +137,14 @@ impl<T: ShadingNumber> Points<'_, T> {
                 Texels::Slopes => T::find_slopes(context.level, attributes.count, &samples, to),
             };
         }
+        // The slots that lanes could not handle are read one by one.
         let slots = u64::MAX >> (SLOTS - attributes.count);
         if done & slots != slots {
             self.read_one_by_one(context, group, (source, what, done), (base, to));
         }
     }
 
-    /// Reads a map pixel by pixel, except for the triangles of the slots that are `done`.
+    /// Reads a map pixel by pixel, except for the triangles in the slots `done`.
     fn read_one_by_one(
         &self,
         context: &ShadingContext<'_, T>,
@@ -160,7 +161,7 @@ impl<T: ShadingNumber> Points<'_, T> {
                 all_steps[slot] = steps((plan, group.draw), attributes, slot);
             }
         }
-        // Dispatched so that rounding down uses the processor's instruction, if it has one.
+        // Dispatched so rounding down uses the processor's instruction, if it has one.
         dispatch!(context.level, _ => for i in 0..fragments.len {
             let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
             if done >> slot & 1 == 1 {
@@ -200,7 +201,7 @@ impl<T: ShadingNumber> Points<'_, T> {
     }
 }
 
-/// Finds where a texture lies on the triangles of a list.
+/// Computes the placement of a texture on the triangles of a list.
 pub(super) fn place<T: ShadingNumber>(
     context: &ShadingContext<'_, T>,
     group: &Group<'_>,
@@ -213,6 +214,7 @@ pub(super) fn place<T: ShadingNumber>(
     let mesh = &group.draw.model.mesh;
     let mut rows = [[[0.0; SLOTS]; 2]; 3];
     let mut uv_places = [None; SLOTS];
+    // Addresses first, then coordinates: the prefetches overlap.
     let ahead = asks_ahead(attributes.count);
     for (places, number) in uv_places.iter_mut().zip(&attributes.numbers[..attributes.count]) {
         *places = mesh.uv_places(*number);
@@ -220,6 +222,7 @@ pub(super) fn place<T: ShadingNumber>(
             mesh.prefetch_uvs(places);
         }
     }
+    // Coordinates of each corner, in rows that lanes load.
     for (slot, places) in uv_places[..attributes.count].iter().enumerate() {
         let own = places.and_then(|places| mesh.uvs_at(places));
         placement.known |= u64::from(own.is_some()) << slot;
@@ -230,8 +233,9 @@ pub(super) fn place<T: ShadingNumber>(
     let reads_mips = sampler.reads_mips();
     let uvs = (&rows, reads_mips);
     let done = T::place_texture(context.level, attributes, (texture, uvs), placement);
+    // Triangles that sixteen lanes could not place exactly.
     let mut others = placement.known & !done;
-    // Dispatched so that rounding down uses the processor's instruction, if it has one.
+    // Dispatched so rounding down uses the processor's instruction, if it has one.
     dispatch!(context.level, _ => while others != 0 {
         let slot = others.trailing_zeros() as usize;
         others &= others - 1;

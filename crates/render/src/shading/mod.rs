@@ -1,16 +1,17 @@
-//! Shading: from what is visible in a tile to its colours in the picture.
+//! Shading: from the visibility of a tile to its colours in the picture.
 //!
-//! A `painter` draws tiles. For each block, `surface` lists the fragments (`fragments`) from its
-//! `runs` of pixels that show the same, fetches the attributes of their triangles
-//! (`triangle_attributes`), computes barycentric coordinates (`barycentrics`), interpolates
-//! attributes (`interpolate`), lights fragments per pixel, face or vertex (`light`) if they see the
-//! light (`shadows`), and multiplies with the colour of the surface (`textured`). `quantize`
-//! converts the result to bytes, and `resolve` averages samples. Blocks that show the same surface
-//! are `waiting` for each other, and coloured together; those of triangles of about a pixel
-//! (`tiny_blocks`) without looking triangles up (`tiny`). Blocks that one triangle covers fully
-//! (`blocks`) take all of these steps in one pass, without a list (`full_blocks`). Blocks that
-//! transparent triangles reach are coloured layer by layer (`layers`), each with its `opacity`,
-//! which `blend` lays over what is behind.
+//! A `painter` draws tiles. For each block, `surface` lists the fragments (`fragments`) from the
+//! `runs` of pixels with the same primitive and fetches the attributes of their triangles
+//! (`triangle_attributes`). It computes barycentric coordinates (`barycentrics`), interpolates
+//! attributes (`interpolate`), lights fragments per pixel, face or vertex (`light`) unless they are
+//! in shadow (`shadows`), and multiplies by the surface colour (`textured`). `quantize` converts
+//! the result to bytes, and `resolve` averages samples (MSAA resolve).
+//!
+//! Blocks with the same surface are `waiting` for each other and are coloured together. Blocks of
+//! triangles of about a pixel (`tiny_blocks`) are coloured without looking triangles up (`tiny`).
+//! Blocks that one triangle covers fully (`blocks`) take all of these steps in one pass without a
+//! list (`full_blocks`). Blocks that transparent triangles reach are coloured layer by layer
+//! (`layers`), each with its `opacity`, and combined by alpha blending (`blend`).
 
 pub(crate) mod barycentrics;
 mod blend;

@@ -1,5 +1,4 @@
-//! The opacity of fragments: of the material, times the alpha of the texture, times the map of
-//! opacity.
+//! The opacity of fragments: the material's, times the texture's alpha, times the opacity map.
 
 use crate::simd::dispatch;
 
@@ -16,7 +15,7 @@ use marraztu_core::accuracy::Filter;
 use marraztu_core::scene::Texture;
 
 impl<T: ShadingNumber> Shader<T> {
-    /// The opacity of each fragment of a group that was coloured; 1 for what is opaque.
+    /// Returns the opacity of each fragment of a coloured group; 1 for opaque surfaces.
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
     pub(super) fn opacities(
         &self,
@@ -34,13 +33,14 @@ impl<T: ShadingNumber> Shader<T> {
             return opacities;
         }
         let Self { fragments, attributes, barycentrics, .. } = self;
+        // Texture coordinates are fetched once per triangle.
         let mut corners = [None; SLOTS];
         for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count]) {
             *corners = uvs(group.draw, *number);
         }
         let filter = context.plan.filter;
         let own = &mut opacities[..fragments.len];
-        // Dispatched so that rounding down uses the processor's instruction, if it has one.
+        // Dispatched so rounding down uses the processor's instruction, if it has one.
         dispatch!(context.level, _ => for (i, own) in own.iter_mut().enumerate() {
             let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
             if let Some(corners) = corners[slot] {
@@ -54,7 +54,7 @@ impl<T: ShadingNumber> Shader<T> {
     }
 }
 
-/// The opacity of a map: its alpha or, if all of it is opaque, its brightness.
+/// Returns the opacity of a map: its alpha or, if the map is opaque everywhere, its brightness.
 fn of_map(map: &Texture, uv: [f64; 2], filter: Filter) -> f64 {
     let [r, g, b, alpha] = sample::<f64>(map, uv, filter);
     if map.picture.least_alpha() < 255 { alpha } else { brightness(Vec3([r, g, b])) }

@@ -1,14 +1,13 @@
 //! Paints tiles: visibility, shading, and the copy into the picture.
 //!
-//! Each thread keeps its painter from frame to frame, so a frame allocates and clears nothing for
-//! its tiles. A block that showed only background and still does is not touched.
+//! Each thread reuses its painter from frame to frame, so a frame allocates and clears nothing for
+//! its tiles. A block that showed only background before and still does is not touched.
 //!
-//! Tiles are painted into a buffer and copied. Stores to the picture miss the nearest cache, and
-//! what is computed in between has to wait for them: wherever it stores numbers one by one and
-//! loads them sixteen at a time, it cannot get them before earlier stores are done. A whole tile
-//! for which little is left to compute, since it was coloured when it was drawn or since many of
-//! its blocks are filled, is painted straight into the picture if no other thread works in its
-//! rows.
+//! Tiles are painted into a buffer and copied. Stores to the picture miss the L1 cache and hold up
+//! later stores. Where shading stores numbers one by one and loads them sixteen at a time, store
+//! forwarding fails, and the load must wait for all earlier stores. A whole tile with little
+//! computation left is painted straight into the picture: if it was coloured during drawing or many
+//! of its blocks are filled, and no other thread works in its rows.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -32,7 +31,7 @@ use marraztu_core::accuracy::LightAt;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
 
-/// The pixels of a tile; tiles are counted along rows.
+/// Returns the pixels of a tile; tiles are counted along rows.
 pub(crate) fn bounds_of(tile: usize, size: Size) -> PixelBox {
     let [columns, _] = tiles_of(size);
     let tile = i32::try_from(tile).expect("pictures have 32-bit sizes");
@@ -47,20 +46,20 @@ pub(crate) fn bounds_of(tile: usize, size: Size) -> PixelBox {
 #[derive(Debug)]
 pub(crate) struct Band<'a> {
     pub(crate) pixels: &'a mut [[u8; 4]],
-    /// For each of its tiles the blocks that are filled with one colour.
+    /// The blocks of each tile that are filled with one colour.
     pub(crate) filled: &'a mut [Filled],
 }
 
-/// Blocks of a tile that are known to be filled with a colour.
+/// The blocks of a tile known to be filled with a colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Filled {
     color: Color,
-    /// A bit for each.
+    /// A bit for each block.
     blocks: u64,
 }
 
 impl Filled {
-    /// Those that are filled with this colour.
+    /// Returns the blocks that are filled with this colour.
     const fn with(self, Color([r, g, b]): Color) -> u64 {
         let Color([own_r, own_g, own_b]) = self.color;
         if own_r == r && own_g == g && own_b == b { self.blocks } else { 0 }
@@ -72,20 +71,20 @@ fn locked<'a, 'b>(band: &'a Mutex<Band<'b>>) -> MutexGuard<'a, Band<'b>> {
     band.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Pixels to a side of a block.
+/// The pixels along a side of a block.
 const ROW: usize = BLOCK as usize;
-/// Blocks in a row of a tile.
+/// The blocks in a row of a tile.
 const BLOCKS: usize = TILE_SIDE / ROW;
 
-/// The colours of a tile, added up over several passes.
+/// The colours of a tile, summed over several passes.
 #[derive(Debug, Default)]
 pub(crate) struct TileSums(Mutex<TilePasses>);
 
 #[derive(Debug, Default)]
 struct TilePasses {
-    /// The samples of every pixel in passes that showed nothing but the background.
+    /// The samples of every pixel in passes that showed only the background.
     background: i32,
-    /// Block by block; empty until the tile shows something.
+    /// The sums block by block; empty until the tile shows anything.
     blocks: Vec<BlockPasses>,
 }
 
@@ -104,7 +103,7 @@ impl TileSums {
 }
 
 impl TilePasses {
-    /// The blocks, made if there are none yet.
+    /// Returns the blocks, and creates them if necessary.
     fn blocks(&mut self, plan: &FramePlan) -> &mut [BlockPasses] {
         let sums = Sums::new(plan.variants.are_linear());
         let nothing = BlockPasses { sums, kept: Kept::default(), background: 0 };
@@ -113,12 +112,12 @@ impl TilePasses {
     }
 }
 
-/// The first pixel of a block, by column and row of the tile.
+/// Returns the first pixel of a block, by column and row of the tile.
 const fn corner_in_tile(block: usize) -> [usize; 2] {
     [block % BLOCKS * ROW, block / BLOCKS * ROW]
 }
 
-/// Draws one tile after another. It is aligned, so that no two painters share a cache line.
+/// Draws one tile after another. It is aligned so painters never share a cache line.
 #[derive(Debug)]
 #[repr(align(128))]
 pub(crate) struct Painter<T> {
@@ -126,7 +125,7 @@ pub(crate) struct Painter<T> {
     visibility: Visibility,
     layered: Layered,
     samples: Samples,
-    /// A buffer for a tile that is not painted straight into the picture.
+    /// A buffer for tiles that are not painted straight into the picture.
     pixels: Vec<[u8; 4]>,
 }
 
@@ -148,7 +147,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         self.shader.begin();
     }
 
-    /// The rays of shadows since the frame began.
+    /// Returns the shadow rays since the frame began.
     pub(crate) const fn ray_count(&self) -> RayCount {
         self.shader.ray_count()
     }
@@ -171,6 +170,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         if !self.see(context, tile, bounds) {
             return Self::fill(tile, size, background, &mut locked(band));
         }
+        // The direct path needs a whole tile with little work left, and a free band.
         let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
         let (column, columns) = Self::columns(tile, size);
         let full = self.visibility.full_blocks().count_ones() as usize;
@@ -187,6 +187,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
             filled[column] = Filled { color: background, blocks };
             return;
         }
+        // The usual path: shade into the buffer without a lock, then copy the changed blocks.
         let before = locked(band).filled[column].with(background);
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
@@ -197,13 +198,14 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         band.filled[column] = Filled { color: background, blocks };
     }
 
-    /// Finds what is visible in a tile. Returns whether it may be more than the background.
+    /// Finds the visible primitives of a tile. Returns whether there may be any.
     fn see(&mut self, context: &ShadingContext<'_, T>, tile: usize, bounds: PixelBox) -> bool {
         let ShadingContext { level, plan, frame, .. } = *context;
         if frame.is_empty(tile) {
             return false;
         }
         let Self { shader, visibility, layered: Layered { layers, .. }, .. } = self;
+        // Colours of hits are converted while they are drawn.
         let conversion = Some(context.terms.conversion(plan));
         visibility.draw(level, plan, frame, (tile, bounds), conversion);
         if frame.is_layered(tile) {
@@ -218,9 +220,9 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         true
     }
 
-    /// Colours the blocks of a tile. Those in `filled` are filled with the background already: in
-    /// the picture, and so in the canvas if it is `straight` a part of that. Returns the blocks
-    /// that show nothing else.
+    /// Colours the blocks of a tile. Blocks in `filled` already hold the background in the picture,
+    /// and also in the canvas if it is `straight` a part of the picture. Returns the blocks that
+    /// only show background.
     fn blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -239,10 +241,12 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         let mut background_blocks = 0;
         for block in 0..BLOCK_PIXELS {
             let at = canvas.offset(corner_in_tile(block));
-            // What has to be filled in around what is shown.
+            // The colour to fill in around the visible primitives.
             let is_filled = filled >> block & 1 != 0;
             let fill = (!(is_filled && straight)).then_some(context.plan.background);
             let mut shows = true;
+            // From the most special case to the most common one: layers, full blocks, colours from
+            // drawing, then blocks to be shaded.
             if layered >> block & 1 != 0 {
                 self.shader.finish_waiting(context, canvas);
                 let mut sums = Sums::new(context.plan.variants.are_linear());
@@ -288,8 +292,8 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         background_blocks
     }
 
-    /// Colours the blocks of a tile that one triangle covers fully, without layers: for each
-    /// triangle all of them at once.
+    /// Colours the blocks of a tile that one triangle covers fully, except layered blocks: all
+    /// blocks of a triangle at once.
     fn fully_covered(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -313,7 +317,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         }
     }
 
-    /// Colours a block whose pixels have four samples.
+    /// Colours a block of pixels with four samples.
     fn block_of_samples(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -333,7 +337,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         shows
     }
 
-    /// Adds the colours of a tile, which shows something and is drawn for one sample of each pixel.
+    /// Adds the colours of a visible tile drawn for one sample of each pixel.
     fn add_picture(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -351,7 +355,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         self.pixels = pixels;
     }
 
-    /// Adds the colours of a tile, of four samples or of one, to the sums.
+    /// Adds the colours of a tile, for four samples or one, to the sums.
     pub(crate) fn add(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &TileSums) {
         let ShadingContext { plan, frame, .. } = *context;
         let mut to = to.lock();
@@ -381,6 +385,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         } else if !visibility.shows(block) {
             *background += ALL;
         } else if let Some(number) = visibility.whole(block) {
+            // An earlier pass has lit this triangle in all pixels of the block.
             if kept.are_all_of(number) {
                 sums.add_to_all(context.level, kept.parts(), &[ALL; BLOCK_PIXELS]);
             } else {
@@ -394,7 +399,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         }
     }
 
-    /// Stores the means of all samples of a tile in its band of the picture.
+    /// Stores the means of all samples of a tile in its band of the picture (MSAA resolve).
     pub(crate) fn put_means(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -419,13 +424,13 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         band.filled[tile % size.width.div_ceil(TILE_SIDE)] = Filled::default();
     }
 
-    /// Copies those blocks of a tile's buffer that have a bit in `blocks` into its band.
+    /// Copies the blocks of a mask from a tile's buffer into its band.
     fn copy(&self, tile: usize, size: Size, blocks: u64, band: &mut Band<'_>) {
         let (_, columns) = Self::columns(tile, size);
         let rows = self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width));
         for (row, (from, to)) in rows.enumerate() {
             let mut own = blocks >> (row / ROW * BLOCKS) & 0xff;
-            // Neighbouring blocks at once.
+            // Neighbouring blocks are copied together.
             while own != 0 {
                 let first = own.trailing_zeros() as usize;
                 let end = first + (own >> first).trailing_ones() as usize;
@@ -436,7 +441,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         }
     }
 
-    /// Fills a tile with a colour, unless it is filled with it already.
+    /// Fills a tile with a colour, unless it already holds this colour.
     fn fill(tile: usize, size: Size, color: Color, band: &mut Band<'_>) {
         let (column, columns) = Self::columns(tile, size);
         if band.filled[column].with(color) != u64::MAX {
@@ -447,7 +452,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         }
     }
 
-    /// The index of a tile in its band, and its columns of the picture.
+    /// Returns the index of a tile in its band, and its columns of the picture.
     fn columns(tile: usize, size: Size) -> (usize, std::ops::Range<usize>) {
         let column = tile % size.width.div_ceil(TILE_SIDE);
         let left = column * TILE_SIDE;

@@ -1,25 +1,25 @@
-//! One pixel of a picture explained: what it shows, and the terms that its colour is the sum of.
+//! The explanation of one pixel: the surface that it shows, and the terms of its colour.
 
 use glam::DVec3;
 
 use marraztu_core::accuracy::LightAt;
 use marraztu_core::scene::{ItemId, LightId};
 
-/// One pixel of a picture, and what its colour is made of.
+/// One pixel of a picture, with the terms of its colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PixelColor {
-    /// Column and row, from the upper left.
+    /// The column and row, from the upper left.
     pub at: [usize; 2],
-    /// The surface that is seen there; `None` if it is the background or a line.
+    /// The visible surface; `None` for the background or a line.
     pub surface: Option<SurfacePoint>,
-    /// What the colour is made of, as factors from 0 to 1: with [`Self::rounding`] their sum is
-    /// [`Self::color`].
+    /// The terms of the colour, as factors from 0 to 1. Together with [`Self::rounding`] they add
+    /// up to [`Self::color`].
     pub terms: Vec<Term>,
-    /// What the sum loses in the arithmetic of the picture.
+    /// The rounding error of the sum in the arithmetic of the picture.
     pub rounding: [f64; 3],
-    /// The colour before it is clamped to 0 to 1 and rounded to a byte.
+    /// The colour before clamping to 0 to 1 and rounding to a byte.
     pub color: [f64; 3],
-    /// Whether the sum is linear light, which is encoded in sRGB before it is rounded.
+    /// Whether the sum is linear light, which is encoded in sRGB before rounding.
     pub linear: bool,
     /// The bytes of the picture.
     pub bytes: [u8; 3],
@@ -28,15 +28,15 @@ pub struct PixelColor {
 /// A point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
-    /// The object, the camera whose mark it is, or the bulb's light.
+    /// The object, the camera if its mark is shown, or the light if its bulb is shown.
     pub item: ItemId,
-    /// The polygon of its mesh.
+    /// The polygon of the item's mesh.
     pub polygon: u32,
-    /// The triangle of its mesh, in the order in which it is drawn.
+    /// The triangle of the item's mesh, in draw order.
     pub triangle: u32,
     /// The barycentric coordinates of the point in the triangle, in space.
     pub weights: DVec3,
-    /// The distance along the observer's axis, in units of the world.
+    /// The distance along the observer's axis, in world units.
     pub distance: f64,
     /// The point in the world.
     pub position: DVec3,
@@ -44,27 +44,27 @@ pub struct SurfacePoint {
     pub normal: DVec3,
     /// V, of length 1.
     pub to_eye: DVec3,
-    /// Whether its back is seen.
+    /// Whether the back is visible.
     pub back: bool,
-    /// The colour t of the surface, which ambient and diffuse light are multiplied by: texel, tint
-    /// and vertex colour.
+    /// The surface colour t, which multiplies ambient and diffuse light: texel, tint and vertex
+    /// colour.
     pub own: [f64; 3],
-    /// Where light was evaluated; `None` if the surface is not lit.
+    /// The place where light was evaluated; `None` if the surface is not lit.
     pub light_at: Option<LightAt>,
 }
 
 /// A part of a colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
-    /// Which part it is.
+    /// The kind of part.
     pub part: Part,
-    /// The light that it comes from, if it comes from one.
+    /// The light it comes from, if any.
     pub light: Option<LightId>,
     /// Red, green and blue, as factors.
     pub value: [f64; 3],
-    /// How the light reaches the point; with a light's first term.
+    /// The path of the light to the point; only in a light's first term.
     pub ray: Option<LightRay>,
-    /// How many transparent layers lie before what it is the colour of.
+    /// The number of transparent layers in front of the term's surface.
     pub layer: u32,
 }
 
@@ -77,33 +77,33 @@ impl Term {
 /// The parts that a colour can have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// The colour where nothing is seen.
+    /// The background colour.
     Background,
     /// The colour of an edge or of a drawn normal.
     Line,
-    /// The colour of what is not lit.
+    /// The colour of an unlit surface.
     Unlit,
     /// The red of a back face.
     BackFace,
-    /// I Ka, times the colour of the surface.
+    /// I Ka, times the surface colour.
     Ambient,
-    /// I Kd (N.L), times the colour of the surface.
+    /// I Kd (N.L), times the surface colour.
     Diffuse,
     /// I Ks (R.V)^Ns.
     Specular,
-    /// What the surface adds to its colour whatever the lights: emission, and ambient light that
-    /// has a map of its own.
+    /// Light that the surface adds independently of the lights: emission, and ambient light with a
+    /// separate map.
     Emission,
-    /// What is cut off above 1 before layers are blended.
+    /// The light above 1 that is clipped before layers are blended.
     Cut,
-    /// What another way of blending makes of the layers than one over another.
+    /// The difference between the selected blending method and exact blending.
     Blending,
-    /// Light of the corners, interpolated: of all lights together.
+    /// The interpolated light of the corners, summed over all lights.
     Corners,
 }
 
 impl Part {
-    /// Its name.
+    /// Returns the name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -122,7 +122,7 @@ impl Part {
     }
 }
 
-/// How a light reaches a point.
+/// The path of a light to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightRay {
     /// L, of length 1, in the world.
@@ -131,16 +131,16 @@ pub struct LightRay {
     pub reflected: DVec3,
     /// N.L
     pub n_l: f64,
-    /// R.V, or N.H if highlights are Blinn's.
+    /// R.V, or N.H for Blinn's highlights.
     pub highlight: f64,
-    /// Whether it is N.H.
+    /// Whether the highlight uses N.H.
     pub half_vector: bool,
-    /// The distance to the light in units of the world; `None` for a sun.
+    /// The distance to the light in world units; `None` for a sun.
     pub distance: Option<f64>,
-    /// The factor by which distance weakens it.
+    /// The attenuation factor for the distance.
     pub attenuation: f64,
     /// The factor of a spot's cone.
     pub cone: f64,
-    /// 0 where something stands between, else 1.
+    /// 0 if something blocks the light, else 1.
     pub shadow: f64,
 }

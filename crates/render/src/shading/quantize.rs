@@ -1,10 +1,10 @@
-//! Combines light with the colour of the surface, and converts colours to bytes.
+//! Combines light with the surface colour, and converts colours to bytes.
 
 use super::colors::{Colors, Form};
 use crate::lights::{Batch, Rows, load, set};
 use crate::simd::{BATCH, Encoding, Kernel, Lanes, Number, Vec3};
 
-/// The colour t of the surface: one tint, or a texel for each pixel.
+/// The surface colour t: one tint, or a texel for each pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum SurfaceColor<'a, T> {
     Tint([T; 3]),
@@ -21,8 +21,8 @@ impl<T: Number> SurfaceColor<'_, T> {
     }
 }
 
-/// Converts colours to bytes: t D + S if the surface is lit, with D and S the diffuse and the
-/// specular light, else t.
+/// Converts colours to bytes: t D + S if the surface is lit, with diffuse light D and specular
+/// light S, else t.
 pub(crate) struct Quantize<'a, T> {
     pub(crate) batch: &'a Batch<T>,
     pub(crate) lit: bool,
@@ -44,17 +44,17 @@ impl<T: Number> Kernel<T> for Quantize<'_, T> {
     }
 }
 
-/// Converts colours to bytes, like [`Quantize`], for surfaces that glow and for light in linear
+/// Converts colours to bytes, like [`Quantize`], for surfaces with emission and for light in linear
 /// sRGB: t D + S + e, encoded.
 pub(crate) struct Finish<'a, T> {
     pub(crate) batch: &'a Batch<T>,
     pub(crate) lit: bool,
     pub(crate) own: SurfaceColor<'a, T>,
-    /// e: what is added to the colour.
+    /// The emitted light e.
     pub(crate) glow: Option<&'a Rows<T>>,
     /// The rounding threshold of each pixel, if it is not one half.
     pub(crate) thresholds: Option<&'a [T; BATCH]>,
-    /// How linear colours are encoded, if they are linear.
+    /// The encoding, if colours are linear.
     pub(crate) encoding: Option<&'a Encoding>,
     pub(crate) colors: &'a mut Colors,
 }
@@ -77,7 +77,7 @@ impl<T: Number> Kernel<T> for Finish<'_, T> {
                 let Vec3([r, g, b]) = color;
                 color = Vec3([encoding.of(r), encoding.of(g), encoding.of(b)]);
             }
-            // Linear values are rounded when they are added up and encoded.
+            // Linear values are rounded later, when they are summed and encoded.
             let added_up = encoding.is_some() && colors.form == Form::Parts;
             match thresholds.filter(|_| !added_up) {
                 None => colors.store(lanes, color, at),
@@ -89,7 +89,7 @@ impl<T: Number> Kernel<T> for Finish<'_, T> {
     }
 }
 
-/// t D + S at some pixels.
+/// Computes t D + S at some pixels.
 #[inline(always)]
 pub(crate) fn reflected<M: Lanes>(
     lanes: M,

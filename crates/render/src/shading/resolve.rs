@@ -1,9 +1,9 @@
-//! Resolves samples: from four samples of a block's pixels to the mean of their colours.
+//! MSAA resolve: from four samples of a block's pixels to the mean of their colours.
 //!
 //! Most blocks show the same triangle in all samples of each pixel, and cost no more than with one
-//! sample. In other blocks a pixel is lit once for each triangle that any of its samples shows:
-//! first the triangles of the first samples, all pixels together, and beside them all others, as
-//! far as they have room in a batch.
+//! sample. In other blocks a pixel is lit once for each triangle that any of its samples shows: the
+//! triangles of the first samples, all pixels together, and in the same batch as many others as
+//! fit.
 
 use crate::simd::dispatch;
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x16};
@@ -20,12 +20,13 @@ use crate::screen::sample_positions::FOUR;
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::BATCH;
 
-/// What the samples of a block's pixels show.
+/// The primitives that the samples of a block's pixels show.
 #[derive(Debug)]
 pub(crate) struct Samples {
-    /// The numbers of the primitives that they show.
+    /// The numbers of the primitives.
     numbers: [[u32; BLOCK_PIXELS]; FOUR],
-    /// For each sample, how many from it on show the same primitive; only valid for those in `new`.
+    /// The number of samples, from each one on, with the same primitive; only valid for pixels in
+    /// `new`.
     shares: [[i32; BLOCK_PIXELS]; FOUR],
     /// The pixels in which a sample shows a primitive that no earlier sample shows.
     new: [u64; FOUR],
@@ -45,8 +46,8 @@ impl Samples {
         self.new[1..] == [0; FOUR - 1]
     }
 
-    /// Adds the colours that are kept from earlier passes. Returns, for each sample, the pixels in
-    /// which it shows a primitive that neither an earlier sample shows nor an earlier pass has lit.
+    /// Adds the cached colours of earlier passes. Returns, for each sample, the pixels that show a
+    /// primitive neither shown by an earlier sample nor lit in an earlier pass.
     fn add_kept(&self, level: Level, kept: &Kept, sums: &mut Sums) -> [u64; FOUR] {
         let mut left = self.new;
         for (sample, left) in left.iter_mut().enumerate() {
@@ -80,6 +81,8 @@ impl Samples {
                 let numbers: &[i32; BLOCK_PIXELS] = bytemuck::cast_ref(&self.numbers[sample]);
                 i32x16::from_slice(simd, &numbers[at..at + 16])
             };
+            // All six comparisons of four samples; a primitive counts for the first sample that
+            // shows it.
             let (a, b, c, d) = (of(0), of(1), of(2), of(3));
             let (ab, ac, ad) = (a.simd_eq(b), a.simd_eq(c), a.simd_eq(d));
             let (bc, bd, cd) = (b.simd_eq(c), b.simd_eq(d), c.simd_eq(d));
@@ -100,19 +103,18 @@ impl Samples {
     }
 }
 
-/// What is still to be lit of a block.
+/// The part of a block that remains to be lit.
 #[derive(Debug)]
 struct Unlit<'a> {
     /// The entries of the first sample; 0 for pixels that are lit.
     entries: &'a [u64; BLOCK_PIXELS],
-    /// For each sample, the pixels in which it shows a primitive that no earlier sample shows and
-    /// that is not lit.
+    /// For each sample, the pixels with an unlit primitive that no earlier sample shows.
     pixels: &'a [u64; FOUR],
 }
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Adds the colours of a block, whose upper left pixel is `corner` and whose samples were
-    /// compared. Returns whether any of them shows more than the background.
+    /// Adds the colours of a block with compared samples and the upper left pixel `corner`. Returns
+    /// whether any of them shows more than the background.
     pub(crate) fn add_samples(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -124,8 +126,8 @@ impl<T: ShadingNumber> Shader<T> {
         self.add_unlit(context, (samples, &all), corner, (sums, None))
     }
 
-    /// Adds the colours of a block in one of several passes: those that are kept from earlier
-    /// passes, and then the others, which it lights.
+    /// Adds the colours of a block in one of several passes: first the cached colours of earlier
+    /// passes, then the others, which are lit here.
     pub(crate) fn add_pass(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -141,7 +143,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// As [`Self::add_samples`], for some of the pixels.
+    /// Adds the colours of some pixels, like [`Self::add_samples`].
     fn add_unlit(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -155,6 +157,7 @@ impl<T: ShadingNumber> Shader<T> {
         } else {
             self.fragments.share(&samples.shares[0]);
         }
+        // Lines and background need no light.
         let mut others = unlit.pixels[0] & !shown.triangles;
         while others != 0 {
             let place = others.trailing_zeros() as usize;
@@ -170,12 +173,13 @@ impl<T: ShadingNumber> Shader<T> {
             };
             shader.color_list(context, corner, &mut out);
         };
-        // Shadows are traced for as many points at once as a mask has bits.
+        // Shadows are traced for at most as many points at once as a mask has bits.
         let are_cast = context.plan.shadows.are_cast();
         let most = if are_cast { BLOCK_PIXELS } else { BATCH };
         if are_cast {
             color(self, sums);
         }
+        // The primitives of later samples join the list until it is full.
         for sample in 1..FOUR {
             let mut pixels = unlit.pixels[sample];
             while pixels != 0 {
@@ -199,8 +203,8 @@ impl<T: ShadingNumber> Shader<T> {
         (shown.triangles | shown.lines) != 0
     }
 
-    /// Lists the pixels of a block that show triangles in their first sample. Triangles of the list
-    /// before keep their slots, if that pays.
+    /// Lists the pixels of a block that show triangles in their first sample. Triangles of the last
+    /// list keep their slots, if that pays.
     fn list_first(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -210,13 +214,13 @@ impl<T: ShadingNumber> Shader<T> {
         let most = self.most_slots(context);
         let shown = self.fragments.list_on(context.level, entries, corner, most);
         if most > 0 && shown.triangles != 0 && one_group(context, &self.fragments).is_none() {
-            // Some slots are of a draw that the block may not show.
+            // Some slots belong to a draw that the block may not show.
             return self.fragments.list(context.level, entries, corner);
         }
         shown
     }
 
-    /// Colours the fragments that are listed, and begins another list.
+    /// Colours the listed fragments, and begins another list.
     fn color_list(
         &mut self,
         context: &ShadingContext<'_, T>,

@@ -1,8 +1,8 @@
-//! Variants of rounding colours to bytes: truncate, to the nearest, or dither.
+//! Variants of rounding colours to bytes: truncating, rounding to nearest, and ordered dithering.
 //!
-//! A byte is the integer part of 255 c + t, with a threshold t from 0 to 1: one half rounds to the
+//! A byte is the integer part of 255 c + t, with a threshold t from 0 to 1: one half rounds to
 //! nearest, and 0 truncates. A threshold that varies from pixel to pixel dithers: the fraction
-//! decides how many pixels are rounded up, so a smooth gradient stays smooth on average.
+//! decides how often pixels are rounded up, so a smooth gradient stays smooth on average.
 //!
 //! The pattern: Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC
 //! 1973, of order 8.
@@ -15,7 +15,7 @@ use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::{BATCH, Kernel, Lanes, Number, Vec3};
 use marraztu_core::accuracy::Rounding;
 
-/// The threshold that is added to 255 c at a pixel before it is truncated.
+/// Returns the threshold added to 255 c at a pixel before truncating.
 fn threshold(rounding: Rounding, x: i32, y: i32) -> f64 {
     match rounding {
         Rounding::Truncated => 0.0,
@@ -24,8 +24,8 @@ fn threshold(rounding: Rounding, x: i32, y: i32) -> f64 {
     }
 }
 
-/// The Bayer matrix at a pixel, from 0 to 63: the bits of x xor y and of y interleaved, the lowest
-/// first.
+/// Returns the entry of the Bayer matrix at a pixel, from 0 to 63: the bits of x xor y and of y
+/// interleaved, the lowest first.
 #[expect(clippy::cast_possible_truncation, reason = "the last bits are meant")]
 const fn bayer(x: i32, y: i32) -> u8 {
     let (x, y) = ((x ^ y) as u8, y as u8);
@@ -38,7 +38,7 @@ const fn bayer(x: i32, y: i32) -> u8 {
     number
 }
 
-/// The thresholds of a list of fragments. Those that are the same for every list are kept.
+/// The thresholds of a list of fragments. Thresholds that are equal for all lists are cached.
 #[derive(Debug)]
 pub(crate) struct Thresholds<T> {
     rounding: Option<Rounding>,
@@ -52,7 +52,7 @@ impl<T: Number> Default for Thresholds<T> {
 }
 
 impl<T: Number> Thresholds<T> {
-    /// Those of a list.
+    /// Returns the thresholds of a list.
     pub(crate) fn of(&mut self, rounding: Rounding, fragments: &Fragments) -> &[T; BATCH] {
         if rounding == Rounding::Dithered {
             let pixels = fragments.x.iter().zip(&fragments.y);
@@ -67,7 +67,7 @@ impl<T: Number> Thresholds<T> {
     }
 }
 
-/// The thresholds of all pixels of a block, which are the same for every block.
+/// Returns the thresholds of a block's pixels, which are the same for every block.
 pub(crate) fn block_thresholds(rounding: Rounding) -> [f32; BLOCK_PIXELS] {
     let mut fragments = Fragments::default();
     fragments.list_full_block(0, [0; 2]);

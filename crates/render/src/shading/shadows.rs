@@ -1,13 +1,13 @@
-//! Shades batches: light reaches a position only if nothing stands between.
+//! Shadows of batches: light reaches a position only if nothing blocks its ray.
 //!
-//! A light with shadows is added like any other. Then rays run to it from the positions at which
-//! it added something, and those whose ray is stopped get back what they had before, bit for bit.
-//! So the shaders of lights know nothing of shadows, and a position that no light reaches costs no
-//! ray. If a light's shadow on a pixel is known from an earlier frame, no ray is traced either.
+//! A light with shadows is first added like any other. Rays then run to it from the positions where
+//! it added something, and positions with a blocked ray get back their previous values, bit for
+//! bit. Light shaders therefore do not handle shadows, and a position that no light reaches costs
+//! no ray. If a light's shadow on a pixel is cached from an earlier frame, no ray is traced either.
 //!
-//! Rays begin where light is evaluated: at the point of the triangle that a pixel shows (with
-//! several samples, at the point at which they are lit), at a vertex, or at the centre of a face.
-//! That point is computed in f64 in either arithmetic, so both have the same shadows.
+//! Rays start where light is evaluated: at the triangle's point in a pixel (with several samples,
+//! at the point that is lit), at a vertex, or at the centre of a face. That point is computed in
+//! f64 for either arithmetic, so both have the same shadows.
 
 use crate::simd::dispatch;
 use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, u32x16};
@@ -33,9 +33,9 @@ pub(crate) struct BatchShadows<'a> {
     pub(crate) scratch: &'a mut RayScratch,
     /// Sets the points at which the batch is lit; called if a ray is needed.
     pub(crate) place: &'a mut dyn FnMut(&mut Origins),
-    /// Whether they are set.
+    /// Whether the points are set.
     pub(crate) is_placed: bool,
-    /// The pixels of the batch, if what is known of them may be used.
+    /// The pixels of the batch, if the cache may be used for them.
     pixels: Option<BatchPixels<'a>>,
 }
 
@@ -54,8 +54,8 @@ impl<'a> BatchShadows<'a> {
         Self { tracer, scratch, place, is_placed: false, pixels: None }
     }
 
-    /// The same for a batch of these fragments. Each is all that its pixel shows, unless layers are
-    /// painted.
+    /// Returns the same for a batch of these fragments. Unless layers are painted, each fragment is
+    /// the only one of its pixel.
     pub(crate) fn of_pixels(self, fragments: &'a Fragments) -> Self {
         let Fragments { len, pixels, x, y, .. } = fragments;
         let of_batch = BatchPixels { first: [x[0], y[0]], places: &pixels[..*len] };
@@ -70,13 +70,15 @@ impl<'a> BatchShadows<'a> {
         }
     }
 
-    /// The positions of a mask at which a light is hidden: those that are not known are traced.
+    /// Returns the positions of a mask where a light is blocked. Positions without a cached result
+    /// are traced.
     fn traced(&mut self, level: Level, (number, light): (u32, DVec3), mask: u64) -> u64 {
         let known = self.pixels.zip(self.tracer.known(number));
         let before = known.map_or(KnownPixels::default(), |(pixels, known)| {
             let KnownPixels { traced, shaded } = known.at(pixels.first);
             KnownPixels { traced: pixels.in_batch(traced), shaded: pixels.in_batch(shaded) }
         });
+        // Only pixels without a cached result need a ray.
         let unknown = mask & !before.traced;
         if unknown == 0 {
             return before.shaded & mask;
@@ -90,7 +92,7 @@ impl<'a> BatchShadows<'a> {
         before.shaded & mask | shaded
     }
 
-    /// Adds the light of a stage at every position of a batch that sees it.
+    /// Adds the light of a stage at every position of a batch that it reaches.
     pub(crate) fn add_light<T: ShadingNumber>(
         &mut self,
         stage: &Stage,
@@ -117,13 +119,14 @@ impl<'a> BatchShadows<'a> {
             }
         };
         if shaded == lit {
-            // What is not lit has not changed.
+            // Unlit positions have not changed, so the whole batch can be restored.
             let rows = batch.diffuse.iter_mut().chain(&mut batch.specular);
             for (row, before) in rows.zip(before.0.iter().chain(&before.1)) {
                 row[..POINTS].copy_from_slice(before);
             }
             return;
         }
+        // Blocked positions get back their values; PCF scales the light of partly open ones.
         for i in bits(shaded) {
             for axis in 0..3 {
                 batch.diffuse[axis][i] = before.0[axis][i];
@@ -142,14 +145,14 @@ impl<'a> BatchShadows<'a> {
     }
 }
 
-/// The first numbers of three rows: a batch that shadows fall on has no more.
+/// The first numbers of three rows. Batches with shadows have no more.
 type Firsts<T> = [[T; POINTS]; 3];
 
 fn first<T: Number>(rows: &Rows<T>) -> Firsts<T> {
     std::array::from_fn(|i| *rows[i].first_chunk().expect("a batch has room for more"))
 }
 
-/// The positions of a batch, of [`POINTS`] at most, whose light has changed, a bit for each.
+/// Returns the positions of a batch with changed light, at most [`POINTS`], a bit for each.
 fn lit<T: Number>(level: Level, batch: &Batch<T>, before: &(Firsts<T>, Firsts<T>)) -> u64 {
     let mut changed = [0_u32; POINTS];
     let rows = batch.diffuse.iter().chain(&batch.specular);
@@ -162,7 +165,7 @@ fn lit<T: Number>(level: Level, batch: &Batch<T>, before: &(Firsts<T>, Firsts<T>
     lit & u64::MAX >> (POINTS - batch.len)
 }
 
-/// A bit for each number that is not 0.
+/// Returns a bit for each number other than 0.
 #[inline(always)]
 fn bit_of_each<S: Simd>(simd: S, numbers: &[u32; POINTS]) -> u64 {
     let zero = u32x16::splat(simd, 0);
@@ -191,8 +194,8 @@ pub(crate) fn place_vertices<T: Number>(
     }
 }
 
-/// Sets the points at which faces are lit: the centres of their polygons, none of whose triangles
-/// shades them.
+/// Sets the points at which faces are lit: the centres of their polygons. No triangle of the
+/// polygon shades its centre.
 pub(crate) fn place_faces<T: Number>(
     (tracer, caster): (&Tracer<'_>, u32),
     draw: &Draw,

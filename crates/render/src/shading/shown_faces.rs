@@ -18,8 +18,8 @@ use crate::screen::tiles::{BLOCK_PIXELS, PIXELS};
 use crate::simd::gather::SLOTS;
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Lights the triangles that show in blocks which none of them covers fully, with one sample
-    /// per pixel, and whose colour is not known.
+    /// Lights the triangles without a known colour that are visible in blocks not fully covered by
+    /// one of them, with one sample per pixel.
     pub(crate) fn light_shown_faces(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -36,12 +36,14 @@ impl<T: ShadingNumber> Shader<T> {
                     && (group.draw.uniform.is_some()
                         || group.draw.pipeline_of(number - group.base) == group.pipeline)
             };
+            // Triangles of one group are lit together, as many as there are slots.
             let count = left.iter().take(SLOTS).take_while(|number| is_alike(number)).count();
             let (own, others) = left.split_at(count);
             left = others;
             if group.path.full != FullPath::Fill {
                 continue;
             }
+            // The next group is prefetched while this one is lit.
             if is_lit(&context.plan.pipelines[group.pipeline as usize]) {
                 prefetch_facets(&group, &left[..left.len().min(SLOTS)]);
             }
@@ -56,12 +58,12 @@ impl<T: ShadingNumber> Shader<T> {
     }
 }
 
-/// Whether a surface whose triangles have one colour each is lit.
+/// Returns whether a surface with one colour per triangle is lit.
 fn is_lit(pipeline: &Pipeline) -> bool {
     matches!(pipeline, Pipeline::Shaded(shaded) if shaded.light.is_some())
 }
 
-/// Asks the cache for what lighting some faces reads, if they are of a group.
+/// Prefetches the inputs for lighting some faces, if they belong to a group.
 fn prefetch_facets(group: &Group<'_>, numbers: &[u32]) {
     let mesh = &group.draw.model.mesh;
     let facets = mesh.facets();
@@ -71,8 +73,8 @@ fn prefetch_facets(group: &Group<'_>, numbers: &[u32]) {
     }
 }
 
-/// Lists the triangles of a tile that have to be lit, and finds where runs of pixels begin that
-/// show the same, a bit for each pixel of each block. Returns the number of those triangles.
+/// Lists the triangles of a tile that have to be lit, and finds the starts of runs of equal pixels,
+/// a bit for each pixel of each block. Returns the number of listed triangles.
 fn list(
     level: Level,
     faces: &FaceColors,
@@ -89,7 +91,8 @@ fn list_in<S: Simd>(
     visibility: &Visibility,
     (to, all_runs): (&mut Vec<u32>, &mut [u64; BLOCK_PIXELS]),
 ) -> usize {
-    // Each triangle is written, and the next one over it unless it is new.
+    // Each triangle is stored, and overwritten by the next one unless it is new: this avoids a
+    // branch.
     to.resize(PIXELS, 0);
     let mut count = 0;
     let mut claim = |runs: &Runs| {
@@ -102,7 +105,7 @@ fn list_in<S: Simd>(
         );
     };
     let shown = |block: &usize| visibility.shows(*block) && visibility.whole(*block).is_none();
-    // A block behind, so that the entries have arrived.
+    // One block behind, which gives the prefetched entries time to arrive.
     let mut before: Option<Runs> = None;
     for block in (0..BLOCK_PIXELS).filter(shown) {
         let runs = Runs::find(simd, visibility.block(block));

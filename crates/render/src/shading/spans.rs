@@ -1,14 +1,14 @@
 //! Perspective at every sixteenth pixel of a row, and linear interpolation between.
 //!
-//! Whoever draws a row from its left end computes two divisions for sixteen pixels; here a block of
-//! 8 x 8 pixels is a unit, so that a span is found for each of its rows.
+//! A renderer that draws rows from their left ends computes two divisions for sixteen pixels. Here
+//! the unit is a block of 8 x 8 pixels, so a span is found for each of its rows.
 
 use super::barycentrics::Barycentrics;
 use super::fragments::Fragments;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
 use crate::screen::spans::Row;
 
-/// Replaces the weights of every fragment inside its triangle by those of its span, except in
+/// Replaces the weights of every fragment inside its triangle by the weights of its span, except in
 /// clipped triangles.
 pub(crate) fn interpolate_spans<T: AttributeNumber>(
     fragments: &Fragments,
@@ -24,6 +24,7 @@ pub(crate) fn interpolate_spans<T: AttributeNumber>(
         }
         let (x, y) = (fragments.x[i], fragments.y[i]);
         let place = (slot, y);
+        // Row and span are reused while fragments stay in them.
         let own = match row {
             Some((known, own)) if known == place => own,
             _ => {

@@ -39,16 +39,16 @@ use crate::simd::gather::{SLOTS, most_gathered};
 use marraztu_core::accuracy::{LightAt, Rounding};
 use marraztu_core::base::color::Color;
 
-/// Shades blocks. Each thread has its own.
+/// Shades blocks. Each thread has a separate one.
 #[derive(Debug)]
 pub(crate) struct Shader<T> {
-    /// The lights of the tile that is coloured.
+    /// The lights of the current tile.
     pub(crate) tile: TilePlan,
     pub(crate) fragments: Fragments,
     pub(crate) attributes: TriangleAttributes<T>,
     pub(crate) barycentrics: Barycentrics<T>,
     pub(crate) batch: Batch<T>,
-    /// For rays of shadows.
+    /// The memory for shadow rays.
     pub(super) rays: RayScratch,
     /// The pixels of each path since the frame began.
     pub(super) path_pixels: PathPixels,
@@ -57,28 +57,28 @@ pub(crate) struct Shader<T> {
     pub(crate) texels: Rows<T>,
     /// The vertex colours of the triangles.
     pub(super) vertex_colors: CornerValues<T>,
-    /// For surfaces with further maps, or light of their own.
+    /// The memory for additional maps and emission.
     pub(super) maps: Box<MapRows<T>>,
     pub(super) colors: Colors,
     pub(super) thresholds: Thresholds<T>,
-    /// The triangles of a list in which each pixel has its own.
+    /// The triangles of a list with one triangle per pixel.
     pub(super) tiny: TinyTriangles,
     /// The colours of their corners, with light at vertices.
     pub(super) corner_colors: Box<CornerRows<T>>,
-    /// How pixels of a draw become positions and normals.
+    /// The conversion of a draw's pixels to positions and normals.
     look: Option<(u32, Look<T>)>,
-    /// Whether nothing but corners, normals and light is prepared for the triangles of the list.
+    /// Whether only corners, normals and light are prepared for the triangles of the list.
     prepares_little: bool,
     /// The triangles of a tile that have to be lit.
     pub(super) new_faces: Vec<u32>,
-    /// The blocks whose pixels are listed and wait to be coloured.
+    /// The blocks with listed pixels that wait to be coloured.
     pub(super) waiting: Vec<Waiting>,
-    /// Where runs of pixels that show the same begin in each block of a tile, if colours of
-    /// triangles are looked up.
+    /// The starts of runs of equal pixels in each block of a tile, if colours of triangles are
+    /// looked up.
     pub(super) runs: [u64; BLOCK_PIXELS],
 }
 
-/// A block whose pixels are listed: from a fragment on, for a place in the tile.
+/// A block with listed pixels: its first fragment, and its place in the tile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Waiting {
     pub(super) from: usize,
@@ -88,15 +88,16 @@ pub(super) struct Waiting {
 /// The destination of a block's colours.
 #[derive(Debug)]
 pub(crate) enum Out<'a, 'b> {
-    /// A tile, from an index on.
+    /// A tile, starting at an index.
     Tile(&'a mut Canvas<'b>, usize),
-    /// The blocks of a tile that wait.
+    /// The waiting blocks of a tile.
     Waiting(&'a mut Canvas<'b>),
     /// The sums over several samples.
     Sums(&'a mut Sums),
-    /// The same, and what later passes need not light again: this number of fragments, the first.
+    /// The sums, and the cache for later passes, which stores this number of fragments from the
+    /// first.
     Kept(&'a mut Sums, &'a mut Kept, usize),
-    /// What is behind a layer.
+    /// The colours behind a layer.
     Layer(&'a mut Blend),
 }
 
@@ -105,7 +106,7 @@ pub(crate) enum Out<'a, 'b> {
 enum Mixture {
     /// The bytes of the pixels.
     Bytes,
-    /// Their colours, as diffuse light: they are encoded after this.
+    /// Colours as diffuse light, to be encoded later.
     Colors,
     /// Diffuse and specular light.
     Light,
@@ -152,14 +153,14 @@ impl<T: ShadingNumber> Shader<T> {
         self.path_pixels
     }
 
-    /// The rays of shadows since the frame began.
+    /// Returns the shadow rays since the frame began.
     pub(crate) const fn ray_count(&self) -> RayCount {
         self.rays.count
     }
 
-    /// The number of slots up to which triangles of a list keep theirs for the next one, so that
-    /// those which reach into several blocks are prepared once; 0 if that does not pay: with light
-    /// per face, all slots are lit for each list.
+    /// Returns the number of slots up to which triangles keep their slots for the next list:
+    /// triangles in several blocks are then prepared once. Returns 0 if that does not pay: with
+    /// light per face, all slots are lit for each list.
     pub(super) fn most_slots(&self, context: &ShadingContext<'_, T>) -> usize {
         let is_lit_once = context.plan.light_at == LightAt::Face;
         let pays = !is_lit_once && self.prepares_little && self.attributes.may_go_on();
@@ -200,6 +201,7 @@ impl<T: ShadingNumber> Shader<T> {
         group: &Group<'_>,
         out: &mut Out<'_, '_>,
     ) {
+        // The fixed-point form is summed; bytes are copied to the tile.
         self.colors.form = match out {
             Out::Tile(..) | Out::Waiting(_) => Form::Pixels,
             Out::Sums(_) | Out::Kept(..) | Out::Layer(_) => Form::Parts,
@@ -234,7 +236,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// The colour of the first fragment of a group.
+    /// Returns the colour of the first fragment of a group.
     pub(crate) fn first_color(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -266,7 +268,7 @@ impl<T: ShadingNumber> Shader<T> {
                 done[other] |= keep[other];
             }
             self.fragments.take_from(&all, &keep, corner);
-            // Triangles of the list before, which keep their slots, may show nowhere.
+            // Triangles of the last list that keep their slots may have no fragments.
             if self.fragments.len > 0 {
                 self.color_group(context, &group, out);
             }
@@ -312,11 +314,11 @@ impl<T: ShadingNumber> Shader<T> {
         let ShadingContext { level, plan, .. } = *context;
         let draw = group.draw;
         let extras = &shaded.extras;
-        // A map of opacity is read where the fragments are.
+        // An opacity map is read at the positions of fragments.
         let fades = shaded.opacity.is_some() && shaded.opacity_map.is_some();
         let textured =
             shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels() || fades;
-        // Every pixel has its own colour.
+        // Whether every pixel has a separate colour.
         let each = textured || plan.variants.rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let located = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
@@ -330,6 +332,7 @@ impl<T: ShadingNumber> Shader<T> {
         if located {
             self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
         }
+        // If each triangle has one colour, colours are computed per slot and handed out at the end.
         let is_by_slot = !(located || each);
         self.batch.len = if is_by_slot { self.fragments.count } else { self.fragments.len };
         let mut tint = shaded.tint;
@@ -345,6 +348,7 @@ impl<T: ShadingNumber> Shader<T> {
             },
             Some((LightAt::Face, stages)) => self.light_faces(context, group, stages, each),
         }
+        // Maps come after light, because the map of Ks multiplies highlights.
         if textured {
             self.texels(context, group, shaded, new);
         }
@@ -362,7 +366,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Converts the light of the list, times a tint or the texels, and with what glows, to colours.
+    /// Converts the light of the list, times a tint or the texels, plus emission, to colours.
     pub(super) fn quantize(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -376,6 +380,7 @@ impl<T: ShadingNumber> Shader<T> {
             None => SurfaceColor::Texels(texels),
             Some(tint) => SurfaceColor::Tint(tint.map(T::from_f64)),
         };
+        // `Finish` handles glow and encoding; the common cases have smaller kernels.
         if glows || encoding.is_some() {
             let thresholds =
                 (rounding != Rounding::Nearest).then(|| thresholds.of(rounding, &self.fragments));
@@ -390,7 +395,7 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Fetches the triangles of the list, with their screen positions if they are to be `located`.
-    /// Returns whether they differ from those before.
+    /// Returns whether they differ from the last list's.
     pub(crate) fn take(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -404,6 +409,7 @@ impl<T: ShadingNumber> Shader<T> {
         let new = self.attributes.take(&self.fragments, order, draw_index, base);
         if new {
             let vertices = frame.corners_of(draw_index);
+            // Normals are requested now and read after the corners.
             if located && plan.light_at == LightAt::Pixel && asks_ahead(self.fragments.count) {
                 self.attributes.prefetch_normals(draw);
             }
@@ -415,7 +421,7 @@ impl<T: ShadingNumber> Shader<T> {
         new
     }
 
-    /// How pixels of a group become positions and normals; computed once for each draw in turn.
+    /// Returns the conversion of a group's pixels to positions and normals, computed once per draw.
     pub(super) fn look_of(&mut self, plan: &FramePlan, group: &Group<'_>) -> Look<T> {
         match self.look {
             Some((draw, look)) if draw == group.draw_index => look,
@@ -456,6 +462,7 @@ impl<T: ShadingNumber> Shader<T> {
             // The attributes were not fetched, so the next block must not reuse them.
             attributes.forget();
         }
+        // Shadow rays start at the exact points that the fragments show.
         let tracer = context.tracer_of(group.draw_index).filter(|_| light.needs_positions);
         let mut place = |origins: &mut Origins| {
             if let Some(tracer) = tracer {
@@ -479,7 +486,7 @@ impl<T: ShadingNumber> Shader<T> {
         let ShadingContext { level, plan, .. } = *context;
         let tables = context.lit.tables(group.draw_index, group.pipeline);
         if !tables[0].is_colored() {
-            // The attributes are those of specular light.
+            // The attributes of the last block hold specular light.
             self.attributes.keep_none();
         }
         if new || !tables[0].is_colored() {
@@ -488,6 +495,8 @@ impl<T: ShadingNumber> Shader<T> {
         }
         let Self { fragments, attributes, barycentrics, batch, colors, thresholds, .. } = self;
         let colored = tables[0].is_colored();
+        // Final colours are interpolated and converted in one pass, unless something is added
+        // later.
         if colored && !plan.variants.are_linear() && shaded.extras.is_empty() {
             let thresholds = thresholds.of(plan.variants.rounding, fragments);
             mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors, thresholds));
@@ -530,7 +539,7 @@ impl<T: ShadingNumber> Shader<T> {
         );
     }
 
-    /// Flat shading: lights each face, and spreads the light to its pixels if they are `located`.
+    /// Flat shading: lights each face, and copies the light to its pixels if they are `located`.
     fn light_faces(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -550,6 +559,7 @@ impl<T: ShadingNumber> Shader<T> {
         };
         let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, rays, &mut place));
         run(stages, terms.of(group.pipeline), level, batch, shadows);
+        // Pixels that need separate colours get a copy of their face's light.
         if located {
             for row in batch.diffuse.iter_mut().chain(&mut batch.specular) {
                 let of_faces = *row;
@@ -562,7 +572,7 @@ impl<T: ShadingNumber> Shader<T> {
     }
 }
 
-/// Column and row of pixel `i` of a block.
+/// Returns the column and row of pixel `i` of a block.
 pub(super) const fn in_block(i: usize) -> [usize; 2] {
     [i % BLOCK as usize, i / BLOCK as usize]
 }

@@ -1,4 +1,4 @@
-//! Texels of fragments, sixteen at a time; the footprint of a pixel on its texture.
+//! Texels of fragments, sixteen at a time, and the footprint of a pixel on its texture.
 
 use fearless_simd::{Simd, SimdBase as _, SimdMask as _, SimdWiden as _, f32x16, f64x8, i32x16};
 use glam::DVec3;
@@ -24,12 +24,12 @@ use crate::texture::uv::Uvs;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedTexture<'a> {
     pub(crate) placement: &'a Placement,
-    /// The triangles that f32 is not enough for.
+    /// The triangles for which f32 is not accurate enough.
     pub(crate) far: &'a [FarTexture],
     pub(crate) sampler: &'a Sampler<'a>,
 }
 
-/// What the texels of some fragments are sampled from.
+/// The inputs for sampling the texels of some fragments.
 #[derive(Debug)]
 pub(crate) struct TextureSamples<'a, T> {
     pub(crate) fragments: &'a Fragments,
@@ -38,7 +38,7 @@ pub(crate) struct TextureSamples<'a, T> {
     pub(crate) decoding: Decoding,
 }
 
-/// What sampling writes. It is kept from list to list, so that none of it has to be cleared.
+/// The output of sampling. It is reused from list to list and never cleared.
 #[derive(Debug)]
 pub(crate) struct TexelScratch {
     pub(crate) places: TexelPlaces,
@@ -55,8 +55,8 @@ impl Default for TexelScratch {
 }
 
 impl TextureSamples<'_, f32> {
-    /// Multiplies colours by the texels of all fragments; those of triangles whose placement is not
-    /// known get arbitrary factors.
+    /// Multiplies colours by the texels of all fragments. Triangles without a known placement get
+    /// arbitrary factors.
     #[inline(always)]
     pub(crate) fn multiply<S: Simd, D: Decode, const PAGES: usize>(
         &self,
@@ -74,7 +74,7 @@ impl TextureSamples<'_, f32> {
         }
     }
 
-    /// Finds the places of all fragments.
+    /// Computes the places of all fragments.
     #[inline(always)]
     fn place<S: Simd, const PAGES: usize>(&self, simd: S, to: &mut TexelPlaces) {
         let Self { fragments, barycentrics, texture, .. } = *self;
@@ -93,7 +93,8 @@ impl TextureSamples<'_, f32> {
         }
     }
 
-    /// The slopes of heights at all fragments, per texel along u and v, in the first two rows.
+    /// Computes the slopes of heights at all fragments, per texel along u and v, into the first two
+    /// rows.
     #[inline(always)]
     pub(crate) fn slopes<S: Simd, const PAGES: usize>(
         &self,
@@ -106,6 +107,7 @@ impl TextureSamples<'_, f32> {
         self.place::<S, PAGES>(simd, places);
         let own = places.position;
         let mut heights = [[0.0; BATCH]; 4];
+        // Central differences: heights one texel to the right, left, above and below.
         let beside = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
         for (heights, beside) in heights.iter_mut().zip(beside) {
             for axis in 0..2 {
@@ -130,7 +132,8 @@ impl TextureSamples<'_, f32> {
 }
 
 impl<T> TextureSamples<'_, T> {
-    /// Replaces the positions of sixteen fragments in triangles that f32 is not enough for.
+    /// Replaces the positions of sixteen fragments in triangles for which f32 is not accurate
+    /// enough.
     #[cold]
     fn far_positions<S: Simd>(
         &self,
@@ -151,7 +154,7 @@ impl<T> TextureSamples<'_, T> {
     }
 }
 
-/// The product of two colours.
+/// Multiplies two colours.
 #[inline(always)]
 pub(crate) fn product<R: Real>(Vec3([r, g, b]): Vec3<R>, Vec3([x, y, z]): Vec3<R>) -> Vec3<R> {
     Vec3([r * x, g * y, b * z])
@@ -159,11 +162,11 @@ pub(crate) fn product<R: Real>(Vec3([r, g, b]): Vec3<R>, Vec3([x, y, z]): Vec3<R
 
 /// The triangles of sixteen pixels.
 pub(crate) trait Triangles<S: Simd> {
-    /// The numbers of the triangles in a row.
+    /// Picks the numbers of the triangles in a row.
     fn pick(&self, simd: S, row: &[f32; SLOTS]) -> f32x16<S>;
 }
 
-/// Those of some slots, all below `PAGES` times sixteen.
+/// The triangles in some slots, all below `PAGES` times sixteen.
 struct OfSlots<S: Simd, const PAGES: usize>(i32x16<S>);
 
 impl<S: Simd, const PAGES: usize> Triangles<S> for OfSlots<S, PAGES> {
@@ -184,8 +187,8 @@ impl<S: Simd> Triangles<S> for OfFirst {
 }
 
 impl PlacedTexture<'_> {
-    /// Puts sixteen places on the texture into a row, at some positions, with the way to them in
-    /// texels from the first corner and with their w.
+    /// Stores sixteen places on the texture in a row: their positions and, for mipmaps, their
+    /// footprints, from the offsets in texels from the first corner and from w.
     #[inline(always)]
     pub(crate) fn put<S: Simd>(
         &self,
@@ -205,7 +208,8 @@ impl PlacedTexture<'_> {
         }
     }
 
-    /// The texels from the first corner to the point with these weights of the second and third.
+    /// Returns the texels from the first corner to the point with these weights of the second and
+    /// third.
     #[inline(always)]
     pub(crate) fn way<S: Simd>(
         &self,
@@ -220,7 +224,7 @@ impl PlacedTexture<'_> {
         ]
     }
 
-    /// The position in texels, for this way in texels from the first corner.
+    /// Returns the position in texels, for this offset in texels from the first corner.
     #[inline(always)]
     pub(crate) fn position<S: Simd>(
         &self,
@@ -244,8 +248,8 @@ impl PlacedTexture<'_> {
         Real::min(texels, of.pick(simd, &self.placement.high[axis]))
     }
 
-    /// The square of the distance in texels to the next pixel on the right (0) or below (1). With
-    /// u = U w, where U and 1/w change by dU and d to that pixel:
+    /// Returns the square of the distance in texels to the next pixel on the right (0) or below
+    /// (1). With u = U w, where U and 1/w change by dU and d to that pixel:
     ///
     ///   (U + dU) / (1/w + d) - U w = (dU - u d) w / (1 + w d)
     #[inline(always)]
@@ -265,7 +269,7 @@ impl PlacedTexture<'_> {
     }
 }
 
-/// The [`Steps`] of a triangle; `None` if it has no area.
+/// Computes the [`Steps`] of a triangle. `None` if it has no area.
 pub(crate) fn steps<T: AttributeNumber>(
     (plan, draw): (&FramePlan, &Draw),
     attributes: &TriangleAttributes<T>,
@@ -284,7 +288,7 @@ pub(crate) fn steps<T: AttributeNumber>(
     }
     let by_w: [f64; 3] = [0, 1, 2].map(|corner| attributes.by_w[corner][slot].into());
     let per_pixel = f64::from(attributes.grid.parts()) / area;
-    // Of the barycentric coordinates of the second and the third corner.
+    // The steps of the barycentric coordinates of the second and third corner.
     let right = [c[1] - a[1], a[1] - b[1]].map(|step| step * per_pixel);
     let down = [a[0] - c[0], b[0] - a[0]].map(|step| step * per_pixel);
     Some(
@@ -294,8 +298,8 @@ pub(crate) fn steps<T: AttributeNumber>(
     )
 }
 
-/// The [`Steps`] of sixteen triangles, from slot `at` on, with the bits of [`steps`]; and a bit for
-/// each of them whose steps are meaningless: it is clipped, wide, or has no area.
+/// Computes the [`Steps`] of sixteen triangles, starting at slot `at`, with the bits of [`steps`].
+/// Also returns a bit mask of triangles with meaningless steps: clipped, wide, or without area.
 #[inline(always)]
 pub(super) fn lane_steps<S: Simd>(
     simd: S,
@@ -306,13 +310,14 @@ pub(super) fn lane_steps<S: Simd>(
     let [bx, by] = places(simd, &attributes.corners[1], at);
     let [cx, cy] = places(simd, &attributes.corners[2], at);
     let [w0, w1, w2] = &attributes.by_w;
+    // All corners as f64, for sixteen triangles in two halves.
     let by_w = [wide(simd, w0, at), wide(simd, w1, at), wide(simd, w2, at)];
     let (b, c) = ([less(bx, ax), less(by, ay)], [less(cx, ax), less(cy, ay)]);
     let parts = f64::from(attributes.grid.parts());
     let zero = f64x8::splat(simd, 0.0);
     let (mut steps, mut flat) = ([[[zero; 2]; 3]; 2], 0);
     for half in 0..2 {
-        // Sides of triangles that are not wide have 20 bits, so that this is exact.
+        // Sides of triangles that are not wide have 20 bits, so this is exact.
         let area = b[0][half] * c[1][half] - b[1][half] * c[0][half];
         flat |= area.simd_eq(0.0).to_bitmask() << (8 * half);
         let per_pixel = f64x8::splat(simd, parts) / area;
@@ -327,22 +332,22 @@ pub(super) fn lane_steps<S: Simd>(
     (steps, flat | (attributes.cut | attributes.wide) >> at & 0xffff)
 }
 
-/// x and y of one corner of sixteen triangles.
+/// Returns x and y of one corner of sixteen triangles.
 #[inline(always)]
 fn places<S: Simd>(simd: S, [x, y]: &[[i32; SLOTS]; 2], at: usize) -> [Doubles<S>; 2] {
     let (x, y) = (&x[at..at + 16], &y[at..at + 16]);
     [in_f64(i32x16::from_slice(simd, x)), in_f64(i32x16::from_slice(simd, y))]
 }
 
-/// Sixteen numbers of a row.
+/// Returns sixteen numbers of a row.
 #[inline(always)]
 fn wide<S: Simd>(simd: S, row: &[f32; SLOTS], at: usize) -> Doubles<S> {
     let (low, high) = Sixteen(simd).load(row, at).widen();
     [low, high]
 }
 
-/// The footprint of a pixel with these perspective-correct weights and this w: the differences of
-/// uv to its neighbours on the right and below. See [`PlacedTexture::squared_step`].
+/// Computes the footprint of a pixel with these perspective-correct weights and w: the differences
+/// of uv to its neighbours on the right and below. See [`PlacedTexture::squared_step`].
 pub(crate) fn footprint([a, b, c]: Uvs, weights: DVec3, w: f64, steps: Steps) -> [[f64; 2]; 2] {
     steps.map(|[first, second, third]| {
         let by_w = first + second + third;

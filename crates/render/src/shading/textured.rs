@@ -1,4 +1,4 @@
-//! The colour of a surface, pixel by pixel: texture, vertex colours and tint.
+//! The surface colour, pixel by pixel: texture, vertex colours and tint.
 
 use super::context::ShadingContext;
 use super::groups::Group;
@@ -14,8 +14,8 @@ use marraztu_core::base::math::each;
 use marraztu_core::scene::Texture;
 
 impl<T: ShadingNumber> Shader<T> {
-    /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent. `new` says
-    /// whether the triangles differ from those before.
+    /// Computes t at the pixels of the group: texel x tint x vertex colour, each 1 if absent. `new`
+    /// tells whether the triangles differ from the last list's.
     pub(crate) fn texels(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -33,6 +33,7 @@ impl<T: ShadingNumber> Shader<T> {
             let of = (source, Texels::Colors, new);
             points.read(context, group, of, placed, (shaded.tint, texels));
         }
+        // Vertex colours multiply last: t is a product, and order only affects rounding.
         if shaded.vertex_colors {
             if new {
                 self.take_vertex_colors(group, context.plan.variants.decoding());
@@ -43,7 +44,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Finds where a texture lies on the triangles of the list.
+    /// Computes the placement of a texture on the triangles of the list.
     pub(super) fn place_texture(
         &mut self,
         context: &ShadingContext<'_, T>,

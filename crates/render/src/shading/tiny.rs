@@ -1,11 +1,12 @@
-//! Colours lists in which nearly each pixel shows a triangle of its own.
+//! Colours lists with a separate triangle in nearly each pixel.
 //!
 //! Triangles of about a pixel gain nothing from slots: each would be looked up, prepared, stored,
-//! and gathered again for one pixel. Here, lane i of sixteen holds the triangle of pixel i, from
-//! its vertices to its normals. Lists reach over several blocks, and what is read for them is asked
-//! for before, since most of it is in no near cache. The bits are those of triangles with slots.
+//! and gathered again for a single pixel. Here, lane i of sixteen holds the triangle of pixel i,
+//! from its vertices to its normals. Lists extend over several blocks, and their inputs are
+//! prefetched, because most of them are not in the near caches. The bits are the same as with
+//! slots.
 //!
-//! Clipped triangles, and those whose edge functions need more than 32 bits, are not tiny.
+//! Clipped triangles, and triangles with edge functions of more than 32 bits, are not tiny.
 
 use crate::simd::dispatch;
 use fearless_simd::{
@@ -32,11 +33,11 @@ use marraztu_core::accuracy::Interpolation;
 #[derive(Debug)]
 #[repr(align(64))]
 pub(crate) struct TinyTriangles {
-    /// Their vertices in the mesh's draw order.
+    /// The vertices in the mesh's draw order.
     ids: [[u32; 3]; BATCH],
-    /// The places of their corners in the list of normals, or of light.
+    /// The indices of the corners in the list of normals, or of light.
     pub(super) places: [[u32; 3]; BATCH],
-    /// Which of them are back faces, sixteen at a time.
+    /// The masks of back faces, sixteen triangles at a time.
     pub(super) back: [u64; BATCH / 16],
 }
 
@@ -47,10 +48,9 @@ impl Default for TinyTriangles {
 }
 
 impl TinyTriangles {
-    /// Sets the triangles to those of a list, all of one draw whose numbers begin at `base`, and
-    /// asks the cache for their vertices and for what is at their corners. `corners` gives the
-    /// places of a triangle's corners, by its number in the mesh and its vertices; `prefetch` asks
-    /// for what is at one.
+    /// Sets the triangles of a list, all of one draw with numbers from `base`, and prefetches their
+    /// vertices and corner data. `corners` returns the indices of a triangle's corners, given its
+    /// number in the mesh and its vertices; `prefetch` prefetches the data at an index.
     #[inline(always)]
     pub(super) fn take(
         &mut self,
@@ -71,22 +71,22 @@ impl TinyTriangles {
     }
 }
 
-/// The colours of the corners of some triangles, corner by corner: red, green, blue, and a number
-/// of no meaning.
+/// The colours of the corners of some triangles, corner by corner: red, green, blue, and an unused
+/// number.
 pub(crate) type CornerRows<T> = [[[T; 4]; BATCH]; 3];
 
-/// What the barycentric coordinates of tiny triangles are computed from.
+/// The inputs for the barycentric coordinates of tiny triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Weighing<'a> {
     pub(super) interpolation: Interpolation,
     pub(super) grid: Grid,
-    /// Whether fronts and backs are mirrored.
+    /// Whether front and back are swapped by mirroring.
     pub(super) mirrored: bool,
     pub(super) vertices: &'a [ScreenVertex],
 }
 
-/// Computes the barycentric coordinates of a list, and which triangles are back faces. Returns
-/// false if one is clipped or wide: then they are meaningless.
+/// Computes the barycentric coordinates of a list, and the masks of back faces. Returns false if a
+/// triangle is clipped or wide: the results are then meaningless.
 pub(super) fn weigh(
     level: Level,
     by: Weighing<'_>,
@@ -98,7 +98,7 @@ pub(super) fn weigh(
 }
 
 /// Computes position, normal and direction to the observer of every pixel, from the normals at
-/// corners, which are reversed on back faces if those are lit.
+/// corners, which are reversed on lit back faces.
 pub(super) fn sample(
     level: Level,
     look: &Look<f32>,
@@ -137,6 +137,7 @@ fn weigh_in<S: Simd>(
         odd |= (edges.cut | edges.wide).to_bitmask() & own;
         let front = edges.area.simd_lt(0).to_bitmask();
         triangles.back[at / 16] = if by.mirrored { front } else { !front };
+        // Each lane evaluates one triangle at one pixel.
         let x = i32x16::from_slice(simd, &fragments.x[at..at + 16]);
         let y = i32x16::from_slice(simd, &fragments.y[at..at + 16]);
         let per_area = edges.per_area();
@@ -174,14 +175,14 @@ fn sample_in<S: Simd>(
         let normal = between([a, b.minus(a), c.minus(a)], by);
         let half = f32x16::splat(simd, 0.5);
         let place = [lanes.whole(&fragments.x, at) + half, lanes.whole(&fragments.y, at) + half];
-        // Depths are for orthographic projection, in which no triangle is drawn as tiny.
+        // Depths only matter in orthographic projection, which has no tiny triangles.
         let depth = || f32x16::splat(simd, 0.0);
         let sample = look.at(lanes, normal, place, lanes.load(&weights.w, at), depth);
         to.put(lanes, sample, at);
     }
 }
 
-/// The normals at one corner of sixteen triangles.
+/// Fetches the normals at one corner of sixteen triangles.
 #[inline(always)]
 fn normals_at<S: Simd>(
     simd: S,
@@ -189,7 +190,7 @@ fn normals_at<S: Simd>(
     places: &[[u32; 3]],
     corner: usize,
 ) -> Vec3<f32x16<S>> {
-    // Unused lanes may have places of other draws.
+    // Unused lanes may have indices of other draws.
     let last = normals.len().saturating_sub(1);
     let [x, y, z, _] = fetch(
         simd,
@@ -197,7 +198,7 @@ fn normals_at<S: Simd>(
         |lane| {
             let [x, y, z] = normals[(places[lane][corner] as usize).min(last)];
             let [x, y, z] = [x, y, z].map(|x| x.to_bits().cast_signed());
-            // The fourth is not read.
+            // The fourth number is not read.
             [x, y, z, z]
         },
     );

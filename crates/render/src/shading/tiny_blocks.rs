@@ -1,7 +1,7 @@
 //! Colours blocks of [tiny] triangles.
 //!
-//! They wait until their pixels fill a list, like other blocks that show one surface. If a triangle
-//! of the list is clipped or wide, its blocks are coloured one by one instead, with slots.
+//! They wait until their pixels fill a list, like other blocks of one surface. If a triangle of the
+//! list is clipped or wide, its blocks are coloured one by one instead, with slots.
 
 use crate::accel::Accelerated as _;
 use prefetch_index::prefetch_index;
@@ -22,10 +22,10 @@ use crate::screen::tiles::BLOCK_PIXELS;
 use marraztu_core::accuracy::LightAt;
 use marraztu_core::scene::Normals;
 
-/// The distinct triangles of a block, about, from which on they are drawn as tiny ones.
+/// The approximate number of distinct triangles in a block from which they are drawn as tiny ones.
 const MANY: u32 = 32;
 
-/// How the surface of a group is shaded, if it is lit.
+/// Returns the shading of a group's surface, if it is lit.
 fn lit<'a>(plan: &'a FramePlan, group: &Group<'_>) -> Option<&'a Shaded> {
     match &plan.pipelines[group.pipeline as usize] {
         Pipeline::Shaded(shaded) => shaded.light.is_some().then_some(shaded),
@@ -33,9 +33,9 @@ fn lit<'a>(plan: &'a FramePlan, group: &Group<'_>) -> Option<&'a Shaded> {
     }
 }
 
-/// Numbers that triangles are shaded in. Tiny ones are shaded in f32.
+/// A number type that triangles are shaded in. Tiny ones are shaded in f32.
 pub(crate) trait Tiny: Sized {
-    /// The same shader and context, if their numbers are f32.
+    /// Returns the same shader and context, if their number type is f32.
     fn single<'s, 'c, 'a>(
         shader: &'s mut Shader<Self>,
         context: &'c ShadingContext<'a, Self>,
@@ -61,8 +61,8 @@ impl Tiny for f64 {
 }
 
 impl Shader<f32> {
-    /// Lists a block of tiny triangles, to be coloured when [`Shader::finish_waiting`] is called.
-    /// Returns whether it has listed it: it does not if they are not tiny, or of several groups.
+    /// Lists a block of tiny triangles, to be coloured by [`Shader::finish_waiting`]. Returns
+    /// whether it did; blocks of larger triangles or of several groups are not listed.
     pub(super) fn wait_tiny(
         &mut self,
         context: &ShadingContext<'_, f32>,
@@ -84,6 +84,7 @@ impl Shader<f32> {
         self.fragments.list_tiny(context.level, runs, corner);
         let each = self.fragments.each();
         let group = group_of(context, each[0]);
+        // Another draw or pipeline: the block is removed from the list again.
         if !are_of(context, &group, &each[from..]) {
             self.fragments.shorten(from);
             return false;
@@ -94,7 +95,7 @@ impl Shader<f32> {
         true
     }
 
-    /// Colours the blocks of tiny triangles that wait.
+    /// Colours the waiting blocks of tiny triangles.
     pub(super) fn finish_tiny(
         &mut self,
         context: &ShadingContext<'_, f32>,
@@ -118,7 +119,7 @@ impl Shader<f32> {
         }
     }
 
-    /// Colours the blocks that wait one after the other, with slots.
+    /// Colours the waiting blocks one after the other, with slots.
     #[cold]
     fn color_one_by_one(&mut self, context: &ShadingContext<'_, f32>, canvas: &mut Canvas<'_>) {
         let all = std::mem::take(&mut self.fragments);
@@ -147,7 +148,7 @@ impl Shader<f32> {
         tiny::weigh(level, by, &self.fragments, &mut self.tiny, &mut self.barycentrics)
     }
 
-    /// Phong shading, as [`Shader::light_pixels`].
+    /// Phong shading, like [`Shader::light_pixels`].
     fn light_tiny(
         &mut self,
         context: &ShadingContext<'_, f32>,
@@ -163,6 +164,7 @@ impl Shader<f32> {
             let points = order.points(group.draw.normal_source);
             let by_vertex = group.draw.normals == Normals::Vertex;
             let normals = if by_vertex { &points.normals } else { mesh.polygon_normals() };
+            // Normals are prefetched while the edge functions are computed.
             let list = (self.fragments.each(), group.base);
             let from = (order, frame.corners_of(group.draw_index));
             let prefetch = |place: u32| prefetch_index(normals, place as usize);
@@ -185,7 +187,7 @@ impl Shader<f32> {
         true
     }
 
-    /// Gouraud shading, as [`Shader::mix_light`].
+    /// Gouraud shading, like [`Shader::mix_light`].
     fn mix_tiny(
         &mut self,
         context: &ShadingContext<'_, f32>,
@@ -199,6 +201,7 @@ impl Shader<f32> {
         let tables = lit.tables(group.draw_index, group.pipeline);
         let list = (self.fragments.each(), group.base);
         let from = (order, frame.corners_of(group.draw_index));
+        // Light is stored by point, or by corner with face normals.
         match group.draw.normals {
             Normals::Face => {
                 let triangles = mesh.triangles();
@@ -227,6 +230,7 @@ impl Shader<f32> {
             thresholds,
             ..
         } = self;
+        // One table look-up per corner; unlit vertices are lit here.
         for (i, places) in tiny.places[..fragments.len].iter().enumerate() {
             let back = tiny.back[i / 16] >> (i % 16) & 1 != 0;
             let table = tables[usize::from(back)];

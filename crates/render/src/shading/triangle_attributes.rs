@@ -1,7 +1,7 @@
-//! Attributes of the triangles that a block shows, and their edge functions.
+//! The attributes and edge functions of the triangles that a block shows.
 //!
-//! Each triangle has a slot. Its corners on the screen and its attributes at them (normals, or
-//! light of vertices) are fetched once, row after row, so that the fetches overlap. Then sixteen
+//! Each triangle has a slot. Its screen corners and the attributes at its corners (normals, or
+//! light of vertices) are fetched once, row after row, which lets the fetches overlap. Then sixteen
 //! triangles at a time are prepared for the pixels that gather from them.
 
 use crate::accel::Accelerated as _;
@@ -28,20 +28,20 @@ use marraztu_core::scene::Normals;
 #[repr(align(64))]
 pub(crate) struct TriangleAttributes<T> {
     pub(crate) count: usize,
-    /// The first slots hold triangles of the list before, which are prepared already.
+    /// The number of first slots with triangles of the last list, which are prepared already.
     kept: usize,
-    /// Their numbers in the mesh.
+    /// The triangles' numbers in the mesh.
     pub(crate) numbers: [u32; SLOTS],
-    /// Whether their corners were fetched.
+    /// Whether the corners were fetched.
     has_corners: bool,
-    /// Their vertices in the mesh's draw order.
+    /// The vertices in the mesh's draw order.
     ids: [[u32; 3]; SLOTS],
     /// x and y of each corner on the screen, in subpixels.
     pub(crate) corners: [[[i32; SLOTS]; 2]; 3],
     /// The attributes of each corner.
     pub(crate) carried: [[[T; 4]; SLOTS]; 3],
-    /// a, b and c of the edge functions of the second and the third corner, at pixels: e = a x + b
-    /// y + c, modulo 2^32.
+    /// The coefficients a, b and c of the second and third edge function at pixels: e = a x + b y +
+    /// c, modulo 2^32.
     pub(crate) edges: [[[i32; SLOTS]; 3]; 2],
     /// 1 / the doubled area.
     pub(crate) per_area: [f32; SLOTS],
@@ -49,17 +49,17 @@ pub(crate) struct TriangleAttributes<T> {
     pub(crate) by_w: [[T; SLOTS]; 3],
     /// The attributes of the first corner, and the differences of the second and third from it.
     pub(crate) values: [[[T; SLOTS]; 3]; 3],
-    /// z of each corner in view space; in orthographic projection only.
+    /// z of each corner in view space; only in orthographic projection.
     pub(crate) z: [[T; SLOTS]; 3],
-    /// Bit i: the triangle is clipped.
+    /// A bit per slot: the triangle is clipped.
     pub(crate) cut: u64,
-    /// Bit i: its edge functions do not fit 31 bits.
+    /// A bit per slot: its edge functions do not fit 31 bits.
     pub(crate) wide: u64,
-    /// Bit i: it is a back face.
+    /// A bit per slot: it is a back face.
     pub(crate) back: u64,
-    /// The index of their draw in the plan.
+    /// The index of the draw in the plan.
     draw: Option<u32>,
-    /// The grid of their corners.
+    /// The grid of the corners.
     pub(crate) grid: Grid,
 }
 
@@ -89,25 +89,25 @@ impl<T: Number> Default for TriangleAttributes<T> {
 }
 
 impl<T> TriangleAttributes<T> {
-    /// The slots of new triangles.
+    /// Returns the slots of new triangles.
     fn new_slots(&self) -> std::ops::Range<usize> {
         self.kept..self.count
     }
 
-    /// A bit for each slot that is not new.
+    /// Returns a bit for each slot that is not new.
     const fn kept_bits(&self) -> u64 {
         (1 << self.kept) - 1
     }
 }
 
-/// Whether the cache is asked for what is read of a list of triangles before it is read: large
-/// models show many in a block, and are in no near cache. Of fewer, most is there, and asking costs
-/// 2 to 5% of a frame.
+/// Returns whether the inputs of a list of triangles are prefetched. Large models show many
+/// triangles in a block, and are not in the near caches. With fewer triangles most data is cached,
+/// and prefetching costs 2 to 5% of a frame.
 pub(super) const fn asks_ahead(count: usize) -> bool {
     count > SLOTS / 2
 }
 
-/// Numbers in which attributes are stored.
+/// A number type in which attributes are stored.
 pub(crate) trait AttributeNumber: Number {
     /// Whether barycentric coordinates are computed from integers in f64, one by one.
     const EXACT: bool;
@@ -116,7 +116,7 @@ pub(crate) trait AttributeNumber: Number {
 }
 
 impl<T: AttributeNumber> TriangleAttributes<T> {
-    /// Triangles with these corners, for tests.
+    /// Creates triangles with these corners, for tests.
     #[cfg(test)]
     pub(crate) fn of(level: Level, ids: &[[u32; 3]], vertices: &[ScreenVertex]) -> Self {
         let mut attributes = Self { count: ids.len(), ..Self::default() };
@@ -125,24 +125,24 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         attributes
     }
 
-    /// Forgets the triangles of the last block.
+    /// Drops the triangles of the last block.
     pub(crate) const fn forget(&mut self) {
         self.draw = None;
     }
 
-    /// Prepares the triangles of the list before again, too.
+    /// Forces the triangles of the last list to be prepared again.
     pub(crate) const fn keep_none(&mut self) {
         self.kept = 0;
     }
 
-    /// Whether more triangles may be added to these: with clipped ones, all are interpolated more
-    /// slowly.
+    /// Returns whether more triangles may be added to these. With clipped triangles, all are
+    /// interpolated more slowly.
     pub(crate) const fn may_go_on(&self) -> bool {
         self.draw.is_some() && self.cut == 0
     }
 
-    /// Sets the triangles to those of a list, all of one draw whose numbers begin at `base`, with
-    /// their corners if an order is given. Returns whether there are others than before.
+    /// Sets the triangles of a list, all of one draw with numbers from `base`, with their corners
+    /// if an order is given. Returns whether any triangle is new.
     pub(crate) fn take(
         &mut self,
         fragments: &Fragments,
@@ -151,13 +151,14 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         base: u32,
     ) -> bool {
         let count = fragments.count;
-        // Without a branch for each, so that several are compared at once.
+        // Without a branch per triangle, so the comparisons vectorise.
         let differ = |(own, number): (&u32, &u32)| own ^ number.wrapping_sub(base);
         let before = self.numbers[..self.count].iter().zip(&fragments.numbers);
         let goes_on = self.draw == Some(draw)
             && (self.has_corners || order.is_none())
             && self.count <= count
             && before.fold(0, |all, pair| all | differ(pair)) == 0;
+        // Triangles at the front of the list that did not change stay prepared.
         self.kept = if goes_on { self.count } else { 0 };
         if self.kept == count {
             return false;
@@ -176,7 +177,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         true
     }
 
-    /// Finds which triangles are back faces, if that matters.
+    /// Finds the back faces, if they matter.
     pub(crate) fn find_sides(
         &mut self,
         level: Level,
@@ -193,6 +194,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         let (front, odd) = dispatch!(level, simd => fronts(simd, ids, new, vertices));
         let back = if draw.mirrored { front } else { !front };
         self.back |= back & !kept;
+        // Clipped and wide triangles are decided one by one.
         let mut odd = odd & (u64::MAX >> (SLOTS - self.count.max(1))) & !kept;
         while odd != 0 {
             let slot = odd.trailing_zeros();
@@ -216,6 +218,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         if !T::EXACT && plan.eye == Eye::Point {
             return;
         }
+        // Exact arithmetic and orthographic depth need the positions themselves.
         let order = draw.model.mesh.draw_order();
         let screen = Screen::new(draw.clip_from_object, plan.size);
         for (slot, ids) in self.ids[..self.count].iter().enumerate().skip(self.kept) {
@@ -232,7 +235,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         }
     }
 
-    /// Asks the cache for what [`Self::carry_normals`] reads, if vertices have normals.
+    /// Prefetches the inputs of [`Self::carry_normals`], if vertices have normals.
     pub(crate) fn prefetch_normals(&self, draw: &Draw) {
         if draw.normals == Normals::Vertex {
             let points = draw.model.mesh.draw_order().points(draw.normal_source);
@@ -240,7 +243,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         }
     }
 
-    /// Sets the attributes of corners to their normals, reversed on back faces that are lit.
+    /// Sets the attributes of corners to their normals, reversed on lit back faces.
     pub(crate) fn carry_normals(&mut self, draw: &Draw) {
         let mesh = &draw.model.mesh;
         let order = mesh.draw_order();
@@ -256,6 +259,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
                     each(of, |point| points.normals[point as usize])
                 }
             };
+            // Back faces are lit with reversed normals.
             let turn = if self.back >> slot & 1 == 1 { -1.0 } else { 1.0 };
             for (carried, normal) in self.carried.iter_mut().zip(normals) {
                 let [x, y, z] = each(normal, |x| T::from_f64(f64::from(x * turn)));
@@ -264,7 +268,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         }
     }
 
-    /// Sets the attributes of corners to the light of their vertices: `light` gives it by vertex,
+    /// Sets the attributes of corners to the light of their vertices. `light` returns it by vertex,
     /// for the front or the back.
     #[inline(always)]
     pub(crate) fn carry_light(&mut self, draw: &Draw, mut light: impl FnMut(u32, bool) -> [T; 4]) {
@@ -288,12 +292,12 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         T::run(level, Spread(self));
     }
 
-    /// The corners of a triangle among the vertices of its draw.
+    /// Returns the corners of a triangle among the vertices of its draw.
     fn corners_among(&self, slot: usize, all: &[ScreenVertex]) -> [ScreenVertex; 3] {
         self.ids[slot].map(|id| all[id as usize])
     }
 
-    /// The corners of a triangle on the screen.
+    /// Returns the corners of a triangle on the screen.
     pub(crate) fn corners(&self, slot: usize) -> [Snapped; 3] {
         self.corners.map(|[x, y]| Snapped { x: x[slot], y: y[slot] })
     }
@@ -320,7 +324,7 @@ impl<T: Number> Kernel<T> for Spread<'_, T> {
     }
 }
 
-/// The attributes of one corner of some triangles.
+/// Loads the attributes of one corner of some triangles.
 #[inline(always)]
 fn carried<M: Lanes>(lanes: M, rows: &[[M::Number; 4]; SLOTS], at: usize) -> Vec3<M::R> {
     let [x, y, z, _] = lanes.load_four(rows, at);
@@ -370,11 +374,11 @@ impl AttributeNumber for f32 {
     }
 }
 
-/// The largest sides of a bounding box, in subpixels, whose doubled area fits 31 bits.
+/// The largest sides of a bounding box, in subpixels, with a doubled area of at most 31 bits.
 const NARROW_BOX: i32 = 1 << 14;
 
-/// Which of the triangles in some slots turn their fronts to the observer if nothing is mirrored, a
-/// bit for each; and for which that has to be found out one by one.
+/// Returns a bit mask of the triangles in some slots that face the observer if nothing is mirrored,
+/// and a mask of the triangles to be decided one by one.
 #[inline(always)]
 fn fronts<S: Simd>(
     simd: S,
@@ -388,7 +392,7 @@ fn fronts<S: Simd>(
         let [[x0, y0, ..], [x1, y1, ..], [x2, y2, ..]] = corners(simd, &ids[at..], vertices);
         let low = [x0.min(x1).min(x2), y0.min(y1).min(y2)];
         let high = [x0.max(x1).max(x2), y0.max(y1).max(y2)];
-        // Corners that are beyond the clipping planes have the least of all numbers as x.
+        // BEYOND is the smallest integer, so one minimum finds corners beyond the clipping planes.
         let beyond = low[0].simd_eq(ScreenVertex::BEYOND);
         let wide = (high[0] - low[0]).simd_gt(NARROW_BOX) | (high[1] - low[1]).simd_gt(NARROW_BOX);
         let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
@@ -398,7 +402,7 @@ fn fronts<S: Simd>(
     (front, odd)
 }
 
-/// Whether a triangle with these vertices turns its front to the observer if nothing is mirrored.
+/// Returns whether a triangle with these vertices faces the observer if nothing is mirrored.
 fn is_front(ids: [u32; 3], draw: &Draw, plan: &FramePlan, vertices: &[ScreenVertex]) -> bool {
     let own = each(ids, |vertex| vertices[vertex as usize]);
     if own.iter().all(ScreenVertex::is_inside) {
@@ -409,7 +413,7 @@ fn is_front(ids: [u32; 3], draw: &Draw, plan: &FramePlan, vertices: &[ScreenVert
     faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
 }
 
-/// The edge functions of sixteen triangles at a time.
+/// Computes the edge functions of sixteen triangles at a time.
 #[inline(always)]
 fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices: &[ScreenVertex]) {
     for at in attributes.new_slots().step_by(16) {
@@ -440,24 +444,26 @@ fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices:
 /// The edge functions of sixteen triangles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edges<S: Simd> {
-    /// a, b and c of those of the second and the third corner, as [`TriangleAttributes::edges`].
+    /// The coefficients a, b and c of the second and third edge function, as in
+    /// [`TriangleAttributes::edges`].
     pub(super) functions: [[i32x16<S>; 3]; 2],
-    /// The doubled area: negative if they run clockwise on the screen. It is meaningless if they
-    /// are clipped or wide.
+    /// The doubled area: negative for triangles that run clockwise on the screen. Meaningless for
+    /// clipped or wide triangles.
     pub(super) area: i32x16<S>,
-    /// Which of them are clipped.
+    /// The mask of clipped triangles.
     pub(super) cut: mask32x16<S>,
-    /// Which of the others have edge functions that do not fit 31 bits.
+    /// The mask of unclipped triangles with edge functions of more than 31 bits.
     pub(super) wide: mask32x16<S>,
 }
 
 impl<S: Simd> Edges<S> {
-    /// Of triangles with these corners, on a grid.
+    /// Sets up triangles with these corners, on a grid.
     #[inline(always)]
     pub(super) fn new(grid: Grid, [[x0, y0], [x1, y1], [x2, y2]]: [[i32x16<S>; 2]; 3]) -> Self {
         let beyond = x0.simd_eq(ScreenVertex::BEYOND)
             | x1.simd_eq(ScreenVertex::BEYOND)
             | x2.simd_eq(ScreenVertex::BEYOND);
+        // The area in f32 is accurate enough to find triangles that do not fit 31 bits.
         let (ux, uy, vx, vy) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
         let rough = ux.to_float::<f32x16<S>>() * vy.to_float::<f32x16<S>>()
             - uy.to_float::<f32x16<S>>() * vx.to_float::<f32x16<S>>();
@@ -481,8 +487,8 @@ impl<S: Simd> Edges<S> {
     }
 }
 
-/// x, y, depth and 1/w of the corners of sixteen triangles, the first of some. Unused slots name
-/// vertices of other draws, so what is fetched for them is meaningless.
+/// Fetches x, y, depth and 1/w of the corners of the first sixteen triangles of a list. Unused
+/// slots name vertices of other draws, so their results are meaningless.
 #[inline(always)]
 pub(super) fn corners<S: Simd>(
     simd: S,

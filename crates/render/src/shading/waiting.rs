@@ -1,9 +1,9 @@
 //! Colours several blocks at once.
 //!
-//! A block of one surface has up to 64 pixels, at its border few, so that calls and lanes that are
-//! not filled take a part of its time. Blocks of a tile that show the same draw and pipeline
-//! therefore wait until their pixels fill a batch; a triangle that shows in several of them is
-//! prepared once. Light per pixel takes 0.8 to 0.95 of the time. The bits are the same: no pixel
+//! A block of one surface has up to 64 pixels, and only few at the surface's border. Calls and
+//! unfilled lanes then take a part of its time. Blocks of a tile with the same draw and pipeline
+//! therefore wait until their pixels fill a batch, and a triangle in several of them is prepared
+//! once. Light per pixel takes 0.8 to 0.95 of the time. The bits are the same, because no pixel
 //! depends on others of its list.
 
 use super::context::ShadingContext;
@@ -19,14 +19,14 @@ use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::gather::most_gathered;
 use marraztu_core::base::color::Color;
 
-/// A block that shows more triangles than this is coloured by itself.
+/// The number of triangles above which a block is coloured separately.
 const MANY_TRIANGLES: usize = 24;
 
 impl<T: ShadingNumber + Tiny> Shader<T> {
-    /// Colours a block, whose upper left pixel is `corner`, into a tile from index `at` on: at the
-    /// latest when [`Shader::finish_waiting`] is called. Pixels that show the background get the
-    /// colour `fill`; without one, they are left as they are. Returns whether any pixel shows
-    /// something else.
+    /// Colours a block with the upper left pixel `corner` into a tile, starting at index `at`: at
+    /// the latest when [`Shader::finish_waiting`] is called. Background pixels get the colour
+    /// `fill`; without one, they are left unchanged. Returns whether any pixel shows more than the
+    /// background.
     pub(crate) fn block_later(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -36,6 +36,8 @@ impl<T: ShadingNumber + Tiny> Shader<T> {
         fill: Option<Color>,
     ) -> bool {
         let runs = Runs::of(context.level, visibility);
+        // Three ways to wait: with tiny triangles, with the blocks already waiting, or as the first
+        // one.
         if let Some((shader, context)) = T::single(self, context)
             && shader.wait_tiny(context, &runs, corner, (canvas, at))
         {
@@ -62,7 +64,7 @@ impl<T: ShadingNumber + Tiny> Shader<T> {
             Some(group) => self.color_group(context, &group, &mut Out::Tile(canvas, at)),
             None => {
                 if most > 0 {
-                    // Some slots are of a draw that the block may not show.
+                    // Some slots belong to a draw that the block may not show.
                     self.fragments.list(context.level, visibility, corner);
                 }
                 self.color_fragments(context, corner, &mut Out::Tile(canvas, at));
@@ -71,7 +73,7 @@ impl<T: ShadingNumber + Tiny> Shader<T> {
         true
     }
 
-    /// Colours the blocks that wait.
+    /// Colours the waiting blocks.
     pub(crate) fn finish_waiting(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -92,7 +94,7 @@ impl<T: ShadingNumber + Tiny> Shader<T> {
 }
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Lists a block beside those that wait, if it shows the same surface and has room.
+    /// Adds a block to the waiting ones, if it shows the same surface and fits.
     fn join(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -107,6 +109,7 @@ impl<T: ShadingNumber> Shader<T> {
         let shown = self.fragments.list_more(context.level, runs, corner);
         let group = group_of(context, self.fragments.numbers[0]);
         if !are_of(context, &group, &self.fragments.numbers[count..self.fragments.count]) {
+            // The block shows another surface: its fragments are removed again.
             self.fragments.take_back(len, count);
             return None;
         }
@@ -116,16 +119,17 @@ impl<T: ShadingNumber> Shader<T> {
         Some(shown)
     }
 
-    /// Whether another block may find room in the list: not beside many triangles.
+    /// Returns whether another block may fit in the list, which must not have many triangles.
     const fn has_room(&self) -> bool {
         self.fragments.count <= MANY_TRIANGLES
     }
 
-    /// Copies the colours into the blocks that waited for them.
+    /// Copies the colours into the waiting blocks.
     pub(super) fn copy_waiting(&self, canvas: &mut Canvas<'_>) {
         let ends = self.waiting.iter().skip(1).map(|next| next.from).chain([self.fragments.len]);
         for (Waiting { from, at }, end) in self.waiting.iter().copied().zip(ends) {
             let colors = &self.colors.pixels[from..end];
+            // A block with all pixels is copied row by row.
             if let Some(all) = colors.first_chunk::<BLOCK_PIXELS>() {
                 canvas.put(at, all);
                 continue;
@@ -138,7 +142,7 @@ impl<T: ShadingNumber> Shader<T> {
     }
 }
 
-/// Colours the pixels of a block that show no triangles, as [`Shader::block_later`].
+/// Colours the pixels of a block without a triangle, like [`Shader::block_later`].
 #[inline(always)]
 fn put_others<T>(
     context: &ShadingContext<'_, T>,

@@ -1,7 +1,7 @@
-//! Finds the rays that meet a box, in f32.
+//! Intersects rays with boxes (slab test), in f32.
 //!
-//! A box is padded so that no ray misses it by rounding: positions, the parameters where a ray
-//! enters and leaves, and the transform to object space.
+//! Boxes are padded for all rounding errors: of positions, of the parameters where a ray enters and
+//! leaves, and of the transform to object space. No ray misses a box by rounding.
 //!
 //! Kay and Kajiya, "Ray Tracing Complex Scenes", 1986; Ize, "Robust BVH Ray Traversal", 2013.
 
@@ -16,16 +16,16 @@ use marraztu_core::scene::Bounds;
 /// roundings, twice.
 const SINGLE: f64 = 1.0 / (1 << 21) as f64;
 
-/// The error of a position that was transformed in f64, relative to the sum of what was added.
+/// The error of a position transformed in f64, relative to the sum of the added terms.
 const DOUBLE: f64 = 1.0 / (1_u64 << 47) as f64;
 
-/// The least component of a direction whose largest is 1. What a smaller one adds over the length
-/// of a scene is below every pad.
+/// The smallest component of a direction, relative to its largest. Over the length of a scene, the
+/// contribution of a smaller one is below every pad.
 const LEAST: f64 = 1e-30;
 
 impl LocalRays {
-    /// Transforms rays to the space of an object, whose bounds are given there; `reach` is the
-    /// largest coordinate of both in world space.
+    /// Transforms rays to the space of an object with these bounds. `reach` is the largest
+    /// coordinate of both in world space.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant; pads hold it")]
     pub(super) fn set(
@@ -37,6 +37,8 @@ impl LocalRays {
         let m = object_from_world;
         let end = m.transform_point3(light);
         let (mut ways, mut length, mut largest) = ([[0.0; POINTS]; 3], [0.0; POINTS], DVec3::ZERO);
+        // Directions and lengths, axis by axis. The eight maxima are independent, so the loop
+        // vectorises.
         for axis in 0..3 {
             let [a, b, c, d] = [m.x_axis[axis], m.y_axis[axis], m.z_axis[axis], m.w_axis[axis]];
             let mut most = [0.0; 8];
@@ -52,9 +54,12 @@ impl LocalRays {
             }
             largest[axis] = most.into_iter().fold(0.0, larger);
         }
+        // The ray parameter counts along the largest component, so the light is at that component's
+        // length.
         for (end, length) in self.end.iter_mut().zip(&length) {
             *end = above((length * (1.0 + SINGLE)) as f32);
         }
+        // A zero component is replaced by [`LEAST`]: its inverse stays finite and no NaN can occur.
         for (row, ways) in self.inverse.iter_mut().zip(&ways) {
             for ((inverse, way), length) in row.iter_mut().zip(ways).zip(&length) {
                 let part = way / length;
@@ -62,6 +67,7 @@ impl LocalRays {
                 *inverse = (1.0 / part) as f32;
             }
         }
+        // The pad covers the error of the transform and the rounding to f32.
         let columns =
             m.x_axis.truncate().abs() + m.y_axis.abs().truncate() + m.z_axis.abs().truncate();
         let exact = (columns * reach + m.w_axis.truncate().abs()) * DOUBLE;
@@ -71,7 +77,7 @@ impl LocalRays {
         self.far = far.max_element();
     }
 
-    /// The rays of a mask that meet a box.
+    /// Returns the rays of a mask that meet a box.
     #[inline(always)]
     pub(super) fn meeting<S: Simd>(
         &self,
@@ -85,6 +91,8 @@ impl LocalRays {
             if mask >> at & 0xffff == 0 {
                 continue;
             }
+            // Slab test: the ray is inside along all axes between the last entry and the first
+            // exit.
             let mut near = f32x16::splat(simd, 0.0);
             let mut far = f32x16::from_slice(simd, &self.end[at..at + 16]);
             for axis in 0..3 {
@@ -102,13 +110,14 @@ impl LocalRays {
     }
 }
 
-/// The larger of two numbers, none of them NaN; a comparison and a choice, for lanes.
+/// Returns the larger of two numbers, neither NaN. A comparison and a selection compile to SIMD
+/// code.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// A number above a positive one, by two steps of f32 or a little more.
+/// Returns a number above a positive one, by two f32 steps or slightly more.
 #[inline(always)]
 fn above(x: f32) -> f32 {
     x * (1.0 + 4.0 * f32::EPSILON) + f32::MIN_POSITIVE

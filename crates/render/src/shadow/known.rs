@@ -1,9 +1,9 @@
-//! Keeps which pixels a light is seen from, so that only what changed is traced again.
+//! Caches which pixels a light reaches, so only changed pixels are traced again.
 //!
-//! A pixel's shadow depends on the point that it shows, on what casts shadows and on where the
-//! light is: not on the light's colour, nor on other lights, nor on materials. So for each light
-//! with shadows and each pixel two bits are kept: whether a ray was traced, and whether it was
-//! stopped. That is a quarter of a byte for each light and pixel.
+//! A pixel's shadow depends on the point it shows, on the casters and on the light's position. It
+//! does not depend on the light's colour, on other lights or on materials. For each shadow-casting
+//! light, the cache holds two bits per pixel: whether a ray was traced, and whether it was blocked.
+//! That is a quarter of a byte per light and pixel.
 //!
 //! A block of pixels is painted by one thread at a time, so no thread waits for another.
 
@@ -13,50 +13,50 @@ use crate::frame::shadows::ShadowSource;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE_SIDE};
 use marraztu_core::base::image::Size;
 
-/// For each light of a plan what is known of its shadows, if it casts any.
+/// The cached shadows of each light of a plan, if it casts any.
 #[derive(Debug, Default)]
 pub(crate) struct KnownShadows {
     lights: Vec<Option<KnownLight>>,
 }
 
-/// What is known of the shadows of one light.
+/// The cached shadows of one light.
 #[derive(Debug)]
 pub(crate) struct KnownLight {
     source: ShadowSource,
-    /// Blocks in a row of the picture.
+    /// The number of blocks in a row of the picture.
     columns: usize,
     blocks: Vec<KnownBlock>,
 }
 
-/// The pixels of a block, a bit for each.
+/// The cached pixels of a block, a bit for each.
 #[derive(Debug, Default)]
 struct KnownBlock {
-    /// Those whose rays were traced.
+    /// The pixels with a traced ray.
     traced: AtomicU64,
-    /// Those of them whose rays are stopped.
+    /// The pixels with a blocked ray.
     shaded: AtomicU64,
 }
 
-/// Some of the pixels of a block, a bit for each.
+/// Some pixels of a block, a bit for each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct KnownPixels {
-    /// Those whose rays were traced.
+    /// The pixels with a traced ray.
     pub(crate) traced: u64,
-    /// Those of them whose rays are stopped.
+    /// The pixels with a blocked ray.
     pub(crate) shaded: u64,
 }
 
-/// Blocks in a row of a tile.
+/// The number of blocks in a row of a tile.
 const TILE_BLOCKS: usize = TILE_SIDE / BLOCK as usize;
 
 impl KnownShadows {
-    /// Forgets everything.
+    /// Clears the cache.
     pub(crate) fn forget(&mut self) {
         self.lights.clear();
     }
 
-    /// Keeps what is known of the lights that are where they were, and nothing of others. The
-    /// picture has the same size as before.
+    /// Keeps the cache of each light that has not moved, and drops all others. The picture must
+    /// have the same size as before.
     pub(crate) fn keep(&mut self, size: Size, sources: &[Option<ShadowSource>]) {
         let mut before = std::mem::take(&mut self.lights);
         let mut kept = |source: &ShadowSource| {
@@ -69,12 +69,12 @@ impl KnownShadows {
         self.lights = sources.iter().map(|source| source.as_ref().map(&mut kept)).collect();
     }
 
-    /// The lights that cast shadows, with where they are.
+    /// Returns the lights that cast shadows, with their positions.
     pub(crate) fn lights(&mut self) -> impl Iterator<Item = (ShadowSource, &mut KnownLight)> {
         self.lights.iter_mut().flatten().map(|known| (known.source, known))
     }
 
-    /// What is known of a light; `None` if nothing is kept of it.
+    /// Returns the cache of a light, or `None` without a cache.
     pub(crate) fn of(&self, light: u32) -> Option<&KnownLight> {
         self.lights.get(light as usize)?.as_ref()
     }
@@ -89,7 +89,7 @@ impl KnownLight {
         Self { source, columns, blocks }
     }
 
-    /// Forgets the tiles that are stale.
+    /// Clears the stale tiles.
     pub(crate) fn forget(&mut self, is_stale: impl Fn(usize) -> bool) {
         let columns = self.columns / TILE_BLOCKS;
         for (row, blocks) in self.blocks.chunks_mut(self.columns).enumerate() {
@@ -101,7 +101,7 @@ impl KnownLight {
         }
     }
 
-    /// What is known of the block that holds a pixel.
+    /// Returns the cached pixels of the block that holds this pixel.
     #[inline(always)]
     pub(crate) fn at(&self, pixel: [i32; 2]) -> KnownPixels {
         self.block(pixel).map_or_else(KnownPixels::default, |block| KnownPixels {
@@ -110,7 +110,7 @@ impl KnownLight {
         })
     }
 
-    /// Notes pixels of the block that holds a pixel.
+    /// Adds results for the block that holds this pixel.
     #[inline(always)]
     pub(crate) fn note(&self, pixel: [i32; 2], new: KnownPixels) {
         let KnownPixels { traced, shaded } = self.at(pixel);
@@ -127,17 +127,17 @@ impl KnownLight {
     }
 }
 
-/// The pixels of a batch: all in one block.
+/// The pixels of a batch, all in one block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BatchPixels<'a> {
-    /// Column and row of one of them.
+    /// The column and row of one of the pixels.
     pub(crate) first: [i32; 2],
-    /// Their places in the block.
+    /// The index of each pixel in its block.
     pub(crate) places: &'a [u8],
 }
 
 impl BatchPixels<'_> {
-    /// Positions of the batch as pixels of the block.
+    /// Converts a mask over the batch to a mask over the block.
     #[inline(always)]
     pub(crate) fn in_block(self, positions: u64) -> u64 {
         if self.places.len() == BLOCK_PIXELS {
@@ -147,7 +147,7 @@ impl BatchPixels<'_> {
         self.places.iter().enumerate().map(bit).fold(0, |bits, bit| bits | bit)
     }
 
-    /// Pixels of the block as positions of the batch.
+    /// Converts a mask over the block to a mask over the batch.
     #[inline(always)]
     pub(crate) fn in_batch(self, pixels: u64) -> u64 {
         if self.places.len() == BLOCK_PIXELS {

@@ -1,7 +1,7 @@
-//! Moves the depths of a shadow map away from the light: the bias of its texels.
+//! Moves the depths of a shadow map away from the light: the per-texel bias against shadow acne.
 //!
-//! Each tile is copied with a border of one texel, so that sixteen texels of a row and their
-//! neighbours are loaded at once.
+//! Each tile is copied with a border of one texel. Sixteen texels of a row and all of their
+//! neighbours can then be loaded without checks.
 
 use crate::simd::dispatch;
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, f32x16};
@@ -9,19 +9,19 @@ use fearless_simd::{Level, Select as _, Simd, SimdBase as _, f32x16};
 use super::map_face::place;
 use crate::screen::tiles::{BLOCK_PIXELS, TILE_SIDE};
 
-/// How far a depth is moved for the rounding of f32, relative to itself.
+/// The relative bias of depths that allows for rounding in f32.
 const ROUNDING: f32 = 4.0 * f32::EPSILON;
 
-/// How far depths may be moved.
+/// The limits of the bias.
 pub(super) struct Limit {
-    /// How far from a texel's centre depths are compared with it, in texels.
+    /// The largest distance, in texels, between a texel's centre and a point compared with it.
     pub(super) reach: f32,
-    /// The largest slope that counts, relative to the depth in perspective.
+    /// The largest slope taken into account; in perspective, relative to the depth.
     pub(super) steepest: f32,
     pub(super) is_perspective: bool,
 }
 
-/// What a light sees: for each texel a depth, 0 where nothing is, and the slope of its triangle.
+/// A light's view: a depth per texel (0 if empty), and the slope of its triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Picture<'a> {
     pub(super) side: usize,
@@ -29,11 +29,11 @@ pub(super) struct Picture<'a> {
     pub(super) slopes: &'a [f32],
 }
 
-/// The rows of a tile and its border, and what lies between the beginnings of two rows.
+/// The rows of a tile with its border, and the distance between the starts of two rows.
 const ROWS: usize = TILE_SIDE + 2;
 const STRIDE: usize = TILE_SIDE + 16;
 
-/// A tile of a picture with its border, row by row; 0 beyond the picture, which moves nothing.
+/// A tile with its border, row by row. Texels beyond the picture are 0 and add no bias.
 #[derive(Debug)]
 pub(super) struct Bordered {
     depths: Vec<f32>,
@@ -48,7 +48,7 @@ impl Default for Bordered {
 }
 
 impl Bordered {
-    /// Computes the texels of a tile: its depths, moved away from the light.
+    /// Computes the biased depths of a tile.
     pub(super) fn biased(
         &mut self,
         level: Level,
@@ -61,7 +61,7 @@ impl Bordered {
         dispatch!(level, simd => self.moved(simd, limit, texels));
     }
 
-    /// Copies a tile, whose first texel is given, and its border.
+    /// Copies a tile, given by its first texel, and its border.
     fn copy(&mut self, picture: Picture<'_>, [left, top]: [usize; 2]) {
         let Picture { side, .. } = picture;
         for row in 0..ROWS {
@@ -69,6 +69,7 @@ impl Bordered {
                 [(&mut self.depths, picture.depths), (&mut self.slopes, picture.slopes)]
             {
                 let to = &mut to[row * STRIDE..][..ROWS];
+                // Rows beyond the picture are empty and add no bias.
                 let Some(y) = (top + row).checked_sub(1).filter(|y| *y < side) else {
                     to.fill(0.0);
                     continue;
@@ -83,7 +84,7 @@ impl Bordered {
         }
     }
 
-    /// Moves the depths of the tile.
+    /// Applies the bias to the depths of the tile.
     #[inline(always)]
     fn moved<S: Simd>(&self, simd: S, limit: &Limit, texels: &mut [f32]) {
         let zero = f32x16::splat(simd, 0.0);
@@ -91,10 +92,14 @@ impl Bordered {
             for x in (0..TILE_SIDE).step_by(16) {
                 let depth = self.depths_at(simd, x + 1, y + 1);
                 let slope = self.slope_around(simd, [x, y], depth);
+                // The bias is the slope times the reach, plus the rounding; in perspective, limits
+                // scale with depth.
                 let steepest = f32x16::splat(simd, limit.steepest);
                 let most = if limit.is_perspective { steepest * depth } else { steepest };
                 let moved = depth - slope.min(most) * limit.reach - depth * ROUNDING;
                 let moved = moved.max(f32x16::splat(simd, f32::MIN_POSITIVE));
+                // Empty texels stay 0. The row is split into two blocks because textures are stored
+                // by block.
                 let mut row = [0.0; 16];
                 depth.simd_gt(zero).select(moved, zero).store_slice(&mut row);
                 for (block, row) in row.chunks_exact(8).enumerate() {
@@ -110,8 +115,8 @@ impl Bordered {
         f32x16::from_slice(simd, &self.depths[y * STRIDE + x..][..16])
     }
 
-    /// The largest slopes of sixteen texels with these depths and of those of their neighbours that
-    /// continue their surfaces.
+    /// Returns the largest slope around each of sixteen texels: of the texel itself and of the
+    /// neighbours that continue its surface.
     #[inline(always)]
     fn slope_around<S: Simd>(&self, simd: S, [x, y]: [usize; 2], depth: f32x16<S>) -> f32x16<S> {
         let slopes = |x, y| f32x16::from_slice(simd, &self.slopes[y * STRIDE + x..][..16]);
@@ -120,7 +125,8 @@ impl Bordered {
         for y in y..y + 3 {
             for x in x..x + 3 {
                 let other = slopes(x, y);
-                // A plane that continues this one is not farther than both slopes lead.
+                // The plane of a neighbour continues this one if its depth is within reach of both
+                // slopes.
                 let away = (self.depths_at(simd, x, y) - depth).abs();
                 let continues = away.simd_le((own + other) * 2.0);
                 slope = slope.max(continues.select(other, own));
@@ -136,7 +142,7 @@ mod tests {
     use crate::screen::tiles::PIXELS;
     use marraztu_core::base::rng::Rng;
 
-    /// The rule, texel by texel.
+    /// The same bias, texel by texel.
     fn moved(picture: Picture<'_>, limit: &Limit, [x, y]: [usize; 2]) -> f32 {
         let Picture { side, depths, slopes } = picture;
         let (depth, own) = (depths[place(side, x, y)], slopes[place(side, x, y)]);

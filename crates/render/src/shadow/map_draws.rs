@@ -1,4 +1,4 @@
-//! Draws the pictures of shadow maps.
+//! Renders the pictures of shadow maps.
 
 use crate::accel::Accelerated as _;
 use fearless_simd::Level;
@@ -27,24 +27,24 @@ use marraztu_core::base::image::Size;
 use marraztu_core::base::math::each;
 use marraztu_core::scene::{NormalSource, Normals};
 
-/// More than half of a texel, for corners that are snapped to 1/256 of it.
+/// Slightly more than half a texel, because corners are snapped to 1/256 of one.
 const HALF: f64 = 0.51;
 
-/// The largest slope that a bias takes into account, relative to 45 degrees.
+/// The largest slope that the bias takes into account, relative to 45 degrees.
 const STEEPEST: f64 = 16.0;
 
-/// A picture that a light takes.
+/// A light's view for one picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MapView {
     pub(super) view_from_world: DMat4,
     pub(super) clip_from_view: DMat4,
     /// The slope of a surface at 45 degrees, times the texels of a row: a depth or, in perspective,
-    /// a part of the depth.
+    /// a fraction of the depth.
     pub(super) slope: f64,
     pub(super) is_perspective: bool,
 }
 
-/// Draws the pictures of a frame's shadow maps.
+/// The renderer of a frame's shadow maps.
 #[derive(Debug)]
 pub(super) struct MapDraws {
     plan: FramePlan,
@@ -54,19 +54,19 @@ pub(super) struct MapDraws {
     shown: Shown,
 }
 
-/// What the light sees in the picture that is drawn, kept for the next one.
+/// The rendered picture of a light; its memory is reused for the next picture.
 #[derive(Debug, Default)]
 struct Shown {
-    /// For each texel a depth, 0 where nothing is, and the slope of its triangle: tile by tile,
-    /// block by block.
+    /// A depth per texel (0 if empty) and the slope of its triangle, tile by tile and block by
+    /// block.
     depths: Vec<f32>,
     slopes: Vec<f32>,
-    /// The tiles that have any.
+    /// Whether each tile has any texels.
     drawn: Vec<bool>,
 }
 
 impl MapDraws {
-    /// Makes the draws of a plan's casters; those of a map differ only by its view.
+    /// Creates the draws of a plan's casters. The pictures of a map differ only in their view.
     pub(super) fn new(plan: &FramePlan, form: ShadowMapForm) -> Self {
         let casters = plan.shadows.casters.clone();
         let mut pipelines = vec![Pipeline::Flat(Color::WHITE)];
@@ -91,9 +91,10 @@ impl MapDraws {
         Self { plan, casters, geometry, form, shown: Shown::default() }
     }
 
-    /// Draws a picture; `None` if it shows nothing.
+    /// Renders a picture. `None` if it is empty.
     pub(super) fn face(&mut self, level: Level, view: &MapView) -> Option<Face> {
         let Self { plan, casters, geometry, form, shown } = self;
+        // Only the transforms change from picture to picture.
         (plan.view_from_world, plan.clip_from_view) = (view.view_from_world, view.clip_from_view);
         for (draw, caster) in plan.draws.iter_mut().zip(casters) {
             draw.view_from_object = view.view_from_world * caster.world_from_object;
@@ -112,9 +113,11 @@ impl MapDraws {
         if (0..count).all(|tile| geometry.is_empty(tile)) {
             return None;
         }
+        // Slopes are computed from the corners of visible triangles in clip space.
         let screens: Vec<Screen> =
             plan.draws.iter().map(|draw| Screen::new(draw.clip_from_object, plan.size)).collect();
         Tile { level, plan, geometry, screens: &screens }.draw_all(count, shown);
+        // Bias needs the neighbours of each texel, so it starts after all tiles are drawn.
         let picture = Picture { side: form.side, depths: &shown.depths, slopes: &shown.slopes };
         let limit = limit(view, *form);
         let mut texels = vec![0.0; count * PIXELS];
@@ -129,7 +132,7 @@ impl MapDraws {
     }
 }
 
-/// How far the depths of a picture may be moved.
+/// Computes the limits of the bias for a picture.
 #[expect(
     clippy::cast_precision_loss,
     clippy::cast_possible_truncation,
@@ -141,7 +144,7 @@ fn limit(view: &MapView, form: ShadowMapForm) -> Limit {
     Limit { reach: reach as f32, steepest: steepest as f32, is_perspective: view.is_perspective }
 }
 
-/// What drawing the tiles of a map reads.
+/// The inputs for drawing the tiles of a map.
 struct Tile<'a> {
     level: Level,
     plan: &'a FramePlan,
@@ -150,7 +153,7 @@ struct Tile<'a> {
 }
 
 impl Tile<'_> {
-    /// Draws all tiles.
+    /// Draws all tiles in parallel.
     fn draw_all(&self, count: usize, shown: &mut Shown) {
         let Shown { depths, slopes, drawn } = shown;
         for row in [&mut *depths, &mut *slopes] {
@@ -162,6 +165,7 @@ impl Tile<'_> {
         tiles.for_each_init(
             Visibility::default,
             |visibility, (tile, ((depths, slopes), drawn))| {
+                // Cleared only if the last picture drew this tile.
                 if *drawn {
                     depths.fill(0.0);
                     slopes.fill(0.0);
@@ -174,7 +178,7 @@ impl Tile<'_> {
         );
     }
 
-    /// Draws a tile: the depths and slopes of its texels, block by block.
+    /// Draws a tile: the depth and slope of each texel, block by block.
     fn draw(
         &self,
         visibility: &mut Visibility,
@@ -194,7 +198,8 @@ impl Tile<'_> {
                 continue;
             }
             let words = visibility.entries(level, block, 0);
-            // The triangles of the texels to the left and above, with their slopes.
+            // The triangles of the left and upper texels, with their slopes: most texels reuse one
+            // of them.
             let (mut last, mut above) = ((u32::MAX, 0.0), [(u32::MAX, 0.0); 8]);
             for (i, ((depth, slope), word)) in depths.iter_mut().zip(slopes).zip(words).enumerate()
             {
@@ -208,10 +213,10 @@ impl Tile<'_> {
         }
     }
 
-    /// How much the depth of a triangle changes from texel to texel, at most.
+    /// Computes the largest change of a triangle's depth from texel to texel.
     ///
     /// With the corners p, q, r in homogeneous pixels (x, y, w) and their z, the plane of depths is
-    /// (zp (q x r) + zq (r x p) + zr (p x q)) / (p . (q x r)), also if a corner is behind the
+    /// (zp (q x r) + zq (r x p) + zr (p x q)) / (p . (q x r)), even if a corner is behind the
     /// light.
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
     fn slope(&self, number: u32) -> f32 {
@@ -230,7 +235,7 @@ impl Tile<'_> {
     }
 }
 
-/// The draw of a caster, for a view that is set later.
+/// Creates the draw of a caster, for a view that is set later.
 fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
     let mut pipeline = |part: &CasterPart| {
         let Some(pipeline) = pipeline_of(part) else { return 0 };
@@ -240,6 +245,7 @@ fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
     let part_pipelines: Vec<Option<u32>> =
         caster.parts.iter().map(|part| part.as_ref().map(&mut pipeline)).collect();
     let first = part_pipelines.first().copied().flatten();
+    // A single pipeline for all parts skips the look-up per triangle.
     let alike = part_pipelines.iter().all(|pipeline| *pipeline == first);
     Draw {
         item: caster.item,
@@ -265,7 +271,7 @@ fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
     }
 }
 
-/// The alpha test of a part, if it has holes.
+/// Creates the alpha test of a part, if it has holes.
 fn pipeline_of(part: &CasterPart) -> Option<Pipeline> {
     let holes = part.holes.as_ref()?;
     Some(Pipeline::Shaded(Shaded {

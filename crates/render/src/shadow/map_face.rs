@@ -1,21 +1,21 @@
-//! One picture of a shadow map, and what it says of points.
+//! One picture of a shadow map, and its comparison with points.
 
 use glam::DMat4;
 
 use super::packet::POINTS;
 use crate::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE_SIDE};
 
-/// A picture of depths; 0 where nothing is.
+/// A picture of depths; 0 in empty texels.
 #[derive(Debug)]
 pub(super) struct Face {
-    /// The rows of the transform from the world to (x, y, z, w), x and y in texels times w.
+    /// The rows of the transform from the world to (x, y, z, w), with x and y in texels times w.
     rows: [[f64; 4]; 4],
     side: usize,
-    /// Tile by tile, block by block, row by row.
+    /// The depths, tile by tile, block by block, row by row.
     texels: Vec<f32>,
 }
 
-/// The index of a texel of a picture with this many texels a side.
+/// Returns the index of a texel in a picture with this many texels a side.
 #[inline(always)]
 pub(super) const fn place(side: usize, x: usize, y: usize) -> usize {
     let tile = y / TILE_SIDE * (side / TILE_SIDE) + x / TILE_SIDE;
@@ -23,24 +23,24 @@ pub(super) const fn place(side: usize, x: usize, y: usize) -> usize {
     tile * PIXELS + (y / 8 * 8 + x / 8) * BLOCK_PIXELS + y % 8 * 8 + x % 8
 }
 
-/// The texels that are compared if nine are.
+/// The number of texels compared by percentage-closer filtering (PCF): 3 x 3.
 pub(crate) const TAPS: u32 = 9;
 
-/// What one light sees.
+/// The shadow map of one light.
 #[derive(Debug)]
 pub(crate) struct LightMap {
     pub(super) faces: Vec<Face>,
     pub(super) is_filtered: bool,
 }
 
-/// What a map says of a batch of points.
+/// The result of reading a map at a batch of points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reading {
-    /// The points that no texel lets the light through to.
+    /// The points that no texel lets light through to.
     pub(crate) occluded: u64,
-    /// Those that some texels do, and others do not.
+    /// The points that some texels let light through to, and others do not.
     pub(crate) partly: u64,
-    /// For those the number of texels that do.
+    /// The number of open texels for each of those points.
     pub(crate) open: [u8; POINTS],
 }
 
@@ -54,13 +54,13 @@ impl Face {
         Self { rows: [right, down, z, w], side, texels }
     }
 
-    /// Whether a texel lets light through to a depth.
+    /// Returns whether a texel lets light through to a depth.
     #[inline(always)]
     fn is_open(&self, x: usize, y: usize, depth: f32) -> bool {
         depth >= self.texels[place(self.side, x, y)]
     }
 
-    /// The texels of nine that let light through to a depth; at the border, its own count again.
+    /// Counts the texels, of 3 x 3, that let light through to a depth. Texels at the border repeat.
     #[inline(always)]
     fn open_taps(&self, x: usize, y: usize, depth: f32) -> u32 {
         let around = |x: usize| [x.saturating_sub(1), x, (x + 1).min(self.side - 1)];
@@ -71,7 +71,7 @@ impl Face {
 }
 
 impl LightMap {
-    /// Reads the map at the points of a mask. Points beside its pictures are lit.
+    /// Reads the map at the points of a mask. Points outside all of its pictures are lit.
     #[inline(always)]
     #[expect(
         clippy::cast_possible_truncation,
@@ -89,6 +89,7 @@ impl LightMap {
             let row = |row: &[f64; 4], i: usize| {
                 row[0] * at[0][i] + row[1] * at[1][i] + row[2] * at[2][i] + row[3]
             };
+            // Projects all points, without branches.
             for i in 0..POINTS {
                 let w = row(&face.rows[3], i);
                 let by = 1.0 / w;
@@ -97,6 +98,7 @@ impl LightMap {
                 let within = (w > 0.0) & (x[i] >= 0.0) & (x[i] < side) & (y[i] >= 0.0);
                 is_inside[i] = u8::from(within & (y[i] < side));
             }
+            // Compares the points of this picture one by one: each reads other texels.
             let mut rest = left;
             while rest != 0 {
                 let i = rest.trailing_zeros() as usize;

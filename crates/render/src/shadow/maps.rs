@@ -1,16 +1,16 @@
-//! Shadow maps: pictures of depths as lights see them.
+//! Shadow maps: pictures of depths from the positions of lights.
 //!
-//! A map is drawn by the renderer's own visibility buffer: one picture for a sun, fitted to what
-//! casts shadows; one for a spot; six, of 90 degrees each, for a bulb and for a spot that is wider
-//! than [`WIDEST`]. A picture in which nothing casts a shadow has no texels. Depths are as
-//! everywhere, 1 near and 0 far, so that a spot's and a bulb's have the same relative precision at
-//! every distance.
+//! Maps are rendered with the renderer's own visibility buffer: one picture for a sun, fitted to
+//! the casters; one for a spot; six of 90 degrees each for a bulb and for a spot wider than
+//! [`WIDEST`]. A picture without casters has no texels. Depths are 1 near and 0 far, as everywhere,
+//! which gives spots and bulbs the same relative precision at every distance.
 //!
-//! **Bias.** A texel's depth is moved away from the light by how much depth changes within what is
-//! compared: by s = |dz/dx| + |dz/dy| times half a texel, or one and a half if nine texels are
-//! compared. s is the largest of the planes that the texel and its eight neighbours show, as far as
-//! they continue its surface, because a point in the texel may lie on any of them; it is at most
-//! [`STEEPEST`](super::map_draws) times that of a surface at 45 degrees. So no plane shades itself.
+//! **Bias against shadow acne.** A texel's depth is moved away from the light by the change of
+//! depth within the compared area: s = |dz/dx| + |dz/dy| times half a texel, or times one and a
+//! half if nine texels are compared (PCF). s is the largest slope among the planes of the texel and
+//! of the neighbours that continue its surface, out of eight, because a point in the texel may lie
+//! on any of them. It is limited to [`STEEPEST`](super::map_draws) times the slope of a surface at
+//! 45 degrees. Up to that slope, no plane shades itself.
 //!
 //! Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978; Reeves, Salesin and Cook,
 //! "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987. The projection without a far
@@ -27,8 +27,7 @@ use crate::frame::shadows::{Caster, ShadowSource};
 use marraztu_core::accuracy::{Filter, ShadowMapForm};
 use marraztu_core::base::math::placed;
 
-/// The shadow maps of a frame, kept for as long as neither their light nor what casts shadows
-/// changes.
+/// The shadow maps of a frame, cached until their light or the casters change.
 #[derive(Debug, Default)]
 pub(crate) struct ShadowMaps {
     form: Option<ShadowMapForm>,
@@ -37,21 +36,22 @@ pub(crate) struct ShadowMaps {
     lights: Vec<(ShadowSource, LightMap)>,
 }
 
-/// The cosine of the widest half-aperture that one picture of a spot has: 70 degrees.
+/// The cosine of the largest half-aperture that a spot covers with one picture: 70 degrees.
 const WIDEST: f64 = 0.342;
 
-/// The least distance of a map's near plane, relative to what is farthest from the light: what is
-/// nearer casts no shadow.
+/// The smallest distance of a map's near plane, relative to the farthest caster. Closer geometry
+/// casts no shadow.
 const NEAR: f64 = 1e-3;
 
 impl ShadowMaps {
-    /// Draws what is missing of a plan's maps, unless that is cancelled, and forgets all others.
+    /// Draws the missing maps of a plan, unless cancelled, and drops all others.
     pub(crate) fn update(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
         let Some(form) = plan.variants.shadow_method.map().filter(|_| plan.shadows.are_cast())
         else {
             return *self = Self::default();
         };
         let casters = &plan.shadows.casters;
+        // Any other caster, form or filter invalidates all maps.
         let are_same = self.form == Some(form)
             && self.filter == plan.filter
             && self.casters.len() == casters.len()
@@ -61,6 +61,7 @@ impl ShadowMaps {
             *self = Self { form: Some(form), filter: plan.filter, casters, lights: Vec::new() };
         }
         let sources: Vec<&ShadowSource> = plan.shadows.sources.iter().flatten().collect();
+        // Lights that moved lose their maps; the others keep them.
         self.lights.retain(|(source, _)| sources.iter().any(|other| source.is_same(other)));
         let missing = sources.iter().filter(|source| self.of(source).is_none());
         let missing: Vec<ShadowSource> = missing.map(|source| **source).collect();
@@ -78,13 +79,13 @@ impl ShadowMaps {
         }
     }
 
-    /// The map of a light.
+    /// Returns the map of a light.
     pub(super) fn of(&self, source: &ShadowSource) -> Option<&LightMap> {
         self.lights.iter().find(|(other, _)| other.is_same(source)).map(|(_, map)| map)
     }
 }
 
-/// The corners of the box of each caster, in world space.
+/// The corners of each caster's bounding box, in world space.
 struct Around(Vec<[DVec3; 8]>);
 
 impl Around {
@@ -97,7 +98,7 @@ impl Around {
         Self(casters.iter().filter_map(corners).filter(is_finite).collect())
     }
 
-    /// A lower bound of the distance of all boxes from a point.
+    /// Returns a lower bound of the distance between a point and all boxes.
     fn nearest(&self, at: DVec3) -> f64 {
         let distance = |corners: &[DVec3; 8]| {
             let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
@@ -107,21 +108,21 @@ impl Around {
         self.0.iter().map(distance).fold(f64::INFINITY, f64::min)
     }
 
-    /// The least and the largest number that the corners have.
+    /// Returns the smallest and largest value of a function over the corners.
     fn range(&self, of: impl Fn(&DVec3) -> f64) -> [f64; 2] {
         let all = || self.0.iter().flatten().map(&of);
         [all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max)]
     }
 }
 
-/// The pictures that a light takes.
+/// Returns the views of a light's pictures.
 fn views_of(source: &ShadowSource, around: &Around) -> Vec<MapView> {
     match source {
         ShadowSource::Direction(towards) => sun(*towards, around).into_iter().collect(),
         ShadowSource::Cone { at, direction, cos_half_aperture } if *cos_half_aperture > WIDEST => {
             let cos = cos_half_aperture.min(1.0 - 1e-9);
             let sine = (1.0 - cos * cos).sqrt();
-            // A little wider than the cone, so that texels beyond its border are there.
+            // Slightly wider than the cone, so PCF finds texels beyond its border.
             vec![face(*at, *direction, cos / sine * 0.98, around)]
         }
         ShadowSource::Point(at) | ShadowSource::Cone { at, .. } => {
@@ -131,26 +132,26 @@ fn views_of(source: &ShadowSource, around: &Around) -> Vec<MapView> {
     }
 }
 
-/// The rotation to a view along a direction.
+/// Computes the rotation to a view along a direction.
 fn along(direction: DVec3) -> DMat3 {
     let right = direction.any_orthonormal_vector();
     let up = right.cross(direction);
     DMat3::from_cols(right, up, -direction).transpose()
 }
 
-/// The picture of a sun: orthographic, around all casters.
+/// Computes the view of a sun: orthographic, around all casters.
 fn sun(towards: DVec3, around: &Around) -> Option<MapView> {
     let turn = along(-towards);
     let ranges = [0, 1, 2].map(|axis| around.range(|p| (turn * *p)[axis]));
     if !ranges.iter().flatten().all(|x| x.is_finite()) {
         return None;
     }
-    // Some texels more on each side.
+    // A margin of a few texels on each side.
     let half = ranges.map(|[low, high]| (high - low) * 0.51 + f64::MIN_POSITIVE);
     let longest = half[0].max(half[1]).max(half[2]) * 1e-6;
     let half = half.map(|half| half.max(longest));
     let middle = DVec3::from_array(ranges.map(|[low, high]| low.midpoint(high)));
-    // z runs from 0 at the far plane to 1 at the near one.
+    // z runs from 0 at the far plane to 1 at the near plane.
     let scale = DVec3::new(1.0 / half[0], 1.0 / half[1], 0.5 / half[2]);
     let clip_from_view = DMat4::from_translation(DVec3::new(0.0, 0.0, 0.5))
         * DMat4::from_scale(scale)
@@ -160,7 +161,7 @@ fn sun(towards: DVec3, around: &Around) -> Option<MapView> {
     Some(MapView { view_from_world, clip_from_view, slope, is_perspective: false })
 }
 
-/// A picture from a point along a direction; `focal` is 1 / the tangent of half of its angle.
+/// Computes a view from a point along a direction. `focal` is 1 / the tangent of half of its angle.
 fn face(at: DVec3, direction: DVec3, focal: f64, around: &Around) -> MapView {
     let view_from_world = placed(along(direction), DVec3::ZERO) * DMat4::from_translation(-at);
     let [_, farthest] = around.range(|p| p.distance(at));

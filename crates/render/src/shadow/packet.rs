@@ -1,4 +1,4 @@
 //! The size of a packet of rays.
 
-/// The most rays of a packet: each has a bit in a mask of 64.
+/// The largest number of rays in a packet: each has a bit in a mask of 64.
 pub(crate) const POINTS: usize = 64;

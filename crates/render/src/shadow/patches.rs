@@ -1,8 +1,8 @@
-//! The points of a packet by where they lie.
+//! Groups the points of a packet by position.
 //!
 //! The pixels of a block may show surfaces far apart, one in front of another. A box around all of
-//! them would be large, and rays from it pass much of a scene; so points are divided wherever there
-//! is a wide gap between them, and each patch of a surface gets a box of its own.
+//! them would be large, and its rays would pass through much of the scene. Points are therefore
+//! divided at wide gaps, and each patch of a surface gets a separate box.
 
 use glam::DVec3;
 
@@ -10,23 +10,23 @@ use super::packet::POINTS;
 use super::shaft::Around;
 use marraztu_core::base::math::each;
 
-/// Points that lie close to each other.
+/// Points that lie close together.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patch {
     /// The points, a bit for each.
     pub(super) points: u64,
-    /// A box that holds them.
+    /// A box around the points.
     pub(super) around: Around,
 }
 
-/// The most patches of a packet.
+/// The largest number of patches in a packet.
 const MOST: usize = 8;
 
-/// A box is divided if this many neighbouring sixteenths of its length are empty.
+/// The number of empty neighbouring sixteenths of a box's length at which it is divided.
 const EMPTY: u32 = 4;
 
-/// Divides the first `len` points of a list into patches; the rest repeats the first. `normal`
-/// tells the normal of the triangle that a point lies in, if it lies in one.
+/// Divides the first `len` points of a list into patches; the rest of the list repeats the first
+/// point. `normal` returns the normal of a point's triangle, if the point lies in one.
 #[inline(always)]
 pub(super) fn find_patches(
     at: &[[f64; POINTS]; 3],
@@ -49,7 +49,7 @@ pub(super) fn find_patches(
     }
 }
 
-/// The points of a mask; in place of all others, the first of them.
+/// Copies the points of a mask and replaces all others with the first of them.
 fn only(at: &[[f64; POINTS]; 3], points: u64) -> [[f64; POINTS]; 3] {
     let first = nth(points, 0);
     let mut some = each([0, 1, 2], |axis: usize| [at[axis][first]; POINTS]);
@@ -61,8 +61,8 @@ fn only(at: &[[f64; POINTS]; 3], points: u64) -> [[f64; POINTS]; 3] {
     some
 }
 
-/// The box of some points, which are all that a list has: along the triangle of one in their middle
-/// or, if that is unknown, along three of the points.
+/// Computes a box around a list of points, aligned with the triangle of a point in the middle or,
+/// if that is unknown, with the plane of three points.
 #[inline(always)]
 fn around(at: &[[f64; POINTS]; 3], points: u64, normal: impl Fn(usize) -> Option<DVec3>) -> Around {
     let count = points.count_ones() as usize;
@@ -75,13 +75,13 @@ fn around(at: &[[f64; POINTS]; 3], points: u64, normal: impl Fn(usize) -> Option
     Around::new(at, normal, b - a)
 }
 
-/// The points on both sides of the first wide gap along their box, if there is one.
+/// Returns the points on either side of the first wide gap along their box, if there is one.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 16")]
 fn divided(at: &[[f64; POINTS]; 3], points: u64, around: &Around) -> Option<[u64; 2]> {
     let [a, b, c] = around.halves.map(DVec3::length_squared);
     let longest = around.halves[if a >= b && a >= c { 0 } else { usize::from(c > b) + 1 }];
-    // Along the longest edge, from -1 to 1.
+    // The position along the longest edge, from -1 to 1.
     let along = longest / longest.length_squared();
     let offset = 1.0 - around.centre.dot(along);
     let mut places = [0; POINTS];
@@ -90,7 +90,7 @@ fn divided(at: &[[f64; POINTS]; 3], points: u64, around: &Around) -> Option<[u64
         *place = ((x + offset) * 8.0) as u32;
     }
     let taken = bits(points).fold(0_u32, |taken, i| taken | 1 << places[i].min(15));
-    // The sixteenths at which a gap begins, between the first and the last that are taken.
+    // The sixteenths where a gap begins, between the first and last occupied ones.
     let empty = !taken & 0xffff;
     let gaps = (1..EMPTY).fold(empty, |gaps, i| gaps & empty >> i);
     let below = |bit: u32| (1_u32 << bit) - 1;
@@ -104,7 +104,7 @@ fn divided(at: &[[f64; POINTS]; 3], points: u64, around: &Around) -> Option<[u64
     Some([near, points & !near])
 }
 
-/// The numbers of the bits of a mask.
+/// Iterates over the indices of the set bits of a mask.
 pub(crate) fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         (mask != 0).then(|| {
@@ -115,7 +115,7 @@ pub(crate) fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// The number of one of the set bits of a mask that has enough.
+/// Returns the index of the n-th set bit of a mask, which must have enough.
 fn nth(mask: u64, n: usize) -> usize {
     bits(mask).nth(n).unwrap_or_default()
 }
@@ -163,7 +163,7 @@ mod tests {
             let len = 1 + rng.index(64);
             let mut number = |range: usize| rng.index(2 * range + 1) as f64 - range as f64;
             for i in 0..len {
-                // In clusters, so that gaps of every width come up.
+                // Clustered points, so gaps of every width occur.
                 let cluster = DVec3::new(number(1), number(1), number(1)) * (round % 50) as f64;
                 origins.set(i, cluster + DVec3::new(number(9), number(9), number(9)), [0; 2]);
             }

@@ -1,9 +1,9 @@
-//! Prepares eight triangles at a time for the rays to one light, and finds those of them that may
-//! stand between it and any point of a packet.
+//! Prepares eight triangles at a time for the rays to one light, and finds the ones that may block
+//! a point of a packet.
 //!
-//! Each function of [`super::triangle`] is linear in the point, so over the box of all points, with
-//! its centre C and half edges H, it is at most n . (C - A) + sum |n . H|. A triangle for which
-//! that is negative by more than its error is left out.
+//! Each function of [`super::triangle`] is linear in the point. Over the box of all points, with
+//! centre C and half edges H, it is at most n . (C - A) + sum |n . H|. A triangle is left out if
+//! that bound is negative by more than its error.
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, f64x8};
 use glam::{DMat4, DVec3};
@@ -13,7 +13,7 @@ use super::triangle::{Corners, Decided, ERROR, OFF_PLANE, Prepared, side};
 use crate::accel::{BVH_BLOCK, BvhBlock};
 use marraztu_core::base::math::each;
 
-/// Eight triangles, prepared. A row is a line of the cache.
+/// Eight prepared triangles. Each row is one cache line.
 #[derive(Debug, Default)]
 #[repr(align(64))]
 pub(crate) struct PreparedBlock {
@@ -26,7 +26,7 @@ pub(crate) struct PreparedBlock {
     errors: [[f64; BVH_BLOCK]; 4],
 }
 
-/// A vector of each of eight triangles.
+/// One vector of each of eight triangles.
 type Eight<S> = [f64x8<S>; 3];
 
 #[inline(always)]
@@ -49,7 +49,7 @@ fn largest<S: Simd>(v: Eight<S>) -> f64x8<S> {
     v[0].abs().max(v[1].abs()).max(v[2].abs())
 }
 
-/// The largest component of vectors whose components may be larger by an extent.
+/// Returns the largest component of vectors enlarged by an extent.
 #[inline(always)]
 fn farthest<S: Simd>([x, y, z]: Eight<S>, extent: DVec3) -> f64x8<S> {
     (x.abs() + extent.x).max(y.abs() + extent.y).max(z.abs() + extent.z)
@@ -60,14 +60,14 @@ fn times<S: Simd>([x, y, z]: Eight<S>, by: f64x8<S>) -> Eight<S> {
     [x * by, y * by, z * by]
 }
 
-/// One vector for all.
+/// Repeats one vector for all lanes.
 #[inline(always)]
 fn all<S: Simd>(simd: S, v: DVec3) -> Eight<S> {
     [f64x8::splat(simd, v.x), f64x8::splat(simd, v.y), f64x8::splat(simd, v.z)]
 }
 
-/// Corners in world space: the arithmetic of [`DMat4::transform_point3`], so that all parts of the
-/// renderer see the same bits.
+/// Transforms corners to world space with the arithmetic of [`DMat4::transform_point3`]: all parts
+/// of the renderer must see the same bits.
 #[inline(always)]
 fn placed<S: Simd>(simd: S, world_from_object: &DMat4, corner: &[[f32; BVH_BLOCK]; 3]) -> Eight<S> {
     let m = world_from_object;
@@ -93,8 +93,8 @@ fn placed<S: Simd>(simd: S, world_from_object: &DMat4, corner: &[[f32; BVH_BLOCK
 }
 
 impl PreparedBlock {
-    /// Prepares the triangles of a block for points in a box; `reach` is the largest coordinate of
-    /// the points' own triangles. Returns those that may stand between, a bit for each.
+    /// Prepares the triangles of a block for the points in a box. `reach` is the largest coordinate
+    /// of the points' own triangles. Returns a bit mask of the triangles that may block a point.
     #[inline(always)]
     pub(super) fn set<S: Simd>(
         &mut self,
@@ -110,11 +110,13 @@ impl PreparedBlock {
         ];
         store(&mut self.corners, [a, b, c]);
         let to = all(simd, light);
+        // Edge vectors and the plane's normal. `size` scales the error bounds.
         let (ab, bc, ca) = (minus(b, a), minus(c, b), minus(a, c));
         let plane = cross(ab, minus(c, a));
         let size = largest(ab) * largest(ca);
         let to_light = minus(to, a);
         let (sign, sided) = self.sign(simd, dot(plane, to_light), size * largest(to_light), light);
+        // The planes through the light and each edge, with the sign that is positive between.
         let (from_a, from_b, from_c) = (minus(a, to), minus(b, to), minus(c, to));
         let normals = [
             times(cross(from_a, ab), sign),
@@ -123,6 +125,7 @@ impl PreparedBlock {
             times(plane, sign),
         ];
         store(&mut self.normals, normals);
+        // The error of each function grows with the distance of the points from the corner.
         let (centre, extent) = (all(simd, around.centre), around.extent());
         let middle = [minus(centre, a), minus(centre, b), minus(centre, c)];
         let far =
@@ -133,6 +136,7 @@ impl PreparedBlock {
             largest(from_c) * largest(ca) * ERROR * far[2],
             size * (far[0] * ERROR + 6.0 * OFF_PLANE * reach),
         ];
+        // The largest value of each function over the box; see the module for the formula.
         let halves =
             [all(simd, around.halves[0]), all(simd, around.halves[1]), all(simd, around.halves[2])];
         let mut possible = sided;
@@ -142,14 +146,14 @@ impl PreparedBlock {
                 + dot(normals[i], halves[1]).abs()
                 + dot(normals[i], halves[2]).abs();
             let most = dot(normals[i], middle[i % 3]) + spread;
-            // Neither NaN nor infinity leaves a triangle out.
+            // A comparison with NaN or infinity is false, so such triangles are kept.
             possible &= !most.simd_lt(errors[i] * -4.0).to_bitmask();
         }
         possible
     }
 
-    /// The sign of the functions of each triangle, and the triangles that have one: the light is
-    /// not in their plane.
+    /// Returns the sign of each triangle's functions, and the triangles that have a sign: the light
+    /// is not in their plane.
     #[inline(always)]
     fn sign<S: Simd>(
         &self,
@@ -170,8 +174,8 @@ impl PreparedBlock {
         (f64x8::from_slice(simd, &signs), sided)
     }
 
-    /// Decides by exact arithmetic on which side of the planes of triangles the light is, but of
-    /// those that are `sure`. Returns those for which it is on one.
+    /// Decides by exact arithmetic on which side of each plane the light is, for the triangles
+    /// outside the mask `sure`. Returns the triangles that do not contain the light in their plane.
     #[inline(never)]
     fn settle(&self, light: DVec3, sure: u64, signs: &mut [f64; BVH_BLOCK]) -> u64 {
         let mut sided = 0;
@@ -183,17 +187,17 @@ impl PreparedBlock {
         sided
     }
 
-    /// The corners of a triangle in world space.
+    /// Returns the corners of a triangle in world space.
     fn corners_of(&self, i: usize) -> Corners {
         self.corners.map(|rows| DVec3::from_array(rows.map(|row| row[i])))
     }
 
-    /// Decides for a point which triangles of a mask stand between it and the light.
+    /// Decides which triangles of a mask block the ray from a point to the light.
     #[inline(always)]
     pub(super) fn decide<S: Simd>(&self, simd: S, p: DVec3, of: u64) -> Decided {
         let p = all(simd, p);
         let (mut between, mut possible) = (of, of);
-        // Most points are on the light's side of a plane: that is the first question.
+        // The plane first: most points are on the light's side and need no other test.
         for i in [3, 0, 1, 2] {
             if possible == 0 {
                 break;
@@ -209,7 +213,7 @@ impl PreparedBlock {
         Decided { between, open: possible & !between }
     }
 
-    /// One of the triangles.
+    /// Returns one of the triangles.
     pub(super) fn triangle(&self, i: usize) -> Prepared {
         let vector = |rows: &[[f64; BVH_BLOCK]; 3]| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
         let [a, b, c] = &self.corners;

@@ -1,4 +1,4 @@
-//! The points of a packet of rays, and the triangles that they lie on.
+//! The origins of a packet of rays, and the triangles they lie on.
 
 use glam::DVec3;
 
@@ -12,19 +12,20 @@ use crate::accel::BvhChild;
 #[derive(Debug)]
 pub(crate) struct Origins {
     pub(crate) at: [[f64; POINTS]; 3],
-    /// The caster that they lie on, if it casts shadows itself.
+    /// The caster that the points lie on, if it casts shadows itself.
     pub(crate) caster: Option<u32>,
-    /// The triangles of that caster that each lies on: from the first to the one before `end`.
+    /// The range of the caster's triangles that each point lies on: from `first` up to but
+    /// excluding `end`.
     pub(crate) first: [u32; POINTS],
     pub(crate) end: [u32; POINTS],
-    /// Whether each point lies in the one triangle that `first` names. Otherwise it is exact.
+    /// Whether each point lies in the single triangle `first`. If not, the point is exact.
     pub(crate) in_triangle: bool,
-    /// The largest coordinate of the triangles that they lie in.
+    /// The largest coordinate of the points' triangles.
     pub(crate) reach: f64,
-    /// The points that were lifted off their triangles, a bit for each: they are exact.
+    /// The points that were lifted off their triangles, a bit for each. Lifted points are exact.
     pub(super) lifted: u64,
     len: usize,
-    /// The points by where they lie; empty if that is not known yet.
+    /// The points grouped by position; empty before they are grouped.
     pub(super) patches: Vec<Patch>,
 }
 
@@ -52,7 +53,7 @@ impl Origins {
         self.patches.clear();
     }
 
-    /// Sets a point and the triangles that it lies on; points are set in order.
+    /// Sets a point and its range of triangles. Points are set in order.
     #[inline(always)]
     pub(crate) fn set(&mut self, i: usize, at: DVec3, triangles: [u32; 2]) {
         for (row, x) in self.at.iter_mut().zip(at.to_array()) {
@@ -69,18 +70,18 @@ impl Origins {
         self.lifted |= 1 << i;
     }
 
-    /// One of the points.
+    /// Returns one of the points.
     #[inline(always)]
     pub(crate) fn point(&self, i: usize) -> DVec3 {
         DVec3::new(self.at[0][i], self.at[1][i], self.at[2][i])
     }
 
-    /// Divides the points into patches. `normal` tells the normal of the triangle that a point lies
-    /// in, if it lies in one.
+    /// Divides the points into patches. `normal` returns the normal of a point's triangle, if the
+    /// point lies in one.
     #[inline(always)]
     pub(super) fn find_patches(&mut self, normal: impl Fn(&Self, usize) -> Option<DVec3>) {
         let len = self.len.clamp(1, POINTS);
-        // What is left of the lists repeats the first point.
+        // The unused end of the lists repeats the first point, so lanes need no mask.
         for row in &mut self.at {
             let first = row[0];
             row[len..].fill(first);
@@ -91,12 +92,12 @@ impl Origins {
     }
 }
 
-/// The rays of a picture.
+/// The number of shadow rays in a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RayCount {
     /// The rays that were traced.
     pub traced: u64,
-    /// Those that something stands in the way of.
+    /// The rays that were blocked.
     pub occluded: u64,
 }
 
@@ -107,12 +108,12 @@ impl std::ops::AddAssign for RayCount {
     }
 }
 
-/// What a thread keeps from packet to packet.
+/// A thread's memory, reused from packet to packet.
 #[derive(Debug, Default)]
 pub(crate) struct RayScratch {
     /// The rays since the frame began.
     pub(crate) count: RayCount,
-    /// Whether the layers of a block are painted: a pixel then shows several surfaces.
+    /// Whether the layers of a block are painted: each pixel then shows several surfaces.
     pub(crate) paints_layers: bool,
     pub(crate) origins: Origins,
     pub(super) local: LocalRays,
@@ -122,16 +123,16 @@ pub(crate) struct RayScratch {
     pub(super) stack: Vec<(BvhChild, u64)>,
 }
 
-/// The rays of a packet in the space of one caster, for its boxes.
+/// The rays of a packet in the space of one caster, for ray-box intersection.
 #[derive(Debug)]
 pub(super) struct LocalRays {
     /// The origins in the space of the caster.
     pub(super) origin: [[f32; POINTS]; 3],
-    /// 1 / direction, which is scaled so that its largest component is 1.
+    /// The inverse direction, scaled so its largest component is 1.
     pub(super) inverse: [[f32; POINTS]; 3],
-    /// The parameter of the light.
+    /// The ray parameter of the light.
     pub(super) end: [f32; POINTS],
-    /// How far boxes are padded, for all errors of f32.
+    /// The padding of boxes, which covers all f32 errors.
     pub(super) pad: [f32; 3],
     /// The largest coordinate of the origins and of the caster's bounds.
     pub(super) far: f64,

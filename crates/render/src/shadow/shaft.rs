@@ -1,12 +1,12 @@
-//! What a packet of rays passes through, as a whole: most boxes of a tree are beside it.
+//! Bounds a packet of rays as a whole, because it misses most boxes of a BVH.
 //!
-//! The points of a packet lie in a box along their surface ([`Around`]); its rays fill the convex
-//! hull of that box and of what is left of it at the light. A [`Shaft`] is that hull between
-//! sixteen planes: eight along the rays, two across, and the sides of its bounds. A box beyond one
-//! of them meets no ray, which sixteen lanes decide at once.
+//! The points of a packet lie in a box along their surface ([`Around`]). Its rays fill the convex
+//! hull of that box and of the smaller box that remains at the light. A [`Shaft`] is that hull,
+//! bounded by sixteen planes: eight along the rays, two across, and the six sides of its bounds. A
+//! box beyond one of the planes meets no ray; sixteen lanes test all planes at once.
 //!
-//! Planes are rounded to f32 before their offsets are computed, and boxes are f32 numbers, so that
-//! only the sum of three products is rounded; the offsets hold its error.
+//! Planes are rounded to f32 before their offsets are computed, and boxes are f32 numbers. Only the
+//! sum of three products is therefore rounded, and the offsets include its error.
 //!
 //! Reshetov, Soupikov and Hurley, "Multi-Level Ray Tracing Algorithm", 2005; Haines and Wallace,
 //! "Shaft Culling for Efficient Ray-Traced Radiosity", 1991.
@@ -17,7 +17,7 @@ use glam::{DMat4, DVec3, Vec3};
 use super::packet::POINTS;
 use marraztu_core::base::math::{each, unit};
 
-/// A box that holds the points of a packet.
+/// An oriented box around the points of a packet.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Around {
     pub(super) centre: DVec3,
@@ -25,20 +25,22 @@ pub(super) struct Around {
     pub(super) halves: [DVec3; 3],
 }
 
-/// How much wider than its points a box is, relative to itself and to the largest coordinate.
+/// The margin of a box, relative to its size and to the largest coordinate.
 const WIDER: f64 = 1.0 / (1 << 30) as f64;
 const ROUNDED: f64 = 1.0 / (1_u64 << 44) as f64;
 
 impl Around {
-    /// The box of some points along a plane with this normal, and along a direction in it.
+    /// Computes a box around points, aligned with the plane of a normal and a direction in it.
     #[inline(always)]
     pub(super) fn new(at: &[[f64; POINTS]; 3], normal: DVec3, along: DVec3) -> Self {
         let normal = unit(normal).unwrap_or(DVec3::Z);
         let across = unit(normal.cross(along)).unwrap_or_else(|| normal.any_orthonormal_vector());
         let axes = [across.cross(normal), across, normal];
+        // Coordinates are taken relative to the first point, which keeps their digits.
         let first = DVec3::new(at[0][0], at[1][0], at[2][0]);
         let (mut centre, mut lengths) = (first, [0.0; 3]);
         for (axis, length) in axes.iter().zip(&mut lengths) {
+            // Eight independent minima and maxima, so the loop vectorises.
             let (mut low, mut high) = ([0.0; 8], [0.0; 8]);
             for i in (0..POINTS).step_by(8) {
                 for j in 0..8 {
@@ -60,22 +62,22 @@ impl Around {
         Self { centre, halves }
     }
 
-    /// How far it reaches from its centre along each axis of the world.
+    /// Returns the half extent along each axis of the world.
     #[inline(always)]
     pub(super) fn extent(&self) -> DVec3 {
         self.halves.iter().fold(DVec3::ZERO, |sum, half| sum + half.abs())
     }
 
-    /// Its largest coordinate.
+    /// Returns the largest coordinate.
     pub(super) fn farthest(&self) -> f64 {
         (self.centre.abs() + self.extent()).max_element()
     }
 }
 
-/// The planes of a shaft.
+/// The number of planes of a shaft.
 const PLANES: usize = 16;
 
-/// Planes that all rays of a packet are behind, in the space of a caster.
+/// Planes with all rays of a packet behind them, in the space of a caster.
 #[derive(Debug, Default)]
 pub(crate) struct Shaft {
     normals: [[f32; PLANES]; 3],
@@ -89,7 +91,7 @@ const WIDEST: f64 = 1e3;
 /// The cosine of 45 degrees.
 const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// The eight directions along which a shaft is bounded across its rays.
+/// The eight directions across the rays that bound a shaft.
 const ACROSS: [[f64; 2]; 8] = [
     [1.0, 0.0],
     [DIAGONAL, DIAGONAL],
@@ -102,12 +104,12 @@ const ACROSS: [[f64; 2]; 8] = [
 ];
 
 impl Shaft {
-    /// Sets the shaft from points around which there is a box to a light; `far` is the largest
-    /// coordinate of the caster's bounds and of the points, and `pad` the error of both, along each
-    /// axis of the space of the caster.
+    /// Sets the shaft from a box around points to a light. `far` is the largest coordinate of the
+    /// caster's bounds and of the points, and `pad` the error of both along each axis of the
+    /// caster's space.
     ///
-    /// With the centre C of the box, its half edges H, the way W to the light and the share s of it
-    /// that is inside of the bounds, the rays reach along a normal n at most as far as
+    /// Let C be the centre of the box, H its half edges, W the vector to the light, and s the share
+    /// of W that is inside the bounds. Along a normal n, the rays reach at most
     ///
     /// ```text
     /// max(n . C + sum |n . H|,   n . (C + s W) + (1 - s) sum |n . H|)
@@ -127,10 +129,13 @@ impl Shaft {
         let length = way.length();
         let share = (8.0 * far / length).min(1.0);
         let along = way / length;
+        // Planes turn with the box: `right` follows one of its edges.
         let flat = a - along * along.dot(a);
         let right = unit(flat).unwrap_or_else(|| along.any_orthonormal_vector());
         let up = along.cross(right);
         let spread = |n: DVec3| n.dot(a).abs() + n.dot(b).abs() + n.dot(c).abs();
+        // Planes along the rays are tilted by the opening of the shaft, so they touch box and
+        // light.
         let plane = |i: usize| match i {
             _ if far > FARTHEST => DVec3::ZERO,
             0..8 => {
@@ -142,6 +147,7 @@ impl Shaft {
             9 => -along,
             _ => DVec3::AXES[(i - 10) % 3] * if i < 13 { 1.0 } else { -1.0 },
         };
+        // Offsets are computed from the rounded normals, in f64, and rounded up.
         for i in 0..PLANES {
             let normal = plane(i).as_vec3();
             let n = normal.as_dvec3();
@@ -155,9 +161,10 @@ impl Shaft {
         }
     }
 
-    /// Whether no ray of the packet meets a box.
+    /// Returns whether no ray of the packet meets a box.
     #[inline(always)]
     pub(super) fn misses<S: Simd>(&self, simd: S, low: &[f32; 3], high: &[f32; 3]) -> bool {
+        // The corner of the box that is farthest behind each plane decides.
         let mut least = f32x16::splat(simd, 0.0);
         for axis in 0..3 {
             let normal = f32x16::from_slice(simd, &self.normals[axis]);

@@ -1,4 +1,4 @@
-//! Traces packets of rays through all casters of a frame.
+//! Traces packets of shadow rays through all casters of a frame.
 
 use crate::accel::Accelerated as _;
 use crate::simd::dispatch;
@@ -23,48 +23,48 @@ use marraztu_core::accuracy::{Filter, ShadowMethod};
 use marraztu_core::base::math::each;
 use marraztu_core::scene::{Bounds, dvec3};
 
-/// How much farther a sun is than the largest coordinate of the scene.
+/// The distance of a sun, relative to the largest coordinate of the scene.
 const SUN: f64 = (1_u64 << 60) as f64;
 
-/// What casts shadows in a frame, ready to be met by rays.
+/// The casters of a frame, ready for ray tracing.
 #[derive(Debug)]
 pub(crate) struct Tracer<'a> {
     casters: Vec<InPlace<'a>>,
-    /// For each draw, the caster that it draws.
+    /// The caster of each draw.
     of_draws: Vec<Option<u32>>,
-    /// For each light, the end of the rays to it, if it casts shadows.
+    /// The end point of the rays to each light, if it casts shadows.
     lights: Vec<Option<DVec3>>,
-    /// For each light its shadow map, if the settings want one.
+    /// The shadow map of each light, if the settings ask for maps.
     maps: Vec<Option<&'a LightMap>>,
-    /// What is known of shadows, if it is kept.
+    /// The cached shadows, if shadows are cached.
     known: Option<&'a KnownShadows>,
     filter: Filter,
 }
 
-/// A caster in its place.
+/// A caster with its transforms and bounds.
 #[derive(Debug)]
 struct InPlace<'a> {
     caster: &'a Caster,
     /// `None` with shadow maps.
     tree: Option<&'a Bvh>,
     object_from_world: DMat4,
-    /// Its bounds in object space.
+    /// The bounds in object space.
     own: Bounds,
-    /// Its box in world space.
+    /// The bounding box in world space.
     low: DVec3,
     high: DVec3,
     is_solid: bool,
 }
 
-/// The corners of a triangle in world space. Every part of the renderer that needs them exactly
-/// uses this function.
+/// Transforms the corners of a triangle to world space. Every part of the renderer that needs exact
+/// corners uses this function.
 #[inline(always)]
 fn placed(world_from_object: &DMat4, corners: [[f32; 3]; 3]) -> Corners {
     each(corners, |corner| world_from_object.transform_point3(dvec3(corner)))
 }
 
 impl<'a> Tracer<'a> {
-    /// Makes the casters of a plan ready; `None` if no light casts shadows.
+    /// Prepares the casters of a plan. `None` if no light casts shadows.
     pub(crate) fn new(plan: &'a FramePlan, maps: &'a ShadowMaps) -> Option<Self> {
         if !plan.shadows.are_cast() {
             return None;
@@ -78,20 +78,20 @@ impl<'a> Tracer<'a> {
         Some(Self { of_draws, ..tracer })
     }
 
-    /// How far away the suns of a frame are.
+    /// Returns the distance of the suns of a frame.
     pub(crate) fn sun_distance(shadows: &Shadows) -> f64 {
         let in_place = |caster| InPlace::new(caster, ShadowMethod::Map512);
         sun_distance(&shadows.casters.iter().filter_map(in_place).collect::<Vec<_>>())
     }
 
-    /// Makes casters ready.
+    /// Prepares casters.
     fn of(shadows: &'a Shadows, filter: Filter, method: ShadowMethod) -> Self {
         let in_place = |caster| InPlace::new(caster, method);
         let casters: Vec<InPlace<'a>> = shadows.casters.iter().filter_map(in_place).collect();
         let far = sun_distance(&casters);
         let end = |source: &ShadowSource| match source {
             ShadowSource::Direction(towards) => *towards * far,
-            // A light that is farther than a sun is one.
+            // A light farther away than a sun is treated as one.
             ShadowSource::Point(at) | ShadowSource::Cone { at, .. } => {
                 *at * (far / at.abs().max_element()).min(1.0)
             }
@@ -100,39 +100,39 @@ impl<'a> Tracer<'a> {
         Self { casters, of_draws: Vec::new(), lights, maps: Vec::new(), known: None, filter }
     }
 
-    /// The end of the rays to a light, if it casts shadows.
+    /// Returns the end point of the rays to a light, if it casts shadows.
     #[inline(always)]
     pub(crate) fn light(&self, light: u32) -> Option<DVec3> {
         self.lights[light as usize]
     }
 
-    /// The caster that a draw draws.
+    /// Returns the caster of a draw.
     pub(crate) fn caster_of(&self, draw: u32) -> Option<u32> {
         self.of_draws[draw as usize]
     }
 
-    /// `world_from_object` of a caster.
+    /// Returns `world_from_object` of a caster.
     pub(crate) fn placement(&self, caster: u32) -> DMat4 {
         self.casters[caster as usize].caster.world_from_object
     }
 
-    /// The same, with what is known of shadows and is added to.
+    /// Attaches a cache of shadows, which is read and added to.
     pub(crate) fn with_known(self, known: Option<&'a KnownShadows>) -> Self {
         Self { known, ..self }
     }
 
-    /// The map of a light, if the settings want one.
+    /// Returns the map of a light, if the settings ask for maps.
     pub(crate) fn map(&self, light: u32) -> Option<&'a LightMap> {
         self.maps.get(light as usize).copied().flatten()
     }
 
-    /// What is known of the shadows of a light, if it is kept.
+    /// Returns the cached shadows of a light, if they are cached.
     #[inline(always)]
     pub(crate) fn known(&self, light: u32) -> Option<&'a KnownLight> {
         self.known?.of(light)
     }
 
-    /// The rays of a mask that something stands between and the light, a bit for each.
+    /// Traces the rays of a mask to the light. Returns a bit mask of the blocked ones.
     pub(crate) fn shaded(
         &self,
         level: Level,
@@ -164,14 +164,14 @@ impl<'a> Tracer<'a> {
         mask & !alive
     }
 
-    /// The normal of the triangle that a point lies in, if it lies in one.
+    /// Returns the normal of a point's triangle, if the point lies in one.
     fn normal_at(&self, origins: &Origins, i: usize) -> Option<DVec3> {
         let caster = origins.caster.filter(|_| origins.in_triangle)?;
         let [a, b, c] = self.corners_of(caster, origins.first[i]);
         Some((b - a).cross(c - a))
     }
 
-    /// The rays of a mask that a caster stands in the way of.
+    /// Returns the rays of a mask that a caster blocks.
     #[inline(always)]
     fn behind<S: Simd>(
         &self,
@@ -187,6 +187,7 @@ impl<'a> Tracer<'a> {
         for i in 0..scratch.origins.patches.len() {
             let Patch { points, around } = scratch.origins.patches[i];
             let extent = around.extent();
+            // The caster is skipped if the bounds of all rays miss its box.
             let (from, to) = (around.centre - extent, around.centre + extent);
             let (low, high) = (from.min(light), to.max(light));
             let is_beside = placed.low.cmpgt(high).any() || placed.high.cmplt(low).any();
@@ -194,6 +195,7 @@ impl<'a> Tracer<'a> {
                 continue;
             }
             let RayScratch { origins, local, shaft, stack, .. } = &mut *scratch;
+            // Rays are transformed once per caster, and only if a patch needs them.
             if !is_set {
                 let all = origins.patches.iter().map(|patch| patch.around.farthest());
                 let reach = all.fold(placed.reach(), f64::max);
@@ -209,7 +211,7 @@ impl<'a> Tracer<'a> {
         behind
     }
 
-    /// The rays of a mask that a tree stands in the way of, from what is on the stack.
+    /// Returns the rays of a mask that a BVH blocks, starting from the nodes on the stack.
     #[inline(always)]
     fn behind_tree<S: Simd>(
         &self,
@@ -225,6 +227,7 @@ impl<'a> Tracer<'a> {
             if reached == 0 {
                 continue;
             }
+            // An inner node pushes its children; only leaves test triangles.
             if child.count == 0 {
                 let Some(node) = tree.nodes.get(child.first as usize) else { continue };
                 scratch.visit(simd, node, reached);
@@ -238,7 +241,7 @@ impl<'a> Tracer<'a> {
         mask & !alive
     }
 
-    /// The rays of a mask that a triangle of a leaf stands between and the light.
+    /// Returns the rays of a mask that a triangle of a leaf blocks.
     #[inline(always)]
     fn behind_leaf<S: Simd>(
         &self,
@@ -265,8 +268,8 @@ impl<'a> Tracer<'a> {
         behind
     }
 
-    /// The rays of a mask that some triangles of a block stand between and the light: all of the
-    /// triangles at once, ray by ray, since few rays reach a leaf.
+    /// Returns the rays of a mask that some triangles of a block stop. All triangles are tested at
+    /// once, ray by ray, because few rays reach a leaf.
     #[inline(always)]
     fn behind_block<S: Simd>(
         &self,
@@ -278,6 +281,7 @@ impl<'a> Tracer<'a> {
     ) -> u64 {
         let mut behind = 0;
         for ray in bits(rays) {
+            // A point's own triangles never shade it.
             let others = if packet.is_own {
                 possible & !block.among(simd, [origins.first[ray], origins.end[ray]])
             } else {
@@ -296,8 +300,8 @@ impl<'a> Tracer<'a> {
         behind
     }
 
-    /// Whether a triangle stands between a point and the light: decides what f64 cannot, unless it
-    /// is `sure`, and lets rays through holes.
+    /// Returns whether a triangle blocks the ray from a point to the light. Uses exact arithmetic
+    /// if f64 was not `sure`, and lets rays through holes.
     #[inline(never)]
     fn stands_between(
         &self,
@@ -316,8 +320,8 @@ impl<'a> Tracer<'a> {
         self.is_solid_at(placed, part, number, triangle.parts(origins.point(ray)))
     }
 
-    /// Whether a point's own triangle reaches behind the plane of another. A point that lies in no
-    /// triangle is exact.
+    /// Returns whether a point's own triangle reaches behind the plane of another. A point without
+    /// a triangle is exact, so the answer is yes.
     fn own_reaches_behind(
         &self,
         origins: &Origins,
@@ -331,7 +335,7 @@ impl<'a> Tracer<'a> {
         reaches_behind(&own, triangle, light)
     }
 
-    /// The corners of a triangle of a caster, in world space.
+    /// Returns the corners of a caster's triangle, in world space.
     pub(crate) fn corners_of(&self, caster: u32, triangle: u32) -> Corners {
         let InPlace { caster, .. } = &self.casters[caster as usize];
         let order = caster.model.mesh.draw_order();
@@ -342,7 +346,8 @@ impl<'a> Tracer<'a> {
         placed(&caster.world_from_object, corners)
     }
 
-    /// Whether a part of a caster stops light where these parts of a triangle's corners meet.
+    /// Returns whether a part of a caster blocks light at these barycentric coordinates of a
+    /// triangle.
     fn is_solid_at(
         &self,
         placed: &InPlace<'_>,
@@ -358,7 +363,7 @@ impl<'a> Tracer<'a> {
         let texture = texture.as_ref().map_or(1.0, |it| sample::<f64>(it, at, self.filter)[3]);
         let map = map.as_ref().map_or(1.0, |it| {
             let [r, g, b, alpha] = sample::<f64>(it, at, self.filter);
-            // Its brightness counts if it has no alpha.
+            // An opaque opacity map is a greyscale picture: its brightness counts instead of alpha.
             if it.picture.least_alpha() == 255 { brightness(Vec3([r, g, b])) } else { alpha }
         });
         texture * map * opacity >= 0.5
@@ -366,8 +371,8 @@ impl<'a> Tracer<'a> {
 }
 
 impl RayScratch {
-    /// Adds the children of a node that rays meet to those that are still to be visited. A leaf is
-    /// tested ray by ray.
+    /// Pushes the children of a node that rays meet. Leaves are tested ray by ray, inner nodes only
+    /// by the shaft.
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, node: &BvhNode, reached: u64) {
         for (child, [low, high]) in node.children() {
@@ -385,12 +390,12 @@ impl RayScratch {
     }
 }
 
-/// The rays that are traced.
+/// A packet of rays to be traced.
 struct Packet {
     light: DVec3,
-    /// The box of their origins.
+    /// The box around their origins.
     around: Around,
-    /// Whether they begin on the caster that is traced.
+    /// Whether the rays begin on the caster being traced.
     is_own: bool,
 }
 
@@ -402,7 +407,7 @@ impl<'a> InPlace<'a> {
         let corners = own.corners().map(|corner| m.transform_point3(corner));
         let low = corners.iter().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
         let high = corners.iter().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
-        // Its corners are rounded.
+        // The transformed corners are rounded, so the box is enlarged.
         let error = low.abs().max(high.abs()).max_element() * 1e-14;
         let object_from_world = m.inverse();
         let (low, high) = (low - error, high + error);
@@ -418,19 +423,19 @@ impl<'a> InPlace<'a> {
         })
     }
 
-    /// The largest coordinate of its box.
+    /// Returns the largest coordinate of the box.
     fn reach(&self) -> f64 {
         self.low.abs().max(self.high.abs()).max_element()
     }
 }
 
-/// How far away suns are, with these casters.
+/// Computes the distance of suns for these casters.
 fn sun_distance(casters: &[InPlace<'_>]) -> f64 {
     let reach = casters.iter().map(InPlace::reach).fold(f64::MIN_POSITIVE, f64::max);
     power_of_two_above(reach) * SUN
 }
 
-/// The least power of two above a number.
+/// Returns the smallest power of two above a number.
 fn power_of_two_above(x: f64) -> f64 {
     libm::ldexp(1.0, libm::frexp(x).1)
 }

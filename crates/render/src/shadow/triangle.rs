@@ -1,4 +1,4 @@
-//! Whether a triangle stands between points and a light.
+//! Ray-triangle intersection: decides whether a triangle lies between points and a light.
 //!
 //! With the corners A, B, C, a point P and the light L:
 //!
@@ -7,14 +7,14 @@
 //! e(P) = (A - L) x (B - A) . (P - A)        the side of the plane through L, A, B; others alike
 //! ```
 //!
-//! The triangle stands between if s(P) and s(L) have opposite signs and no e(P) has the sign of
-//! s(L). Each is a determinant of three differences, and each edge's is the same number with
-//! another sign for both of its triangles, so no ray passes between them.
+//! The triangle blocks the ray if s(P) and s(L) have opposite signs and no e(P) has the sign of
+//! s(L). Each function is a determinant of three differences. The two triangles of an edge get the
+//! same number with opposite signs, so no ray passes between them.
 //!
 //! In f64, with u = 2^-53 and a, b, m the largest components of A - L, B - A and P - A, the error
 //! of e(P) is below 48 u a b m: each difference has a relative error of u, each component of the
 //! cross product is below 2 a b with an error of 8 u a b, and the dot product adds three of those
-//! times m. The bounds below are 128 u a b m.
+//! times m. The bounds in the code are 128 u a b m.
 
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
@@ -22,28 +22,28 @@ use robust::{Coord3D, orient3d};
 /// The corners of a triangle in world space.
 pub(crate) type Corners = [DVec3; 3];
 
-/// 128 u: see the [module](self).
+/// The error factor 128 u: see the [module](self).
 pub(super) const ERROR: f64 = 1.0 / (1_u64 << 46) as f64;
 
-/// The error of a point's distance from its own triangle's plane, relative to the largest
-/// coordinate of the triangle: some ten times what three products and two sums can lose.
+/// The error of a point's distance from the plane of its triangle, relative to the triangle's
+/// largest coordinate: about ten times the rounding of three products and two sums.
 pub(super) const OFF_PLANE: f64 = 1.0 / (1_u64 << 46) as f64;
 
 fn place(p: DVec3) -> Coord3D<f64> {
     Coord3D { x: p.x, y: p.y, z: p.z }
 }
 
-/// The sign of s(P), exactly.
+/// Computes the sign of s(P), exactly.
 pub(crate) fn side([a, b, c]: &Corners, p: DVec3) -> f64 {
     -orient3d(place(*a), place(*b), place(*c), place(p))
 }
 
-/// The sign of e(P) for the edge from A to B, exactly.
+/// Computes the sign of e(P) for the edge from A to B, exactly.
 fn edge_side(light: DVec3, a: DVec3, b: DVec3, p: DVec3) -> f64 {
     -orient3d(place(light), place(b), place(p), place(a))
 }
 
-/// Whether a triangle stands between a point and a light, exactly.
+/// Returns whether a triangle lies between a point and a light, exactly.
 pub(crate) fn is_between(triangle: &Corners, light: DVec3, p: DVec3) -> bool {
     let of_light = side(triangle, light);
     let [a, b, c] = *triangle;
@@ -61,14 +61,14 @@ fn alike(a: f64, b: f64) -> bool {
     (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0)
 }
 
-/// Whether any corner of a triangle lies beyond the plane of another, seen from the light.
+/// Returns whether any corner of a triangle lies behind the plane of another, seen from the light.
 pub(crate) fn reaches_behind(own: &Corners, triangle: &Corners, light: DVec3) -> bool {
     let of_light = side(triangle, light);
     own.iter().any(|corner| opposite(side(triangle, *corner), of_light))
 }
 
-/// A triangle, prepared for the rays to one light. The signs are such that it stands between if
-/// all edge functions are at least 0 and the plane's is more.
+/// A triangle prepared for the rays to one light. It blocks a point if all edge functions are at
+/// least 0 and the plane function is positive.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prepared {
     pub(super) corners: Corners,
@@ -76,7 +76,7 @@ pub(super) struct Prepared {
     pub(super) normals: [DVec3; 3],
 }
 
-/// Triangles that stand between, and those that f64 cannot decide, a bit for each.
+/// The triangles that block the ray, and the undecided ones, a bit for each.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Decided {
     pub(super) between: u64,
@@ -84,7 +84,7 @@ pub(super) struct Decided {
 }
 
 impl Prepared {
-    /// The parts of the triangle's corners in the place where a ray passes.
+    /// Returns the barycentric coordinates at which a ray crosses the triangle.
     pub(super) fn parts(&self, p: DVec3) -> DVec3 {
         let value = |i: usize| self.normals[i].dot(p - self.corners[i]).max(0.0);
         let parts = DVec3::new(value(1), value(2), value(0));

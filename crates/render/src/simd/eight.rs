@@ -1,4 +1,4 @@
-//! The lanes of the most exact pictures: f64, eight at a time, with the bits of one at a time.
+//! The lanes of the most exact pictures: f64, eight at a time, with the same bits as one at a time.
 
 use fearless_simd::{
     Select as _, Simd, SimdBase, SimdFloat as _, SimdInto as _, SimdMask as _, SimdNarrow as _,
@@ -191,7 +191,7 @@ impl<S: Simd> Lanes for Eight<S> {
     }
 }
 
-/// The byte of a number before it is rounded down.
+/// Computes 255 times a number plus the threshold, which is rounded down to a byte later.
 #[inline(always)]
 fn before_rounding<S: Simd>(number: f64x8<S>, threshold: f64x8<S>) -> f64x8<S> {
     let (zero, one) = (number.lift(0.0), number.lift(1.0));
@@ -215,7 +215,7 @@ mod tests {
     use super::*;
     use crate::simd::{Exact, Kernel};
 
-    /// What a kernel made of numbers, slots and whole numbers.
+    /// The results of a kernel for numbers, slots and whole numbers.
     #[derive(Debug, PartialEq)]
     struct Made {
         numbers: Vec<u64>,
@@ -223,7 +223,7 @@ mod tests {
         parts: [[u32; BATCH]; 3],
     }
 
-    /// Everything that lanes do, to a row of numbers.
+    /// A kernel that applies every operation of lanes to a row of numbers.
     struct All<'a> {
         row: &'a [f64; SLOTS],
         slots: &'a [i32; SLOTS],
@@ -266,7 +266,7 @@ mod tests {
                 lanes.store_parts(color, lanes.lift(0.75), &mut made.parts, at);
             }
             let numbers = rows.as_flattened().iter().chain(fours.as_flattened());
-            // The sign of NaN is not the same everywhere.
+            // The sign of NaN differs between processors.
             let bits = |x: &f64| if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() };
             made.numbers = numbers.map(bits).collect();
         }

@@ -1,21 +1,22 @@
-//! The curve of sRGB over [`Real`]: from linear values to those that pictures are stored in.
+//! The sRGB curve over [`Real`]: from linear values to stored values.
 
 use super::power::Power;
 use super::real::Real;
 
-/// Encodes linear colours as sRGB: see [`encoded`](marraztu_core::base::color::encoded). In f32 the error
-/// is below 1e-6.
+/// Encodes linear colours as sRGB: see [`encoded`](marraztu_core::base::color::encoded). In f32 the
+/// error is below 1e-6.
 #[derive(Clone, Debug)]
 pub(crate) struct Encoding(Power);
 
 impl Encoding {
     /// Prepares the power of the curve.
     pub(crate) fn new() -> Self {
-        // 1/2.4 of the logarithm of the least number that the power is used for is above -4.
+        // The power is used from 0.0031308 up, where its binary logarithm divided by 2.4 is above
+        // -4.
         Self(Power::new(1.0 / 2.4, -4.0))
     }
 
-    /// The encoded value of a number, clamped to 0 to 1; NaN gives 0.
+    /// Encodes a number, clamped to 0 to 1. NaN gives 0.
     #[inline(always)]
     pub(crate) fn of<R: Real>(&self, linear: R) -> R {
         let (zero, one) = (linear.lift(0.0), linear.lift(1.0));

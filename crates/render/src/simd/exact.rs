@@ -1,4 +1,5 @@
-//! One f64 at a time, as simply as can be: what [`Eight`](super::Eight) is compared with by tests.
+//! Computes one f64 at a time, as simply as possible. Tests compare [`Eight`](super::Eight) with
+//! it.
 
 use super::gather::SLOTS;
 use super::lanes::{BATCH, Lanes, PARTS};

@@ -1,8 +1,8 @@
-//! Gathers numbers from a short table, sixteen at once.
+//! Gathers sixteen numbers at once from a short table.
 //!
-//! A block shows few triangles on many pixels: attributes of the triangles are stored in rows, a
-//! number for each, and pixels gather from them. Processors have an instruction that permutes the
-//! lanes of a register; without it, numbers are gathered one by one.
+//! A block shows few triangles on many pixels. Attributes of the triangles are stored in rows, one
+//! number per triangle, and pixels gather from them. Some processors have an instruction that
+//! permutes the lanes of a register; without it, numbers are gathered one by one.
 
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, i32x16};
 
@@ -23,6 +23,8 @@ pub(crate) fn pick<S: Simd, const PAGES: usize>(
             let picked = match PAGES {
                 1 => x86::of_one(token, page(token, row, 0), slots),
                 2 => x86::of_two(token, page(token, row, 0), page(token, row, 1), slots),
+                // Two permutations of two registers each cover all 64 slots; a comparison selects
+                // one of them.
                 _ => {
                     let low = x86::of_two(token, page(token, row, 0), page(token, row, 1), slots);
                     let high = x86::of_two(token, page(token, row, 2), page(token, row, 3), slots);
@@ -47,7 +49,7 @@ pub(crate) fn pick<S: Simd, const PAGES: usize>(
     }
 }
 
-/// Whether one instruction permutes sixteen lanes.
+/// Returns whether one instruction permutes sixteen lanes.
 #[inline(always)]
 pub(crate) fn permutes(level: Level) -> bool {
     level.as_avx512().is_some()
@@ -82,18 +84,18 @@ pub(crate) fn permute<S: Simd>(of: i32x16<S>, lanes: i32x16<S>) -> i32x16<S> {
     }
 }
 
-/// The number of slots up to which gathering takes no longer than from a few.
+/// Returns the number of slots up to which gathering takes no longer than from a few.
 pub(crate) fn most_gathered(level: Level) -> usize {
     if level.as_avx512().is_some() { 32 } else { 16 }
 }
 
-/// Sixteen numbers of a row.
+/// Loads sixteen numbers of a row.
 #[inline(always)]
 fn page<S: Simd>(simd: S, row: &[i32; SLOTS], page: usize) -> i32x16<S> {
     i32x16::from_slice(simd, &row[16 * page..16 * page + 16])
 }
 
-/// Evaluates an expression with the number of pages that `count` slots take as a constant.
+/// Evaluates an expression with the number of pages for `count` slots as a constant.
 macro_rules! paged {
     ($count:expr, $pages:ident => $what:expr) => {
         match $count {

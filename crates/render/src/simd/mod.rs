@@ -1,7 +1,7 @@
-//! The numbers that light is computed in, eight or sixteen at once.
+//! The numbers that light is computed with, eight or sixteen at once.
 //!
-//! * [`Real`]: the operations of equations of light; `single` implements them in f32.
-//! * [`Lanes`]: loads numbers from memory and stores them; [`Eight`] eight f64 at a time,
+//! * [`Real`]: the operations used by the equations of light; `single` implements them in f32.
+//! * [`Lanes`]: loads numbers from memory and stores them; [`Eight`] handles eight f64 at a time,
 //!   [`Sixteen`] sixteen f32. A [`Kernel`] is work that is compiled for both.
 //! * `gather`: gathers numbers from short tables.
 //! * [`Power`], `power_variants`: powers of cosines by each variant that the settings choose.

@@ -1,4 +1,4 @@
-//! The numbers that pictures can be computed in.
+//! The number types of pictures.
 
 use crate::simd::dispatch;
 use fearless_simd::Level;
@@ -8,13 +8,13 @@ use super::lanes::Kernel;
 use super::real::Real;
 use super::sixteen::Sixteen;
 
-/// The numbers that pictures can be computed in.
+/// A number type that pictures can be computed in.
 pub trait Number:
     Real + Default + PartialEq + Into<f64> + Send + Sync + std::fmt::Debug + 'static
 {
-    /// The nearest such number.
+    /// Converts to the nearest number of this type.
     fn from_f64(number: f64) -> Self;
-    /// The byte nearest to 255 times the number, clamped and rounded; NaN gives 0.
+    /// Returns the byte nearest to 255 times the number, clamped and rounded. NaN gives 0.
     fn byte(self) -> u8;
     /// Runs a kernel with the lanes for such numbers and the instructions of this level.
     fn run(level: Level, kernel: impl Kernel<Self>);

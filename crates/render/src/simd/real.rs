@@ -1,20 +1,20 @@
-//! A real number, or several of them side by side.
+//! A real number, or several of them in lanes.
 //!
-//! Every equation of light is written once, over [`Real`], and compiled twice: for `f64x8`, eight
-//! at a time, the reference that pictures are judged by, and for `f32x16`, sixteen at a time, what
-//! the editor shows. `f64` and `f32` do to one number what these do to eight and sixteen.
+//! Every equation of light is written once, over [`Real`], and compiled twice: for `f64x8`, the
+//! reference that pictures are compared with, and for `f32x16`, used by the editor. `f64` and `f32`
+//! apply the same operations to a single number.
 //!
-//! There is no fused multiply-add here. It rounds once where `a * b + c` rounds twice, and only
-//! some processors have it; without it a picture is the same, bit for bit, on all of them. Nor are
-//! the processor's own minimum and maximum used: processors disagree about NaN and about the sign
-//! of zero.
+//! Fused multiply-add is not used. It rounds once where `a * b + c` rounds twice, and only some
+//! processors have it. Without it, a picture is bit for bit the same on all of them. For the same
+//! reason the processor's minimum and maximum are not used here: processors disagree about NaN and
+//! about the sign of zero.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::power::Power;
 use super::power_variants;
 
-/// A real number, or several of them side by side.
+/// A real number, or several of them in lanes.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -23,30 +23,32 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// A constant beside `self`: as many of it as `self` has numbers.
+    /// Repeats a constant in as many lanes as `self` has.
     #[must_use]
     fn lift(self, constant: f64) -> Self;
-    /// 1 / the square root; 0 if `self` is not more than 0, infinite, NaN or subnormal.
+    /// Computes 1 / the square root. Returns 0 if `self` is not positive, infinite, NaN or
+    /// subnormal.
     #[must_use]
     fn reciprocal_root(self) -> Self;
-    /// `yes` if `self` is more than `than`, else `no`, also if either is NaN.
+    /// Returns `yes` if `self` is more than `than`; else, or if either is NaN, `no`.
     #[must_use]
     fn if_more(self, than: Self, yes: Self, no: Self) -> Self;
-    /// The power of `self`, which is from 0 to 1; 0 if it is below the floor, or `self` is 0.
+    /// Returns the power of `self`, which is from 0 to 1; 0 if it is below the floor, or `self` is
+    /// 0.
     #[must_use]
     fn power(self, power: &Power) -> Self;
     /// The same with the exponent times `factor`, by the default of the arithmetic.
     #[must_use]
     fn power_times(self, power: &Power, factor: Self) -> Self;
 
-    /// The larger of two numbers; `other` if `self` is NaN.
+    /// Returns the larger of two numbers, or `other` if `self` is NaN.
     #[inline(always)]
     #[must_use]
     fn max(self, other: Self) -> Self {
         self.if_more(other, self, other)
     }
 
-    /// The smaller of two numbers; `other` if `self` is NaN.
+    /// Returns the smaller of two numbers, or `other` if `self` is NaN.
     #[inline(always)]
     #[must_use]
     fn min(self, other: Self) -> Self {

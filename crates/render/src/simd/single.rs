@@ -1,8 +1,8 @@
 //! Implements [`Real`] in f32: for one number, and for sixteen with the same bits.
 //!
-//! Powers and reciprocal roots are made of sums, products and integer arithmetic on the bits. These
-//! are the same on every processor, and take a fraction of the time of the processor's own root and
-//! division, which would dominate lighting.
+//! Powers and reciprocal roots consist of sums, products and integer operations on the bits. These
+//! are the same on every processor. They take a fraction of the time of the hardware's square root
+//! and division, which would dominate lighting.
 
 use fearless_simd::{
     Bytes as _, Level, Select as _, Simd, SimdBase, SimdFloat as _, SimdInt as _, SimdInto as _,
@@ -13,32 +13,33 @@ use super::power::Power;
 use super::power_variants;
 use super::real::Real;
 
-/// Numbers in f32 that can be split into exponent and mantissa.
+/// An f32 number, or sixteen, that can be split into exponent and mantissa.
 trait Single: Real {
-    /// m and e with self = m 2^e, m from 1/sqrt 2 to sqrt 2, for normal numbers above 0.
+    /// Splits a normal number above 0 into m and e with self = m 2^e, m from 1/sqrt 2 to sqrt 2.
     fn split(self) -> (Self, Self);
-    /// 2^n for an integer n from -126 to 127.
+    /// Computes 2^n for an integer n from -126 to 127.
     fn power_of_two(self) -> Self;
-    /// The nearest integer, ties to even.
+    /// Rounds to the nearest integer, ties to even.
     fn round(self) -> Self;
-    /// The number whose bits are `from` less half of the bits of `self`.
+    /// Returns the number with the bits `from` minus half of the bits of `self`.
     fn halved_from(self, from: i32) -> Self;
-    /// `yes` if `self` is a normal number above 0, else 0.
+    /// Returns `yes` if `self` is a normal number above 0, else 0.
     fn if_normal(self, yes: Self) -> Self;
 }
 
-/// Below this, an f32 is subnormal.
+/// A number just above the smallest normal f32.
 const SMALLEST: f64 = 1.2e-38;
 
-/// The reciprocal root of a normal number above 0, with a relative error of 1.5e-7; else 0.
+/// Computes the reciprocal root of a normal number above 0, with a relative error of 1.5e-7.
+/// Returns 0 for all other numbers.
 ///
 ///   y0 = bits(0x5f1ffff9 - bits(x) / 2)
 ///   y1 = y0 (1.68191391 - 0.703952253 x y0^2)                  to 6.5e-4
 ///   y2 = y1 (1 + h/2 + 3 h^2/8),  h = 1 - x y1^2               to 7e-10, and rounding
 ///
-/// The first line halves the logarithm, which the bits of a number approximate. The constants of
-/// the first two: Kadlec, "Improving the fast inverse square root", 2010; the third: Householder's,
-/// of order 3.
+/// The first line halves the logarithm, because the bits of a number approximate its logarithm.
+/// Constants of the first two lines: Kadlec, "Improving the fast inverse square root", 2010. The
+/// third line is a Householder step of order 3.
 #[inline(always)]
 fn single_reciprocal_root<R: Single>(x: R) -> R {
     let y = x.halved_from(0x5f1f_fff9);
@@ -102,8 +103,8 @@ fn any_power<R: Single>(x: R, exponent: R, power: &Power) -> R {
     x.if_more(zero, log2.if_more(x.lift(power.floor), result, zero), zero)
 }
 
-/// log2 x of a number above 0, with an error relative to it of some 1e-7; subnormal numbers count
-/// as the smallest that is not. See [`any_power`].
+/// Computes log2 x of a number above 0, with a relative error of about 1e-7. Subnormal numbers
+/// count as the smallest normal number. See [`any_power`].
 #[inline(always)]
 fn binary_logarithm<R: Single>(x: R) -> R {
     const LOGARITHM: [f64; 9] = [
@@ -124,8 +125,8 @@ fn binary_logarithm<R: Single>(x: R) -> R {
     ln * x.lift(std::f64::consts::LOG2_E) + e
 }
 
-/// log2 of sixteen numbers of at least 1, to within 4e-6; exact for powers of two. With x = 2^e (1
-/// + f), it is e + f + f (1 - f) p(f), where p has the least error.
+/// Computes log2 of sixteen numbers of at least 1, to within 4e-6; exact for powers of two. With
+/// x = 2^e (1 + f), it is e + f + f (1 - f) p(f), with the p of the smallest error.
 #[inline(always)]
 pub(crate) fn log2<S: Simd>(x: f32x16<S>) -> f32x16<S> {
     const LOGARITHM: [f64; 5] =
@@ -137,7 +138,7 @@ pub(crate) fn log2<S: Simd>(x: f32x16<S>) -> f32x16<S> {
     exponent.to_float::<f32x16<S>>() + (f + f * (1.0 - f) * polynomial(f, &LOGARITHM))
 }
 
-/// A polynomial by Horner's rule, the coefficient of the highest power first.
+/// Evaluates a polynomial by Horner's rule, the coefficient of the highest power first.
 #[inline(always)]
 fn polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {
     let mut sum = x.lift(0.0);
@@ -149,7 +150,7 @@ fn polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {
 
 const EXPONENT_BITS: i32 = 0xff << 23;
 const ONE_BITS: i32 = 127 << 23;
-/// The bits of sqrt 2, which decide to which power of two a number is nearer.
+/// The bits of sqrt 2: a larger mantissa is closer to the next power of two.
 const SQRT_2_BITS: i32 = 0x3fb5_04f3;
 
 impl Real for f32 {
@@ -213,8 +214,8 @@ impl Single for f32 {
     }
 }
 
-/// Whether the processor's own maximum of a and b is a if a > b, else b, even for NaN and zeros, as
-/// on x86. "Intel 64 and IA-32 Architectures Software Developer's Manual", MAXPS.
+/// Returns whether the processor's maximum of a and b is a if a > b, else b, even for NaN and
+/// zeros, as on x86. "Intel 64 and IA-32 Architectures Software Developer's Manual", MAXPS.
 #[inline(always)]
 pub(super) fn has_own_maximum<S: Simd>(simd: S) -> bool {
     match simd.level() {
@@ -305,7 +306,7 @@ impl<S: Simd> Single for f32x16<S> {
     #[inline(always)]
     fn if_normal(self, yes: Self) -> Self {
         let bits: i32x16<S> = self.bitcast();
-        // The bits less those of the smallest normal number: below 0 if the number is smaller.
+        // The bits minus the bits of the smallest normal number: negative if the number is smaller.
         let above = bits - (1 << 23);
         let zero = self.lift(0.0);
         let normal = above.simd_ge(0) & above.simd_lt(EXPONENT_BITS - (1 << 23));
@@ -396,8 +397,8 @@ mod tests {
     #[test]
     fn a_reciprocal_root_is_wrong_by_less_than_it_says() {
         let mut worst = 0.0_f64;
-        // Every 97th number between two powers of two, which have all mantissas, and numbers of all
-        // sizes.
+        // Every 97th number between two powers of two, which covers all mantissas, and numbers of
+        // all magnitudes.
         let digits = (0x3f80_0000..0x4080_0000).step_by(97);
         let sizes = (0x0080_0000..0x7f80_0000).step_by(9_973);
         for x in digits.chain(sizes).map(f32::from_bits) {

@@ -1,4 +1,4 @@
-//! The lanes that the editor draws with: f32, sixteen at a time.
+//! The lanes of the editor: f32, sixteen at a time.
 
 use fearless_simd::{
     Bytes as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdInto as _, SimdMask as _,
@@ -32,6 +32,7 @@ impl<S: Simd> Lanes for Sixteen<S> {
         let second = f32x16::from_slice(self.0, &flat[16..32]);
         let third = f32x16::from_slice(self.0, &flat[32..48]);
         let fourth = f32x16::from_slice(self.0, &flat[48..]);
+        // A 4 x 16 transpose in registers.
         let (even_low, odd_low) = first.deinterleave(second);
         let (even_high, odd_high) = third.deinterleave(fourth);
         let (a, c) = even_low.deinterleave(even_high);
@@ -124,14 +125,14 @@ impl<S: Simd> Lanes for Sixteen<S> {
     }
 }
 
-/// What [`Number::byte`](super::number::Number::byte) does to one number, with a threshold of one
+/// Computes [`Number::byte`](super::number::Number::byte) in lanes; there, the threshold is one
 /// half.
 #[inline(always)]
 fn lanes_byte<S: Simd>(number: f32x16<S>, threshold: f32x16<S>) -> i32x16<S> {
     before_rounding(number, threshold).to_int()
 }
 
-/// The byte of a number before it is rounded down.
+/// Computes 255 times a number plus the threshold, which is rounded down to a byte later.
 #[inline(always)]
 fn before_rounding<S: Simd>(number: f32x16<S>, threshold: f32x16<S>) -> f32x16<S> {
     let (zero, one) = (number.lift(0.0), number.lift(1.0));

@@ -1,4 +1,4 @@
-//! Three numbers side by side: directions, positions and colours.
+//! Three numbers: directions, positions and colours.
 
 use super::real::Real;
 
@@ -7,20 +7,20 @@ use super::real::Real;
 pub struct Vec3<R>(pub [R; 3]);
 
 impl<R: Real> Vec3<R> {
-    /// The same constants beside `like`.
+    /// Repeats three constants in as many lanes as `like` has.
     #[inline(always)]
     pub fn lift(like: R, [x, y, z]: [f64; 3]) -> Self {
         Self([like.lift(x), like.lift(y), like.lift(z)])
     }
 
-    /// The dot product.
+    /// Computes the dot product.
     #[inline(always)]
     pub fn dot(self, other: Self) -> R {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         a * x + b * y + c * z
     }
 
-    /// Each number times `factor`.
+    /// Multiplies each number by `factor`.
     #[inline(always)]
     #[must_use]
     pub fn times(self, factor: R) -> Self {
@@ -28,7 +28,7 @@ impl<R: Real> Vec3<R> {
         Self([x * factor, y * factor, z * factor])
     }
 
-    /// The sum, number by number.
+    /// Adds number by number.
     #[inline(always)]
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
@@ -36,7 +36,7 @@ impl<R: Real> Vec3<R> {
         Self([a + x, b + y, c + z])
     }
 
-    /// The difference, number by number.
+    /// Subtracts number by number.
     #[inline(always)]
     #[must_use]
     pub fn minus(self, other: Self) -> Self {
@@ -44,7 +44,7 @@ impl<R: Real> Vec3<R> {
         Self([a - x, b - y, c - z])
     }
 
-    /// Normalizes to length 1; a vector without length stays 0.
+    /// Normalises to length 1. A vector without length stays 0.
     #[inline(always)]
     #[must_use]
     pub fn unit(self) -> Self {

@@ -1,5 +1,5 @@
-//! Positions on a texture in f64, reduced to one repetition before they are rounded to f32: for
-//! triangles over more texels than f32 can tell apart, and for the alpha test.
+//! Texture positions in f64, reduced to one repetition before rounding to f32: for triangles that
+//! span more texels than f32 can tell apart, and for the alpha test.
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdFloat as _, f64x8};
 
@@ -7,10 +7,10 @@ use super::uv::Uvs;
 use marraztu_core::base::math::each;
 use marraztu_core::scene::{Texture, Wrap};
 
-/// The coordinates in repetitions beyond which positions are arbitrary even in f64.
+/// The coordinate, in repetitions, beyond which positions are arbitrary even in f64.
 const FARTHEST: f64 = 1e12;
 
-/// A texture on one triangle.
+/// The texture mapping of one triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ExactPlacement {
     along: [Along; 2],
@@ -20,19 +20,19 @@ pub(crate) struct ExactPlacement {
 /// The coordinates along one axis.
 #[derive(Clone, Copy, Debug)]
 struct Along {
-    /// Those of the first corner in repetitions, and the differences of the others from it.
+    /// The first corner's coordinate in repetitions, and the differences of the others from it.
     first: f64,
     second: f64,
     third: f64,
-    /// The least and the largest.
+    /// The smallest and largest coordinate of the three corners.
     low: f64,
     high: f64,
-    /// Texels of one repetition.
+    /// The number of texels in one repetition.
     side: f64,
 }
 
 impl ExactPlacement {
-    /// Sets up a triangle; `None` if its coordinates are too large.
+    /// Sets up a triangle. `None` if its coordinates are too large.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     pub(crate) fn new(uvs: Uvs, texture: &Texture) -> Option<Self> {
         let size = texture.picture.size();
@@ -46,12 +46,13 @@ impl ExactPlacement {
         near.then_some(Self { along, wrap: texture.wrap })
     }
 
-    /// The position with these weights of the second and third corner, in texels.
+    /// Computes the position, in texels, for these weights of the second and third corner.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
     pub(crate) fn at(&self, [second, third]: [f64; 2]) -> [f32; 2] {
         self.along.map(|it| {
             let u = it.first + it.second * second + it.third * third;
+            // Clamped to the triangle's range against rounding.
             let u = if u > it.low { u } else { it.low };
             let u = if u < it.high { u } else { it.high };
             let own = match self.wrap {
@@ -62,7 +63,7 @@ impl ExactPlacement {
         })
     }
 
-    /// The same for eight pixels: the same bits, before they are rounded to f32.
+    /// Computes eight positions with the same bits as [`Self::at`], before rounding to f32.
     #[inline(always)]
     pub(crate) fn of_row<S: Simd>(&self, weights: [f64x8<S>; 2]) -> [f64x8<S>; 2] {
         let [u, v] = self.along;
@@ -71,7 +72,7 @@ impl ExactPlacement {
 }
 
 impl Along {
-    /// The texels at eight pixels.
+    /// Computes the texel positions of eight pixels.
     #[inline(always)]
     fn of_row<S: Simd>(self, [second, third]: [f64x8<S>; 2], wrap: Wrap) -> f64x8<S> {
         let simd = second.simd;

@@ -1,7 +1,7 @@
 //! Samples textures sixteen pixels at a time.
 //!
-//! Positions, texels and weights are those of [`sample`](super::sample) and
-//! [`mips`](super::mips), in f32; only the texels themselves are fetched one by one.
+//! Positions, texels and weights follow [`sample`](super::sample) and [`mips`](super::mips), in
+//! f32. Only the texels themselves are fetched one by one.
 
 use std::sync::OnceLock;
 
@@ -17,26 +17,26 @@ use marraztu_core::accuracy::Filter;
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::scene::{Texture, Wrap};
 
-/// Mip levels, at most: textures have at most 32,768 texels a side.
+/// The largest number of mipmap levels: textures have at most 32,768 texels a side.
 const LEVELS: usize = 16;
 
-/// A texture, and the mip maps that its filter reads.
+/// A texture with the mipmap levels that its filter reads.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sampler<'a> {
     levels: &'a [Texture],
     filter: Filter,
     /// Width and height of each level.
     sizes: [[f32; LEVELS]; 2],
-    /// The same over those of the first level.
+    /// The sizes divided by the size of the first level.
     scales: [[f32; LEVELS]; 2],
 }
 
-/// Sixteen positions on the texture in texels of its own size, reduced to one repetition.
+/// Sixteen texture positions, in texels of the first level, reduced to one repetition.
 type Positions<S> = [f32x16<S>; 2];
 
 impl<'a> Sampler<'a> {
-    /// Samples the first of these levels, or between them if the filter is trilinear. `None` if the
-    /// texture has no texels.
+    /// Creates a sampler of the first level, or of all levels if the filter is trilinear. `None` if
+    /// the texture has no texels.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
     pub(crate) fn new(levels: &'a [Texture], filter: Filter) -> Option<Self> {
         let levels = &levels[..levels.len().min(LEVELS)];
@@ -53,17 +53,17 @@ impl<'a> Sampler<'a> {
         has_texels.then_some(Self { levels, filter, sizes, scales })
     }
 
-    /// Whether the filter reads mip maps.
+    /// Returns whether the filter reads mipmaps.
     pub(crate) fn reads_mips(&self) -> bool {
         self.filter == Filter::Trilinear
     }
 
-    /// Red, green and blue, as factors, at the first `len` places.
+    /// Samples red, green and blue, as factors, at the first `len` places.
     ///
-    /// Each step is done for all places before the next one: how soon a step ends depends on the
-    /// one before, and processors overlap only what is near.
+    /// Each step runs over all places before the next one starts. Within one place, each step waits
+    /// for the one before, and processors only overlap instructions that are close together.
     ///
-    /// Compiled as a function of its own, since many kernels sample.
+    /// Compiled as a separate function because many kernels sample.
     #[inline(always)]
     pub(crate) fn sample<S: Simd, D: Decode>(
         &self,
@@ -87,6 +87,7 @@ impl<'a> Sampler<'a> {
         to: &mut Rows<f32>,
     ) {
         let lanes = Sixteen(simd);
+        // Wraps all positions first, in place.
         for axis in 0..2 {
             let row = &mut places.position[axis];
             for at in (0..len).step_by(16) {
@@ -103,6 +104,7 @@ impl<'a> Sampler<'a> {
                 }
             }
             Filter::Bilinear => {
+                // Bilinear: all addresses first, then all fetches, so the fetches overlap.
                 for at in (0..len).step_by(16) {
                     let around = first.around(simd, places.at(lanes, at));
                     places.finer.store(at, &around);
@@ -117,13 +119,13 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Alpha at sixteen positions in texels, from 0 to 1, of the texture's own size.
+    /// Samples alpha, from 0 to 1, at sixteen positions in texels of the first level.
     #[inline(always)]
     pub(crate) fn alpha<S: Simd>(&self, simd: S, position: [f32x16<S>; 2]) -> f32x16<S> {
         self.scalar::<S, Alpha>(simd, position)
     }
 
-    /// The brightness at sixteen positions in texels, from 0 to 1, of the texture's own size.
+    /// Samples the brightness, from 0 to 1, at sixteen positions in texels of the first level.
     #[inline(always)]
     pub(crate) fn brightness<S: Simd>(&self, simd: S, position: [f32x16<S>; 2]) -> f32x16<S> {
         self.scalar::<S, Brightness>(simd, position)
@@ -146,19 +148,19 @@ impl<'a> Sampler<'a> {
         number * (1.0 / 255.0)
     }
 
-    /// The pixels of a level; none if there is no such level.
+    /// Returns the pixels of a level, or an empty slice if the level does not exist.
     #[inline(always)]
     fn pixels_of(&self, level: i32) -> &[[u8; 4]] {
         let level = level.cast_unsigned() as usize % LEVELS;
         self.levels.get(level).map_or(&[], |level| level.picture.pixels())
     }
 
-    /// Whether the filter shows texels as they are.
+    /// Returns whether the filter shows texels unfiltered.
     pub(crate) fn shows_texels(&self) -> bool {
         self.filter == Filter::Nearest
     }
 
-    /// Brings a coordinate in texels into the picture: from 0 to its side.
+    /// Wraps a coordinate in texels into the picture: 0 to its side.
     #[inline(always)]
     fn reduced<S: Simd>(&self, x: f32x16<S>, axis: usize) -> f32x16<S> {
         let side = self.sizes[axis][0];
@@ -166,7 +168,8 @@ impl<'a> Sampler<'a> {
         match self.levels[0].wrap {
             Wrap::Clamp => Real::min(Real::max(x, zero), f32x16::splat(x.simd, side)),
             Wrap::Repeat => {
-                // Off by one repetition at most, which the last two lines mend.
+                // The floor can be wrong by one repetition because of rounding; the two selections
+                // correct it.
                 let x = x - (x * (1.0 / side)).floor() * side;
                 let x = x.simd_lt(0.0).select(x + side, x);
                 x.simd_ge(side).select(x - side, x)
@@ -186,8 +189,9 @@ impl<'a> Sampler<'a> {
         #[expect(clippy::cast_precision_loss, reason = "at most 16")]
         let last = lanes.set((self.levels.len() - 1) as f32);
         let (zero, one) = (lanes.set(0.0), lanes.set(1.0));
-        // Of each sixteen places, the level, if it is the same.
+        // The level of each group of sixteen places, if all of them share one.
         let mut same = [None; BATCH / 16];
+        // First loop: the levels. log2 of the squared footprint, halved, is log2 of the footprint.
         for (at, same) in (0..len).step_by(16).zip(&mut same) {
             let level = log2(Real::max(lanes.load(&places.footprint, at), one)) * 0.5;
             let level = Real::max(Real::min(level, last), zero);
@@ -198,6 +202,8 @@ impl<'a> Sampler<'a> {
             let first = number[0];
             *same = number.simd_eq(first).all_true().then_some(first.cast_unsigned() as usize);
         }
+        // Second loop: the addresses. The coarser level is skipped if no place of the group needs
+        // it.
         for (at, same) in (0..len).step_by(16).zip(same) {
             let position = places.at(lanes, at);
             let around = self.level::<S, 0>(simd, places, at, same).around(simd, position);
@@ -207,6 +213,7 @@ impl<'a> Sampler<'a> {
                 places.coarser.store(at, &around);
             }
         }
+        // Third loop: fetching and mixing.
         for (at, same) in (0..len).step_by(16).zip(same) {
             let around = places.finer.load(simd, at);
             let mut color =
@@ -224,8 +231,9 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// The finer of the levels of sixteen places, or the coarser if `UP` is 1: the next, if there
-    /// is one. `same` is the number of the finer, if all have the same.
+    /// Returns the finer level of sixteen places, or, if `UP` is 1, the next coarser one (the last
+    /// level has no coarser one and is used again). `same` is the finer level if all places share
+    /// it.
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "at most 16")]
     fn level<S: Simd, const UP: usize>(
@@ -243,16 +251,16 @@ impl<'a> Sampler<'a> {
     }
 }
 
-/// Places on a texture.
+/// Places on a texture to be sampled.
 #[derive(Debug)]
 pub(crate) struct TexelPlaces {
-    /// In texels of its own size.
+    /// The positions, in texels of the first level.
     pub(crate) position: [[f32; BATCH]; 2],
-    /// The square of the texels that a pixel covers, if the filter reads mip maps.
+    /// The squared number of texels that a pixel covers along a side, if the filter reads mipmaps.
     pub(crate) footprint: [f32; BATCH],
-    /// The finer of the levels that trilinear filtering mixes, and the part of the coarser.
+    /// The finer level that trilinear filtering mixes, and the weight of the coarser one.
     levels: [[f32; BATCH]; 2],
-    /// The texels around the positions, on the finer level and on the coarser.
+    /// The texels around the positions, on the finer and on the coarser level.
     finer: ManyAround,
     coarser: ManyAround,
 }
@@ -277,13 +285,13 @@ impl TexelPlaces {
     }
 }
 
-/// a + (b - a) part.
+/// Interpolates: a + (b - a) part.
 #[inline(always)]
 fn between<R: Real>(a: Vec3<R>, b: Vec3<R>, part: R) -> Vec3<R> {
     a.plus(b.minus(a).times(part))
 }
 
-/// Red, green and blue of texels, from 0 to 255.
+/// Unpacks red, green and blue of texels, from 0 to 255.
 #[inline(always)]
 fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>> {
     Vec3([
@@ -293,15 +301,15 @@ fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>> {
     ])
 }
 
-/// How bytes of texels become numbers.
+/// The conversion from the bytes of texels to numbers.
 pub(crate) trait Decode {
-    /// Red, green and blue of texels, from 0 to 255.
+    /// Converts texels to red, green and blue, from 0 to 255.
     fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>>;
 }
 
-/// As they are stored.
+/// Bytes used as they are stored.
 pub(crate) struct Stored;
-/// Decoded from sRGB.
+/// Bytes decoded from sRGB.
 pub(crate) struct Linear;
 
 impl Decode for Stored {
@@ -332,27 +340,28 @@ impl Decode for Linear {
     }
 }
 
-/// 255 times the linear value of each byte.
+/// Returns the table of linear values: 255 times the linear value of each byte.
 fn decoded_bytes() -> &'static [f32; 256] {
     static TABLE: OnceLock<[f32; 256]> = OnceLock::new();
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
     get_or_compute(&TABLE, || linear_factors().map(|linear| (255.0 * linear) as f32))
 }
 
-/// Computes the tables that decoding reads, so that threads compute none while they draw.
+/// Fills the decoding tables before drawing, so no thread has to wait for them.
 pub(crate) fn prepare_decoding() {
     decoded_bytes();
 }
 
-/// What texels become if one number of each is read.
+/// The single number that is read from a texel.
 trait OneNumber {
-    /// The numbers, from 0 to 255.
+    /// Extracts the numbers, from 0 to 255.
     fn of<S: Simd>(texels: i32x16<S>) -> f32x16<S>;
 }
 
-/// Alpha.
+/// The texel's alpha.
 struct Alpha;
-/// The brightness, by the weights of ITU-R BT.709; that of a grey is its byte, exactly.
+/// The texel's brightness, with the weights of ITU-R BT.709. The brightness of a grey is exactly
+/// its byte.
 struct Brightness;
 
 impl OneNumber for Alpha {

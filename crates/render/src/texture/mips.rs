@@ -1,11 +1,11 @@
-//! Mip maps: the mean of the texels that a pixel covers, from copies of the texture at half, a
-//! quarter, an eighth of its size.
+//! Mipmaps: the mean of the texels that a pixel covers, read from copies of the texture at a half,
+//! a quarter, an eighth of its size and so on.
 //!
-//! The footprint of a pixel is the longer of the distances on the texture to its neighbours on the
-//! right and below; its logarithm gives the two levels to interpolate between.
+//! The footprint of a pixel is the longer of the distances on the texture to its right and lower
+//! neighbours. Its logarithm selects the two levels to interpolate between.
 //!
-//! Williams, "Pyramidal Parametrics", SIGGRAPH 1983; the longer distance as in the specification of
-//! OpenGL 4.6, 8.14.1.
+//! Williams, "Pyramidal Parametrics", SIGGRAPH 1983. The longer distance follows the OpenGL 4.6
+//! specification, 8.14.1.
 
 use super::sample::{linear_factors, sample_as};
 use crate::frame::variants::Decoding;
@@ -16,11 +16,11 @@ use marraztu_core::base::color::{byte, encoded};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::Texture;
 
-/// A texture at its own size, at half of that, and so on down to one texel.
+/// The mipmap levels of a texture: full size, half size, and so on down to one texel.
 #[derive(Debug)]
 pub(crate) struct Mips {
     of: Shared<Texture>,
-    /// Whether they hold means of linear values.
+    /// The colour space of the means: stored bytes or linear values.
     decoding: Decoding,
     levels: Vec<Texture>,
 }
@@ -37,18 +37,18 @@ impl Mips {
         Self { of: of.clone(), decoding, levels }
     }
 
-    /// Whether they belong to this texture.
+    /// Returns whether these mipmaps were made from this texture with this decoding.
     pub(crate) fn are_of(&self, texture: &Shared<Texture>, decoding: Decoding) -> bool {
         Shared::same(&self.of, texture) && self.decoding == decoding
     }
 
-    /// The texture and its copies, the largest first.
+    /// Returns the texture and its smaller copies, the largest first.
     pub(crate) fn levels(&self) -> &[Texture] {
         &self.levels
     }
 
-    /// Samples red, green, blue and alpha `beside` texels of the texture's own size from `uv`, with
-    /// the differences `ways` to the neighbours on the screen.
+    /// Samples red, green, blue and alpha at an offset of `beside` texels (of the full size) from
+    /// `uv`. `ways` are the differences to the neighbouring pixels on the screen.
     pub(crate) fn sample_beside<T: Number>(
         &self,
         uv: [f64; 2],
@@ -61,6 +61,7 @@ impl Mips {
                 [width, height]
             };
             let (whole, own) = (sides(&self.levels[0]), sides(&self.levels[level]));
+            // The offset shrinks with the level.
             #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 pixels a side")]
             let beside = [0, 1].map(|axis| beside[axis] * own[axis] as f64 / whole[axis] as f64);
             sample_as::<T>(&self.levels[level], (uv, beside), Filter::Bilinear, self.decoding)
@@ -71,6 +72,7 @@ impl Mips {
         let near = of(below);
         #[expect(clippy::cast_precision_loss, reason = "below 32")]
         let part = T::from_f64(level - below as f64);
+        // Trilinear: the two levels around the fractional level are mixed.
         match self.levels.get(below + 1) {
             Some(_) if level > 0.0 => {
                 let far = of(below + 1);
@@ -80,7 +82,8 @@ impl Mips {
         }
     }
 
-    /// The mip level: log2 of the texels that a pixel covers, clamped to the existing levels.
+    /// Computes the mipmap level: log2 of the texels that a pixel covers, clamped to existing
+    /// levels.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     fn level(&self, ways: [[f64; 2]; 2]) -> f64 {
         let Texture { picture, scale, .. } = &self.levels[0];
@@ -92,14 +95,15 @@ impl Mips {
     }
 }
 
-/// Halves a picture: each pixel is the mean of four, rounded to the nearest byte; of linear values,
-/// if they are decoded.
+/// Halves a picture: each pixel is the mean of four, rounded to the nearest byte. If the texture is
+/// decoded, the mean is one of linear values.
 fn halved(picture: &Picture, decoding: Decoding) -> Picture {
     let from = picture.size();
     let half = |side: usize| (side / 2).max(1);
     let size = Size::new(half(from.width), half(from.height));
     let pixels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
     let mean = |(x, y): (usize, usize)| {
+        // Odd sides repeat their last column or row.
         let beside = |i: usize, side: usize| [2 * i, (2 * i + 1).min(side - 1)];
         let (columns, rows) = (beside(x, from.width), beside(y, from.height));
         std::array::from_fn(|channel| {

@@ -1,4 +1,4 @@
-//! The colours of textures, and where they lie on triangles.
+//! Samples textures: colours, opacity, and the texture coordinates of triangles.
 
 pub(crate) mod exact_placement;
 pub(crate) mod lanes;

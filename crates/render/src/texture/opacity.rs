@@ -1,5 +1,5 @@
-//! The opacity of a surface that has holes: the material's, times the texture's alpha, times the
-//! map of opacity.
+//! The opacity of a surface with holes: the material's opacity, times the texture's alpha, times
+//! the opacity map.
 
 use std::ops::RangeInclusive;
 
@@ -9,14 +9,14 @@ use crate::simd::Vec3;
 use marraztu_core::accuracy::Filter;
 use marraztu_core::scene::{Texture, Wrap};
 
-/// By how many texels positions may be off.
+/// The error bound of texel positions, in texels.
 const MARGIN: f64 = 1.0 / 64.0;
-/// The coordinates, in repetitions, beyond which they may be off by more.
+/// The coordinate, in repetitions, beyond which [`MARGIN`] no longer holds.
 const FARTHEST: f64 = 1e9;
-/// By how much an opacity may be off.
+/// The error bound of an opacity.
 const ROUNDING: f64 = 1e-6;
 
-/// The opacity of a surface at its points.
+/// The opacity of a surface as a function of the texture coordinates.
 #[derive(Clone, Debug)]
 pub(crate) struct Opacity<'a> {
     of_material: f64,
@@ -24,69 +24,69 @@ pub(crate) struct Opacity<'a> {
     layers: [Option<OpacityLayer<'a>>; 2],
 }
 
-/// A picture that makes a surface more or less opaque.
+/// A texture that scales the opacity.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpacityLayer<'a> {
     pub(crate) texture: &'a Texture,
     pub(crate) channel: Channel,
 }
 
-/// What of a texel is its opacity.
+/// The part of a texel that holds the opacity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Channel {
     Alpha,
     Brightness,
 }
 
-/// Which points of a part of a surface are holes: their opacity is below one half.
+/// The classification of a part of a surface: a point is a hole if its opacity is below one half.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Holes {
-    /// None.
+    /// No point is a hole: opaque.
     Nowhere,
-    /// All.
+    /// Every point is a hole: empty.
     Everywhere,
-    /// Some may be.
+    /// Some points may be holes: mixed.
     Somewhere,
 }
 
 impl<'a> Opacity<'a> {
-    /// That of a pipeline; `None` if it has no holes.
+    /// Creates the opacity of a pipeline. `None` if it has no holes.
     #[inline(always)]
     pub(crate) fn of(shaded: &'a Shaded, filter: Filter) -> Option<Self> {
         let Shaded { cutout, texture, opacity_map, .. } = shaded;
         let layer = |texture, channel| OpacityLayer { texture, channel };
         let texture = texture.as_deref().map(|it| layer(it, Channel::Alpha));
         let map = opacity_map.as_deref().map(|it| {
-            // Its brightness counts if all of it is opaque.
+            // An opaque opacity map is a greyscale picture: its brightness counts instead of alpha.
             let is_opaque = it.picture.least_alpha() == 255;
             layer(it, if is_opaque { Channel::Brightness } else { Channel::Alpha })
         });
         Some(Self { of_material: (*cutout)?, filter, layers: [texture, map] })
     }
 
-    /// Computes what [`Self::holes`] reads.
+    /// Computes the tables that [`Self::holes`] reads.
     pub(crate) fn prepare(&self) {
         self.holes([[0.0; 2]; 2]);
     }
 
-    /// The material's own.
+    /// Returns the material's opacity.
     pub(crate) const fn of_material(&self) -> f64 {
         self.of_material
     }
 
-    /// The pictures by which it is multiplied.
+    /// Returns the textures that scale the opacity.
     pub(crate) const fn layers(&self) -> &[Option<OpacityLayer<'a>>; 2] {
         &self.layers
     }
 
-    /// The opacity at a point.
+    /// Computes the opacity at a point.
     #[inline(always)]
     pub(crate) fn at(&self, uv: [f64; 2]) -> f64 {
         let layers = self.layers.iter().flatten();
         layers.fold(self.of_material, |opacity, layer| opacity * layer.at(uv, self.filter))
     }
 
-    /// The holes of the part between the least and the largest texture coordinates.
+    /// Classifies the part between the smallest and largest texture coordinates.
     #[inline(always)]
     pub(crate) fn holes(&self, between: [[f64; 2]; 2]) -> Holes {
         let [mut low, mut high] = [self.of_material; 2];
@@ -116,7 +116,7 @@ impl OpacityLayer<'_> {
         }
     }
 
-    /// Bounds of the opacity between these coordinates; `None` if they are too large.
+    /// Bounds the opacity between these coordinates. `None` if they are too large.
     #[inline(always)]
     fn bounds(&self, [low, high]: [[f64; 2]; 2], filter: Filter) -> Option<[f64; 2]> {
         let Texture { picture, wrap, offset, scale, .. } = self.texture;
@@ -129,13 +129,14 @@ impl OpacityLayer<'_> {
             texels(ends, count, *wrap, filter)
         };
         let (columns, rows) = (along(0, size.width)?, along(1, size.height)?);
+        // A table of block-wise bounds answers any rectangle quickly.
         let bounds = match self.channel {
             Channel::Alpha => picture.alpha_bounds(),
             Channel::Brightness => picture.color_bounds(),
         };
         let (mut least, mut largest) = (u8::MAX, 0);
         for row in rows.iter().flatten() {
-            // The picture's own rows run down.
+            // Rows of the picture run down, texture coordinates up.
             let row = size.height - 1 - row.end()..=size.height - 1 - row.start();
             for column in columns.iter().flatten() {
                 let [low, high] = bounds.over(column, &row);
@@ -146,8 +147,8 @@ impl OpacityLayer<'_> {
     }
 }
 
-/// The columns, or rows, of the texels that are read between two coordinates: one or two ranges.
-/// `None` if the coordinates are too large, or no numbers.
+/// Finds the columns (or rows) of the texels read between two coordinates: one or two ranges.
+/// `None` if the coordinates are too large or NaN.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_precision_loss,
@@ -166,7 +167,7 @@ fn texels(
     let side = count as f64;
     let (before, after) = match filter {
         Filter::Nearest => (0.0, 0),
-        // The alpha test reads no mip maps.
+        // The alpha test reads no mipmaps.
         Filter::Bilinear | Filter::Trilinear => (0.5, 1),
     };
     let first = (a.min(b) * side - before - MARGIN).floor() as i64;
@@ -178,6 +179,7 @@ fn texels(
     Some(match wrap {
         Wrap::Clamp => [range(first.clamp(0, end), last.clamp(0, end)), None],
         Wrap::Repeat if last - first >= end => [range(0, end), None],
+        // A repeated range can run across the border and continue at the first texel.
         Wrap::Repeat => {
             let start = first.rem_euclid(end + 1);
             let stop = start + (last - first);
@@ -190,7 +192,7 @@ fn texels(
     })
 }
 
-/// The least and the largest coordinates of some points.
+/// Returns the smallest and largest coordinates of some points.
 #[inline(always)]
 pub(crate) fn between<const N: usize>(uvs: [[f64; 2]; N]) -> [[f64; 2]; 2] {
     uvs.into_iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], uv| {
@@ -205,7 +207,7 @@ mod tests {
     use marraztu_core::base::image::{Picture, Size};
     use marraztu_core::base::rng::Rng;
 
-    /// Fields of holes and of opaque texels, and a few texels between.
+    /// Areas of holes and of opaque texels, with a few texels between.
     fn texture(rng: &mut Rng, size: Size, wrap: Wrap) -> Texture {
         let field = 1 + rng.index(9);
         let pixels = (0..size.area()).map(|i| {

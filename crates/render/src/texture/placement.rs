@@ -1,7 +1,7 @@
-//! The coordinates of some triangles on their texture, in texels, as lanes read them.
+//! The texture coordinates of some triangles, in texels, in the layout that SIMD lanes read.
 //!
-//! Coordinates of a texture that repeats are moved by whole repetitions, so that f32 keeps their
-//! digits however far from 0 they are.
+//! Coordinates of a repeating texture are moved by whole repetitions. This keeps the digits of f32
+//! at any distance from 0.
 
 use fearless_simd::{
     Simd, SimdBase as _, SimdFloat as _, SimdMask as _, SimdNarrow as _, SimdWiden as _, f32x16,
@@ -13,25 +13,25 @@ use crate::simd::gather::SLOTS;
 use marraztu_core::base::math::each;
 use marraztu_core::scene::{Texture, Wrap};
 
-/// The largest coordinate in texels at which f32 tells 1/1024 texel apart.
+/// The largest coordinate, in texels, at which f32 resolves 1/1024 texel.
 const FARTHEST: f64 = 16_384.0;
 
-/// The coordinates of the triangles of a list, slot by slot, along u and v.
+/// The texel coordinates of a list of triangles, one per slot, along u and v.
 #[derive(Debug)]
 #[repr(align(64))]
 pub(crate) struct Placement {
-    /// Those of the first corner, in texels of the texture's own size.
+    /// The first corner's coordinates, in texels of the full-size texture.
     pub(crate) first: [[f32; SLOTS]; 2],
-    /// The differences of the second and the third corner from it.
+    /// The differences of the second and third corner from the first.
     pub(crate) second: [[f32; SLOTS]; 2],
     pub(crate) third: [[f32; SLOTS]; 2],
-    /// The least and the largest of the three.
+    /// The smallest and largest coordinate of the three corners.
     pub(crate) low: [[f32; SLOTS]; 2],
     pub(crate) high: [[f32; SLOTS]; 2],
-    /// The steps of (u - first) / w by a pixel to the right and by one down, and those of 1 / w.
+    /// The steps of (u - first) / w, and of 1 / w, for one pixel to the right and one pixel down.
     pub(crate) steps: [[[f32; SLOTS]; 2]; 2],
     pub(crate) by_w_steps: [[f32; SLOTS]; 2],
-    /// Bit i: the triangle has coordinates.
+    /// A bit per slot: set if the triangle has coordinates.
     pub(crate) known: u64,
 }
 
@@ -51,18 +51,18 @@ impl Default for Placement {
     }
 }
 
-/// The steps of a triangle's N0, N1 and N2 by a pixel to the right and by one down: Ni is 1 / w of
-/// a pixel times its perspective-correct weight of corner i.
+/// The steps of a triangle's N0, N1 and N2 for one pixel to the right and one pixel down. Ni is
+/// 1 / w of a pixel times the perspective-correct weight of corner i.
 pub(crate) type Steps = [[f64; 3]; 2];
 
 impl Placement {
-    /// Forgets the triangles.
+    /// Removes all triangles.
     pub(crate) const fn clear(&mut self) {
         self.known = 0;
     }
 
-    /// Sets the coordinates of a triangle's corners in texels along u and v; `steps` are only
-    /// needed for mip maps.
+    /// Sets the coordinates of a triangle's corners, in texels along u and v. `steps` are only
+    /// needed for mipmaps.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
     pub(crate) fn set(&mut self, slot: usize, texels: [[f64; 3]; 2], steps: Option<Steps>) {
@@ -84,18 +84,19 @@ impl Placement {
     }
 }
 
-/// Texture coordinates of the corners of the triangles of a list: u and v of each corner.
+/// Texture coordinates of the corners of a list of triangles: u and v of each corner.
 pub(crate) type UvRows = [[[f32; SLOTS]; 2]; 3];
 
-/// Sixteen numbers.
+/// Sixteen f64 numbers.
 pub(crate) type Doubles<S> = [f64x8<S>; 2];
 
 /// [`Steps`] of sixteen triangles.
 pub(crate) type LaneSteps<S> = [[Doubles<S>; 3]; 2];
 
 impl Placement {
-    /// Sets the coordinates of sixteen triangles, from slot `at` on, as [`Self::set`] does. Returns
-    /// a bit for each of them for which f32 is enough; those of the others are meaningless.
+    /// Sets the coordinates of sixteen triangles, starting at slot `at`, like [`Self::set`].
+    /// Returns a bit mask of the triangles for which f32 is accurate enough; the coordinates of the
+    /// others are meaningless.
     #[inline(always)]
     pub(crate) fn set_sixteen<S: Simd>(
         &mut self,
@@ -107,6 +108,7 @@ impl Placement {
         let mut fits = u64::MAX;
         let mut ways = [[[f64x8::splat(simd, 0.0); 2]; 2]; 2];
         for axis in 0..2 {
+            // One axis at a time: corners in f64, differences and bounds narrowed to f32.
             let own = [&uvs[0][axis], &uvs[1][axis], &uvs[2][axis]];
             let [a, b, c] = lanes_along(simd, own, at, (texture, axis));
             fits &= all_near(a) & all_near(b) & all_near(c);
@@ -122,6 +124,7 @@ impl Placement {
             }
             ways[axis] = [second, third];
         }
+        // Gradients for mipmaps: the corner differences times the steps of the weights.
         if let Some(steps) = steps {
             for (which, [first, second, third]) in steps.into_iter().enumerate() {
                 for (axis, [to_second, to_third]) in ways.into_iter().enumerate() {
@@ -137,20 +140,20 @@ impl Placement {
     }
 }
 
-/// The differences of sixteen numbers.
+/// Subtracts sixteen numbers.
 #[inline(always)]
 pub(crate) fn less<S: Simd>(a: Doubles<S>, b: Doubles<S>) -> Doubles<S> {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// Which of sixteen coordinates f32 is enough for, a bit for each.
+/// Returns a bit mask of the coordinates, of sixteen, for which f32 is accurate enough.
 #[inline(always)]
 fn all_near<S: Simd>([x, y]: Doubles<S>) -> u64 {
     let (x, y) = (x.abs().simd_le(FARTHEST), y.abs().simd_le(FARTHEST));
     x.to_bitmask() | y.to_bitmask() << 8
 }
 
-/// The coordinates of the corners of sixteen triangles in texels along an axis, as [`along`].
+/// Computes the texel coordinates of sixteen triangles' corners along an axis, like [`along`].
 #[inline(always)]
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 fn lanes_along<S: Simd>(
@@ -168,6 +171,7 @@ fn lanes_along<S: Simd>(
         *own = [low * scale + offset, high * scale + offset];
     }
     let [a, b, c] = own;
+    // Whole repetitions are removed here, as in `along`.
     for half in 0..2 {
         let repetitions = match texture.wrap {
             Wrap::Repeat => a[half].min(b[half]).min(c[half]).floor(),
@@ -180,13 +184,13 @@ fn lanes_along<S: Simd>(
     own
 }
 
-/// The coordinates of a triangle's corners in texels, along u and v.
+/// Computes the texel coordinates of a triangle's corners along u and v.
 #[inline(always)]
 pub(crate) fn texels(uvs: Uvs, texture: &Texture) -> [[f64; 3]; 2] {
     [along(uvs, texture, 0), along(uvs, texture, 1)]
 }
 
-/// Whether f32 can tell texels apart between these coordinates.
+/// Returns whether f32 resolves texels at these coordinates.
 #[inline(always)]
 pub(crate) fn fits_f32(texels: &[[f64; 3]; 2]) -> bool {
     let [[a, b, c], [d, e, f]] = texels.map(|along| each(along, f64::abs));

@@ -1,4 +1,4 @@
-//! Samples textures: texels are bytes / 255, and (0, 0) is the lower left corner.
+//! Samples textures at one point. Texels are bytes / 255; (0, 0) is the lower left corner.
 
 use std::sync::OnceLock;
 
@@ -9,16 +9,16 @@ use marraztu_core::base::color::linear;
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::scene::{Texture, Wrap};
 
-/// Red, green, blue and alpha at `uv`, as factors.
+/// Samples red, green, blue and alpha at `uv`, as factors.
 ///
-/// The texel position is computed in f64, so that every arithmetic sees the same texels; bilinear
-/// interpolation is computed in `T`.
+/// The texel position is computed in f64 for every arithmetic, so all of them read the same texels.
+/// Bilinear interpolation is computed in `T`.
 #[inline(always)]
 pub(crate) fn sample<T: Number>(texture: &Texture, uv: [f64; 2], filter: Filter) -> [T; 4] {
     sample_as(texture, (uv, [0.0; 2]), filter, Decoding::Stored)
 }
 
-/// The same at a distance `beside` from `uv` in texels, with red, green and blue decoded.
+/// Samples at an offset of `beside` texels from `uv`, with red, green and blue decoded as given.
 #[inline(always)]
 pub(crate) fn sample_as<T: Number>(
     texture: &Texture,
@@ -32,12 +32,12 @@ pub(crate) fn sample_as<T: Number>(
     }
     let u = wrapped(uv[0] * texture.scale[0] + texture.offset[0], texture.wrap);
     let v = wrapped(uv[1] * texture.scale[1] + texture.offset[1], texture.wrap);
-    // In texels, from the lower left corner of the picture.
+    // The position in texels, from the lower left corner of the picture.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     let (x, y) = (u * size.width as f64 + beside[0], v * size.height as f64 + beside[1]);
     let texel = |column: i64, row: i64| {
         let column = bring(column, size.width, texture.wrap);
-        // The picture's own rows run down.
+        // Rows of the picture run down, texture coordinates up.
         let row = size.height - 1 - bring(row, size.height, texture.wrap);
         let pixel = texture.picture.pixel(column, row);
         let stored = pixel.map(|byte| T::from_f64(FACTORS[usize::from(byte)]));
@@ -52,7 +52,7 @@ pub(crate) fn sample_as<T: Number>(
     };
     match filter {
         Filter::Nearest => texel(whole(x), whole(y)),
-        // At the texture's own size; mip maps are handled by the caller.
+        // Sampled at full size; the caller handles mipmaps.
         Filter::Bilinear | Filter::Trilinear => {
             let (x, y) = (x - 0.5, y - 0.5);
             let (column, row) = (whole(x), whole(y));
@@ -67,7 +67,7 @@ pub(crate) fn sample_as<T: Number>(
     }
 }
 
-/// Each byte as a factor: byte / 255.
+/// The factor of each byte: byte / 255.
 const FACTORS: [f64; 256] = {
     let mut factors = [0.0; 256];
     let mut byte = 0;
@@ -78,20 +78,20 @@ const FACTORS: [f64; 256] = {
     factors
 };
 
-/// The linear value of each byte, from 0 to 1.
+/// Returns the linear value of each byte, from 0 to 1.
 pub(crate) fn linear_factors() -> &'static [f64; 256] {
     static TABLE: OnceLock<[f64; 256]> = OnceLock::new();
     get_or_compute(&TABLE, || FACTORS.map(linear))
 }
 
-/// The brightness of a colour; that of a grey is its value, exactly. The weights are those of ITU-R
-/// BT.709.
+/// Computes the brightness of a colour, with the weights of ITU-R BT.709. The brightness of a grey
+/// is exactly its value.
 #[inline(always)]
 pub(crate) fn brightness<R: Real>(Vec3([r, g, b]): Vec3<R>) -> R {
     g + (r - g) * g.lift(0.2126) + (b - g) * g.lift(0.0722)
 }
 
-/// Wraps a coordinate to 0 to 1; NaN becomes 0.
+/// Wraps a coordinate to 0 to 1. NaN and infinities become 0.
 #[inline(always)]
 fn wrapped(coordinate: f64, wrap: Wrap) -> f64 {
     if !coordinate.is_finite() {
@@ -115,7 +115,7 @@ fn whole(coordinate: f64) -> i64 {
 fn bring(i: i64, count: usize, wrap: Wrap) -> usize {
     let count = i64::try_from(count).unwrap_or(i64::MAX);
     let inside = match wrap {
-        // The usual case; a division takes longer than everything else.
+        // The common case first: the division below takes longer than everything else here.
         _ if (0..count).contains(&i) => i,
         Wrap::Repeat => i.rem_euclid(count),
         Wrap::Clamp => i.clamp(0, count - 1),

@@ -19,7 +19,7 @@ pub(crate) fn uv([a, b, c]: Uvs, weights: DVec3) -> [f64; 2] {
     [between(0), between(1)]
 }
 
-/// The texture coordinates of a triangle's corners; `None` if a corner has none.
+/// Returns the texture coordinates of a triangle's corners. `None` if a corner has no coordinates.
 #[inline(always)]
 pub(crate) fn uvs(draw: &Draw, number: u32) -> Option<Uvs> {
     let own = draw.model.mesh.triangle_uvs(number)?;

@@ -1,5 +1,5 @@
-//! On the fine grid, in 32-bit integers. A step by a pixel adds a multiple of 4096 to edge
-//! functions, so that whole quotients by 4096 tell whether they are negative.
+//! Edge functions on the fine grid, in 32-bit integers. A step by one pixel adds a multiple of 4096
+//! to an edge function, so its integer quotient by 4096 is enough to decide the sign.
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, i32x16, mask32x16};
 
@@ -9,13 +9,13 @@ use crate::screen::sample_positions::SamplePositions;
 use crate::simd::gather::permute;
 use marraztu_core::base::math::each;
 
-/// On the fine grid: the quotients of edge functions, less their least values, by 4096, and the
-/// second and third themselves in f32.
+/// Edge functions on the fine grid: the quotients by 4096 of each edge function minus its smallest
+/// covered value, and the second and third edge function in f32.
 #[derive(Clone, Copy)]
 pub(crate) struct FineEdges<S: Simd> {
-    /// Edge functions at the first pixel, less their least values.
+    /// The edge functions at the first pixel, minus their smallest covered values.
     first: [i32x16<S>; 3],
-    /// The steps of quotients.
+    /// The steps of the quotients.
     a: [i32x16<S>; 3],
     b: [i32x16<S>; 3],
     depth: f32x16<S>,
@@ -23,14 +23,16 @@ pub(crate) struct FineEdges<S: Simd> {
     to_third: f32x16<S>,
 }
 
-/// log2 of the parts of a pixel on the fine grid.
+/// log2 of the grid steps per pixel on the fine grid.
 const FINE: u32 = Grid::Fine.parts().trailing_zeros();
 
-/// What quotients gain by the offset of a sample, and what the second and third edge function do.
+/// The change by the offset of a sample: of the quotients, and of the second and third edge
+/// function.
 type Shift<S> = ([i32x16<S>; 3], [f32x16<S>; 2]);
 
 impl<S: Simd> FineEdges<S> {
-    /// An edge function of the triangles in some lanes, this far from their first pixels.
+    /// Computes an edge function of the triangles in these lanes, at this distance from their first
+    /// pixels.
     #[inline(always)]
     fn edge(
         &self,
@@ -49,7 +51,7 @@ impl<S: Simd> FineEdges<S> {
 }
 
 impl<S: Simd> Edges<S> for FineEdges<S> {
-    /// Quotients.
+    /// The quotients.
     type At = [i32x16<S>; 3];
     type Shift = Shift<S>;
 
@@ -65,6 +67,7 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
         [left, top, ..]: Boxes<S>,
         [d0, d1, d2]: [f32x16<S>; 3],
     ) -> Self {
+        // Corners relative to the centre of the box's first pixel.
         let half = Grid::Fine.parts() / 2;
         let (cx, cy) = ((left << FINE) + half, (top << FINE) + half);
         let [x0, x1, x2] = each([p[0], q[0], r[0]], |x| x - cx);
@@ -112,6 +115,8 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
         for (sample, (quotients, edges)) in shifts.iter_mut().enumerate() {
             let [x, y] = Grid::Fine.offset(sample_positions.shift::<N>(sample));
             for i in 0..3 {
+                // The quotient of the sum can differ by one from the sum of the quotients, so it is
+                // computed here.
                 let gain = self.a[i] * x + self.b[i] * y;
                 quotients[i] = ((self.first[i] + gain) >> FINE) - (self.first[i] >> FINE);
                 if i > 0 {

@@ -1,4 +1,4 @@
-//! In f32, from corners that are not snapped: computed at each pixel by the formula itself, not
+//! Edge functions in f32 from unsnapped corners: evaluated at each pixel by the formula itself, not
 //! stepped.
 
 use fearless_simd::{
@@ -13,12 +13,12 @@ use crate::screen::sample_positions::SamplePositions;
 use marraztu_core::accuracy::Coverage;
 use marraztu_core::base::math::each;
 
-/// In f32: e = a x + b y + c at the position of a sample, in pixels.
+/// Edge functions in f32: e = a x + b y + c at the position of a sample, in pixels.
 #[derive(Clone, Copy)]
 pub(crate) struct FloatEdges<S: Simd> {
     lines: [[f32x16<S>; 3]; 3],
     start: [f32x16<S>; 2],
-    /// The ends of the boxes.
+    /// The right and bottom ends of the boxes.
     end: [f32x16<S>; 2],
     area: f32x16<S>,
     depth: f32x16<S>,
@@ -35,7 +35,7 @@ impl<S: Simd> FloatEdges<S> {
 }
 
 impl<S: Simd> FloatEdges<S> {
-    /// An edge function of the triangles in some lanes.
+    /// Computes an edge function of the triangles in these lanes.
     #[inline(always)]
     fn edge_of(&self, i: usize, lanes: i32x16<S>, [x, y]: [f32x16<S>; 2]) -> f32x16<S> {
         let [a, b, c] = self.lines[i];
@@ -114,6 +114,7 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
 
     #[inline(always)]
     fn covered(&self, (at, centre): Self::At) -> mask32x16<S> {
+        // All lanes step over the largest box. Outside its own box, rounding must not cover pixels.
         let inside = centre[0].simd_lt(self.end[0]) & centre[1].simd_lt(self.end[1]);
         inside
             & self.edge(0, at).simd_ge(0.0)
@@ -144,13 +145,13 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
     }
 }
 
-/// A coordinate in pixels, in parts of a pixel.
+/// Converts a coordinate in pixels to subpixels.
 #[inline(always)]
 fn snapped<S: Simd>(x: i32x16<S>) -> i32x16<S> {
     (x.bitcast::<f32x16<S>>() * SUBPIXELS as f32).to_int()
 }
 
-/// The line through two corners, as a, b and c.
+/// Computes the line through two corners, as a, b and c.
 #[inline(always)]
 fn line<S: Simd>(p: [f32x16<S>; 2], q: [f32x16<S>; 2], sign: f32x16<S>) -> [f32x16<S>; 3] {
     [(p[1] - q[1]) * sign, (q[0] - p[0]) * sign, (p[0] * q[1] - p[1] * q[0]) * sign]

@@ -1,5 +1,5 @@
-//! On the usual grid, in f32: integers below 2^24 are exact, and no edge function in a box of 8 x 8
-//! pixels is larger.
+//! Edge functions on the usual grid, in f32: integers below 2^24 are exact, and no edge function in
+//! a box of 8 x 8 pixels is larger.
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, i32x16, mask32x16};
 
@@ -8,14 +8,13 @@ use crate::screen::coverage::{Grid, SUBPIXELS};
 use crate::screen::sample_positions::SamplePositions;
 use marraztu_core::base::math::each;
 
-/// On the usual grid.
+/// Edge functions on the usual grid.
 #[derive(Clone, Copy)]
 pub(crate) struct UsualEdges<S: Simd> {
     first: [f32x16<S>; 3],
-    /// The least values that count as covered: 0, or 1 if the top-left rule excludes centres on the
-    /// edge.
+    /// The smallest covered values: 0, or 1 if the top-left rule excludes centres on the edge.
     least: [f32x16<S>; 3],
-    /// The steps of an edge function by a pixel to the right, and by one down.
+    /// The steps of the edge functions for one pixel to the right and one pixel down.
     a: [f32x16<S>; 3],
     b: [f32x16<S>; 3],
     depth: f32x16<S>,
@@ -24,8 +23,8 @@ pub(crate) struct UsualEdges<S: Simd> {
 }
 
 impl<S: Simd> UsualEdges<S> {
-    /// An edge function of the triangles in some lanes, this far from their first pixels: exact, as
-    /// steps are.
+    /// Computes an edge function of the triangles in these lanes, at this distance from their first
+    /// pixels. The result is exact, like stepping.
     #[inline(always)]
     fn edge(
         &self,
@@ -70,7 +69,7 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
         let e0 = edge([x1, y1], [x2, y2], sign);
         let e1 = edge([x2, y2], [x0, y0], sign);
         let e2 = edge([x0, y0], [x1, y1], sign);
-        // Triangles without area cover nothing; 1 keeps quotients finite.
+        // Triangles without area cover no pixel; 1 keeps the quotients finite.
         let area = area * sign;
         let per_area = one / area.simd_gt(0.0).select(area, one);
         Self {
@@ -161,8 +160,8 @@ struct LanesEdge<S: Simd> {
     b: f32x16<S>,
 }
 
-/// As in `coverage`: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0;
-/// multiplied by the sign of the area, with its steps by whole pixels.
+/// Computes an edge function as in `coverage`, multiplied by the sign of the area, with steps by
+/// whole pixels: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0.
 #[inline(always)]
 fn edge<S: Simd>(
     [px, py]: [f32x16<S>; 2],

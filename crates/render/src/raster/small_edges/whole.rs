@@ -1,5 +1,5 @@
-//! On the usual grid, in 32-bit integers, for boxes of up to 16 x 16 pixels. Depths are those of
-//! `medium`, to the same bits.
+//! Edge functions on the usual grid, in 32-bit integers, for boxes of up to 16 x 16 pixels. Depths
+//! have the same bits as in `medium`.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, SimdWiden as _,
@@ -13,33 +13,34 @@ use crate::simd::gather::permute;
 use crate::simd::in_f64;
 use marraztu_core::base::math::each;
 
-/// On the usual grid, in whole numbers.
+/// Integer edge functions on the usual grid.
 #[derive(Clone, Copy)]
 pub(crate) struct WholeEdges<S: Simd> {
-    /// Edge functions at the first pixel, less their least values at covered centres.
+    /// The edge functions at the first pixel, minus their smallest covered values.
     first: [i32x16<S>; 3],
-    /// Their steps by a pixel to the right, and by one down.
+    /// The steps of the edge functions for one pixel to the right and one pixel down.
     a: [i32x16<S>; 3],
     b: [i32x16<S>; 3],
-    /// The least values of the second and the third, which depth needs.
+    /// The smallest covered values of the second and third edge function, needed for depth.
     least: [i32x16<S>; 2],
     depth: f32x16<S>,
     to_second: Doubles<S>,
     to_third: Doubles<S>,
 }
 
-/// Sixteen numbers in f64, as the lower and the upper halves of their bits.
+/// Sixteen f64 numbers, as the lower and upper halves of their bits.
 type Doubles<S> = [i32x16<S>; 2];
 
 impl<S: Simd> WholeEdges<S> {
-    /// An edge function of the triangles in some lanes, this far from their first pixels.
+    /// Computes an edge function of the triangles in these lanes, at this distance from their first
+    /// pixels.
     #[inline(always)]
     fn edge(&self, i: usize, lanes: i32x16<S>, [dx, dy]: [i32x16<S>; 2]) -> i32x16<S> {
         let first = permute(self.first[i] + self.least[i - 1], lanes);
         first + permute(self.a[i], lanes) * dx + permute(self.b[i], lanes) * dy
     }
 
-    /// The same in f64, in the sample with an offset.
+    /// Computes the same in f64, in the sample with this offset.
     #[inline(always)]
     fn edge_in_f64(
         &self,
@@ -72,6 +73,7 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
         [left, top, ..]: Boxes<S>,
         [d0, d1, d2]: [f32x16<S>; 3],
     ) -> Self {
+        // Corners relative to the centre of the box's first pixel.
         let half = SUBPIXELS / 2;
         let (cx, cy) = ((left << 8) + half, (top << 8) + half);
         let [x0, x1, x2] = each([p[0], q[0], r[0]], |x| x - cx);
@@ -84,6 +86,7 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
             whole_edge([x2, y2], [x0, y0], sign),
             whole_edge([x0, y0], [x1, y1], sign),
         ];
+        // The reciprocal of the area is shared by both depth gradients. 1 keeps it finite.
         let area = in_f64((area * sign).max(1));
         let [d1, d2] = [per_area(d0, d1, area), per_area(d0, d2, area)];
         Self {
@@ -157,18 +160,19 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
     }
 }
 
-/// The differences of depths, divided by areas.
+/// Divides depth differences by areas.
 #[inline(always)]
 fn per_area<S: Simd>(from: f32x16<S>, to: f32x16<S>, area: [f64x8<S>; 2]) -> Doubles<S> {
     let one = f64x8::splat(from.simd, 1.0);
     let ((from_low, from_high), (to_low, to_high)) = (from.widen(), to.widen());
     let low = (to_low - from_low) * (one / area[0]);
     let high = (to_high - from_high) * (one / area[1]);
+    // Stored as halves because lanes are permuted in 32-bit units.
     let (low, high) = low.bitcast::<u32x16<S>>().deinterleave(high.bitcast::<u32x16<S>>());
     [low.bitcast(), high.bitcast()]
 }
 
-/// The numbers of some lanes.
+/// Picks the numbers of some lanes.
 #[inline(always)]
 fn doubles<S: Simd>([low, high]: Doubles<S>, lanes: i32x16<S>) -> [f64x8<S>; 2] {
     let (first, second) = permute(low, lanes).interleave(permute(high, lanes));

@@ -1,8 +1,8 @@
-//! Lists of the pixels in which a small triangle with holes is in front.
+//! Lists the pixels of a small alpha-tested triangle that pass the depth test.
 //!
-//! A triangle that covers few pixels of a tile reaches into up to four blocks, and has a few pixels
-//! in each pair of rows. They are listed first, then sixteen of them at a time are tested: 0.9 of
-//! the time of a frame of 70,000 triangles with holes (bilinear, AVX-512).
+//! A triangle that covers few pixels of a tile reaches into up to four blocks, with few pixels in
+//! each pair of rows. Its pixels are listed first and then tested sixteen at a time: 0.9 of the
+//! time of a frame of 70,000 triangles with holes (bilinear, AVX-512).
 
 use fearless_simd::{
     Simd, SimdBase as _, SimdMask as _, f32x16, f64x8, i32x16, mask32x16, mask64x8,
@@ -16,19 +16,19 @@ use crate::screen::sample_positions::FOUR;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS};
 use crate::simd::UP_TO_SIXTEEN;
 
-/// The most pixels of the bounding box of a triangle whose fragments are listed.
+/// The largest bounding box, in pixels, of a triangle drawn by a list of fragments.
 pub(super) const MOST: i32 = 64;
 /// Room for one more group of fragments.
 const ROOM: usize = MOST as usize + 16;
 
-/// The pixels in which a small triangle is in front, before the alpha test.
+/// The pixels of a small triangle that pass the depth test, before the alpha test.
 #[derive(Debug)]
 pub(super) struct Fragments {
     count: usize,
-    /// Their places in the visibility buffer.
+    /// The indices in the visibility buffer.
     places: [i32; ROOM],
     depths: [f32; ROOM],
-    /// Their edge functions of the second and the third corner.
+    /// The edge functions of the second and third corner.
     edges: [[f64; ROOM]; 2],
 }
 
@@ -38,10 +38,10 @@ impl Default for Fragments {
     }
 }
 
-/// Lists the pixels of a block in which a triangle is in front, and draws none.
+/// Lists the pixels of a block that pass the depth test, and draws none.
 pub(super) struct List<'a> {
     pub(super) fragments: &'a mut Fragments,
-    /// The place of its first entry in the visibility buffer.
+    /// The index of the block's first entry in the visibility buffer.
     pub(super) first: usize,
 }
 
@@ -63,6 +63,7 @@ impl<S: Simd> large::InFront<S> for List<'_> {
         let Fragments { count, places, depths, edges } = &mut *self.fragments;
         let to = *count % (ROOM - 16);
         let mask = mask32x16::from_bitmask(simd, pixels);
+        // Appends the pixels of both rows; compressing keeps only the lanes in front.
         let first = i32::try_from(self.first + 16 * pair).unwrap_or(0);
         let place = i32x16::from_slice(simd, &UP_TO_SIXTEEN) + first;
         place.compress(mask).store_slice(&mut places[to..to + 16]);
@@ -88,7 +89,8 @@ impl Fragments {
         self.count == 0
     }
 
-    /// Draws those that pass the alpha test of a triangle into a tile with this first pixel.
+    /// Draws the fragments that pass the alpha test of a triangle, into a tile with this first
+    /// pixel.
     #[inline(always)]
     pub(super) fn put<S: Simd, const N: usize>(
         &self,
@@ -98,6 +100,7 @@ impl Fragments {
         number: u32,
         buffer: &mut [u64; FOUR * PIXELS],
     ) {
+        // Sixteen fragments of any rows are tested at once, then written one by one.
         for at in (0..self.count).step_by(16) {
             let pixels = (1 << (self.count - at).min(16)) - 1;
             let [second, third] = &self.edges;
@@ -130,14 +133,14 @@ impl Fragments {
         }
     }
 
-    /// The place of one of them in the visibility buffer.
+    /// Returns the index of a fragment in the visibility buffer.
     #[inline(always)]
     fn place(&self, i: usize) -> usize {
         self.places[i].cast_unsigned() as usize % (FOUR * PIXELS)
     }
 }
 
-/// The column and row in the tile of an entry of the visibility buffer.
+/// Returns the column and row in the tile of an entry of the visibility buffer.
 fn pixel_of<const N: usize>(place: usize) -> [i32; 2] {
     let (block, within) = (place / (N * BLOCK_PIXELS), place % BLOCK_PIXELS);
     let (side, blocks) = (BLOCK as usize, BLOCKS as usize);

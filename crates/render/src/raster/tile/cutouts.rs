@@ -1,4 +1,4 @@
-//! Draws the triangles of a tile that may have holes.
+//! Draws the alpha-tested triangles of a tile.
 
 use fearless_simd::{Level, Simd};
 
@@ -13,14 +13,14 @@ use crate::raster::large::{Large, Solid, Touched};
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::texture::opacity::Holes;
 
-/// What is kept from one triangle with holes of a tile to the next.
+/// The data reused from one alpha-tested triangle of a tile to the next.
 #[derive(Debug, Default)]
 pub(super) struct Cutouts<'a> {
     surface: Option<AlphaSurface<'a>>,
     fragments: Fragments,
 }
 
-/// In which pixels of a block a triangle has holes, for all samples.
+/// Classifies the pixels of a block by their holes, for all samples together.
 #[inline(always)]
 fn holes_in_block<const N: usize>(
     tests: &[Option<AlphaTest<'_, '_>>; N],
@@ -45,6 +45,7 @@ impl Visibility {
     ) {
         let Some((large, area)) = self.set_up::<N>(triangle) else { return };
         let Touched { mut some, whole } = large.blocks::<S, N>(simd, area, &self.sample_positions);
+        // Blocks with nearer depths everywhere hide the triangle (hierarchical Z).
         let (mut blocks, high) = (some, self.key(large.high));
         while blocks != 0 {
             let block = blocks.trailing_zeros();
@@ -63,6 +64,8 @@ impl Visibility {
             let shift = positions.shift::<N>(sample);
             AlphaTest::of(surface?, (plan, frame), triangle.number, shift)
         };
+        // Three paths: a list of fragments for few pixels, whole blocks without sampling, and the
+        // rest with the alpha test in two rows at a time.
         if area.width() * area.height() <= MOST
             && self.draw_few::<S, N>(simd, &large, (some, whole), test, fragments)
         {
@@ -79,7 +82,7 @@ impl Visibility {
             for (sample, test) in tests.iter().enumerate() {
                 let at = (block, self.sample_positions.shift::<N>(sample));
                 let plane = self.plane::<N>(block, sample);
-                // Compiled once, whatever `N` is.
+                // Compiled only once, for any `N`.
                 simd.vectorize(
                     #[inline(always)]
                     || match test {
@@ -100,8 +103,8 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle into those of some blocks that it covers fully in which it has no holes.
-    /// Returns them, and those in which it has nothing else.
+    /// Draws a triangle into the fully covered blocks of a mask that are opaque everywhere. Returns
+    /// these blocks, together with blocks of holes only.
     #[inline(always)]
     fn draw_even_blocks<const N: usize>(
         &mut self,
@@ -111,7 +114,7 @@ impl Visibility {
         tests: &[Option<AlphaTest<'_, '_>>; N],
     ) -> u64 {
         let (mut done, mut place) = (0, None);
-        // Looking costs a tenth of sampling: if it hardly ever helps, it ends.
+        // Classifying costs a tenth of sampling. If it hardly ever succeeds, it stops.
         let mut credit = 4;
         while blocks != 0 && credit > 0 {
             let block = blocks.trailing_zeros() as usize;
@@ -130,8 +133,8 @@ impl Visibility {
         done
     }
 
-    /// Draws a triangle that covers few pixels of the tile: first it is found in which it is in
-    /// front, then sixteen of those at a time are tested. Returns whether it is drawn; clipped
+    /// Draws a triangle that covers few pixels of the tile: lists the pixels that pass the depth
+    /// test, then tests sixteen of them at a time. Returns whether the triangle was drawn; clipped
     /// triangles are not.
     #[inline(always)]
     fn draw_few<'a, 'b, S: Simd, const N: usize>(
@@ -149,6 +152,7 @@ impl Visibility {
         for sample in 0..N {
             let shift = self.sample_positions.shift::<N>(sample);
             let mut blocks = some;
+            // First pass: list the pixels in front, block by block.
             fragments.forget();
             while blocks != 0 {
                 let block = blocks.trailing_zeros() as usize;
@@ -166,6 +170,7 @@ impl Visibility {
             if fragments.are_none() {
                 continue;
             }
+            // Second pass: the alpha test, for listed pixels only.
             let test = test(sample);
             if test.as_ref().is_some_and(|test| !test.has_edges()) {
                 return false;

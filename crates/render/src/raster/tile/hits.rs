@@ -1,8 +1,9 @@
 //! Draws the hits of a tile: pixels of small triangles and of short lines.
 //!
 //! Hits may have [colours](super::super::hit_colors), like other triangles that are
-//! [painted](super::super::paint). Then those of the nearest stay beside their entries, in blocks
-//! that one of them reaches; whatever else is drawn into such a block later forgets them.
+//! [painted](super::super::paint). The colours of the nearest hits are then stored next to their
+//! entries, in blocks that a coloured hit reaches. Anything else drawn into such a block later
+//! drops them.
 
 use std::hint::select_unpredictable;
 
@@ -13,8 +14,8 @@ use crate::raster::bins::Bins;
 use crate::raster::depth_format::{Format as _, with_format};
 use crate::screen::tiles::{BLOCK_PIXELS, PIXELS};
 
-/// The colours of pixels, block by block: red, green, blue and 255; or 0 if they are not known.
-/// What follows the last is for hits that are hidden.
+/// The colours of pixels, block by block: red, green, blue and 255; or 0 if unknown. The entries
+/// after the last pixel are a dummy target for hidden hits.
 #[derive(Debug)]
 #[repr(align(64))]
 pub(super) struct HitColors([u32; PIXELS + BLOCK_PIXELS]);
@@ -26,7 +27,7 @@ impl Default for HitColors {
 }
 
 impl HitColors {
-    /// Those of a block.
+    /// Returns the colours of a block.
     #[inline(always)]
     pub(super) fn block_mut(&mut self, block: usize) -> &mut [u32; BLOCK_PIXELS] {
         &mut self.0.as_chunks_mut().0[block]
@@ -50,6 +51,7 @@ impl Visibility {
             |place, word| {
                 let place = place as usize % (N * PIXELS);
                 let block = place / (N * BLOCK_PIXELS);
+                // Hits of one triangle are neighbours: the block is mostly valid already.
                 if self.written >> block & 1 == 0 {
                     self.write::<N>(simd.level(), block);
                 }
@@ -59,7 +61,7 @@ impl Visibility {
         ));
     }
 
-    /// The same for hits that have colours, with one sample per pixel.
+    /// Draws hits that have colours, with one sample per pixel.
     #[inline(always)]
     fn draw_colored_hits<S: Simd>(&mut self, simd: S, bins: &Bins, tile: usize) {
         with_format!(self.depth_format, D => bins.hits.each_colored(
@@ -71,6 +73,8 @@ impl Visibility {
                 let block = place / BLOCK_PIXELS;
                 self.color(simd.level(), block);
                 let old = &mut self.buffer.0[place];
+                // A hidden hit stores its colour in the dummy entry, which avoids an unpredictable
+                // branch.
                 let to = select_unpredictable(word > *old, place, PIXELS);
                 self.colors.0[to] = color;
                 *old = word.max(*old);
@@ -78,7 +82,7 @@ impl Visibility {
         ));
     }
 
-    /// Ensures that a block has entries and colours.
+    /// Makes the entries and colours of a block valid.
     #[inline(always)]
     pub(super) fn color(&mut self, level: Level, block: usize) {
         if self.colored >> block & 1 == 0 {
@@ -86,7 +90,7 @@ impl Visibility {
         }
     }
 
-    /// The same for a block that has no colours: those of what was drawn before are not known.
+    /// Starts the colours of a block. Primitives drawn earlier have unknown colours.
     #[inline(never)]
     fn begin_colors(&mut self, level: Level, block: usize) {
         let is_empty = !self.shows(block);
@@ -102,8 +106,8 @@ impl Visibility {
         }
     }
 
-    /// The colours of a block's pixels, those of pixels that show nothing included, and whether all
-    /// are known; `None` if the block has none.
+    /// Returns the colours of a block's pixels, including background pixels, and whether all are
+    /// known. `None` if the block has no colours.
     pub(crate) fn colors(&self, block: usize) -> Option<(&[u32; BLOCK_PIXELS], bool)> {
         if self.colored >> block & 1 == 0 {
             return None;
@@ -113,7 +117,7 @@ impl Visibility {
         Some((colors, all >> 24 != 0))
     }
 
-    /// The entries of a block whose pixels have no known colour; 0 for the others.
+    /// Returns the entries of a block's pixels without a known colour; 0 for the others.
     pub(crate) fn uncolored(&self, block: usize) -> [u64; BLOCK_PIXELS] {
         let entries = self.block(block);
         let colors = &self.colors.0.as_chunks::<BLOCK_PIXELS>().0[block];

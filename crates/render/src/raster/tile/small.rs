@@ -1,7 +1,7 @@
 //! Draws the small triangles that wait for a tile, with four samples per pixel.
 //!
-//! The entries of a pixel's samples lie side by side, so that those of a covered pixel are compared
-//! at once. They come into the planes of the samples when all triangles are drawn.
+//! The entries of a pixel's samples are stored side by side, so all samples of a covered pixel are
+//! compared at once. They are moved to the planes of the samples after all triangles are drawn.
 
 use fearless_simd::{
     Select as _, Simd, SimdBase as _, SimdMask as _, f64x4, f64x8, mask32x16, u32x16,
@@ -30,14 +30,15 @@ pub(super) struct SmallTriangles {
     sample_positions: SamplePositions,
     /// The entries, block by block.
     blocks: Vec<BlockEntries>,
-    /// The blocks that are reached, a bit for each; the entries of others are meaningless.
+    /// The blocks that any triangle reaches, a bit for each. Entries of other blocks are
+    /// meaningless.
     reached: u64,
     covered: Covered,
-    /// Triangles that were too few to be drawn sixteen at a time.
+    /// The triangles left over from packs of fewer than sixteen.
     rest: Queue,
 }
 
-/// The entries of a block's pixels, those of a pixel's samples side by side.
+/// The entries of a block's pixels, with the entries of a pixel's samples side by side.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 struct BlockEntries([[u64; FOUR]; BLOCK_PIXELS]);
@@ -46,7 +47,7 @@ struct BlockEntries([[u64; FOUR]; BLOCK_PIXELS]);
 #[repr(align(64))]
 struct Entries([u64; FOUR * PACK]);
 
-/// The edge functions of all sizes but the last, and those of the last.
+/// The edge functions of all sizes but the last, and of the last size.
 type Most<S> = <Usual as Rule>::Edges<S>;
 type Last<S> = <Usual as Rule>::LastEdges<S>;
 
@@ -64,6 +65,7 @@ impl Visibility {
                 with_format!(self.depth_format, D => {
                     small.draw(simd, D::of(self.depth_format), (bins, tile));
                 });
+                // Only the blocks that were reached are moved to the planes.
                 let mut left = small.reached;
                 while left != 0 {
                     let block = left.trailing_zeros() as usize;
@@ -75,7 +77,7 @@ impl Visibility {
         self.small = Some(small);
     }
 
-    /// Draws entries of a block's pixels into the planes of their samples.
+    /// Moves the entries of a block's pixels to the planes of their samples, with a depth test.
     #[inline(always)]
     fn put_pixels<S: Simd>(&mut self, simd: S, block: usize, pixels: &[[u64; FOUR]; BLOCK_PIXELS]) {
         self.write::<FOUR>(simd.level(), block);
@@ -84,6 +86,7 @@ impl Visibility {
         );
         let pixels: &[f64] = bytemuck::cast_slice(pixels.as_flattened());
         for (at, eight) in (0..).step_by(8).zip(pixels.as_chunks::<32>().0) {
+            // A 4 x 8 transpose in registers: from samples side by side to one row per sample.
             let (a, b) =
                 (f64x8::from_slice(simd, &eight[..8]), f64x8::from_slice(simd, &eight[8..16]));
             let (c, d) =
@@ -105,7 +108,7 @@ impl SmallTriangles {
     fn begin(&mut self, bounds: PixelBox, sample_positions: SamplePositions) {
         (self.bounds, self.sample_positions, self.reached) = (bounds, sample_positions, 0);
         self.blocks.resize(BLOCK_PIXELS, BlockEntries([[0; FOUR]; BLOCK_PIXELS]));
-        // A cancelled frame leaves some behind.
+        // A cancelled frame leaves triangles in the queue.
         self.rest.clear();
     }
 
@@ -136,6 +139,8 @@ impl SmallTriangles {
                 size,
                 #[inline(always)]
                 |pack, count| {
+                    // Full packs are drawn directly. Incomplete ones are collected, to keep all
+                    // lanes busy.
                     if count == PACK {
                         return self.draw_pack::<S, D, E>(format, pack);
                     }
@@ -149,7 +154,7 @@ impl SmallTriangles {
         self.draw_rest::<S, D, E>(simd, format);
     }
 
-    /// Draws the triangles that were too few.
+    /// Draws the left-over triangles.
     #[inline(always)]
     fn draw_rest<S: Simd, D: Format, E: Edges<S>>(&mut self, simd: S, format: D) {
         for at in (0..self.rest.waiting()).step_by(PACK) {
@@ -161,7 +166,7 @@ impl SmallTriangles {
 
     /// Draws sixteen triangles.
     ///
-    /// Compiled as a function of its own, since it is called at several places.
+    /// Compiled as a separate function because it is called from several places.
     #[inline(always)]
     fn draw_pack<S: Simd, D: Format, E: Edges<S>>(&mut self, format: D, pack: &Pack<S>) {
         pack[0].simd.vectorize(
@@ -182,6 +187,8 @@ impl SmallTriangles {
             |pixels: &CoveredPixels<S, FOUR>, count| {
                 let CoveredPixels { x, y, number, depth, .. } = *pixels;
                 let place = lanes_place::<S, 1>(x & (TILE - 1), y & (TILE - 1), 0);
+                // A sample that is not covered gets the background's entry, which never wins the
+                // depth test.
                 let (nothing, background) =
                     (u32x16::splat(simd, 0), u32x16::splat(simd, BACKGROUND));
                 let (mut keys, mut numbers) = ([nothing; FOUR], [background; FOUR]);
@@ -194,7 +201,7 @@ impl SmallTriangles {
                 put_samples(keys, numbers, &mut entries.0);
                 let places = <[i32; PACK]>::from(place).into_iter();
                 for (place, new) in places.zip(entries.0.as_chunks::<FOUR>().0).take(count) {
-                    // They are compared as f64: see `put_rows`.
+                    // Entries are compared as f64: see `put_rows`.
                     let new = f64x4::from_slice(simd, bytemuck::cast_slice(new));
                     let old = bytemuck::cast_slice_mut(pixel(blocks, reached, place));
                     new.max(f64x4::from_slice(simd, old)).store_slice(old);
@@ -204,7 +211,7 @@ impl SmallTriangles {
     }
 }
 
-/// The entries of a pixel of the tile.
+/// Returns the entries of a pixel of the tile.
 #[inline(always)]
 fn pixel<'a>(blocks: &'a mut [BlockEntries], reached: &mut u64, place: i32) -> &'a mut [u64; FOUR] {
     let place = place.cast_unsigned() as usize % PIXELS;

@@ -22,17 +22,17 @@ const SIZE: Size = Size { width: 150, height: 140 };
 const PICTURE: PixelBox = PixelBox { left: 0, top: 0, right: 150, bottom: 140 };
 const TILE_BOX: PixelBox = PixelBox { left: 0, top: 0, right: TILE, bottom: TILE };
 
-/// The centre, and the samples farthest from it to all sides.
+/// Returns the centre, and the samples farthest from it on all sides.
 fn middle_and_others() -> [SamplePositions; 3] {
     [passes(Samples::One)[0], passes(Samples::Four)[0], passes(Samples::Sixteen)[3]]
 }
 
-/// The offset of sample `i`.
+/// Returns the offset of sample `i`.
 fn shift(sample_positions: &SamplePositions, i: usize) -> [i32; 2] {
     if sample_positions.are_many() { sample_positions.shift::<FOUR>(i) } else { [0; 2] }
 }
 
-/// Numbers that look random.
+/// Pseudo-random numbers.
 fn numbers(mut state: u64) -> impl FnMut(i32) -> i32 {
     move |below| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
@@ -46,7 +46,7 @@ fn bins(sample_positions: SamplePositions) -> Bins {
     bins
 }
 
-/// The pixels that a triangle may cover in some of their samples.
+/// Returns the pixels that a triangle may cover in some of their samples.
 fn reached(corners: [Snapped; 3], sample_positions: &SamplePositions) -> PixelBox {
     match sample_positions.are_many() {
         true => PixelBox::reached(corners, sample_positions.reach::<FOUR>()),
@@ -54,7 +54,7 @@ fn reached(corners: [Snapped; 3], sample_positions: &SamplePositions) -> PixelBo
     }
 }
 
-/// The bins with some triangles of a queue, sixteen at the most.
+/// Returns the bins with some triangles of a queue, at most sixteen.
 fn small(queue: usize, triangles: &[[ScreenVertex; 3]], sample_positions: SamplePositions) -> Bins {
     let number = |corner: ScreenVertex| ([corner.at().x, corner.at().y], corner.depth);
     let rows: Vec<_> = triangles.iter().map(|corners| corners.map(number)).collect();
@@ -83,7 +83,7 @@ fn small_by<R: Rule>(
     bins
 }
 
-/// Triangles lane by lane, numbered from 0 on.
+/// Triangles lane by lane, numbered from 0.
 fn rows_of(triangles: &[[([i32; 2], f32); 3]]) -> [[i32; 16]; ROWS] {
     let mut rows = [[0; 16]; ROWS];
     for ((lane, corners), number) in triangles.iter().enumerate().zip(0..) {
@@ -96,7 +96,7 @@ fn rows_of(triangles: &[[([i32; 2], f32); 3]]) -> [[i32; 16]; ROWS] {
     rows
 }
 
-/// The bins with some triangles of a queue that wait for their tiles, sixteen at the most.
+/// Returns the bins with some triangles of a queue that wait for their tiles, at most sixteen.
 fn waiting(
     queue: usize,
     triangles: &[[ScreenVertex; 3]],
@@ -123,7 +123,7 @@ fn waiting(
     bins
 }
 
-/// The samples that show the primitive with the number 0: pixels row by row, in each its samples.
+/// Returns the samples that show primitive 0: pixels row by row, then the samples of each pixel.
 fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
     let mut visibility = Visibility::default();
     let mut found = Vec::new();
@@ -153,7 +153,7 @@ fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
     found
 }
 
-/// A sample is covered if the centre of its pixel is, once the corners are moved the other way.
+/// Finds covered samples: the pixel's centre is covered after moving the corners the opposite way.
 fn covered(corners: [Snapped; 3], sample_positions: &SamplePositions) -> Vec<(i32, i32, usize)> {
     covered_on(Grid::Usual, corners, sample_positions)
 }
@@ -181,7 +181,7 @@ fn every_way_covers_the_samples_that_the_rule_says() {
     for sample_positions in middle_and_others() {
         for extent in [1, 2, 4, 8, 15, 30, 100] {
             for _ in 0..400 {
-                // Every second coordinate on a pixel's centre or border, or on that of a sample.
+                // Every second coordinate is on a pixel's centre or border, or on that of a sample.
                 let (left, top) = (random(158) - 8, random(148) - 8);
                 let mut coordinate = |from: i32| {
                     let place = from * 256 + random(extent * 256);
@@ -196,7 +196,7 @@ fn every_way_covers_the_samples_that_the_rule_says() {
     }
 }
 
-/// Compares all rasterizers with the rule of coverage.
+/// Compares all rasterisers with the rule of coverage.
 fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
     let want = covered(corners, &sample_positions);
     let bounds = reached(corners, &sample_positions);
@@ -206,7 +206,7 @@ fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
     if let Some(queue) = queue {
         let got = seen_in(&small(queue, &[flat(corners)], sample_positions));
         assert_eq!(got, want, "{corners:?} alone");
-        // With others far away it is drawn pixel by pixel, whatever the tile.
+        // Packed with distant triangles, it is drawn pixel by pixel, regardless of tiles.
         let far = [(2, 2), (140, 3), (4, 130), (141, 135)].map(|(x, y)| {
             [(0, 0), (200, 0), (0, 200)]
                 .map(|(dx, dy)| Snapped { x: x * 256 + dx, y: y * 256 + dy })
@@ -228,7 +228,7 @@ fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
     assert_eq!(seen_in(&bins), want, "{corners:?} alone in 64 bits");
 }
 
-/// The entries of the first tile.
+/// Returns the entries of the first tile.
 fn entries(bins: &Bins) -> Vec<u64> {
     let mut visibility = Visibility::default();
     visibility.clear(TILE_BOX, bins.sample_positions);
@@ -317,7 +317,7 @@ fn on_the_fine_grid_small_and_large_triangles_cover_what_the_rule_says() {
     }
 }
 
-/// The pixels of a tile that a triangle covers by edge functions in f32: a x + b y + c.
+/// Returns the pixels of a tile that a triangle covers by f32 edge functions: a x + b y + c.
 fn by_floats([p, q, r]: [[f32; 2]; 3]) -> Vec<(i32, i32)> {
     let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     let inside = |p: [f32; 2], q: [f32; 2], x: f32, y: f32| {
@@ -332,7 +332,7 @@ fn by_floats([p, q, r]: [[f32; 2]; 3]) -> Vec<(i32, i32)> {
     .collect()
 }
 
-/// The pixels that a block at a time is drawn to.
+/// Returns the pixels drawn block by block.
 fn drawn(mut draw: impl FnMut(usize, &mut [u64; BLOCK_PIXELS])) -> Vec<(i32, i32)> {
     let mut found = Vec::new();
     for (block, at) in (0..64_usize).zip(0_i32..) {
@@ -405,7 +405,7 @@ fn a_square_of_two_halves_is_covered_twice_on_an_edge_and_at_every_seam() {
         all.dedup();
         (all.len(), twice)
     };
-    // Both ends of 20 pixels, and the centres on the seam by both.
+    // Both ends of 20 pixels, and the centres on the seam by both triangles.
     assert_eq!(count([5.5, 5.5], &by_floats), (441, 441 + 21));
     let scan_lines = |corners: [[f32; 2]; 3]| {
         let rows = ScanLines::new(corners, [0.5; 3], 0, TILE_BOX).unwrap();
@@ -416,7 +416,7 @@ fn a_square_of_two_halves_is_covered_twice_on_an_edge_and_at_every_seam() {
     assert_eq!(count([5.2, 5.2], &scan_lines), (441, 441 + 21));
 }
 
-/// Squares that cover whole blocks, in few depths, some of them tilted.
+/// Squares that cover whole blocks, at few depths, some of them tilted.
 #[test]
 fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
     let mut random = numbers(5);
@@ -462,7 +462,7 @@ fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
     }
 }
 
-/// The visibility of each pixel's samples, found triangle by triangle and sample by sample.
+/// Returns the visibility of each pixel's samples, found triangle by triangle and sample by sample.
 #[expect(clippy::needless_range_loop, reason = "a sample is one of each pixel's")]
 fn one_by_one(triangles: &[LargeTriangle], sample_positions: &SamplePositions) -> Vec<[u64; FOUR]> {
     let mut words = vec![[0; FOUR]; PIXELS];

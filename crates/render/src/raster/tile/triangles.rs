@@ -1,4 +1,4 @@
-//! Draws the triangles of a tile that are not small and have no holes: medium and large ones.
+//! Draws the medium and large triangles of a tile that have no holes.
 
 use crate::simd::dispatch;
 use fearless_simd::{Level, Simd};
@@ -15,8 +15,8 @@ use crate::screen::tiles::BLOCK_PIXELS;
 use marraztu_core::base::math::each;
 
 impl Visibility {
-    /// Draws a triangle that is not small and has no holes, and colours its pixels if it has a
-    /// paint; with one sample per pixel.
+    /// Draws a medium or large triangle without holes. With one sample per pixel and a paint, also
+    /// colours its pixels.
     #[inline(always)]
     pub(super) fn draw_large<S: Simd, const N: usize>(
         &mut self,
@@ -26,7 +26,7 @@ impl Visibility {
     ) {
         let corners = each(triangle.corners, |corner| corner.at());
         let reached = PixelBox::reached(corners, self.sample_positions.reach::<N>());
-        // The fine grid needs more bits.
+        // The fine grid needs more than 32 bits.
         let is_medium = reached.width() <= medium::LONGEST && reached.height() <= medium::LONGEST;
         if is_medium && self.grid == Grid::Usual {
             return self.draw_medium::<S, N>(simd, triangle, paint);
@@ -35,6 +35,8 @@ impl Visibility {
         let touched = large.blocks::<S, N>(simd, area, &self.sample_positions);
         let (mut some, high) = (touched.some, self.key(large.high));
         let mut place = None;
+        // Block by block: skip hidden blocks (hierarchical Z), note fully covered ones, draw the
+        // rest.
         while some != 0 {
             let block = some.trailing_zeros() as usize;
             some &= some - 1;
@@ -54,7 +56,7 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle whose bounding box is at most as large as a tile.
+    /// Draws a triangle with a bounding box of at most the size of a tile.
     #[inline(always)]
     fn draw_medium<S: Simd, const N: usize>(
         &mut self,
@@ -75,6 +77,8 @@ impl Visibility {
             if high < self.farthest[block] {
                 continue;
             }
+            // A fully covered block may need no entries at all; `Large` is built for the first such
+            // block.
             if whole >> block & 1 != 0 {
                 large = large
                     .or_else(|| Some(Large::new(triangle, &Triangle::new(corners)?, first)));
@@ -83,6 +87,7 @@ impl Visibility {
                 }
             }
             let format = D::of(self.depth_format);
+            // Painting colours the pixels in front in the same pass.
             if let Some(paint) = paint {
                 self.color(simd.level(), block);
                 let entries = &mut self.buffer.0.as_chunks_mut().0[block];
@@ -99,7 +104,7 @@ impl Visibility {
         });
     }
 
-    /// Draws a triangle into a block that it covers fully or in part, and colours it, with one
+    /// Draws a triangle into a block that it covers fully or partly, and colours it, with one
     /// sample per pixel.
     #[inline(never)]
     fn paint_block(
@@ -119,7 +124,7 @@ impl Visibility {
         }));
     }
 
-    /// Draws a triangle into a block that it covers fully; `place` is its index in `large`, once it
+    /// Draws a triangle into a block that it covers fully. `place` is its index in `large`, once it
     /// has one.
     pub(super) fn draw_full_block<const N: usize>(
         &mut self,
@@ -134,8 +139,8 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle into a block that it covers fully if no entries have to be written for
-    /// that: if it is hidden, or alone. Returns whether that was so.
+    /// Draws a triangle into a block that it covers fully, if no entries need to be written: if it
+    /// is hidden, or alone in the block. Returns whether this was so.
     #[inline(never)]
     fn note_full_block<const N: usize>(
         &mut self,
@@ -151,8 +156,8 @@ impl Visibility {
         is_done
     }
 
-    /// Whether a block hides a triangle that reaches up to this key in it. Of equal depths the
-    /// lower number is in front: coarse formats have many.
+    /// Returns whether a block hides a triangle with keys of at most `high` in it. At equal depths
+    /// the lower number is in front, which happens often with coarse formats.
     #[inline(always)]
     pub(super) fn hides(&self, block: usize, high: u32, number: u32) -> bool {
         match self.whole(block) {
@@ -161,8 +166,8 @@ impl Visibility {
         }
     }
 
-    /// Notes that the triangle with this number covers a block fully, with depths between these
-    /// keys, if no entries have to be written for that. Returns whether that was so.
+    /// Notes that a triangle covers a block fully with depths between these keys, if no entries
+    /// need to be written for it. Returns whether this was so.
     #[inline(always)]
     pub(super) fn show_whole(
         &mut self,
@@ -172,6 +177,7 @@ impl Visibility {
         triangle: impl FnOnce() -> Shown,
     ) -> bool {
         let bit = 1 << block;
+        // The triangle replaces an empty block, or a noted triangle that is behind it everywhere.
         let alone = (self.written | self.whole) & bit == 0;
         let is_behind = |other| word(low, number) > word(self.nearest[block], other);
         let noted = alone || self.whole(block).is_some_and(is_behind);
@@ -186,8 +192,8 @@ impl Visibility {
         noted
     }
 
-    /// A triangle relative to the tile, and the pixels of its bounding box in it, counted from the
-    /// tile's first; `None` if there are none.
+    /// Sets up a triangle relative to the tile, and finds the pixels of its bounding box in the
+    /// tile, relative to the tile's first. `None` if there are no such pixels.
     pub(super) fn set_up<const N: usize>(
         &self,
         triangle: &LargeTriangle,
@@ -198,15 +204,15 @@ impl Visibility {
         Some((Large::new(triangle, &edges, [self.bounds.left, self.bounds.top]), area))
     }
 
-    /// The pixels of the tile that a triangle's bounding box reaches into, counted from the tile's
-    /// first.
+    /// Returns the pixels of the tile that a triangle's bounding box reaches into, relative to the
+    /// tile's first.
     #[inline(always)]
     fn reached<const N: usize>(&self, corners: [Snapped; 3]) -> Option<PixelBox> {
         let reach = self.sample_positions.reach::<N>();
         self.in_tile(PixelBox::reached_on(self.grid, corners, reach))
     }
 
-    /// The pixels of the tile in a box, counted from the tile's first.
+    /// Intersects a box with the tile, relative to the tile's first pixel.
     #[inline(always)]
     pub(super) fn in_tile(&self, pixels: PixelBox) -> Option<PixelBox> {
         let area = pixels.intersection(self.bounds);

@@ -21,7 +21,7 @@ use marraztu_core::base::math::each;
 /// The alpha test of a triangle in one block, one pixel at a time.
 struct Tested<'a, 'b, 'c> {
     test: &'c AlphaTest<'a, 'b>,
-    /// The first pixel of the block in the picture.
+    /// The first pixel of the block.
     first: [i32; 2],
 }
 
@@ -60,6 +60,7 @@ impl Visibility {
                 true => AlphaSurface::of(&mut surface, plan, frame, number),
                 false => None,
             };
+            // One alpha test per sample: its texture position differs.
             let tests: [Option<AlphaTest<'_, '_>>; N] = std::array::from_fn(|sample| {
                 let shift = self.sample_positions.shift::<N>(sample);
                 AlphaTest::of(own?, (plan, frame), number, shift)
@@ -77,6 +78,7 @@ impl Visibility {
             let first = [self.bounds.left, self.bounds.top];
             let own = FloatTriangle::new(corners, depths, number, first);
             let at = each(triangle.corners, |corner| corner.at());
+            // Rounding may cover centres beyond the box, so the box is enlarged.
             let beyond = beyond(Coverage::F32Edges);
             let reach = reach(self.sample_positions.reach::<N>(), beyond);
             if let Some(area) = self.in_tile(PixelBox::reached(at, reach)) {
@@ -85,7 +87,7 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle by edge functions in f32.
+    /// Draws a triangle by f32 edge functions.
     #[inline(always)]
     fn draw_floats<S: Simd, const N: usize>(
         &mut self,
@@ -103,6 +105,7 @@ impl Visibility {
                 continue;
             }
             let whole = touched.whole >> block & 1 != 0;
+            // Alpha-tested blocks are always written; others can be noted as fully covered.
             if tests[0].is_some() {
                 self.write::<N>(simd.level(), block);
                 let (first, format) = (self.corner(block), Any(self.depth_format));
@@ -123,7 +126,7 @@ impl Visibility {
         }
     }
 
-    /// As `draw_full_block`.
+    /// See `draw_full_block`.
     #[inline(never)]
     fn draw_full_float_block<const N: usize>(
         &mut self,
@@ -144,7 +147,7 @@ impl Visibility {
         self.farthest[block] = self.farthest[block].max(low);
     }
 
-    /// Draws a triangle into a block that it covers fully or in part.
+    /// Draws a triangle into a block that it covers fully or partly.
     #[inline(never)]
     pub(super) fn draw_float_planes<const N: usize>(
         &mut self,
@@ -179,7 +182,7 @@ impl Visibility {
                 self.write::<N>(simd.level(), block);
                 let first = self.corner(block);
                 let plane = self.plane::<N>(block, sample);
-                // Compiled once, whatever `N` is.
+                // Compiled only once, for any `N`.
                 simd.vectorize(
                     #[inline(always)]
                     || match test {
@@ -193,7 +196,7 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle by points, as ancestor A's author wrote it: one after the other.
+    /// Draws a triangle by ancestor A's fill rule: points, one after the other.
     fn draw_points<const N: usize>(
         &mut self,
         level: Level,

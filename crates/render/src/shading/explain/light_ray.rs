@@ -1,4 +1,4 @@
-//! The terms of one light at one point, and how the light reaches it.
+//! The terms of one light at one point, and the path of the light to it.
 
 use glam::{DMat3, DVec3};
 
@@ -11,7 +11,7 @@ use crate::shading::pixel_color::{LightRay, Part, Term};
 use crate::shading::quantize::{SurfaceColor, reflected};
 use crate::simd::{Kernel, Lanes, Vec3};
 
-/// The terms of one light: ambient, or diffuse and specular.
+/// Returns the terms of one light: ambient, or diffuse and specular.
 pub(super) fn light_terms<T: ShadingNumber>(
     plan: &FramePlan,
     stage: &Stage,
@@ -32,7 +32,7 @@ pub(super) fn light_terms<T: ShadingNumber>(
     ]
 }
 
-/// How a light reaches the first position of a batch.
+/// Describes how a light reaches the first position of a batch.
 fn ray<T: ShadingNumber>(
     plan: &FramePlan,
     stage: &Stage,
@@ -50,6 +50,7 @@ fn ray<T: ShadingNumber>(
     } else {
         (-travels, None)
     };
+    // The equations of Phong and Blinn for this point, in f64.
     let n_l = normal.dot(to_light);
     let reflected = normal * (2.0 * n_l) - to_light;
     let half_vector = stage.highlight == Form::HalfVector;
@@ -73,11 +74,11 @@ fn ray<T: ShadingNumber>(
     }
 }
 
-/// From view space to the world.
+/// The transform from view space to the world.
 pub(super) struct World {
     world_from_view: glam::DMat4,
     turn: DMat3,
-    /// The length of a unit of the world in view space.
+    /// The length of a world unit in view space.
     pub(super) unit: f64,
 }
 
@@ -97,7 +98,7 @@ impl World {
     }
 }
 
-/// The first of each of three rows.
+/// Returns the first number of each of three rows.
 pub(super) fn first<T: ShadingNumber>(rows: &Rows<T>) -> [f64; 3] {
     [rows[0][0].into(), rows[1][0].into(), rows[2][0].into()]
 }
@@ -110,7 +111,7 @@ pub(super) fn plus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// t D + S of the first position of a batch, in the arithmetic of the picture.
+/// Computes t D + S for the first position of a batch, in the arithmetic of the picture.
 pub(super) fn reflect<T: ShadingNumber>(
     context: &ShadingContext<'_, T>,
     batch: &Batch<T>,

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A sample of the visibility buffer that shows a triangle.
+/// Returns a sample of the visibility buffer that shows a triangle.
 fn word(number: u32) -> u64 {
     1 << 62 | u64::from(!number)
 }
@@ -14,7 +14,7 @@ fn triangles_of_neighbouring_blocks_keep_their_slots() {
     let mut went_on = 0;
     for round in 0..4000 {
         let first = round / 20 * 3;
-        // At times some replace each other in the table.
+        // Sometimes triangles replace each other in the table.
         let step = if round % 3 == 0 { 64 } else { 1 };
         // Bands of three columns, some with holes.
         let band = (state >> 40) as u32;
@@ -46,7 +46,7 @@ fn other_triangles_are_added_to_a_full_block() {
     for number in 0..200 {
         let others = [number + 1, number + 2, number, number + 1];
         if number % 3 == 0 {
-            // In the table, they have other slots now.
+            // They have other slots in the table now.
             fragments.begin_shared(0);
             others.iter().rev().for_each(|other| fragments.add(*other, [0, 0], 5, 1));
         }
@@ -137,7 +137,7 @@ fn every_pixel_finds_its_triangle_in_its_slot() {
                 (i, x, y)
             );
         }
-        // Small numbers have table entries of their own.
+        // Small numbers have separate table entries.
         let mut different = fragments.numbers[..fragments.count].to_vec();
         different.sort_unstable();
         different.dedup();

@@ -1,4 +1,4 @@
-//! Rays against an oracle that shares no code: determinants of whole numbers in 128 bits.
+//! Compares rays with an oracle that shares no code: determinants of 128-bit integers.
 
 use crate::accel::Accelerated as _;
 use glam::DMat4;
@@ -21,8 +21,8 @@ fn volume([a, b, c, d]: [Point; 4]) -> i128 {
         + (u[0] * v[1] - u[1] * v[0]) * w[2]
 }
 
-/// Whether the segment from p to l, without its ends, meets the triangle's plane in one point, and
-/// that lies in the triangle or on its border.
+/// Returns whether the open segment from p to l crosses the triangle's plane in one point, inside
+/// the triangle or on its border.
 fn stands_between([a, b, c]: [Point; 3], p: Point, l: Point) -> bool {
     let (sp, sl) = (volume([a, b, c, p]).signum(), volume([a, b, c, l]).signum());
     let around = [[a, b], [b, c], [c, a]].map(|[u, v]| volume([p, l, u, v]).signum());
@@ -85,7 +85,7 @@ fn traced(shadows: &Shadows, points: &[Point]) -> u64 {
     all
 }
 
-/// A small number, so that planes, edges and corners are met exactly again and again.
+/// Returns small coordinates, so rays often meet planes, edges and corners exactly.
 fn small(rng: &mut Rng, range: i128) -> Point {
     let side = usize::try_from(2 * range + 1).unwrap();
     [0; 3].map(|_| i128::try_from(rng.index(side)).unwrap() - range)
@@ -103,7 +103,7 @@ fn every_ray_is_decided_as_whole_numbers_decide_it() {
                 ((0..1 + rng.index(12)).map(|_| triangle(&mut rng)).collect(), small(&mut rng, 3))
             })
             .collect();
-        // Far away too, where f64 still holds every coordinate but the filter decides less.
+        // Also far away, where f64 still holds every coordinate but the filter decides less.
         let far = if round % 5 == 0 { 1 << 40 } else { 0 };
         let casters: Vec<_> = casters
             .into_iter()
@@ -129,7 +129,7 @@ fn every_ray_is_decided_as_whole_numbers_decide_it() {
     assert!(stopped > rays / 10 && stopped < rays * 9 / 10, "{stopped} of {rays}");
 }
 
-/// An octahedron, each face divided into n^2 triangles: closed, with whole coordinates.
+/// Returns an octahedron, each face divided into n^2 triangles: closed, with whole coordinates.
 fn octahedron(n: i128) -> Vec<[Point; 3]> {
     let mut triangles = Vec::new();
     for signs in 0..8 {
@@ -163,7 +163,7 @@ fn no_ray_passes_through_an_edge_or_a_corner_of_a_closed_body() {
     let body: Vec<_> = triangles.iter().map(|t| t.map(|p| p.map(|x| 2 * x))).collect();
     for light in [[0, 0, 0], [1, -2, 3], [5, 7, 1]] {
         let shadows = shadows_of(&[(body.clone(), [0; 3])], light);
-        // Beyond each aim, on the line from the light through it.
+        // Behind each target, on the line from the light through it.
         let beyond = |p: &Point| [0, 1, 2].map(|i| p[i] + 3 * (p[i] - light[i]));
         let points: Vec<Point> = aims.iter().map(beyond).collect();
         for points in points.chunks(64) {

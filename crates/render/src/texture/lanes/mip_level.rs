@@ -1,4 +1,4 @@
-//! A mip level of a texture, and fetching its texels for sixteen pixels.
+//! Fetches the texels of one mipmap level, or of several, for sixteen pixels.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdCombine as _, SimdFloat as _, SimdMask as _,
@@ -11,13 +11,13 @@ use crate::simd::{BATCH, Lanes as _, Sixteen, Vec3};
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::Wrap;
 
-/// The mip levels that sixteen pixels read.
+/// The mipmap level that each of sixteen pixels reads.
 #[derive(Clone, Copy)]
 pub(super) struct MipLevel<S: Simd> {
-    /// Their level, if it is the same for all.
+    /// The level, if all pixels read the same one.
     one: Option<usize>,
     numbers: i32x16<S>,
-    /// Their sides over those of the first level.
+    /// The sizes of the levels divided by the size of the first level.
     scale: [f32x16<S>; 2],
     width: i32x16<S>,
     height: i32x16<S>,
@@ -25,28 +25,27 @@ pub(super) struct MipLevel<S: Simd> {
 
 /// The columns and rows of the four texels around sixteen positions.
 pub(super) struct Around<S: Simd> {
-    /// The lower left one, at least -1: wrapping is still to come.
+    /// The lower left texel, at least -1: it is not wrapped yet.
     column: i32x16<S>,
     row: i32x16<S>,
-    /// The weight of the right ones, and that of the upper ones.
+    /// The weight of the right texels, and the weight of the upper texels.
     weights: [f32x16<S>; 2],
     window: Window,
 }
 
-/// Columns and rows of a level among which texels of sixteen positions are, if they lie near each
-/// other.
+/// A small range of columns and rows that holds the texels of sixteen positions.
 #[derive(Clone, Copy, Debug, Default)]
 struct Window {
     left: i32,
     first: i32,
-    /// Four, eight, or none if the texels do not lie near each other.
+    /// The number of rows: four or eight, or 0 if the texels are too far apart.
     rows: i32,
 }
 
-/// The columns of a [`Window`].
+/// The number of columns of a [`Window`].
 const COLUMNS: i32 = 16;
 
-/// [`Around`] many positions.
+/// [`Around`] for a whole batch of positions.
 #[derive(Debug)]
 pub(super) struct ManyAround {
     columns: [i32; BATCH],
@@ -67,7 +66,7 @@ impl Default for ManyAround {
 }
 
 impl ManyAround {
-    /// Stores those of sixteen positions, from `at` on.
+    /// Stores the texels around sixteen positions, starting at `at`.
     #[inline(always)]
     pub(super) fn store<S: Simd>(&mut self, at: usize, around: &Around<S>) {
         around.column.store_slice(&mut self.columns[at..at + 16]);
@@ -78,7 +77,7 @@ impl ManyAround {
         self.windows[at / 16] = around.window;
     }
 
-    /// Those of sixteen positions, from `at` on.
+    /// Loads the texels around sixteen positions, starting at `at`.
     #[inline(always)]
     pub(super) fn load<S: Simd>(&self, simd: S, at: usize) -> Around<S> {
         let [s, t] = &self.weights;
@@ -96,16 +95,16 @@ impl ManyAround {
 
 /// The four texels around sixteen positions.
 pub(super) struct Footprint<S: Simd> {
-    /// Left and right in the lower row, and in the upper one.
+    /// The left and right texels of the lower row, then of the upper row.
     pub(super) texels: [[i32x16<S>; 2]; 2],
-    /// The weight of the right ones.
+    /// The weight of the right texels.
     pub(super) s: f32x16<S>,
-    /// That of the upper ones.
+    /// The weight of the upper texels.
     pub(super) t: f32x16<S>,
 }
 
 impl<S: Simd> Footprint<S> {
-    /// Interpolates between the texels: red, green and blue from 0 to 255.
+    /// Interpolates between the four texels: red, green and blue from 0 to 255.
     #[inline(always)]
     pub(super) fn color<D: Decode>(self) -> Vec3<f32x16<S>> {
         let Self { texels: [lower, upper], s, t } = self;
@@ -116,7 +115,7 @@ impl<S: Simd> Footprint<S> {
 }
 
 impl<S: Simd> MipLevel<S> {
-    /// Levels by their numbers; `one` is that of all lanes, if they have the same.
+    /// Selects levels by their numbers. `one` is the level if all lanes share it.
     #[inline(always)]
     pub(super) fn of(
         sampler: &Sampler<'_>,
@@ -132,7 +131,7 @@ impl<S: Simd> MipLevel<S> {
         Self { one, numbers, scale: [across, up], width, height }
     }
 
-    /// The first level, for all pixels.
+    /// Selects the first level for all pixels.
     #[inline(always)]
     pub(super) fn first(sampler: &Sampler<'_>, simd: S) -> Self {
         let [widths, heights] = &sampler.sizes;
@@ -143,7 +142,7 @@ impl<S: Simd> MipLevel<S> {
         Self { one: Some(0), numbers, scale: [one, one], width, height }
     }
 
-    /// The texels at some positions.
+    /// Fetches the nearest texel at each position.
     #[inline(always)]
     pub(super) fn nearest(
         &self,
@@ -151,7 +150,7 @@ impl<S: Simd> MipLevel<S> {
         sampler: &Sampler<'_>,
         [x, y]: Positions<S>,
     ) -> i32x16<S> {
-        // A position on the upper border is that of the last texel.
+        // A position on the upper border belongs to the last texel.
         let column = x.to_int::<i32x16<S>>().min(self.width - 1);
         let row = y.to_int::<i32x16<S>>().min(self.height - 1);
         let window = self.window::<1>(simd, column, row);
@@ -161,7 +160,7 @@ impl<S: Simd> MipLevel<S> {
         }
     }
 
-    /// The four texels around some positions.
+    /// Fetches the four texels around each position.
     #[inline(always)]
     pub(super) fn footprint(
         &self,
@@ -172,9 +171,10 @@ impl<S: Simd> MipLevel<S> {
         self.texels(simd, sampler, &self.around(simd, position))
     }
 
-    /// The columns and rows of the four texels around some positions.
+    /// Computes the columns and rows of the four texels around each position.
     #[inline(always)]
     pub(super) fn around(&self, simd: S, [x, y]: Positions<S>) -> Around<S> {
+        // Texel centres are at halves, so the lower left neighbour is half a texel back.
         let (x, y) = (x * self.scale[0] - 0.5, y * self.scale[1] - 0.5);
         let (left, lower) = (x.floor(), y.floor());
         let (column, row) = (left.to_int(), lower.to_int());
@@ -182,7 +182,7 @@ impl<S: Simd> MipLevel<S> {
         Around { column, row, weights: [x - left, y - lower], window }
     }
 
-    /// The texels of a footprint.
+    /// Fetches the texels of a footprint.
     #[inline(always)]
     pub(super) fn texels(
         &self,
@@ -191,6 +191,7 @@ impl<S: Simd> MipLevel<S> {
         around: &Around<S>,
     ) -> Footprint<S> {
         let Around { column, row, weights: [s, t], window } = *around;
+        // The fast path: all texels are in a small window.
         if let Some(texels) = self.fetch_near::<2>(simd, sampler, (column, row), window) {
             return Footprint { texels, s, t };
         }
@@ -202,10 +203,11 @@ impl<S: Simd> MipLevel<S> {
         Footprint { texels: [lower, upper], s, t }
     }
 
-    /// The window of the texels at some columns and rows, with the next ones on the right and above
-    /// if `N` is 2.
+    /// Finds the window of the texels at these columns and rows. If `N` is 2, it includes the next
+    /// column on the right and the next row above.
     #[inline(always)]
     fn window<const N: i32>(&self, simd: S, column: i32x16<S>, row: i32x16<S>) -> Window {
+        // A window needs a single level and an instruction that permutes lanes.
         if self.one.is_none() || !permutes(simd.level()) {
             return Window::default();
         }
@@ -217,6 +219,7 @@ impl<S: Simd> MipLevel<S> {
         let first = row.reduce_min();
         let high = row - first;
         let mut far = high.simd_ge(8 - more);
+        // Texels at the border wrap, so a window must not reach it.
         if N > 1 {
             far = far | column.simd_ge(self.width - more) | row.simd_ge(self.height - more);
         }
@@ -228,10 +231,10 @@ impl<S: Simd> MipLevel<S> {
         Window { left, first, rows }
     }
 
-    /// The texels at some columns and rows, with the next ones on the right and above if `N` is 2,
-    /// if all of them lie near each other: then sixteen texels of each row are loaded at once, and
-    /// each lane takes its own from them. With textures as large as on the screen, a frame of one
-    /// triangle takes 0.85 of the time (nearest, AVX-512).
+    /// Fetches the texels at these columns and rows (and the next column and row if `N` is 2) if
+    /// all of them lie in a window. Each row of the window is then one load of sixteen texels, and
+    /// each lane picks its texel by a permutation. With textures as large as on the screen, a frame
+    /// of one triangle takes 0.85 of the time (nearest, AVX-512).
     #[inline(always)]
     fn fetch_near<const N: usize>(
         &self,
@@ -244,7 +247,7 @@ impl<S: Simd> MipLevel<S> {
         let picture = &sampler.levels[level].picture;
         let Size { width, height } = picture.size();
         let (from, above) = (usize::try_from(left).ok()?, usize::try_from(first).ok()?);
-        // The picture's own rows run down.
+        // Rows of the picture run down, texture rows up.
         let at = height.checked_sub(above + 1)? * width + from;
         let source = (picture.pixels(), at, width);
         let place = [column - left, row - first];
@@ -254,7 +257,7 @@ impl<S: Simd> MipLevel<S> {
         })
     }
 
-    /// The texels at some columns and rows of the picture; rows count upwards.
+    /// Fetches the texels at these columns and rows of the picture; rows count upwards.
     #[inline(always)]
     fn fetch(&self, simd: S, sampler: &Sampler<'_>, [column, row]: [i32x16<S>; 2]) -> i32x16<S> {
         self.fetch_at(simd, sampler, &self.places([column, row]))
@@ -270,9 +273,9 @@ impl<S: Simd> MipLevel<S> {
         i32x16::from_slice(simd, &texels)
     }
 
-    /// The texels at some columns of some rows, and those at the columns on their right. These are
-    /// neighbours in memory, but at the border of the texture, so that two texels are one fetch:
-    /// one triangle over 1920 x 1080 pixels takes 0.82 of the time (bilinear, AVX-512).
+    /// Fetches the texels at these columns and at the columns on their right. Both are neighbours
+    /// in memory except at the texture's border, so one load fetches two texels. One triangle over
+    /// 1920 x 1080 pixels takes 0.82 of the time (bilinear, AVX-512).
     #[inline(always)]
     fn fetch_beside(
         &self,
@@ -292,13 +295,13 @@ impl<S: Simd> MipLevel<S> {
             let ([a, b], [c, d]) = (pair(lane), pair(lane + 1));
             i32x4::from_slice(simd, &[a, b, c, d])
         };
-        // In registers: sixteen that were stored one by one are read back late.
+        // Combined in registers: after sixteen separate stores, store forwarding would fail.
         let low = four(0).combine(four(2)).combine(four(4).combine(four(6)));
         let high = four(8).combine(four(10)).combine(four(12).combine(four(14)));
         low.deinterleave(high).into()
     }
 
-    /// The texels at some pairs of places.
+    /// Fetches texels at pairs of places that are not neighbours in memory.
     #[cold]
     #[inline(never)]
     fn fetch_apart(
@@ -310,14 +313,14 @@ impl<S: Simd> MipLevel<S> {
         places.map(|places| self.fetch_at(simd, sampler, places))
     }
 
-    /// The places of texels among the pixels of their level.
+    /// Computes the indices of texels among the pixels of their level.
     #[inline(always)]
     fn places(&self, [column, row]: [i32x16<S>; 2]) -> [i32; 16] {
-        // The picture's own rows run down.
+        // Rows of the picture run down, texture rows up.
         ((self.height - 1 - row) * self.width + column).into()
     }
 
-    /// The pixels of the level of each lane.
+    /// Returns the pixels of each lane's level.
     #[inline(always)]
     fn pixels<'a>(&self, sampler: &'a Sampler<'_>) -> impl Fn(usize) -> &'a [[u8; 4]] {
         let one = self.one.map(|level| sampler.levels[level].picture.pixels());
@@ -327,7 +330,7 @@ impl<S: Simd> MipLevel<S> {
     }
 }
 
-/// The numbers of two rows for some levels; `one` is the level of all lanes, if they have the same.
+/// Looks up two tables for each lane's level. `one` is the level if all lanes share it.
 #[inline(always)]
 fn each_level<S: Simd>(
     lanes: Sixteen<S>,
@@ -342,9 +345,9 @@ fn each_level<S: Simd>(
     [first, permute(lanes.load(second, 0).bitcast(), numbers).bitcast()]
 }
 
-/// The texels at some columns and rows, with the next ones on the right and above if `N` is 2, out
-/// of sixteen columns and `ROWS` rows of the picture; `at` is the place of the first of them, and
-/// `width` that of a row.
+/// Picks texels from a window of sixteen columns and `ROWS` rows: those at these columns and rows,
+/// and their right and upper neighbours if `N` is 2. `at` is the index of the window's first texel,
+/// and `width` the length of a picture row.
 #[inline(always)]
 fn from_rows<S: Simd, const N: usize, const ROWS: i32>(
     simd: S,
@@ -356,6 +359,7 @@ fn from_rows<S: Simd, const N: usize, const ROWS: i32>(
     for this in 0..ROWS {
         let sixteen = sixteen_from(simd, pixels, at);
         at = at.saturating_sub(width);
+        // Every lane permutes every row; only lanes in this row keep the result.
         for (i, right) in (0..N).zip(0..) {
             let own = permute(sixteen, column + right);
             for (j, up) in (0..N).zip(0..) {
@@ -366,7 +370,7 @@ fn from_rows<S: Simd, const N: usize, const ROWS: i32>(
     texels
 }
 
-/// Sixteen texels from a place on; 0 after the last one.
+/// Loads sixteen texels starting at an index, with 0 after the last one.
 #[inline(always)]
 fn sixteen_from<S: Simd>(simd: S, pixels: &[[u8; 4]], at: usize) -> i32x16<S> {
     let sixteen = match pixels.get(at..at.saturating_add(16)) {
@@ -376,7 +380,7 @@ fn sixteen_from<S: Simd>(simd: S, pixels: &[[u8; 4]], at: usize) -> i32x16<S> {
     sixteen.bitcast()
 }
 
-/// The texels from a place on, fewer than sixteen.
+/// Copies the last texels starting at an index, fewer than sixteen.
 #[cold]
 fn last_from(pixels: &[[u8; 4]], at: usize) -> [[u8; 4]; 16] {
     let mut texels = [[0; 4]; 16];
@@ -386,22 +390,22 @@ fn last_from(pixels: &[[u8; 4]], at: usize) -> [[u8; 4]; 16] {
     texels
 }
 
-/// A texel by its place; 0 for lanes without a pixel, whose places are arbitrary.
+/// Reads a texel by its index. Lanes without a pixel have arbitrary indices and may get 0.
 #[inline(always)]
 fn texel_of(pixels: &[[u8; 4]], place: i32) -> i32 {
     pixels.get(place.cast_unsigned() as usize).map_or(0, |texel| i32::from_le_bytes(*texel))
 }
 
-/// A texel and the next one; any two for lanes without a pixel.
+/// Reads a texel and the next one. Lanes without a pixel get arbitrary texels.
 #[inline(always)]
 fn two_texels_of(pixels: &[[u8; 4]], place: i32) -> [i32; 2] {
     let Some(last) = pixels.len().checked_sub(2) else { return [0; 2] };
-    // This costs less than a branch.
+    // Clamping costs less than a branch.
     let place = (place.cast_unsigned() as usize).min(last);
     [pixels[place], pixels[place + 1]].map(i32::from_le_bytes)
 }
 
-/// A column or row, which is at least -1, and the next one, both brought into the picture.
+/// Wraps a column or row, which is at least -1, and the next one into the picture.
 #[inline(always)]
 fn beside<S: Simd>(i: i32x16<S>, count: i32x16<S>, wrap: Wrap) -> [i32x16<S>; 2] {
     let zero = i32x16::splat(i.simd, 0);
@@ -423,7 +427,8 @@ mod tests {
     use marraztu_core::base::rng::Rng;
     use marraztu_core::scene::Texture;
 
-    /// The texels around a position, one by one: left and right in the lower row, and in the upper.
+    /// Returns the texels around a position, one by one: left and right in the lower row, then in
+    /// the upper.
     fn around(texture: &Texture, at: [f32; 2]) -> [[[u8; 4]; 2]; 2] {
         let Size { width, height } = texture.picture.size();
         let bring = |i: i64, count: usize| {
