@@ -81,7 +81,7 @@ fn work_of_a_program_that_ended_is_offered_and_recovered_as_unsaved() {
     };
     let mut editor = Editor::keeping(folder.path());
     assert_eq!(editor.is_offered(), 1);
-    assert!(editor.shows("The program ended with unsaved changes of a new scene"));
+    assert!(editor.shows("The program ended with unsaved changes to a new scene"));
     editor.press(Lower(Key::O));
     assert!(editor.view().polygons.is_some(), "the notice blocks nothing");
     editor.press(Lower(Key::O));
@@ -202,7 +202,7 @@ fn recovered_work_goes_back_to_its_scene_file() {
     editor.harness.state().wait_for_journal();
     drop(editor);
     let mut editor = Editor::keeping(folder.path());
-    assert!(editor.shows("unsaved changes of my.marraztu"));
+    assert!(editor.shows("unsaved changes to my.marraztu"));
     editor.press(Lower(Key::X));
     editor.click_label("Recover");
     assert!(editor.shows("Save the scene?"), "this program's own work comes first");
