@@ -256,7 +256,7 @@ fn a_broken_file_of_preferences_is_set_aside_and_said() {
     std::fs::create_dir_all(&config).unwrap();
     std::fs::write(config.join("preferences.ron"), "(scale: nonsense").unwrap();
     let editor = Editor::keeping(folder.path());
-    assert!(editor.shows("The preferences were not understood"));
+    assert!(editor.shows("The preferences could not be parsed"));
     assert!(config.join("preferences.broken-1.ron").is_file());
 }
 

@@ -503,7 +503,7 @@ fn the_crease_angle_is_off_if_it_has_no_effect() {
         control(editor, Role::SpinButton, "Crease angle").accesskit_node().is_disabled()
     };
     let mut editor = with_object();
-    assert!(disabled(&editor), "the program's own models are smooth");
+    assert!(disabled(&editor), "built-in models are always smooth");
     with_model(&mut editor, TENT);
     assert!(!disabled(&editor));
     with_model(&mut editor, &format!("s off\n{TENT}"));
