@@ -41,7 +41,7 @@ fn a_sweep_prints_its_table_and_leaves_everything_in_its_folder() {
         "presets",
         "At 48x36 on the first scene: ",
         "saves more than the noise",
-        "means nothing",
+        "are noise",
         "combinations",
         "not measured: Texture filter: nothing that is shown has a texture",
         "the fastest with RMSE in byte steps at most 255: ",

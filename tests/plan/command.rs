@@ -29,7 +29,7 @@ fn the_plan_takes_the_options_of_a_picture_and_says_what_they_leave_out() {
     assert!(line(&dark, "sun").contains("switched off"));
     assert!(dark.contains("no light reads them"), "{dark}");
     assert!(plan(&["--edges"]).contains("edges only"));
-    assert!(line(&plan(&["--helpers", "none"]), "Marks").contains("switched off"));
+    assert!(line(&plan(&["--helpers", "none"]), "Markers").contains("switched off"));
 }
 
 #[test]
