@@ -43,7 +43,7 @@ fn a_sweep_prints_its_table_and_leaves_everything_in_its_folder() {
         "saves more than the noise",
         "are noise",
         "combinations",
-        "not measured: Texture filter: nothing that is shown has a texture",
+        "not measured: Texture filter: no visible surface has a texture",
         "the fastest with RMSE in byte steps at most 255: ",
         "the most exact within",
         "equal results",
