@@ -164,7 +164,7 @@ pub(crate) struct Seeing {
     #[arg(long, value_name = "COLOUR", value_parser = color)]
     pub(crate) background: Option<Color>,
     /// The normals that light uses: face, vertex*
-    #[arg(long, hide_possible_values = true, value_name = "WHOSE", value_parser = choice(&[
+    #[arg(long, hide_possible_values = true, value_name = "WHICH", value_parser = choice(&[
         ("face", Normals::Face),
         ("vertex", Normals::Vertex),
     ]))]

@@ -167,7 +167,7 @@ actions! {
         "Next polygon" "Selects the next polygon of the selected object in polygon mode."
         "face triangle cycle";
     NextSubject Select ONCE [Lower(Key::C)]
-        "Next subject" "Changes what the keys act on, from camera to object to light."
+        "Next subject" "Makes the keys act on the next subject: cameras, objects or lights."
         "cycle mode what";
     SubjectCamera Select ONCE []
         "Cameras" "Makes the keys act on the selected camera."
