@@ -40,9 +40,9 @@ use marraztu_render::{RayCount, Renderer, Timings, plan_frame};
     after_help = "\
 Draws a mesh from an orbit, lit by five lights, and prints one line of comma-separated figures:
 R, label, mesh, triangles, mode, size, samples, frames, median and shortest milliseconds a frame,
-processor milliseconds a frame, the same three again, and how many pixels are covered.
+processor milliseconds a frame, the same three again, and the number of covered pixels.
 
-Exit status 3: this mode, number of samples or set of instructions is not supported."
+Exit status 3: this mode, number of samples or instruction set is not supported."
 )]
 struct Job {
     /// The model (.obj)
@@ -57,22 +57,22 @@ struct Job {
     /// Samples per pixel: 1, 4, 16, 64
     #[arg(long, default_value_t = 1)]
     msaa: u32,
-    /// The most frames to measure
+    /// Maximum number of frames to measure
     #[arg(long, default_value_t = 200)]
     frames: usize,
-    /// Frames to draw first, without measuring them
+    /// Number of warm-up frames, which are not measured
     #[arg(long, default_value_t = 3)]
     warm: usize,
     /// Milliseconds after which measuring stops
     #[arg(long, default_value_t = 1000.0)]
     budget: f64,
-    /// Distance of the camera from the origin, at which it looks
+    /// Distance of the camera from the origin
     #[arg(long, default_value_t = 290.0)]
     dist: f64,
     /// Look straight at the mesh and hardly turn
     #[arg(long)]
     face: bool,
-    /// Leave the mesh where its file has it
+    /// Keep the position and size that the mesh has in its file
     #[arg(long)]
     raw: bool,
     /// Let the sun, the bulb and the spots cast shadows, and print a second line: S, label, mesh,
@@ -92,7 +92,7 @@ struct Job {
     /// lines, tiles, and all else (plan and damage)
     #[arg(long)]
     stages: bool,
-    /// How it is decided whether a light is seen: exact, map-2048, map-2048-pcf and others, as
+    /// The shadow method: exact, map-2048, map-2048-pcf and others, as in
     /// `marraztu render --shadow-method`
     #[arg(long, value_name = "METHOD", default_value = "exact")]
     shadow_method: String,
@@ -102,10 +102,10 @@ struct Job {
     /// The label of the line
     #[arg(long, default_value = "marraztu")]
     label: String,
-    /// Instructions to draw with: best, avx512, avx2, sse4.2, plain. The picture is the same
+    /// The instruction set: best, avx512, avx2, sse4.2, plain. The picture is the same
     #[arg(long, value_name = "SET", default_value = "best")]
     instructions: String,
-    /// Threads that draw [default: one for each core]
+    /// Number of threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }
@@ -220,20 +220,20 @@ fn supported(job: &Job) -> Result<(Mode, Samples, Level), String> {
     let found = Mode::ALL.into_iter().find(|(name, _)| name == mode);
     let (_, mode) = found.ok_or_else(|| {
         let all = Mode::ALL.map(|(name, _)| name).join(", ");
-        format!("the mode \"{mode}\" is not supported; there are {all}")
+        format!("the mode \"{mode}\" is not supported; possible values: {all}")
     })?;
     let samples = Samples::ALL.into_iter().find(|samples| samples.count() == *msaa);
     let samples = samples.ok_or_else(|| {
-        format!("{msaa} samples per pixel are not supported; there are 1, 4, 16 and 64")
+        format!("{msaa} samples per pixel are not supported; possible values: 1, 4, 16 and 64")
     })?;
     // Other renderers lack some options, too: status 3 lets a script skip them.
     let level = instructions::named(instructions).ok_or_else(|| {
         format!(
-            "the instructions \"{instructions}\" are unknown, or this processor does not have \
-             them; there are best, avx512, avx2, sse4.2, plain"
+            "the instruction set \"{instructions}\" is unknown, or not supported by this \
+                processor; possible values: best, avx512, avx2, sse4.2, plain"
         )
     })?;
-    method(job).ok_or_else(|| format!("there are no shadows by \"{}\"", job.shadow_method))?;
+    method(job).ok_or_else(|| format!("the shadow method \"{}\" is unknown", job.shadow_method))?;
     Ok((mode, samples, level))
 }
 

@@ -87,7 +87,7 @@ fn a_picture_replaces_neither_a_file_of_another_kind_nor_its_own_source() {
         std::fs::write(at("poem.obj"), SQUARE).unwrap();
         let all = [&["render"], arguments].concat();
         let (_, err) = ends_with(1, folder.path(), &all, b"");
-        assert!(err.contains("it is not a picture"), "{err}");
+        assert!(err.contains("exists and is not a picture"), "{err}");
         assert_eq!(std::fs::read_to_string(at("poem.png")).unwrap(), "Roses are red");
     }
     // Neither the texture named by the material nor the texture option may be overwritten.
@@ -100,7 +100,7 @@ fn a_picture_replaces_neither_a_file_of_another_kind_nor_its_own_source() {
         [&["wood.obj"][..], &["square.obj", "--texture", "wood.png", "-o", "./wood.png"]]
     {
         let (_, err) = ends_with(1, folder.path(), &[&["render"], arguments].concat(), b"");
-        assert!(err.contains("the scene is read from it"), "{err}");
+        assert!(err.contains("the scene is read from this file"), "{err}");
         assert_eq!(io::load_picture(&at("wood.png")).unwrap(), texture);
     }
 }

@@ -167,7 +167,7 @@ fn texture_coordinates_and_normals_stay_with_their_corners_if_others_have_none()
 #[test]
 fn vertices_keep_their_numbers_whether_faces_use_them_or_not() {
     let loaded = read("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 8 8 8\nv 0 1 0\nv 7 7 7\nf 5 2 3\n");
-    let text = "3 vertices are not used by any face: they do not count for the size and the centre";
+    let text = "3 vertices are not used by any face and do not affect size and centre";
     assert_eq!(only(&loaded), (FindingKind::VertexUnused, text));
     let mesh = loaded.model.mesh;
     assert_eq!(mesh.positions().len(), 6);

@@ -474,7 +474,7 @@ fn everything_that_is_left_out_is_listed_with_its_reason() {
     });
     let uses = explained(&scene);
     assert_eq!(reason(&uses, "ambient", Some("cube")), "Ka of the material is 0");
-    assert_eq!(reason(&uses, "Textures", Some("cube")), "the file places none");
+    assert_eq!(reason(&uses, "Textures", Some("cube")), "the model has no texture coordinates");
 }
 
 #[test]

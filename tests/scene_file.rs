@@ -285,12 +285,7 @@ fn axes_and_choices_of_older_scene_files_still_open() {
 fn text_that_cannot_be_parsed_is_refused_with_its_position_in_plain_words() {
     let mut wrong = Vec::new();
     for (from, to, line, reason) in [
-        (
-            "version: 1",
-            "version: 2",
-            2,
-            "the file has version 2, which a newer program has written",
-        ),
+        ("version: 1", "version: 2", 2, "the file has version 2, from a newer program"),
         ("version: 1", "version: 0", 2, "0 is not a version: the first one is 1"),
         ("version: 1,", "", 0, "this is not a scene file: it has no version"),
         ("background", "foreground", 3, "the scene cannot have \"foreground\""),
@@ -374,7 +369,7 @@ fn invalid_items_of_a_scene_are_refused_by_name() {
         (
             "eye: (0.0, 0.0, 400.0)",
             "eye: (0.0, 0.0, NaN)",
-            "\"camera 1\": its place has a number that is infinite or NaN",
+            "\"camera 1\": its position has a number that is infinite or NaN",
         ),
         ("half_angle: 22.5", "half_angle: 90.0", "the lens needs an angle between 0 and 90"),
         ("slot: 1,", "slot: 0,", "another light has slot 0 already"),
@@ -524,7 +519,7 @@ fn a_scene_opens_without_its_files_and_is_saved_as_it_was() {
     assert_eq!(opened.scene.missing_files(), missing);
     let found: Vec<(FindingKind, &str)> =
         opened.findings.iter().map(|finding| (finding.kind, finding.text.as_str())).collect();
-    let model = "the model \"models/cube.obj\" was not found: a box takes its place";
+    let model = "the model \"models/cube.obj\" was not found: a box is shown instead";
     let texture = "the texture \"chess.png\" was not found";
     assert!(found.contains(&(FindingKind::ModelMissing, model)), "{found:?}");
     assert!(found.contains(&(FindingKind::TextureMissing, texture)), "{found:?}");

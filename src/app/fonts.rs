@@ -48,8 +48,8 @@ pub(crate) fn take_missing(ctx: &Context) -> Option<String> {
     let list = if codes.is_empty() { last } else { format!("{} and {last}", codes.join(", ")) };
     let letters = if missing.len() == 1 { "letter" } else { "letters" };
     Some(format!(
-        "No font of this system has the {letters} {list}, so boxes stand for them. Install a font \
-         that has them, such as one of the Noto family, and start the program again."
+        "No installed font has the {letters} {list}, so boxes are shown instead. Install a font \
+            that has them, such as one of the Noto family, and restart the program."
     ))
 }
 
@@ -271,10 +271,7 @@ mod tests {
         let (glyphs, said) = shown("山田a", mountain);
         assert_eq!(glyphs, [true, false, true]);
         let said = said.unwrap();
-        assert!(
-            said.starts_with("No font of this system has the letter U+7530, so boxes"),
-            "{said}"
-        );
+        assert!(said.starts_with("No installed font has the letter U+7530, so boxes"), "{said}");
         let said = |name| shown(name, Database::new).1.unwrap();
         assert!(said("山田").contains("the letters U+5C71 and U+7530, so"));
         assert!(said("山田川海空雨").contains("U+5C71, U+5DDD, U+6D77, U+7530 and 2 more, so"));

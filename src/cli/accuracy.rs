@@ -35,7 +35,8 @@ impl Accuracy {
 impl Args for Accuracy {
     fn augment_args(command: Command) -> Command {
         let presets: Vec<&str> = ACCURACY_PRESETS.iter().map(|preset| preset.word).collect();
-        let help = format!("A named point of accuracy, before single axes: {}", presets.join(", "));
+        let help =
+            format!("An accuracy preset, applied before single axes: {}", presets.join(", "));
         let command = command.next_help_heading("Accuracy").arg(option(PRESET, presets, help));
         AXES.iter().fold(command, |command, axis| {
             let words = axis.choices.iter().map(|choice| choice.word).collect();

@@ -20,13 +20,13 @@ use marraztu_io::{self as io, Input, PICTURE_FORMATS, PictureFormat};
 /// A picture, and the file that it goes to.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Without files, draws the first scene. A scene is drawn through its own camera; models without a
-scene get a camera that shows all of them and the lights of the first scene, placed and balanced for
-them. Options that are not given stay as the scene has them; a star marks the choice of the first
+Without files, draws the first scene. A scene is drawn through its selected camera. Models without
+a scene are framed by a new camera, and lit by the lights of the first scene, moved and balanced for
+them. Options that are not given keep the values of the scene; a star marks the value of the first
 scene.
 
 The file \"-\" is a model or a scene on standard input. Models may be compressed (.obj.gz). The
-picture never replaces a file that it is made from, or a file that is not a picture.
+picture never overwrites an input file, or a file that is not a picture.
 
 Examples:
   marraztu render teapot.obj
@@ -40,7 +40,7 @@ pub(crate) struct Render {
     #[arg(short, long, value_name = "FILE", help = out_help())]
     #[arg(value_parser = PathBufValueParser::new().try_map(picture))]
     pub(crate) out: Option<PathBuf>,
-    /// Leave the ground out: the picture has an alpha channel
+    /// Omit the background: the picture gets an alpha channel
     #[arg(long)]
     pub(crate) transparent: bool,
     #[command(flatten)]
@@ -50,14 +50,14 @@ pub(crate) struct Render {
 /// A picture: what it shows and how it is drawn.
 #[derive(Debug, Args)]
 pub(crate) struct PictureArguments {
-    /// Models (.obj, .obj.gz), and at most one scene (.marraztu) that they are put into; "-" is
-    /// standard input
+    /// Models (.obj, .obj.gz), and at most one scene (.marraztu) to add them to; "-" is standard
+    /// input
     pub(crate) files: Vec<PathBuf>,
 
     /// Width and height in pixels; one number for a square
     #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
     pub(crate) size: Size,
-    /// Threads that read and draw [default: one for each core]
+    /// Number of threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,
     #[command(flatten)]
@@ -77,23 +77,22 @@ pub(crate) struct PictureArguments {
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Reading models")]
 pub(crate) struct Reading {
-    /// The axis of the file that points up: x, y*, z, -x, -y, -z; by default the one that comments
-    /// at the top of the file state. The model is turned, not mirrored
+    /// The up axis of the file: x, y*, z, -x, -y, -z; by default, the axis stated in comments at
+    /// the top of the file. The model is rotated, not mirrored
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
     #[arg(hide_possible_values = true, value_parser = choice(&UP_AXES))]
     up: Option<UpAxis>,
-    /// The factor that the file's coordinates are multiplied by
+    /// Multiply the file's coordinates by this factor
     #[arg(long, value_name = "FACTOR", value_parser = scale)]
     scale: Option<Scale>,
-    /// Reverse all polygons, for files whose polygons run clockwise seen from outside
+    /// Reverse the winding of all polygons, for files with clockwise front faces
     #[arg(long)]
     flip_winding: bool,
-    /// Degrees between faces up to which their edge is smooth, if the file has neither normals nor
-    /// smoothing groups: 60*, 0 for flat faces, 180 to smooth all
+    /// The largest angle in degrees between two faces with a smooth edge, if the file has neither
+    /// normals nor smoothing groups: 60*; 0 for flat faces, 180 to smooth all
     #[arg(long, value_name = "DEGREES", value_parser = crease)]
     crease: Option<Crease>,
-    /// What the pictures of `bump` statements hold: heights, normals, auto* (decided by the
-    /// picture)
+    /// How to read the pictures of `bump` statements: heights, normals, auto* (detected)
     #[arg(long, value_name = "WHAT", hide_possible_values = true, value_parser = choice(&[
         ("auto", BumpMaps::Auto),
         ("heights", BumpMaps::Heights),
@@ -104,21 +103,21 @@ pub(crate) struct Reading {
 
 /// How the surfaces of objects look.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Surfaces, of all objects")]
+#[command(next_help_heading = "Surfaces of all objects")]
 pub(crate) struct Surfaces {
     /// One of the 19 materials (brass, polished-gold, ruby ...), or "file" for the file's own
     #[arg(long, value_name = "NAME", value_parser = material)]
     pub(crate) material: Option<MaterialChoice>,
     #[arg(long, value_name = "FILE", help = texture_help())]
     pub(crate) texture: Option<PathBuf>,
-    /// What to show: material, texture (unlit), or both, lit (lit*)
+    /// The surface to show: material, texture (unlit), lit* (both, lit)
     #[arg(long, hide_possible_values = true, value_name = "WHAT", value_parser = choice(&[
         ("material", Surface::Material),
         ("texture", Surface::Texture),
         ("lit", Surface::TextureAndLight),
     ]))]
     pub(crate) surface: Option<Surface>,
-    /// The sides of faces to draw: one, two, auto* (two of open surfaces, one of closed ones)
+    /// The sides of faces to draw: one, two, auto* (two for open surfaces, one for closed ones)
     #[arg(long, hide_possible_values = true, value_name = "WHICH", value_parser = choice(&[
         ("one", Sides::One),
         ("two", Sides::Two),
@@ -132,7 +131,7 @@ pub(crate) struct Surfaces {
 
 /// How the scene is looked at.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Looking at the scene")]
+#[command(next_help_heading = "View")]
 pub(crate) struct Seeing {
     /// The camera to look through, by its number in the scene's list, from 1
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -148,25 +147,24 @@ pub(crate) struct Seeing {
         ("orthographic", Projection::Orthographic),
     ]))]
     pub(crate) projection: Option<Projection>,
-    /// The time of the scene in seconds, for objects that turn and lights that circle
+    /// The time of the scene in seconds, for objects that spin and lights that circle
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) time: Option<f64>,
-    /// The slots of the lights that are on, as "0,2"; all others are off. "none" for darkness
+    /// The slots of the lights to switch on, as "0,2"; the others are off. "none" switches all off
     #[arg(long, value_name = "SLOTS", value_parser = slots)]
     pub(crate) lights: Option<Slots>,
-    /// The slots of the lights that cast shadows, as "1,3"; the others cast none. "all" for all
-    /// that can, "none*" for none
+    /// The slots of the lights that cast shadows, as "1,3"; or "all", or "none*"
     #[arg(long, value_name = "SLOTS", value_parser = shadow_slots)]
     pub(crate) shadows: Option<ShadowSlots>,
-    /// How much brighter all light is, in stops (each doubles it), or "fit": the brightest surfaces
-    /// are just below white. 0*
+    /// Exposure in stops (each doubles the light): 0*; "fit" puts the brightest surfaces just below
+    /// white
     #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = exposure)]
     pub(crate) exposure: Option<Exposure>,
     /// The colour of the background: "0,0,179", "#0000b3", "#fff", or a name such as "white"
     #[arg(long, value_name = "COLOUR", value_parser = color)]
     pub(crate) background: Option<Color>,
     /// The normals that light uses: face, vertex*
-    #[arg(long, hide_possible_values = true, value_name = "WHOSE", value_parser = choice(&[
+    #[arg(long, hide_possible_values = true, value_name = "WHICH", value_parser = choice(&[
         ("face", Normals::Face),
         ("vertex", Normals::Vertex),
     ]))]
@@ -186,7 +184,7 @@ pub(crate) struct Seeing {
     /// Draw the normals of vertices
     #[arg(long)]
     pub(crate) vertex_normals: bool,
-    /// The marks of cameras and bulbs: none (the default without a scene), all*
+    /// The markers of cameras and bulbs: none (the default without a scene), all*
     #[arg(long, value_name = "WHICH", hide_possible_values = true)]
     #[arg(value_parser = choice(&[("none", false), ("all", true)]))]
     pub(crate) helpers: Option<bool>,
@@ -294,7 +292,7 @@ fn out_help() -> String {
 }
 
 fn texture_help() -> String {
-    format!("A texture for the objects: {}", io::texture_formats())
+    format!("The texture of all objects: {}", io::texture_formats())
 }
 
 /// Checks the file name before the picture is drawn, which may take long.
@@ -347,7 +345,7 @@ fn material(text: &str) -> Result<MaterialChoice, String> {
     }
     PresetId::named(text).map(MaterialChoice::Preset).ok_or_else(|| {
         let names: Vec<&str> = PresetId::all().map(|id| id.get().name).collect();
-        format!("there are {}, and file", names.join(", "))
+        format!("possible values: {}, file", names.join(", "))
     })
 }
 

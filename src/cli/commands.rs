@@ -16,9 +16,7 @@ use marraztu::app::Shell;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset};
 
 /// Edits and draws 3D scenes of .obj models, on the CPU alone.
-///
-/// Without a command, opens the editor with the models and the scene that are named, or with the
-/// first scene.
+/// Without a command, opens the editor with the given models and scene, or with the first scene.
 #[derive(Debug, Parser)]
 #[command(
     name = "marraztu",
@@ -30,9 +28,9 @@ Examples:
   marraztu teapot.obj                       open the editor with a model
   marraztu render teapot.obj                draw a model into teapot.png
   marraztu render --out first.png           draw the first scene
-  marraztu turntable teapot.obj             draw a model from all around into teapot.gif
+  marraztu turntable teapot.obj             draw a turntable of a model into teapot.gif
   marraztu export --out first.glb           write the first scene as glTF
-  marraztu info teapot.obj                  describe a file, and what is wrong with it
+  marraztu info teapot.obj                  describe a file and its problems
 
 Exit status: 0 on success, 1 if something failed, 2 for invalid arguments."
 )]
@@ -42,14 +40,14 @@ pub(crate) struct Arguments {
     pub(crate) command: Option<Headless>,
     /// Models (.obj) and a scene (.marraztu) to open in the editor
     pub(crate) files: Vec<PathBuf>,
-    /// What paints the window: automatic*, gl (OpenGL), software (the processor, without OpenGL)
+    /// How to draw the window: automatic*, gl (OpenGL), software (on the CPU, without OpenGL)
     #[arg(long, hide_possible_values = true, value_name = "WHAT", value_parser = choice(&[
         ("automatic", Shell::Automatic),
         ("gl", Shell::Gl),
         ("software", Shell::Software),
     ]))]
     pub(crate) shell: Option<Shell>,
-    /// The accuracy to begin with: draft, default, exact, ancestor-a, ancestor-b
+    /// The accuracy preset to start with: draft, default, exact, ancestor-a, ancestor-b
     #[arg(long, hide_possible_values = true, value_name = "CHOICE", value_parser = preset)]
     pub(crate) preset: Option<&'static AccuracyPreset>,
 }
@@ -57,30 +55,30 @@ pub(crate) struct Arguments {
 /// The commands that run without a window.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Headless {
-    /// Draw a picture into a file: the same pixels that the editor shows
+    /// Draw a picture into a file, with the same pixels as in the editor
     Render(Box<Render>),
-    /// Draw the scene from all around: a GIF, an animated PNG, or numbered pictures
+    /// Draw a turntable: a GIF, an animated PNG, or numbered pictures
     Turntable(Box<Turntable>),
-    /// Write the scene for other programs, as OBJ with MTL or as glTF
+    /// Export the scene as OBJ with MTL, or as glTF
     Export(Box<Export>),
-    /// Explain which effects a frame uses, which are left out and why, and what they cost
+    /// List the effects of a frame: on or left out, the reason, and the cost
     Plan(Box<Plan>),
-    /// Explain a pixel: what it shows, and the light that its colour is made of
+    /// Explain a pixel: its surface, and the light that makes up its colour
     Explain(Box<Explain>),
-    /// Describe files: shape, parts, materials, and what is wrong with them
+    /// Describe files: shape, parts, materials and problems
     Info(Info),
     /// List every key of the editor
     Keys(Keys),
-    /// Measure what accuracy costs: time and error of each choice of each axis
+    /// Measure the cost of accuracy: time and error of each choice of each axis
     Lab(Box<Lab>),
-    /// Check that this processor draws the same pictures as every other
+    /// Check that this processor draws the same pictures as all others
     Verify(Verify),
 }
 
 fn preset(text: &str) -> Result<&'static AccuracyPreset, String> {
     AccuracyPreset::named(text).ok_or_else(|| {
         let words: Vec<&str> = ACCURACY_PRESETS.iter().map(|preset| preset.word).collect();
-        format!("there are {}", words.join(", "))
+        format!("possible values: {}", words.join(", "))
     })
 }
 

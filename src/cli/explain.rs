@@ -15,9 +15,9 @@ use super::values::{Pixel, pixel as parse_pixel};
 /// A picture, and the pixel to explain.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Takes the files and options of `render`. Lists the surface that the pixel shows, its vectors, and
-for each light ambient, diffuse and specular, in steps of a byte: their sum, clamped and rounded, is
-the byte of the picture. A pixel of several samples is explained by the light at its centre.
+Takes the files and options of `render`. Lists the surface of the pixel, its vectors, and the
+ambient, diffuse and specular terms of each light in byte steps. Their sum, clamped and rounded, is
+the byte of the picture. With several samples per pixel, explains the light at the pixel's centre.
 
 Examples:
   marraztu explain --at 400,300
@@ -40,7 +40,7 @@ pub(crate) fn explain(arguments: &Explain) -> Result<(), Failure> {
     renderer.render(&plan_frame(&shot));
     let Pixel([x, y]) = arguments.at;
     let Some(explained) = renderer.explain(x, y) else {
-        return Err(Failure::Absent(format!("pixel {x},{y} lies outside of the picture")));
+        return Err(Failure::Absent(format!("pixel {x},{y} is outside the picture")));
     };
     let text = pixel::lines(&shot.scene, &explained).join("\n") + "\n";
     std::io::stdout().lock().write_all(text.as_bytes()).map_err(Failure::Output)

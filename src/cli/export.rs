@@ -15,17 +15,17 @@ use super::target::default_name;
 /// A scene, and the file that it goes to.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-OBJ has shapes and materials (.mtl beside it); glTF has cameras and lights, too: .glb is one file,
-.gltf has its buffer beside it. Textures become PNG files, or parts of the glTF. Hidden objects are
-left out. What a format cannot say is noted.
+OBJ holds shapes and materials, in a separate .mtl file. glTF also holds cameras and lights: .glb is
+one file, .gltf has a separate buffer. Textures become PNG files, or parts of the glTF. Hidden
+objects are left out. Notes list the features that the format does not have.
 
 Examples:
   marraztu export --out first.glb
   marraztu export shelf.marraztu --out shelf.obj
   marraztu export room.obj --up z --out room.gltf")]
 pub(crate) struct Export {
-    /// Models (.obj, .obj.gz), and at most one scene (.marraztu) that they are put into; "-" is
-    /// standard input
+    /// Models (.obj, .obj.gz), and at most one scene (.marraztu) to add them to; "-" is standard
+    /// input
     files: Vec<PathBuf>,
     /// The file to write: .obj, .gltf or .glb [default: the name of the scene or first model with
     /// .glb, in the current folder]

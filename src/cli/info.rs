@@ -58,7 +58,7 @@ fn description(file: &Path, input: Option<&Input>, reading: &Reading) -> Result<
 /// Describes the shape of an object: "a cube, 8 vertices, 6 faces".
 fn model_text(model: &Model) -> String {
     if let (true, Some(file)) = (model.is_placeholder(), &model.source) {
-        return format!("a box in the place of {}, which is missing", file.display());
+        return format!("a box in place of the missing file {}", file.display());
     }
     let kind = shape(model).map_or_else(String::new, |shape| format!("a {}, ", shape.name()));
     let (vertices, faces) = (model.mesh.positions().len(), model.mesh.polygon_count());

@@ -11,7 +11,7 @@ use super::failure::Failure;
 /// Lists every key of the editor, and what the mouse does.
 #[derive(Debug, Args)]
 pub(crate) struct Keys {
-    /// As Markdown, a table for each group
+    /// Print Markdown, with a table for each group
     #[arg(long)]
     markdown: bool,
 }

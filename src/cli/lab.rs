@@ -30,9 +30,10 @@ use super::values::{Pixel, pixel, size, threads};
 /// What to measure, and what to report.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Times each choice of each axis in turn with the default, and compares its picture with the most
-exact one. The folder of --out gets table.txt, table.csv, report.json, the plots (light and dark),
-the exact picture, and pictures of the error of the chosen settings, amplified 1, 16 and 256 times.
+Measures each choice of each axis alternately with the default, and compares its picture with the
+most exact one. Writes table.txt, table.csv, report.json, the plots (light and dark), the exact
+picture, and the error of the chosen settings, amplified 1, 16 and 256 times, into the folder of
+--out.
 
 Examples:
   marraztu lab --quick
@@ -41,7 +42,7 @@ Examples:
   marraztu lab --suite --out suite
   marraztu lab --shading vertex --pixel 215,430")]
 pub(crate) struct Lab {
-    /// Models (.obj), and at most one scene (.marraztu) that they are put into
+    /// Models (.obj), and at most one scene (.marraztu) to add them to
     pub(crate) files: Vec<PathBuf>,
 
     /// The folder for tables, plots and pictures; created if it does not exist
@@ -50,7 +51,7 @@ pub(crate) struct Lab {
     /// Width and height in pixels; one number for a square [default: 800x800; suite: 1280x720]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<Size>,
-    /// Measure scenes in which each axis matters instead, or one of them: pixels, vertices,
+    /// Measure the suite, with a scene for each axis, or one of its scenes: pixels, vertices,
     /// highlights, textures, edges, far, depth, first; at most 10 minutes at 1280x720
     #[arg(long, value_name = "SCENE", num_args = 0..=1, require_equals = true)]
     #[arg(default_missing_value = "all", value_parser = suite_words(), hide_possible_values = true)]
@@ -59,27 +60,27 @@ pub(crate) struct Lab {
     /// The axes to measure [default: all]
     #[arg(long, value_name = "AXIS,...", value_delimiter = ',', value_parser = axis_words())]
     axes: Vec<String>,
-    /// Measure less often and for less time: some 20 seconds for the first scene
+    /// Measure fewer pairs of pictures: about 20 seconds for the first scene
     #[arg(long)]
     quick: bool,
     /// The error metric of budgets and plot: rmse*, largest, differing, flip
     #[arg(long, value_name = "MEASURE", default_value = "rmse", hide_default_value = true)]
     #[arg(hide_possible_values = true, value_parser = measure_words())]
     measure: String,
-    /// Take errors over the pixels alone whose coverage does not differ
+    /// Measure errors only over pixels with equal coverage
     #[arg(long)]
     inside: bool,
-    /// Name the fastest choice whose error is at most this
+    /// Report the fastest choice with at most this error
     #[arg(long, value_name = "ERROR", value_parser = above_zero)]
     max_error: Option<f64>,
-    /// Name the most exact choice that takes at most this
+    /// Report the most exact choice within this time
     #[arg(long, value_name = "MILLISECONDS", value_parser = above_zero)]
     budget_ms: Option<f64>,
-    /// Only explain one pixel: which axis its error comes from
+    /// Only attribute the error of one pixel to an axis
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     #[arg(conflicts_with_all = ["quick", "axes", "max_error", "budget_ms", "out"])]
     pixel: Option<Pixel>,
-    /// Threads that draw [default: one for each core]
+    /// Number of threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
     #[command(flatten)]

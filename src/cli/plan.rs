@@ -28,13 +28,13 @@ pub(crate) struct Plan {
     #[command(flatten)]
     picture: PictureArguments,
 
-    /// Measure what each effect costs in time, by pairs of frames with it and without it
+    /// Measure the time of each effect, with pairs of frames with and without it
     #[arg(long)]
     measure: bool,
-    /// How long to measure, roughly
+    /// Approximate measuring time
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, requires = "measure")]
     seconds: f64,
-    /// The format of the list
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
 }
@@ -42,9 +42,9 @@ pub(crate) struct Plan {
 /// How the list is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
-    /// Columns, for people
+    /// Aligned columns
     Table,
-    /// Comma-separated, a line for each effect on each object
+    /// Comma-separated values, one line per effect and object
     Csv,
     /// A JSON object
     Json,
@@ -69,7 +69,7 @@ pub(crate) fn plan(arguments: &Plan) -> Result<(), Failure> {
 }
 
 fn table(explained: &Explained, costs: Option<&Costs>) -> String {
-    let mut rows = vec![["Effect", "Of", "", "Why", "Pixels", "ms"].map(str::to_owned)];
+    let mut rows = vec![["Effect", "Item", "", "Reason", "Pixels", "ms"].map(str::to_owned)];
     for group in explained.groups() {
         let cost = costs.and_then(|costs| Some((costs, costs.of(group.effect)?)));
         let time = cost.map_or(String::new(), |(costs, cost)| match costs.is_clear(cost) {
@@ -92,7 +92,7 @@ fn table(explained: &Explained, costs: Option<&Costs>) -> String {
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
-        "\n{} x {} pixels. Leaving effects out changes no bit.",
+        "\n{} x {} pixels. Leaving effects out does not change a single bit.",
         size.width, size.height
     );
     if let Some(costs) = costs {

@@ -79,10 +79,10 @@ fn tell_unseen(renderer: &mut Renderer, shot: &Shot) {
         };
         let others = match names.len() {
             1 => String::new(),
-            2 => " and of 1 other object".to_owned(),
-            n => format!(" and of {} other objects", n - 1),
+            2 => " and 1 other object".to_owned(),
+            n => format!(" and {} other objects", n - 1),
         };
-        note(&format_args!("nothing is seen of {}{others}: {reason}{remedy}", names[0]));
+        note(&format_args!("nothing of {}{others} is visible: {reason}{remedy}", names[0]));
     }
 }
 
@@ -150,7 +150,10 @@ fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
 /// Applies the options for the view.
 fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     if seeing.from.is_some() && !stage.models_alone {
-        return Err(usage("--from says from where models alone are seen; a scene has its cameras"));
+        return Err(usage(
+            "--from works only for models without a scene; choose a camera of the scene with \
+                --camera",
+        ));
     }
     // The camera comes first: lights and exposure depend on the view.
     aim(stage, seeing)?;

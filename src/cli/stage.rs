@@ -58,8 +58,8 @@ impl Stage {
         }
         if models.is_empty() && reading.is_given() {
             return Err(usage(
-                "--up, --scale, --flip-winding, --crease and --bump-maps say how models are read: \
-                 name one",
+                "--up, --scale, --flip-winding, --crease and --bump-maps apply to model files: \
+                    name one",
             ));
         }
         let mut stage = match scenes.first() {

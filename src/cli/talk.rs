@@ -16,7 +16,7 @@ pub(crate) struct Talk {
     /// Print errors only: no notes on files, no progress
     #[arg(short, long, conflicts_with = "progress")]
     quiet: bool,
-    /// Print progress in per cent, a line at a time, even if standard error is no terminal
+    /// Print progress as lines of per cent, even if standard error is not a terminal
     #[arg(long)]
     progress: bool,
 }

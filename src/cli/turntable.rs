@@ -24,9 +24,8 @@ const MOST_FRAMES: i64 = 3600;
 /// A turn, and the file that it goes to.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The first picture is the one that `render` draws with the same options. Objects that turn and lights
-that circle by themselves go on meanwhile. Nothing is written before the last picture is drawn,
-unless pictures are numbered.
+The first picture is the same as from `render` with these options. Objects that spin and lights that
+circle keep moving. Nothing is written before the last picture is drawn, except numbered pictures.
 
 Examples:
   marraztu turntable teapot.obj
@@ -40,18 +39,18 @@ pub(crate) struct Turntable {
     #[arg(short, long, value_name = "FILE")]
     #[arg(value_parser = PathBufValueParser::new().try_map(animation))]
     out: Option<PathBuf>,
-    /// The number of pictures of a whole turn
+    /// Number of pictures per turn
     #[arg(long, value_name = "N", default_value_t = 60)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES))]
     frames: u32,
-    /// The seconds that a whole turn takes
+    /// Seconds per turn
     #[arg(long, value_name = "SECONDS", default_value_t = 4.0, value_parser = seconds)]
     seconds: f64,
-    /// What turns: objects* (under lights that stand still), camera
+    /// The part that turns: objects* (under fixed lights), camera
     #[arg(long, value_name = "WHAT", hide_possible_values = true, default_value = "objects")]
     #[arg(hide_default_value = true, value_parser = ["objects", "camera"])]
     turn: String,
-    /// Leave the ground out: the pictures have an alpha channel
+    /// Omit the background: the pictures get an alpha channel
     #[arg(long)]
     transparent: bool,
     #[command(flatten)]
@@ -94,7 +93,7 @@ pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
     writer.finish()?;
     drop(bar);
     if out.is_none() {
-        note(&format_args!("the turn is in {}", path.display()));
+        note(&format_args!("the turntable is in {}", path.display()));
     }
     Ok(())
 }
@@ -102,7 +101,7 @@ pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
 /// Checks the file name before the pictures are drawn, which may take long.
 fn animation(path: PathBuf) -> Result<PathBuf, String> {
     if is_standard(&path) {
-        return Err("a turn goes to a file".to_owned());
+        return Err("a turntable cannot be written to standard output".to_owned());
     }
     AnimationFormat::of(&path).map(|_| path)
 }

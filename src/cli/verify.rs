@@ -20,23 +20,23 @@ use super::values::threads;
 /// With which instructions and threads the pictures are drawn.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Draws small pictures of every kind and compares them with the list that all processors have to draw.
-Prints a line for each picture that differs.
+Draws small pictures of every kind and compares their checksums with the list, which is the same for
+all processors. Prints a line for each picture that differs.
 
 Examples:
-  marraztu verify                               every set of instructions of this processor
+  marraztu verify                               every instruction set of this processor
   marraztu verify --instructions plain --threads 1
   marraztu verify --print                       the list, as tests/pictures.sums holds it
 
 Exit status 1: a picture differs.")]
 pub(crate) struct Verify {
-    /// The set of instructions: best, avx512, avx2, sse4.2, plain (the least) [default: all of this processor]
+    /// The instruction set: best, avx512, avx2, sse4.2, plain [default: all of this processor]
     #[arg(long, value_name = "SET", value_parser = level)]
     instructions: Option<Level>,
-    /// Threads that draw [default: one for each core]
+    /// Number of threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
-    /// Print the sums instead of comparing them
+    /// Print the checksums instead of comparing them
     #[arg(long)]
     print: bool,
     /// Write pictures to this folder: all of them with --print, else those that differ, each with
@@ -47,7 +47,8 @@ pub(crate) struct Verify {
 
 fn level(name: &str) -> Result<Level, &'static str> {
     named(name).ok_or(
-        "unknown, or not a set of this processor; there are best, avx512, avx2, sse4.2, plain",
+        "unknown, or not supported by this processor; possible values: best, avx512, avx2, \
+            sse4.2, plain",
     )
 }
 

@@ -342,7 +342,7 @@ fn a_scene_without_its_files_is_drawn_described_and_exported_with_a_finding() {
             texture: Some((path: "t.png")))])"#;
     std::fs::write(folder.path().join("a.marraztu"), scene).unwrap();
     let size = ["--size", "40x30"];
-    let missing = "the model \"models/ship.obj\" was not found: a box takes its place";
+    let missing = "the model \"models/ship.obj\" was not found: a box is shown instead";
     let (_, err) = ends_with(
         0,
         folder.path(),
@@ -352,7 +352,10 @@ fn a_scene_without_its_files_is_drawn_described_and_exported_with_a_finding() {
     let picture = io::load_picture(&folder.path().join("a.png")).unwrap();
     assert_ne!(picture.pixel(20, 15), picture.pixel(0, 0), "the box is seen");
     let (out, _) = ends_with(0, folder.path(), &["info", "a.marraztu"]);
-    assert!(out.contains("ship: a box in the place of ") && out.contains(missing), "{out}");
+    assert!(
+        out.contains("ship: a box in place of the missing file ") && out.contains(missing),
+        "{out}"
+    );
     let (out, err) = ends_with(0, folder.path(), &[&["plan", "a.marraztu"], &size[..]].concat());
     assert!(out.contains("ship") && err.contains(missing), "{out}{err}");
     for name in ["a.glb", "a.obj"] {

@@ -94,16 +94,16 @@ fn a_picture_that_shows_nothing_of_an_object_says_why() {
     assert_eq!(notes(path, &[]), "", "all of the first scene is seen");
     let err = notes(path, &["square.obj", "--from", "180,0", "--sides", "one"]);
     assert!(
-        err.contains("nothing is seen of square: its only face is turned away: --sides two"),
+        err.contains("nothing of square is visible: its only face is turned away: --sides two"),
         "{err}"
     );
     let err = notes(path, &["square.obj", "--from", "90,0"]);
     assert!(
-        err.contains("nothing is seen of square: it is smaller than a pixel, or seen edge-on"),
+        err.contains("nothing of square is visible: it is smaller than a pixel, or seen edge-on"),
         "{err}"
     );
     let err = notes(path, &["square.obj", "--camera", "1", "--scale", "1e9"]);
-    assert!(err.contains("nothing is seen of square: outside the view"), "{err}");
+    assert!(err.contains("nothing of square is visible: outside the view"), "{err}");
 
     std::fs::write(path.join("two.obj"), format!("{SQUARE}f 2 3 4\n").replace(" 5\n", " 4\n"))
         .unwrap();
@@ -113,16 +113,16 @@ fn a_picture_that_shows_nothing_of_an_object_says_why() {
         "{err}"
     );
     let err = notes(path, &["square.obj", "two.obj", "--from", "180,0"]);
-    assert!(err.contains("nothing is seen of square: it is behind other objects"), "{err}");
+    assert!(err.contains("nothing of square is visible: it is behind other objects"), "{err}");
     let err = notes(path, &["square.obj", "square.obj", "--from", "180,0", "--sides", "one"]);
-    assert!(err.contains("and of 1 other object:"), "{err}");
+    assert!(err.contains("and 1 other object is visible:"), "{err}");
 
     std::fs::write(path.join("clear.mtl"), "newmtl clear\nKd 1 1 1\nd 0\nnewmtl solid\nKd 1 1 1\n")
         .unwrap();
     let clear = format!("mtllib clear.mtl\n{}", SQUARE.replace("f 1", "usemtl clear\nf 1"));
     std::fs::write(path.join("clear.obj"), clear).unwrap();
     let err = notes(path, &["clear.obj"]);
-    assert!(err.contains("nothing is seen of clear: it is wholly transparent"), "{err}");
+    assert!(err.contains("nothing of clear is visible: it is wholly transparent"), "{err}");
 }
 
 #[test]
@@ -184,5 +184,5 @@ fn models_without_a_scene_are_seen_from_the_side_that_is_asked_for() {
     let above = ["render", "--out", "x.png", "--from", "0,91", "square.obj"];
     ends_with(2, folder.path(), &above);
     let (_, err) = ends_with(2, folder.path(), &["render", "--out", "x.png", "--from", "0,9"]);
-    assert!(err.contains("models alone"), "{err}");
+    assert!(err.contains("only for models without a scene"), "{err}");
 }

@@ -24,12 +24,12 @@ fn the_plan_takes_the_options_of_a_picture_and_says_what_they_leave_out() {
         found.unwrap_or_else(|| panic!("{name} in\n{text}")).to_owned()
     };
     assert!(line(&whole, "sun").contains(" on "));
-    assert!(whole.contains("changes no bit"));
+    assert!(whole.contains("does not change a single bit"));
     let dark = plan(&["--lights", "0"]);
     assert!(line(&dark, "sun").contains("switched off"));
     assert!(dark.contains("no light reads them"), "{dark}");
     assert!(plan(&["--edges"]).contains("edges only"));
-    assert!(line(&plan(&["--helpers", "none"]), "Marks").contains("switched off"));
+    assert!(line(&plan(&["--helpers", "none"]), "Markers").contains("switched off"));
 }
 
 #[test]

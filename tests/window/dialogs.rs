@@ -96,7 +96,7 @@ fn esc_asks_while_something_is_unsaved_and_cancel_keeps_everything() {
         assert!(!editor.shows("Save the scene?"));
         if chord == Named(Key::Escape) {
             assert!(!editor.leaves_by(chord), "after a dialog, it warns first");
-            assert!(editor.shows("Esc once more leaves the program"));
+            assert!(editor.shows("Press Esc again to quit"));
         }
         // Discard leaves the program.
         assert!(!editor.leaves_by(chord));
@@ -167,7 +167,7 @@ fn a_model_is_read_with_the_crease_angle_that_is_typed() {
     let mut editor = Editor::tall();
     editor.ask(Request::LoadFiles(vec![path]));
     editor.wait_until(|editor| editor.shows("Material of cube.obj"));
-    editor.click_label("How the file is read");
+    editor.click_label("Import options");
     for _ in 0..30 {
         editor.settle();
     }
@@ -188,7 +188,7 @@ fn the_crease_angle_is_off_if_the_file_has_smoothing_groups() {
     let mut editor = Editor::tall();
     editor.ask(Request::LoadFiles(vec![path]));
     editor.wait_until(|editor| editor.shows("Material of cube.obj"));
-    editor.click_label("How the file is read");
+    editor.click_label("Import options");
     for _ in 0..30 {
         editor.settle();
     }

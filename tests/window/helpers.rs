@@ -199,18 +199,18 @@ fn models_are_read_again_in_one_step_and_a_broken_file_changes_nothing() {
     std::fs::write(&path, TWO).unwrap();
     editor.perform(Action::ReloadModels);
     until(&mut editor, |editor| polygons(&editor.scene()) == 2);
-    assert_eq!(editor.state().history.steps().last(), Some("Read sail again"));
+    assert_eq!(editor.state().history.steps().last(), Some("Reload sail"));
     editor.perform(Action::Undo);
     assert!(editor.scene() == before);
     std::fs::remove_file(&path).unwrap();
     editor.perform(Action::ReloadModels);
-    until(&mut editor, |editor| editor.shows("The model stays as it was"));
+    until(&mut editor, |editor| editor.shows("The model is unchanged"));
     assert!(editor.scene() == before);
     // Without model files there is nothing to reload.
     let mut editor = Editor::new();
     editor.perform(Action::ReloadModels);
     let told = editor.harness.get_by_role(egui::accesskit::Role::Alert).accesskit_node().label();
-    assert_eq!(told.as_deref(), Some("no object of the scene comes from a file"));
+    assert_eq!(told.as_deref(), Some("no object was loaded from a file"));
 }
 
 #[test]

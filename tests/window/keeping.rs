@@ -81,7 +81,7 @@ fn work_of_a_program_that_ended_is_offered_and_recovered_as_unsaved() {
     };
     let mut editor = Editor::keeping(folder.path());
     assert_eq!(editor.is_offered(), 1);
-    assert!(editor.shows("The program ended with unsaved changes of a new scene"));
+    assert!(editor.shows("The program ended with unsaved changes to a new scene"));
     editor.press(Lower(Key::O));
     assert!(editor.view().polygons.is_some(), "the notice blocks nothing");
     editor.press(Lower(Key::O));
@@ -202,7 +202,7 @@ fn recovered_work_goes_back_to_its_scene_file() {
     editor.harness.state().wait_for_journal();
     drop(editor);
     let mut editor = Editor::keeping(folder.path());
-    assert!(editor.shows("unsaved changes of my.marraztu"));
+    assert!(editor.shows("unsaved changes to my.marraztu"));
     editor.press(Lower(Key::X));
     editor.click_label("Recover");
     assert!(editor.shows("Save the scene?"), "this program's own work comes first");
@@ -256,7 +256,7 @@ fn a_broken_file_of_preferences_is_set_aside_and_said() {
     std::fs::create_dir_all(&config).unwrap();
     std::fs::write(config.join("preferences.ron"), "(scale: nonsense").unwrap();
     let editor = Editor::keeping(folder.path());
-    assert!(editor.shows("The preferences were not understood"));
+    assert!(editor.shows("The preferences could not be parsed"));
     assert!(config.join("preferences.broken-1.ron").is_file());
 }
 

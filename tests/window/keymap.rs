@@ -19,7 +19,7 @@ fn choose(editor: &mut Editor, action: &str, key: Key) {
         click(editor, Role::CheckBox, "Change keys");
     }
     click(editor, Role::Button, &format!("Key of {action}"));
-    assert!(editor.shows("Press the key for"));
+    assert!(editor.shows("Press a key for"));
     editor.press(Lower(key));
 }
 
@@ -78,7 +78,7 @@ fn keys_of_an_older_version_are_read_and_what_has_changed_is_said_once() {
         editor.settle();
         let told = editor.state().notices.iter().flat_map(|notice| &notice.details);
         assert_eq!(told.count(), if is_first { 2 } else { 0 });
-        assert_eq!(editor.shows("keys that you have chosen"), is_first);
+        assert_eq!(editor.shows("custom keys could not be restored"), is_first);
         editor.press(Lower(Key::K));
         assert!(editor.state().panels.has(Panel::Statistics), "k has opened the panel");
         editor.press(Lower(Key::K));

@@ -123,7 +123,7 @@ fn a_measurement_is_chosen_from_by_its_marks_its_rows_and_its_budgets() {
     // A change of the scene makes the measurement stale.
     editor.perform_all(&[Action::SubjectObject, Action::StepXUp]);
     assert!(lab(&editor).is_stale(editor.state()));
-    assert!(editor.shows("What is shown has changed since"));
+    assert!(editor.shows("The scene has changed since"));
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn a_pixel_is_explained_by_a_click_that_selects_nothing() {
     let mut editor = editor();
     editor.ask(Request::Settings(Settings { light: LightAt::Face, ..Settings::default() }));
     let selected = editor.view().object;
-    click(&mut editor, Role::CheckBox, "Attribute the error: click on it");
+    click(&mut editor, Role::CheckBox, "Attribute the error of a pixel");
     let middle = editor.at(0.3, 0.5);
     editor.click(middle, PointerButton::Primary);
     until(&mut editor, "the explanation", |e| lab(e).attribution.is_some());
@@ -281,7 +281,7 @@ fn a_lesson_says_in_its_first_line_what_it_costs_once_that_is_measured() {
     let mut editor = editor();
     click(&mut editor, Role::RadioButton, "Laboratory: Lessons");
     click(&mut editor, Role::Button, "Rounding");
-    assert!(editor.shows("What it costs on this machine is not measured yet."));
+    assert!(editor.shows("Its cost on this machine has not been measured yet."));
     click(&mut editor, Role::Button, "Measure this axis");
     until_measured(&mut editor);
     let cost = lab(&editor).costs.get("rounding").cloned().unwrap();
@@ -333,7 +333,7 @@ fn the_help_menu_leads_to_every_lesson() {
         control(&editor, Role::Button, "Take me there");
     }
     click(&mut editor, Role::RadioButton, "Laboratory: Table");
-    assert!(editor.shows("Nothing is measured yet."));
+    assert!(editor.shows("Nothing has been measured yet."));
 }
 
 /// The compare line cuts the bright spot in half: light at vertices misses one half, and the exact

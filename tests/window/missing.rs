@@ -92,7 +92,7 @@ fn a_found_model_takes_the_place_of_its_boxes_in_one_step_and_offers_others_in_i
     assert_eq!([1, 2].map(scale), [1.0, 2.0], "each is read as its object says");
     assert_eq!(editor.steps(), 1);
     editor.settle();
-    assert!(editor.shows("sail.obj was found there, too"));
+    assert!(editor.shows("sail.obj was found there as well"));
     editor.click_label("Use all");
     editor.wait_until(|editor| !is_box(editor, 3));
     assert!(editor.shows("t.png is missing"), "the texture is still missed");
@@ -127,7 +127,10 @@ fn cancelling_and_a_bad_file_leave_the_box() {
     editor.press(Named(Key::Enter));
     editor.ask(Request::Missing(MissingRequest::Dismiss));
     assert!(!editor.shows("files of the scene are missing"));
-    assert!(Action::FindMissing.availability(editor.state()).is_ok(), "File brings it back");
+    assert!(
+        Action::FindMissing.availability(editor.state()).is_ok(),
+        "the File menu shows it again"
+    );
 }
 
 #[test]

@@ -30,7 +30,7 @@ fn a_picture_has_the_size_the_samples_and_the_ground_that_were_chosen() {
     editor.press(Shifted(Key::F12));
     click(&mut editor, Role::RadioButton, "Samples per pixel: 4");
     click(&mut editor, Role::CheckBox, "Transparent background");
-    editor.click_label("Elsewhere...");
+    editor.click_label("Browse...");
     editor.type_path(&path);
     editor.wait_until(|editor| says(editor, "Saved"));
     let window = editor.state().statistics.size;
@@ -47,7 +47,7 @@ fn a_turntable_is_drawn_while_the_window_answers_and_a_cancelled_one_leaves_noth
     let mut editor = Editor::small();
     editor.perform(Action::SaveTurntable);
     let ctx = editor.harness.ctx.clone();
-    editor.click_label("Elsewhere...");
+    editor.click_label("Browse...");
     editor.type_path(&folder.path().join("turn.gif"));
     editor.wait_until(|editor| editor.shows("Drawing turn.gif") || says(editor, "Saved"));
     editor.click_label("Cancel");
@@ -58,7 +58,7 @@ fn a_turntable_is_drawn_while_the_window_answers_and_a_cancelled_one_leaves_noth
     assert_eq!(editor.steps(), 0);
     drop(ctx);
     editor.perform(Action::SaveTurntable);
-    editor.click_label("Elsewhere...");
+    editor.click_label("Browse...");
     editor.type_path(&folder.path().join("frames"));
     editor.wait_until(|editor| says(editor, "Saved"));
     let shot = Shot::new(
@@ -87,7 +87,7 @@ fn a_scene_is_exported_with_notes_on_what_the_format_does_not_say() {
     editor.type_path(&path);
     editor.wait_until(|editor| says(editor, "Saved"));
     assert!(std::fs::read(&path).unwrap().starts_with(b"glTF"));
-    editor.wait_until(|editor| editor.shows("first.glb lacks some of the scene"));
+    editor.wait_until(|editor| editor.shows("first.glb does not hold the whole scene"));
     editor.perform(Action::SaveAs);
     editor.type_path(&folder.path().join("mine.marraztu"));
     editor.perform(Action::ExportScene);

@@ -242,7 +242,7 @@ fn text_that_is_no_number_is_said_and_changes_nothing() {
     type_text(&mut editor, "ten");
     editor.press(Named(Key::Enter));
     let told = editor.harness.get_by_role(Role::Alert).accesskit_node().label();
-    assert_eq!(told.as_deref(), Some("\"ten\" means nothing here: the field keeps its value"));
+    assert_eq!(told.as_deref(), Some("\"ten\" is not valid here: the field keeps its value"));
     assert_eq!(editor.steps(), 0);
 }
 
@@ -255,7 +255,7 @@ fn esc_in_a_menu_and_esc_again_does_not_leave_the_program() {
     editor.press(Named(Key::Escape));
     editor.press(Named(Key::Escape));
     let told = editor.harness.get_by_role(Role::Alert).accesskit_node().label();
-    assert_eq!(told.as_deref(), Some("Esc once more leaves the program"));
+    assert_eq!(told.as_deref(), Some("Press Esc again to quit"));
 }
 
 #[test]
@@ -371,5 +371,5 @@ fn a_colour_that_is_typed_is_offered_for_the_selection_and_the_background() {
     assert_eq!(own, MaterialChoice::Own(before), "it begins as what was chosen");
     editor.press(Command(Key::K));
     type_text(&mut editor, "#0a");
-    assert!(editor.shows("Nothing has this name"));
+    assert!(editor.shows("No match. Try another word"));
 }

@@ -149,7 +149,7 @@ fn fields_of_lights_set_what_they_name() {
         _ => f64::NAN,
     };
     let mut bulb = with_light(|kind| matches!(kind, LightKind::Bulb { .. }));
-    click(&mut bulb, Role::DisclosureTriangle, "Fading");
+    click(&mut bulb, Role::DisclosureTriangle, "Attenuation");
     fields_set_what_they_name(
         bulb,
         &[
@@ -352,7 +352,7 @@ fn the_surface_and_the_drawing_of_an_object_are_chosen() {
     click(&mut editor, Role::CheckBox, "About own Y");
     assert_eq!(object(&editor).spin.axes, [false, true, false]);
     let steps = editor.steps();
-    click(&mut editor, Role::Button, "Apply the turn");
+    click(&mut editor, Role::Button, "Apply rotation");
     assert_eq!(editor.steps(), steps + 1);
 }
 
@@ -402,7 +402,7 @@ fn a_spot_gets_a_place_of_its_own_where_it_was() {
     let mut editor =
         with_light(|kind| matches!(kind, LightKind::Spot { owner: SpotOwner::SelectedCamera, .. }));
     click(&mut editor, Role::ComboBox, "Shines from");
-    editor.click_label("a place of its own");
+    editor.click_label("a fixed position");
     let LightKind::Spot { owner: SpotOwner::Fixed(aim), .. } = light(&editor).kind else {
         panic!("it follows {:?}", light(&editor).kind)
     };
@@ -503,7 +503,7 @@ fn the_crease_angle_is_off_if_it_has_no_effect() {
         control(editor, Role::SpinButton, "Crease angle").accesskit_node().is_disabled()
     };
     let mut editor = with_object();
-    assert!(disabled(&editor), "the program's own models are smooth");
+    assert!(disabled(&editor), "built-in models are always smooth");
     with_model(&mut editor, TENT);
     assert!(!disabled(&editor));
     with_model(&mut editor, &format!("s off\n{TENT}"));
@@ -513,7 +513,7 @@ fn the_crease_angle_is_off_if_it_has_no_effect() {
     assert!(!disabled(&editor), "one face has no normals");
     with_model(&mut editor, &filed.replace("f 2 3 6 5", "f 2//1 3//1 6//1 5//1"));
     assert!(disabled(&editor));
-    click(&mut editor, Role::CheckBox, "Normals of the file");
+    click(&mut editor, Role::CheckBox, "File normals");
     assert!(!disabled(&editor), "the file's normals are passed over");
 }
 

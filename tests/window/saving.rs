@@ -155,7 +155,7 @@ fn esc_after_a_dialog_warns_before_it_leaves() {
         editor.perform(open);
         assert!(!editor.leaves_by(Named(Key::Escape)), "{open:?}: it closes the dialog");
         assert!(!editor.leaves_by(Named(Key::Escape)), "{open:?}: the second one warns");
-        assert!(editor.shows("Esc once more leaves the program"), "{open:?}");
+        assert!(editor.shows("Press Esc again to quit"), "{open:?}");
     }
     editor.ask(Request::LoadFiles(vec!["nowhere.obj".into()]));
     editor.wait_until(|editor| editor.shows("The file was not loaded"));

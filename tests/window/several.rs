@@ -166,7 +166,7 @@ fn ctrl_and_shift_clicks_in_the_outline_select_several() {
 #[test]
 fn a_change_in_the_properties_sets_all_to_the_same_value_and_keeps_what_it_does_not_name() {
     let editor = with_both();
-    assert!(editor.shows("2 objects: a change sets all"));
+    assert!(editor.shows("2 objects: changes apply to all"));
     assert!(editor.shows("Mixed: position"));
     let (scene, view) = (editor.scene(), editor.view());
     let (Some(ItemId::Object(first)), others) =

@@ -85,7 +85,7 @@ fn describe_options(model: &Model, text: &mut Text) {
         options.push(format!("scaled by {scale}"));
     }
     if model.options.winding == Winding::Turned {
-        options.push("winding turned".to_owned());
+        options.push("winding reversed".to_owned());
     }
     if !options.is_empty() {
         text.line("read with", &options.join(", "));

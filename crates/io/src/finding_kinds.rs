@@ -35,8 +35,8 @@ kinds! {
         "# vertices cannot be read (the first: @) and are skipped";
     /// A vertex that no face uses.
     VertexUnused:
-        "a vertex is not used by any face: it does not count for the size and the centre",
-        "# vertices are not used by any face: they do not count for the size and the centre";
+        "a vertex is not used by any face and does not affect size and centre",
+        "# vertices are not used by any face and do not affect size and centre";
     /// A number in an unusual notation.
     NumberOdd:
         "the number \"@\" is written in an unusual way and is read nevertheless",
@@ -44,8 +44,8 @@ kinds! {
          read nevertheless";
     /// A line that ends in a backslash before a statement.
     NotContinued:
-        "a statement \"@\" ends in a backslash, but the next line is a statement of its own",
-        "# statements \"@\" end in a backslash, but the next lines are statements of their own";
+        "a statement \"@\" ends in a backslash, but the next line is a new statement",
+        "# statements \"@\" end in a backslash, but the next lines are new statements";
     /// Control characters in a line.
     ControlCharacter:
         "a line has control characters, which are read as blanks",
@@ -90,8 +90,8 @@ kinds! {
         "# faces refer to normals that the file does not have; their normals are computed";
     /// A texture coordinate with one number.
     UvSingle:
-        "a texture coordinate has one number; 0 is taken for the other",
-        "# texture coordinates have one number; 0 is taken for the other";
+        "a texture coordinate has one number; the other is taken as 0",
+        "# texture coordinates have one number; the other is taken as 0";
     /// A texture coordinate that is infinite or NaN.
     UvNotFinite:
         "a texture coordinate is infinite or NaN and is ignored",
@@ -144,13 +144,13 @@ kinds! {
     FaceRepeats: "a face refers to a vertex twice", "# faces refer to a vertex twice";
     /// A face without area.
     FaceNoArea:
-        "a face has no area and no normal of its own",
-        "# faces have no area and no normals of their own";
+        "a face has no area and no normal",
+        "# faces have no area and no normals";
     /// A polygon with triangles that extend beyond it.
     PolygonCrosses:
-        "a polygon of @ corners crosses itself; its triangles may lie outside of it",
-        "# polygons (the first of @ corners) cross themselves; their triangles may lie outside of \
-         them";
+        "a polygon of @ corners crosses itself; its triangles may lie outside it",
+        "# polygons (the first of @ corners) cross themselves; their triangles may lie outside \
+            them";
     /// Closed bodies that are inside out, all of them.
     InsideOut:
         "the closed body is inside out; --flip-winding turns it",
@@ -191,8 +191,8 @@ kinds! {
         "no face names a material: the # in the material files are not used";
     /// More MTL files than the limit.
     MtlMany:
-        "a statement \"mtllib\" is ignored: 1000 different ones are read at most",
-        "# statements \"mtllib\" are ignored: 1000 different ones are read at most";
+        "a statement \"mtllib\" is ignored: at most 1000 different ones are read",
+        "# statements \"mtllib\" are ignored: at most 1000 different ones are read";
     /// An MTL file that cannot be read.
     MtlUnreadable: "the material file cannot be read: @", "the material file cannot be read: @";
     /// A `usemtl` with a name that is not defined.
@@ -205,8 +205,8 @@ kinds! {
         "the material \"@\" is defined # times more: the first is used";
     /// A statement before any `newmtl`.
     MtlStray:
-        "a statement \"@\" stands before any newmtl and is ignored",
-        "# statements (the first: \"@\") stand before any newmtl and are ignored";
+        "a statement \"@\" comes before any newmtl and is ignored",
+        "# statements (the first: \"@\") come before any newmtl and are ignored";
     /// A number of a material that cannot be read.
     MtlNumber:
         "a statement \"@\" has a number that cannot be read and is ignored",
@@ -247,12 +247,12 @@ kinds! {
          it as heights";
     /// Ke is set to 1 with a map.
     MendedEmission:
-        "material \"@\": Ke is missing beside map_Ke, and is taken as 1",
-        "# materials: Ke is missing beside map_Ke, and is taken as 1";
+        "material \"@\": map_Ke without Ke; Ke is taken as 1",
+        "# materials: map_Ke without Ke; Ke is taken as 1";
     /// Ks is set to 1 with a map.
     MendedMapped:
-        "material \"@\": Ks is missing beside map_Ks, and is taken as 1",
-        "# materials: Ks is missing beside map_Ks, and is taken as 1";
+        "material \"@\": map_Ks without Ks; Ks is taken as 1",
+        "# materials: map_Ks without Ks; Ks is taken as 1";
     /// `bsdf pbr`: a highlight from roughness and metalness.
     MendedPacked:
         "material \"@\": with bsdf pbr, Ks is taken as occlusion, roughness and metalness",
@@ -289,8 +289,8 @@ kinds! {
         "the texture @ is not shown: its faces have no texture coordinates";
     /// More textures than the limit.
     TextureMany:
-        "a texture is ignored: 10,000 different ones are read at most",
-        "# textures are ignored: 10,000 different ones are read at most";
+        "a texture is ignored: at most 10,000 different ones are read",
+        "# textures are ignored: at most 10,000 different ones are read";
     /// A texture that cannot be read.
     TextureUnreadable: "the texture cannot be read: @", "the texture cannot be read: @";
     /// A truncated texture file.
@@ -299,12 +299,12 @@ kinds! {
         "the texture is cut off: @ ends early, and the rest of the picture is grey";
     /// A missing model of a scene.
     ModelMissing:
-        "the model \"@\" was not found: a box takes its place",
-        "the model \"@\" was not found: a box takes its place";
+        "the model \"@\" was not found: a box is shown instead",
+        "the model \"@\" was not found: a box is shown instead";
     /// A model of a scene that cannot be read.
     ModelUnreadable:
-        "a model cannot be read, and a box takes its place: @",
-        "a model cannot be read, and a box takes its place: @";
+        "a model cannot be read and is shown as a box: @",
+        "a model cannot be read and is shown as a box: @";
     /// A selection of an item that the scene does not have.
     SelectionMissing:
         "the view selects @, which is not in the scene: the first one is selected",

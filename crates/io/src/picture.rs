@@ -137,9 +137,7 @@ pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
     match file.take(SIGNATURE).read_to_end(&mut begin) {
         Ok(0) => Ok(()),
         Ok(_) if image::guess_format(&begin).is_ok() => Ok(()),
-        _ => {
-            Err(fail("there is a file of that name, and it is not a picture; choose another name"))
-        }
+        _ => Err(fail("a file with this name exists and is not a picture; choose another name")),
     }
 }
 
@@ -263,7 +261,7 @@ mod tests {
         std::fs::create_dir(folder.path().join("b.png")).unwrap();
         assert_eq!(["a.png", "empty.jpg", "new.webp"].map(reason), [Ok(()), Ok(()), Ok(())]);
         for (name, word) in [
-            ("poem.ppm", "it is not a picture"),
+            ("poem.ppm", "exists and is not a picture"),
             ("b.png", "this is a folder"),
             ("none/a.png", "does not exist"),
             ("poem.ppm/a.png", "is not a folder"),

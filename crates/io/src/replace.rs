@@ -53,7 +53,7 @@ pub(super) fn check_target(path: &Path) -> Result<(), SaveError> {
     let opened = opened.map(|_file| fs::remove_file(&beside));
     match opened {
         Err(error) if error.kind() == ErrorKind::PermissionDenied => {
-            let reason = format!("this user may not write to {}", folder_name(&target));
+            let reason = format!("no permission to write to {}", folder_name(&target));
             Err(SaveError::new(path, reason))
         }
         Err(error) if error.kind() != ErrorKind::AlreadyExists => {
@@ -76,13 +76,13 @@ fn target(path: &Path) -> Result<PathBuf, SaveError> {
     }
     let target = fs::canonicalize(&target).unwrap_or(target);
     if target.is_symlink() {
-        return Err(SaveError::new(path, "its links lead in a circle"));
+        return Err(SaveError::new(path, "its symbolic links form a loop"));
     }
     if target.is_dir() {
         return Err(SaveError::new(path, "this is a folder, not a file"));
     }
     if target.file_name().is_none() {
-        return Err(SaveError::new(path, "this is not a name for a file"));
+        return Err(SaveError::new(path, "this is not a valid file name"));
     }
     Ok(target)
 }

@@ -147,7 +147,7 @@ impl Pictures {
 }
 
 fn too_many_texels(path: &Path) -> LoadError {
-    LoadError::file(&shown(path), "with it the textures take more than 2 GB of memory")
+    LoadError::file(&shown(path), "the textures would take more than 2 GB of memory")
 }
 
 /// Decodes a file; returns the picture and whether the file is truncated.

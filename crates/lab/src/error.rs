@@ -65,7 +65,7 @@ impl Region {
     pub const fn note(self) -> &'static str {
         match self {
             Self::Whole => "",
-            Self::Inside => ", pixels covered alike",
+            Self::Inside => ", pixels with equal coverage",
         }
     }
 }
@@ -117,7 +117,7 @@ impl Measure {
         match self {
             Self::Rmse => "RMSE in byte steps",
             Self::Largest => "largest error in byte steps",
-            Self::Differing => "part of the bytes that differ",
+            Self::Differing => "fraction of the bytes that differ",
             Self::Flip => "FLIP, 0 to 1",
         }
     }

@@ -140,7 +140,7 @@ pub enum Unmeasured {
     #[error("cancelled")]
     Cancelled,
     /// The interface was busy during every pair.
-    #[error("no pair was left undisturbed")]
+    #[error("every pair was disturbed")]
     Disturbed,
     /// Equal settings gave different bytes.
     #[error("{0}: the same settings gave two different pictures")]

@@ -23,25 +23,25 @@ impl MouseInfo {
         Self {
             inputs: &["Click"],
             label: "Select",
-            hint: "Selects what is under the pointer; another click selects what is behind it.",
+            hint: "Selects the item under the pointer; another click selects the one behind it.",
             words: "mouse pick choose left",
         },
         Self {
             inputs: &["Double click"],
             label: "Frame",
-            hint: "Brings the object under the pointer into view; beside it, everything.",
+            hint: "Frames the object under the pointer; on the background, frames all.",
             words: "mouse zoom fit focus left",
         },
         Self {
             inputs: &["Drag"],
             label: "Look around",
-            hint: "Turns the camera; a camera in analysis goes round the selected object.",
+            hint: "Turns the camera; in analysis, orbits the selected object.",
             words: "mouse orbit turn rotate view left",
         },
         Self {
             inputs: &["Alt+drag"],
             label: "Orbit",
-            hint: "Goes round the selected object, in fly too.",
+            hint: "Orbits the selected object, in fly as well.",
             words: "mouse turn rotate around view left",
         },
         Self {
@@ -53,43 +53,44 @@ impl MouseInfo {
         Self {
             inputs: &["Wheel", "Pinch"],
             label: "Zoom",
-            hint: "Goes towards what is under the pointer, or away from it.",
+            hint: "Zooms towards the pointer, or away from it.",
             words: "mouse scroll near closer far dolly",
         },
         Self {
             inputs: &["Right click"],
             label: "Menu",
-            hint: "Opens a menu of what is under the pointer.",
+            hint: "Opens the menu of the item under the pointer.",
             words: "mouse context",
         },
         Self {
             inputs: &["Right held"],
             label: "Fly",
-            hint: "W A S D Q E fly; Shift is fast, Alt is slow, the wheel changes the speed.",
+            hint: "Flies with W A S D Q E; Shift is fast, Alt is slow, the wheel changes the \
+                speed.",
             words: "mouse walk game first person wasd",
         },
         Self {
             inputs: &["Drag a handle"],
             label: "Use the gizmo",
-            hint: "Moves, rotates or scales the selection; Ctrl snaps, and x 12 Enter types.",
+            hint: "Moves, rotates or scales the selection; hold Ctrl to snap, or type x 12 Enter.",
             words: "mouse move rotate scale handle",
         },
         Self {
             inputs: &["Shift+click"],
-            label: "Select also",
-            hint: "Selects one more, or one less.",
+            label: "Extend selection",
+            hint: "Adds the item to the selection, or removes it.",
             words: "mouse several multiple add left",
         },
         Self {
             inputs: &["Ctrl+drag"],
-            label: "Select in a box",
+            label: "Box select",
             hint: "Selects everything in a box.",
             words: "mouse several multiple rectangle marquee left",
         },
         Self {
             inputs: &["Esc", "Right click"],
             label: "Cancel a drag",
-            hint: "Goes back to where the drag began.",
+            hint: "Restores the state before the drag.",
             words: "mouse abort stop undo",
         },
     ];

@@ -28,19 +28,19 @@ actions! {
         "Load model..." "Loads an .obj file, asks for its material and places it at the origin."
         "import obj add mesh object insert file";
     ReloadModels File ONCE [Command(Key::R)]
-        "Reload models" "Reads the files of all models again; one step of undo."
+        "Reload models" "Reloads all model files as one undo step."
         "refresh update reread file disk again";
     ToggleWatch File ONCE []
-        "Reload when files change" "Reads models again as soon as another program saves them."
+        "Reload when files change" "Reloads models when another program saves them."
         "watch hot live refresh auto update disk";
     RecoverWork File ONCE [CommandShift(Key::R)]
-        "Recover unsaved work" "Shows the work that a program that ended suddenly has left behind."
+        "Recover unsaved work" "Recovers unsaved work after a crash."
         "crash restore lost backup journal autosave";
     RecoverDiscarded File ONCE []
-        "Recover discarded work..." "Brings back work that was discarded in the last 30 days."
+        "Recover discarded work..." "Restores work that was discarded in the last 30 days."
         "crash restore lost backup journal trash undelete";
     FindMissing File ONCE []
-        "Find missing files..." "Asks where the missing models and textures of the scene are."
+        "Find missing files..." "Locates the missing models and textures of the scene."
         "locate relink lost path broken placeholder box texture model";
     Save File ONCE [Command(Key::S)]
         "Save scene" "Saves the scene to its file."
@@ -56,10 +56,10 @@ actions! {
         "Asks for size, samples, a transparent background and overlays, and saves a picture."
         "screenshot render resolution size transparent alpha large print wallpaper";
     SaveTurntable File ONCE [Command(Key::F12)]
-        "Turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
+        "Turntable..." "Saves a turntable as a GIF, an APNG or numbered pictures."
         "animation gif apng video movie spin rotate frames";
     ExportScene File ONCE []
-        "Export scene..." "Writes the scene for other programs, as OBJ with MTL or as glTF."
+        "Export scene..." "Exports the scene as OBJ with MTL, or as glTF."
         "save obj mtl gltf glb blender three convert";
     CopyPicture File ONCE [CommandShift(Key::C)]
         "Copy picture" "Copies the picture in the viewport to the clipboard."
@@ -72,7 +72,7 @@ actions! {
         "Undo" "Undoes the last change to the scene."
         "back revert";
     Redo Edit REPEATS [CommandShift(Key::Z), Command(Key::Y)]
-        "Redo" "Redoes the change that was undone last."
+        "Redo" "Redoes the last change that was undone."
         "again forward repeat";
     TakeBack Edit ONCE [Either(Key::U)]
         "Undo transformation" "Undoes the last transformation of the selected item."
@@ -82,17 +82,17 @@ actions! {
         "name title label"
         => Around("Rename", "");
     Cut Edit ONCE [Command(Key::X)]
-        "Cut" "Copies the selected items as text, and deletes them."
+        "Cut" "Moves the selected items to the clipboard as text."
         "clipboard take move"
         => Around("Cut", "");
     Copy Edit ONCE [Command(Key::C)]
-        "Copy" "Copies the selected items as text, for this window, another one or an editor."
+        "Copy" "Copies the selected items to the clipboard as text."
         "clipboard text";
     Paste Edit ONCE [Command(Key::V)]
-        "Paste" "Adds the items of the clipboard, or gives its material to the selected objects."
+        "Paste" "Adds the copied items, or applies the copied material to the selected objects."
         "clipboard insert text";
     CopyMaterial Edit ONCE []
-        "Copy material" "Copies the material of the selected object; Paste gives it to others."
+        "Copy material" "Copies the material of the selected object; Paste applies it to others."
         "clipboard surface look shader";
     Duplicate Edit ONCE [Command(Key::D)]
         "Duplicate" "Adds a copy next to the selected item and selects it."
@@ -103,13 +103,13 @@ actions! {
         "remove erase trash"
         => Around("Delete", "");
     Split Edit ONCE []
-        "Split into parts" "Turns each part of the selected object into an object of its own."
+        "Split into parts" "Splits the selected object into one object per part."
         "separate explode ungroup pieces";
     SelectAll Edit ONCE [Command(Key::A)]
-        "Select all" "Selects all items of the subject; once more, everything."
+        "Select all" "Selects all items of the subject; pressed again, everything."
         "everything several multiple";
     SelectNone Edit ONCE []
-        "Select one" "Selects only the item that the keys act on."
+        "Select one" "Selects only the current item, which the keys act on."
         "none deselect clear single nothing";
     ChooseTexture Edit ONCE []
         "Texture..." "Chooses a picture as the texture of the selected object."
@@ -119,15 +119,15 @@ actions! {
         "hide show eye"
         => Switched("Hide", "Show");
     ToggleLocked Edit ONCE [Command(Key::L)]
-        "Locked" "Protects the selected item from clicks in the picture, moves and deletion."
+        "Locked" "Protects the selected item from being clicked, moved or deleted."
         "lock unlock protect freeze pin fix selectable"
         => Switched("Unlock", "Lock");
 
     AddGround Add ONCE []
-        "Ground" "Adds ground below all objects, which fades out far away and takes shadows."
+        "Ground" "Adds ground below all objects; it receives shadows and fades out far away."
         "floor plane horizon fade infinite disc shape new";
     AddPlane Add ONCE []
-        "Plane" "Adds a square plane, below all objects."
+        "Plane" "Adds a square plane below all objects."
         "floor ground quad primitive shape new";
     AddCube Add ONCE []
         "Cube" "Adds a cube, a fifth as large as the scene, at the origin."
@@ -145,13 +145,13 @@ actions! {
         "Camera..." "Asks for a material and adds a camera at the origin, looking along -Z."
         "viewpoint eye new";
     AddSun Add ONCE []
-        "Sun" "Adds a light that is infinitely far away."
+        "Sun" "Adds a directional light, infinitely far away."
         "directional light lamp new";
     AddBulb Add ONCE []
         "Bulb" "Adds a light that shines from a point in all directions."
         "point light lamp omni new";
     AddSpot Add ONCE []
-        "Spot" "Adds a light that shines from a point of its own in a cone."
+        "Spot" "Adds a light that shines from a point in a cone."
         "spotlight cone light lamp torch new";
     AddObjectSpot Add ONCE []
         "Spot on the object" "Adds a spot that shines from the selected object."
@@ -167,7 +167,7 @@ actions! {
         "Next polygon" "Selects the next polygon of the selected object in polygon mode."
         "face triangle cycle";
     NextSubject Select ONCE [Lower(Key::C)]
-        "Next subject" "Changes what the keys act on, from camera to object to light."
+        "Next subject" "Makes the keys act on the next subject: cameras, objects or lights."
         "cycle mode what";
     SubjectCamera Select ONCE []
         "Cameras" "Makes the keys act on the selected camera."
@@ -180,37 +180,37 @@ actions! {
         "subject lamp brightness intensity";
 
     Translate Transform ONCE [Either(Key::T)]
-        "Move" "Makes the keys x, y and z move."
+        "Move" "Makes the keys x, y and z move the selected item."
         "translate translation position grab shift";
     Rotate Transform ONCE [Either(Key::R)]
-        "Rotate" "Makes the keys x, y and z rotate."
+        "Rotate" "Makes the keys x, y and z rotate the selected item."
         "rotation turn spin angle";
     Scale Transform ONCE [Either(Key::S)]
         "Scale" "Makes the keys x, y and z scale the selected object."
         "scaling size resize bigger smaller stretch enlarge";
     ToggleFrame Transform ONCE [Either(Key::G)]
         "Analysis / global"
-        "Makes cameras fly or orbit, and objects use their own axes or the world's."
+        "Switches cameras between fly and orbit, objects between local and global axes."
         "orbit fly look around local global world axes turntable";
     TypeAmount Transform ONCE []
-        "Transform by a number" "Takes an axis and a number from the keyboard: x 12 Enter."
+        "Transform by a number" "Transforms by a typed axis and number: x 12 Enter."
         "type amount exact distance angle factor numeric move rotate scale";
     DropToGround Transform ONCE []
-        "Drop to the ground" "Moves the selected object until it stands on the ground."
+        "Drop to the ground" "Moves the selected object up or down until it rests on the ground."
         "floor land rest snap lowest stand"
         => Around("Drop", "to the ground");
     ResetPlacement Transform ONCE []
-        "Reset the placement" "Puts the selected object back to where its file has it."
+        "Reset the placement" "Restores the placement of the selected object from its file."
         "origin clear transformation identity zero original"
         => Around("Reset the placement of", "");
     AlignX Transform ONCE []
-        "Align along X" "Brings the other selected objects in line with this one along X."
+        "Align along X" "Aligns the other selected objects with this one along X."
         "line up arrange distribute centre center left right";
     AlignY Transform ONCE []
-        "Align along Y" "Brings the other selected objects in line with this one along Y."
+        "Align along Y" "Aligns the other selected objects with this one along Y."
         "line up arrange distribute centre center height";
     AlignZ Transform ONCE []
-        "Align along Z" "Brings the other selected objects in line with this one along Z."
+        "Align along Z" "Aligns the other selected objects with this one along Z."
         "line up arrange distribute centre center depth";
     StepXUp Transform REPEATS [Lower(Key::X)]
         "Step along or about +X" "Transforms the selected item one step along or about +X."
@@ -266,26 +266,26 @@ actions! {
         "Camera and light models" "Draws the models of the other cameras and of bulbs."
         "icons gizmo markers pyramids diamond";
     ToggleOverlays Show ONCE []
-        "Overlays" "Draws the selection's outline, axes and marks of lights over the picture."
+        "Overlays" "Draws the selection outline, the axes and light markers over the picture."
         "gizmo axes cones helpers outline guides widgets";
     ToggleGizmo Show ONCE []
-        "Gizmo" "Shows handles over the picture that move, rotate and scale the selection."
+        "Gizmo" "Shows handles that move, rotate and scale the selection."
         "handles manipulator arrows rings widget transform drag move rotate scale";
     ToggleGrid Show ONCE []
         "Ground grid" "Draws a grid on the ground, at height 0, behind everything."
         "floor lines helper helpers plane horizon";
     ToggleDimensions Show ONCE []
-        "Dimensions" "Draws the boxes around the selected objects, with their sizes."
+        "Dimensions" "Draws the bounding boxes of the selected objects, with their sizes."
         "size measure ruler bounding box extent length width height helper helpers";
     ToggleDirections Show ONCE []
-        "Directions of lights" "Draws where every sun and every spot shines."
+        "Light directions" "Draws the direction of every sun and spot."
         "cones arrows sun spot helper helpers aim";
     ToggleCoarse Show ONCE []
         "Coarser while moving" "Draws slow scenes at reduced quality while something moves."
         "quality fast preview performance resolution";
     ToggleRefine Show ONCE []
         "Refine when still"
-        "Refines the picture to more samples per pixel while nothing happens."
+        "Increases the samples per pixel while nothing moves."
         "antialiasing smooth edges samples progressive quality sharp";
     ToggleLightNormals Show ONCE [Either(Key::I)]
         "Flat shading (face normals)"
@@ -316,7 +316,7 @@ actions! {
         "camera above bird plan down";
     ExplainPixel Show ONCE [Either(Key::E)]
         "Explain a pixel"
-        "Says what the next pixel that is clicked shows, and what its colour is made of."
+        "Explains the surface and the colour of the next pixel that you click."
         "why colour color value inspect probe light terms debug vectors";
     LookBack Camera ONCE []
         "Back view" "Looks from behind, along +Z."
@@ -328,7 +328,7 @@ actions! {
         "Bottom view" "Looks from below, along +Y."
         "camera under up";
     WhyUnseen Camera ONCE [Either(Key::W)]
-        "Why can't I see it?" "Says why nothing of the selected object is seen, and what mends it."
+        "Why can't I see it?" "Explains why the selected object is invisible, and how to fix it."
         "invisible missing gone lost hidden vanished black find";
 
     Light0 Light ONCE [Lower(Key::Num0)]
@@ -368,10 +368,10 @@ actions! {
         "Narrower spot" "Closes the selected spot by 5 degrees."
         "cone angle smaller tighten";
     SoloLight Light ONCE []
-        "Only this light" "Leaves the selected light alone on; once more, the others are back."
+        "Only this light" "Switches off all lights but this one; pressed again, restores them."
         "solo isolate single mute others";
     FitExposure Light ONCE []
-        "Fit exposure" "Makes all light as bright as it can be without burning out surfaces."
+        "Fit exposure" "Sets the highest exposure that does not overexpose surfaces."
         "exposure brightness overexposed burnt white tone mapping stops levels auto";
     ToggleAllShadows Light ONCE []
         "Shadows" "Switches the shadows of all lights on or off."
@@ -384,7 +384,7 @@ actions! {
         "point target look track direct"
         => Around("Aim", "at the selection");
     AimByClick Light ONCE []
-        "Aim by a click" "Turns the selected spot or sun towards the next point that is clicked."
+        "Aim by a click" "Turns the selected spot or sun towards the next point that you click."
         "point target look direct";
     RedUp Light REPEATS [Lower(Key::Q)]
         "More red" "Adds 1 to the selected light's red."
@@ -406,30 +406,30 @@ actions! {
         "color colour tint";
 
     Palette Window ONCE [Command(Key::K), Command(Key::P)]
-        "Command palette" "Finds actions, items and settings by their names."
+        "Command palette" "Finds actions, items and settings by name."
         "search find run commands";
     ToPanels Window ONCE [Named(Key::F6)]
-        "Keyboard to the panels"
-        "Moves keyboard focus from region to region; Esc returns it to the viewport."
+        "Focus next region"
+        "Moves keyboard focus to the next region; Esc returns it to the viewport."
         "focus next region tab";
     ToPanelsBack Window ONCE [Shifted(Key::F6)]
-        "Keyboard back"
-        "Moves keyboard focus to the region before; from the first one to the viewport."
+        "Focus previous region"
+        "Moves keyboard focus to the previous region; from the first, to the viewport."
         "focus previous region tab";
     MeasurePlan Window ONCE [Named(Key::F4)]
-        "Measure effects" "Measures the time of a picture with and without each of its effects."
+        "Measure effects" "Measures the time of a picture with and without each effect."
         "benchmark time profile speed";
     LargerText Window ONCE [Command(Key::Plus), Command(Key::Equals)]
-        "Larger interface" "Makes texts and panels larger."
+        "Larger interface" "Makes text and panels larger."
         "zoom in scale font size big ui";
     SmallerText Window ONCE [Command(Key::Minus)]
-        "Smaller interface" "Makes texts and panels smaller."
+        "Smaller interface" "Makes text and panels smaller."
         "zoom out scale font size small ui";
     NormalText Window ONCE [Command(Key::Num0)]
-        "Normal interface size" "Makes texts and panels as large as the system says."
+        "Normal interface size" "Resets text and panels to the size set in the system."
         "zoom reset scale font size ui";
     ThemeSystem Window ONCE []
-        "Theme of the system" "Makes the window light or dark as the system is."
+        "System theme" "Makes the window light or dark like the system."
         "theme auto colours colors";
     ThemeLight Window ONCE []
         "Light theme" "Shows dark text on light panels."

@@ -152,7 +152,7 @@ impl Browser {
             ui.add_space(theme::GAP);
             ui.allocate_ui(vec2(120.0, theme::ROW), |ui| {
                 let hidden = Switch::new("Hidden files", self.look.hidden).ui(ui);
-                let hint = "Lists files with a dot at the beginning of their names, too";
+                let hint = "Also lists files with names that begin with a dot";
                 self.look.hidden ^= hidden.on_hover_text(hint).clicked();
             });
         });
@@ -399,7 +399,7 @@ impl Browser {
                     entries.filter(|entry| entry.is_folder || self.fits(&entry.name)).collect();
                 self.look.sort(&mut self.entries);
             }
-            Err(error) => self.fault = Some(format!("This folder cannot be listed: {error}.")),
+            Err(error) => self.fault = Some(format!("Cannot list this folder: {error}.")),
         }
     }
 

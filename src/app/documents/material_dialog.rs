@@ -105,9 +105,9 @@ impl MaterialDialog {
         if let Some((_, loaded)) = &self.loaded {
             let count = loaded.model.materials.len();
             let text = match count {
-                0 => "The file's own (it has none)".to_owned(),
-                1 => "The file's own".to_owned(),
-                _ => format!("The file's own ({count} materials)"),
+                0 => "From the file (it has none)".to_owned(),
+                1 => "From the file".to_owned(),
+                _ => format!("From the file ({count} materials)"),
             };
             let chosen = *now == MaterialChoice::File;
             if ui.add_enabled(count > 0, egui::Button::selectable(chosen, text)).clicked() {
@@ -131,7 +131,7 @@ impl MaterialDialog {
         });
         // The user's material survives a change to a preset and back.
         let mut own = matches!(now, MaterialChoice::Own(_));
-        if ui.toggle_value(&mut own, "My own").clicked() {
+        if ui.toggle_value(&mut own, "Custom").clicked() {
             *now = MaterialChoice::Own(self.own);
         }
         if let MaterialChoice::Own(material) = now {
@@ -148,7 +148,7 @@ impl MaterialDialog {
         });
         let options = &mut self.choices.options;
         let mut end = None;
-        egui::CollapsingHeader::new("How the file is read").show(ui, |ui| {
+        egui::CollapsingHeader::new("Import options").show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.label("Up axis");
                 for up in UpAxis::ALL {
@@ -162,7 +162,7 @@ impl MaterialDialog {
                 options.scale = Scale::new(self.scale).unwrap_or_default();
             });
             let mut turned = options.winding == Winding::Turned;
-            turned ^= Switch::new("Flip faces (they are inside out)", turned).ui(ui).clicked();
+            turned ^= Switch::new("Flip faces (inside out)", turned).ui(ui).clicked();
             options.winding = if turned { Winding::Turned } else { Winding::Kept };
             ui.horizontal(|ui| {
                 let label = ui.label("Crease angle");
@@ -178,7 +178,7 @@ impl MaterialDialog {
             ui.horizontal(|ui| {
                 ui.label("Bump maps");
                 for (bumps, label) in [
-                    (BumpMaps::Auto, "As they look"),
+                    (BumpMaps::Auto, "Automatic"),
                     (BumpMaps::Heights, "Heights"),
                     (BumpMaps::Normals, "Normals"),
                 ] {

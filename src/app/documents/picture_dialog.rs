@@ -118,8 +118,8 @@ impl PictureDialog {
             if is_picture {
                 ui.label("");
                 let overlays = Switch::new("Overlays", self.choices.overlays).ui(ui);
-                let hint = "Saves what the window shows: with the outline of the selection, axes \
-                    and marks of lights";
+                let hint =
+                    "Includes the selection outline, the axes and light markers, as in the window";
                 self.choices.overlays ^= overlays.on_hover_text(hint).clicked();
                 ui.end_row();
             } else {
@@ -132,7 +132,7 @@ impl PictureDialog {
                     enabled: !choices.overlays,
                     ..Switch::new("Transparent background", choices.transparent)
                 };
-                let hint = "Leaves the background out; PNG, APNG and WebP have alpha";
+                let hint = "Omits the background; needs an alpha channel: PNG, APNG or WebP";
                 choices.transparent ^= ground.ui(ui).on_hover_text(hint).clicked();
             });
             ui.end_row();
@@ -163,7 +163,7 @@ impl PictureDialog {
             if save.clicked() || entered {
                 end = Some(End::Into(self.choices, path));
             }
-            if ui.button("Elsewhere...").on_hover_text("Asks for the file").clicked() {
+            if ui.button("Browse...").on_hover_text("Chooses another folder or name").clicked() {
                 end = Some(End::Elsewhere(self.choices));
             }
             if ui.button("Cancel").clicked() {
@@ -197,7 +197,7 @@ impl PictureDialog {
     fn samples_ui(&mut self, ui: &mut Ui) {
         let counts = Samples::ALL.map(|samples| samples.count().to_string());
         let now = self.choices.samples;
-        let hint = "More of them smooth edges, and take longer.";
+        let hint = "Smooths edges; more samples take longer.";
         let all: Vec<Choice<'_>> = Samples::ALL
             .iter()
             .zip(&counts)
@@ -213,22 +213,21 @@ impl PictureDialog {
         ui.label("Pictures");
         ui.add(DragValue::new(&mut choices.frames).range(2..=3600)).accessible_name("Pictures");
         ui.end_row();
-        ui.label("Seconds a turn");
+        ui.label("Seconds per turn");
         let seconds = DragValue::new(&mut choices.seconds).range(0.1..=600.0).speed(0.1);
-        ui.add(seconds).accessible_name("Seconds a turn");
+        ui.add(seconds).accessible_name("Seconds per turn");
         ui.end_row();
-        ui.label("What turns");
+        ui.label("Turn");
         let turns = [
             (
                 "Objects",
                 Turn::Objects,
-                "The objects turn before the camera, under the same lights.",
+                "Turns the objects in front of the camera, under the same lights.",
             ),
-            ("Camera", Turn::Camera, "The camera goes around the objects."),
+            ("Camera", Turn::Camera, "Moves the camera around the objects."),
         ];
-        let all = turns.map(|(label, turn, hint)| {
-            Choice::new("What turns", label, choices.turn == turn, hint)
-        });
+        let all =
+            turns.map(|(label, turn, hint)| Choice::new("Turn", label, choices.turn == turn, hint));
         if let Some(clicked) = choices_ui(ui, &all) {
             choices.turn = turns[clicked].1;
         }

@@ -18,7 +18,7 @@ pub(super) fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
     ui.set_max_width(WIDTH);
     heading(ui, "Save the scene?");
     ui.label(match after {
-        After::Quit => "It has unsaved changes, which are lost unless you save them.",
+        After::Quit => "Unsaved changes are lost unless you save them.",
         After::New | After::NewAncestor => {
             "A new scene will replace this one, which has unsaved changes."
         }
@@ -48,8 +48,8 @@ pub(super) fn changed_ui(ui: &mut Ui, path: &Path, after: Option<&After>) -> Opt
     ui.set_max_width(WIDTH);
     heading(ui, format!("{} has changed", file_name(path)));
     ui.label(
-        "Another program or window has saved this file since it was read here. Saving replaces \
-         what it has written.",
+        "Another program or window has changed this file since it was opened here. Saving \
+            overwrites those changes.",
     );
     ui.add_space(4.0);
     let answer =
@@ -57,9 +57,10 @@ pub(super) fn changed_ui(ui: &mut Ui, path: &Path, after: Option<&After>) -> Opt
     let buttons = ui.horizontal_wrapped(|ui| {
         let elsewhere = ui.button("Save as...").on_hover_text("Saves under another name");
         take_focus(ui, &elsewhere);
-        let hint = "Opens the changed file; the changes made here since it was read are lost";
+        let hint = "Opens the changed file; changes made here are lost";
         let reload = ui.button("Reload the file").on_hover_text(hint).clicked();
-        let overwrite = ui.button("Overwrite").on_hover_text("Replaces the changed file").clicked();
+        let overwrite =
+            ui.button("Overwrite").on_hover_text("Overwrites the changed file").clicked();
         let cancel = ui.button("Cancel").clicked();
         match (elsewhere.clicked(), reload, overwrite, cancel) {
             (true, ..) => answer(ChangedFile::SaveElsewhere),
@@ -81,7 +82,7 @@ pub(super) fn replace_ui(
     ui.set_max_width(WIDTH);
     heading(ui, format!("Replace {}?", file_name(path)));
     let folder = path.parent().unwrap_or(path).display();
-    ui.label(format!("There is a file of this name already in {folder}."));
+    ui.label(format!("A file with this name already exists in {folder}."));
     ui.add_space(4.0);
     let buttons = ui.horizontal(|ui| {
         // Cancel has the focus, so pressing Enter twice replaces nothing.
@@ -101,7 +102,7 @@ pub(super) fn replace_ui(
 pub(super) fn missing_ui(ui: &mut Ui, files: &[PathBuf]) -> Option<End> {
     ui.set_max_width(560.0);
     heading(ui, "Missing files");
-    ui.label("Once one is found, others in its folder are offered.");
+    ui.label("After you find one, others in the same folder are suggested.");
     ui.add_space(4.0);
     let mut answer = None;
     ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
@@ -126,7 +127,10 @@ pub(super) fn missing_ui(ui: &mut Ui, files: &[PathBuf]) -> Option<End> {
 pub(super) fn discarded_ui(ui: &mut Ui, all: &[String]) -> Option<End> {
     ui.set_max_width(WIDTH);
     heading(ui, "Discarded work");
-    ui.label("It is kept for 30 days. A click shows it in place of this scene.");
+    ui.label(
+        "Discarded work is kept for 30 days. Click an entry to open it in place of this \
+        scene.",
+    );
     ui.add_space(4.0);
     let mut answer = None;
     ScrollArea::vertical().max_height(300.0).show(ui, |ui| {

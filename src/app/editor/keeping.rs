@@ -55,7 +55,7 @@ impl App {
         let changed_keys = self.use_preferences(ctx, &preferences);
         self.state.notices.extend(said.map(notice));
         if !changed_keys.is_empty() {
-            let text = "Some of the keys that you have chosen are not as they were.".to_owned();
+            let text = "Some of your custom keys could not be restored.".to_owned();
             self.state.notices.push(Notice { text, details: changed_keys, offer: None });
         }
         // Work of programs that ended without saving is offered, not opened.
@@ -185,11 +185,11 @@ impl App {
         let work = self.keeping.as_ref().and_then(|keeping| keeping.offered.get(at));
         let Some(work) = work else { return };
         if let Err(why) = work.set_aside() {
-            return self.refuse(format!("the unsaved work cannot be moved aside: {why}"));
+            return self.refuse(format!("the unsaved work cannot be discarded: {why}"));
         }
         self.take_offered(at).into_iter().for_each(Abandoned::remove);
         self.list_discarded();
-        let text = "Discarded: \"Recover discarded work\" brings it back for 30 days";
+        let text = "Discarded: \"Recover discarded work\" can restore it for 30 days";
         self.state.tell(Some(text.to_owned()));
     }
 
@@ -247,7 +247,7 @@ impl App {
         let name = scene_name(file.as_deref());
         (self.state.path, self.state.content) = (file, content);
         self.state.history.mark_unsaved();
-        self.state.tell(Some(format!("Recovered unsaved changes of {name}")));
+        self.state.tell(Some(format!("Recovered unsaved changes to {name}")));
         // The user does not know the name of the journal's file.
         let own_name = file_name(opened);
         for notice in &mut self.state.notices {
@@ -298,11 +298,11 @@ fn scene_name(file: Option<&Path>) -> String {
     file.map_or_else(|| "a new scene".to_owned(), file_name)
 }
 
-/// Describes offered work: "The program ended with unsaved changes of harbour.marraztu, from 3
+/// Describes offered work: "The program ended with unsaved changes to harbour.marraztu, from 3
 /// minutes ago."
 fn described(work: &Abandoned, now: SystemTime) -> String {
     let (name, age) = (scene_name(work.scene_file.as_deref()), age(work.written, now));
-    format!("The program ended with unsaved changes of {name}, from {age}.")
+    format!("The program ended with unsaved changes to {name}, from {age}.")
 }
 
 /// Formats an age: "3 minutes ago".
@@ -335,7 +335,7 @@ mod tests {
         drop(journal);
         let all = Abandoned::all(&folders);
         let at = |seconds| described(&all[0], all[0].written + Duration::from_secs(seconds));
-        let start = "The program ended with unsaved changes of harbour.marraztu, from ";
+        let start = "The program ended with unsaved changes to harbour.marraztu, from ";
         assert_eq!(at(5), format!("{start}less than a minute ago."));
         assert_eq!(at(400), format!("{start}6 minutes ago."));
         assert_eq!(at(8000), format!("{start}2 hours ago."));

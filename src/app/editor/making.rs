@@ -147,7 +147,7 @@ impl App {
                 Made::Done(path, notes) => {
                     self.state.tell(Some(format!("Saved {}", path.display())));
                     if !notes.is_empty() {
-                        let text = format!("{} lacks some of the scene", file_name(&path));
+                        let text = format!("{} does not hold the whole scene", file_name(&path));
                         self.state.notices.push(Notice { text, details: notes, offer: None });
                     }
                 }
@@ -180,7 +180,7 @@ impl App {
         self.making.screenshot = None;
         match part_of(&shown, rect, ctx.pixels_per_point()) {
             Some(part) => self.save_these(&path, &part),
-            None => self.refuse("the window gave no picture of itself".to_owned()),
+            None => self.refuse("the window could not be captured".to_owned()),
         }
     }
 
@@ -192,7 +192,7 @@ impl App {
         match saved {
             Some(Ok(())) => self.state.tell(Some(format!("Saved {}", path.display()))),
             Some(Err(error)) => self.dialogs.tell_fault(format!("{error}.")),
-            None => self.refuse("the window gave no picture of itself".to_owned()),
+            None => self.refuse("the window could not be captured".to_owned()),
         }
     }
 }

@@ -190,7 +190,7 @@ impl App {
             ctx.request_repaint();
         }
         if let Some(text) = take_bad_text(&ctx) {
-            self.refuse(format!("\"{text}\" means nothing here: the field keeps its value"));
+            self.refuse(format!("\"{text}\" is not valid here: the field keeps its value"));
         }
         if let Some(text) = fonts::take_missing(&ctx) {
             self.state.notices.push(Notice { text, details: Vec::new(), offer: None });
@@ -198,7 +198,7 @@ impl App {
         if Keyboard::take_held_escape(&ctx)
             && !Panel::MOMENTARY.into_iter().any(|panel| self.closes(panel))
         {
-            self.state.tell(Some("Esc once more leaves the program".to_owned()));
+            self.state.tell(Some("Press Esc again to quit".to_owned()));
         }
         for press in pressed {
             self.press(&ctx, press);

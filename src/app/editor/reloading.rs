@@ -37,13 +37,13 @@ impl App {
         }
         if wanted.is_empty() {
             if only.is_none() {
-                self.refuse("no object of the scene comes from a file".to_owned());
+                self.refuse("no object was loaded from a file".to_owned());
             }
             return;
         }
         let label = match wanted.as_slice() {
-            [(path, _)] => format!("Reading {} again", file_name(path)),
-            all => format!("Reading {} models again", all.len()),
+            [(path, _)] => format!("Reloading {}", file_name(path)),
+            all => format!("Reloading {} models", all.len()),
         };
         self.begin_loading(ctx, label, false, move |progress| {
             let read = |(path, before): (PathBuf, Shared<Model>)| Reread {
@@ -65,7 +65,7 @@ impl App {
                 }
                 Err(LoadError::Cancelled) => {}
                 Err(error) => {
-                    let text = format!("{error}. The model stays as it was.");
+                    let text = format!("{error}. The model is unchanged.");
                     self.state.notices.push(Notice { text, details: Vec::new(), offer: None });
                 }
             }
@@ -75,8 +75,8 @@ impl App {
             return;
         }
         let label = match names.as_slice() {
-            [name] => format!("Read {name} again"),
-            names => format!("Read {} models again", names.len()),
+            [name] => format!("Reload {name}"),
+            names => format!("Reload {} models", names.len()),
         };
         self.change(Command::Batch(commands), Gesture::Whole, &label);
         self.state.tell(Some(label));

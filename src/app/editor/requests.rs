@@ -270,7 +270,7 @@ impl App {
     pub(crate) fn ask_file(&mut self, ctx: &Context, wanted: Wanted, name: &str) {
         self.note_folders(&wanted);
         if let Err(open) = self.dialogs.ask_file(ctx, wanted, name) {
-            self.refuse(format!("the dialog \"{open}\" is open already: answer it first"));
+            self.refuse(format!("the dialog \"{open}\" is open: close it first"));
         }
     }
 

@@ -73,7 +73,7 @@ impl App {
         if self.viewport.type_amount(&self.state) {
             self.viewport.take_keyboard(ctx);
         } else {
-            self.refuse("there is no picture to transform in".to_owned());
+            self.refuse("the viewport has not been drawn yet".to_owned());
         }
     }
 }

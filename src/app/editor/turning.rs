@@ -36,7 +36,7 @@ impl App {
     pub(crate) fn turn_up(&mut self, ctx: &Context, id: ObjectId, up: UpAxis) {
         let Some(object) = self.state.scene.objects.get(id) else { return };
         let Some(path) = object.model.source.clone().filter(|path| !is_example(path)) else {
-            return self.refuse(format!("{} comes from no file", object.name));
+            return self.refuse(format!("{} was not loaded from a file", object.name));
         };
         self.state.up = up;
         let options = LoadOptions { up, ..object.model.options };

@@ -77,7 +77,7 @@ impl Action {
                 ui.label(RichText::new(format!("Key: {}", keys.join(" or "))).weak());
             }
             if let Err(why) = self.availability(state) {
-                ui.label(format!("Not now: {why}."));
+                ui.label(format!("Unavailable: {why}."));
             }
         };
         response.on_hover_ui(tip).on_disabled_hover_ui(tip)

@@ -86,7 +86,7 @@ impl Keymap {
             let (known, unknown): (Vec<_>, Vec<_>) =
                 keys.iter().map(|key| chord_named(key).ok_or(key)).partition(Result::is_ok);
             for key in unknown.into_iter().filter_map(Result::err) {
-                said.push(format!("{key:?} is no key that \"{}\" can have.", action.info().label));
+                said.push(format!("{key:?} cannot be a key of \"{}\".", action.info().label));
             }
             if keys.is_empty() || !known.is_empty() {
                 keymap.choose(action, known.into_iter().flatten().collect());
@@ -106,7 +106,9 @@ impl Keymap {
                     self.take(other, chord);
                     let [own, other] = [action, other].map(|action| action.info().label);
                     let key = chord.name();
-                    said.push(format!("{key} is your key of \"{own}\", not that of \"{other}\"."));
+                    said.push(format!(
+                        "{key} is your key for \"{own}\"; \"{other}\" no longer has it."
+                    ));
                 }
             }
         }
@@ -202,8 +204,8 @@ mod tests {
         assert_eq!(keymap.keys(Action::Undo), [Chord::Lower(Key::K)]);
         let expected = [
             "This version has no action \"Nothing\".",
-            "\"Hyper+Q\" is no key that \"Rename\" can have.",
-            "\"Hyper+Z\" is no key that \"Undo\" can have.",
+            "\"Hyper+Q\" cannot be a key of \"Rename\".",
+            "\"Hyper+Z\" cannot be a key of \"Undo\".",
         ];
         assert_eq!(said, expected);
     }
@@ -231,7 +233,10 @@ mod tests {
         let (keymap, said) = read(&[("Duplicate", "w")]);
         assert_eq!(keymap.keys(Action::Duplicate), [Chord::Lower(Key::W)]);
         assert!(keymap.keys(Action::WhyUnseen).is_empty(), "no key is pressed for two actions");
-        assert_eq!(said, ["w is your key of \"Duplicate\", not that of \"Why can't I see it?\"."]);
+        assert_eq!(
+            said,
+            ["w is your key for \"Duplicate\"; \"Why can't I see it?\" no longer has it."]
+        );
         assert_eq!(Keymap::of_names(&keymap.names()), (keymap, Vec::new()), "it is said once");
         // If the user has given two actions the same key, the first one in the table keeps it.
         let (keymap, said) = read(&[("Redo", "k"), ("Undo", "k x")]);

@@ -48,7 +48,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         wanted.clear();
     }
     let field = egui::TextEdit::singleline(&mut wanted)
-        .hint_text("Search: an action, a key")
+        .hint_text("Search actions and keys")
         .align(egui::Align2::LEFT_CENTER)
         .min_size(vec2(0.0, theme::ROW))
         .desired_width(f32::INFINITY);
@@ -92,7 +92,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             }
         }
         if !found {
-            ui.weak("Nothing of this name, and no such key.");
+            ui.weak("No action or key matches.");
         }
     });
 }
@@ -129,7 +129,7 @@ fn choosing_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) {
     let Some((action, chord)) = Keyboard::choosing(ui.ctx()) else { return };
     let label = action.info().label;
     let Some(chord) = chord else {
-        ui.label(format!("Press the key for \"{label}\"; Esc keeps it as it is."));
+        ui.label(format!("Press a key for \"{label}\"; Esc cancels."));
         return;
     };
     let Some(other) = keymap.clash(action, chord) else {
@@ -138,7 +138,7 @@ fn choosing_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) {
     };
     ui.horizontal_wrapped(|ui| {
         let has = other.info().label;
-        let text = format!("{chord} is the key of \"{has}\".");
+        let text = format!("{chord} is already the key of \"{has}\".");
         ui.colored_label(theme::error(ui.visuals()), text);
         if ui.button(format!("Use it for \"{label}\"")).clicked() {
             requests.push(Request::Keys(KeyRequest::Take(action, chord)));
@@ -251,7 +251,7 @@ fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action)
         None => "",
     };
     let hint =
-        available.as_ref().err().map_or(info.hint.to_owned(), |why| format!("Not now: {why}."));
+        available.as_ref().err().map_or(info.hint.to_owned(), |why| format!("Unavailable: {why}."));
     let keymap = Keyboard::keymap(ui.ctx());
     let keys = keymap.keys(action).iter().flat_map(|key| key.names());
     Columns { label: info.label, now, hint: &hint, enabled }.show(ui, rect, keys);

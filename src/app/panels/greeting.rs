@@ -14,7 +14,7 @@ use marraztu_io::EXAMPLES;
 
 /// The lessons to offer, by their axes, with their topics.
 const LESSONS: [(&str, &str); 3] =
-    [("samples", "Jagged edges"), ("shading", "Flat or smooth"), ("depth", "Depth that fights")];
+    [("samples", "Jagged edges"), ("shading", "Flat or smooth"), ("depth", "Z-fighting")];
 
 /// The maximum number of recent files to offer.
 const RECENT: usize = 3;
@@ -67,7 +67,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         }
     });
     ui.horizontal_wrapped(|ui| {
-        ui.weak("Or look at a lesson:");
+        ui.weak("Or try a lesson:");
         for (key, about) in LESSONS {
             let hint = Axis::named(key).map_or("", |axis| axis.lesson.title);
             if ui.button(about).on_hover_text(hint).clicked() {
@@ -75,7 +75,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             }
         }
         ui.add_space(3.0 * theme::GAP);
-        if ui.button("Dismiss").on_hover_text("Puts this strip away").clicked() {
+        if ui.button("Dismiss").on_hover_text("Closes this strip").clicked() {
             requests.push(Request::EndGreeting);
         }
     });

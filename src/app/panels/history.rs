@@ -46,7 +46,7 @@ pub(super) fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -
             // A growing atom behind the text keeps the text left-aligned.
             let button = Button::selectable(here, (text, Atom::grow())).truncate();
             let response = ui.add_sized([ui.available_width(), row], button);
-            if response.on_hover_text("Goes to the point just after this step").clicked() {
+            if response.on_hover_text("Restores the state just after this step").clicked() {
                 requests.push(Request::GoTo(position));
                 clicked = true;
             }

@@ -91,7 +91,7 @@ macro_rules! each_panel {
         $then! {
             CheatSheet cheat_sheet "cheat_sheet" [Dock::Floating] false
                 [Either(Key::H), Text("?"), Named(Key::F1)]
-                "Keys" "Lists every key with what it would do now, and what the mouse does."
+                "Keys" "Lists every key and mouse action, with its effect and its current value."
                 "shortcuts help hotkeys keyboard mouse bindings";
             Outline outline "outline" [Dock::Beside(Side::Outline)] true []
                 "Outline" "Shows or hides the list of objects, cameras and lights."
@@ -103,10 +103,10 @@ macro_rules! each_panel {
                 "View switches" "Shows or hides the switches of the view."
                 "display accuracy";
             Statistics statistics "statistics" [Dock::Floating] false []
-                "Statistics" "Shows or hides how much is drawn and how long it takes."
+                "Statistics" "Shows or hides the counts and times of the picture."
                 "fps frames speed performance triangles count";
             Plan plan "plan" [Dock::UnderPicture] false [Named(Key::F3)]
-                "Plan" "Shows or hides each effect of the picture: on or off, why, and its cost."
+                "Plan" "Shows or hides the effects of the picture, with reasons and costs."
                 "effects explain cost why";
             History history "history" [Dock::Floating] false []
                 "History" "Shows or hides the steps that can be undone and redone."
@@ -116,7 +116,7 @@ macro_rules! each_panel {
                 "Shows or hides the laboratory, which measures what accuracy costs in time."
                 "accuracy benchmark error compare experiment";
             Preferences preferences "preferences" [Dock::Floating] false [Command(Key::Comma)]
-                "Preferences" "Shows or hides everything that the program remembers, with resets."
+                "Preferences" "Shows or hides the settings that the program remembers, with resets."
                 "settings options configuration defaults reset remembered theme recent";
             About about "about" [Dock::Floating] false []
                 "About" "Shows or hides version, commit, instructions in use, and licences."

@@ -106,14 +106,14 @@ fn recoverable_ui(ui: &mut Ui, at: usize, work: &str, requests: &mut Vec<Request
     ui.label(work);
     ui.horizontal(|ui| {
         let key = first_key(ui, Action::RecoverWork).filter(|_| at == 0);
-        let hint = "Shows it instead of this scene";
+        let hint = "Opens the work in place of this scene";
         let hint = key.map_or_else(|| hint.to_owned(), |key| format!("{hint}; key {key}"));
         if ui.button("Recover").on_hover_text(hint).clicked() {
             requests.push(Request::Recover(at));
         }
         if ui
             .button("Discard")
-            .on_hover_text("Moves it aside; File brings it back for 30 days")
+            .on_hover_text("Discards the work; the File menu can restore it for 30 days")
             .clicked()
         {
             requests.push(Request::DiscardWork(at));
@@ -125,17 +125,17 @@ fn recoverable_ui(ui: &mut Ui, at: usize, work: &str, requests: &mut Vec<Request
 fn missing_ui(ui: &mut Ui, missing: &BTreeSet<&Path>, requests: &mut Vec<Request>) {
     let names: Vec<String> = missing.iter().map(|path| file_name(path)).collect();
     let text = match &names[..] {
-        [only] => format!("{only} is missing: a placeholder takes its place"),
+        [only] => format!("{only} is missing: a placeholder is shown"),
         all => {
-            format!("{} files of the scene are missing: placeholders take their place", all.len())
+            format!("{} files of the scene are missing: placeholders are shown", all.len())
         }
     };
     ui.label(text).on_hover_text(names.join("\n"));
     ui.horizontal(|ui| {
-        if ui.button("Find...").on_hover_text("Asks where it is").clicked() {
+        if ui.button("Find...").on_hover_text("Locates the missing file").clicked() {
             requests.push(Request::Missing(MissingRequest::Find(None)));
         }
-        let hint = "File, Find missing files brings it back";
+        let hint = "Hides this notice; File > Find missing files... shows it again";
         if ui.button("Dismiss").on_hover_text(hint).clicked() {
             requests.push(Request::Missing(MissingRequest::Dismiss));
         }
@@ -147,7 +147,7 @@ fn nearby_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let found: Vec<String> =
         state.missing.nearby.iter().map(|[_, new]| new.display().to_string()).collect();
     let text = match &state.missing.nearby[..] {
-        [[_, new]] => format!("{} was found there, too", file_name(new)),
+        [[_, new]] => format!("{} was found there as well", file_name(new)),
         all => format!("{} more missing files were found there", all.len()),
     };
     ui.label(text).on_hover_text(found.join("\n"));

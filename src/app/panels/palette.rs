@@ -91,7 +91,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32
     });
     let field = egui::TextEdit::singleline(&mut query)
         .id(id.with("field"))
-        .hint_text("Search: an action, an item, a setting")
+        .hint_text("Search actions, items and settings")
         .align(Align2::LEFT_CENTER)
         .min_size(vec2(0.0, theme::ROW + 4.0))
         .desired_width(f32::INFINITY);
@@ -130,7 +130,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32
             }
         }
         if entries.is_empty() {
-            ui.weak("Nothing has this name. Try another word, a key, or a colour such as #ff8000.");
+            ui.weak("No match. Try another word, a key, or a colour such as #ff8000.");
         }
     });
     let Some(entry) = clicked.or(enter.then_some(chosen)).and_then(|at| entries.get(at)) else {
@@ -223,7 +223,7 @@ fn materials(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
         let texts = Texts { label: &label, words: "surface shader look custom", hint: "" };
         let Some(score) = search.score(texts) else { continue };
         let on = object.material == to || (is_own && matches!(to, MaterialChoice::Own(_)));
-        let hint = "Gives it to the selected object.".to_owned();
+        let hint = "Applies it to the selected object.".to_owned();
         let what = format!("Material of {}", state.acted_on_name());
         let request = of_objects(state, id, what, |object| object.material = to.clone());
         let (kind, key, refused) = ("Material", String::new(), None);
@@ -270,7 +270,7 @@ fn colors(
                 let own = Material { ambient, diffuse, specular, exponent, emission };
                 object.material = MaterialChoice::Own(own);
             });
-            add(what, "Gives it a material of its own in this colour.", request);
+            add(what, "Gives it a custom material in this colour.", request);
         }
         Some(ItemId::Light(id)) => {
             let what = format!("Colour of {name}");
@@ -283,14 +283,14 @@ fn colors(
                 },
                 Err(refusal) => Request::Refuse(refusal.to_string()),
             };
-            add(what, "Makes the light shine in this colour.", request);
+            add(what, "Sets the light to this colour.", request);
         }
         Some(ItemId::Camera(_)) | None => {}
     }
     let command = Command::Background(color);
     let (gesture, label) = (Gesture::Whole, "Set the background".to_owned());
     let request = Request::Change { command, gesture, label };
-    add("Background".to_owned(), "Gives the background this colour.", request);
+    add("Background".to_owned(), "Sets the background to this colour.", request);
 }
 
 fn settings(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
@@ -361,7 +361,7 @@ impl Entry {
         let end = left + label.size().x + 12.0;
         controls::put_text(ui, rect.with_min_x(left), label, color);
         let said = match &self.refused {
-            Some(why) => format!("Not now: {why}."),
+            Some(why) => format!("Unavailable: {why}."),
             None => self.hint.clone(),
         };
         if right - 12.0 - end > 60.0 {

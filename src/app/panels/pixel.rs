@@ -52,7 +52,7 @@ pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut V
                 ui.separator();
                 buttons_ui(ui, state, pixel, explained, requests);
             }
-            None => drop(ui.weak("Outside of the picture.")),
+            None => drop(ui.weak("Outside the picture.")),
         });
     if !open {
         requests.push(Request::EndExplaining);
@@ -70,7 +70,7 @@ fn explained_ui(ui: &mut Ui, state: &State, pixel: &ExplainedPixel, explained: &
     if samples.count() > 1 {
         let count = samples.count();
         ui.weak(format!(
-            "The picture has the mean of {count} samples; this is the centre's light."
+            "The picture has the mean of {count} samples; this is the light at the pixel's centre."
         ));
     }
     if let Some(point) = &explained.surface {

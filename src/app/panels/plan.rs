@@ -23,7 +23,7 @@ use marraztu_render::{Effect, EffectUse};
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let Some(explained) = state.plan.explained.clone() else {
-        ui.add(egui::Label::new("The next picture says what it is made of.").wrap());
+        ui.add(egui::Label::new("The plan appears with the next picture.").wrap());
         return;
     };
     header_ui(ui, state, requests, &explained);
@@ -50,7 +50,7 @@ fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained:
         // In a narrow window, the button takes the place of the summary.
         let room = ui.available_width() - BUTTON - 2.0 * f32::from(theme::MARGIN);
         let label = if text.size().x <= room { ui.label(summary) } else { title };
-        label.on_hover_text("Leaving effects out changes no bit of the picture.");
+        label.on_hover_text("Leaving effects out does not change a single bit of the picture.");
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.add_space(f32::from(theme::MARGIN));
             let label = if state.plan.measuring { "Stop" } else { "Measure" };
@@ -84,7 +84,7 @@ fn times_ui(ui: &mut Ui, measured: &Measured, now: bool) {
 fn summary(explained: &Explained) -> String {
     let on = explained.uses.iter().filter(|one| one.state.is_on()).count();
     let left_out = explained.uses.len() - on;
-    format!("{on} on; {left_out} left out, which changes no bit")
+    format!("{on} on; {left_out} left out without changing a bit")
 }
 
 /// Returns whether the measurement belongs to the picture in the viewport.
@@ -131,8 +131,8 @@ fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
     // Headings of text columns are left-aligned, of numbers right-aligned.
     let titles = [
         (columns.name, "Effect"),
-        (columns.on, "Of"),
-        (columns.why, "Why"),
+        (columns.on, "Item"),
+        (columns.why, "Reason"),
         (columns.pixels, "Pixels"),
         (columns.time, if columns.time.width() < 80.0 { "ms" } else { "Milliseconds" }),
     ];

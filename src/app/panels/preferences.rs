@@ -41,13 +41,13 @@ const ROWS: &[Row] = &[
         hint: "Whether the window is light or dark.",
         ui: |ui, it, _| {
             let all = [("System", Theme::System), ("Light", Theme::Light), ("Dark", Theme::Dark)];
-            choose(ui, ("Theme", "Light, dark, or as the system is"), &all, &mut it.theme);
+            choose(ui, ("Theme", "Light, dark, or like the system"), &all, &mut it.theme);
         },
         copy: |from, to| to.theme = from.theme,
     },
     Row {
         label: "Interface size",
-        hint: "How large texts and panels are.",
+        hint: "The size of text and panels.",
         ui: |ui, it, asks| {
             for (label, action) in [("-", Action::SmallerText), ("+", Action::LargerText)] {
                 let button = ui.add(egui::Button::new(label).min_size(vec2(theme::ROW, 0.0)));
@@ -61,7 +61,7 @@ const ROWS: &[Row] = &[
     },
     Row {
         label: "Window",
-        hint: "The size with which the window opens.",
+        hint: "The size of the window when it opens.",
         ui: |ui, it, _| {
             let [width, height] = it.window.unwrap_or(Preferences::WINDOW);
             let whole = if it.maximized { ", maximized" } else { "" };
@@ -82,10 +82,10 @@ const ROWS: &[Row] = &[
     },
     Row {
         label: "Sizes of panels",
-        hint: "Where you have dragged the borders between panels.",
+        hint: "The panel borders that you have dragged.",
         ui: |ui, it, _| {
             ui.label(match it.shares.len() {
-                0 => "as suits the window".to_owned(),
+                0 => "default".to_owned(),
                 1 => "1 border dragged".to_owned(),
                 count => format!("{count} borders dragged"),
             });
@@ -94,15 +94,15 @@ const ROWS: &[Row] = &[
     },
     Row {
         label: "Keys",
-        hint: "The keys that you have chosen.",
+        hint: "Your custom keys.",
         ui: |ui, it, asks| {
             if ui.button("Change...").accessible_name("Change keys").clicked() {
                 asks.push(Action::Panel(Panel::CheatSheet).into());
             }
             ui.label(match it.keys.len() {
-                0 => "none of your own".to_owned(),
-                1 => "1 action has keys of your own".to_owned(),
-                count => format!("{count} actions have keys of your own"),
+                0 => "default keys".to_owned(),
+                1 => "1 action has custom keys".to_owned(),
+                count => format!("{count} actions have custom keys"),
             });
         },
         copy: |from, to| to.keys = from.keys.clone(),
@@ -121,7 +121,7 @@ const ROWS: &[Row] = &[
     },
     Row {
         label: "Up axis of models",
-        hint: "Which axis points up in a model that does not say so itself.",
+        hint: "The up axis of models that do not state one.",
         ui: |ui, it, _| {
             let words = UpAxis::ALL.map(|up| up.word().to_uppercase());
             let named = UpAxis::ALL.into_iter().zip(&words);
@@ -133,13 +133,13 @@ const ROWS: &[Row] = &[
     },
     Row {
         label: "Reload models",
-        hint: "Reads models again as soon as another program saves them.",
+        hint: "Reloads models when another program saves them.",
         ui: |ui, it, _| switch(ui, "When their files change", &mut it.watches),
         copy: |from, to| to.watches = from.watches,
     },
     Row {
         label: "Overlays",
-        hint: "The outline of the selection, axes and marks of lights.",
+        hint: "The selection outline, the axes and light markers.",
         ui: |ui, it, _| switch(ui, "Shown over the picture", &mut it.overlays),
         copy: |from, to| to.overlays = from.overlays,
     },
@@ -157,19 +157,19 @@ const ROWS: &[Row] = &[
     },
     Row {
         label: "Dimensions",
-        hint: "The boxes around selected objects, with their sizes.",
+        hint: "The bounding boxes of the selected objects, with their sizes.",
         ui: |ui, it, _| switch(ui, "Shown around the selection", &mut it.helpers.dimensions),
         copy: |from, to| to.helpers.dimensions = from.helpers.dimensions,
     },
     Row {
-        label: "Directions of lights",
-        hint: "Where every sun and every spot shines.",
+        label: "Light directions",
+        hint: "The direction of every sun and spot.",
         ui: |ui, it, _| switch(ui, "Shown for all lights", &mut it.helpers.directions),
         copy: |from, to| to.helpers.directions = from.helpers.directions,
     },
     Row {
         label: "Refining",
-        hint: "More samples per pixel while nothing happens.",
+        hint: "More samples per pixel while nothing moves.",
         ui: |ui, it, _| switch(ui, "When nothing moves", &mut it.refines),
         copy: |from, to| to.refines = from.refines,
     },
@@ -188,7 +188,8 @@ const ROWS: &[Row] = &[
     },
     Row {
         label: "Time while moving",
-        hint: "The milliseconds that a picture may take before it is drawn at reduced quality.",
+        hint: "The time limit for a picture while something moves; slower pictures get reduced \
+            quality.",
         ui: |ui, it, _| {
             let field = DragValue::new(&mut it.budget_ms).range(1..=1000).suffix(" ms");
             ui.add(field).accessible_name("Time while moving");

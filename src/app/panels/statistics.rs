@@ -49,13 +49,13 @@ const NAMES: usize = 2;
 /// Describes the redrawn part of the last picture: "14 of 169 tiles drawn: teapot moved".
 fn redrawn(state: &State, changes: &Damage) -> String {
     let why = match changes.cause() {
-        DamageCause::First => "a new picture".to_owned(),
-        DamageCause::Size => "another size".to_owned(),
-        DamageCause::Camera => "seen from elsewhere".to_owned(),
-        DamageCause::Background => "another background".to_owned(),
-        DamageCause::Settings => "drawn in another way".to_owned(),
-        DamageCause::Shadows => "other shadows".to_owned(),
-        DamageCause::Order => "another order".to_owned(),
+        DamageCause::First => "first picture".to_owned(),
+        DamageCause::Size => "size changed".to_owned(),
+        DamageCause::Camera => "camera moved".to_owned(),
+        DamageCause::Background => "background changed".to_owned(),
+        DamageCause::Settings => "settings changed".to_owned(),
+        DamageCause::Shadows => "shadows changed".to_owned(),
+        DamageCause::Order => "order changed".to_owned(),
         DamageCause::Items(items) => reasons(items, |item| state.name(item)),
     };
     format!("{} of {} tiles drawn: {why}", changes.tiles(), changes.tiles_in_all())
@@ -73,7 +73,7 @@ fn reasons<'a>(items: &[(ItemId, Change)], name: impl Fn(ItemId) -> Option<&'a s
     let reason = |(change, verb): (Change, &str)| {
         let alike: Vec<ItemId> =
             items.iter().filter(|(_, other)| *other == change).map(|(item, _)| *item).collect();
-        let named = |item: &ItemId| name(*item).unwrap_or("what is gone").to_owned();
+        let named = |item: &ItemId| name(*item).unwrap_or("a removed item").to_owned();
         let mut names: Vec<String> = alike.iter().take(NAMES).map(named).collect();
         if alike.len() > NAMES {
             names.truncate(NAMES - 1);
@@ -107,6 +107,6 @@ mod tests {
             reasons(&items(&[Change::Look; 3]), name),
             "teapot and 2 more changed in colour or light"
         );
-        assert_eq!(reasons(&[(object(9), Change::Went)], name), "what is gone went");
+        assert_eq!(reasons(&[(object(9), Change::Went)], name), "a removed item went");
     }
 }

@@ -77,7 +77,7 @@ fn past_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
                 ui.add_space(theme::GAP);
             }
         });
-        if ui.button("Clear").on_hover_text("Forgets these notices").clicked() {
+        if ui.button("Clear").on_hover_text("Clears these notices").clicked() {
             requests.push(Request::ClearNotices);
             ui.close();
         }
@@ -101,7 +101,7 @@ fn mouse_ui(ui: &mut Ui, state: &State) {
     let shown = (1..=all.len()).rev().map(|count| all[..count].join(BETWEEN));
     let Some(text) = shown.into_iter().find(|text| width(ui, text) <= room) else { return };
     ui.add(egui::Label::new(RichText::new(text).weak()))
-        .on_hover_text("What the mouse does over the picture; the list of keys has all of it");
+        .on_hover_text("Mouse actions over the picture; the list of keys has them all");
 }
 
 /// Lists hints about the mouse, the most important first.

@@ -77,7 +77,7 @@ fn button_ui(
         Popup::close_id(ui.ctx(), id);
     }
     ui.data_mut(|data| data.insert_temp(id, pulls && !let_go));
-    action.explain_also(response, state, "Held or pulled down, it lists the steps.");
+    action.explain_also(response, state, "Hold or pull down to list the steps.");
 }
 
 /// Returns whether the button was held long enough, or pressed and dragged downwards.

@@ -276,8 +276,8 @@ fn drawing_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let now = state.drawing;
     let label = |samples: &Samples| format!("{} samples", samples.count());
     let labels: Vec<String> = Samples::ALL[1..].iter().map(label).collect();
-    let hint = "The samples per pixel that the window refines its picture to while nothing \
-        happens. Files and the laboratory keep the setting above.";
+    let hint = "The samples per pixel in the window while nothing moves. Files and the laboratory \
+        keep the setting above.";
     let off = Choice::new("Refined to", "Off", !now.refines, hint);
     let on = Samples::ALL[1..].iter().zip(&labels).map(|(samples, label)| {
         Choice::new("Refined to", label, now.refines && now.refined == *samples, hint)
@@ -291,9 +291,9 @@ fn drawing_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         }
         None => {}
     }
-    let hint = "The time that a picture may take while something moves. If it takes longer, the \
-        window gives up accuracy: of what it has measured of this scene, the most exact picture \
-        that keeps the time.";
+    let hint = "The time limit for a picture while something moves. If a picture takes longer, \
+        the window draws the most exact quality that was within the limit when it was measured on \
+        this scene.";
     let labels = BUDGETS.map(|ms| format!("{ms} ms"));
     let all: Vec<Choice<'_>> = BUDGETS
         .iter()
@@ -326,7 +326,7 @@ pub(crate) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, requests: &mut Ve
         .choices
         .iter()
         .map(|choice| match senseless.or_else(|| own(choice).err()) {
-            Some(why) => format!("{} Changes nothing now: {why}.", choice.what),
+            Some(why) => format!("{} Has no effect now: {why}.", choice.what),
             None => format!("{} Error: {}.", choice.what, choice.error),
         })
         .collect();

@@ -97,7 +97,7 @@ pub(crate) fn run(shell: Shell, window: ViewportBuilder, make: Make) -> Result<(
     catch_unwind(AssertUnwindSafe(|| run(window, make))).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
         let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
-        Err(explained(text.unwrap_or("for a reason it did not tell")))
+        Err(explained(text.unwrap_or("for an unknown reason")))
     })
 }
 

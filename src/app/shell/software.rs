@@ -17,7 +17,9 @@ pub(super) fn run(builder: ViewportBuilder, make: Make) -> Result<(), StartError
     let proxy = event_loop.create_proxy();
     let mut shell = Software { proxy, beginning: Some((builder, make)), window: None, end: None };
     event_loop.run_app(&mut shell).map_err(|error| display_error(&error))?;
-    shell.end.unwrap_or_else(|| Err(StartError::Lost("its display has ended".to_owned())))
+    shell
+        .end
+        .unwrap_or_else(|| Err(StartError::Lost("the display connection was closed".to_owned())))
 }
 
 struct Software {

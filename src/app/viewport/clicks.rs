@@ -44,10 +44,10 @@ impl Viewport {
                 (Some(hit), Some((rect, size))) => {
                     match Projection::new(state, rect, size).world(at, hit.depth) {
                         Some(point) => Request::AimAt(point),
-                        None => Request::Refuse("there is no point here".to_owned()),
+                        None => Request::Refuse("there is no surface here".to_owned()),
                     }
                 }
-                _ => Request::Refuse("nothing is here to aim at: click on an object".to_owned()),
+                _ => Request::Refuse("there is nothing to aim at here: click an object".to_owned()),
             }),
             // A light's mark is skipped in favour of the object under it.
             Purpose::Frame => match self.framed(state, pick.at, item) {

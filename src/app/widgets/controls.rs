@@ -309,7 +309,7 @@ fn choice_ui(ui: &Ui, rect: Rect, choice: &Choice<'_>, is_stop: bool) -> Respons
             ui.weak(format!("Key: {key}"));
         }
         if let Some(why) = &choice.refused {
-            ui.label(format!("Not now: {why}."));
+            ui.label(format!("Unavailable: {why}."));
         }
     })
 }

@@ -152,7 +152,7 @@ impl<'a> Number<'a> {
         }
         let response = response.on_disabled_hover_text(self.hint).on_hover_ui(|ui| {
             ui.label(self.hint);
-            ui.label(RichText::new("Drag, or click and type a number or a sum").weak());
+            ui.label(RichText::new("Drag, or click and type a number or an expression").weak());
         });
         // A focused field without another number typed into it reports no change.
         let to = if self.whole { to.round() } else { to };

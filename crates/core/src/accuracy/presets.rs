@@ -23,14 +23,14 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
     AccuracyPreset {
         word: "draft",
         label: "Draft",
-        what: "Quick: light at vertices, the nearest texel.",
+        what: "Fast: light at vertices, nearest texel.",
         points: &[("shading", "vertex"), ("filter", "nearest")],
         faults: &[],
     },
     AccuracyPreset {
         word: "default",
         label: "Default",
-        what: "What the editor begins with: at most a quarter of a byte step of light is lost.",
+        what: "The default of the editor: loses at most a quarter of a byte step of light.",
         points: &[],
         faults: &[],
     },
@@ -44,7 +44,7 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
     AccuracyPreset {
         word: "ancestor-a",
         label: "Ancestor A (points)",
-        what: "As ancestor A drew: points every 0.1 unit, lit at vertices, in 32 bits.",
+        what: "Like ancestor A: points every 0.1 unit, lit at vertices, in 32 bits.",
         points: &[
             ("shading", "vertex"),
             ("power", "library"),
@@ -57,7 +57,7 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
             ("transparency", "threshold"),
         ],
         faults: &[
-            "holes in anything nearer than 97 units",
+            "holes in surfaces nearer than 97 units",
             "17 writes per pixel at a distance of 400, 100 at 966",
             "highlights smaller than a polygon dim or vanish",
             "normals lean with stretched objects",
@@ -69,7 +69,7 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
     AccuracyPreset {
         word: "ancestor-b",
         label: "Ancestor B (scan lines)",
-        what: "As ancestor B drew: rows of pixels, textures without perspective.",
+        what: "Like ancestor B: rows of pixels, textures without perspective.",
         points: &[
             ("shading", "vertex"),
             ("vertices", "f32"),
@@ -135,8 +135,8 @@ impl Settings {
         others.fold(base, |settings, axis| axis.most_exact(&settings).of(&settings))
     }
 
-    /// The settings of each of the 256 pictures whose mean samples per pixel are judged against:
-    /// the default, with the models of these settings. It does not depend on any other choice.
+    /// The settings of the 256 pictures that are averaged as the reference for samples per pixel:
+    /// the default, with the models of these settings. They do not depend on any other choice.
     #[must_use]
     pub fn sampled(&self) -> Self {
         Self::default().modelled_as(self)
@@ -152,8 +152,8 @@ impl Settings {
         }
     }
 
-    /// The settings of a picture that is kept: with at least [`Self::REFINED`] samples per pixel,
-    /// as the window shows it once nothing moves.
+    /// The settings of a picture in a file: at least [`Self::REFINED`] samples per pixel, as in a
+    /// window in which nothing moves.
     #[must_use]
     pub const fn refined(self) -> Self {
         let more = Self::REFINED.count() > self.samples.count();
@@ -163,7 +163,7 @@ impl Settings {
         }
     }
 
-    /// The samples per pixel of a picture that is kept.
+    /// The samples per pixel of a picture in a file.
     pub const REFINED: Samples = Samples::Sixteen;
 
     /// These settings with the models of `others`.
@@ -173,7 +173,7 @@ impl Settings {
         models.fold(*self, |settings, axis| axis.chosen(others).of(&settings))
     }
 
-    /// What differs from the default, in words: "Gouraud shading, nearest texture filter".
+    /// The differences from the default, in words: "Gouraud shading, nearest texture filter".
     #[must_use]
     pub fn in_words(&self) -> String {
         let preset = ACCURACY_PRESETS.iter().find(|preset| preset.of(self) == *self);

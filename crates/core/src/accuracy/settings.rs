@@ -1,6 +1,6 @@
 //! The settings: one choice for each axis of accuracy.
 //!
-//! Each field is one axis of [`super::AXES`]; the default is what the editor begins with.
+//! Each field is one axis of [`super::AXES`]; the editor starts with the default.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// The precision in which light is computed.
+    /// The precision of lighting.
     pub arithmetic: Arithmetic,
     /// Where light is evaluated.
     #[serde(rename = "shading", alias = "light")]
@@ -17,7 +17,7 @@ pub struct Settings {
     pub samples: Samples,
     /// How a texture is filtered between its texels.
     pub filter: Filter,
-    /// Which form the highlight has.
+    /// The form of the highlight.
     pub specular: SpecularForm,
     /// How the power of a highlight is computed.
     pub power: SpecularPower,
@@ -25,7 +25,7 @@ pub struct Settings {
     pub rounding: Rounding,
     /// How normals are transformed.
     pub stretched: NormalMatrix,
-    /// The precision in which vertices are transformed.
+    /// The precision of vertex transforms.
     pub vertices: VertexArithmetic,
     /// The fraction of a pixel that vertices are snapped to.
     pub subpixels: Subpixels,
@@ -35,19 +35,19 @@ pub struct Settings {
     pub depth: DepthFormat,
     /// How vertex attributes are interpolated across a triangle.
     pub interpolation: Interpolation,
-    /// How transparent surfaces are laid over each other.
+    /// How transparent surfaces are blended.
     pub transparency: Transparency,
-    /// How the tangents that bumps are laid along are found.
+    /// How tangents for bumps are computed.
     pub tangents: Tangents,
-    /// How the maps of bumps are filtered.
+    /// How height and normal maps are filtered.
     #[serde(rename = "bumps")]
     pub bump_filter: BumpFilter,
-    /// How it is decided whether a light is seen.
+    /// How shadows are computed.
     #[serde(rename = "shadow-method")]
     pub shadow_method: ShadowMethod,
-    /// Where rays of shadows begin on smooth surfaces.
+    /// Where shadow rays start on smooth surfaces.
     pub terminator: Terminator,
-    /// In which values light is computed.
+    /// The colour space in which light is computed.
     #[serde(rename = "values")]
     pub light_values: LightValues,
     /// An axis of older scene files.
@@ -60,7 +60,7 @@ pub struct Settings {
     pub former_faint: FormerAxis,
 }
 
-/// An axis that older scene files may hold, whose choices saved nothing. Any choice is accepted and
+/// A former axis in older scene files; its choices saved nothing. Any choice is accepted and
 /// ignored.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -72,7 +72,7 @@ impl<'de> Deserialize<'de> for FormerAxis {
     }
 }
 
-/// The precision in which light is computed.
+/// The precision of lighting.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Arithmetic {
     /// 32 bits, sixteen at once.
@@ -159,7 +159,7 @@ pub enum Filter {
     Trilinear,
 }
 
-/// Which form the highlight has. The two are different models: neither is an error of the other.
+/// The form of the highlight. The two are different models: neither is an error of the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum SpecularForm {
     /// (R.V)^Ns: Phong's.
@@ -205,7 +205,7 @@ pub enum NormalMatrix {
     Cofactor,
 }
 
-/// The precision in which vertices are transformed.
+/// The precision of vertex transforms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum VertexArithmetic {
     /// 32 bits for matrices and vertices.
@@ -234,13 +234,13 @@ pub enum Subpixels {
 /// Which pixels a triangle covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Coverage {
-    /// Those that points on it fall into, one every 0.1 unit of the observer's space.
+    /// Pixels hit by points on the triangle, one every 0.1 unit in camera space.
     Points,
     /// Rows between edges that are rounded to whole pixels, including both ends.
     ScanLines,
-    /// Those at which edge functions in 32-bit floating point are not negative.
+    /// Pixels at which edge functions in 32-bit floating point are not negative.
     F32Edges,
-    /// Those inside by edge functions in integers, with the rule of Direct3D and Vulkan.
+    /// Pixels inside by edge functions in integers, with the rule of Direct3D and Vulkan.
     #[default]
     Exact,
 }
@@ -271,21 +271,21 @@ pub enum Interpolation {
     Perspective,
 }
 
-/// How transparent surfaces are laid over each other.
+/// How transparent surfaces are blended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Transparency {
-    /// Not at all: what is less than half opaque is not drawn, everything else is opaque.
+    /// Not at all: surfaces that are less than half opaque are not drawn, others are opaque.
     Threshold,
     /// All at once, as a mean weighted by opacity and nearness.
     Weighted,
-    /// Object by object, the farthest first, and in each triangle by triangle.
+    /// Object by object, the farthest first; each object triangle by triangle.
     Objects,
     /// Pixel by pixel, the farthest first.
     #[default]
     Exact,
 }
 
-/// How the tangents that bumps are laid along are found.
+/// How tangents for bumps are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Tangents {
     /// At each pixel, from the gradients of the texture coordinates on its triangle.
@@ -295,7 +295,7 @@ pub enum Tangents {
     Vertex,
 }
 
-/// How the maps of bumps are filtered.
+/// How height and normal maps are filtered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum BumpFilter {
     /// The nearest texel.
@@ -305,18 +305,18 @@ pub enum BumpFilter {
     Trilinear,
 }
 
-/// In which values light is computed. The two are different models: neither is an error of the
-/// other.
+/// The colour space in which light is computed. The two are different models: neither is an error
+/// of the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum LightValues {
-    /// In those that colours are stored in.
+    /// In the values in which colours are stored.
     #[default]
     Stored,
     /// In linear sRGB: colours are decoded, and pictures are encoded.
     Linear,
 }
 
-/// How it is decided whether a light is seen.
+/// How shadows are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum ShadowMethod {
     /// By a shadow map of 512 x 512 texels.
@@ -343,9 +343,9 @@ pub enum ShadowMethod {
 /// How a shadow map is made and read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShadowMapForm {
-    /// Its texels in a row, and its rows.
+    /// Its width and height in texels.
     pub side: usize,
-    /// Whether the nine nearest texels are compared, and what they say is averaged.
+    /// Whether the results of the nine nearest texels are averaged.
     pub is_filtered: bool,
 }
 
@@ -368,7 +368,7 @@ impl ShadowMethod {
     }
 }
 
-/// Where rays of shadows begin on surfaces with vertex normals. The two are different models.
+/// Where shadow rays start on surfaces with vertex normals. The two are different models.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Terminator {
     /// On the triangles.

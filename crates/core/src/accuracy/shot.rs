@@ -1,18 +1,17 @@
-//! Everything that one picture is made from.
+//! The complete input of one picture.
 
 use super::Settings;
 use crate::base::image::Size;
 use crate::scene::{Scene, View};
 
-/// A scene with its view, settings and size. Equal shots give equal pictures, and a clone is
-/// cheap.
+/// A scene with its view, settings and size. Equal shots give equal pictures, and a clone is cheap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shot {
-    /// What is drawn.
+    /// The scene to draw.
     pub scene: Scene,
-    /// How it is viewed.
+    /// The view: camera, background and switches.
     pub view: View,
-    /// How exactly it is drawn.
+    /// The accuracy settings.
     pub settings: Settings,
     /// The size of the picture: at least 1 x 1.
     pub size: Size,

@@ -241,9 +241,9 @@ pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Result<Command, Refu
 #[must_use]
 pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> {
     if Shape::named(&model.name).is_some_and(|shape| shape.model().shares_file_with(model)) {
-        Some("the shape has exact normals of its own")
+        Some("the shape has exact normals")
     } else if model.source.is_none() {
-        Some("the program's own models are smooth all over")
+        Some("built-in models are always smooth")
     } else if matches!(model.mesh.smoothing(), Smoothing::Groups(_)) {
         Some("the file has smoothing groups, which are used instead")
     } else if file_normals && model.mesh.has_file_normals_only() {

@@ -39,7 +39,7 @@ pub enum Refusal {
     #[error("this acts on objects: press c until the subject is an object")]
     OnlyObjects,
     /// Ambient light comes from everywhere.
-    #[error("ambient light has no position and no direction")]
+    #[error("ambient light has no position or direction")]
     Ambient,
     /// A sun has no position.
     #[error("the sun has a direction only: it can be turned, not moved")]
@@ -48,7 +48,7 @@ pub enum Refusal {
     #[error("a bulb shines in all directions: it can be moved, not turned")]
     BulbTurned,
     /// The spot follows an object or a camera.
-    #[error("this spot follows its {0}: move that instead")]
+    #[error("this spot follows its {0}: move the {0} instead")]
     SpotFollows(&'static str),
     /// No program has left unsaved work behind.
     #[error("there is no unsaved work to recover")]
@@ -69,13 +69,13 @@ pub enum Refusal {
     #[error("there is no transformation to undo")]
     NothingToTakeBack,
     /// The object already has the placement of its file.
-    #[error("it is where its file puts it already")]
+    #[error("it already has the placement from its file")]
     NotTransformed,
     /// The object is already on the ground.
-    #[error("it stands on the ground already")]
+    #[error("it is already on the ground")]
     OnGround,
     /// No selected object can be aligned.
-    #[error("select further objects that are not in line yet: Shift + click")]
+    #[error("select more objects that are not aligned yet: Shift + click")]
     NothingToAlign,
     /// The object would become flat.
     #[error("a scale of 0 would flatten the object irreversibly")]
@@ -93,7 +93,7 @@ pub enum Refusal {
     #[error("the observer is an object: press C to look through the camera")]
     ObjectLooks,
     /// The picture is seen through the camera, so it has no handles.
-    #[error("the picture is seen through this camera: drag the view itself")]
+    #[error("the view is from this camera: drag the view instead")]
     SeenThrough,
     /// Lights have neither frames nor modes.
     #[error("lights have neither a mode nor a frame to choose")]
@@ -111,10 +111,10 @@ pub enum Refusal {
     #[error("only a spot or a sun can be aimed")]
     NotAimed,
     /// The light is at the point at which it should be aimed.
-    #[error("the light stands there itself")]
+    #[error("the light itself is at this point")]
     AimedAtItself,
     /// The interface has the largest or the smallest size.
-    #[error("the interface is as large or as small as it can be")]
+    #[error("the interface size is at its limit")]
     LargestOrSmallest,
     /// A number has reached the end of its range.
     #[error("{0} is already at {1}")]

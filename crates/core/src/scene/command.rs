@@ -110,7 +110,7 @@ pub enum CommandError {
     )]
     Lens,
     /// The light would become infinite or negative.
-    #[error("a light's attenuation needs numbers of at least 0, and one above it")]
+    #[error("the attenuation of a light needs numbers of at least 0, one of them above 0")]
     Attenuation,
 }
 

@@ -44,8 +44,8 @@ impl AnimationFormat {
         match ending.to_string_lossy().to_lowercase().as_str() {
             "gif" => Ok(Self::Gif),
             "png" | "apng" => Ok(Self::Apng),
-            _ => Err("its name has to end in .gif or .png (animated), or in nothing: then it is \
-                      a folder of numbered pictures"
+            _ => Err("its name has to end in .gif or .png (animated), or have no ending for a \
+                folder of numbered pictures"
                 .to_owned()),
         }
     }
@@ -141,7 +141,7 @@ impl AnimationWriter {
         let fail = |reason: &str| SaveError::new(path, reason);
         match AnimationFormat::of(path).map_err(|reason| fail(&reason))? {
             AnimationFormat::Gif if path.exists() && !is_gif(path) => {
-                Err(fail("there is a file of that name, and it is not a GIF; choose another name"))
+                Err(fail("a file with this name exists and is not a GIF; choose another name"))
             }
             AnimationFormat::Gif => check_target(path),
             AnimationFormat::Apng if path.extension().is_some_and(|it| it == "apng") => {
@@ -149,7 +149,7 @@ impl AnimationWriter {
             }
             AnimationFormat::Apng => check_picture_target(path),
             AnimationFormat::Frames if path.is_file() => {
-                Err(fail("there is a file of that name: name a folder"))
+                Err(fail("a file with this name exists; choose another name for the folder"))
             }
             AnimationFormat::Frames => Ok(()),
         }
@@ -283,8 +283,8 @@ fn stale(folder: &Path, animation: &Animation) -> Option<String> {
     let (first, last) = (stale.first()?, stale.last()?);
     let folder = folder.display();
     Some(match stale.len() {
-        1 => format!("{folder} has a picture of an earlier run, too: {first}"),
-        count => format!("{folder} has {count} pictures of an earlier run, too: {first} to {last}"),
+        1 => format!("{folder} also has a picture of an earlier run: {first}"),
+        count => format!("{folder} also has {count} pictures of an earlier run: {first} to {last}"),
     })
 }
 

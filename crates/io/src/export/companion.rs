@@ -25,7 +25,7 @@ pub(super) fn check_companion(companion: &Path, main: &Path) -> Result<(), SaveE
         return Ok(());
     }
     let reason = format!(
-        "{} would be replaced, which no earlier export wrote; choose another name",
+        "{} exists and was not written by an export; choose another name",
         companion.display()
     );
     Err(SaveError::new(main, reason))

@@ -76,7 +76,8 @@ impl Writer<'_> {
         };
         self.node(if baked == DMat4::IDENTITY { with_placement(node, &world) } else { node });
         if baked != DMat4::IDENTITY {
-            let text = format!("{} is skewed: its placement is in its positions", object.name);
+            let text =
+                format!("{} is skewed: its placement is applied to its positions", object.name);
             self.notes.push(text);
         }
     }

@@ -17,7 +17,7 @@ impl Writer<'_> {
         let mut textures = Textures::default();
         let looks = std::mem::take(&mut self.looks.all);
         if looks.iter().any(loses_maps) {
-            let text = "glTF has no maps of heights, highlights and ambient light: left out";
+            let text = "glTF has no height, specular or ambient maps: left out";
             self.notes.push(text.to_owned());
         }
         for look in &looks {

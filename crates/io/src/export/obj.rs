@@ -60,7 +60,7 @@ pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content,
         content.files = mtl::written(&stem, &writer.looks)?;
     }
     content.files.push((format!("{stem}.obj"), (head + &writer.text).into_bytes()));
-    content.notes.push("OBJ has no cameras and no lights: they are left out".to_owned());
+    content.notes.push("OBJ has no cameras or lights: they are left out".to_owned());
     if !hidden.is_empty() {
         content.notes.push(format!("hidden objects are left out: {}", hidden.len()));
     }

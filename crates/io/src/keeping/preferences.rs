@@ -126,10 +126,10 @@ impl Preferences {
         match read {
             Ok(preferences) => (preferences.within_limits(), None),
             Err(why) => {
-                let text = format!("The preferences were not understood ({why}). ");
+                let text = format!("The preferences could not be parsed ({why}). ");
                 let rest = match set_aside(&path) {
-                    Ok(aside) => format!("They were set aside as {}.", aside.display()),
-                    Err(error) => format!("They could not be set aside: {error}."),
+                    Ok(aside) => format!("They were moved to {}.", aside.display()),
+                    Err(error) => format!("They could not be moved: {error}."),
                 };
                 (Self::default(), Some(text + &rest))
             }
@@ -218,7 +218,7 @@ mod tests {
             fs::write(file(&folders), broken).unwrap();
             let (preferences, said) = Preferences::load(&folders);
             assert_eq!(preferences, Preferences::default());
-            assert!(said.unwrap().contains("set aside"));
+            assert!(said.unwrap().contains("They were moved to"));
         }
         let asides = fs::read_dir(&folders.config).unwrap().flatten();
         assert_eq!(asides.filter(|e| e.path().to_string_lossy().contains("broken-")).count(), 3);

@@ -275,7 +275,7 @@ fn joined(
 fn too_many(what: &str, count: usize) -> Option<String> {
     (count > MOST).then(|| {
         let [count, most] = [count, MOST].map(|n| n / 1_000_000);
-        format!("the file has {count} million {what}, but at most {most} million are read")
+        format!("the file has {count} million {what}; the limit is {most} million")
     })
 }
 

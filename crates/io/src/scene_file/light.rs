@@ -96,7 +96,7 @@ pub(super) fn read_light(light: &FileLight) -> Result<Light, String> {
             LightKind::Sun { direction: Tracked::new(read_direction(direction)?) }
         }
         FileLightKind::Bulb { position, orbit } => {
-            finite("its place", &position)?;
+            finite("its position", &position)?;
             finite("its orbit", &[orbit.speed, orbit.since])?;
             LightKind::Bulb { position: Tracked::new(DVec3::from_array(position)), orbit }
         }
@@ -105,7 +105,9 @@ pub(super) fn read_light(light: &FileLight) -> Result<Light, String> {
             let right =
                 (0.0..=90.0).contains(&half_aperture) && (0.0..f64::INFINITY).contains(&exponent);
             if !right {
-                return Err("it needs a half-aperture of 0 to 90 and an exponent above 0".into());
+                return Err(
+                    "its half-aperture must be from 0 to 90, and its exponent at least 0".into()
+                );
             }
             LightKind::Spot { owner: read_owner(owner)?, half_aperture, exponent }
         }
@@ -128,7 +130,7 @@ pub(super) fn read_owner(owner: &FileOwner) -> Result<SpotOwner, String> {
         FileOwner::Object(id) => SpotOwner::Object(ObjectId(id)),
         FileOwner::Camera(id) => SpotOwner::Camera(CameraId(id)),
         FileOwner::Fixed { position, direction } => {
-            finite("its place", &position)?;
+            finite("its position", &position)?;
             let position = DVec3::from_array(position);
             SpotOwner::Fixed(Tracked::new(Aim { position, direction: read_direction(direction)? }))
         }

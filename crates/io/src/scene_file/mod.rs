@@ -216,8 +216,8 @@ fn file_scene(text: &str, name: &str) -> Result<FileScene, SceneFileError> {
         "0 is not a version: the first one is 1".to_owned()
     } else {
         format!(
-            "the file has version {version}, which a newer program has written; this one reads \
-             versions up to {VERSION}"
+            "the file has version {version}, from a newer program; this program reads versions up \
+                to {VERSION}"
         )
     };
     Err(SceneFileError::Line { file: name.to_owned(), line, column, reason })

@@ -104,7 +104,7 @@ pub(super) fn scene(
         return Err("a scene needs a camera".to_owned());
     }
     // New items must get unused ids, even if the file states a smaller `next_id`.
-    let after = largest.checked_add(1).ok_or("an id is too large for another to follow")?;
+    let after = largest.checked_add(1).ok_or("an id is too large")?;
     scene.next_id = file.next_id.max(after);
     scene.locked = file.locked.within(&scene);
     note_missing_owners(&scene, findings);
@@ -145,7 +145,9 @@ pub(super) fn read_material(material: &MaterialChoice) -> Result<MaterialChoice,
         finite("its material", &[own.exponent])?;
         let right = colors.iter().all(|x| (0.0..=1.0).contains(x)) && own.exponent >= 0.0;
         if !right {
-            return Err("its material needs colours from 0 to 1 and an exponent above 0".into());
+            return Err(
+                "its material needs colours from 0 to 1 and an exponent of at least 0".into()
+            );
         }
     }
     Ok(material.clone())
@@ -197,13 +199,13 @@ fn read_sides(object: &FileObject) -> Sides {
 }
 
 fn read_camera(camera: &FileCamera, needs: &dyn Needs) -> Result<Camera, String> {
-    finite("its place", &camera.eye)?;
+    finite("its position", &camera.eye)?;
     finite("its axes", camera.axes.as_flattened())?;
     let axes = DMat3::from_cols_array_2d(&camera.axes);
     // Orthonormal and right-handed, up to rounding in the file.
     let error = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array();
     if error.iter().any(|x| x.abs() > 1e-6) || axes.determinant() < 0.0 {
-        return Err("its axes are not at right angles, of length 1 and right-handed".to_owned());
+        return Err("its axes must be perpendicular, of length 1 and right-handed".to_owned());
     }
     let mode = match camera.mode {
         FileMode::Fly => CameraMode::Fly,

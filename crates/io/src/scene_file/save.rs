@@ -55,7 +55,7 @@ pub(super) fn file_model(model: &Model, folder: &Path) -> Result<FileModel, Stri
         return if crate::own_model(name).is_some() {
             Ok(FileModel::Own(name.clone()))
         } else {
-            Err(format!("the model \"{name}\" is in no file"))
+            Err(format!("the model \"{name}\" was not loaded from a file"))
         };
     };
     let LoadOptions { up, scale, winding, crease, bumps } = *options;
@@ -70,7 +70,7 @@ fn file_path(path: &Path, folder: &Path) -> Result<String, String> {
     }
     let complete = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
     relative(folder, &complete)
-        .ok_or_else(|| format!("the name {} cannot be written as text", path.display()))
+        .ok_or_else(|| format!("the file name {} is not valid Unicode", path.display()))
 }
 
 pub(super) fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, String> {

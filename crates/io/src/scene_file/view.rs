@@ -148,7 +148,9 @@ pub(super) fn read_view(
     let Steps { translation, rotation, scaling, .. } = file.steps;
     finite("the view", &[translation, rotation, scaling, file.exposure, file.time])?;
     if translation <= 0.0 || rotation <= 0.0 || scaling <= 1.0 {
-        return Err("the steps of the view have to be above 0, and of scaling above 1".to_owned());
+        return Err(
+            "the steps of the view must be above 0, and the step of scaling above 1".to_owned()
+        );
     }
     // A missing item falls back to the selection of a new scene.
     let first = scene.first_view();

@@ -24,7 +24,7 @@ pub(super) fn sentence(error: &Error) -> String {
     }
     match error {
         Error::Eof => "the file ends too early: a bracket is not closed".to_owned(),
-        Error::InvalidEscape(_) => "this text has a \"\\\" that stands for nothing".to_owned(),
+        Error::InvalidEscape(_) => "this text has an invalid escape after \"\\\"".to_owned(),
         Error::IntegerOutOfBounds => "this number is too large or too small here".to_owned(),
         Error::InvalidIntegerDigit { digit, .. } => {
             format!("'{}' cannot be part of a number", digit.escape_default())
@@ -48,7 +48,7 @@ pub(super) fn sentence(error: &Error) -> String {
         }
         Error::Message(text) | Error::Io(text) => text.chars().take(MOST_SIGNS).collect(),
         // Scene files cannot cause the other errors.
-        _ => "this cannot be understood".to_owned(),
+        _ => "this cannot be parsed".to_owned(),
     }
 }
 

@@ -173,7 +173,7 @@ impl Report {
                 let (name, Point { time, error }) = (&self.findings.points[i].name, points[i]);
                 format!("{name}: {} ms, {}", brief(time), brief(error))
             }
-            None => "none that was measured".to_owned(),
+            None => "no measured choice".to_owned(),
         };
         let label = self.measure.label();
         let fastest = self.budgets.error.zip(self.fastest()).map(|(most, found)| {

@@ -29,12 +29,12 @@ fn basis(reports: &[Report]) -> String {
     let [width, height] = findings.size;
     let threads = if findings.threads == 1 { "thread" } else { "threads" };
     format!(
-        "Measured at {width} x {height} on {} {threads} with {}. Times are multiples of the \
-         default's, as medians of pairs drawn in turn. What a time may mean is the interval of \
-         its median (95%, by a sign test), or the noise of the default against itself if that is \
-         more; times differ if their intervals do not meet, and else are noise. Errors are over \
-         all pixels, in steps of 255, against every axis at its most exact; those of samples per \
-         pixel are against 256 samples, each lit.",
+        "Measured at {width} x {height} on {} {threads} with {}. Times are relative to the \
+            default, as medians of pairs drawn in turn. The uncertainty of a time is the interval \
+            of its median (95%, by a sign test), or the noise of the default against itself if \
+            that is larger; two times differ only if their intervals do not overlap. Errors are \
+            over all pixels, in steps of 255, relative to every axis at its most exact; errors of \
+            samples per pixel are relative to 256 samples, each lit.",
         findings.threads, findings.instructions
     )
 }

@@ -227,8 +227,8 @@ impl Sheet {
             place = if place.0 + 1 == COLUMNS { (0, place.1 + 1) } else { (place.0 + 1, place.1) };
         }
         let note = format!(
-            "From left to right: {}. Upwards: {}. Orange: the default. Band: its noise. Lines \
-             through marks: what their time may be. All panels have one scale.",
+            "Horizontal: {}. Vertical: {}. Orange: the default. Band: its noise. Lines through \
+                marks: uncertainty of the time. All panels have one scale.",
             self.panels.x.label, self.panels.y.label
         );
         area.draw(&Text::new(note, (EDGE, self.height() - 26), left(13, colors.faint)))?;

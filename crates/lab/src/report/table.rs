@@ -97,11 +97,11 @@ pub fn text(report: &Report) -> String {
     let _ = writeln!(
         text,
         "\n* the default  > now  + nothing is both faster and more exact against 256 samples.\n\
-         Errors are of {}, against every axis at its most exact with one sample\n\
-         per pixel; those of samples per pixel, against 256 samples, each lit.",
+         Errors are over {}, against every axis at its most exact with one sample\n\
+         per pixel; errors of samples per pixel, against 256 samples, each lit.",
         match report.region {
             Region::Whole => "all pixels",
-            Region::Inside => "the pixels whose coverage does not differ",
+            Region::Inside => "pixels with equal coverage",
         }
     );
     foot(&mut text, report);
@@ -120,8 +120,8 @@ fn head(report: &Report) -> String {
     let _ = writeln!(
         text,
         "The default takes {} ms. Against itself it took {:.3} times as long, with an\n\
-         interquartile range (IQR) of {} pairs from {:.3} to {:.3}: a difference of less than\n\
-         {:.1} % means nothing, nor one within the interval of a row's own median (95 %).",
+         interquartile range (IQR) of {} pairs from {:.3} to {:.3}: differences of less than\n\
+         {:.1} % are noise, and so are those within the interval of a row's median (95 %).",
         brief(findings.control.a_ms),
         quartiles.median,
         findings.control.pairs,

@@ -89,7 +89,7 @@ pub const SUITE: &[SuiteScene] = &[
     },
     SuiteScene {
         word: "bumps",
-        what: "balls with a map of heights, near and far",
+        what: "balls with a height map, near and far",
         axes: &["bumps", "tangents"],
         make: scenes::bumps,
     },

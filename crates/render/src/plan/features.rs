@@ -216,9 +216,9 @@ fn texture(it: &Facts<'_>) -> EffectState {
     } else if it.object.surface == Surface::Material {
         "only the material is shown"
     } else if it.object.model.mesh.uvs().is_empty() {
-        "the file places none"
+        "the model has no texture coordinates"
     } else {
-        "there is none"
+        "no texture"
     };
     any(it, |shaded| shaded.texture.is_some(), filter.into())
         .unwrap_or(EffectState::left_out(left_out))
@@ -283,7 +283,7 @@ fn maps(it: &Facts<'_>) -> EffectState {
     EffectState::left_out(match it.settings.light {
         _ if !it.draw.filled => "edges only",
         _ if !named => "the file has none",
-        _ if it.object.model.mesh.uvs().is_empty() => "the file places none",
+        _ if it.object.model.mesh.uvs().is_empty() => "the model has no texture coordinates",
         LightAt::Face | LightAt::Vertex => "no light at pixels reads them",
         LightAt::Pixel | LightAt::Sample => "no light reads them",
     })
@@ -301,7 +301,7 @@ fn bumps(it: &Facts<'_>) -> EffectState {
     let left_out = match it.settings.light {
         _ if !it.draw.filled => "edges only",
         _ if !names(it, &[MapKind::Bump, MapKind::Normal]) => "the file has none",
-        _ if it.object.model.mesh.uvs().is_empty() => "the file places none",
+        _ if it.object.model.mesh.uvs().is_empty() => "the model has no texture coordinates",
         LightAt::Face => "light is evaluated at faces",
         LightAt::Vertex => "light is evaluated at vertices",
         LightAt::Pixel | LightAt::Sample => "no light reads them, or their -bm is 0",

@@ -210,14 +210,16 @@ fn because(left_out: bool, reason: &'static str) -> Verdict {
 
 fn behind(it: &LitSurface<'_>) -> Verdict {
     let is_behind = (it.effect.is_behind)(it.light, it.region?, it.turning?);
-    is_behind.then_some("it comes from behind every face")
+    is_behind.then_some("it is behind every face")
 }
 
 fn without_owner(it: &LightFacts<'_>) -> Verdict {
     let reason = match it.light.kind.owner() {
         Some(SpotOwner::SelectedObject) => "no object",
-        Some(SpotOwner::Object(_) | SpotOwner::Camera(_)) => "what it is fixed to is not there",
-        Some(SpotOwner::SelectedCamera | SpotOwner::Fixed(_)) | None => "its place is no number",
+        Some(SpotOwner::Object(_) | SpotOwner::Camera(_)) => {
+            "the item it is attached to is missing"
+        }
+        Some(SpotOwner::SelectedCamera | SpotOwner::Fixed(_)) | None => "its position is NaN",
     };
     (!it.is_placed).then_some(reason)
 }

@@ -39,7 +39,7 @@ impl Planner<'_> {
                 () if !light.can_cast_shadows() => continue,
                 () if !light.shadows => "switched off",
                 () if !is_filled => "edges only",
-                () if into.plan.shadows.casters.is_empty() => "nothing casts them",
+                () if into.plan.shadows.casters.is_empty() => "no object casts shadows",
                 () => continue,
             };
             into.notes.add(|| EffectUse {
@@ -93,7 +93,7 @@ impl Planner<'_> {
             Some(form) if form.is_filtered => "shadow maps, 3 x 3 texels",
             Some(_) => "shadow maps",
         };
-        let reason = if is_mark { Some("a mark takes none") } else { no_light };
+        let reason = if is_mark { Some("markers receive no shadows") } else { no_light };
         into.notes.add(|| EffectUse {
             effect: Effect::Shadows(shining.id),
             name: name(shining),

@@ -189,7 +189,7 @@ impl Planner<'_> {
         material: &PhongMaterial,
     ) -> Vec<Stage> {
         let mut stages = Vec::new();
-        let mut no_highlight = Some("no light is on it");
+        let mut no_highlight = Some("no light falls on it");
         for shining in &self.shining {
             let Shining { id, name, effect, light, .. } = shining;
             let source = into.plan.lights[*light as usize];

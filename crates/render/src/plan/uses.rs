@@ -58,13 +58,13 @@ impl Effect {
             Self::Light(_) => "Light",
             Self::Shadows(_) => "Shadows",
             Self::Highlights => "Highlights",
-            Self::Normals => "Normals at pixels",
+            Self::Normals => "Pixel normals",
             Self::Texture => "Textures",
-            Self::AlphaTest => "Holes of textures",
+            Self::AlphaTest => "Alpha test",
             Self::Transparency => "Transparency",
             Self::VertexColors => "Vertex colours",
             Self::Emission => "Emission",
-            Self::Maps => "Maps of Ka, Ks, Ns",
+            Self::Maps => "Ka, Ks, Ns maps",
             Self::Bumps => "Bumps",
             Self::LinearLight => "Linear light",
             Self::Exposure => "Exposure",
@@ -72,7 +72,7 @@ impl Effect {
             Self::Edges => "Edges",
             Self::FaceNormals => "Face normals",
             Self::VertexNormals => "Vertex normals",
-            Self::Marks => "Marks",
+            Self::Marks => "Markers",
         }
     }
 }

@@ -115,8 +115,8 @@ impl Part {
             Self::Diffuse => "diffuse",
             Self::Specular => "specular",
             Self::Emission => "emission",
-            Self::Cut => "cut off above 255",
-            Self::Blending => "way of blending",
+            Self::Cut => "clamped to 255",
+            Self::Blending => "blending method",
             Self::Corners => "light of the corners",
         }
     }

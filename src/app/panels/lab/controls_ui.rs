@@ -51,7 +51,7 @@ fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
                  one: about 20 seconds for the default scene",
             );
             let whole = ui.button("Thoroughly").on_hover_text(
-                "The same with more pairs of pictures and more combinations: some minutes",
+                "Measures more pairs of pictures and more combinations: a few minutes",
             );
             let suite = ui.button("Suite").on_hover_text(
                 "Measures each axis on a scene in which it matters: at most ten minutes",
@@ -72,7 +72,7 @@ fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         ui.colored_label(theme::error(ui.visuals()), format!("Not measured: {why}."));
     }
     if lab.report.is_some() && lab.is_stale(state) {
-        ui.weak("What is shown has changed since: measure again.");
+        ui.weak("The scene has changed since this was measured: measure again.");
     }
 }
 
@@ -83,8 +83,8 @@ fn judge_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         .zip([
             ("RMSE", "The root of the mean square of the differences, in byte steps of 255"),
             ("Maximum", "The largest difference of a byte, in steps of 255"),
-            ("Differing bytes", "The fraction of bytes that differ at all"),
-            ("FLIP", "How different the pictures look when flipping between them, from 0 to 1"),
+            ("Differing bytes", "The fraction of bytes that differ"),
+            ("FLIP", "The perceived difference when flipping between the pictures, from 0 to 1"),
         ])
         .map(|(measure, (label, hint))| Choice::new("Error metric", label, *measure == now, hint))
         .collect();
@@ -97,7 +97,7 @@ fn region_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let now = state.lab.region;
     let all = [
         ("All pixels", Region::Whole, "Errors over the whole picture, edges included"),
-        ("Covered alike", Region::Inside, "Errors over the pixels that show the same triangle"),
+        ("Same coverage", Region::Inside, "Errors over the pixels that show the same triangle"),
     ];
     let shown: Vec<Choice<'_>> = all
         .iter()
@@ -112,8 +112,8 @@ fn budgets_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let (budgets, report) = (state.lab.budgets, state.lab.shown());
     let error = Budget {
         label: "Error up to",
-        name: "Largest error that is borne",
-        hint: "Names the fastest choice whose error is at most this",
+        name: "Largest acceptable error",
+        hint: "Finds the fastest choice with at most this error",
         suffix: "",
         value: budgets.error,
         found: report.and_then(Report::fastest),
@@ -123,8 +123,8 @@ fn budgets_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
     let ms = Budget {
         label: "Time up to",
-        name: "Longest time of a picture",
-        hint: "Names the most exact choice that takes at most this",
+        name: "Longest acceptable time for a picture",
+        hint: "Finds the most exact choice within this time",
         suffix: " ms",
         value: budgets.ms,
         found: report.and_then(Report::most_exact),
@@ -186,11 +186,11 @@ fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let now = state.lab.compare;
     let is_split = matches!(now, Compare::Split(_));
     let all = [
-        ("Off", now == Compare::Off, "The picture alone", Compare::Off),
-        ("Split", is_split, "The exact picture at the left of a slider", Compare::Split(0.5)),
-        ("x1", now == Compare::Error(1), "The error as it is", Compare::Error(1)),
-        ("x16", now == Compare::Error(16), "The error, 16 times as large", Compare::Error(16)),
-        ("x256", now == Compare::Error(256), "The error, 256 times as large", Compare::Error(256)),
+        ("Off", now == Compare::Off, "Shows only the picture", Compare::Off),
+        ("Split", is_split, "Shows the exact picture to the left of a slider", Compare::Split(0.5)),
+        ("x1", now == Compare::Error(1), "Shows the error", Compare::Error(1)),
+        ("x16", now == Compare::Error(16), "Shows 16 times the error", Compare::Error(16)),
+        ("x256", now == Compare::Error(256), "Shows 256 times the error", Compare::Error(256)),
     ];
     let shown: Vec<Choice<'_>> =
         all.iter().map(|(label, on, hint, _)| Choice::new("Compare", label, *on, hint)).collect();
@@ -212,7 +212,7 @@ fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 fn pixel_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let switch = Switch::new("Attribute the error: click on it", state.lab.picking).ui(ui);
+    let switch = Switch::new("Attribute the error of a pixel", state.lab.picking).ui(ui);
     let switch = switch.on_hover_text("Shows the error of one pixel and attributes it to an axis");
     if switch.clicked() {
         requests.push(Request::Lab(LabRequest::Pick(!state.lab.picking)));
@@ -226,7 +226,7 @@ fn command_ui(ui: &mut Ui, report: &Report) {
     ui.horizontal(|ui| {
         if ui
             .button("Copy command")
-            .on_hover_text("Copies the command that measures this without a window")
+            .on_hover_text("Copies the command line that runs this measurement")
             .clicked()
         {
             ui.ctx().copy_text(report.command.clone());

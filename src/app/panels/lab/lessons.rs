@@ -26,7 +26,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         ui.label(RichText::new(axis.lesson.title).strong());
         cost_ui(ui, state, requests);
         ui.horizontal(|ui| {
-            let hint = "Opens a small scene in which the difference is plain to see";
+            let hint = "Opens a small scene that shows the difference clearly";
             if ui.button("Take me there").on_hover_text(hint).clicked() {
                 requests.push(Request::Lab(LabRequest::ShowLesson(axis.key)));
             }
@@ -37,12 +37,12 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             axis_ui(ui, axis, state, requests);
         });
         let coarse = match axis.kind {
-            AxisKind::Scored | AxisKind::ScoredApart => "When it is coarse",
+            AxisKind::Scored | AxisKind::ScoredApart => "Coarse choices",
             AxisKind::Model => "Which is right",
         };
         let lesson = &axis.lesson;
         for (title, sentence) in
-            [("What it is", lesson.what), (coarse, lesson.coarse), ("Where to look", lesson.shows)]
+            [("Explanation", lesson.what), (coarse, lesson.coarse), ("Where to look", lesson.shows)]
         {
             ui.label(RichText::new(title).small().strong());
             ui.add(egui::Label::new(sentence).wrap());
@@ -60,9 +60,9 @@ fn cost_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        ui.label("What it costs on this machine is not measured yet.");
+        ui.label("Its cost on this machine has not been measured yet.");
         let button = egui::Button::new("Measure this axis").small();
-        let hint = "Times its choices for the picture that is shown, and compares their errors";
+        let hint = "Measures time and error of its choices for the current picture";
         let free = state.lab.running.is_none();
         if ui.add_enabled(free, button).on_hover_text(hint).clicked() {
             requests.push(Request::Lab(LabRequest::MeasureAxis(axis.key)));

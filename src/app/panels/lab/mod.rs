@@ -55,10 +55,10 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         part = if state.lab.side == Side::Table { 2 } else { 3 };
     }
     let all = [
-        ("Measure", "What to measure, and how to compare"),
+        ("Measure", "Measurement and comparison"),
         ("Chart", "Time against error"),
         ("Table", "Every choice with its figures"),
-        ("Lessons", "What each axis teaches"),
+        ("Lessons", "A lesson for each axis"),
     ];
     let shown: Vec<Choice<'_>> = all
         .iter()
@@ -98,7 +98,7 @@ fn right_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let side = state.lab.side;
     let all = [
         Choice::new("Laboratory", "Table", side == Side::Table, "Every choice with its figures"),
-        Choice::new("Laboratory", "Lessons", side == Side::Lessons, "What each axis teaches"),
+        Choice::new("Laboratory", "Lessons", side == Side::Lessons, "A lesson for each axis"),
     ];
     ui.horizontal(|ui| {
         ui.set_width(ui.available_width() - f32::from(theme::MARGIN));

@@ -63,12 +63,12 @@ fn height(room: f32) -> f32 {
 fn empty_ui(ui: &mut Ui, state: &State) {
     let text = match state.lab.running {
         Some(_) => {
-            "The exact pictures are drawn first, then the default is measured against itself: how \
-             much it differs is the noise."
+            "The exact pictures are drawn first. Then the default is measured against itself to \
+                find the noise."
         }
         None => {
-            "What does accuracy cost? Measure draws this picture with every choice and shows \
-             here how long each takes and how far it is from the exact picture."
+            "What does accuracy cost? Measure draws this picture with every choice, and plots the \
+                time and the error of each here."
         }
     };
     ui.add_space(ui.available_height() * 0.35);
@@ -87,7 +87,7 @@ fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         .iter()
         .map(|(place, name)| {
             let chosen = state.lab.shown_suite == *place;
-            Choice::new("Measured", name, chosen, "The scene whose figures are shown")
+            Choice::new("Measured", name, chosen, "Chooses the scene of these figures")
         })
         .collect();
     if let Some(clicked) = choices_in_rows(ui, &chips) {

@@ -28,7 +28,7 @@ const NAMES: f32 = 0.30;
 const COLUMNS: [Column; 7] = [
     Column {
         heading: "time",
-        hint: "Times the default's: the median of the pairs' ratios",
+        hint: "Time relative to the default: the median ratio of the pairs",
         share: 0.09,
         value: |point, _, _| format!("{:.2}", point.ratio.quartiles.median),
     },
@@ -61,13 +61,13 @@ const COLUMNS: [Column; 7] = [
     },
     Column {
         heading: "bytes",
-        hint: "The part of the bytes that differ, in per cent",
+        hint: "The percentage of bytes that differ",
         share: 0.11,
         value: |_, error, region| format!("{}%", brief(error.over(region).differing * 100.0)),
     },
     Column {
         heading: "FLIP",
-        hint: "How different it looks, from 0 to 1",
+        hint: "The perceived difference, from 0 to 1",
         share: 0.09,
         value: |_, error, _| brief(error.flip),
     },
@@ -76,7 +76,7 @@ const COLUMNS: [Column; 7] = [
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let Some(report) = state.lab.shown() else {
-        ui.weak("Nothing is measured yet.");
+        ui.weak("Nothing has been measured yet.");
         return;
     };
     no_narrower(ui, LEAST, |ui| rows_ui(ui, state, report, requests));
@@ -181,7 +181,7 @@ fn row_ui(
         Verdict::Alike => "no difference in time beyond the noise",
     };
     let hint = format!(
-        "{verdict}, {} pairs, {} thrown away; {} pixels show another triangle",
+        "{verdict}, {} pairs, {} discarded; {} pixels show another triangle",
         point.ratio.pairs, point.ratio.thrown, error.coverage
     );
     if response.on_hover_text(hint).clicked() {
@@ -208,10 +208,11 @@ fn foot_ui(ui: &mut Ui, report: &Report) {
         ui,
         format!(
             "{width} x {height} pixels, {} threads, {}. The default takes {} ms; against itself \
-             it differed by {:.1}% in {} pairs, so smaller differences mean nothing, nor do those \
-             within the interval of a row's own median (95%). * is the default; a bar marks \
-             choices that no other beats in both. Errors are against every axis at its most exact; \
-             those of samples per pixel, against 256 samples, each lit.",
+                it differed by {:.1}% in {} pairs. Smaller differences are noise, and so are \
+                differences within the interval of a row's median (95%). * is the default; a bar \
+                marks choices that no other choice beats in both time and error. Errors are \
+                relative to every axis at its most exact; errors of samples per pixel, to 256 \
+                samples, each lit.",
             findings.threads,
             findings.instructions,
             brief(findings.control.a_ms),
@@ -229,7 +230,7 @@ fn foot_ui(ui: &mut Ui, report: &Report) {
                 "{}: SIMD takes {:.2} of the plain loop's time, {}.",
                 kernel.name,
                 kernel.ratio.quartiles.median,
-                if kernel.equal { "results equal" } else { "OTHER RESULTS" }
+                if kernel.equal { "results equal" } else { "DIFFERENT RESULTS" }
             ),
         );
     }

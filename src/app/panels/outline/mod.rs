@@ -254,7 +254,7 @@ fn move_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, icon: Icon, 
         (to < count).then_some((id, to))
     });
     let response = icon_button(ui, icon, name, to.is_some());
-    let response = response.on_hover_text(format!("{name}; dragging the line does the same"));
+    let response = response.on_hover_text(format!("{name}, or drag the row"));
     if let Some((id, to)) = to.filter(|_| response.clicked()) {
         reorder(state, requests, id, to);
     }

@@ -209,7 +209,7 @@ fn lock_ui(
     } else {
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
     }
-    let hint = "Locked: not clicked in the picture, not moved, not deleted";
+    let hint = "Locked: cannot be clicked in the picture, moved or deleted";
     if response.on_hover_text(format!("{label}\n{hint}")).clicked() {
         change(requests, label, Gesture::Whole, items::toggle_locked(&state.scene, item));
     }
@@ -345,7 +345,7 @@ fn fold_ui(ui: &Ui, state: &State, row: &Row, unfolded: bool, color: Color32) ->
     let icon = if unfolded { Icon::Down } else { Icon::Right };
     icon.paint(ui.painter(), rect, 8.0, color);
     controls::focus_ring(ui, rect, &response);
-    response.on_hover_text("Shows the parts of the model, which can be hidden one by one").clicked()
+    response.on_hover_text("Lists the parts of the model, to hide or show each").clicked()
 }
 
 /// Shows a part of an object in `rect`.
@@ -360,7 +360,7 @@ pub(crate) fn part_ui(
     let Some(object) = state.scene.objects.get(id) else { return };
     let parts = object.model.mesh.parts();
     let Some(name) = usize::try_from(part).ok().and_then(|part| parts.get(part)) else { return };
-    let name = if name.name.is_empty() { "(without a name)" } else { &name.name };
+    let name = if name.name.is_empty() { "(unnamed)" } else { &name.name };
     let shown = !object.hidden_parts.contains(&part);
     let (icon, verb) = if shown { (Icon::Eye, "Hide") } else { (Icon::EyeClosed, "Show") };
     let label = format!("{verb} part {name}");

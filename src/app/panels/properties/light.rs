@@ -60,7 +60,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
         }
     }
     if light.kind.has_position() {
-        section(ui, "Fading", false, |ui| shown.fading_ui(ui, requests));
+        section(ui, "Attenuation", false, |ui| shown.fading_ui(ui, requests));
     }
     if light.kind.has_position() || light.kind.has_direction() {
         steps_ui(ui, state, requests, false);
@@ -88,7 +88,7 @@ impl Shown<'_> {
             change(requests, self.label("Switch"), Gesture::Whole, command);
         }
         if light.can_cast_shadows() {
-            let hint = "Objects cast shadows in its light: exact ones, without a bias to set";
+            let hint = "Lets objects cast shadows in this light; exact shadows need no bias";
             let switch = Switch::new("Casts shadows", light.shadows).ui(ui);
             if switch.on_hover_text(hint).clicked() {
                 let command = lights::toggle_shadows(scene, id);
@@ -124,7 +124,7 @@ impl Shown<'_> {
     fn key_hint(&self) -> String {
         match self.light.slot {
             key @ 0..=9 => format!("Key: {key}"),
-            _ => "It has no key of its own".to_owned(),
+            _ => "No key switches this light".to_owned(),
         }
     }
 
@@ -226,7 +226,7 @@ impl Shown<'_> {
             let number = number.speed(value.abs().max(1e-6) / 50.0).range(0.0..=1e12);
             if let Some((value, gesture)) = number_row(ui, label, number, value) {
                 let command = lights::set_attenuation(&self.state.scene, self.id, to(value));
-                change(requests, self.label("Fading of"), gesture, command);
+                change(requests, self.label("Attenuation of"), gesture, command);
             }
         };
         set("Constant", now.constant, &|constant| Attenuation { constant, ..now });
@@ -263,7 +263,7 @@ fn owner_name(scene: &Scene, owner: &SpotOwner) -> String {
         SpotOwner::SelectedCamera => "the selected camera".to_owned(),
         SpotOwner::Object(id) => named(scene.objects.get(*id).map(|object| &object.name)),
         SpotOwner::Camera(id) => named(scene.cameras.get(*id).map(|camera| &camera.name)),
-        SpotOwner::Fixed(_) => "a place of its own".to_owned(),
+        SpotOwner::Fixed(_) => "a fixed position".to_owned(),
     }
 }
 

@@ -117,8 +117,8 @@ impl Cell {
         controls::focus_ring(ui, rect, &response);
         let hint = match sphere {
             Sphere::Preset(_) => name.to_owned(),
-            Sphere::File(_) => "What the model's file says, part by part".to_owned(),
-            Sphere::Own(_) => "Your own: begins as what is chosen now".to_owned(),
+            Sphere::File(_) => "The materials of the model's file, part by part".to_owned(),
+            Sphere::Own(_) => "Your own: begins with the current material".to_owned(),
         };
         response.on_hover_text(hint).clicked()
     }
@@ -137,10 +137,10 @@ fn corner_text(ui: &Ui, rect: Rect, letter: &str) {
 fn own_ui(ui: &mut Ui, material: Material) -> Option<(Material, Gesture)> {
     let mut changed = None;
     let rows: [(&str, &str, [f64; 3]); 4] = [
-        ("Ambient", "Ka: the part of ambient light that is sent back", material.ambient),
-        ("Diffuse", "Kd: the part of a lamp's light that is scattered", material.diffuse),
-        ("Specular", "Ks: the part of a lamp's light that is mirrored", material.specular),
-        ("Emission", "Ke: light of its own, which no lamp changes", material.emission),
+        ("Ambient", "Ka: the fraction of ambient light that is reflected", material.ambient),
+        ("Diffuse", "Kd: the fraction of a light's colour that is scattered", material.diffuse),
+        ("Specular", "Ks: the fraction of a light's colour in the highlight", material.specular),
+        ("Emission", "Ke: light that the surface emits", material.emission),
     ];
     for (i, (name, hint, factors)) in rows.into_iter().enumerate() {
         if let Some((to, gesture)) = factors_ui(ui, name, hint, factors) {
@@ -150,7 +150,8 @@ fn own_ui(ui: &mut Ui, material: Material) -> Option<(Material, Gesture)> {
             changed = Some((own, gesture));
         }
     }
-    let number = Number::new("Exponent", "Ns: how small the highlight is").range(0.0..=1000.0);
+    let number =
+        Number::new("Exponent", "Ns: larger values make the highlight smaller").range(0.0..=1000.0);
     if let Some((exponent, gesture)) = number_row(ui, "Exponent", number, material.exponent) {
         changed = Some((Material { exponent, ..material }, gesture));
     }

@@ -17,7 +17,7 @@ pub(super) fn show<'a>(
             let text = format!("{} is missing", file_name(file));
             let color = ui.visuals().warn_fg_color;
             ui.colored_label(color, text).on_hover_text(file.display().to_string());
-            if ui.button("Find...").on_hover_text("Asks where it is").clicked() {
+            if ui.button("Find...").on_hover_text("Locates the missing file").clicked() {
                 requests.push(Request::Missing(MissingRequest::Find(Some(file.to_owned()))));
             }
         });

@@ -72,9 +72,9 @@ fn steps_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, scaling: bo
     section(ui, "Step sizes", state.view.steps.by_size, |ui| {
         let steps = state.view.steps;
         let does = |to| match to {
-            Transformation::Translation => ("Move", "Units that a press of x, y or z moves"),
-            Transformation::Rotation => ("Rotate", "Degrees that a press of x, y or z rotates"),
-            Transformation::Scaling => ("Scale", "The factor of a press of x, y or z"),
+            Transformation::Translation => ("Move", "Units per press of x, y or z"),
+            Transformation::Rotation => ("Rotate", "Degrees per press of x, y or z"),
+            Transformation::Scaling => ("Scale", "Factor per press of x, y or z"),
         };
         let mut field = |ui: &mut Ui, to: Transformation, value: f64| {
             let (label, hint) = does(to);
@@ -105,7 +105,7 @@ fn steps_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, scaling: bo
             field(ui, Transformation::Scaling, steps.scaling);
         }
         let by_size = Switch::new("Move by size", steps.by_size).ui(ui);
-        let hint = "A press moves by a hundredth of the scene's extent, rounded to 1, 2 or 5";
+        let hint = "Moves by a hundredth of the scene's extent per press, rounded to 1, 2 or 5";
         if by_size.on_hover_text(hint).clicked() {
             change_view(requests, state, |view| view.steps.by_size ^= true);
         }

@@ -138,7 +138,7 @@ fn stretch_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, object: &
         ui.data_mut(|data| data.insert_temp(id, to.to_array()));
     }
     let (axes, hint) = match state.view.frame {
-        Frame::Local => ("own axes", "Multiplies along the object's own axes"),
+        Frame::Local => ("own axes", "Multiplies along the object's axes"),
         Frame::Global => ("world's axes", "Multiplies along the world's axes, about its centre"),
     };
     row(ui, "", |ui| {
@@ -167,7 +167,7 @@ fn spin_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: ObjectId
         let letter = LETTERS[axis.index()];
         let label = format!("About own {letter}");
         let response = Switch::new(&label, spin.axes[axis.index()]).ui(ui);
-        let hint = "Spins by itself; switching it off keeps the rotation so far";
+        let hint = "Spins the object; switching it off keeps the rotation so far";
         if response.on_hover_text(hint).clicked() {
             let command = motion::toggle_spin(scene, id, axis, time);
             change(requests, format!("Spin {}", object.name), Gesture::Whole, command);
@@ -180,9 +180,10 @@ fn spin_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: ObjectId
         change(requests, format!("Spin {}", object.name), gesture, command);
     }
     row(ui, "", |ui| {
-        let response = ui.add_enabled(spin.is_on(), Button::new("Apply the turn"));
+        let response = ui.add_enabled(spin.is_on(), Button::new("Apply rotation"));
         let hint = "Applies the rotation so far to the placement";
-        if response.on_hover_text(hint).on_disabled_hover_text("It does not turn").clicked() {
+        if response.on_hover_text(hint).on_disabled_hover_text("The object does not spin").clicked()
+        {
             let command = motion::apply_spin(scene, id, time);
             change(requests, format!("Apply the spin of {}", object.name), Gesture::Whole, command);
         }
@@ -216,10 +217,10 @@ fn drawing_ui(
     }
     let file_normals = Switch {
         enabled: object.model.mesh.has_file_normals(),
-        ..Switch::new("Normals of the file", object.file_normals)
+        ..Switch::new("File normals", object.file_normals)
     };
     let hint = match file_normals.enabled {
-        true => "Uses the file's normals where a polygon has them, else computed ones",
+        true => "Uses the file's normals, and computes those that are missing",
         false => "The file has no normals: they are computed",
     };
     if file_normals.ui(ui).on_hover_text(hint).clicked() {
@@ -241,7 +242,7 @@ fn model_ui(ui: &mut Ui, object: &Object) {
     let model = &object.model;
     let mesh = &model.mesh;
     let source = model.source.as_deref().and_then(|path| path.file_name()).map_or_else(
-        || format!("{} (the program's own)", model.name),
+        || format!("{} (built-in)", model.name),
         |name| name.to_string_lossy().into_owned(),
     );
     fact(ui, "File", &source);

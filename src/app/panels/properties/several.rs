@@ -21,7 +21,7 @@ pub(super) fn note_ui(ui: &mut Ui, state: &State, item: ItemId) -> Vec<ItemId> {
         ItemId::Camera(_) => "cameras",
         ItemId::Light(_) => "lights",
     };
-    ui.label(RichText::new(format!("{} {kind}: a change sets all", others.len() + 1)).strong());
+    ui.label(RichText::new(format!("{} {kind}: changes apply to all", others.len() + 1)).strong());
     let differ = mixed(&state.scene, item, &others);
     if differ.is_empty() {
         ui.weak("All have the same values.");
@@ -202,7 +202,7 @@ fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
                 (a.on != b.on, "on"),
                 (a.shadows != b.shadows, "shadows"),
                 (a.color != b.color, "colour"),
-                (a.attenuation != b.attenuation, "fading"),
+                (a.attenuation != b.attenuation, "attenuation"),
                 (cone(a) != cone(b), "cone"),
                 (a.kind != b.kind, "place"),
             ]

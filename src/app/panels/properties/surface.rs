@@ -22,7 +22,7 @@ pub(crate) fn show(
     let all = [
         ("Material", Surface::Material, "The material, lit."),
         ("Texture", Surface::Texture, "The texture, not lit."),
-        ("Both", Surface::TextureAndLight, "The texture, lit; the material where there is none."),
+        ("Both", Surface::TextureAndLight, "The texture, lit; without a texture, the material."),
     ];
     let choice = |(label, surface, hint): &(&'static str, Surface, &'static str)| {
         Choice::new("Surface", label, object.surface == *surface, hint)
@@ -42,7 +42,7 @@ pub(crate) fn show(
             change(requests, format!("Tint {}", object.name), gesture, command);
         }
     });
-    let hint = "How much it covers of what is behind it: 0 shows nothing of it, 1 is opaque";
+    let hint = "Opacity of the object: 0 is invisible, 1 is opaque";
     let number = Number::new("Opacity", hint).speed(0.005).range(0.0..=1.0);
     if let Some((opacity, gesture)) = number_row(ui, "Opacity", number, object.opacity) {
         let command = items::change_object(&state.scene, id, |object| object.opacity = opacity);
@@ -63,7 +63,7 @@ fn texture_ui(
     let text = by_hand.clone().unwrap_or_else(|| match (of_file, mapped) {
         (true, _) => "the file's own".to_owned(),
         (false, true) => "none".to_owned(),
-        (false, false) => "none; the model has no uv".to_owned(),
+        (false, false) => "none; the model has no texture coordinates".to_owned(),
     });
     row(ui, "Texture", |ui| {
         ui.add(egui::Label::new(&text).truncate()).on_hover_text(&text);

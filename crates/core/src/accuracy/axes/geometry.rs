@@ -5,16 +5,16 @@ use super::{Axis, AxisKind, Choice, Lesson};
 use crate::accuracy::{Coverage, Interpolation, NormalMatrix, Subpixels, VertexArithmetic};
 use crate::scene::{Projection, Scene, View};
 
-/// Whether something is shown.
+/// Checks that an object is visible.
 fn anything(scene: &Scene, view: &View) -> Result<(), &'static str> {
-    if_any_object(scene, view, is_any, "nothing is shown")
+    if_any_object(scene, view, is_any, "no object is visible")
 }
 
 pub(super) const VERTICES: Axis = Axis {
     key: "vertices",
     label: "Vertex arithmetic",
     phrase: "vertices in {}",
-    what: "The precision in which vertices are transformed",
+    what: "The precision of vertex transforms",
     kind: AxisKind::Scored,
     choices: &[
         choice!("f32" "32 bits" vertices = VertexArithmetic::F32,
@@ -28,12 +28,11 @@ pub(super) const VERTICES: Axis = Axis {
     lesson: Lesson {
         title: "Why scenes far from the origin tremble",
         what: "A position far from the origin spends most of its digits on the distance; few are \
-            left for its place in the picture.",
+            left for its position in the picture.",
         coarse: "In 32 bits, the difference between the positions of object and camera has few \
-            digits left: far from the origin, objects are drawn beside their places and tremble as \
-            the view moves.",
-        shows: "On a ball 5,000,000 from the origin, with the camera beside it: compare 32 and 64 \
-            bits, then move.",
+            digits left: far from the origin, objects are displaced and tremble as the view moves.",
+        shows: "On a ball 5,000,000 units from the origin, with the camera next to it: compare 32 \
+            and 64 bits, then move.",
         scene: "far",
         choice: None,
     },
@@ -50,7 +49,8 @@ pub(super) const SUBPIXELS: Axis = Axis {
             "Snaps vertices to whole pixels.",
             "12% of the pixels of small triangles show another triangle")
         .slower_because(
-            "every triangle that has an area there has a sample in its box, and has to be tested",
+            "on whole pixels, the box of every triangle with an area contains a sample and has to \
+                be tested",
         ),
         choice!("bits-4" "4" subpixels = Subpixels::Bits4,
             "Snaps vertices to 1/16 pixel.",
@@ -59,7 +59,7 @@ pub(super) const SUBPIXELS: Axis = Axis {
             "Snaps vertices to 1/256 pixel.",
             "0.052% of the pixels"),
         choice!("bits-12" "12" subpixels = Subpixels::Bits12,
-            "Snaps vertices to 1/4096 pixel, on which all but small triangles need 64-bit numbers.",
+            "Snaps vertices to 1/4096 pixel; all but small triangles then need 64-bit numbers.",
             "0.003% of the pixels"),
     ],
     sense: anything,
@@ -68,7 +68,7 @@ pub(super) const SUBPIXELS: Axis = Axis {
         what: "Coverage is computed in whole numbers, so vertices are first snapped to a grid \
             finer than the pixels.",
         coarse: "On a coarse grid, small triangles change their shape, thin ones vanish, and \
-            objects that move slowly jump from pixel to pixel.",
+            slow objects jump from pixel to pixel.",
         shows: "On the thin spokes of the wheel: with 0 bits they break into steps.",
         scene: "wheel",
         choice: None,
@@ -83,30 +83,29 @@ pub(super) const COVERAGE: Axis = Axis {
     kind: AxisKind::Scored,
     choices: &[
         choice!("points" "Points" coverage = Coverage::Points,
-            "As ancestor A's author wrote it: points every 0.1 unit of the observer's space, each \
-                drawn separately.",
+            "Ancestor A's fill algorithm: points every 0.1 unit in camera space, each drawn \
+                separately.",
             "holes nearer than 97 units; 17 writes per pixel at a distance of 400, 100 at 966")
-        .slower_because("most of its points fall on pixels that others have set"),
+        .slower_because("most of its points fall on pixels that are already set"),
         choice!("scan-lines" "Scan lines" coverage = Coverage::ScanLines,
-            "As ancestor B's author wrote it: row by row, between edges that are rounded to whole \
-                pixels.",
+            "Ancestor B's fill algorithm: row by row, between edges rounded to whole pixels.",
             "outlines a pixel too wide; every seam is drawn twice")
-        .slower_because("it goes through each triangle row by row, as its author wrote it"),
+        .slower_because("it fills each triangle row by row, as its author wrote it"),
         choice!("f32-edges" "32-bit edges" coverage = Coverage::F32Edges,
-            "Edge functions in 32-bit floating point, of vertices that are not snapped.",
+            "Edge functions in 32-bit floating point, without snapping of vertices.",
             "pixels whose centres lie on an edge are covered twice or, by rounding, not at all"),
         choice!("exact" "Exact" coverage = Coverage::Exact,
             "Edge functions in integers, by the rule of Direct3D and Vulkan.",
-            "none but the snapping of vertices"),
+            "none except the snapping of vertices"),
     ],
     sense: anything,
     lesson: Lesson {
         title: "Why points leave holes",
         what: "A triangle covers the pixels whose centres lie inside. A centre on the edge between \
             two triangles must belong to exactly one of them.",
-        coarse: "From near, points leave holes; from afar, they cost a hundred writes per pixel. \
-            Rounded rows make everything a little too large.",
-        shows: "On the ball close to the eye: choose Points and look through it.",
+        coarse: "Close to the camera, points leave holes; far away, they cost a hundred writes \
+            per pixel. Rounded rows make everything a little too large.",
+        shows: "On the ball close to the camera: choose Points and look through it.",
         scene: "near",
         choice: None,
     },
@@ -120,15 +119,15 @@ pub(super) const INTERPOLATION: Axis = Axis {
     kind: AxisKind::Scored,
     choices: &[
         choice!("affine" "Affine" interpolation = Interpolation::Affine,
-            "Linearly on the screen, as ancestor B drew: no division.",
+            "Linear on the screen, as in ancestor B: no division.",
             "557 texels on a wall from z 2.2 to 100"),
         choice!("every-sixteen" "Every 16 pixels" interpolation = Interpolation::EverySixteen,
-            "With perspective at every sixteenth pixel of a row, linearly between them, as in \
+            "Perspective-correct at every sixteenth pixel of a row, linear between them, as in \
                 games of 1996.",
             "33 texels on the same wall")
-        .slower_because("the ends of spans have to be found where a division would have done"),
+        .slower_because("finding the ends of spans takes longer than a division per pixel"),
         choice!("perspective" "Perspective" interpolation = Interpolation::Perspective,
-            "With perspective at every pixel.",
+            "Perspective-correct at every pixel.",
             "none"),
     ],
     sense: |scene, view| {
@@ -164,13 +163,11 @@ pub(super) const STRETCHED: Axis = Axis {
             "By the cofactors of that matrix, which keep normals perpendicular to the surface.",
             "none"),
     ],
-    sense: |scene, view| {
-        if_any_object(scene, view, is_stretched, "nothing that is shown is stretched")
-    },
+    sense: |scene, view| if_any_object(scene, view, is_stretched, "no visible object is stretched"),
     lesson: Lesson {
         title: "Why stretched objects are lit wrongly",
-        what: "A normal is perpendicular to its surface. If it is stretched with the object, it no \
-            longer is, so normals need a matrix of their own.",
+        what: "A normal is perpendicular to its surface. Stretching it with the object makes it \
+            lean, so normals need a different matrix.",
         coarse: "Transformed by the object's own matrix, normals lean with the stretch, and a \
             flattened object is lit as if it were elongated.",
         shows: "On the upper side of a flattened ball: compare both.",

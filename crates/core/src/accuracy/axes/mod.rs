@@ -1,10 +1,9 @@
 //! The axes of accuracy: every choice that trades exactness for time, in one table.
 //!
 //! Menus, the command line and the laboratory read this table, and tests compare a scene file's
-//! words with it, so a row is all that a new axis needs. It says what the axis does, how its
-//! choices are set in [`Settings`] and read back, which of them is the most exact, in which scenes
-//! the axis changes anything, and what its lesson teaches. The default is that of
-//! [`Settings::default`].
+//! words with it, so a row is all that a new axis needs. A row defines the purpose of the axis, how
+//! its choices are set in [`Settings`] and read back, the most exact choice, the scenes in which
+//! the axis matters, and its lesson. The default is [`Settings::default`].
 
 /// A choice that sets one field of the settings to one value.
 macro_rules! choice {
@@ -56,15 +55,15 @@ pub struct Axis {
     pub label: &'static str,
     /// A choice of it in a sentence, with {} for the choice: "{} texture filter".
     pub phrase: &'static str,
-    /// What it decides, as a phrase: "Where light is evaluated".
+    /// Its purpose, as a phrase: "Where light is evaluated".
     pub what: &'static str,
     /// Whether some choices are more exact than others.
     pub kind: AxisKind,
     /// The choices, from the coarse to the exact if they are scored.
     pub choices: &'static [Choice],
-    /// Whether it can change the picture of a scene in a view; else the reason.
+    /// Returns whether it can change the picture of a scene in a view, or else the reason.
     pub sense: fn(&Scene, &View) -> Result<(), &'static str>,
-    /// What there is to learn about it.
+    /// Its lesson.
     pub lesson: Lesson,
 }
 
@@ -73,8 +72,8 @@ pub struct Axis {
 pub enum AxisKind {
     /// The last choice is the most exact one; the errors of the others are measured against it.
     Scored,
-    /// As [`Self::Scored`], but the exact choice changes the picture so much that the references of
-    /// all other axes leave this one as it is.
+    /// Like [`Self::Scored`], but the exact choice changes the picture so much that the references
+    /// of all other axes keep the default of this one.
     ScoredApart,
     /// The choices are different models: none is an error of another.
     Model,
@@ -87,32 +86,33 @@ pub struct Choice {
     pub word: &'static str,
     /// Its label on a button.
     pub label: &'static str,
-    /// What it does, in a sentence.
+    /// Its effect, in a sentence.
     pub what: &'static str,
-    /// The error to expect, in words.
+    /// The expected error, in words.
     pub error: &'static str,
     /// Why it takes longer than a more exact choice, if it does, as a clause.
     pub slower_because: Option<&'static str>,
-    /// Whether it differs from the other choices for a scene in a view; else the reason.
+    /// Returns whether it differs from the other choices for a scene in a view, or else the reason.
     pub sense: fn(&Scene, &View) -> Result<(), &'static str>,
-    /// Whether it differs from the other choices beside those of the other axes; else the reason.
+    /// Returns whether it differs from the other choices with these settings of the other axes, or
+    /// else the reason.
     pub among: fn(&Settings) -> Result<(), &'static str>,
     set: fn(&mut Settings),
     is: fn(&Settings) -> bool,
 }
 
-/// What an axis teaches, in three sentences.
+/// The lesson of an axis, in three sentences.
 #[derive(Debug)]
 pub struct Lesson {
     /// The question that it answers: "Why Gouraud misses a highlight".
     pub title: &'static str,
-    /// What the axis is about.
+    /// An explanation of the axis.
     pub what: &'static str,
-    /// What goes wrong with a coarse choice.
+    /// The faults of a coarse choice.
     pub coarse: &'static str,
-    /// Where that shows.
+    /// Where the difference is visible.
     pub shows: &'static str,
-    /// The built-in scene in which the difference is plain to see.
+    /// The built-in scene that shows the difference clearly.
     pub scene: &'static str,
     /// The word of the choice that the scene opens with, if it is not the coarsest.
     pub choice: Option<&'static str>,
@@ -154,7 +154,7 @@ impl Axis {
         self.choices.iter().find(|choice| choice.word == word)
     }
 
-    /// The choice that its lesson opens with: the one that goes most plainly wrong.
+    /// The choice that its lesson opens with: the one with the most visible faults.
     #[must_use]
     pub fn lesson_choice(&self) -> &'static Choice {
         let named = self.lesson.choice.and_then(|word| self.choice(word));
@@ -193,7 +193,7 @@ impl Axis {
 }
 
 impl Choice {
-    /// Says why it takes longer than a more exact choice: "edges are kept in 64 bits".
+    /// States why it takes longer than a more exact choice: "edges are kept in 64 bits".
     const fn slower_because(self, reason: &'static str) -> Self {
         Self { slower_because: Some(reason), ..self }
     }

@@ -1,4 +1,4 @@
-//! The axes of what is stored per pixel: depth and rounding.
+//! The axes of values stored per pixel: depth and rounding.
 
 use super::sense::{if_any, if_any_object, is_any, is_lit};
 use super::{Axis, AxisKind, Choice, Lesson};
@@ -25,13 +25,13 @@ pub(super) const DEPTH: Axis = Axis {
             "32-bit floating point with 0 at the far plane.",
             "0.000058 units at z 1000"),
     ],
-    sense: |scene, view| if_any_object(scene, view, is_any, "nothing is shown"),
+    sense: |scene, view| if_any_object(scene, view, is_any, "no object is visible"),
     lesson: Lesson {
         title: "Why surfaces show through each other",
         what: "A depth is stored for every pixel to decide which surface is in front. Perspective \
             leaves few of its steps for distant surfaces.",
-        coarse: "If two surfaces are closer to each other than a step, one shows through the other \
-            in stripes that crawl as the view moves.",
+        coarse: "If two surfaces are closer to each other than a step, one shows through the \
+            other in stripes that crawl as the view moves (z-fighting).",
         shows: "On two plates that lean against each other at a distance of 1000: with 16 bits, \
             the line where they meet dissolves.",
         scene: "fence",
@@ -54,9 +54,9 @@ pub(super) const ROUNDING: Axis = Axis {
             "one byte step; none on average"),
         choice!("nearest" "Nearest" rounding = Rounding::Nearest,
             "Rounds to the nearest byte.",
-            "half a step, the best that a byte can do"),
+            "half a step, the smallest possible with bytes"),
     ],
-    sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
+    sense: |scene, view| if_any(scene, view, is_lit, "no visible surface is lit"),
     lesson: Lesson {
         title: "Why dim walls fall into bands",
         what: "A colour has many digits, and a byte has 256 steps: a value between two steps is \

@@ -24,7 +24,7 @@ pub(super) const SAMPLES: Axis = Axis {
             "The mean of sixty-four samples per pixel: slow.",
             "on edges, about a hundredth of the difference between the two sides"),
     ],
-    sense: |scene, view| if_any(scene, view, is_there, "nothing is shown"),
+    sense: |scene, view| if_any(scene, view, is_there, "no object is visible"),
     lesson: Lesson {
         title: "Why edges are staircases",
         what: "A pixel is a small square, and an edge may run through it. It can show what its \

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use crate::accuracy::{Samples, Settings};
 use crate::scene::{MapKind, Object, ObjectId, Scene, Surface, View};
 
-/// The objects that are shown.
+/// The visible objects.
 fn shown<'a>(scene: &'a Scene, view: &View) -> impl Iterator<Item = &'a Object> {
     let all = !view.only_selected && view.polygons.is_none();
     let alone = view.object;
@@ -14,7 +14,7 @@ fn shown<'a>(scene: &'a Scene, view: &View) -> impl Iterator<Item = &'a Object> 
     scene.objects.iter().filter(is_shown).map(|(_, object)| object)
 }
 
-/// Whether one of the parts that are shown has a property; else the given reason.
+/// Checks that a visible part has a property; otherwise returns the given reason.
 pub(super) fn if_any(
     scene: &Scene,
     view: &View,
@@ -40,7 +40,7 @@ pub(super) fn is_textured(object: &Object, part: u32) -> bool {
     !object.model.mesh.uvs().is_empty() && object.part_look(part).texture.is_some()
 }
 
-/// Whether something behind it may be seen through it.
+/// Whether it may be transparent.
 pub(super) fn is_transparent(object: &Object, part: u32) -> bool {
     let look = object.part_look(part);
     let mapped = !object.model.mesh.uvs().is_empty();
@@ -51,7 +51,7 @@ pub(super) fn is_transparent(object: &Object, part: u32) -> bool {
     look.opacity > 0.0 && (look.opacity < 1.0 || fades)
 }
 
-/// Whether it is lit, and has a map of heights or normals.
+/// Whether it is lit and has a height or normal map.
 pub(super) fn has_bumps(object: &Object, part: u32) -> bool {
     let look = object.part_look(part);
     let mapped = [MapKind::Bump, MapKind::Normal].iter().any(|kind| look.map(*kind).is_some());
@@ -62,7 +62,7 @@ pub(super) fn is_mirroring(object: &Object, part: u32) -> bool {
     is_lit(object, part) && object.part_look(part).material.specular.iter().any(|ks| *ks > 0.0)
 }
 
-/// Whether one of the objects that are shown has a property; else the given reason.
+/// Checks that a visible object has a property; otherwise returns the given reason.
 pub(super) fn if_any_object(
     scene: &Scene,
     view: &View,

@@ -1,4 +1,4 @@
-//! The axes of shadows: how it is decided whether a light is seen, and from where.
+//! The axes of shadows: how shadows are computed, and where shadow rays start.
 
 use super::{Axis, AxisKind, Choice, Lesson};
 use crate::accuracy::{ShadowMethod, Terminator};
@@ -17,31 +17,31 @@ fn are_cast(scene: &Scene, view: &View) -> Result<(), &'static str> {
     }
 }
 
-/// Why a shadow map may take longer than rays: what is compared is a picture after a change.
-const DRAWN_AGAIN: &str = "the maps of all lights are drawn for each picture that is measured, as \
-    whenever a light or an object moves";
+/// Why a shadow map may take longer than rays: pictures are measured as if after a change.
+const DRAWN_AGAIN: &str =
+    "each measured picture draws the maps of all lights, as after a move of a light or an object";
 
 pub(super) const SHADOW_METHOD: Axis = Axis {
     key: "shadow-method",
     label: "Shadow method",
     phrase: "shadows ({})",
-    what: "How it is decided whether a light is seen",
+    what: "How shadows are computed",
     kind: AxisKind::Scored,
     choices: &[
         choice!("map-512" "Map 512" shadow_method = ShadowMethod::Map512,
             "A shadow map of 512 x 512 texels with a slope-scaled bias (Williams, 1978).",
-            "stair steps of a texel along shadows, and light under what stands on the ground")
+            "stair steps of a texel along shadows, and light leaks under objects on the ground")
         .slower_because(DRAWN_AGAIN),
         choice!("map-512-pcf" "Map 512 PCF" shadow_method = ShadowMethod::Map512Pcf,
-            "The same, the mean of what 3 x 3 texels say (Reeves, Salesin and Cook, 1987).",
-            "borders blurred over three texels, and light under what stands on the ground")
+            "The same, averaged over 3 x 3 texels (Reeves, Salesin and Cook, 1987).",
+            "borders blurred over three texels, and light leaks under objects on the ground")
         .slower_because(DRAWN_AGAIN),
         choice!("map-1024" "Map 1024" shadow_method = ShadowMethod::Map1024,
             "A shadow map of 1024 x 1024 texels.",
             "steps half as large")
         .slower_because(DRAWN_AGAIN),
         choice!("map-1024-pcf" "Map 1024 PCF" shadow_method = ShadowMethod::Map1024Pcf,
-            "A shadow map of 1024 x 1024 texels, the mean of what 3 x 3 of them say.",
+            "A shadow map of 1024 x 1024 texels, averaged over 3 x 3 texels.",
             "borders blurred over three texels")
         .slower_because(DRAWN_AGAIN),
         choice!("map-2048" "Map 2048" shadow_method = ShadowMethod::Map2048,
@@ -49,7 +49,7 @@ pub(super) const SHADOW_METHOD: Axis = Axis {
             "steps a quarter as large")
         .slower_because(DRAWN_AGAIN),
         choice!("map-2048-pcf" "Map 2048 PCF" shadow_method = ShadowMethod::Map2048Pcf,
-            "A shadow map of 2048 x 2048 texels, the mean of what 3 x 3 of them say.",
+            "A shadow map of 2048 x 2048 texels, averaged over 3 x 3 texels.",
             "borders blurred over three texels")
         .slower_because(DRAWN_AGAIN),
         choice!("map-4096" "Map 4096" shadow_method = ShadowMethod::Map4096,
@@ -57,11 +57,11 @@ pub(super) const SHADOW_METHOD: Axis = Axis {
             "steps an eighth as large")
         .slower_because(DRAWN_AGAIN),
         choice!("map-4096-pcf" "Map 4096 PCF" shadow_method = ShadowMethod::Map4096Pcf,
-            "A shadow map of 4096 x 4096 texels, the mean of what 3 x 3 of them say.",
+            "A shadow map of 4096 x 4096 texels, averaged over 3 x 3 texels.",
             "borders blurred over three texels")
         .slower_because(DRAWN_AGAIN),
         choice!("exact" "Exact" shadow_method = ShadowMethod::Exact,
-            "Rays against all triangles, in exact arithmetic; there is no bias.",
+            "Rays against all triangles, in exact arithmetic, without a bias.",
             "none"),
     ],
     sense: are_cast,
@@ -70,10 +70,9 @@ pub(super) const SHADOW_METHOD: Axis = Axis {
         what: "A shadow map is a picture of depths as the light sees them: a point is in shadow if \
             something nearer covers its texel.",
         coarse: "A texel has one depth for all points in it, so borders are stairs, and a surface \
-            would shade itself in stripes (acne). A bias hides those, and lets light in where two \
-            surfaces touch (leaks).",
-        shows: "Under the low sun, along the shadow of the ring and where it stands on the \
-            ground.",
+            would shade itself in stripes (acne). A bias hides the stripes, but lets light in \
+            where two surfaces touch (leaks).",
+        shows: "Under the low sun, along the shadow of the ring and where it stands on the ground.",
         scene: "shadow",
         choice: None,
     },
@@ -83,7 +82,7 @@ pub(super) const TERMINATOR: Axis = Axis {
     key: "terminator",
     label: "Shadow terminator",
     phrase: "shadow terminator by {}",
-    what: "Where rays of shadows begin on smooth surfaces",
+    what: "Where shadow rays start on smooth surfaces",
     kind: AxisKind::Model,
     choices: &[
         choice!("triangles" "Triangles" terminator = Terminator::Triangles,
@@ -95,13 +94,12 @@ pub(super) const TERMINATOR: Axis = Axis {
     ],
     sense: are_cast,
     lesson: Lesson {
-        title: "Why the edge of night is jagged",
+        title: "Why the shadow terminator is jagged",
         what: "Vertex normals light a ball of triangles as if it were round, but its triangles are \
-            flat: near the edge of night some are turned away from the light already.",
-        coarse: "Neither is an error of the other: the triangles are in their own shadow, whole \
-            ones at a time. Rays that begin on the round surface leave the light that normals \
-            promise.",
-        shows: "Along the edge between day and night of a coarse ball.",
+            flat: near the terminator, some are already turned away from the light.",
+        coarse: "Neither is an error of the other: whole triangles fall into their own shadow. \
+            Rays that start on the round surface keep the light that the normals suggest.",
+        shows: "Along the edge between light and shadow of a coarse ball.",
         scene: "night",
         choice: Some("smooth"),
     },

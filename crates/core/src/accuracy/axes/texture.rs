@@ -21,16 +21,16 @@ pub(super) const FILTER: Axis = Axis {
             "A mean of the texels that a pixel covers, from mipmaps.",
             "none"),
     ],
-    sense: |scene, view| if_any(scene, view, is_textured, "nothing that is shown has a texture"),
+    sense: |scene, view| if_any(scene, view, is_textured, "no visible surface has a texture"),
     lesson: Lesson {
         title: "Why textures fall into blocks",
         what: "A texture is a grid of colours, and pixels seldom fall on the centre of a texel: \
             the nearest one is taken, or the four around are interpolated.",
-        coarse: "With the nearest texel alone, a texture seen from near falls into blocks whose \
-            edges jump as the view moves. From afar, without mipmaps, a pixel takes one texel of \
-            many and glitters.",
-        shows: "Look at a texture from so near that a texel covers many pixels, then from so far \
-            that a pixel covers many texels.",
+        coarse: "With only the nearest texel, a texture breaks into blocks when seen up close, \
+            and their edges jump as the view moves. From afar, without mipmaps, a pixel takes one \
+            texel of many and glitters.",
+        shows: "Look at a texture from close up, so that a texel covers many pixels, then from \
+            far away, so that a pixel covers many texels.",
         scene: "plate",
         choice: None,
     },
@@ -40,21 +40,21 @@ pub(super) const BUMPS: Axis = Axis {
     key: "bumps",
     label: "Bump filter",
     phrase: "{} bump filter",
-    what: "How maps of heights and normals are filtered",
+    what: "How height and normal maps are filtered",
     kind: AxisKind::Scored,
     choices: &[
         choice!("nearest" "Nearest" bump_filter = BumpFilter::Nearest,
-            "The nearest texel: one height or normal for each.",
+            "The nearest texel: one height or normal per texel.",
             "up to the difference between neighbouring texels"),
         choice!("trilinear" "Trilinear" bump_filter = BumpFilter::Trilinear,
             "A mean of the texels that a pixel covers, from mipmaps.",
-            "from afar, the roughness that the mean has lost"),
+            "from afar, the roughness that is lost in the mean"),
     ],
-    sense: |scene, view| if_any(scene, view, has_bumps, "nothing that is shown has bumps"),
+    sense: |scene, view| if_any(scene, view, has_bumps, "no visible surface has bumps"),
     lesson: Lesson {
         title: "Why bumps glitter from afar",
-        what: "A map of bumps is read like a texture, but what it changes is the direction of \
-            light: a small difference between texels can switch a highlight on.",
+        what: "A bump map is read like a texture, but changes the direction of normals: a small \
+            difference between texels can switch a highlight on.",
         coarse: "With the nearest texel, bumps fall into facets from near. From afar a pixel \
             takes one slope of many, and glitters as the view moves.",
         shows: "On the flanks of the dimples, and where the grooves are finer than a pixel.",
@@ -67,25 +67,25 @@ pub(super) const TANGENTS: Axis = Axis {
     key: "tangents",
     label: "Tangents",
     phrase: "tangents at each {}",
-    what: "How the tangents that bumps are laid along are found",
+    what: "How tangents for bumps are computed",
     kind: AxisKind::Model,
     choices: &[
         choice!("pixel" "Pixel" tangents = Tangents::Pixel,
             "The gradients of the texture coordinates on the triangle, at each pixel.",
             "a model, not scored"),
         choice!("vertex" "Vertex" tangents = Tangents::Vertex,
-            "MikkTSpace at vertices, interpolated: what normal maps are made for.",
+            "MikkTSpace at vertices, interpolated: the convention of normal maps.",
             "a model, not scored"),
     ],
-    sense: |scene, view| if_any(scene, view, has_bumps, "nothing that is shown has bumps"),
+    sense: |scene, view| if_any(scene, view, has_bumps, "no visible surface has bumps"),
     lesson: Lesson {
-        title: "Which way is along the texture",
+        title: "Which tangents a bump follows",
         what: "A bump leans along the texture's axes, which have a direction on each triangle. \
             MikkTSpace averages it at vertices and interpolates; without that, each triangle \
             uses its own.",
-        coarse: "Neither is an error of the other: a map of normals is right with the tangents \
-            that it was made for. With those of each triangle, bumps may kink along the edges of \
-            a coarse mesh.",
+        coarse: "Neither is an error of the other: a normal map is right with the tangents that \
+            it was made for. With tangents per triangle, bumps may kink along the edges of a \
+            coarse mesh.",
         shows: "Along the edges of the polygons near the poles of the ball.",
         scene: "dimples",
         choice: Some("pixel"),

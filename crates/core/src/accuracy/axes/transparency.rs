@@ -8,35 +8,33 @@ pub(super) const TRANSPARENCY: Axis = Axis {
     key: "transparency",
     label: "Transparency",
     phrase: "transparency ({})",
-    what: "How transparent surfaces are laid over each other",
+    what: "How transparent surfaces are blended",
     kind: AxisKind::Scored,
     choices: &[
         choice!("threshold" "Threshold" transparency = Transparency::Threshold,
-            "What is less than half opaque is not drawn, everything else is opaque.",
-            "all of what is seen through a surface, or all of the surface"),
+            "Surfaces that are less than half opaque are not drawn, others are opaque.",
+            "everything behind a surface, or the whole surface, is missing"),
         choice!("weighted" "Weighted mean" transparency = Transparency::Weighted,
             "A mean of all layers, weighted by opacity and nearness (McGuire and Bavoil, 2013).",
             "none for one layer; with more, up to the difference between their colours")
-        .slower_because("all layers of a pixel are listed for it, too, and each is weighted"),
+        .slower_because("it also lists all layers of a pixel, and weights each"),
         choice!("objects" "By object" transparency = Transparency::Objects,
-            "Object by object, the farthest first, and in each triangle by triangle.",
-            "where objects cut through each other, or one is in front of itself, the wrong order")
-        .slower_because("all layers of a pixel are listed and sorted for it, too"),
+            "Object by object, the farthest first; each object triangle by triangle.",
+            "the wrong order if objects intersect, or if one overlaps itself")
+        .slower_because("it also lists and sorts all layers of a pixel"),
         choice!("exact" "By pixel" transparency = Transparency::Exact,
             "Pixel by pixel, the farthest first.",
             "none"),
     ],
-    sense: |scene, view| {
-        if_any(scene, view, is_transparent, "nothing that is shown is transparent")
-    },
+    sense: |scene, view| if_any(scene, view, is_transparent, "no visible surface is transparent"),
     lesson: Lesson {
         title: "Why glass comes out in the wrong order",
-        what: "What is seen through a surface has to be drawn before it. At each pixel that is \
-            another order, and two panes that cut through each other change places.",
-        coarse: "Object by object, a pane is wholly before or wholly behind another. A weighted \
-            mean has no order at all. A threshold knows no glass.",
-        shows: "On two panes that cut through each other before a tiled wall: by object, the line \
-            where they meet is missing.",
+        what: "Surfaces behind a transparent surface have to be drawn before it. The order \
+            differs from pixel to pixel, and two panes that cut through each other change places.",
+        coarse: "Object by object, a pane is entirely in front of or behind another. A weighted \
+            mean ignores the order. A threshold cannot draw glass.",
+        shows: "On two panes that cut through each other in front of a tiled wall: by object, the \
+            line where they meet is missing.",
         scene: "panes",
         choice: Some("objects"),
     },

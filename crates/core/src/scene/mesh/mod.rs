@@ -201,7 +201,7 @@ pub enum MeshError {
     #[error("the mesh has {0} that are not finite")]
     NotFinite(&'static str),
     /// An index points past the end.
-    #[error("the mesh names {0} number {1}, which it does not have")]
+    #[error("the mesh refers to {0} number {1}, which does not exist")]
     Index(&'static str, u32),
     /// A polygon has fewer than three corners.
     #[error("polygon {0} has fewer than three corners")]
