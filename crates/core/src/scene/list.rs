@@ -39,12 +39,11 @@ impl<K, T, D> Default for List<K, T, D> {
 /// Compares addresses first: lists that share their items are equal.
 impl<K: PartialEq, T: PartialEq, D> PartialEq for List<K, T, D> {
     fn eq(&self, other: &Self) -> bool {
-        let alike = |((id, item), (other_id, other)): ((&K, &Arc<T>), (&K, &Arc<T>))| {
-            id == other_id && (Arc::ptr_eq(item, other) || item == other)
-        };
+        let alike = |item: &Arc<T>, other: &Arc<T>| Arc::ptr_eq(item, other) || item == other;
         Arc::ptr_eq(&self.items, &other.items)
             || (self.items.len() == other.items.len()
-                && self.items.iter().zip(other.items.iter()).all(alike))
+                && self.items.keys().eq(other.items.keys())
+                && self.items.values().zip(other.items.values()).all(|(a, b)| alike(a, b)))
     }
 }
 
