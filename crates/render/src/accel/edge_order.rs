@@ -1,6 +1,6 @@
 //! The draw order of a mesh's edges.
 //!
-//! Edges follow the vertices as [`DrawOrder`](crate::scene::DrawOrder) numbers them, so neighbours
+//! Edges follow the vertices as [`DrawOrder`](crate::accel::DrawOrder) numbers them, so neighbours
 //! in space are neighbours in memory. Each edge keeps its number among the mesh's edges, which
 //! decides between equal depths. The draw order therefore does not change the picture.
 
@@ -12,7 +12,7 @@ use super::draw_order::index;
 /// An edge in draw order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawEdge {
-    /// The vertices at the ends, as indices into [`DrawOrder::x`](crate::scene::DrawOrder::x);
+    /// The vertices at the ends, as indices into [`DrawOrder::x`](crate::accel::DrawOrder::x);
     /// [`NONE`] if no triangle uses them.
     pub vertices: [u32; 2],
     /// The two polygons at the edge, or its only polygon twice. If the edge has more than two, the

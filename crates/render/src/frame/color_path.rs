@@ -43,11 +43,11 @@ pub(crate) enum ListPath {
 /// The number of pixels that each path has coloured, in whole blocks except for lists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PathPixels {
-    /// Filled blocks: [`FullPath::Fill`].
+    /// Filled blocks.
     pub filled: u64,
-    /// Blocks of interpolated corner colours: [`FullPath::Corners`].
+    /// Blocks of interpolated corner colours.
     pub corners: u64,
-    /// Blocks lit in one pass: [`FullPath::Light`].
+    /// Blocks lit in one pass.
     pub lit: u64,
     /// Pixels of fragment lists of one block.
     pub alone: u64,
