@@ -16,6 +16,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::closed::{boundary, key};
+use super::sets::Sets;
 use super::{dvec3, index};
 use crate::scene::{Bounds, Mesh, NONE};
 
@@ -62,7 +63,8 @@ impl Mesh {
     pub fn closed_bodies(&self) -> ClosedBodies {
         let keys: Vec<u64> = self.shape.positions.par_iter().map(|place| key(*place)).collect();
         let outlines = self.outlines();
-        let mut sets = Sets::new(keys.len());
+        let mut sets = Sets::default();
+        sets.reset(keys.len());
         for polygon in 0..self.polygon_count() {
             let vertices = outlines.vertices(polygon);
             vertices.windows(2).for_each(|pair| sets.join(pair[0], pair[1]));
@@ -97,7 +99,7 @@ impl Mesh {
         let mut bodies: Vec<Body> = Vec::new();
         for polygon in 0..self.polygon_count() {
             let vertices = outlines.vertices(polygon);
-            let number = &mut numbers[sets.root(vertices[0]) as usize];
+            let number = &mut numbers[sets.first(vertices[0]) as usize];
             if *number == NONE {
                 *number = index(bodies.len());
                 bodies.push(Body::EMPTY);
@@ -142,36 +144,6 @@ impl Body {
             (Some(all), Some(own)) => Some(all.around(&own)),
             (all, own) => all.or(own),
         };
-    }
-}
-
-/// Disjoint sets of vertices. Tarjan, "Efficiency of a Good But Not Linear Set Union Algorithm",
-/// Journal of the ACM 1975.
-struct Sets {
-    parents: Vec<u32>,
-}
-
-impl Sets {
-    fn new(count: usize) -> Self {
-        Self { parents: (0..index(count)).collect() }
-    }
-
-    fn root(&mut self, mut vertex: u32) -> u32 {
-        loop {
-            let parent = self.parents[vertex as usize];
-            if parent == vertex {
-                return vertex;
-            }
-            // Path halving keeps the paths short.
-            let next = self.parents[parent as usize];
-            self.parents[vertex as usize] = next;
-            vertex = next;
-        }
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parents[a.max(b) as usize] = a.min(b);
     }
 }
 

@@ -21,6 +21,7 @@ use crate::scene::mesh::around::Around;
 use crate::scene::mesh::index;
 use crate::scene::mesh::normals::{cancels, narrow, shown_normal};
 use crate::scene::mesh::outlines::Outlines;
+use crate::scene::mesh::sets::Sets;
 use crate::scene::{Crease, NONE, Point, dvec3};
 
 /// A smooth edge may exceed the crease angle by this angle, in degrees. Numbers in files have about
@@ -121,34 +122,13 @@ struct Fans {
     normals: Vec<DVec3>,
     /// Each corner with the index of its face.
     corners: Vec<(u32, u32)>,
-    /// For each face an earlier face of the same fan; the first face refers to itself.
-    earlier: Vec<u32>,
+    /// The faces of each fan.
+    sets: Sets,
     sums: Vec<DVec3>,
     /// The index of each face's point in the block; [`NONE`] for the vertex's point.
     points: Vec<u32>,
     /// The other ends of edges, or smoothing groups, each paired with a face.
     keys: Vec<(u32, u32)>,
-}
-
-impl Fans {
-    /// Returns the first face of a face's fan.
-    fn first(&mut self, mut face: u32) -> u32 {
-        loop {
-            let earlier = self.earlier[face as usize];
-            if earlier == face {
-                return face;
-            }
-            // Path halving keeps the paths short.
-            let before = self.earlier[earlier as usize];
-            self.earlier[face as usize] = before;
-            face = before;
-        }
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.first(a), self.first(b));
-        self.earlier[a.max(b) as usize] = a.min(b);
-    }
 }
 
 struct Sorter<'a> {
@@ -257,8 +237,7 @@ impl Sorter<'_> {
             }
             fans.corners.push((*corner, index(fans.polygons.len() - 1)));
         }
-        fans.earlier.clear();
-        fans.earlier.extend(0..index(fans.polygons.len()));
+        fans.sets.reset(fans.polygons.len());
         let mut keys = std::mem::take(&mut fans.keys);
         keys.clear();
         match self.rule {
@@ -282,7 +261,7 @@ impl Sorter<'_> {
                 keys.extend((0..).zip(&fans.polygons).map(group).filter(|(group, _)| *group != 0));
                 keys.sort_unstable();
                 for two in keys.windows(2).filter(|two| two[0].0 == two[1].0) {
-                    fans.join(two[0].1, two[1].1);
+                    fans.sets.join(two[0].1, two[1].1);
                 }
             }
         }
@@ -310,7 +289,7 @@ impl Sorter<'_> {
 
     fn join_two(a: u32, b: u32, limit: Limit, fans: &mut Fans) {
         if limit.joins(fans.normals[a as usize], fans.normals[b as usize]) {
-            fans.join(a, b);
+            fans.sets.join(a, b);
         }
     }
 
@@ -336,13 +315,13 @@ impl Sorter<'_> {
         fans.sums.clear();
         fans.sums.resize(fans.polygons.len(), DVec3::ZERO);
         for face in faces.clone() {
-            let first = fans.first(face);
+            let first = fans.sets.first(face);
             fans.sums[first as usize] += fans.normals[face as usize];
         }
         // The first face of a fan adds its point. Later faces of the fan find it there.
         fans.points.clear();
         for face in faces {
-            let first = fans.first(face);
+            let first = fans.sets.first(face);
             let sum = fans.sums[first as usize];
             let of_fan = if cancels(sum) {
                 narrow(fans.normals[face as usize])

@@ -22,6 +22,7 @@ mod offset;
 pub(super) mod outlines;
 mod placeholder;
 mod points;
+mod sets;
 mod splits;
 mod tangents;
 

@@ -1,0 +1,137 @@
+//! Each way of colouring pixels is reached by the scenes that it is meant for, and by no others.
+//!
+//! All paths give the same bytes, so no picture shows which path drew it. A condition that is never
+//! true would pass every other test.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+
+mod common;
+
+use common::{at, ball, edit, scene, square};
+use marraztu_core::accuracy::{
+    Arithmetic, Interpolation, LightAt, LightValues, Rounding, Settings, Shot,
+};
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::{
+    Command, Item, LightId, LightKind, Model, ObjectId, Scene, Sides, View,
+};
+use marraztu_render::{PathPixels, Renderer, explain_frame, plan_frame};
+
+const FIRST: ObjectId = ObjectId(10);
+
+/// A path: its name, and its counter.
+type Path = (&'static str, fn(&PathPixels) -> u64);
+
+const FILLED: Path = ("filled", |pixels| pixels.filled);
+const CORNERS: Path = ("corners", |pixels| pixels.corners);
+const LIT: Path = ("lit", |pixels| pixels.lit);
+const ALONE: Path = ("alone", |pixels| pixels.alone);
+const JOINED: Path = ("joined", |pixels| pixels.joined);
+const TINY: Path = ("tiny", |pixels| pixels.tiny);
+const FACES: Path = ("faces", |pixels| pixels.faces);
+const EARLY: Path = ("early", |pixels| pixels.early);
+const ALL: [Path; 8] = [FILLED, CORNERS, LIT, ALONE, JOINED, TINY, FACES, EARLY];
+
+/// Counts the pixels of a scene without marks, by path.
+fn paths(scene: &Scene, view: &View, settings: Settings) -> PathPixels {
+    let view = View { marks: false, ..view.clone() };
+    let plan = plan_frame(&Shot::new(scene, &view, &settings, Size::new(400, 400)));
+    let mut renderer = Renderer::default();
+    renderer.render(&plan);
+    renderer.path_pixels()
+}
+
+fn of(model: Shared<Model>) -> (Scene, View) {
+    scene(&[(model, at(90.0, 0.0, 0.0, 0.0))])
+}
+
+/// A square that covers many blocks fully.
+fn large() -> (Scene, View) {
+    of(square())
+}
+
+/// A ball of triangles that each show in a few pixels.
+fn fine() -> (Scene, View) {
+    of(ball(24))
+}
+
+/// A ball of triangles that are smaller than pixels.
+fn finest() -> (Scene, View) {
+    scene(&[(ball(200), at(40.0, 0.0, 0.0, 0.0))])
+}
+
+fn with_light(light: LightAt) -> Settings {
+    Settings { light, ..Settings::default() }
+}
+
+/// The same with shadows of the bulb.
+fn with_shadows((mut scene, view): (Scene, View)) -> (Scene, View) {
+    let lights: Vec<LightId> = scene.lights.ids().collect();
+    for id in lights {
+        let mut light = scene.lights.get(id).unwrap().clone();
+        light.shadows = matches!(light.kind, LightKind::Bulb { .. });
+        let item = Item::Light(id, Box::new(light));
+        Command::Replace(item).apply(&mut scene).unwrap();
+    }
+    (scene, view)
+}
+
+/// Expects pixels by these paths, and by no others.
+#[track_caller]
+fn expect(name: &str, (scene, view): (Scene, View), settings: Settings, expected: &[Path]) {
+    let pixels = paths(&scene, &view, settings);
+    let used: Vec<&str> =
+        ALL.iter().filter(|(_, count)| count(&pixels) > 0).map(|(name, _)| *name).collect();
+    let expected: Vec<&str> = expected.iter().map(|(name, _)| *name).collect();
+    assert_eq!(used, expected, "{name}: {pixels:?}");
+}
+
+#[test]
+fn each_path_colours_the_surfaces_that_it_is_meant_for() {
+    let [face, vertex, pixel] = [LightAt::Face, LightAt::Vertex, LightAt::Pixel].map(with_light);
+    expect("flat shading of large triangles", large(), face, &[FILLED, FACES]);
+    expect("flat shading of small triangles", fine(), face, &[FACES]);
+    expect("Gouraud shading of large triangles", large(), vertex, &[CORNERS, EARLY]);
+    expect("Gouraud shading of small triangles", fine(), vertex, &[EARLY]);
+    expect("Gouraud shading of tiny triangles", finest(), vertex, &[TINY]);
+    expect("Phong shading of large triangles", large(), pixel, &[LIT, JOINED]);
+    expect("Phong shading of small triangles", fine(), pixel, &[JOINED]);
+    expect("Phong shading of tiny triangles", finest(), pixel, &[JOINED, TINY]);
+}
+
+#[test]
+fn whatever_fast_paths_cannot_do_is_left_to_fragment_lists() {
+    let usual = Settings::default();
+    expect("shadows", with_shadows(fine()), usual, &[ALONE]);
+    expect("shadows on large triangles", with_shadows(large()), usual, &[ALONE]);
+    let f64 = Settings { arithmetic: Arithmetic::F64, ..usual };
+    for own in [large(), fine(), finest()] {
+        expect("f64", own, f64, &[ALONE]);
+    }
+    let spans = Settings { interpolation: Interpolation::EverySixteen, ..usual };
+    expect("spans", large(), spans, &[ALONE]);
+    let (mut scene, view) = large();
+    edit(&mut scene, FIRST, |object| object.sides = Sides::One);
+    let red = View { back_faces: true, ..view };
+    expect("red back faces", (scene, red), usual, &[ALONE]);
+    let dithered = Settings { rounding: Rounding::Dithered, ..with_light(LightAt::Face) };
+    expect("dithered flat shading", large(), dithered, &[ALONE]);
+    let linear = Settings { light_values: LightValues::Linear, ..with_light(LightAt::Vertex) };
+    expect("linear Gouraud shading", finest(), linear, &[JOINED]);
+}
+
+#[test]
+fn the_plan_names_the_path_of_each_object() {
+    let (scene, view) = fine();
+    let words = |settings: Settings| {
+        let shot = Shot::new(&scene, &view, &settings, Size::new(400, 400));
+        let (_, uses) = explain_frame(&shot);
+        let surfaces = uses.iter().find(|one| one.effect == marraztu_render::Effect::Surfaces);
+        surfaces.unwrap().state.why().to_owned()
+    };
+    let pixel = words(Settings::default());
+    assert_eq!(pixel, "full blocks in one pass, blocks joined, tiny triangles at once");
+    let f64 = words(Settings { arithmetic: Arithmetic::F64, ..Settings::default() });
+    assert_eq!(f64, "fragment lists");
+}
