@@ -6,7 +6,6 @@
 
 mod picking;
 
-use std::mem::discriminant;
 use std::sync::{Mutex, PoisonError};
 
 use fearless_simd::Level;
@@ -32,7 +31,7 @@ use crate::shading::tiny_blocks::Tiny;
 use crate::shadow::maps::ShadowMaps;
 use crate::shadow::rays::RayCount;
 use crate::shadow::tracer::Tracer;
-use crate::simd::levels;
+use crate::simd::level::is_compiled;
 use crate::timings::{Laps, Timings};
 use crate::work_stealing::{own, together};
 use marraztu_core::accuracy::Arithmetic;
@@ -80,11 +79,10 @@ impl Renderer {
     /// Makes a renderer for an instruction set. Pictures are the same with each.
     ///
     /// # Panics
-    /// On x86-64 without SSE4.2: see [`levels`].
+    /// On x86-64, for a set before SSE4.2: see [`levels`](crate::simd::levels).
     #[must_use]
     pub fn new(level: Level) -> Self {
-        let is_compiled = |other: &Level| discriminant(other) == discriminant(&level);
-        assert!(levels().iter().any(is_compiled), "drawing needs a processor with SSE4.2");
+        assert!(is_compiled(level), "drawing needs a processor with SSE4.2");
         Self {
             level,
             picture: Picture::default(),
