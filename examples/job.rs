@@ -577,7 +577,7 @@ mod tests {
     }
 
     #[test]
-    fn copies_stand_side_by_side_and_the_time_of_each_stage_is_told() {
+    fn copies_are_placed_side_by_side_and_each_stage_is_timed() {
         let covered = |copies| {
             let options = ["--mode", "phong", "--dist", "300", "--stages", "--copies", copies];
             let (cells, pixels) = drawn(2, SQUARE, &options).unwrap();
@@ -605,7 +605,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_supported_is_told_in_one_sentence() {
+    fn unsupported_options_are_refused_in_one_sentence() {
         for (options, sentence) in [
             (["--mode", "phong", "--msaa", "3"], "3 samples per pixel are not supported"),
             (["--mode", "phong", "--instructions", "foo"], "instructions \"foo\" are unknown"),

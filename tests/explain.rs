@@ -102,7 +102,7 @@ fn every_example_adds_up() {
 }
 
 #[test]
-fn a_sun_from_above_is_what_the_formula_says() {
+fn a_sun_from_above_matches_the_formula() {
     let (scene, view) = io::default_scene();
     let settings = Settings { arithmetic: Arithmetic::F64, ..Settings::default() };
     let mut renderer = Renderer::default();

@@ -141,7 +141,7 @@ proptest! {
 }
 
 #[test]
-fn the_scene_is_saved_again_when_undo_comes_back_to_what_was_saved_and_never_once_that_is_gone() {
+fn undo_back_to_the_saved_step_marks_the_scene_as_saved_unless_it_is_gone() {
     let (mut scene, _) = common::three_objects();
     let mut history = History::new();
     let background = |history: &mut History, scene: &mut Scene, gesture| {
@@ -164,7 +164,7 @@ fn the_scene_is_saved_again_when_undo_comes_back_to_what_was_saved_and_never_onc
 }
 
 #[test]
-fn one_undo_takes_back_a_whole_drag_and_says_what_it_was() {
+fn one_undo_takes_back_a_whole_drag_and_names_it() {
     let (mut scene, mut view) = common::three_objects();
     view.subject = Subject::Object;
     let start = scene.clone();

@@ -106,7 +106,7 @@ fn a_picture_replaces_neither_a_file_of_another_kind_nor_its_own_source() {
 }
 
 #[test]
-fn a_model_or_a_scene_comes_from_standard_input_and_the_picture_goes_to_standard_output() {
+fn a_model_or_a_scene_is_read_from_stdin_and_the_picture_written_to_stdout() {
     let folder = folder();
     let model = drawn(folder.path(), &["square.obj"], b"");
     assert!(drawn(folder.path(), &["-"], SQUARE.as_bytes()) == model);
@@ -139,7 +139,7 @@ fn a_model_or_a_scene_comes_from_standard_input_and_the_picture_goes_to_standard
 }
 
 #[test]
-fn a_packed_model_is_the_model_with_its_materials_beside_it() {
+fn a_packed_model_equals_the_plain_one_and_finds_its_materials() {
     let folder = folder();
     let text = format!("mtllib m.mtl\nusemtl red\n{SQUARE}");
     std::fs::write(folder.path().join("m.mtl"), "newmtl red\nKd 1 0 0\nKs 0 0 0\n").unwrap();

@@ -85,7 +85,7 @@ fn a_comment_may_follow_numbers_and_corners() {
 }
 
 #[test]
-fn a_comment_of_three_words_is_no_colour_and_a_weight_of_zero_divides_nothing() {
+fn three_words_of_a_comment_are_not_a_colour_and_a_zero_weight_is_harmless() {
     let loaded = read("v 0 0 0 # no colour\nv 1 0 0 0\nv 0 1 0\nf 1 2 3\n");
     assert_eq!(loaded.model.mesh.positions()[..2], [[0.0; 3], [1.0, 0.0, 0.0]]);
     assert!(loaded.model.mesh.colors().is_empty());
@@ -118,7 +118,7 @@ fn tabs_and_many_blanks_divide_as_one_blank_does() {
 }
 
 #[test]
-fn bytes_that_are_no_utf_8_are_latin_1() {
+fn bytes_that_are_not_utf_8_are_read_as_latin_1() {
     let mesh = read_bytes(b"# caf\xE9\ng caf\xE9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     assert_eq!(mesh.model.mesh.parts()[0].name, "caf\u{e9}");
 }
@@ -138,7 +138,7 @@ fn lines_and_points_are_left_out_and_counted() {
 }
 
 #[test]
-fn texture_coordinates_and_normals_stay_with_their_corners_if_others_have_none() {
+fn texture_coordinates_and_normals_stay_with_their_corners_if_others_lack_them() {
     let loaded = read(&triangle_and(
         "vt 0.25 0.5\nvt 0.5 0.75\nvn 0 0 1\nvn 0 1 0\n\
          f 1 2 3\nf 1/2 2/1 3/2\nf 1//2 2//1 3//2\nf 1/1/1 2/2/2 3/1/1\nf 1/2 2 3\n",
@@ -184,7 +184,7 @@ fn vertices_without_a_colour_are_white_if_others_have_one() {
 }
 
 #[test]
-fn a_fourth_number_is_no_colour_and_a_seventh_is_passed_over() {
+fn a_fourth_number_is_not_a_colour_and_a_seventh_is_ignored() {
     let loaded = read("v 0 0 0 1\nv 1 0 0 0.5\nv 0 1 0 1 0 0.5 1\nf 1 2 3\n");
     assert_eq!(loaded.model.mesh.positions()[1], [1.0, 0.0, 0.0]);
     assert_eq!(loaded.model.mesh.colors()[2], [1.0, 0.0, 0.5]);
@@ -238,7 +238,7 @@ fn a_texture_coordinate_of_one_number_gets_zero_for_the_other() {
 // The rules of the format.
 
 #[test]
-fn negative_indices_count_back_from_where_they_stand() {
+fn negative_indices_count_back_from_their_statement() {
     let text = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvn 0 0 1\n\
                 f -3/-2/-1 -2/-1/-1 4/1/1\nv 5 5 5\nvt 1 1\nf -4 -3 -1\n";
     let loaded = read(text);
@@ -262,7 +262,7 @@ fn minus_zero_names_no_vertex_not_even_the_one_that_follows() {
 }
 
 #[test]
-fn positive_indices_may_name_what_follows() {
+fn positive_indices_may_refer_to_later_vertices() {
     assert_eq!(outline(&clean(&format!("f 1 2 3\n{TRIANGLE}")), 0), [0, 1, 2]);
 }
 

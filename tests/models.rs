@@ -275,7 +275,7 @@ fn no_polygon_is_cut_outside_its_outline_unless_it_crosses_itself() {
 }
 
 #[test]
-fn textures_that_lie_beside_a_model_are_found() {
+fn textures_in_the_folder_of_a_model_are_found() {
     let Some(sweep) = sweep() else { return };
     for (row, loaded) in sweep {
         let Ok(loaded) = loaded else { continue };

@@ -143,7 +143,7 @@ fn an_exported_obj_is_read_back_as_the_same_picture() {
 }
 
 #[test]
-fn positions_of_what_is_not_moved_keep_every_bit_in_obj() {
+fn positions_of_unmoved_objects_keep_every_bit_in_obj() {
     let folder = tempfile::tempdir().unwrap();
     let odd = folder.path().join("odd.obj");
     std::fs::write(&odd, "v 0.1 1e-7 -3.4028e38\nv 1 0 0\nv 0.333333343 1 0\nf 1 2 3\n").unwrap();

@@ -407,7 +407,7 @@ fn one_polygon_is_shown_alone_or_with_the_earlier_ones() {
 }
 
 #[test]
-fn a_pixel_knows_whose_it_is() {
+fn a_pixel_maps_to_its_item_and_polygon() {
     let (scene, view) =
         scene(&[(cube(), at(40.0, -80.0, 0.0, 0.0)), (cube(), at(40.0, 80.0, 0.0, 0.0))]);
     let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(200, 200)));

@@ -244,7 +244,7 @@ fn changed(from: &str, to: &str) -> Result<marraztu_io::Opened, SceneFileError> 
 }
 
 #[test]
-fn the_file_of_the_first_scene_is_short_and_says_what_it_means() {
+fn the_file_of_the_first_scene_is_short_and_readable() {
     let (scene, view) = default_scene();
     let path = Path::new("/tmp/first.marraztu");
     let text = to_text(path, &scene, &view, &Settings::default()).unwrap();
@@ -641,7 +641,7 @@ fn objects_of_one_file_keep_their_crease_angles() {
 }
 
 #[test]
-fn the_file_that_was_there_is_kept_beside() {
+fn saving_keeps_the_previous_file_as_a_backup() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.marraztu");
     let (mut scene, view) = default_scene();

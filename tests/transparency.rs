@@ -83,7 +83,7 @@ fn colour_is_laid_over_colour_the_farthest_first_whatever_their_order() {
 }
 
 #[test]
-fn what_is_behind_something_opaque_is_not_seen() {
+fn surfaces_behind_an_opaque_one_are_hidden() {
     let (scene, view) = sheets(&[(-200.0, RED, 0.5), (-100.0, GREEN, 1.0), (0.0, BLUE, 0.5)]);
     let want = over(scene.background.0, &[(GREEN, 1.0), (BLUE, 0.5)]);
     assert_eq!(middle(&draw(&scene, &view, &Settings::default(), SIDE)), want);

@@ -106,7 +106,7 @@ fn fields(texels: usize, wrap: Wrap) -> Shared<Texture> {
 /// Catches: holes of a block or a triangle judged by only a part of it; texels outside the range
 /// that is examined. The other kind of coverage tests each pixel of two triangles separately.
 #[test]
-fn what_is_known_of_the_holes_of_blocks_and_triangles_is_what_each_pixel_says() {
+fn holes_classified_by_block_and_triangle_equal_holes_by_pixel() {
     let turn = DMat4::from_rotation_y(0.5) * DMat4::from_rotation_x(0.3);
     let holes_of = |object: &mut Object, texels, wrap| {
         object.surface = Surface::Texture;

@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn every_text_can_be_read_on_everything_that_it_stands_on() {
+    fn every_text_has_enough_contrast_with_its_backgrounds() {
         assert!((contrast(Color32::BLACK, Color32::WHITE) - 21.0).abs() < 1e-9);
         for palette in [&DARK, &LIGHT] {
             let Palette { panel, field, control, hovered, pressed, .. } = *palette;
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ring_about_what_has_the_keyboard_stands_out_from_all_that_is_about_it() {
+    fn the_focus_ring_contrasts_with_every_background() {
         for palette in [&DARK, &LIGHT] {
             for ground in [palette.panel, palette.pressed, palette.field, palette.selected] {
                 assert!(contrast(palette.accent, ground) >= 3.0, "on {ground:?}");

@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_with_another_sum_or_without_one_is_told_and_counted() {
+    fn pictures_with_a_wrong_or_missing_sum_are_reported_and_counted() {
         let best = [Level::new()];
         let listed = pictures::listed();
         std::fs::create_dir_all(failed()).unwrap();

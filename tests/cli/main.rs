@@ -242,7 +242,7 @@ fn info_describes_each_file_and_a_bad_one_does_not_keep_it_from_the_others() {
 }
 
 #[test]
-fn a_reader_that_closes_the_pipe_is_no_error() {
+fn a_reader_that_closes_the_pipe_causes_no_error() {
     let folder = folder();
     let mut child = Command::new(env!("CARGO_BIN_EXE_marraztu"))
         .args(["info", "square.obj"])
@@ -323,7 +323,7 @@ fn mended_faults_are_reported_and_the_picture_is_drawn() {
 }
 
 #[test]
-fn without_a_display_the_editor_says_so_and_what_to_do_instead() {
+fn without_a_display_the_editor_reports_it_and_names_alternatives() {
     let folder = folder();
     for arguments in [&[][..], &["square.obj"]] {
         let (_, err) = ends_with(1, folder.path(), arguments);

@@ -34,7 +34,7 @@ fn a_spot_that_follows_its_owner_is_aimed_from_where_it_is_and_stays_there() {
 }
 
 #[test]
-fn a_light_is_aimed_at_the_selection_but_not_at_the_point_where_it_stands() {
+fn a_light_is_aimed_at_the_selection_but_not_at_its_own_position() {
     let (mut scene, mut view) = io::default_scene();
     let spot = items::insert_light(&scene, lights::spot(lights::fixed())).unwrap();
     let before: Vec<LightId> = scene.lights.ids().collect();

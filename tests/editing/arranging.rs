@@ -15,7 +15,7 @@ fn lowest(scene: &Scene, id: ObjectId) -> f64 {
 }
 
 #[test]
-fn an_object_comes_to_stand_on_the_ground_and_on_a_plane_that_is_one() {
+fn a_dropped_object_lands_on_the_ground_or_on_a_horizontal_plane() {
     let (mut scene, view) = io::default_scene();
     let id = view.object.unwrap();
     let first = GesturePhase::First;

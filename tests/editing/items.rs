@@ -68,7 +68,7 @@ fn a_change_of_all_objects_is_one_step() {
 }
 
 #[test]
-fn a_new_camera_stands_at_the_centre_of_the_world_and_is_selected() {
+fn a_new_camera_is_placed_at_the_origin_and_selected() {
     let mut desk = desk(Subject::Camera);
     let command = items::insert_camera(&desk.scene, common::model(), MaterialChoice::File);
     let back = desk.perform(Ok(command));

@@ -39,7 +39,7 @@ fn looking_yaws_about_the_worlds_y_and_pitches_about_the_cameras_x() {
 }
 
 #[test]
-fn an_orbit_keeps_what_it_goes_round_at_its_place_on_the_picture() {
+fn an_orbit_keeps_its_centre_at_the_same_pixel_and_distance() {
     for analysis in [false, true] {
         let mut desk = desk();
         if analysis {
@@ -69,7 +69,7 @@ fn in_parallel_and_in_perspective_a_pan_takes_the_object_along_with_the_pointer(
 }
 
 #[test]
-fn the_wheel_keeps_what_is_under_the_pointer_there() {
+fn the_wheel_keeps_the_point_under_the_pointer_fixed() {
     for projection in [Projection::Perspective, Projection::Orthographic] {
         let mut desk = desk();
         desk.view.projection = projection;
@@ -110,7 +110,7 @@ fn the_wheel_in_analysis_keeps_to_the_axis_and_stops_at_the_near_plane() {
 }
 
 #[test]
-fn the_wheel_goes_through_what_it_looked_at_rather_than_stop_before_it() {
+fn the_wheel_zooms_through_the_target_without_stopping() {
     let mut desk = desk();
     let pointer = Pointer { at: DVec2::new(320.0, 240.0), depth: None };
     for _ in 0..300 {

@@ -50,7 +50,7 @@ proptest! {
     }
 
     #[test]
-    fn a_cameras_yaw_pitch_and_roll_are_what_was_typed(angles in angles()) {
+    fn a_cameras_yaw_pitch_and_roll_equal_the_typed_values(angles in angles()) {
         let mut desk = desk();
         let (camera, first) = (desk.view.camera, GesturePhase::First);
         desk.perform(placement::camera_turn(&desk.scene, &desk.view, camera, angles, first));

@@ -247,7 +247,7 @@ fn ambient_light_and_spots_with_an_owner_stay_and_say_why() {
 }
 
 #[test]
-fn a_spot_of_its_own_moves_and_turns() {
+fn an_unattached_spot_moves_and_turns() {
     let mut desk = Desk::new(Subject::Light, Transformation::Translation);
     desk.perform(items::insert_light(&desk.scene, lights::spot(lights::fixed())));
     desk.press(Axis::Y, Sign::Positive);

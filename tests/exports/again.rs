@@ -132,7 +132,7 @@ fn numbers_and_maps_of_materials_come_back() {
 }
 
 #[test]
-fn what_is_in_a_scene_twice_has_two_names() {
+fn duplicate_names_in_a_scene_are_made_unique() {
     let folder = tempfile::tempdir().unwrap();
     let obj =
         format!("mtllib a.mtl\n{SQUARE}o Body\ng door\nusemtl p\nf 1 2 3\no Wheel\nf 1 3 4\n");

@@ -543,7 +543,7 @@ pub(super) fn textured(
 }
 
 #[test]
-fn case_19_a_cut_does_not_move_what_is_painted_on_a_face() {
+fn case_19_clipping_a_face_does_not_move_its_texture() {
     let mut rng = Rng::new(19);
     // One texel is 2^-22, twice the f32 epsilon.
     let scale = f64::from(1 << 14);

@@ -121,7 +121,7 @@ fn case_21_signed_coverage_is_the_winding_number_of_the_snapped_outline() {
 }
 
 #[test]
-fn case_21_triangles_of_every_size_cover_what_crossings_say() {
+fn case_21_coverage_of_triangles_of_every_size_equals_the_crossings() {
     let tally = quick_round("samples");
     assert!(tally.counts["triangles"] > 1000, "{tally}");
 }

@@ -41,7 +41,7 @@ fn hidden_ones(z: f64, gap: f64, projection: Projection) -> usize {
 }
 
 #[test]
-fn case_30_at_a_thousand_units_a_ten_thousandth_is_told_apart() {
+fn case_30_at_a_thousand_units_a_ten_thousandth_is_resolved() {
     // One step of reversed f32 at z = 1000 is 5.8e-5; two roundings can add up to two steps.
     let separated = |gap: f64| hidden_ones(1000.0, gap, Projection::Perspective) == 0;
     let mut gap = 1e-6;
@@ -86,7 +86,7 @@ fn case_30_at_a_thousand_units_a_ten_thousandth_is_told_apart() {
 }
 
 #[test]
-fn case_31_surfaces_a_thousandth_apart_are_told_apart_as_far_as_one_sees() {
+fn case_31_surfaces_a_thousandth_apart_are_resolved_up_to_two_thousand_units() {
     let (mut wrong, mut naive) = (0, 0);
     let steps = f64::from((1 << 24) - 1);
     for i in 0..400 {
@@ -250,7 +250,7 @@ fn case_33_on_slivers_depth_is_right_to_two_last_places_and_within_the_corners()
 }
 
 #[test]
-fn case_33_no_depth_of_a_small_triangle_is_beyond_those_of_its_corners() {
+fn case_33_depths_of_small_triangles_stay_within_their_corners() {
     // One triangle in each field of eight pixels, with its corners on pixel centres. At a corner
     // two edge functions are 0 and the third is the whole area, so rounding shows at once.
     const SIDE: usize = 512;

@@ -137,7 +137,7 @@ impl Vernier {
 }
 
 #[test]
-fn case_3_the_screen_stands_still_however_far_from_the_origin_the_scene_is() {
+fn case_3_screen_positions_are_stable_far_from_the_origin() {
     // At a distance of 100, with 45 degrees across 256 pixels.
     let tangent = 2.0_f64.sqrt() - 1.0;
     let vernier = Vernier::new(200.0 * tangent / ROWS as f64);
@@ -437,7 +437,7 @@ fn case_9_shapes_without_area_have_no_pixel() {
 }
 
 #[test]
-fn case_10_normals_that_cancel_out_give_way_to_the_faces() {
+fn case_10_normals_that_cancel_out_fall_back_to_face_normals() {
     // A triangle with both windings: at each vertex the two face normals cancel except for
     // rounding.
     let picture = |model| {

@@ -79,7 +79,7 @@ fn case_37_a_texture_lies_still_on_a_wall_that_runs_away() {
 }
 
 #[test]
-fn case_38_no_colour_is_beyond_those_of_the_corners() {
+fn case_38_colours_stay_within_the_colours_of_the_corners() {
     let mut rng = Rng::new(38);
     let (mut beyond, mut naive, mut pixels) = (0, 0.0_f64, 0);
     for _ in 0..400 {
@@ -342,7 +342,7 @@ fn case_41_a_quad_is_cut_from_its_first_corner_to_its_third() {
 }
 
 #[test]
-fn case_33_what_is_painted_on_slivers_is_right_to_two_last_places() {
+fn case_33_textures_on_slivers_are_within_two_last_places() {
     // Drawn in orthographic projection, with light in f32 and in f64. Texture coordinates are read
     // off a ruler with texels one f32 epsilon wide.
     const SIDE: usize = 512;

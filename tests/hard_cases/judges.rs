@@ -35,7 +35,7 @@ fn an_outline_that_goes_round_twice_winds_twice() {
 }
 
 #[test]
-fn what_f64_forgets_is_kept() {
+fn double_double_keeps_digits_that_f64_loses() {
     let small = Double::from(1e-25);
     assert_eq!(((Double::ONE + small) - Double::ONE).nearest(), 1e-25);
     let third = Double::ONE / Double::from(3.0);
@@ -82,7 +82,7 @@ fn a_counterexample_is_named_by_its_batch_and_a_panic_is_one() {
 }
 
 #[test]
-fn a_proof_whose_cases_show_too_little_is_idle() {
+fn a_proof_with_too_few_significant_cases_is_idle() {
     let tally = EVEN.run(0..7, &|_| {}).unwrap();
     assert_eq!(EVEN.missing(&tally, 70), None);
     assert!(EVEN.missing(&tally, 2000).is_some());

@@ -143,7 +143,7 @@ impl Bent {
 }
 
 #[test]
-fn case_42_a_reciprocal_root_of_twelve_bits_is_what_highlights_are_spared() {
+fn case_42_highlights_lack_the_error_of_a_reciprocal_root_of_twelve_bits() {
     // Compares three results before rounding: the renderer's, a table of 256 powers, and normals
     // normalised by a reciprocal square root of 12 bits.
     let mut rng = Rng::new(42);
@@ -291,7 +291,7 @@ fn case_44_small_angles_are_shown_as_they_were_typed() {
 }
 
 #[test]
-fn case_45_powers_of_numbers_that_have_none_are_zero() {
+fn case_45_undefined_powers_are_zero() {
     let mut wrong = 0;
     for exponent in [0.0, 0.5, 5.0, 76.8, 1000.0] {
         for x in [0.0_f32, -0.0, -1e-45, -0.5, -1.0, f32::NAN, f32::NEG_INFINITY] {

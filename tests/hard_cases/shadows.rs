@@ -340,7 +340,7 @@ fn case_71_a_gap_of_a_thousandth_far_from_the_origin_casts_its_shadow() {
 }
 
 #[test]
-fn case_72_thin_leaves_shade_what_is_below_them_and_not_themselves() {
+fn case_72_thin_leaves_shade_the_leaves_below_but_not_themselves() {
     let turn = tilted(50.0);
     let leaf = |i: u32| {
         let up = DMat4::from_translation(DVec3::new(0.0, f64::from(i) * 1e-2, 0.0));
@@ -452,7 +452,7 @@ fn case_75_shadows_of_a_scene_2_to_the_k_times_as_large_are_the_same() {
 }
 
 #[test]
-fn case_76_triangles_of_one_plane_do_not_shade_each_other() {
+fn case_76_coplanar_triangles_do_not_shade_each_other() {
     // Thin strips, rotated so that their corners share no grid.
     let mut positions = Vec::new();
     let mut polygons: Vec<[u32; 4]> = Vec::new();
@@ -486,7 +486,7 @@ fn case_76_triangles_of_one_plane_do_not_shade_each_other() {
 }
 
 #[test]
-fn case_77_what_is_seen_from_a_lamp_is_lit_by_it_with_several_samples_too() {
+fn case_77_points_seen_from_a_lamp_are_lit_with_several_samples_too() {
     let eye = DVec3::Z * 400.0;
     let stage = Shade { models: vec![(ball(12), at(100.0, 0.0, 0.0, 0.0))], light: bulb(eye), eye };
     let mut speckles = 0;

@@ -183,7 +183,7 @@ fn differing(a: &Picture, b: &Picture) -> f64 {
 }
 
 #[test]
-fn case_92_without_area_on_the_texture_there_is_no_bump_and_no_nan() {
+fn case_92_faces_without_texture_area_have_neither_bumps_nor_nan() {
     let noise = greys(8, 8, |column, row| (column * 91 + row * 57) as u8);
     let sun = Some(DVec3::new(-0.48, -0.36, -0.8));
     let flat = [[[0.3, 0.7]; 4]; 2];
@@ -266,7 +266,7 @@ fn case_94_a_flat_map_of_normals_changes_no_byte() {
 }
 
 #[test]
-fn case_95_what_shines_by_itself_is_as_bright_in_the_dark() {
+fn case_95_emission_is_as_bright_in_the_dark() {
     let uvs = [across(0.0, 1.0); 2];
     let mut ours = 0.0_f64;
     for (emission, want) in [([1.0; 3], 255), ([0.2; 3], 51), ([7.0; 3], 255), ([0.0; 3], 0)] {

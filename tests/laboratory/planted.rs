@@ -122,7 +122,7 @@ fn the_verdict_names_a_planted_slowdown_and_no_other_choice() {
 }
 
 #[test]
-fn the_verdict_names_a_planted_error_and_what_it_costs() {
+fn the_verdict_names_a_planted_error_and_its_cost() {
     let scored = |(axis, _): &(&Axis, &Choice)| axis.kind != AxisKind::Model;
     for planted in plantable().filter(scored) {
         let text = verdict(None, Some(planted));
@@ -140,7 +140,7 @@ fn the_verdict_names_a_planted_error_and_what_it_costs() {
 
 /// Figures as a published page has them: each sentence follows from a rule.
 #[test]
-fn the_verdict_tells_what_samples_buy_and_that_64_bits_are_not_worth_it() {
+fn the_verdict_names_the_gain_of_samples_and_calls_64_bits_not_worth_it() {
     let choice = |key: &str, word: &str| {
         let axis = Axis::named(key).unwrap();
         (axis, axis.choice(word).unwrap())
@@ -194,7 +194,7 @@ fn the_verdict_tells_what_samples_buy_and_that_64_bits_are_not_worth_it() {
 
 /// The machine is busy while one choice is measured, which the control measurement cannot show.
 #[test]
-fn what_disturbs_one_choice_alone_is_no_verdict_and_no_reason() {
+fn noise_of_a_single_choice_causes_neither_a_verdict_nor_a_reason() {
     let power = Axis::named("power").unwrap();
     let slow = power.choice("schlick").unwrap();
     let verdict_with = |disturbed: &'static Choice| {

@@ -95,7 +95,7 @@ fn a_pixel_is_explained_and_one_outside_is_refused() {
 }
 
 #[test]
-fn a_preset_is_drawn_as_its_points_and_gives_way_to_single_axes() {
+fn single_axes_override_a_preset() {
     let folder = tempfile::tempdir().unwrap();
     let drawn = |arguments: &[&str]| {
         let fixed = ["render", "--size", "64x64", "--samples", "1", "--out", "p.png"];

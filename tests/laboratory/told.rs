@@ -67,7 +67,7 @@ fn the_table_has_a_row_for_every_choice_of_every_axis() {
 }
 
 #[test]
-fn json_holds_what_the_table_holds() {
+fn json_holds_the_content_of_the_table() {
     let report = report();
     let value: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
     assert_eq!(value["points"].as_array().unwrap().len(), report.findings.points.len());
@@ -182,7 +182,7 @@ fn the_overview_names_at_most_ten_and_no_two_names_overlap() {
 }
 
 #[test]
-fn figures_are_of_all_pixels_or_on_request_of_those_covered_alike() {
+fn figures_cover_all_pixels_or_on_request_pixels_with_equal_coverage() {
     let subpixels = Axis::named("subpixels").unwrap();
     let coarse = subpixels.choice("bits-0").map(|choice| (subpixels, choice));
     // The pixel with other coverage has the wrong colour too.

@@ -17,7 +17,7 @@ fn plan(arguments: &[&str]) -> String {
 }
 
 #[test]
-fn the_plan_takes_the_options_of_a_picture_and_says_what_they_leave_out() {
+fn the_plan_takes_the_options_of_a_picture_and_names_their_omissions() {
     let whole = plan(&[]);
     let line = |text: &str, name: &str| {
         let found = text.lines().find(|line| line.starts_with(name));

@@ -59,7 +59,7 @@ fn a_plan_is_the_same_whether_its_decisions_are_explained_or_not() {
 }
 
 #[test]
-fn of_many_objects_about_the_observer_exactly_those_in_view_are_planned() {
+fn exactly_the_objects_in_view_are_planned() {
     let (mut scene, view) = first();
     let original = scene.objects.iter().next().expect("there is one").1.clone();
     let around = (0..400_u32).map(|i| {

@@ -457,7 +457,7 @@ fn marks_in_one_place_are_drawn_again_when_their_order_changes() {
 }
 
 #[test]
-fn drawn_normals_are_those_that_the_object_has_by_now() {
+fn drawn_normals_follow_a_change_of_the_objects_normals() {
     let (mut scene, view) = scene(&[(plates(), at(60.0, 0.0, 0.0, 0.0))]);
     let view = View { vertex_normals: true, ..view };
     let plan = |scene: &Scene| {
@@ -530,7 +530,7 @@ fn an_invisible_change_paints_no_tile() {
 }
 
 #[test]
-fn edges_that_stand_over_the_border_of_a_tile_are_drawn_again_on_both_sides() {
+fn edges_across_a_tile_border_are_drawn_again_on_both_sides() {
     // In orthographic projection a pixel is 1000 / 128 units wide. The border of the tiles is at 0.
     let pixel = 1000.0 / 128.0;
     for offset in [-1.5, -1.0, -0.5, -0.01, 0.0, 0.01, 0.5, 1.0] {

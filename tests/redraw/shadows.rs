@@ -112,7 +112,7 @@ fn shadows_are_not_kept_for_a_picture_of_another_size() {
 /// whole picture when one object moves; shadows kept after their caster, their light or the visible
 /// surface has changed.
 #[test]
-fn only_what_changed_is_traced_again() {
+fn only_changed_shadows_are_traced_again() {
     let settings = Settings::default();
     let again = |change: &mut dyn FnMut(&mut Scene)| {
         let (mut scene, view) = shaded_stage();
@@ -165,7 +165,7 @@ fn only_what_changed_is_traced_again() {
 
 /// The shadow casters stay the same, but other surfaces become visible.
 #[test]
-fn a_back_that_is_shown_has_shadows_of_its_own() {
+fn a_back_face_that_becomes_visible_gets_shadows() {
     let (mut scene, view) = shaded_stage();
     let mut wall = scene.objects.get(ObjectId(10)).unwrap().clone();
     let turned = DMat4::from_rotation_y(std::f64::consts::PI);

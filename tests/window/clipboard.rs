@@ -72,7 +72,7 @@ fn an_object_goes_as_text_to_another_window_and_comes_back() {
 }
 
 #[test]
-fn what_is_pasted_where_it_was_copied_stands_beside_it() {
+fn pastes_are_offset_from_the_original_and_from_each_other() {
     let mut editor = Editor::new();
     editor.perform(Action::SubjectObject);
     let text = editor.copied(Event::Copy).unwrap();
@@ -157,7 +157,7 @@ fn text_fields_keep_the_keys_of_the_clipboard() {
 }
 
 #[test]
-fn a_duplicate_stands_beside_the_original_by_its_width() {
+fn a_duplicate_is_offset_by_its_width() {
     let mut editor = Editor::new();
     editor.perform(Action::SubjectObject);
     let object = |editor: &Editor| {
@@ -176,7 +176,7 @@ fn a_duplicate_stands_beside_the_original_by_its_width() {
 }
 
 #[test]
-fn ctrl_a_selects_only_what_the_outline_lists() {
+fn ctrl_a_selects_only_items_that_the_outline_lists() {
     let mut editor = Editor::of_size(1000.0, 900.0);
     editor.perform_all(&[Action::AddCube, Action::AddCube, Action::AddCube, Action::SubjectObject]);
     assert!(editor.state().has_filter(), "there are many items");

@@ -232,7 +232,7 @@ fn a_missing_file_is_reported() {
 }
 
 #[test]
-fn a_notice_names_the_texture_that_is_missing_before_what_was_mended() {
+fn a_notice_names_a_missing_texture_before_repairs() {
     let text = "mtllib c.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n";
     let (folder, path) = folder_with("cube.obj", text);
     std::fs::write(folder.path().join("c.mtl"), "newmtl m\nNs 0\nmap_Kd none.png\n").unwrap();
@@ -385,7 +385,7 @@ fn a_scene_opens_with_the_panels_that_it_was_saved_with() {
 }
 
 #[test]
-fn an_object_whose_faces_are_turned_away_is_reported_with_a_button_that_draws_both_sides() {
+fn an_object_turned_away_is_reported_with_a_button_that_draws_both_sides() {
     let square = "v -50 -50 0\nv 50 -50 0\nv 50 50 0\nv -50 50 0\nf 4 3 2 1\n";
     let (folder, _) = folder_with("square.obj", square);
     let file = folder.path().join("turned.marraztu");
@@ -439,7 +439,7 @@ fn opening_a_scene_over_unsaved_work_asks_first() {
 }
 
 #[test]
-fn files_of_the_command_line_stand_in_their_order_and_are_no_unsaved_work() {
+fn files_of_the_command_line_keep_their_order_and_count_as_saved() {
     let (folder, small) = folder_with("small.obj", CUBE);
     let large = folder.path().join("large.obj");
     std::fs::write(&large, CUBE.repeat(3000)).unwrap();
@@ -473,7 +473,7 @@ fn a_path_that_was_refused_is_typed_on() {
 }
 
 #[test]
-fn a_notice_stands_over_the_picture_and_covers_no_panel() {
+fn a_notice_is_over_the_picture_and_covers_no_panel() {
     let (_folder, path) = folder_with("cube.obj", &format!("{CUBE}f 1 2 99\n"));
     let mut editor = Editor::of_size(640.0, 480.0);
     editor.ask(Request::LoadFiles(vec![path]));

@@ -188,7 +188,7 @@ fn a_model_that_cannot_be_read_leaves_the_first_scene() {
 }
 
 #[test]
-fn a_scene_of_the_command_line_keeps_its_objects_beside_models() {
+fn a_scene_of_the_command_line_keeps_its_objects_if_models_are_added() {
     let (folder, path) = folder_with("cube.obj", CUBE);
     let file = folder.path().join("my.marraztu");
     let (scene, view) = io::default_scene();

@@ -27,7 +27,7 @@ impl Editor {
 }
 
 #[test]
-fn textures_are_looked_for_beside_the_model_and_pictures_are_saved_there() {
+fn textures_are_searched_and_pictures_saved_in_the_folder_of_the_model() {
     let (folder, path) = folder_with("cube.obj", CUBE);
     let elsewhere = tempfile::tempdir().unwrap();
     let texture = elsewhere.path().join("t.ppm");
@@ -70,7 +70,7 @@ fn the_arrow_keys_go_from_the_field_into_the_list() {
 }
 
 #[test]
-fn the_arrow_keys_stay_within_what_fits_the_typed_letters() {
+fn the_arrow_keys_stay_within_the_files_that_match() {
     let (folder, _) = folder_with("teapot.obj", CUBE);
     for name in ["bunny.obj", "butter.obj"] {
         std::fs::write(folder.path().join(name), CUBE).unwrap();

@@ -58,7 +58,7 @@ fn pull(editor: &mut Editor, by: f32) -> Pos2 {
 }
 
 #[test]
-fn a_drag_of_a_handle_moves_along_its_axis_in_one_step_that_says_how_far() {
+fn dragging_a_handle_moves_along_its_axis_in_one_step_named_with_the_distance() {
     let mut editor = with_ship();
     let (before, steps) = (editor.scene(), editor.steps());
     let eye = editor.scene().selected_camera(&editor.view()).pose.now().eye;

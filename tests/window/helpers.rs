@@ -70,7 +70,7 @@ pub(crate) fn texts(editor: &Editor) -> Vec<String> {
 }
 
 #[test]
-fn sizes_are_those_of_the_box_in_the_world() {
+fn sizes_equal_the_bounding_box_in_the_world() {
     let mut editor = Editor::tall();
     editor.perform_all(&[Action::AddCube, Action::ToggleDimensions]);
     let size = {
@@ -214,7 +214,7 @@ fn models_are_read_again_in_one_step_and_a_broken_file_changes_nothing() {
 }
 
 #[test]
-fn a_file_that_another_program_saves_is_read_by_itself() {
+fn a_file_that_another_program_saves_is_reloaded_automatically() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("sail.obj");
     let mut editor = with_file(&path);

@@ -154,7 +154,7 @@ fn two_running_programs_do_not_take_each_others_work() {
 }
 
 #[test]
-fn what_is_saved_undone_or_discarded_is_not_offered() {
+fn saved_undone_or_discarded_work_is_not_offered() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("my.marraztu");
     // Saved work.

@@ -24,7 +24,7 @@ fn choose(editor: &mut Editor, action: &str, key: Key) {
 }
 
 #[test]
-fn a_clash_is_told_before_a_key_changes_its_owner() {
+fn a_clash_is_reported_before_a_key_changes_its_action() {
     let mut editor = Editor::tall();
     choose(&mut editor, "Undo", Key::Z);
     assert!(editor.shows("z is the key of"), "nothing has changed yet");
@@ -64,7 +64,7 @@ fn chosen_keys_are_kept() {
 }
 
 #[test]
-fn keys_of_an_older_version_are_read_and_what_has_changed_is_said_once() {
+fn keys_of_an_older_version_are_read_and_changes_reported_once() {
     let folder = tempfile::tempdir().unwrap();
     let folders = OwnFolders::within(folder.path());
     let keys = [("ToggleStatistics", "k"), ("Duplicate", "w"), ("Gone", "j")];

@@ -289,7 +289,7 @@ fn undo_and_redo_walk_through_everything_that_changes_the_scene() {
 }
 
 #[test]
-fn selection_and_view_are_no_steps() {
+fn selection_and_view_are_not_undo_steps() {
     let mut editor = Editor::new();
     for key in [Lower(Key::C), Named(Key::Tab), Either(Key::L), Either(Key::O), Upper(Key::C)] {
         editor.press(key);
@@ -299,7 +299,7 @@ fn selection_and_view_are_no_steps() {
 }
 
 #[test]
-fn a_new_item_is_selected_and_a_removed_one_gives_way_to_the_next() {
+fn a_new_item_is_selected_and_removing_it_selects_the_next() {
     let mut editor = Editor::new();
     editor.perform(Action::SubjectObject);
     let ids: Vec<_> = editor.scene().objects.ids().collect();
@@ -390,7 +390,7 @@ fn keys_act_again_after_a_slider_was_dragged() {
 }
 
 #[test]
-fn an_object_that_turns_by_itself_turns_with_the_clock_and_is_no_step() {
+fn a_spinning_object_follows_the_clock_without_undo_steps() {
     let mut editor = Editor::new();
     let id = editor.view().object.unwrap();
     let mut object = editor.scene().objects.get(id).unwrap().clone();

@@ -277,7 +277,7 @@ fn leaving_a_lesson_for_a_new_scene_asks_for_the_unsaved_work_that_waits() {
 }
 
 #[test]
-fn a_lesson_says_in_its_first_line_what_it_costs_once_that_is_measured() {
+fn a_lesson_gives_its_cost_in_the_first_line_once_measured() {
     let mut editor = editor();
     click(&mut editor, Role::RadioButton, "Laboratory: Lessons");
     click(&mut editor, Role::Button, "Rounding");

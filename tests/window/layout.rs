@@ -184,7 +184,7 @@ fn a_splitter_is_dragged_and_a_double_click_puts_it_back() {
 }
 
 #[test]
-fn a_narrow_window_shows_one_panel_at_a_time_beside_the_picture() {
+fn a_narrow_window_shows_the_picture_with_one_panel_at_a_time() {
     let mut editor = Editor::of_size(640.0, 400.0);
     let whole = editor.picture().width();
     assert!(whole > 580.0, "panels are folded: {whole}");

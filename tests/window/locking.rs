@@ -134,7 +134,7 @@ fn a_saved_scene_keeps_its_locks() {
 }
 
 #[test]
-fn a_light_is_alone_and_those_that_were_on_come_back() {
+fn solo_leaves_one_light_on_and_a_second_solo_restores_the_others() {
     let mut editor = Editor::new();
     editor.perform_all(&[Action::Light2, Action::SubjectLight]);
     let on = |editor: &Editor| -> Vec<u32> {

@@ -23,7 +23,7 @@ impl Editor {
 }
 
 #[test]
-fn ctrl_z_undoes_what_was_done_before_and_the_view_stays() {
+fn ctrl_z_undoes_the_last_change_and_keeps_the_view() {
     let mut editor = Editor::new();
     editor.perform(Action::SubjectObject);
     let before = editor.scene().objects.clone();

@@ -50,7 +50,7 @@ fn elsewhere() -> (tempfile::TempDir, [PathBuf; 2]) {
 }
 
 #[test]
-fn a_scene_opens_with_boxes_that_say_what_they_are() {
+fn a_scene_opens_with_labelled_boxes_for_missing_files() {
     let (editor, ..) = opened();
     assert!([1, 2, 3].iter().all(|id| is_box(&editor, *id)));
     assert!(editor.shows("3 files of the scene are missing"));

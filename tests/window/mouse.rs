@@ -45,7 +45,7 @@ fn place_of(editor: &mut Editor, name: &str, aside: f32) -> egui::Pos2 {
 }
 
 #[test]
-fn a_click_selects_what_is_seen_there_and_one_on_nothing_keeps_the_selection() {
+fn a_click_selects_the_visible_object_and_one_on_nothing_keeps_the_selection() {
     let mut editor = Editor::new();
     assert_eq!(name_of_selected(&editor), "r_falke");
     place_of(&mut editor, "x_wing", X_WING);

@@ -83,7 +83,7 @@ fn a_notice_stays_while_the_pointer_is_over_it_and_one_that_asks_stays() {
 }
 
 #[test]
-fn a_file_without_losses_is_said_to_be_opened_and_one_with_losses_what_it_lacks() {
+fn a_notice_says_opened_for_a_complete_file_and_names_the_losses_of_another() {
     let text = format!("{CUBE}f 1 2\n");
     let (folder, path) = folder_with("odd.obj", &text);
     let mut editor = Editor::of_size(1280.0, 800.0);

@@ -74,7 +74,7 @@ fn a_turntable_is_drawn_while_the_window_answers_and_a_cancelled_one_leaves_noth
 }
 
 #[test]
-fn a_scene_is_exported_with_notes_on_what_the_format_does_not_say() {
+fn a_scene_is_exported_with_notes_on_omissions_of_the_format() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("first.glb");
     let mut editor = Editor::small();

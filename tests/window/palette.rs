@@ -26,7 +26,7 @@ pub(crate) fn listed(editor: &Editor) -> Vec<String> {
 }
 
 #[test]
-fn the_palette_does_what_it_shows_and_begins_anew() {
+fn the_palette_runs_the_listed_action_and_reopens_empty() {
     let mut editor = Editor::new();
     for (chord, query) in [(Command(Key::K), "wireframe"), (Command(Key::P), "mesh lines")] {
         let before = editor.view().fill;
@@ -103,7 +103,7 @@ fn a_click_on_search_in_the_bar_opens_the_palette() {
 }
 
 #[test]
-fn the_list_of_keys_says_what_the_mouse_does() {
+fn the_list_of_keys_includes_the_mouse() {
     let mut editor = Editor::new();
     editor.press(Either(Key::H));
     assert!(editor.shows("Wheel or Pinch: "));
@@ -113,7 +113,7 @@ fn the_list_of_keys_says_what_the_mouse_does() {
 }
 
 #[test]
-fn what_cannot_be_done_says_why() {
+fn an_unavailable_action_says_why() {
     let mut editor = Editor::new();
     editor.press(Command(Key::K));
     type_text(&mut editor, "redo");
@@ -123,7 +123,7 @@ fn what_cannot_be_done_says_why() {
 }
 
 #[test]
-fn the_list_of_keys_forgets_what_was_searched_for_and_knows_the_same_words() {
+fn the_list_of_keys_forgets_its_search_and_knows_the_words_of_the_palette() {
     let mut editor = Editor::new();
     editor.press(Either(Key::H));
     type_text(&mut editor, "screenshot");
@@ -181,7 +181,7 @@ fn ship_at_the_right(editor: &Editor) -> egui::Pos2 {
 }
 
 #[test]
-fn a_click_on_a_mark_selects_the_light_and_the_next_what_lies_under_it() {
+fn a_click_on_a_mark_selects_its_light_unless_marks_are_hidden() {
     let mut editor = with_spot();
     let spot = editor.view().light.unwrap();
     editor.perform(Action::SubjectCamera);
@@ -208,7 +208,7 @@ fn the_axes_turn_the_view() {
 }
 
 #[test]
-fn a_double_click_that_began_on_a_notice_is_none_on_the_picture() {
+fn a_double_click_that_began_on_a_notice_does_not_count_on_the_picture() {
     let mut editor = Editor::new();
     let at = editor.picture().center();
     let outside = egui::pos2(editor.picture().left() - 40.0, at.y);
@@ -224,7 +224,7 @@ fn a_double_click_that_began_on_a_notice_is_none_on_the_picture() {
 }
 
 #[test]
-fn the_history_says_how_far_a_held_key_went() {
+fn the_history_gives_the_total_distance_of_a_held_key() {
     let mut editor = Editor::new();
     editor.ask(Request::Do(Action::SubjectObject));
     editor.hold(Lower(Key::X), 4);
@@ -233,7 +233,7 @@ fn the_history_says_how_far_a_held_key_went() {
 }
 
 #[test]
-fn text_that_is_no_number_is_said_and_changes_nothing() {
+fn text_that_is_not_a_number_is_reported_and_changes_nothing() {
     let mut editor = Editor::tall();
     editor.perform(Action::SubjectObject);
     control(&editor, Role::SpinButton, "Position X").click();
@@ -259,7 +259,7 @@ fn esc_in_a_menu_and_esc_again_does_not_leave_the_program() {
 }
 
 #[test]
-fn why_an_object_is_not_seen_is_said_with_what_mends_it() {
+fn the_reason_for_an_invisible_object_comes_with_a_button_that_fixes_it() {
     let mut editor = Editor::new();
     editor.perform_all(&[Action::SubjectObject, Action::WhyUnseen]);
     let until = |editor: &mut Editor, text: &str| {
@@ -328,7 +328,7 @@ fn each_of_two_notices_frames_its_own_object() {
 }
 
 #[test]
-fn the_status_line_says_what_is_drawn_otherwise() {
+fn the_status_line_names_unusual_display_modes() {
     let mut editor = Editor::new();
     for (action, said) in [
         (Action::ToggleEdges, "wireframe"),

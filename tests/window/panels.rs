@@ -45,7 +45,7 @@ pub(crate) fn middle(editor: &Editor, role: Role, label: &str) -> Pos2 {
 }
 
 #[test]
-fn every_switch_of_the_view_does_what_its_action_does() {
+fn every_switch_of_the_view_runs_its_action() {
     let switches = [
         Action::ToggleEdges,
         Action::ToggleEdgesOverFill,
@@ -73,7 +73,7 @@ fn every_switch_of_the_view_does_what_its_action_does() {
 }
 
 #[test]
-fn every_choice_of_the_view_does_what_its_action_does() {
+fn every_choice_of_the_view_runs_its_action() {
     let choices = [
         ("Subject: Object", Action::SubjectObject),
         ("Transformation: Rotate", Action::Rotate),
@@ -176,7 +176,7 @@ fn a_click_in_the_outline_selects_and_makes_the_subject() {
 }
 
 #[test]
-fn a_line_of_the_outline_is_dragged_to_another_place_of_its_own_list() {
+fn a_line_of_the_outline_is_dragged_within_its_list() {
     let mut editor = Editor::tall();
     let names = |editor: &Editor| -> Vec<String> {
         editor.scene().objects.iter().map(|(_, object)| object.name.clone()).collect()
@@ -244,7 +244,7 @@ fn a_double_click_renames_and_esc_leaves_the_name() {
 }
 
 #[test]
-fn a_rename_that_was_abandoned_elsewhere_is_not_resumed() {
+fn an_abandoned_rename_is_not_resumed() {
     let mut editor = Editor::new();
     editor.press(Named(Key::F2));
     type_text(&mut editor, "half a na");
@@ -329,7 +329,7 @@ fn lights_are_added_from_the_outline_and_items_deleted() {
 }
 
 #[test]
-fn the_status_line_says_what_the_next_key_would_do() {
+fn the_status_line_describes_the_effect_of_the_next_key() {
     let mut editor = Editor::tall();
     let status = |editor: &Editor| {
         let node = editor.harness.get_by_role(Role::Status);
@@ -359,7 +359,7 @@ fn the_status_line_says_what_the_next_key_would_do() {
 }
 
 #[test]
-fn the_list_of_keys_is_searched_and_does_what_is_clicked() {
+fn the_list_of_keys_is_searchable_and_a_click_runs_the_action() {
     let mut editor = Editor::new();
     editor.press(Either(Key::H));
     assert!(control(&editor, Role::TextInput, "Search among the keys").is_focused());
@@ -475,7 +475,7 @@ fn the_history_is_gone_through_by_clicks_on_its_steps() {
 }
 
 #[test]
-fn an_explained_pixel_stays_within_the_picture_and_leads_to_those_beside_it() {
+fn the_explanation_of_a_pixel_fits_into_the_picture_and_links_its_neighbours() {
     for (width, height) in [(1280.0, 800.0), (1024.0, 640.0), (1024.0, 420.0)] {
         let mut editor = Editor::of_size(width, height);
         editor.perform(Action::ExplainPixel);

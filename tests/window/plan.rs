@@ -44,7 +44,7 @@ fn unfold(editor: &mut Editor, line: &str) {
 }
 
 #[test]
-fn every_effect_has_a_line_and_what_differs_is_folded_out() {
+fn every_effect_has_a_line_that_unfolds_to_its_differences() {
     let mut editor = Editor::of_size(1400.0, 1400.0);
     editor.perform(Action::Panel(Panel::Plan));
     for one in editor.state().plan.explained.clone().unwrap().uses.iter() {

@@ -129,17 +129,17 @@ fn fields_set_what_they_name(mut editor: Editor, fields: &[(&str, Read)]) {
 }
 
 #[test]
-fn fields_of_an_object_set_what_they_name() {
+fn fields_of_an_object_set_the_named_property() {
     fields_set_what_they_name(with_object(), OF_OBJECT);
 }
 
 #[test]
-fn fields_of_a_camera_set_what_they_name() {
+fn fields_of_a_camera_set_the_named_property() {
     fields_set_what_they_name(with_camera(), OF_CAMERA);
 }
 
 #[test]
-fn fields_of_lights_set_what_they_name() {
+fn fields_of_lights_set_the_named_property() {
     let position: Read = |e| match light(e).kind {
         LightKind::Bulb { position, .. } => position.now().y,
         _ => f64::NAN,
@@ -175,7 +175,7 @@ fn fields_of_lights_set_what_they_name() {
 }
 
 #[test]
-fn steps_of_keys_are_set_and_are_no_step_of_undo() {
+fn step_sizes_of_keys_are_set_without_an_undo_step() {
     let mut editor = with_object();
     for (field, read) in [
         ("Step: Move", (|view| view.steps.translation) as fn(&View) -> f64),
@@ -357,7 +357,7 @@ fn the_surface_and_the_drawing_of_an_object_are_chosen() {
 }
 
 #[test]
-fn a_slider_of_red_green_or_blue_does_what_its_keys_do() {
+fn a_slider_of_red_green_or_blue_equals_its_keys() {
     let sun = |kind: &LightKind| matches!(kind, LightKind::Sun { .. });
     for (slider, less, more) in [("Red", Key::Q, 0), ("Green", Key::V, 1), ("Blue", Key::A, 2)] {
         let (mut slid, mut pressed) = (with_light(sun), with_light(sun));
@@ -398,7 +398,7 @@ fn a_key_that_another_light_has_is_refused() {
 }
 
 #[test]
-fn a_spot_gets_a_place_of_its_own_where_it_was() {
+fn a_detached_spot_keeps_its_position() {
     let mut editor =
         with_light(|kind| matches!(kind, LightKind::Spot { owner: SpotOwner::SelectedCamera, .. }));
     click(&mut editor, Role::ComboBox, "Shines from");
@@ -443,7 +443,7 @@ fn an_invalid_lens_is_refused_with_a_message() {
 }
 
 #[test]
-fn the_fields_show_what_the_keys_do() {
+fn the_fields_show_the_effect_of_keys() {
     let mut editor = with_object();
     editor.perform(Action::StepXUp);
     let shown = control(&editor, Role::SpinButton, "Position X").value();

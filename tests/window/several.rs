@@ -164,7 +164,7 @@ fn ctrl_and_shift_clicks_in_the_outline_select_several() {
 }
 
 #[test]
-fn a_change_in_the_properties_sets_all_to_the_same_value_and_keeps_what_it_does_not_name() {
+fn a_change_in_the_properties_sets_all_items_and_keeps_other_properties() {
     let editor = with_both();
     assert!(editor.shows("2 objects: changes apply to all"));
     assert!(editor.shows("Mixed: position"));

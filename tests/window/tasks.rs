@@ -269,7 +269,7 @@ fn work_is_recovered() {
 }
 
 #[test]
-fn an_object_gets_a_colour_of_ones_own() {
+fn an_object_gets_a_custom_colour() {
     let own = |hand: &Hand| -> [f64; 3] {
         let scene = hand.editor.scene();
         match scene.objects.get(hand.editor.view().object.unwrap()).unwrap().material {

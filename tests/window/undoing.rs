@@ -65,7 +65,7 @@ fn the_camera_that_was_looked_through_comes_back_with_its_deletion() {
 }
 
 #[test]
-fn what_was_selected_since_stays_unless_the_step_takes_it_away() {
+fn a_newer_selection_stays_unless_undo_removes_the_item() {
     let mut editor = Editor::new();
     let before = editor.view();
     editor.perform_all(&[Action::AddCube, Action::AddBulb]);

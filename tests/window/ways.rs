@@ -65,7 +65,7 @@ fn done(editor: &Editor) -> impl PartialEq + std::fmt::Debug + use<> {
 const LEFT_OUT: [Action; 2] = [Action::Quit, Action::CopyPicture];
 
 #[test]
-fn every_action_is_in_a_menu_and_does_there_what_it_does_anywhere() {
+fn every_action_is_in_a_menu_with_the_same_effect() {
     let mut missing: Vec<Action> = Action::ALL.to_vec();
     for path in PATHS {
         let mut editor = Editor::of_size(900.0, 640.0);
@@ -109,7 +109,7 @@ fn every_action_is_in_a_menu_and_does_there_what_it_does_anywhere() {
 }
 
 #[test]
-fn every_action_is_in_the_palette_and_does_there_what_it_does_anywhere() {
+fn every_action_is_in_the_palette_with_the_same_effect() {
     for subject in SUBJECTS {
         let tried = |it: &&Action| **it != Action::Palette && !LEFT_OUT.contains(it);
         for action in Action::ALL.iter().filter(tried) {

@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn what_a_killed_process_left_beside_a_file_is_removed_when_the_file_is_saved_again() {
+    fn saving_a_file_removes_the_leftovers_of_a_killed_process() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         let target = at("a.png");

@@ -278,7 +278,7 @@ mod tests {
     /// The expected numbers are from the authors' program, `flip_evaluator` 1.7 (LDR), which
     /// computes in f32.
     #[test]
-    fn differences_are_those_of_the_authors_program() {
+    fn differences_match_the_authors_program() {
         let (a, b) = (picture(32, pattern), picture(32, changed));
         assert!((a.difference(&b) - 0.116_092_6).abs() < 2e-5, "{}", a.difference(&b));
         let most = most_color_error();

@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn the_front_leaves_out_what_another_beats_in_both() {
+    fn the_front_omits_points_that_another_beats_in_both() {
         let all = points(&[(1.0, 9.0), (2.0, 4.0), (3.0, 4.0), (2.5, 5.0), (9.0, 0.0), (1.0, 9.5)]);
         assert_eq!(front(&all, 0.0), [0, 1, 4]);
         assert_eq!(front(&points(&[(1.0, 1.0), (1.0, 1.0)]), 0.0), [0]);

@@ -14,7 +14,7 @@ mod tests {
 
     /// From the authors' list of test vectors.
     #[test]
-    fn hashes_are_those_of_its_authors() {
+    fn hashes_match_the_authors_test_vectors() {
         let hash = |text: &str| fnv1a(text.bytes().map(u64::from));
         assert_eq!(hash(""), 0xcbf2_9ce4_8422_2325);
         assert_eq!(hash("a"), 0xaf63_dc4c_8601_ec8c);

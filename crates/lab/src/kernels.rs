@@ -205,7 +205,7 @@ mod tests {
     /// By hand: (1, 2, 3, 4) . (5, 6, 7, 8) = 70; mixed by 0.3, the first number is 2.2; times the
     /// matrix it is 0.8 - 0.4 + 0.9 + 20 = 21.3.
     #[test]
-    fn kernels_compute_what_their_names_say_both_ways_with_the_same_bits() {
+    fn plain_and_simd_kernels_agree_bit_for_bit_with_a_result_by_hand() {
         let expected: [f32; COUNT] = [70.0, 2.2, 21.3, FAR];
         for (way, expected) in KERNELS.iter().zip(expected) {
             let mut rows = Rows::new();

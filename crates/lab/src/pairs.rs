@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn the_noise_of_a_ratio_is_the_larger_of_its_own_and_the_floor() {
+    fn the_noise_of_a_ratio_is_at_least_the_floor() {
         let mut times = [1.0, 1.0, 1.1, 1.0, 1.2, 1.0, 1.3, 1.0, 1.2].into_iter().cycle();
         let mut run = |which| Ok(if which == 0 { 1.0 } else { times.next().unwrap_or(1.0) });
         let ratio = abba(&LIMITS, &Watch::default(), &mut run).unwrap();

@@ -89,7 +89,7 @@ mod tests {
 
     /// `quantile(c(9, 1, 4, 2), c(.25, .5, .75))` in R: 1.75, 3, 5.25.
     #[test]
-    fn quartiles_are_those_of_r() {
+    fn quartiles_match_r() {
         let quartiles = Quartiles::of(&[9.0, 1.0, 4.0, 2.0]).unwrap();
         assert_eq!(quartiles, Quartiles { lower: 1.75, median: 3.0, upper: 5.25 });
         let one = Quartiles::of(&[7.0]).unwrap();

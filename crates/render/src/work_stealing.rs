@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thread_takes_its_own_pieces_from_the_front_and_those_of_others_from_the_back() {
+    fn a_thread_pops_from_its_front_and_steals_from_the_back_of_others() {
         // This thread is in no pool, and counts as the first.
         let shares = WorkStealing::new(6, 2);
         let order: Vec<usize> = std::iter::from_fn(|| shares.next()).collect();
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thread_whose_own_value_is_locked_gets_another() {
+    fn a_thread_gets_another_value_if_its_first_is_locked() {
         let all = [Mutex::new('a'), Mutex::new('b')];
         let first = own(&all);
         assert_eq!((*first, *own(&all)), ('a', 'b'));

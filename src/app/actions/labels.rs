@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_history_says_how_far_and_along_what() {
+    fn the_history_names_distance_and_axis_of_a_step() {
         let (scene, view) = marraztu_io::default_scene();
         let mut state = State::new(scene, view);
         let label = |state: &State, action: Action, times| action.step_label(state, times);

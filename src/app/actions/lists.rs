@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_the_specification_names_repeats() {
+    fn only_the_keys_of_the_specification_repeat() {
         let repeating: Vec<String> = Action::ALL
             .iter()
             .filter(|action| action.info().repeats)

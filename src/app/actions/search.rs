@@ -214,7 +214,7 @@ mod tests {
     ];
 
     #[test]
-    fn words_that_people_use_find_what_they_mean_among_the_first_five() {
+    fn common_words_find_the_intended_action_among_the_first_five() {
         let mut missed = Vec::new();
         for (word, action) in WORDS {
             let found = actions_for(word);
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn every_action_has_other_words_and_none_of_them_stands_twice() {
+    fn every_action_has_synonyms_without_duplicates() {
         for action in Action::ALL {
             let words: Vec<&str> = action.info().words.split_whitespace().collect();
             assert!(!words.is_empty(), "{action:?}");

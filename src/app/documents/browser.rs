@@ -454,7 +454,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_of_a_name_shows_what_fits_and_is_enough_if_only_one_does() {
+    fn a_part_of_a_name_filters_files_and_selects_a_single_match() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["teapot.obj", "bunny.obj", "butter.obj"] {
             std::fs::write(folder.path().join(name), "").unwrap();

@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_saved_goes_beside_the_scene_wherever_textures_come_from() {
+    fn files_are_saved_in_the_folder_of_the_scene_and_not_of_its_textures() {
         let path = Path::new;
         let mut folders = Folders { home: Some("/scenes".into()), ..Folders::default() };
         folders.remember(Kind::Texture, path("/textures/wood.png"));

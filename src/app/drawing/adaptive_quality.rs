@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn what_another_scene_took_is_forgotten() {
+    fn times_of_another_scene_are_forgotten() {
         let mut quality = AdaptiveQuality::default();
         let [vertex, _, half, ..] = chain();
         assert_eq!(settled(&mut quality, [60, 50, 50, 20, 10, 5]), half);

@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn what_moves_is_not_still_before_its_picture_is_drawn() {
+    fn motion_ends_only_after_the_last_picture_is_drawn() {
         let mut motion = Motion::default();
         let drawing = Happening { drawing: true, ..HELD };
         assert!(!motion.notice(0.5, drawing), "it does not begin to move by being drawn");
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn one_key_is_no_motion_and_a_held_one_is() {
+    fn a_held_key_counts_as_motion_and_a_single_press_does_not() {
         let mut motion = Motion::default();
         assert!(!motion.notice(1.0, KEY));
         assert!(!motion.notice(1.01, NONE));
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_click_that_changes_something_is_no_motion() {
+    fn a_click_that_changes_something_does_not_count_as_motion() {
         let mut motion = Motion::default();
         assert!(!motion.notice(1.0, HELD));
         assert!(!motion.notice(1.05, KEY));

@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_reduction_has_a_place_of_its_own() {
+    fn each_reduction_has_a_unique_place() {
         for place in 0..COUNT {
             assert_eq!(Reduction::at(place).place(), place);
         }

@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn a_snapshot_whose_picture_is_the_same_is_not_drawn_again() {
+    fn a_snapshot_with_the_same_picture_is_not_drawn_again() {
         let mut renderer = ViewportRenderer::new(Instant::now);
         let mut wanted = snapshot(Size::new(16, 12));
         assert!(renderer.draw(&wanted, &this).is_some());
@@ -432,7 +432,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_frame_gives_way_to_a_newer_one_and_in_a_stream_every_second_is_finished() {
+    fn a_newer_frame_cancels_a_slow_one_but_every_second_one_is_finished() {
         let mut renderer = ViewportRenderer::new(slow);
         let wanted = snapshot(Size::new(160, 120));
         let first = renderer.draw(&wanted, &newer);
@@ -450,7 +450,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_changed_is_drawn_again() {
+    fn only_changed_parts_are_drawn_again() {
         let mut renderer = ViewportRenderer::new(Instant::now);
         let mut wanted = snapshot(Size::new(640, 480));
         renderer.draw(&wanted, &this).unwrap();

@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_behind_beside_or_tiny_is_out_of_sight() {
+    fn objects_behind_outside_or_tiny_are_out_of_sight() {
         let (scene, view) = io::default_scene();
         let (_, object) = scene.objects.iter().next().unwrap();
         let mut object = object.clone();

@@ -282,7 +282,7 @@ fn only_columns_and_bands_that_differ_are_painted_again() {
 }
 
 #[test]
-fn frames_painted_over_older_ones_are_those_painted_from_nothing() {
+fn incremental_repaints_equal_full_repaints() {
     let mut rng = Rng::new(3);
     let (linear, nearest) = (TextureOptions::LINEAR, TextureOptions::NEAREST);
     let atlas = Arc::new(atlas());
@@ -354,7 +354,7 @@ fn a_picture_of_whole_or_half_size_is_shown_pixel_by_pixel() {
 }
 
 #[test]
-fn a_part_of_a_texture_can_be_changed_and_what_shows_it_is_painted_again() {
+fn changing_a_part_of_a_texture_repaints_the_meshes_that_show_it() {
     let mut desk = Desk::new();
     let black = Arc::new(ColorImage::filled([8, 8], Color32::BLACK));
     let white = Arc::new(ColorImage::filled([3, 2], Color32::WHITE));
@@ -379,7 +379,7 @@ fn a_part_of_a_texture_can_be_changed_and_what_shows_it_is_painted_again() {
 }
 
 #[test]
-fn what_egui_makes_of_panels_and_text_is_painted_as_the_plainest_arithmetic_does() {
+fn panels_and_text_of_egui_match_the_reference_painter() {
     let ctx = egui::Context::default();
     let input = egui::RawInput { screen_rect: Some(everywhere()), ..Default::default() };
     let mut output = ctx.run_ui(input, |ui| {

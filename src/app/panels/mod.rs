@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn open_panels_come_back_from_what_files_keep_and_the_rest_is_as_at_the_first_start() {
+    fn open_panels_survive_saving_and_default_to_the_first_start() {
         for panel in Panel::ALL {
             let toggled = OpenPanels::DEFAULT.toggled(*panel);
             assert_ne!(toggled, OpenPanels::DEFAULT);

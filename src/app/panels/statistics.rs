@@ -90,7 +90,7 @@ mod tests {
     use marraztu_core::scene::ObjectId;
 
     #[test]
-    fn a_reason_names_two_at_most_and_puts_those_together_that_changed_alike() {
+    fn a_reason_names_at_most_two_items_and_groups_equal_changes() {
         let object = |id| ItemId::Object(ObjectId(id));
         let names = ["teapot", "cube", "ball"];
         let name = |item| match item {

@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_picture_does_without_is_said_before_its_time() {
+    fn reductions_of_a_picture_are_shown_before_its_time() {
         let (scene, view) = marraztu_io::default_scene();
         let mut state = State::new(scene, view);
         state.statistics.pictures = 1;
@@ -370,7 +370,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_drag_does_is_said_for_the_mode_of_the_camera() {
+    fn the_hint_for_a_drag_depends_on_the_camera_mode() {
         let (scene, view) = marraztu_io::default_scene();
         let mut state = State::new(scene, view);
         assert_eq!(mouse_hints(&state)[0], "Drag: look around");
@@ -382,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_left_out_from_the_middle() {
+    fn parts_that_do_not_fit_are_dropped_from_the_middle() {
         let parts: Vec<String> = ["first", "second", "third", "fourth"].map(String::from).into();
         let within = |room: usize| fitted(&parts, |text| text.len() <= room);
         assert_eq!(within(99), "first  |  second  |  third  |  fourth");

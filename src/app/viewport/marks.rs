@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_behind_the_observer_has_no_place() {
+    fn points_behind_the_observer_have_no_screen_position() {
         let (scene, view) = marraztu_io::default_scene();
         let state = State::new(scene, view);
         let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 600.0));

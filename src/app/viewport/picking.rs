@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_behind_the_observer_is_not_found() {
+    fn points_behind_the_observer_are_not_picked() {
         let state = state(&[500.0]);
         assert!(objects_at(&state, [400, 300], Size::new(800, 600)).is_empty());
     }

@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_finite_number_has_no_value() {
+    fn invalid_expressions_and_infinite_results_have_no_value() {
         for text in ["", "abc", "1+", "(1", "1)", "1/0", "nan", "inf", "1e999", "1..2", "sqrt(-1)"]
         {
             assert_eq!(value(text), None, "{text}");

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn no_byte_is_out_of_bounds_and_those_of_cells_are_exact() {
+    fn bounds_hold_every_byte_and_are_exact_for_whole_cells() {
         let mut rng = Rng::new(5);
         for size in SIZES {
             let bytes: Vec<u8> = (0..size.area()).map(|_| rng.bits().to_le_bytes()[0]).collect();

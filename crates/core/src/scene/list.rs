@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_copy_keeps_its_items_and_shares_those_that_did_not_change() {
+    fn a_copy_keeps_its_items_and_shares_the_unchanged_ones() {
         let mut list: List<u32, Vec<u32>> = (0..1_000).map(|i| (i, vec![i])).collect();
         let before = list.clone();
         list.replace(3, vec![7]);

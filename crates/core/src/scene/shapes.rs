@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn volumes_and_areas_are_those_of_the_solids() {
+    fn volumes_and_areas_match_the_formulas_of_the_solids() {
         let of = |shape: Shape| volume_and_area(&shape.model().mesh);
         assert_eq!(of(Shape::Plane).1, 1.0);
         assert_eq!(of(Shape::Cube), (1.0, 6.0));
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn normals_are_those_of_the_surface_and_faces_look_outwards() {
+    fn normals_match_the_exact_surface_and_faces_look_outwards() {
         for shape in Shape::ALL {
             for polygon in polygons(&shape.model().mesh) {
                 let facing = newell(positions(&polygon)).normalize_or_zero();

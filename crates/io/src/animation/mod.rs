@@ -407,7 +407,7 @@ mod tests {
     }
 
     #[test]
-    fn numbered_pictures_stand_in_a_folder() {
+    fn numbered_pictures_are_written_to_a_folder() {
         let folder = tempfile::tempdir().unwrap();
         let frames = folder.path().join("turn");
         written(&frames, 3);

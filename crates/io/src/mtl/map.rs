@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn options_of_a_map_stand_before_or_after_a_name_with_blanks() {
+    fn options_of_a_map_may_precede_or_follow_a_name_with_blanks() {
         let map = |text: &str| map(text.as_bytes());
         let plain = Map {
             name: "a  b.png".into(),

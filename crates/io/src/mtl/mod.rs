@@ -485,7 +485,7 @@ mod tests {
     }
 
     #[test]
-    fn packed_roughness_and_metalness_are_no_color_of_highlights() {
+    fn packed_roughness_and_metalness_do_not_colour_highlights() {
         let packed = |ks| {
             let text = format!("newmtl m\nbsdf pbr\nKa 0 0 0\nKd .5 .25 1\nKs {ks}\n");
             let (material, findings) = read(&text);

@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_end_is_read_no_farther_than_allowed() {
+    fn endless_input_is_read_only_up_to_the_limit() {
         let refusal = |sign| chunks(std::io::repeat(sign), SIZES).unwrap_err().to_string();
         assert_eq!(refusal(b'x'), "a.obj: a statement is longer than 1 MB");
         assert_eq!(refusal(b'\n'), "a.obj: the file is larger than 3 MB");

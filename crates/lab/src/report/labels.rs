@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_stands_beside_its_mark_and_covers_neither_another_nor_the_line() {
+    fn a_label_is_next_to_its_mark_and_covers_neither_another_nor_the_line() {
         let frame = TextBox::new([0.0; 2], [200.0, 100.0]);
         let marks = [[50.0, 50.0], [70.0, 50.0]];
         let placed = place(&marks, &[[40.0, 12.0]; 2], &frame, 4.0);

@@ -372,7 +372,7 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "built on a thread that does not draw")]
-    fn no_thread_but_those_that_draw_builds_a_tree() {
+    fn only_drawing_threads_build_a_tree() {
         let mesh = Mesh::new(MeshSource::default()).expect("an empty mesh");
         Bvh::build(&mesh);
     }

@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn no_cone_whose_axis_goes_through_the_middle_misses() {
+    fn cones_with_an_axis_through_the_centre_never_miss() {
         for i in 0..1000 {
             let angle = |step: f64| (f64::from(i) * step).rem_euclid(6.0);
             let axis =
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn what_holds_a_lamp_is_missed_by_no_cone_and_at_no_distance() {
+    fn a_region_around_a_lamp_is_at_distance_zero_and_in_every_cone() {
         let region = cube(DVec3::ZERO, 1.0);
         for apex in [DVec3::ZERO, DVec3::X, DVec3::new(0.3, -1.0, 0.2)] {
             for axis in [DVec3::X, DVec3::Y, DVec3::NEG_Z] {
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_says_nothing() {
+    fn a_region_of_nans_is_never_culled() {
         let region = cube(DVec3::NAN, 1.0);
         assert_eq!(region.most_cosine(DVec3::ZERO, DVec3::X), 1.0);
         assert_eq!(region.least_distance(DVec3::ZERO), 0.0);

@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_faces_away_or_is_out_of_view_triangle_by_triangle() {
+    fn every_culled_triangle_faces_away_or_is_out_of_view() {
         let mut rng = Rng(1);
         let size = Size::new(640, 400);
         let (mut looked_at, mut left_out, mut turned_away) = (0, 0, 0);

@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_nearer_is_kept_as_no_less_and_comes_back() {
+    fn keys_of_depths_are_monotonic_and_decode_within_the_error() {
         for (format, error) in [
             (DepthFormat::Bits16, 0.6 / 65_535.0),
             (DepthFormat::Bits24, 6e-8),

@@ -477,7 +477,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_takes_the_pixels_whose_diamonds_it_leaves() {
+    fn a_line_covers_exactly_the_pixels_with_diamonds_that_it_exits() {
         let lines = [
             [(0.3, 0.4), (9.7, 3.9)],
             [(9.7, 3.9), (0.3, 0.4)],

@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_traced_again_counts_as_it_is_by_then() {
+    fn a_retraced_pixel_replaces_its_cached_shadow() {
         let light = KnownLight::new(point(1.0), SIZE);
         light.note([0, 0], KnownPixels { traced: 0b011, shaded: 0b011 });
         light.note([0, 0], KnownPixels { traced: 0b110, shaded: 0b100 });

@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn every_level_picks_what_stands_at_the_places() {
+    fn every_level_gathers_the_values_at_the_slots() {
         let row: [i32; SLOTS] = std::array::from_fn(|i| 1000 - 7 * i32::try_from(i).unwrap());
         let mut state = 1_u64;
         for _ in 0..200 {

@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_reciprocal_root_gives_zero() {
+    fn numbers_without_a_reciprocal_root_give_zero() {
         for x in [0.0, -0.0, -1.0, -1e-40, 1e-40, f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
             let mut sixteen = [1.0; 16];
             dispatch!(Level::new(), simd => {

@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn sides_that_are_no_power_of_two_and_one_texel_have_a_chain_too() {
+    fn odd_sizes_and_a_single_texel_have_mipmap_chains() {
         for (width, height, levels) in [(1, 1, 1), (5, 3, 3), (1, 8, 4)] {
             let size = Size::new(width, height);
             let texture = Texture {

@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_without_holes_and_parts_that_are_nothing_else_hold_what_their_points_are() {
+    fn solid_and_empty_parts_agree_with_the_opacity_of_their_points() {
         let mut rng = Rng::new(9);
         let mut counts = [0; 3];
         for i in 0..400 {
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_or_too_large_may_have_holes_anywhere() {
+    fn huge_and_nan_coordinates_may_have_holes_anywhere() {
         let mut rng = Rng::new(2);
         let texture = texture(&mut rng, Size::new(8, 8), Wrap::Repeat).into();
         let shaded = Shaded {

@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quadrilateral_holds_what_is_inside_whichever_way_it_runs() {
+    fn a_quadrilateral_contains_the_same_points_in_either_winding() {
         let mut corners = [pos2(0.0, 0.0), pos2(4.0, 1.0), pos2(5.0, 4.0), pos2(1.0, 3.0)];
         for _ in 0..2 {
             assert!(inside(pos2(2.5, 2.0), &corners));

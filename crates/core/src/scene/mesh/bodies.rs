@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_whose_faces_share_no_vertices_is_a_body() {
+    fn a_body_without_shared_vertices_is_recognised() {
         let mut split = Quads::default();
         for (first, face) in (0..).step_by(4).zip(CUBE) {
             for vertex in face.into_iter().rev() {

@@ -490,7 +490,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_range_is_refused() {
+    fn indices_out_of_range_and_nan_positions_are_refused() {
         let mut source = roof();
         source.corners[3].position = 6;
         assert_eq!(Mesh::new(source).unwrap_err(), MeshError::Index("vertex", 6));

@@ -276,7 +276,7 @@ fn triangles_of_sixteen_pixels_have_the_same_depths_as_larger_ones() {
 }
 
 #[test]
-fn on_the_fine_grid_small_and_large_triangles_cover_what_the_rule_says() {
+fn on_the_fine_grid_small_and_large_triangles_follow_the_fill_rule() {
     let mut random = numbers(11);
     for sample_positions in middle_and_others() {
         for extent in [1, 4, 40] {
@@ -484,7 +484,7 @@ fn one_by_one(triangles: &[LargeTriangle], sample_positions: &SamplePositions) -
 }
 
 #[test]
-fn a_pixel_is_said_to_show_what_most_of_its_samples_show() {
+fn a_pixel_reports_the_triangle_of_most_of_its_samples() {
     let mut visibility = Visibility::default();
     visibility.clear(TILE_BOX, passes(Samples::Four)[0]);
     let [a, b, c] = [7, 8, 9].map(|number| word(0.5_f32.to_bits(), number));

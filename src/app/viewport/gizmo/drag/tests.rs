@@ -71,7 +71,7 @@ fn drag(state: &mut State, handle: Handle, by: Vec2, typed: &str) -> Option<Amou
 }
 
 #[test]
-fn what_is_dragged_along_an_axis_stays_under_the_pointer_at_every_size_and_distance() {
+fn a_drag_along_an_axis_stays_under_the_pointer_at_every_size_and_distance() {
     for (offset, size) in [(0.0, 1.0), (1e5, 1.0), (1e5, 1e-3), (-3e5, 1e3), (0.0, 1e-6)] {
         for axis in Axis::ALL {
             let mut state = scene(DVec3::splat(offset), size);
@@ -127,7 +127,7 @@ fn a_scale_of_0_is_refused_and_a_negative_one_mirrors() {
 }
 
 #[test]
-fn in_the_global_frame_handles_that_turn_stand_in_the_worlds_origin() {
+fn in_the_global_frame_rotation_and_scaling_pivot_on_the_origin() {
     let at = DVec3::new(5.0, 6.0, 7.0);
     for (frame, kind, origin, unit) in [
         (Frame::Local, Transformation::Rotation, at, 3.0),
