@@ -608,7 +608,7 @@ mod tests {
     fn unsupported_options_are_refused_in_one_sentence() {
         for (options, sentence) in [
             (["--mode", "phong", "--msaa", "3"], "3 samples per pixel are not supported"),
-            (["--mode", "phong", "--instructions", "foo"], "instructions \"foo\" are unknown"),
+            (["--mode", "phong", "--instructions", "foo"], "instruction set \"foo\" is unknown"),
             (["--mode", "oil", "--msaa", "1"], "mode \"oil\" is not supported"),
         ] {
             let Err(Failure::Unsupported(said)) = drawn(1, SQUARE, &options) else {

@@ -331,9 +331,7 @@ fn finer_and_coarser_corners_light_samples_alike_if_both_are_exact() {
     let (scene, view) = shiny(&scattered(40, 31), SIDE);
     let lit = Settings { samples: Samples::Four, light: LightAt::Sample, ..Settings::default() };
     let wanted = draw(&scene, &view, &lit, SIDE);
-    for (key, word) in
-        [("subpixels", "bits-12"), ("vertices", "f32"), ("vertices", "f32-composed-in-f64")]
-    {
+    for (key, word) in [("subpixels", "bits-12"), ("vertices", "f32")] {
         let choice = Axis::named(key).and_then(|axis| axis.choice(word)).unwrap();
         let got = draw(&scene, &view, &choice.of(&lit), SIDE);
         let pairs = got.pixels().as_flattened().iter().zip(wanted.pixels().as_flattened());

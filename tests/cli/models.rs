@@ -109,7 +109,8 @@ fn a_picture_that_shows_nothing_of_an_object_says_why() {
         .unwrap();
     let err = notes(path, &["square.obj", "two.obj", "--from", "180,0", "--sides", "one"]);
     assert!(
-        err.contains("of square: its only face") && err.contains("of two: all 2 faces"),
+        err.contains("square is visible: its only face")
+            && err.contains("two is visible: all 2 faces"),
         "{err}"
     );
     let err = notes(path, &["square.obj", "two.obj", "--from", "180,0"]);

@@ -115,9 +115,7 @@ fn a_link_is_written_through_whether_its_file_exists_or_not() {
         assert!(io::load_picture(&folder.at("pictures/new.png")).is_ok(), "{link}");
         fs::remove_file(folder.at("pictures/new.png")).unwrap();
     }
-    assert!(
-        folder.ends(1, &["render", "a.obj", "--size", "8", "--out", "r.png"]).contains("circle")
-    );
+    assert!(folder.ends(1, &["render", "a.obj", "--size", "8", "--out", "r.png"]).contains("loop"));
 }
 
 #[test]

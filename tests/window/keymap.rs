@@ -27,7 +27,7 @@ fn choose(editor: &mut Editor, action: &str, key: Key) {
 fn a_clash_is_reported_before_a_key_changes_its_action() {
     let mut editor = Editor::tall();
     choose(&mut editor, "Undo", Key::Z);
-    assert!(editor.shows("z is the key of"), "nothing has changed yet");
+    assert!(editor.shows("z is already the key of"), "nothing has changed yet");
     click(&mut editor, Role::Button, "Use it for \"Undo\"");
     editor.press(Named(Key::F1));
     editor.perform(Action::StepXUp);

@@ -123,7 +123,7 @@ fn every_package_that_the_program_is_built_from_is_listed_with_its_licence() {
     let own = own.split("\n[").next().unwrap();
     let mut waiting: Vec<String> = own
         .lines()
-        .filter_map(|line| line.split_once(" = ").map(|(name, _)| name.to_owned()))
+        .filter_map(|line| line.split_once(".workspace = ").map(|(name, _)| name.to_owned()))
         .collect();
     // A dependency is named without its version if there is only one.
     let full = |wanted: &str| -> String {
@@ -147,6 +147,8 @@ fn every_package_that_the_program_is_built_from_is_listed_with_its_licence() {
         })
         .collect();
     assert!(linked.len() > 100);
-    let missing: Vec<&String> = linked.difference(&listed).collect();
+    // Our own crates have the licence of the program.
+    let missing = linked.difference(&listed).filter(|name| !name.starts_with("marraztu"));
+    let missing: Vec<&String> = missing.collect();
     assert!(missing.is_empty(), "run tools/licences.py: {missing:?}");
 }

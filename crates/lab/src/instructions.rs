@@ -3,8 +3,8 @@
 use fearless_simd::Level;
 pub use marraztu_render::simd::levels;
 
-/// Finds an instruction set by name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, the oldest that
-/// pictures are drawn with. `None` if this processor lacks it, or if the name is unknown.
+/// Finds an instruction set by name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, the oldest
+/// that pictures are drawn with. `None` if this processor lacks it, or if the name is unknown.
 #[must_use]
 pub fn named(name: &str) -> Option<Level> {
     let levels = levels();

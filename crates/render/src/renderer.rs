@@ -294,8 +294,8 @@ impl Renderer {
         self.rays
     }
 
-    /// Returns the number of pixels that each way of colouring has coloured in the last frame: those
-    /// drawn again, in each pass over several samples.
+    /// Returns the number of pixels that each way of colouring has coloured in the last frame:
+    /// those drawn again, in each pass over several samples.
     #[must_use]
     pub const fn path_pixels(&self) -> PathPixels {
         self.path_pixels

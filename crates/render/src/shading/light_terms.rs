@@ -1,4 +1,5 @@
-//! Prepares a plan for shading: light terms in the shading arithmetic, and mipmaps. Those of the last picture are reused.
+//! Prepares a plan for shading: light terms in the shading arithmetic, and mipmaps. Those of the
+//! last picture are reused.
 
 use super::colors::prepare_linear;
 use super::rounding::block_thresholds;
