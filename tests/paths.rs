@@ -13,9 +13,7 @@ use marraztu_core::accuracy::{
 };
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{
-    Command, Item, LightId, LightKind, Model, ObjectId, Scene, Sides, View,
-};
+use marraztu_core::scene::{Command, Item, LightId, Model, ObjectId, Scene, Sides, View};
 use marraztu_render::{PathPixels, Renderer, explain_frame, plan_frame};
 
 const FIRST: ObjectId = ObjectId(10);
@@ -65,12 +63,12 @@ fn with_light(light: LightAt) -> Settings {
     Settings { light, ..Settings::default() }
 }
 
-/// The same with shadows of the bulb.
+/// The same with shadows of all lights that can cast them.
 fn with_shadows((mut scene, view): (Scene, View)) -> (Scene, View) {
     let lights: Vec<LightId> = scene.lights.ids().collect();
     for id in lights {
         let mut light = scene.lights.get(id).unwrap().clone();
-        light.shadows = matches!(light.kind, LightKind::Bulb { .. });
+        light.shadows = light.can_cast_shadows();
         let item = Item::Light(id, Box::new(light));
         Command::Replace(item).apply(&mut scene).unwrap();
     }
@@ -91,7 +89,7 @@ fn expect(name: &str, (scene, view): (Scene, View), settings: Settings, expected
 fn each_path_colours_the_surfaces_that_it_is_meant_for() {
     let [face, vertex, pixel] = [LightAt::Face, LightAt::Vertex, LightAt::Pixel].map(with_light);
     expect("flat shading of large triangles", large(), face, &[FILLED, FACES]);
-    expect("flat shading of small triangles", fine(), face, &[FACES]);
+    expect("flat shading of small triangles", fine(), face, &[FILLED, FACES]);
     expect("Gouraud shading of large triangles", large(), vertex, &[CORNERS, EARLY]);
     expect("Gouraud shading of small triangles", fine(), vertex, &[EARLY]);
     expect("Gouraud shading of tiny triangles", finest(), vertex, &[TINY]);
@@ -131,7 +129,7 @@ fn the_plan_names_the_path_of_each_object() {
         surfaces.unwrap().state.why().to_owned()
     };
     let pixel = words(Settings::default());
-    assert_eq!(pixel, "full blocks in one pass, blocks joined, tiny triangles at once");
+    assert_eq!(pixel, "block by block, tiny");
     let f64 = words(Settings { arithmetic: Arithmetic::F64, ..Settings::default() });
-    assert_eq!(f64, "fragment lists");
+    assert_eq!(f64, "by lists");
 }

@@ -175,15 +175,15 @@ fn box_on_screen(draw: &Draw, size: Size) -> f64 {
 /// Words a path for `marraztu plan`.
 pub(super) fn in_words(path: ColorPath) -> String {
     let full = match path.full {
-        FullPath::Fill => "one colour fills a triangle",
-        FullPath::Corners => "colours of corners are interpolated",
-        FullPath::Light => "full blocks in one pass",
-        FullPath::List => "fragment lists",
+        FullPath::Fill => "one colour",
+        FullPath::Corners => "corner colours",
+        FullPath::Light => "block by block",
+        FullPath::List => "by lists",
     };
     let list = match path.list {
         ListPath::Alone => "",
-        ListPath::Joined => ", blocks joined",
-        ListPath::Tiny => ", blocks joined, tiny triangles at once",
+        ListPath::Joined => ", joined",
+        ListPath::Tiny => ", tiny",
     };
     format!("{full}{list}")
 }
