@@ -93,6 +93,10 @@ fn an_export_replaces_its_own_companion_files_but_no_others() {
         if out == "ship.obj" {
             fs::remove_file(folder.at(out)).unwrap();
             folder.ends(0, &["export", "a.obj", "--out", out]);
+            // An export without textures in between leaves the textures.
+            fs::write(folder.at("plain.obj"), CUBE).unwrap();
+            folder.ends(0, &["export", "plain.obj", "--out", out]);
+            folder.ends(0, &["export", "a.obj", "--out", out]);
         }
         for name in ["ship.obj", "ship.mtl", "ship-texture-1.png", "ship-texture-2.png"] {
             let _ = fs::remove_file(folder.at(name));

@@ -174,6 +174,21 @@ fn sides(picture: &Picture) -> [u32; 2] {
 }
 
 fn write_png(picture: &Picture, to: &mut dyn Write) -> std::io::Result<()> {
+    write_png_with(picture, None, to)
+}
+
+/// Encodes a picture as PNG with a comment.
+pub(crate) fn png_with_comment(picture: &Picture, comment: &str) -> Result<Vec<u8>, String> {
+    let mut content = Vec::new();
+    let written = write_png_with(picture, Some(comment), &mut content);
+    written.map(|()| content).map_err(|error| error.to_string())
+}
+
+fn write_png_with(
+    picture: &Picture,
+    comment: Option<&str>,
+    to: &mut dyn Write,
+) -> std::io::Result<()> {
     let [width, height] = sides(picture);
     let has_alpha = has_alpha(picture);
     let mut encoder = png::Encoder::new(to, width, height);
@@ -182,6 +197,9 @@ fn write_png(picture: &Picture, to: &mut dyn Write) -> std::io::Result<()> {
     // Fast compression with adaptive filters: drawing should not wait for the encoder.
     encoder.set_compression(png::Compression::Fast);
     encoder.set_filter(png::Filter::Adaptive);
+    if let Some(comment) = comment {
+        encoder.add_text_chunk("Comment".to_owned(), comment.to_owned())?;
+    }
     let mut writer = encoder.write_header()?;
     let mut stream = writer.stream_writer()?;
     for band in picture.pixels().chunks(BAND * picture.size().width.max(1)) {

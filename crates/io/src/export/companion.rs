@@ -1,8 +1,8 @@
 //! Decides whether an export may replace a companion file: an MTL file, a texture or a buffer.
 //!
 //! The user names only the main file, so an existing companion is overwritten only if an earlier
-//! export wrote it. Text files carry a signature. A picture or a buffer counts as ours if an
-//! exported text refers to it.
+//! export wrote it. Text files and textures carry a signature. A buffer, or a texture of an earlier
+//! version, counts as ours if an exported text refers to it.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -10,11 +10,14 @@ use std::path::Path;
 
 use memchr::memmem::find;
 
-use super::{SIGNATURE, escaped};
+use super::{MARK, SIGNATURE, escaped};
 use crate::replace::{SaveError, check_target};
 
 /// The text by which a glTF file shows that this program wrote it.
 const GENERATOR: &[u8] = br#""generator":"Marraztu""#;
+
+/// The first bytes of a PNG file.
+const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// Checks that a companion file is new, or was written by an earlier export to `main`.
 pub(super) fn check_companion(companion: &Path, main: &Path) -> Result<(), SaveError> {
@@ -31,11 +34,13 @@ pub(super) fn check_companion(companion: &Path, main: &Path) -> Result<(), SaveE
     Err(SaveError::new(main, reason))
 }
 
-/// Returns whether a file begins with the signature.
+/// Returns whether a file begins with the signature, or is a picture with the mark among its first
+/// chunks.
 fn is_signed(file: &Path) -> bool {
-    let mut begin = vec![0; SIGNATURE.len()];
-    let read = File::open(file).and_then(|mut file| file.read_exact(&mut begin));
-    read.is_ok() && begin == SIGNATURE.as_bytes()
+    let mut begin = Vec::new();
+    let read = File::open(file).and_then(|file| file.take(256).read_to_end(&mut begin));
+    let is_marked = || begin.starts_with(PNG) && find(&begin, MARK.as_bytes()).is_some();
+    read.is_ok() && (begin.starts_with(SIGNATURE.as_bytes()) || is_marked())
 }
 
 /// Returns whether a text was exported by this program and names the companion.

@@ -7,8 +7,9 @@ use std::collections::{BTreeSet, HashMap};
 
 use rayon::prelude::*;
 
+use super::MARK;
 use super::names::{Names, on_one_line};
-use crate::picture::PICTURE_FORMATS;
+use crate::picture::png_with_comment;
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Picture;
 use marraztu_core::scene::{
@@ -243,6 +244,6 @@ impl Pictures {
 
     /// Encodes the pictures as PNG, in index order.
     pub(super) fn encoded(&self) -> Result<Vec<Vec<u8>>, String> {
-        self.all.par_iter().map(|picture| PICTURE_FORMATS[0].encode(picture)).collect()
+        self.all.par_iter().map(|picture| png_with_comment(picture, MARK)).collect()
     }
 }

@@ -25,6 +25,9 @@ use marraztu_core::scene::{Scene, View};
 /// program and may be replaced.
 const SIGNATURE: &str = "# exported by Marraztu\n";
 
+/// The comment of exported textures, which may be replaced likewise.
+const MARK: &str = "exported by Marraztu";
+
 /// The extensions of the formats, without the dot.
 pub const EXPORT_ENDINGS: [&str; 3] = ["obj", "gltf", "glb"];
 
