@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use marraztu::app::StartError;
+use marraztu::plots::PlotError;
 use marraztu_core::edit::Refusal;
 use marraztu_core::scene::CommandError;
 use marraztu_io::{LoadError, SaveError, SceneFileError};
 use marraztu_lab::pairs::Unmeasured;
-use marraztu_lab::report::PlotError;
 
 /// The reason why a command failed, in one sentence.
 #[derive(Debug, thiserror::Error)]

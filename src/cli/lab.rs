@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use marraztu::plots::{self, Look};
 use marraztu_core::accuracy::{AXES, Axis, Settings};
 use marraztu_core::base::image::Size;
 use marraztu_io as io;
@@ -13,7 +14,7 @@ use marraztu_lab::candidates::{Thoroughness, all_axes};
 use marraztu_lab::error::{Measure, Region, amplified};
 use marraztu_lab::pairs::Watch;
 use marraztu_lab::picture_source::{PictureSource, Studio};
-use marraztu_lab::report::{self, Budgets, Look, Report};
+use marraztu_lab::report::{self, Budgets, Report};
 use marraztu_lab::suite::{self, SUITE, SuiteDetail, SuiteScene};
 use marraztu_lab::sweep::{Question, sweep};
 use marraztu_lab::timing::WallClock;
@@ -146,15 +147,15 @@ fn measure_suite(arguments: &Lab, word: &str) -> Result<(), Failure> {
 /// Writes the page as Markdown and HTML, its plots, and the tables into the folder.
 fn save_suite(folder: &Path, reports: &[Report]) -> Result<(), Failure> {
     let write = |name: &str, text: String| write(folder, name, text);
-    for (axis, reports) in report::sections(reports) {
+    for (axis, reports) in plots::sections(reports) {
         for (report, look) in reports.iter().flat_map(|it| [(it, Look::Light), (it, Look::Dark)]) {
             let word = if look == Look::Light { "light" } else { "dark" };
-            let plot = report::panel_svg(report, Some(axis.key), look)?;
-            write(&format!("{}-{word}.svg", report::plot_name(axis, report)), plot)?;
+            let plot = plots::panel_svg(report, Some(axis.key), look)?;
+            write(&format!("{}-{word}.svg", plots::plot_name(axis, report)), plot)?;
         }
     }
-    write("page.md", report::page_markdown(reports, &|name| format!("{name}-light.svg")))?;
-    write("page.html", report::page_html(reports)?)?;
+    write("page.md", plots::page_markdown(reports, &|name| format!("{name}-light.svg")))?;
+    write("page.html", plots::page_html(reports)?)?;
     write("table.csv", reports.iter().map(report::csv).collect())?;
     let json: Vec<String> = reports.iter().map(Report::json).collect();
     write("report.json", format!("[{}]\n", json.join(",\n")))
@@ -277,8 +278,8 @@ fn save(
     write("table.csv", report::csv(report))?;
     write("report.json", report.json())?;
     for (look, word) in [(Look::Light, "light"), (Look::Dark, "dark")] {
-        write(&format!("plots-{word}.svg"), report::svg(report, look)?)?;
-        io::save_picture(&place(&format!("plots-{word}.png")), &report::png(report, look)?)?;
+        write(&format!("plots-{word}.svg"), plots::svg(report, look)?)?;
+        io::save_picture(&place(&format!("plots-{word}.png")), &plots::png(report, look)?)?;
     }
     // Error pictures show the difference to the exact picture, amplified to be visible.
     studio.draw(&settings.reference());

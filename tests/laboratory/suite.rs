@@ -1,8 +1,8 @@
 //! The suite measures every axis, and its page has a section for each axis.
 
+use marraztu::plots::{Look, page_html, page_markdown, png, sections};
 use marraztu_core::accuracy::{AXES, Axis};
 use marraztu_lab::pairs::Watch;
-use marraztu_lab::report::{Look, page_html, page_markdown, png, sections};
 use marraztu_lab::suite::{SUITE, SuiteDetail, run};
 use marraztu_lab::timing::WallClock;
 

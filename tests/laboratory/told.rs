@@ -1,10 +1,10 @@
 //! Tables, data files and plots contain every choice.
 
+use marraztu::plots::{Look, overview_names, panel_svg, png, svg};
 use marraztu_core::accuracy::{AXES, Axis, Choice, Samples, Settings};
 use marraztu_lab::candidates::Group;
 use marraztu_lab::error::{Measure, Region};
-use marraztu_lab::report::{Budgets, Look, Panels, Report, csv, overview_names, png, svg};
-use marraztu_lab::report::{markdown, panel_svg, tabs, text};
+use marraztu_lab::report::{Budgets, Panels, Report, csv, markdown, tabs, text};
 use marraztu_lab::sweep::{Against, Verdict};
 
 use crate::bench::{FakeClock, FakeSource, found};

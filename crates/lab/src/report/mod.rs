@@ -1,18 +1,14 @@
-//! Reports the results of a sweep in words, as a table, as data and as plots.
+//! Reports the results of a sweep in words, as a table, as data, and as panels for plots.
 
 mod labels;
-mod page;
 mod panels;
-mod plot;
 mod table;
 mod verdict;
 
 use serde::Serialize;
 
 pub use self::labels::{TextBox, place};
-pub use self::page::{page_html, page_markdown, plot_name, sections};
 pub use self::panels::{Panel, PanelMark, Panels, Scale};
-pub use self::plot::{Look, PlotError, overview_names, panel_svg, png, svg};
 pub use self::table::{brief, csv, heading, markdown, tabs, text};
 use super::candidates::Group;
 use super::error::{Measure, Region};

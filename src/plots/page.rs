@@ -3,8 +3,9 @@
 
 use std::fmt::Write as _;
 
-use super::{Look, PlotError, Report, markdown, panel_svg};
+use super::{Look, PlotError, panel_svg};
 use marraztu_core::accuracy::{AXES, Axis};
+use marraztu_lab::report::{Report, markdown};
 
 /// Returns the axes of several reports, each with the reports that measured it.
 pub fn sections(reports: &[Report]) -> impl Iterator<Item = (&'static Axis, Vec<&Report>)> {

@@ -4,14 +4,17 @@
 //! title and the verdict are at the top, then the overview, then a panel for each axis, all with
 //! the same scales.
 
+mod page;
+
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, register_font};
 
-use super::labels::{TextBox, place};
-use super::{Panel, Panels, Report, Scale};
 use marraztu_core::base::image::{Picture, Size};
+use marraztu_lab::report::{Panel, PanelMark, Panels, Report, Scale, TextBox, place};
+
+pub use page::{page_html, page_markdown, plot_name, sections};
 
 /// The error of a plot that could not be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -275,7 +278,7 @@ impl Sheet {
     /// Returns the boxes of the names in a panel.
     #[expect(clippy::cast_precision_loss, reason = "pixels of a plot")]
     fn names(&self, panel: &Panel, frame: Rect) -> Vec<Option<TextBox>> {
-        let at = |mark: &super::PanelMark| {
+        let at = |mark: &PanelMark| {
             let (x, y) = self.place(frame, mark.at);
             [x as f32, y as f32]
         };
