@@ -19,6 +19,8 @@ use super::render;
 #[command(after_help = "\
 Takes the files and options of `render`. Lists each effect of the renderer as on or left out, with
 the reason. Effects that are on are counted in pixels and, with --measure, in milliseconds.
+For surfaces, the reason is how pixels are coloured: one colour for each triangle, corners
+(interpolated), blocks (lit at once), or lists of pixels, which may be joined, or tiny triangles.
 
 Examples:
   marraztu plan

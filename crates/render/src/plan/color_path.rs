@@ -172,13 +172,13 @@ fn box_on_screen(draw: &Draw, size: Size) -> f64 {
     (high[0] - low[0]) * (high[1] - low[1])
 }
 
-/// Words a path for `marraztu plan`.
+/// Words a path for the plan, in a few letters: the panel has narrow columns.
 pub(super) fn in_words(path: ColorPath) -> String {
     let full = match path.full {
         FullPath::Fill => "one colour",
-        FullPath::Corners => "corner colours",
-        FullPath::Light => "block by block",
-        FullPath::List => "by lists",
+        FullPath::Corners => "corners",
+        FullPath::Light => "blocks",
+        FullPath::List => "lists",
     };
     let list = match path.list {
         ListPath::Alone => "",

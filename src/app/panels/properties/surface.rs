@@ -63,7 +63,7 @@ fn texture_ui(
     let text = by_hand.clone().unwrap_or_else(|| match (of_file, mapped) {
         (true, _) => "the file's own".to_owned(),
         (false, true) => "none".to_owned(),
-        (false, false) => "none; no texture coordinates".to_owned(),
+        (false, false) => "none (no UV coordinates)".to_owned(),
     });
     row(ui, "Texture", |ui| {
         ui.add(egui::Label::new(&text).truncate()).on_hover_text(&text);
