@@ -39,7 +39,7 @@ pub(crate) fn run() -> ExitCode {
         Err(wrong) => return usage(&open::misspelt().unwrap_or(wrong)),
     };
     if marraztu_render::simd::levels().is_empty() {
-        say("error", &"drawing needs a processor with SSE4.2, as all have since 2009");
+        say("error", &"drawing needs a processor with SSE4.2 (x86-64-v2)");
         return ExitCode::FAILURE;
     }
     let done = match arguments.command {
