@@ -32,6 +32,7 @@ mod locate;
 mod mtl;
 mod obj;
 mod packed;
+mod part;
 mod picture;
 mod progress;
 mod read;
@@ -56,12 +57,13 @@ pub use keeping::{
 };
 pub use lessons::lesson_scene;
 pub use obj::{Loaded, load, parse};
+pub use part::sweep_once;
 pub use picture::{
     PICTURE_FORMATS, PictureFormat, check_alpha, check_picture_target, save_picture,
 };
 pub use progress::{Cancelled, Progress};
 pub use read::check_file;
-pub use replace::SaveError;
+pub use replace::{NewFile, SaveError};
 pub use scene_file::{
     Fragment, Known, Opened, SCENE_ENDING, SceneFileError, items_of_text, items_to_text,
     material_to_text, open, save, save_with_window, to_text,

@@ -3,13 +3,15 @@
 //! The new content is written to a temporary file in the same folder, which then replaces the old
 //! file atomically: a reader always finds a complete file. The user's own work is flushed to disk
 //! first, so it survives even a power failure.
+//!
+//! Temporary files are named by [`super::part`], which also removes the ones of killed processes.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{ErrorKind, Write};
+use std::fs::{self, File};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use super::error::{reason, shown};
+use super::part::{create_part, sweep_once};
 
 /// The reason why a file could not be written. An existing file is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -47,19 +49,14 @@ pub(super) enum Worth {
 pub(super) fn check_target(path: &Path) -> Result<(), SaveError> {
     let target = target(path)?;
     check_folder(path, &target)?;
-    let beside = beside(&target, std::process::id());
     // Permissions are checked by creating the temporary file.
-    let opened = OpenOptions::new().write(true).create_new(true).open(&beside);
-    let opened = opened.map(|_file| fs::remove_file(&beside));
-    match opened {
+    match create_part(&target).map(|(_file, part)| fs::remove_file(part)) {
+        Ok(_) => Ok(()),
         Err(error) if error.kind() == ErrorKind::PermissionDenied => {
             let reason = format!("no permission to write to {}", folder_name(&target));
             Err(SaveError::new(path, reason))
         }
-        Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-            Err(SaveError::new(path, reason(&error)))
-        }
-        _ => Ok(()),
+        Err(error) => Err(SaveError::new(path, reason(&error))),
     }
 }
 
@@ -100,7 +97,8 @@ fn check_folder(path: &Path, target: &Path) -> Result<(), SaveError> {
     Err(SaveError::new(path, reason))
 }
 
-fn folder(target: &Path) -> &Path {
+/// Returns the folder of a file.
+pub(super) fn folder(target: &Path) -> &Path {
     match target.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -129,30 +127,82 @@ pub(super) fn replace_by(
     let fail = |error: std::io::Error| SaveError::new(path, reason(&error));
     let target = target(path)?;
     check_folder(path, &target)?;
-    remove_left_over(&target);
-    let beside = beside(&target, std::process::id());
-    let written = write(&beside, &target, content, worth);
+    sweep_once(folder(&target));
+    let (mut file, part) = create_part(&target).map_err(fail)?;
+    let written = content(&mut file).and_then(|()| put(file, &part, &target, worth));
     if written.is_err() {
         // If even this fails, nothing more can be done.
-        let _ = fs::remove_file(&beside);
+        let _ = fs::remove_file(&part);
     }
     written.map_err(fail)
 }
 
-fn write(
-    beside: &Path,
-    target: &Path,
-    content: &mut Content<'_>,
-    worth: Worth,
-) -> std::io::Result<()> {
-    let mut file = OpenOptions::new().write(true).create(true).truncate(true).open(beside)?;
-    content(&mut file)?;
+/// A file that is written piece by piece. It appears at its path when it is finished.
+#[derive(Debug)]
+pub struct NewFile {
+    /// The path as the user gave it.
+    path: PathBuf,
+    target: PathBuf,
+    part: PathBuf,
+    /// `None` after the end.
+    file: Option<BufWriter<File>>,
+}
+
+impl NewFile {
+    /// Creates the file next to its path.
+    ///
+    /// # Errors
+    /// If it cannot be created.
+    pub fn begin(path: &Path) -> Result<Self, SaveError> {
+        let target = target(path)?;
+        check_folder(path, &target)?;
+        sweep_once(folder(&target));
+        let (file, part) =
+            create_part(&target).map_err(|error| SaveError::new(path, reason(&error)))?;
+        Ok(Self { path: path.to_owned(), target, part, file: Some(BufWriter::new(file)) })
+    }
+
+    /// Appends a piece.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn push(&mut self, piece: &[u8]) -> Result<(), SaveError> {
+        let written = self.file.as_mut().map_or(Ok(()), |file| file.write_all(piece));
+        written.map_err(|error| SaveError::new(&self.path, reason(&error)))
+    }
+
+    /// Replaces the file at the path.
+    ///
+    /// # Errors
+    /// If it cannot be written; an existing file is unchanged.
+    pub fn finish(mut self) -> Result<(), SaveError> {
+        let Some(file) = self.file.take() else { return Ok(()) };
+        let file = file.into_inner().map_err(std::io::IntoInnerError::into_error);
+        let written = file.and_then(|file| put(file, &self.part, &self.target, Worth::Product));
+        if written.is_err() {
+            let _ = fs::remove_file(&self.part);
+        }
+        written.map_err(|error| SaveError::new(&self.path, reason(&error)))
+    }
+}
+
+impl Drop for NewFile {
+    fn drop(&mut self) {
+        // An unfinished file is removed.
+        if self.file.take().is_some() {
+            let _ = fs::remove_file(&self.part);
+        }
+    }
+}
+
+/// Moves a complete temporary file to its target.
+fn put(file: File, part: &Path, target: &Path, worth: Worth) -> std::io::Result<()> {
     if let Ok(old) = fs::metadata(target) {
         // Keeps the permissions, if the file system supports them.
         let _ = file.set_permissions(old.permissions());
     }
     if worth == Worth::Product {
-        return fs::rename(beside, target);
+        return fs::rename(part, target);
     }
     file.sync_all()?;
     drop(file);
@@ -164,7 +214,7 @@ fn write(
             fs::copy(target, &kept)?;
         }
     }
-    fs::rename(beside, target)?;
+    fs::rename(part, target)?;
     // Flushing the folder makes the new name survive a power failure; not every system supports it.
     let _ = File::open(folder(target)).and_then(|folder| folder.sync_all());
     Ok(())
@@ -176,73 +226,25 @@ fn with_ending(path: &Path, ending: &str) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// Returns the temporary file that a process writes next to its target.
-fn beside(target: &Path, process: u32) -> PathBuf {
-    with_ending(target, &format!(".{process}.new"))
-}
-
-/// A temporary file that is older than this is not in use.
-const LONG_AGO: Duration = Duration::from_secs(60);
-
-/// Removes temporary files that crashed processes have left next to a file.
-fn remove_left_over(target: &Path) {
-    let Some(name) = target.file_name().and_then(|name| name.to_str()) else { return };
-    let is_left_over = |entry: &fs::DirEntry| {
-        let other = entry.file_name();
-        let process = other.to_str().and_then(|other| {
-            other.strip_prefix(name)?.strip_prefix('.')?.strip_suffix(".new")?.parse().ok()
-        });
-        let age = entry.metadata().and_then(|metadata| metadata.modified());
-        let age = age.ok().and_then(|written| written.elapsed().ok());
-        process.is_some_and(has_ended) && age.is_some_and(|age| age > LONG_AGO)
-    };
-    let entries = fs::read_dir(folder(target)).into_iter().flatten().flatten();
-    for entry in entries.filter(is_left_over) {
-        // If this fails, the file stays.
-        let _ = fs::remove_file(entry.path());
-    }
-}
-
-/// Returns whether a process has ended, as far as the system reports.
-fn has_ended(process: u32) -> bool {
-    let processes = Path::new("/proc");
-    process != std::process::id() && !processes.join(process.to_string()).exists()
-}
-
 #[cfg(test)]
 mod tests {
-    use std::time::SystemTime;
-
     use super::*;
 
-    /// Returns the id of a process that has ended.
-    fn ended() -> u32 {
-        let mut child = std::process::Command::new("true").spawn().unwrap();
-        child.wait().unwrap();
-        child.id()
-    }
-
     #[test]
-    #[cfg(target_os = "linux")]
-    fn saving_a_file_removes_the_leftovers_of_a_killed_process() {
+    fn a_file_in_pieces_appears_when_it_is_finished_or_not_at_all() {
         let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        let target = at("a.png");
-        let (gone, here) = (ended(), std::os::unix::process::parent_id());
-        let old =
-            [beside(&target, gone), beside(&target, here), at("b.png.1.new"), at("a.png.x.new")];
-        for path in &old {
-            fs::write(path, "half").unwrap();
-            let file = OpenOptions::new().write(true).open(path).unwrap();
-            file.set_modified(SystemTime::now() - 2 * LONG_AGO).unwrap();
-        }
-        let young = beside(&target, ended());
-        fs::write(&young, "half").unwrap();
-        replace(&target, b"whole", Worth::Product).unwrap();
-        assert_eq!(fs::read(&target).unwrap(), b"whole");
-        assert!(!old[0].exists(), "its process has ended, long ago");
-        assert!(old[1].exists(), "its process still runs");
-        assert!(old[2].exists() && old[3].exists(), "they are of other files");
-        assert!(young.exists(), "it was written a moment ago");
+        let path = folder.path().join("r.jsonl");
+        let count = || fs::read_dir(folder.path()).unwrap().count();
+        let mut file = NewFile::begin(&path).unwrap();
+        file.push(b"one\n").unwrap();
+        assert_eq!((path.exists(), count()), (false, 1));
+        drop(file);
+        assert_eq!(count(), 0, "an unfinished file is removed");
+        let mut file = NewFile::begin(&path).unwrap();
+        file.push(b"one\n").unwrap();
+        file.push(b"two\n").unwrap();
+        file.finish().unwrap();
+        assert_eq!((fs::read(&path).unwrap(), count()), (b"one\ntwo\n".to_vec(), 1));
+        assert!(NewFile::begin(&folder.path().join("none/r.jsonl")).is_err());
     }
 }
