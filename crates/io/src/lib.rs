@@ -17,6 +17,7 @@
 
 mod animation;
 mod assets;
+mod companions;
 mod describe;
 mod dimples;
 mod error;
@@ -39,12 +40,14 @@ mod read;
 mod replace;
 mod scene_file;
 mod sources;
+mod stamp;
 mod texture;
 mod up_axis;
 mod window_state;
 
 pub use animation::{Animation, AnimationFormat, AnimationWriter};
 pub use assets::{cam_model, default_scene, empty_scene, own_model, own_texture};
+pub use companions::{Companion, companions};
 pub use describe::{describe, shape};
 pub use error::LoadError;
 pub use examples::{EXAMPLES, Example, is_example};
@@ -59,7 +62,8 @@ pub use lessons::lesson_scene;
 pub use obj::{Loaded, load, parse};
 pub use part::sweep_once;
 pub use picture::{
-    PICTURE_FORMATS, PictureFormat, check_alpha, check_picture_target, save_picture,
+    PICTURE_FORMATS, PictureFormat, check_alpha, check_picture_target, check_replaced,
+    save_encoded, save_picture,
 };
 pub use progress::{Cancelled, Progress};
 pub use read::check_file;
@@ -69,6 +73,7 @@ pub use scene_file::{
     material_to_text, open, save, save_with_window, to_text,
 };
 pub use sources::Sources;
+pub use stamp::{encode_stamped, read_stamp};
 pub use texture::{
     load_picture, load_texture, load_texture_with, texture_endings, texture_formats,
 };

@@ -11,7 +11,7 @@ use image::codecs::jpeg::JpegEncoder;
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
-use super::replace::{SaveError, Worth, check_target, replace_by};
+use super::replace::{SaveError, Worth, check_target, replace, replace_by};
 use marraztu_core::base::image::Picture;
 
 /// The quality of a JPEG, from 1 to 100: artefacts are barely visible.
@@ -108,6 +108,14 @@ pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
     })
 }
 
+/// Saves an encoded picture.
+///
+/// # Errors
+/// If the file cannot be written; an existing file is unchanged.
+pub fn save_encoded(path: &Path, content: &[u8]) -> Result<(), SaveError> {
+    replace(path, content, Worth::Product)
+}
+
 /// Checks that the format for `path` has an alpha channel, for transparent pictures.
 ///
 /// # Errors
@@ -129,9 +137,17 @@ pub fn check_alpha(path: &Path) -> Result<(), SaveError> {
 /// # Errors
 /// If it cannot.
 pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
-    let fail = |reason: &str| SaveError::new(path, reason);
-    PictureFormat::of(path).map_err(|reason| fail(&reason))?;
+    PictureFormat::of(path).map_err(|reason| SaveError::new(path, reason))?;
     check_target(path)?;
+    check_replaced(path)
+}
+
+/// Checks that an existing file at `path` is a picture, or empty.
+///
+/// # Errors
+/// If it is another file.
+pub fn check_replaced(path: &Path) -> Result<(), SaveError> {
+    let fail = |reason: &str| SaveError::new(path, reason);
     let mut begin = Vec::new();
     let Ok(file) = File::open(path) else { return Ok(()) };
     match file.take(SIGNATURE).read_to_end(&mut begin) {
@@ -145,7 +161,7 @@ pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
 const BAND: usize = 64;
 
 /// Returns whether any pixel is transparent.
-fn has_alpha(picture: &Picture) -> bool {
+pub(super) fn has_alpha(picture: &Picture) -> bool {
     picture.pixels().iter().any(|pixel| pixel[3] != 255)
 }
 
@@ -168,7 +184,8 @@ fn write_opaque(picture: &Picture, encoder: impl ImageEncoder) -> std::io::Resul
         .map_err(std::io::Error::other)
 }
 
-fn sides(picture: &Picture) -> [u32; 2] {
+/// Returns the width and height of a picture, as formats store them.
+pub(super) fn sides(picture: &Picture) -> [u32; 2] {
     let size = picture.size();
     [size.width, size.height].map(|side| u32::try_from(side).unwrap_or(u32::MAX))
 }
@@ -179,14 +196,23 @@ fn write_png(picture: &Picture, to: &mut dyn Write) -> std::io::Result<()> {
 
 /// Encodes a picture as PNG with a comment.
 pub(crate) fn png_with_comment(picture: &Picture, comment: &str) -> Result<Vec<u8>, String> {
+    png_with_text(picture, "Comment", comment)
+}
+
+/// Encodes a picture as PNG with a text chunk.
+pub(crate) fn png_with_text(
+    picture: &Picture,
+    keyword: &str,
+    text: &str,
+) -> Result<Vec<u8>, String> {
     let mut content = Vec::new();
-    let written = write_png_with(picture, Some(comment), &mut content);
+    let written = write_png_with(picture, Some((keyword, text)), &mut content);
     written.map(|()| content).map_err(|error| error.to_string())
 }
 
 fn write_png_with(
     picture: &Picture,
-    comment: Option<&str>,
+    text: Option<(&str, &str)>,
     to: &mut dyn Write,
 ) -> std::io::Result<()> {
     let [width, height] = sides(picture);
@@ -197,8 +223,8 @@ fn write_png_with(
     // Fast compression with adaptive filters: drawing should not wait for the encoder.
     encoder.set_compression(png::Compression::Fast);
     encoder.set_filter(png::Filter::Adaptive);
-    if let Some(comment) = comment {
-        encoder.add_text_chunk("Comment".to_owned(), comment.to_owned())?;
+    if let Some((keyword, text)) = text {
+        encoder.add_text_chunk(keyword.to_owned(), text.to_owned())?;
     }
     let mut writer = encoder.write_header()?;
     let mut stream = writer.stream_writer()?;

@@ -379,6 +379,17 @@ impl Statements {
     }
 }
 
+/// Returns the file names of all maps in an MTL file.
+pub(super) fn map_names(bytes: &[u8]) -> Vec<String> {
+    let of_line = |line: Line<'_>| {
+        let (keyword, rest) = line.statement();
+        let keyword = keyword.to_ascii_lowercase();
+        let is_map = keyword == b"map_kd" || kind_of(&keyword).is_some();
+        if is_map { map(rest).map(|map| map.name) } else { None }
+    };
+    Lines::new(bytes).filter_map(of_line).collect()
+}
+
 /// Returns the kind of a map, by its keyword in lower case.
 fn kind_of(keyword: &[u8]) -> Option<MapKind> {
     match keyword {

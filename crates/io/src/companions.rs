@@ -1,0 +1,123 @@
+//! Lists the files that a model refers to, without loading it.
+//!
+//! A batch needs to know whether a picture is up to date before it loads the model. Searching the
+//! text for `mtllib` takes a small part of the time of parsing it. Names without a file are listed,
+//! too: the picture changes if the file appears later.
+//!
+//! The list may name more files than loading reads, such as the MTL file with the model's name.
+
+use std::collections::BTreeMap;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use memchr::memmem;
+
+use super::error::{LoadError, shown};
+use super::locate::Locator;
+use super::mtl::map_names;
+use super::obj::MOST_BYTES;
+use super::obj::lines::Lines;
+use super::packed::{Unpacked, unpacked_name};
+use super::progress::Progress;
+use super::read::{MOST_WORDS, open, read, utf_8};
+
+/// A file that a model refers to.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Companion {
+    /// The name, as the model or its MTL file gives it.
+    pub name: String,
+    /// The file, if it was found.
+    pub path: Option<PathBuf>,
+}
+
+/// Lists the MTL files and textures of the model at `path`, in the order of their names.
+///
+/// # Errors
+/// If the model cannot be read.
+pub fn companions(path: &Path) -> Result<Vec<Companion>, LoadError> {
+    let file = shown(path);
+    let text = match unpacked_name(&file) {
+        None => read(path, MOST_BYTES, &Progress::new())?,
+        Some(_) => unpacked(path, &file)?,
+    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut locator = Locator::default();
+    let mut found = BTreeMap::new();
+    for names in libraries(&utf_8(text)) {
+        found.extend(locator.locate_all(folder, &names, ".mtl"));
+    }
+    // Loading falls back to the MTL file with the model's name.
+    let stem = Path::new(unpacked_name(&file).unwrap_or(&file)).file_stem().unwrap_or_default();
+    let own = format!("{}.mtl", stem.to_string_lossy());
+    let own_path = locator.locate(folder, &own);
+    found.entry(own).or_insert(own_path);
+    let libraries: Vec<PathBuf> = found.values().flatten().cloned().collect();
+    for library in libraries {
+        // An unreadable MTL file is a finding of the model, which has no further files then.
+        let Ok(text) = read(&library, MOST_WORDS, &Progress::new()) else { continue };
+        let folders = [library.parent().unwrap_or(Path::new("")), folder];
+        for name in map_names(&utf_8(text)) {
+            let path = folders.into_iter().find_map(|folder| locator.locate(folder, &name));
+            found.insert(name, path);
+        }
+    }
+    Ok(found.into_iter().map(|(name, path)| Companion { name, path }).collect())
+}
+
+fn unpacked(path: &Path, file: &str) -> Result<Vec<u8>, LoadError> {
+    let (packed, _) = open(path, MOST_BYTES)?;
+    let mut text = Vec::new();
+    let limit = u64::try_from(MOST_BYTES).unwrap_or(u64::MAX);
+    let read = Unpacked::new(packed).take(limit).read_to_end(&mut text);
+    read.map_err(|error| LoadError::system(file, &error))?;
+    Ok(text)
+}
+
+/// Returns the names in `mtllib` statements, once each.
+fn libraries(text: &[u8]) -> Vec<String> {
+    let mut names = Vec::new();
+    for at in memmem::find_iter(text, b"mtllib") {
+        // A statement starts its line, possibly after blanks.
+        let begin = text[..at].iter().rposition(|byte| !matches!(byte, b' ' | b'\t'));
+        if begin.is_some_and(|last| !matches!(text[last], b'\n' | b'\r')) {
+            continue;
+        }
+        if let Some(line) = Lines::new(&text[at..]).next() {
+            let name = line.name();
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mtl_files_and_textures_are_listed_whether_they_exist_or_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let text =
+            "# mtllib no.mtl\nmtllib a.mtl b.mtl\nv 0 0 0\n  mtllib c.mtl\nmtllib a.mtl b.mtl\n";
+        std::fs::write(at("m.obj"), text).unwrap();
+        std::fs::write(at("a.mtl"), "newmtl a\nmap_Kd -s 1 1 1 wood.png\nbump gone.png\n").unwrap();
+        std::fs::write(at("m.mtl"), "newmtl m\n").unwrap();
+        std::fs::write(at("wood.png"), "").unwrap();
+        let listed = companions(&at("m.obj")).unwrap();
+        let found = |name: &str| Companion { name: name.to_owned(), path: Some(at(name)) };
+        let missing = |name: &str| Companion { name: name.to_owned(), path: None };
+        let expected = [
+            found("a.mtl"),
+            missing("b.mtl"),
+            missing("c.mtl"),
+            missing("gone.png"),
+            found("m.mtl"),
+            found("wood.png"),
+        ];
+        assert_eq!(listed, expected);
+        assert!(companions(&at("absent.obj")).is_err());
+    }
+}
