@@ -102,7 +102,7 @@ pub(crate) struct Reading {
 }
 
 /// How the surfaces of objects look.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Surfaces of all objects")]
 pub(crate) struct Surfaces {
     /// One of the 19 materials (brass, polished-gold, ruby ...), or "file" for the file's own
@@ -130,7 +130,7 @@ pub(crate) struct Surfaces {
 }
 
 /// How the scene is looked at.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "View")]
 pub(crate) struct Seeing {
     /// The camera to look through, by its number in the scene's list, from 1

@@ -10,7 +10,7 @@ use marraztu_io::{Input, Progress, describe, shape};
 use super::arguments::{Info, Reading};
 use super::failure::Failure;
 use super::say;
-use super::stage::{Stage, input, is_scene, load};
+use super::stage::{Stage, Watch, input, is_scene, load};
 use super::values::is_standard;
 
 /// Describes each file. An unreadable file is reported, and the rest are still described.
@@ -46,7 +46,7 @@ fn description(file: &Path, input: Option<&Input>, reading: &Reading) -> Result<
         };
         return Ok(describe(&loaded));
     }
-    let stage = Stage::of_scene(file, input)?;
+    let stage = Stage::of_scene(file, input, Watch::Bar)?;
     let mut text = scene_text(file, &stage.scene, &stage.view);
     for finding in &stage.findings {
         // Writing to a string cannot fail.

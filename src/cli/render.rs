@@ -4,8 +4,11 @@ use std::path::PathBuf;
 
 use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::edit::framing::Sphere;
 use marraztu_core::edit::{framing, items, lighting};
-use marraztu_core::scene::{CameraId, Command, Fill, ItemId, Object};
+use marraztu_core::scene::{
+    Camera, CameraId, Command, Fill, Item, ItemId, Lens, Object, ObjectId, Pose, Tracked,
+};
 use marraztu_io::{self as io, Progress};
 use marraztu_render::accel::Accelerated as _;
 use marraztu_render::{Renderer, Unseen, fitted_exposure, plan_frame, unseen, without_ground};
@@ -17,7 +20,7 @@ use super::arguments::{
 use super::bar::Bar;
 use super::draw_along;
 use super::failure::{Failure, usage};
-use super::stage::Stage;
+use super::stage::{Stage, Watch};
 use super::talk::note;
 use super::target::Target;
 
@@ -107,18 +110,21 @@ pub(crate) fn staged(
     seeing: &Seeing,
     accuracy: &Accuracy,
 ) -> Result<Stage, Failure> {
-    let mut stage = Stage::of(files, reading)?;
+    let mut stage = Stage::of(files, reading, Watch::Bar)?;
     cover(&mut stage, surfaces)?;
     for finding in &stage.findings {
         note(finding);
     }
-    look(&mut stage, seeing)?;
+    look(&mut stage, seeing, &Aim::Options)?;
+    for text in &stage.notes {
+        note(text);
+    }
     stage.settings = accuracy.of(&stage.settings);
     Ok(stage)
 }
 
 /// Applies the options for surfaces to all objects.
-fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
+pub(super) fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
     let mut load = |path| io::load_texture_with(path, &mut stage.findings);
     let texture = surfaces.texture.as_deref().map(&mut load).transpose()?;
     let change = |object: &mut Object| {
@@ -137,7 +143,7 @@ fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
     if let Some(texture) = &surfaces.texture {
         let objects = stage.scene.objects.iter();
         for (_, object) in objects.filter(|(_, object)| object.model.mesh.uvs().is_empty()) {
-            note(&format_args!(
+            stage.notes.push(format!(
                 "{} is not shown on {}, which has no texture coordinates",
                 texture.display(),
                 object.name
@@ -147,8 +153,20 @@ fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The position of the camera.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Aim {
+    /// The one that the options describe.
+    #[default]
+    Options,
+    /// Everything visible is framed from these degrees to the right of the front, and up.
+    From([f64; 2]),
+    /// A position with axes, and degrees to each side across the shorter side, if known.
+    Pose(Pose, Option<f64>),
+}
+
 /// Applies the options for the view.
-fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
+pub(super) fn look(stage: &mut Stage, seeing: &Seeing, aim: &Aim) -> Result<(), Failure> {
     if seeing.from.is_some() && !stage.models_alone {
         return Err(usage(
             "--from works only for models without a scene; choose a camera of the scene with \
@@ -156,7 +174,11 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
         ));
     }
     // The camera comes first: lights and exposure depend on the view.
-    aim(stage, seeing)?;
+    match aim {
+        Aim::Options => aim_by_options(stage, seeing)?,
+        Aim::From(from) => frame(stage, *from)?,
+        Aim::Pose(pose, half_angle) => place_camera(stage, *pose, *half_angle)?,
+    }
     if let Some(Slots(slots)) = &seeing.lights {
         light(stage, slots)?;
     }
@@ -194,7 +216,7 @@ const FITTED: usize = 256;
 
 /// Selects the camera. Models without a scene are framed, and lit for that view. An explicitly
 /// chosen camera sees them under the first scene's own lights.
-fn aim(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
+fn aim_by_options(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     if let Some(number) = seeing.camera {
         stage.view.camera = camera(stage, number)?;
         return Ok(());
@@ -202,16 +224,51 @@ fn aim(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     if !stage.models_alone {
         return Ok(());
     }
-    let from = seeing.from.unwrap_or(framing::MODELS_FROM);
+    frame(stage, seeing.from.unwrap_or(framing::MODELS_FROM))
+}
+
+/// Frames everything visible from a direction. Models without a scene are lit for that view.
+fn frame(stage: &mut Stage, from: [f64; 2]) -> Result<(), Failure> {
     match framing::models(&stage.scene, &stage.view, from) {
         Ok(command) => stage.change(command)?,
-        Err(refusal) => note(&refusal),
+        Err(refusal) => stage.notes.push(refusal.to_string()),
+    }
+    if !stage.models_alone {
+        return Ok(());
     }
     match lighting::models(&stage.scene, &stage.view) {
         Ok(command) => stage.change(command),
         // The note about framing has already given the reason.
         Err(_) => Ok(()),
     }
+}
+
+/// Places the camera. The lights of models without a scene are those of the default view, so they
+/// are the same for all positions, except for the camera's own spot.
+fn place_camera(stage: &mut Stage, pose: Pose, half_angle: Option<f64>) -> Result<(), Failure> {
+    let scene = &stage.scene;
+    let visible = scene.objects.iter().filter(|(_, object)| object.visible);
+    let ids: Vec<ObjectId> = visible.map(|(id, _)| id).collect();
+    let sphere = framing::sphere(scene, &stage.view, &ids);
+    let lens = scene.selected_camera(&stage.view).lens;
+    if stage.models_alone {
+        frame(stage, framing::MODELS_FROM)?;
+    }
+    let half_angle = half_angle.unwrap_or(lens.half_angle);
+    let mut lens = Lens { half_angle, ..lens };
+    if let Some(Sphere { centre, radius }) = sphere {
+        let radius = if radius > 0.0 { radius } else { 1.0 };
+        let distance = pose.eye.distance(centre);
+        // The planes enclose everything, as close as the depth buffer needs.
+        let near = ((distance - radius) / 2.0).max(radius / 1000.0).min(1.0);
+        let far = 2000.0_f64.max(distance + 2.0 * radius);
+        let parallel_near = lens.parallel_near.min(near);
+        let half_size = 1.1 * radius;
+        lens = Lens { near, far, half_size, parallel_near, parallel_far: far, ..lens };
+    }
+    let camera = stage.scene.selected_camera(&stage.view);
+    let camera = Camera { pose: Tracked::new(pose), lens, ..camera.clone() };
+    stage.change(Command::Replace(Item::Camera(stage.view.camera, Box::new(camera))))
 }
 
 /// Switches the lights in these slots on and all others off.

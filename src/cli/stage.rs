@@ -19,13 +19,38 @@ use super::bar::Bar;
 use super::failure::{Failure, usage};
 use super::values::is_standard;
 
+/// Who watches files being read.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Watch<'a> {
+    /// The user, by a bar.
+    Bar,
+    /// The program, which may cancel reading.
+    Progress(&'a Progress),
+}
+
+impl Watch<'_> {
+    /// Begins to read.
+    fn begin(self, what: &str) -> (Progress, Option<Bar>) {
+        match self {
+            Watch::Progress(progress) => (progress.clone(), None),
+            Watch::Bar => {
+                let progress = Progress::new();
+                let bar = Bar::of(what, &progress);
+                (progress, Some(bar))
+            }
+        }
+    }
+}
+
 /// A scene with its view and settings, and the findings of its files.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Stage {
     pub(crate) scene: Scene,
     pub(crate) view: View,
     pub(crate) settings: Settings,
     pub(crate) findings: Vec<Finding>,
+    /// Options without an effect on this scene.
+    pub(crate) notes: Vec<String>,
     /// Whether there are only models, without a scene file that defines the view.
     pub(crate) models_alone: bool,
 }
@@ -42,7 +67,11 @@ impl Stage {
     }
 
     /// Loads the files.
-    pub(crate) fn of(files: &[PathBuf], reading: &Reading) -> Result<Self, Failure> {
+    pub(crate) fn of(
+        files: &[PathBuf],
+        reading: &Reading,
+        watch: Watch<'_>,
+    ) -> Result<Self, Failure> {
         let input = input(files)?;
         // Check all files before the first is read, which may take long.
         for file in files.iter().filter(|file| !is_standard(file)) {
@@ -63,10 +92,10 @@ impl Stage {
             ));
         }
         let mut stage = match scenes.first() {
-            Some(scene) => Self::of_scene(scene, input.as_ref())?,
+            Some(scene) => Self::of_scene(scene, input.as_ref(), watch)?,
             None => Self::first(models.is_empty()),
         };
-        stage.add(&models, input.as_ref(), reading)?;
+        stage.add(&models, input.as_ref(), reading, watch)?;
         stage.findings = io::joined(stage.findings);
         Ok(stage)
     }
@@ -80,14 +109,18 @@ impl Stage {
             view,
             settings: Settings::default(),
             findings: Vec::new(),
+            notes: Vec::new(),
             models_alone: !with_objects,
         }
     }
 
     /// Opens a scene from a file or from standard input.
-    pub(super) fn of_scene(file: &Path, input: Option<&Input>) -> Result<Self, Failure> {
-        let progress = Progress::new();
-        let bar = Bar::of(&format!("reading {}", file.display()), &progress);
+    pub(super) fn of_scene(
+        file: &Path,
+        input: Option<&Input>,
+        watch: Watch<'_>,
+    ) -> Result<Self, Failure> {
+        let (progress, bar) = watch.begin(&format!("reading {}", file.display()));
         let opened = match input.filter(|_| is_standard(file)) {
             Some(input) => input.scene(&progress)?,
             None => io::open(file, &progress)?,
@@ -98,6 +131,7 @@ impl Stage {
             view: opened.view,
             settings: opened.settings,
             findings: opened.findings,
+            notes: Vec::new(),
             models_alone: false,
         })
     }
@@ -109,14 +143,14 @@ impl Stage {
         files: &[&PathBuf],
         input: Option<&Input>,
         reading: &Reading,
+        watch: Watch<'_>,
     ) -> Result<(), Failure> {
         let [first, ..] = files else { return Ok(()) };
-        let progress = Progress::new();
         let what = match files.len() {
             1 => format!("reading {}", first.display()),
             count => format!("reading {count} models"),
         };
-        let _bar = Bar::of(&what, &progress);
+        let (progress, _bar) = watch.begin(&what);
         let place =
             |file: &Path| std::path::absolute(file).unwrap_or_else(|_empty| file.to_owned());
         let places: Vec<PathBuf> = files.iter().map(|file| place(file)).collect();

@@ -81,7 +81,8 @@ pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
         // Spins and orbits continue during the turn.
         let time = stage.view.time + seconds * part;
         let view = View { time, ..stage.view.clone() };
-        let shot = Stage { scene, view, findings: Vec::new(), ..stage }.shot(size);
+        let shot =
+            Stage { scene, view, findings: Vec::new(), notes: Vec::new(), ..stage }.shot(size);
         if transparent {
             writer.push(&without_ground(&mut renderer, &shot)?)?;
         } else {
