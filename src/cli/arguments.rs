@@ -130,7 +130,7 @@ pub(crate) struct Surfaces {
 }
 
 /// How the scene is looked at.
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "View")]
 pub(crate) struct Seeing {
     /// The camera to look through, by its number in the scene's list, from 1

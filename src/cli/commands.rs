@@ -5,13 +5,18 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use super::arguments::{Info, Render, choice};
+use super::batch::Batch;
+use super::compare::Compare;
 use super::explain::Explain;
 use super::export::Export;
 use super::keys::Keys;
 use super::lab::Lab;
+use super::merge::Merge;
 use super::plan::Plan;
+use super::thumbnail::Thumbnail;
 use super::turntable::Turntable;
 use super::verify::Verify;
+use super::views::Views;
 use marraztu::app::Shell;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset};
 
@@ -57,6 +62,16 @@ pub(crate) struct Arguments {
 pub(crate) enum Headless {
     /// Draw a picture into a file, with the same pixels as in the editor
     Render(Box<Render>),
+    /// Draw many pictures: of all models of a list, from several views
+    Batch(Box<Batch>),
+    /// Join the reports of the parts of a batch
+    Merge(Merge),
+    /// Compare two pictures
+    Compare(Compare),
+    /// Draw standard views of a model into one picture, with its facts
+    Views(Box<Views>),
+    /// Draw a small picture for a file manager
+    Thumbnail(Thumbnail),
     /// Draw a turntable: a GIF, an animated PNG, or numbered pictures
     Turntable(Box<Turntable>),
     /// Export the scene as OBJ with MTL, or as glTF

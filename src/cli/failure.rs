@@ -21,6 +21,9 @@ pub(crate) enum Failure {
     /// The error has been printed already.
     #[error("some of it failed")]
     Told,
+    /// The result is the exit status.
+    #[error("exit status {0}")]
+    Status(u8),
     /// An item named in the arguments does not exist.
     #[error("{0}")]
     Absent(String),

@@ -66,7 +66,7 @@ fn model_text(model: &Model) -> String {
 }
 
 /// Lists the objects, cameras and lights of a scene, one per line; an asterisk marks the selection.
-fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
+pub(super) fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
     let mut lines = vec![format!("{:16}{}", "scene", file.display())];
     let head = |what: &str, count: usize| format!("{what:16}{count}");
     let mark = |selected| if selected { '*' } else { ' ' };

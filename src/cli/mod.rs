@@ -6,22 +6,27 @@
 mod accuracy;
 mod arguments;
 mod bar;
+mod batch;
 mod commands;
+mod compare;
 mod explain;
 mod export;
 mod failure;
 mod info;
 mod keys;
 mod lab;
+mod merge;
 mod open;
 mod plan;
 mod render;
 mod stage;
 mod talk;
 mod target;
+mod thumbnail;
 mod turntable;
 mod values;
 mod verify;
+mod views;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -44,7 +49,12 @@ pub(crate) fn run() -> ExitCode {
     }
     let done = match arguments.command {
         Some(Headless::Render(arguments)) => render::render(&arguments),
+        Some(Headless::Batch(arguments)) => batch::batch(&arguments),
         Some(Headless::Turntable(arguments)) => turntable::turntable(&arguments),
+        Some(Headless::Merge(arguments)) => merge::merge(&arguments),
+        Some(Headless::Compare(arguments)) => compare::compare(&arguments),
+        Some(Headless::Views(arguments)) => views::views(&arguments),
+        Some(Headless::Thumbnail(arguments)) => thumbnail::thumbnail(&arguments),
         Some(Headless::Export(arguments)) => export::export(&arguments),
         Some(Headless::Info(arguments)) => info::info(&arguments),
         Some(Headless::Keys(arguments)) => keys::keys(&arguments),
@@ -62,6 +72,7 @@ pub(crate) fn run() -> ExitCode {
         }
         Err(Failure::Unparsed(wrong)) => usage(&wrong),
         Err(Failure::Told) => ExitCode::FAILURE,
+        Err(Failure::Status(status)) => ExitCode::from(status),
         Err(failure) => {
             say("error", &failure);
             ExitCode::FAILURE

@@ -155,7 +155,7 @@ pub(super) fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failur
 
 /// The position of the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum Aim {
+pub(crate) enum Aim {
     /// The one that the options describe.
     #[default]
     Options,

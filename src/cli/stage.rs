@@ -72,12 +72,21 @@ impl Stage {
         reading: &Reading,
         watch: Watch<'_>,
     ) -> Result<Self, Failure> {
-        let input = input(files)?;
+        Self::with_input(files, input(files)?.as_ref(), reading, watch)
+    }
+
+    /// Loads the files; "-" is the input.
+    pub(super) fn with_input(
+        files: &[PathBuf],
+        input: Option<&Input>,
+        reading: &Reading,
+        watch: Watch<'_>,
+    ) -> Result<Self, Failure> {
         // Check all files before the first is read, which may take long.
         for file in files.iter().filter(|file| !is_standard(file)) {
             io::check_file(file)?;
         }
-        let holds_scene = |file: &&PathBuf| match &input {
+        let holds_scene = |file: &&PathBuf| match input {
             Some(input) if is_standard(file) => input.is_scene(),
             _ => is_scene(file),
         };
@@ -92,10 +101,10 @@ impl Stage {
             ));
         }
         let mut stage = match scenes.first() {
-            Some(scene) => Self::of_scene(scene, input.as_ref(), watch)?,
+            Some(scene) => Self::of_scene(scene, input, watch)?,
             None => Self::first(models.is_empty()),
         };
-        stage.add(&models, input.as_ref(), reading, watch)?;
+        stage.add(&models, input, reading, watch)?;
         stage.findings = io::joined(stage.findings);
         Ok(stage)
     }

@@ -4,6 +4,7 @@
 //! title and the verdict are at the top, then the overview, then a panel for each axis, all with
 //! the same scales.
 
+mod contact_sheet;
 mod page;
 
 use plotters::coord::Shift;
@@ -14,6 +15,7 @@ use plotters::style::{FontStyle, register_font};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_lab::report::{Panel, PanelMark, Panels, Report, Scale, TextBox, place};
 
+pub use contact_sheet::{SheetCell, contact_sheet};
 pub use page::{page_html, page_markdown, plot_name, sections};
 
 /// The error of a plot that could not be drawn.

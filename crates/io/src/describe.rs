@@ -3,13 +3,19 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
+use super::findings::Finding;
 use super::obj::Loaded;
 use marraztu_core::scene::{FileMaterial, Mesh, Model, Shape, Smoothing, UpAxis, Winding};
 
 /// Lists the shape, parts, materials and findings of a loaded file, line by line.
 #[must_use]
 pub fn describe(loaded: &Loaded) -> String {
-    let model = &loaded.model;
+    describe_model(&loaded.model, &loaded.findings)
+}
+
+/// Lists the shape, parts and materials of a model, and findings, line by line.
+#[must_use]
+pub fn describe_model(model: &Model, findings: &[Finding]) -> String {
     let mut text = Text::default();
     text.line("name", &model.name);
     if let Some(source) = &model.source {
@@ -26,11 +32,11 @@ pub fn describe(loaded: &Loaded) -> String {
     }
     describe_parts(model, &mut text);
     describe_materials(model, &mut text);
-    if loaded.findings.is_empty() {
+    if findings.is_empty() {
         text.line("findings", "none");
     } else {
-        text.head("findings", loaded.findings.len());
-        for finding in &loaded.findings {
+        text.head("findings", findings.len());
+        for finding in findings {
             text.item(&finding.to_string());
         }
     }

@@ -3,10 +3,11 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::error::LoadError;
+use super::error::{LoadError, shown};
 use super::obj::{Loaded, MOST_BYTES, parse};
 use super::packed::{MAGIC, Unpacked};
 use super::progress::Progress;
+use super::read::open as open_file;
 use super::scene_file::{Opened, SceneFileError, open_text};
 use super::up_axis::{StatedUp, stated_in};
 use marraztu_core::scene::LoadOptions;
@@ -17,10 +18,14 @@ const NAME: &str = "standard input";
 /// The possible first bytes of scene files; no OBJ file begins with them.
 const SCENE: [&[u8]; 4] = [b"(", b"//", b"/*", b"#!["];
 
-/// The bytes of a model or a scene. Files that it names are searched for in the current folder.
+/// The bytes of a model or a scene. Files that it names are searched for in the current folder, or
+/// in the folder of the file that it was read from.
 #[derive(Debug)]
 pub struct Input {
     bytes: Vec<u8>,
+    /// The name in messages.
+    name: String,
+    folder: PathBuf,
 }
 
 impl Input {
@@ -47,7 +52,18 @@ impl Input {
         if bytes.len() > MOST_BYTES {
             return Err(LoadError::too_large(NAME, MOST_BYTES));
         }
-        Ok(Self { bytes })
+        Ok(Self { bytes, name: NAME.to_owned(), folder: PathBuf::new() })
+    }
+
+    /// Reads a file whatever its name: its content tells whether it is a model or a scene, and
+    /// whether it is compressed.
+    ///
+    /// # Errors
+    /// If it cannot be read, or is too large.
+    pub fn of_file(path: &Path) -> Result<Self, LoadError> {
+        let (file, _) = open_file(path, MOST_BYTES)?;
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        Ok(Self { name: shown(path), folder, ..Self::read(file)? })
     }
 
     /// Returns whether the input is a scene, judged by its first bytes.
@@ -69,7 +85,7 @@ impl Input {
     /// # Errors
     /// As [`load`](super::load).
     pub fn model(&self, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
-        parse(&self.bytes, NAME, Some(Path::new("")), options, progress)
+        parse(&self.bytes, &self.name, Some(&self.folder), options, progress)
     }
 
     /// Parses the input as a scene.
@@ -78,11 +94,11 @@ impl Input {
     /// As [`open`](super::open).
     pub fn scene(&self, progress: &Progress) -> Result<Opened, SceneFileError> {
         let text = std::str::from_utf8(&self.bytes).map_err(|_bytes| SceneFileError::File {
-            file: NAME.to_owned(),
+            file: self.name.clone(),
             reason: "this is not a scene file".to_owned(),
         })?;
         let here = std::env::current_dir().unwrap_or_else(|_gone| PathBuf::new());
-        open_text(text, NAME, here, progress)
+        open_text(text, &self.name, here.join(&self.folder), progress)
     }
 }
 

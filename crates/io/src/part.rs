@@ -15,10 +15,11 @@ use std::hash::{BuildHasher, RandomState};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU16, Ordering};
-use std::sync::{LazyLock, Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 use super::replace::folder;
+use marraztu_core::base::once::get_or_compute;
 
 /// The ending of temporary files.
 const ENDING: &str = ".part";
@@ -36,22 +37,29 @@ const MOST_ATTEMPTS: usize = 100;
 /// On systems that cannot tell whether a process runs, temporary files of this age are leftovers.
 const LONG_AGO: Duration = Duration::from_hours(24);
 
-/// This machine, and on Linux the namespace of its process numbers.
-static HOST: LazyLock<String> = LazyLock::new(|| {
-    let name = gethostname::gethostname();
-    let plain = |c: &char| c.is_ascii_alphanumeric();
-    let name: String = name.to_string_lossy().chars().filter(plain).take(MOST_HOST).collect();
-    let namespace = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
-    let digits = |c: &char| c.is_ascii_digit();
-    let number: String = namespace.to_string_lossy().chars().filter(digits).collect();
-    format!("{name}_{number}")
-});
+/// Returns the name of this machine, and on Linux the namespace of its process numbers.
+fn host() -> &'static str {
+    static HOST: OnceLock<String> = OnceLock::new();
+    let host: &String = get_or_compute(&HOST, || {
+        let name = gethostname::gethostname();
+        let plain = |c: &char| c.is_ascii_alphanumeric();
+        let name: String = name.to_string_lossy().chars().filter(plain).take(MOST_HOST).collect();
+        let namespace = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
+        let digits = |c: &char| c.is_ascii_digit();
+        let number: String = namespace.to_string_lossy().chars().filter(digits).collect();
+        format!("{name}_{number}")
+    });
+    host
+}
 
-/// A random number of this process.
-static RANDOM: LazyLock<u32> = LazyLock::new(|| {
-    let bits = RandomState::new().hash_one(std::process::id());
-    u32::try_from(bits >> 32).unwrap_or_default()
-});
+/// Returns the random number of this process.
+fn random() -> u32 {
+    static RANDOM: OnceLock<u32> = OnceLock::new();
+    *get_or_compute(&RANDOM, || {
+        let bits = RandomState::new().hash_one(std::process::id());
+        u32::try_from(bits >> 32).unwrap_or_default()
+    })
+}
 
 /// Creates a temporary file next to its target.
 ///
@@ -62,7 +70,7 @@ pub(super) fn create_part(target: &Path) -> std::io::Result<(File, PathBuf)> {
     let mut attempts = 0;
     loop {
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let name = part_name(target, &HOST, std::process::id(), (*RANDOM, number));
+        let name = part_name(target, host(), std::process::id(), (random(), number));
         let part = folder(target).join(name);
         attempts += 1;
         match OpenOptions::new().write(true).create_new(true).open(&part) {
@@ -97,9 +105,9 @@ pub fn sweep_once(folder: &Path) {
 /// Returns whether an entry of a folder is a temporary file of an ended process of this host.
 fn is_left_over(entry: &fs::DirEntry) -> bool {
     let name = entry.file_name();
-    let Some((process, random)) = name.to_str().and_then(owner) else { return false };
+    let Some((process, number)) = name.to_str().and_then(owner) else { return false };
     if process == std::process::id() {
-        return random != *RANDOM;
+        return number != random();
     }
     if Path::new("/proc/self").exists() {
         return !Path::new("/proc").join(process.to_string()).exists();
@@ -112,10 +120,10 @@ fn is_left_over(entry: &fs::DirEntry) -> bool {
 fn owner(name: &str) -> Option<(u32, u32)> {
     let owner = name.strip_prefix('.')?.strip_suffix(ENDING)?;
     let mut parts = owner.rsplitn(3, '-');
-    let (random, process, rest) = (parts.next()?, parts.next()?, parts.next()?);
-    rest.strip_suffix(&**HOST)?.strip_suffix('.')?;
-    let random = random.split_at_checked(8).filter(|(_, number)| number.len() == 4)?.0;
-    Some((process.parse().ok()?, u32::from_str_radix(random, 16).ok()?))
+    let (number, process, rest) = (parts.next()?, parts.next()?, parts.next()?);
+    rest.strip_suffix(host())?.strip_suffix('.')?;
+    let number = number.split_at_checked(8).filter(|(_, count)| count.len() == 4)?.0;
+    Some((process.parse().ok()?, u32::from_str_radix(number, 16).ok()?))
 }
 
 #[cfg(test)]
@@ -142,10 +150,10 @@ mod tests {
             part
         };
         let (own, parent) = (std::process::id(), std::os::unix::process::parent_id());
-        let gone = [leave(&HOST, ended(), 1), leave(&HOST, own, !*RANDOM)];
+        let gone = [leave(host(), ended(), 1), leave(host(), own, !random())];
         let kept = [
-            leave(&HOST, parent, 1),
-            leave(&HOST, own, *RANDOM),
+            leave(host(), parent, 1),
+            leave(host(), own, random()),
             leave("other_1", ended(), 1),
             folder.path().join(format!("a.png.{}.new", ended())),
             folder.path().join(".mine.part"),
@@ -158,7 +166,7 @@ mod tests {
         assert!(gone.iter().all(|part| !part.exists()), "their processes have ended");
         assert!(kept.iter().all(|part| part.exists()), "they may be in use, or are not ours");
         // A second leftover would disappear if the folder was read again.
-        let later = leave(&HOST, ended(), 2);
+        let later = leave(host(), ended(), 2);
         for _ in 0..10 {
             replace(&target, b"whole", Worth::Product).unwrap();
         }

@@ -36,6 +36,11 @@ impl Sources {
         self
     }
 
+    /// Returns the files, each once, in the order of their places.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.places.keys().map(PathBuf::as_path)
+    }
+
     fn add_all<P: AsRef<Path>>(&mut self, files: impl IntoIterator<Item = P>) {
         for file in files {
             let file = file.as_ref();

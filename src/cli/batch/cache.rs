@@ -1,0 +1,164 @@
+//! The loaded models of a batch, within a limit of memory.
+//!
+//! Jobs of one model share it. If the models exceed the limit, the ones used longest ago are
+//! dropped. Threads that need a model while another thread loads it wait for it.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use marraztu_core::scene::{Mesh, Object, Texture};
+use marraztu_io::{self as io, Progress};
+use marraztu_render::accel::Accelerated as _;
+
+use super::jobs::Row;
+use super::outcome::Fault;
+use crate::cli::render::cover;
+use crate::cli::stage::{Stage, Watch};
+
+/// A scene with its surfaces, before a camera is placed; or the reason why it cannot be loaded.
+type Loaded = Result<Arc<Stage>, Fault>;
+
+/// A file, and the options that its loaded scene depends on.
+type Key = (PathBuf, String);
+
+/// The models of a batch.
+#[derive(Debug)]
+pub(super) struct StageCache {
+    /// The limit in bytes.
+    most: usize,
+    entries: Mutex<Entries>,
+}
+
+#[derive(Debug, Default)]
+struct Entries {
+    map: BTreeMap<Key, Entry>,
+    /// The number of requests, as a clock.
+    clock: u64,
+}
+
+#[derive(Debug, Default)]
+struct Entry {
+    loaded: Arc<Mutex<Option<Loaded>>>,
+    /// The size of the model, when it is loaded.
+    bytes: usize,
+    used: u64,
+}
+
+impl StageCache {
+    pub(super) fn new(most: usize) -> Self {
+        Self { most, entries: Mutex::default() }
+    }
+
+    /// Returns the scene of a row, and loads it if necessary. `stopped` says whether reading was
+    /// cancelled because the batch ends; otherwise, the time limit was reached.
+    pub(super) fn get(&self, row: &Row, progress: &Progress, stopped: &AtomicBool) -> Loaded {
+        let key = (row.file.clone(), row.parsed.model_text.clone());
+        let slot = {
+            let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+            entries.clock += 1;
+            let used = entries.clock;
+            let entry = entries.map.entry(key.clone()).or_default();
+            entry.used = used;
+            Arc::clone(&entry.loaded)
+        };
+        let mut slot = slot.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(loaded) = &*slot {
+            return loaded.clone();
+        }
+        let mut loaded = load(row, progress);
+        if matches!(loaded, Err(Fault::Cancelled)) {
+            if stopped.load(Ordering::Relaxed) {
+                return loaded;
+            }
+            // Further views of the model would take as long.
+            loaded = Err(Fault::Timeout);
+        }
+        *slot = Some(loaded.clone());
+        drop(slot);
+        let bytes = loaded.as_ref().map_or(0, |stage| bytes_of(stage));
+        self.keep(&key, bytes);
+        loaded
+    }
+
+    /// Returns whether another model of this file probably fits.
+    pub(super) fn has_room_for(&self, file: &Path) -> bool {
+        /// A loaded model takes about this many times the bytes of its file.
+        const GROWTH: usize = 6;
+        let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+        let used: usize = entries.map.values().map(|entry| entry.bytes).sum();
+        let size = file.metadata().map_or(0, |metadata| metadata.len());
+        let size = usize::try_from(size).unwrap_or(usize::MAX);
+        used.saturating_add(size.saturating_mul(GROWTH)) <= self.most
+    }
+
+    /// Notes the size of a new model, and drops others above the limit.
+    fn keep(&self, new: &Key, bytes: usize) {
+        let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(entry) = entries.map.get_mut(new) {
+            entry.bytes = bytes;
+        }
+        loop {
+            let used: usize = entries.map.values().map(|entry| entry.bytes).sum();
+            if used <= self.most {
+                return;
+            }
+            let others = entries.map.iter().filter(|(key, entry)| *key != new && entry.bytes > 0);
+            let oldest = others.min_by_key(|(_, entry)| entry.used).map(|(key, _)| key.clone());
+            match oldest {
+                Some(key) => _ = entries.map.remove(&key),
+                None => return,
+            }
+        }
+    }
+}
+
+/// Loads the scene of a row, with its surfaces.
+fn load(row: &Row, progress: &Progress) -> Loaded {
+    let options = &row.parsed.options;
+    let files = [row.file.clone()];
+    let stage = Stage::of(&files, &options.reading, Watch::Progress(progress));
+    let stage = stage.and_then(|mut stage| {
+        cover(&mut stage, &options.surfaces)?;
+        // Findings about the texture of the options come last.
+        stage.findings = io::joined(std::mem::take(&mut stage.findings));
+        for (_, object) in stage.scene.objects.iter() {
+            object.model.mesh.draw_as_filed();
+        }
+        Ok(stage)
+    });
+    stage.map(Arc::new).map_err(|failure| Fault::of(&failure))
+}
+
+/// Estimates the memory of a scene.
+fn bytes_of(stage: &Stage) -> usize {
+    let mut textures: BTreeMap<&Path, usize> = BTreeMap::new();
+    let mut bytes = 0;
+    for (_, object) in stage.scene.objects.iter() {
+        bytes += bytes_of_mesh(&object.model.mesh);
+        for texture in textures_of(object) {
+            // Four bytes a texel, and a third more for the smaller copies.
+            textures.insert(&texture.source, texture.picture.size().area() * 16 / 3);
+        }
+    }
+    bytes + textures.values().sum::<usize>()
+}
+
+/// Estimates the memory of a mesh with the structures that drawing builds for it.
+fn bytes_of_mesh(mesh: &Mesh) -> usize {
+    const OF_VERTEX: usize = 64;
+    const OF_CORNER: usize = 64;
+    const OF_TRIANGLE: usize = 128;
+    OF_VERTEX * mesh.positions().len()
+        + OF_CORNER * mesh.corners().len()
+        + OF_TRIANGLE * mesh.triangle_count()
+}
+
+fn textures_of(object: &Object) -> impl Iterator<Item = &Texture> {
+    let of_material = object.model.materials.iter().flat_map(|material| {
+        let maps = material.maps.values().map(|map| &*map.texture);
+        material.texture.as_deref().into_iter().chain(maps)
+    });
+    object.texture.as_deref().into_iter().chain(of_material)
+}

@@ -1,0 +1,246 @@
+//! The jobs of a batch: one for each picture.
+//!
+//! All rows, options, cameras and names are checked here, before the first picture is drawn. Jobs
+//! are numbered over the whole list, whatever part of it this process draws.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use marraztu_core::base::image::Size;
+use marraztu_io::{self as io, PictureFormat};
+
+use super::Batch;
+use super::list::{self, Entry, expanded, read_list};
+use super::options::{OptionParser, OptionTexts, Parsed, Value, WrongOption};
+use super::shard::Shard;
+use super::template::{Fields, Template};
+use super::views::{CameraView, own_view, parse_views};
+use crate::cli::failure::{Failure, usage};
+use crate::cli::values::is_standard;
+
+/// The size of pictures without `--size`.
+const SIZE: Size = Size::new(800, 800);
+
+/// A row with its options.
+#[derive(Clone, Debug)]
+pub(super) struct Row {
+    /// The place for messages, such as "list.csv:3".
+    place: String,
+    pub(super) file: PathBuf,
+    pub(super) parsed: Arc<Parsed>,
+    views: Arc<Vec<CameraView>>,
+    template: Arc<Template>,
+    ext: &'static str,
+}
+
+/// A picture to draw.
+#[derive(Clone, Debug)]
+pub(super) struct Job {
+    /// The number in the whole list, from 0.
+    pub(super) index: usize,
+    pub(super) row: Arc<Row>,
+    /// The number of the view in its row.
+    view: usize,
+    pub(super) out: PathBuf,
+    pub(super) format: &'static PictureFormat,
+}
+
+impl Job {
+    /// Returns the camera.
+    pub(super) fn camera(&self) -> &CameraView {
+        &self.row.views[self.view]
+    }
+
+    /// Returns the size of the picture.
+    pub(super) fn size(&self) -> Size {
+        self.row.parsed.options.size.or(self.camera().size).unwrap_or(SIZE)
+    }
+}
+
+/// The jobs of a process.
+#[derive(Debug)]
+pub(super) struct Jobs {
+    /// The jobs to draw, in the order of drawing: all jobs of a model follow each other.
+    pub(super) jobs: Vec<Job>,
+    /// The number of jobs in the whole list.
+    pub(super) all: usize,
+}
+
+impl Jobs {
+    /// Collects the jobs that the arguments describe.
+    pub(super) fn of(arguments: &Batch) -> Result<Self, Failure> {
+        let mut entries = expanded(&arguments.files)?;
+        if let Some(list) = &arguments.list {
+            entries.extend(read_list(list)?);
+        }
+        let mut reader = RowReader::new(arguments)?;
+        let rows = entries.into_iter().map(|entry| reader.row(entry).map(Arc::new));
+        let rows: Vec<Arc<Row>> = rows.collect::<Result<_, _>>()?;
+        if rows.is_empty() {
+            return Err(usage("the list has no rows"));
+        }
+        let jobs = jobs_of(&rows)?;
+        check_outputs(&jobs)?;
+        let all = jobs.len();
+        let shard = arguments.shard.unwrap_or(Shard::WHOLE);
+        Ok(Self { jobs: ordered(jobs, shard), all })
+    }
+}
+
+/// Completes rows with the options of the command line. Equal values are parsed once.
+struct RowReader {
+    parser: OptionParser,
+    base: OptionTexts,
+    views: BTreeMap<String, Arc<Vec<CameraView>>>,
+    templates: BTreeMap<String, Arc<Template>>,
+    base_views: Option<String>,
+    base_out: Option<String>,
+    format: &'static PictureFormat,
+}
+
+impl RowReader {
+    fn new(arguments: &Batch) -> Result<Self, Failure> {
+        let mut reader = Self {
+            parser: OptionParser::new(),
+            base: arguments.options.clone(),
+            views: BTreeMap::new(),
+            templates: BTreeMap::new(),
+            base_views: arguments.views.clone(),
+            base_out: arguments.out.clone(),
+            format: arguments.format,
+        };
+        // Errors of the command line are not errors of the first row.
+        let check = |result: Result<(), String>, option: &str| {
+            result.map_err(|reason| Failure::Usage(format!("--{option}: {reason}")))
+        };
+        if let Some(text) = &arguments.views {
+            check(reader.views(text).map(drop), "views")?;
+        }
+        if let Some(text) = &arguments.out {
+            check(reader.template(text).map(drop), "out")?;
+        }
+        Ok(reader)
+    }
+
+    fn views(&mut self, text: &str) -> Result<Arc<Vec<CameraView>>, String> {
+        if let Some(views) = self.views.get(text) {
+            return Ok(Arc::clone(views));
+        }
+        let views = Arc::new(parse_views(text)?);
+        self.views.insert(text.to_owned(), Arc::clone(&views));
+        Ok(views)
+    }
+
+    fn template(&mut self, text: &str) -> Result<Arc<Template>, String> {
+        if let Some(template) = self.templates.get(text) {
+            return Ok(Arc::clone(template));
+        }
+        let template = Arc::new(Template::parse(text)?);
+        self.templates.insert(text.to_owned(), Arc::clone(&template));
+        Ok(template)
+    }
+
+    fn row(&mut self, entry: Entry) -> Result<Row, Failure> {
+        let Entry { place, file, values } = entry;
+        let wrong = |column: Option<&str>, reason: &str| {
+            let column = column.map_or_else(String::new, |column| format!("column {column}: "));
+            Failure::Usage(format!("{place}: {column}{reason}"))
+        };
+        if is_standard(&file) {
+            return Err(wrong(None, "a batch does not read a model from standard input"));
+        }
+        let mut texts = self.base.clone();
+        let (mut views, mut out) = (self.base_views.clone(), self.base_out.clone());
+        for (name, value) in values {
+            match (name.as_str(), value) {
+                ("views", Value::Text(text)) => views = Some(text),
+                ("out", Value::Text(text)) => out = Some(text),
+                (name, value) if self.parser.has(name) => {
+                    let with = self.parser.with(&texts, name, value);
+                    texts = with.map_err(|error| wrong(error.option.as_deref(), &error.reason))?;
+                }
+                (name, _) => {
+                    let file = list::FILE;
+                    let reason = "there is no such option of pictures; a list has the columns";
+                    let reason = format!("{reason} {file}, out, views and the options of render");
+                    return Err(wrong(Some(name), &reason));
+                }
+            }
+        }
+        let parsed = self.parser.parse(&texts);
+        let parsed = parsed.map_err(|WrongOption { option, reason }| {
+            // An option of the command line that conflicts is not a column, but named as well.
+            wrong(option.as_deref(), &reason)
+        })?;
+        let has_camera =
+            parsed.options.seeing.camera.is_some() || parsed.options.seeing.from.is_some();
+        let views = match views {
+            Some(_) if has_camera => {
+                return Err(wrong(Some("views"), "it replaces --camera and --from: give one"));
+            }
+            Some(text) => self.views(&text).map_err(|reason| wrong(Some("views"), &reason))?,
+            None => Arc::new(own_view()),
+        };
+        let template = match out {
+            Some(text) => self.template(&text).map_err(|reason| wrong(Some("out"), &reason))?,
+            None => Arc::new(Template::of_views(views.len())),
+        };
+        Ok(Row { place, file, parsed, views, template, ext: self.format.endings[0] })
+    }
+}
+
+/// Numbers the pictures of all rows and names their files.
+fn jobs_of(rows: &[Arc<Row>]) -> Result<Vec<Job>, Failure> {
+    let mut jobs = Vec::new();
+    for row in rows {
+        for (view, camera) in row.views.iter().enumerate() {
+            let index = jobs.len();
+            let (file, ext) = (&*row.file, row.ext);
+            let fields = Fields { file, index, view, view_name: &camera.name, ext };
+            let out = row.template.path(&fields);
+            let format = PictureFormat::of(&out).map_err(|reason| {
+                Failure::Usage(format!("{}: {}: {reason}", row.place, out.display()))
+            })?;
+            if row.parsed.options.transparent {
+                io::check_alpha(&out)
+                    .map_err(|error| Failure::Usage(format!("{}: {error}", row.place)))?;
+            }
+            jobs.push(Job { index, row: Arc::clone(row), view, out, format });
+        }
+    }
+    Ok(jobs)
+}
+
+/// Rejects pictures that would overwrite each other.
+fn check_outputs(jobs: &[Job]) -> Result<(), Failure> {
+    let mut outputs: BTreeMap<&PathBuf, &Job> = BTreeMap::new();
+    for job in jobs {
+        let Some(other) = outputs.insert(&job.out, job) else { continue };
+        let of = |job: &Job| format!("{}, view {}", job.row.place, job.camera().name);
+        return Err(Failure::Usage(format!(
+            "two pictures would be written to {}: {} and {}; tell them apart in --out by {{dir}}, \
+             {{view}} or {{index}}",
+            job.out.display(),
+            of(other),
+            of(job),
+        )));
+    }
+    Ok(())
+}
+
+/// Returns the jobs of a shard. The jobs of a model follow each other, in the order in which models
+/// first occur in the list.
+fn ordered(jobs: Vec<Job>, shard: Shard) -> Vec<Job> {
+    let shards = Shard::of_files(shard.count, jobs.iter().map(|job| &*job.row.file));
+    let mut groups: BTreeMap<PathBuf, usize> = BTreeMap::new();
+    let mut keyed = Vec::new();
+    for job in &jobs {
+        if shards[&*job.row.file] == shard.index {
+            let group = groups.entry(job.row.file.clone()).or_insert(job.index);
+            keyed.push((*group, job.index));
+        }
+    }
+    keyed.sort_unstable();
+    keyed.into_iter().map(|(_, index)| jobs[index].clone()).collect()
+}

@@ -1,0 +1,265 @@
+//! Reads lists of files: CSV with a header, JSON lines, or plain lines.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value as Json;
+
+use super::options::Value;
+use crate::cli::failure::Failure;
+use crate::cli::values::is_standard;
+
+/// The column of the model or scene.
+pub(super) const FILE: &str = "file";
+
+/// A row of a list, or a file among the arguments.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Entry {
+    /// The place for messages, such as "list.csv:3".
+    pub(super) place: String,
+    /// The model or scene.
+    pub(crate) file: PathBuf,
+    /// The other columns that have a value, by name.
+    pub(super) values: Vec<(String, Value)>,
+}
+
+/// The format of a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ListFormat {
+    Csv,
+    JsonLines,
+    Plain,
+}
+
+/// Reads the list at `path`; "-" is standard input.
+///
+/// # Errors
+/// If it cannot be read, or a row is not valid.
+pub(crate) fn read_list(path: &Path) -> Result<Vec<Entry>, Failure> {
+    let mut bytes = Vec::new();
+    let (name, read) = if is_standard(path) {
+        ("standard input".to_owned(), std::io::stdin().lock().read_to_end(&mut bytes))
+    } else {
+        let read = std::fs::File::open(path).and_then(|mut file| file.read_to_end(&mut bytes));
+        (path.display().to_string(), read)
+    };
+    read.map_err(|error| Failure::Usage(format!("the list {name} cannot be read: {error}")))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_bytes| Failure::Usage(format!("the list {name} is not in UTF-8")))?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let entries = match format_of(path, text) {
+        ListFormat::Csv => from_csv(&name, text),
+        ListFormat::JsonLines => from_json_lines(&name, text),
+        ListFormat::Plain => Ok(from_lines(&name, text)),
+    };
+    entries.map_err(Failure::Usage)
+}
+
+/// Returns the format by the extension, or by the first line if there is none.
+fn format_of(path: &Path, text: &str) -> ListFormat {
+    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+    match ending.as_deref().and_then(|ending| ending.to_str()) {
+        Some("csv") => ListFormat::Csv,
+        Some("jsonl" | "ndjson") => ListFormat::JsonLines,
+        Some("txt") => ListFormat::Plain,
+        _ => {
+            let first = text.lines().next().unwrap_or_default();
+            let mut columns = first.split(',').map(|column| column.trim().trim_matches('"'));
+            match first.trim_start().starts_with('{') {
+                true => ListFormat::JsonLines,
+                false if columns.any(|column| column == FILE) => ListFormat::Csv,
+                false => ListFormat::Plain,
+            }
+        }
+    }
+}
+
+fn from_lines(name: &str, text: &str) -> Vec<Entry> {
+    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let entry = |(i, line): (usize, &str)| Entry {
+        place: format!("{name}:{}", i + 1),
+        file: PathBuf::from(line),
+        values: Vec::new(),
+    };
+    lines.map(entry).collect()
+}
+
+/// Returns a column's name as an option's: options are written with hyphens.
+fn column_name(column: &str) -> String {
+    column.trim().to_ascii_lowercase().replace('_', "-")
+}
+
+fn from_csv(name: &str, text: &str) -> Result<Vec<Entry>, String> {
+    let mut reader = csv::ReaderBuilder::new().from_reader(text.as_bytes());
+    let of_line = |error: &csv::Error| {
+        let line = error.position().map_or(1, csv::Position::line);
+        match error.kind() {
+            csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+                format!("{name}:{line}: the row has {len} columns, but the header {expected_len}")
+            }
+            _ => format!("{name}:{line}: {error}"),
+        }
+    };
+    let header = reader.headers().map_err(|error| of_line(&error))?;
+    let header: Vec<String> = header.iter().map(column_name).collect();
+    if !header.iter().any(|column| column == FILE) {
+        return Err(format!("{name}:1: the header has no column {FILE:?}"));
+    }
+    let mut entries = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| of_line(&error))?;
+        let line = record.position().map_or(1, csv::Position::line);
+        // Empty cells keep the option of the command line.
+        let cells = header.iter().zip(&record).filter(|(_, cell)| !cell.is_empty());
+        let values = cells.map(|(name, cell)| (name.clone(), Value::Text(cell.to_owned())));
+        entries.push(entry(format!("{name}:{line}"), values.collect())?);
+    }
+    Ok(entries)
+}
+
+fn from_json_lines(name: &str, text: &str) -> Result<Vec<Entry>, String> {
+    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let row = |(i, line): (usize, &str)| {
+        let place = format!("{name}:{}", i + 1);
+        let object: serde_json::Map<String, Json> =
+            serde_json::from_str(line).map_err(|error| format!("{place}: {error}"))?;
+        let mut values = Vec::new();
+        for (column, json) in &object {
+            let column = column_name(column);
+            let value = json_value(json)
+                .map_err(|reason| format!("{place}: column {column:?}: {reason}"))?;
+            values.extend(value.map(|value| (column, value)));
+        }
+        entry(place, values)
+    };
+    lines.map(row).collect()
+}
+
+/// Converts a JSON value; null is no value, and an array is a list with commas.
+fn json_value(json: &Json) -> Result<Option<Value>, String> {
+    let scalar = |json: &Json| match json {
+        Json::String(text) => Some(text.clone()),
+        Json::Number(number) => Some(number.to_string()),
+        _ => None,
+    };
+    match json {
+        Json::Null => Ok(None),
+        Json::Bool(on) => Ok(Some(Value::Switch(*on))),
+        Json::Array(items) => {
+            let items: Option<Vec<String>> = items.iter().map(scalar).collect();
+            let items = items.ok_or("a list holds texts or numbers")?;
+            Ok(Some(Value::Text(items.join(","))))
+        }
+        Json::Object(_) => Err("an object is not a value of an option".to_owned()),
+        Json::String(_) | Json::Number(_) => Ok(scalar(json).map(Value::Text)),
+    }
+}
+
+/// Makes an entry from columns, one of which is the file.
+fn entry(place: String, mut values: Vec<(String, Value)>) -> Result<Entry, String> {
+    let file = values.iter().position(|(name, _)| name == FILE).map(|i| values.remove(i).1);
+    match file {
+        Some(Value::Text(file)) => Ok(Entry { place, file: PathBuf::from(file), values }),
+        _ => Err(format!("{place}: the row names no file")),
+    }
+}
+
+/// Expands the patterns among the arguments, such as `models/**/*.obj`, in the order of names.
+/// Existing files are taken literally.
+///
+/// # Errors
+/// If a pattern is invalid, or no file matches it.
+pub(super) fn expanded(files: &[PathBuf]) -> Result<Vec<Entry>, Failure> {
+    let mut entries = Vec::new();
+    for file in files {
+        let place = file.display().to_string();
+        let text = file.to_str().filter(|text| text.contains(['*', '?', '[']));
+        let Some(pattern) = text.filter(|_| !file.exists()) else {
+            entries.push(Entry { place, file: file.clone(), values: Vec::new() });
+            continue;
+        };
+        let found = glob::glob(pattern);
+        let found = found.map_err(|error| Failure::Usage(format!("{pattern}: {error}")))?;
+        let found: Vec<PathBuf> = found.flatten().filter(|path| path.is_file()).collect();
+        if found.is_empty() {
+            return Err(Failure::Usage(format!("no file matches {pattern}")));
+        }
+        entries.extend(found.into_iter().map(|file| {
+            let place = file.display().to_string();
+            Entry { place, file, values: Vec::new() }
+        }));
+    }
+    Ok(entries)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(text: &str) -> Value {
+        Value::Text(text.to_owned())
+    }
+
+    #[test]
+    fn three_formats_give_the_same_rows() {
+        let entry = |line: usize, file: &str, values: &[(&str, Value)]| Entry {
+            place: format!("list:{line}"),
+            file: file.into(),
+            values: values
+                .iter()
+                .map(|(name, value)| ((*name).to_owned(), value.clone()))
+                .collect(),
+        };
+        let csv = "file,size,flip_winding\n\"a, b.obj\",64x32,true\nc.obj,,\n";
+        assert_eq!(
+            from_csv("list", csv).unwrap(),
+            [
+                entry(2, "a, b.obj", &[("size", text("64x32")), ("flip-winding", text("true"))]),
+                entry(3, "c.obj", &[]),
+            ]
+        );
+        let json = "{\"file\":\"a, b.obj\",\"from\":[30,-5.5],\"edges\":true}\n\n{\"file\":\"c.obj\",\"size\":64}";
+        assert_eq!(
+            from_json_lines("list", json).unwrap(),
+            [
+                entry(1, "a, b.obj", &[("edges", Value::Switch(true)), ("from", text("30,-5.5"))]),
+                entry(3, "c.obj", &[("size", text("64"))]),
+            ]
+        );
+        let plain = from_lines("list", "a, b.obj\n\nc.obj\n");
+        assert_eq!(plain, [entry(1, "a, b.obj", &[]), entry(3, "c.obj", &[])]);
+    }
+
+    #[test]
+    fn the_format_follows_the_extension_or_the_first_line() {
+        for (path, text, format) in [
+            ("a.csv", "", ListFormat::Csv),
+            ("a.JSONL", "", ListFormat::JsonLines),
+            ("a.txt", "file,size", ListFormat::Plain),
+            ("-", "{\"file\": 1}", ListFormat::JsonLines),
+            ("-", "size,file\n", ListFormat::Csv),
+            ("-", "models/a.obj\n", ListFormat::Plain),
+            ("-", "", ListFormat::Plain),
+        ] {
+            assert_eq!(format_of(Path::new(path), text), format, "{path} {text}");
+        }
+    }
+
+    #[test]
+    fn a_row_that_is_not_valid_is_named_by_its_line() {
+        for (csv, reason) in [
+            ("size\n64\n", "list:1: the header has no column"),
+            ("file,size\na.obj\n", "list:2: the row has 1 columns, but the header 2"),
+            ("file,size\n,64\n", "list:2: the row names no file"),
+        ] {
+            assert!(from_csv("list", csv).unwrap_err().starts_with(reason), "{csv}");
+        }
+        for (json, reason) in [
+            ("{\"size\":64}", "list:1: the row names no file"),
+            ("{\"file\":\"a\"}\n[1]", "list:2: "),
+            ("{\"file\":\"a\",\"size\":{}}", "list:1: column \"size\": "),
+        ] {
+            assert!(from_json_lines("list", json).unwrap_err().starts_with(reason), "{json}");
+        }
+    }
+}

@@ -1,0 +1,340 @@
+//! `marraztu batch`: draws many pictures.
+//!
+//! ```text
+//! list  ->  rows  ->  jobs  ->  shard  ->  threads  ->  report
+//! ```
+//!
+//! Everything that can be checked is checked before the first picture: the list, its options, the
+//! cameras and the names of the outputs ([`jobs`]). Then each thread draws one picture at a time
+//! ([`studio`]), and the main thread collects the results ([`report`]).
+
+mod cache;
+mod digest;
+mod jobs;
+pub(super) mod list;
+mod meter;
+mod options;
+mod outcome;
+pub(super) mod report;
+mod shard;
+mod studio;
+mod template;
+pub(super) mod views;
+
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread::Builder;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use marraztu_io::{PICTURE_FORMATS, PictureFormat};
+use signal_hook::consts::{SIGINT, SIGTERM};
+
+use self::jobs::{Job, Jobs};
+use self::meter::Meter;
+use self::options::OptionTexts;
+use self::outcome::Outcome;
+pub(super) use self::outcome::Status;
+use self::report::{Counts, Reporter};
+use self::shard::{Shard, shard};
+use self::studio::{Manner, Studio, silence_panics};
+use super::failure::Failure;
+use super::talk::{Talk, note};
+use super::values::threads;
+
+/// The exit status if every missing picture is caused by its input.
+const INVALID: u8 = 4;
+
+/// The time that threads have to end after a signal.
+const GRACE: Duration = Duration::from_millis(1500);
+
+/// The time between two looks at signals and limits.
+const PERIOD: Duration = Duration::from_millis(20);
+
+/// The stack of a thread that draws.
+const STACK: usize = 16 << 20;
+
+/// The pictures to draw.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A list has one model or scene per row: .csv with a header, .jsonl, or plain lines. The column \"file\"
+names the model; further columns are options of the pictures, \"views\" and \"out\", and override the
+options of the command line for their row. Everything is checked before the first picture is drawn.
+
+Names in --out have the fields {dir} {stem} {name} {index} {view} {view_name} {ext}; {index:06} and
+{view:03} have leading zeros, and {{ is a brace.
+
+Examples:
+  marraztu batch \"models/**/*.obj\" --views 8 --size 256 --out \"out/{dir}/{stem}-{view:02}.png\"
+  marraztu batch --list list.csv --out \"out/{index:06}.png\" --report report.jsonl --resume
+  marraztu batch --list list.csv --shard 3/64 --report report-3.jsonl
+  find . -name \"*.obj\" | marraztu batch --list - --views front,right,top,iso
+
+Exit status: 0 if all pictures are there, 1 if some are missing, 2 for invalid arguments, 4 with
+--strict-exit if all missing pictures are caused by their input, 130 after SIGINT, 143 after
+SIGTERM.")]
+pub(crate) struct Batch {
+    /// Models (.obj, .obj.gz) and scenes (.marraztu), one picture or set of views each; patterns
+    /// such as \"models/**/*.obj\" are expanded
+    #[arg(required_unless_present = "list")]
+    files: Vec<PathBuf>,
+    /// A list of models: .csv, .jsonl, or plain lines; "-" is standard input
+    #[arg(long, value_name = "LIST")]
+    list: Option<PathBuf>,
+    /// The views of each model: a number of views around it, names (front, right, back, left, top,
+    /// bottom, iso), fibonacci:COUNT[:SEED] for directions on a sphere, or a file of cameras as of
+    /// NeRF (.json) [default: the view of the other options]
+    #[arg(long, value_name = "VIEWS")]
+    views: Option<String>,
+    /// The names of the pictures [default: {stem}.{ext}, or {stem}-{view:03}.{ext} for several
+    /// views, in the current folder]
+    #[arg(short, long, value_name = "TEMPLATE")]
+    out: Option<String>,
+    #[arg(long, value_name = "FORMAT", help = format_help(), default_value = "png")]
+    #[arg(hide_default_value = true, value_parser = format)]
+    format: &'static PictureFormat,
+    /// Print the jobs, one per line: number, file, view and output, separated by tabs
+    #[arg(long)]
+    dry_run: bool,
+    /// Skip pictures that an earlier run has drawn from the same files with the same options
+    #[arg(long)]
+    resume: bool,
+    /// Draw a part of the list: 3/64 is the part with number 3, counted from 0, of 64; "auto" asks
+    /// Slurm, Kubernetes or AWS Batch. All views of a model are in one part
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    shard: Option<Shard>,
+    /// Number of pictures that are drawn at a time [default: one per core]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    threads: Option<usize>,
+    /// The most memory for loaded models, such as 500M or 4G
+    #[arg(long, value_name = "SIZE", default_value = "2G", value_parser = bytes)]
+    memory: usize,
+    /// The time limit of a picture in seconds, including reading its model
+    #[arg(long, value_name = "SECONDS", value_parser = limit)]
+    timeout: Option<Duration>,
+    /// Write a line of JSON for each picture, in the order of the list, and a summary
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// Write the times of each picture in milliseconds, as lines of JSON
+    #[arg(long, value_name = "FILE")]
+    times: Option<PathBuf>,
+    /// Draw the other pictures if one fails (the default)
+    #[arg(long, conflicts_with = "stop")]
+    keep_going: bool,
+    /// End at the first picture that fails
+    #[arg(long)]
+    stop: bool,
+    /// Exit with status 4 if all missing pictures are caused by their input, so a retry is useless
+    #[arg(long)]
+    strict_exit: bool,
+    #[command(flatten)]
+    talk: Talk,
+    #[command(flatten)]
+    options: OptionTexts,
+}
+
+/// Draws the pictures that the arguments describe.
+pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
+    arguments.talk.apply();
+    let Jobs { jobs, all } = Jobs::of(arguments)?;
+    if arguments.dry_run {
+        return print(&jobs);
+    }
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let manner = Manner {
+        threads: arguments.threads.unwrap_or(cores),
+        resume: arguments.resume,
+        reports: arguments.report.is_some(),
+        limit: arguments.timeout,
+        memory: arguments.memory,
+    };
+    let (report, times) = (arguments.report.as_deref(), arguments.times.as_deref());
+    let studio = Arc::new(Studio::new(jobs, manner));
+    let mut reporter = Reporter::begin(studio.jobs(), all, report, times)?;
+    let mut meter = Meter::of(studio.jobs().len());
+    let signal = watched_signals();
+    silence_panics();
+    let results = start(&studio)?;
+    let ended = collect(&studio, &results, &signal, &mut |outcome| {
+        meter.tick();
+        let Some(outcome) = outcome else { return Ok(true) };
+        meter.add(&outcome);
+        reporter.add(&outcome)?;
+        Ok(!arguments.stop || outcome.result.is_ok())
+    });
+    meter.finish();
+    let unchanged = meter.unchanged();
+    let counts = reporter.finish()?;
+    ended?;
+    tell(&counts, unchanged, meter.rate());
+    status(&counts, signal.load(Ordering::Relaxed), arguments.strict_exit)
+}
+
+/// Prints the jobs.
+fn print(jobs: &[Job]) -> Result<(), Failure> {
+    let mut output = std::io::BufWriter::new(std::io::stdout().lock());
+    let mut print = || {
+        for job in jobs {
+            let (file, out) = (job.row.file.display(), job.out.display());
+            writeln!(output, "{}\t{file}\t{}\t{out}", job.index, job.camera().name)?;
+        }
+        output.flush()
+    };
+    match print() {
+        // The reader has closed the pipe, like `head`.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        printed => printed.map_err(Failure::Output),
+    }
+}
+
+/// Returns a cell that holds the number of the last signal to end.
+fn watched_signals() -> Arc<AtomicUsize> {
+    let cell = Arc::new(AtomicUsize::new(0));
+    for signal in [SIGINT, SIGTERM] {
+        let number = usize::try_from(signal).unwrap_or_default();
+        // Without the handler, the signal ends the process as usual.
+        let _ = signal_hook::flag::register_usize(signal, Arc::clone(&cell), number);
+    }
+    cell
+}
+
+/// Starts the threads. The channel closes when all have ended.
+fn start(studio: &Arc<Studio>) -> Result<Receiver<Outcome>, Failure> {
+    let failed = |error| Failure::Usage(format!("a thread cannot be started: {error}"));
+    let (sender, results) = channel();
+    let named = |name: String| Builder::new().name(name).stack_size(STACK);
+    for i in 0..studio.threads() {
+        let (studio, sender) = (Arc::clone(studio), sender.clone());
+        named(format!("draw {i}")).spawn(move || studio.work(&sender)).map_err(failed)?;
+    }
+    let studio = Arc::clone(studio);
+    named("read".to_owned()).spawn(move || studio.read_ahead()).map_err(failed)?;
+    Ok(results)
+}
+
+/// Passes the results to `take` until all jobs are done, and `None` from time to time. The batch
+/// ends early after a signal, an error, or if `take` returns false.
+fn collect(
+    studio: &Studio,
+    results: &Receiver<Outcome>,
+    signal: &AtomicUsize,
+    take: &mut dyn FnMut(Option<Outcome>) -> Result<bool, Failure>,
+) -> Result<(), Failure> {
+    let mut end: Option<Instant> = None;
+    let mut result = Ok(());
+    loop {
+        let taken = match results.recv_timeout(PERIOD) {
+            Ok(outcome) => take(Some(outcome)),
+            Err(RecvTimeoutError::Timeout) => take(None),
+            Err(RecvTimeoutError::Disconnected) => return result,
+        };
+        studio.enforce_limits();
+        let goes_on = taken.unwrap_or_else(|failure| {
+            result = Err(failure);
+            false
+        });
+        if end.is_none() && (!goes_on || signal.load(Ordering::Relaxed) != 0) {
+            studio.stop();
+            end = Some(Instant::now() + GRACE);
+        }
+        // Threads that are still busy end with the process.
+        if end.is_some_and(|end| end < Instant::now()) {
+            return result;
+        }
+    }
+}
+
+/// Prints a summary.
+fn tell(counts: &Counts, unchanged: usize, rate: f64) {
+    let drawn = counts.done - unchanged;
+    let missing = counts.missing();
+    let of_earlier = match unchanged {
+        0 => String::new(),
+        count => format!(", {count} unchanged"),
+    };
+    note(&format_args!(
+        "{drawn} drawn{of_earlier}, {missing} missing; {rate:.1} pictures a second"
+    ));
+}
+
+/// Returns the exit status.
+fn status(counts: &Counts, signal: usize, strict: bool) -> Result<(), Failure> {
+    if let Ok(signal @ 1..) = u8::try_from(signal) {
+        return Err(Failure::Status(128 + signal));
+    }
+    match counts.missing() {
+        0 => Ok(()),
+        missing if strict && missing == counts.invalid => Err(Failure::Status(INVALID)),
+        _ => Err(Failure::Told),
+    }
+}
+
+fn format(text: &str) -> Result<&'static PictureFormat, String> {
+    let ending = text.trim_start_matches('.').to_ascii_lowercase();
+    let found = PICTURE_FORMATS.iter().find(|format| format.endings.contains(&&*ending));
+    found.ok_or_else(|| format!("possible values: {}", endings()))
+}
+
+fn format_help() -> String {
+    format!("The format of names with {{ext}}, or of default names: {}", endings())
+}
+
+/// Lists the usual extensions: "png*, jpg, webp, ppm".
+fn endings() -> String {
+    let endings: Vec<&str> = PICTURE_FORMATS.iter().map(|format| format.endings[0]).collect();
+    endings.join(", ").replacen("png", "png*", 1)
+}
+
+fn limit(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|it: &f64| (0.001..=1e6).contains(it));
+    seconds.map(Duration::from_secs_f64).ok_or_else(|| "write seconds, from 0.001".to_owned())
+}
+
+/// Parses a number of bytes, such as 500M.
+fn bytes(text: &str) -> Result<usize, String> {
+    const UNITS: [(char, u32); 4] = [('K', 10), ('M', 20), ('G', 30), ('T', 40)];
+    let text = text.trim().to_ascii_uppercase();
+    let text = text.strip_suffix("IB").or_else(|| text.strip_suffix('B')).unwrap_or(&text);
+    let unit = UNITS.iter().find(|(unit, _)| text.ends_with(*unit));
+    let (number, shift) = unit.map_or((text, 0), |(_, shift)| (&text[..text.len() - 1], *shift));
+    let bytes = number.parse::<u64>().ok().and_then(|number| number.checked_mul(1 << shift));
+    let bytes = bytes.and_then(|bytes| usize::try_from(bytes).ok());
+    bytes.ok_or_else(|| "write a number of bytes, such as 500M or 4G".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_and_formats_are_read_or_rejected() {
+        assert_eq!(bytes("500M"), Ok(500 << 20));
+        assert_eq!((bytes("4g"), bytes("1KiB"), bytes("12")), (Ok(4 << 30), Ok(1024), Ok(12)));
+        for wrong in ["", "G", "-1", "1.5G", "1X", "99999999999T"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(format(".JPG").unwrap().name, "JPEG");
+        assert!(format("gif").unwrap_err().contains("png*, jpg"));
+        assert!(limit("0").is_err() && limit("1.5").is_ok());
+    }
+
+    #[test]
+    fn the_exit_status_tells_why_pictures_are_missing() {
+        let code = |counts: Counts, signal, strict| match status(&counts, signal, strict) {
+            Ok(()) => 0,
+            Err(Failure::Status(status)) => status,
+            Err(_) => 1,
+        };
+        let none = Counts { jobs: 9, done: 9, ..Counts::default() };
+        let invalid = Counts { invalid: 2, ..none };
+        let mixed = Counts { failed: 1, ..invalid };
+        assert_eq!([code(none, 0, true), code(invalid, 0, true), code(mixed, 0, true)], [0, 4, 1]);
+        assert_eq!(
+            [code(invalid, 0, false), code(none, 15, false), code(mixed, 2, true)],
+            [1, 143, 130]
+        );
+    }
+}

@@ -1,0 +1,213 @@
+//! Reports: a line of JSON for each picture, in the order of the list, and a summary.
+//!
+//! Nothing in a report depends on time, threads or the shard, so the reports of shards merge to the
+//! report of a single run, byte for byte. Times go to a separate file.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use marraztu_io::{NewFile, SaveError};
+use serde::{Deserialize, Serialize};
+
+use super::jobs::Job;
+use super::outcome::{Drawn, Fault, Outcome, Spent, Status};
+
+/// The line of a picture.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Line {
+    /// The number in the whole list, from 0.
+    pub(crate) index: usize,
+    /// The model or scene, as given.
+    #[serde(rename = "in")]
+    pub(crate) input: String,
+    in_sha256: Option<String>,
+    view: String,
+    pub(crate) out: String,
+    out_sha256: Option<String>,
+    bytes: Option<u64>,
+    pub(crate) status: Status,
+    findings: Vec<String>,
+    error: Option<String>,
+}
+
+/// The counts of pictures by status.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Counts {
+    /// All pictures of the list, in whatever report they are.
+    pub(crate) jobs: usize,
+    pub(crate) done: usize,
+    pub(crate) invalid: usize,
+    pub(crate) failed: usize,
+    pub(crate) timeout: usize,
+    pub(crate) cancelled: usize,
+}
+
+/// The last line of a report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Summary {
+    pub(crate) summary: Counts,
+}
+
+impl Counts {
+    /// Counts a picture.
+    pub(crate) const fn add(&mut self, status: Status) {
+        match status {
+            Status::Done => self.done += 1,
+            Status::Invalid => self.invalid += 1,
+            Status::Failed => self.failed += 1,
+            Status::Timeout => self.timeout += 1,
+            Status::Cancelled => self.cancelled += 1,
+        }
+    }
+
+    /// Returns the number of pictures that are missing.
+    pub(crate) const fn missing(&self) -> usize {
+        self.invalid + self.failed + self.timeout + self.cancelled
+    }
+}
+
+impl std::fmt::Display for Line {
+    /// Names the picture: its model, view and status, separated by tabs.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let status = serde_json::to_string(&self.status).unwrap_or_default();
+        write!(f, "{}\t{}\t{}", self.input, self.view, status.trim_matches('"'))
+    }
+}
+
+impl Line {
+    fn of(job: &Job, outcome: &Outcome) -> Self {
+        let none = Drawn::default();
+        let (drawn, status, error) = match &outcome.result {
+            Ok(drawn) => (drawn, Status::Done, None),
+            Err(fault) => (&none, fault.status(), Some(fault.reason())),
+        };
+        Self {
+            index: job.index,
+            input: shown(&job.row.file),
+            in_sha256: outcome.in_sha256.clone(),
+            view: job.camera().name.clone(),
+            out: shown(&job.out),
+            out_sha256: drawn.sha256.clone(),
+            bytes: (status == Status::Done).then_some(drawn.bytes),
+            status,
+            findings: drawn.findings.clone(),
+            error,
+        }
+    }
+}
+
+/// Formats a path with slashes, as on every system.
+fn shown(path: &Path) -> String {
+    let text = path.to_string_lossy();
+    if cfg!(windows) { text.replace('\\', "/") } else { text.into_owned() }
+}
+
+/// Formats a value as a line.
+pub(crate) fn line(value: &impl Serialize) -> Vec<u8> {
+    let mut line = serde_json::to_vec(value).unwrap_or_default();
+    line.push(b'\n');
+    line
+}
+
+/// The times of a picture in milliseconds.
+#[derive(Debug, Serialize)]
+struct Times {
+    index: usize,
+    unchanged: bool,
+    load: f64,
+    draw: f64,
+    encode: f64,
+}
+
+/// Collects outcomes, and writes them in the order of the list.
+#[derive(Debug)]
+pub(super) struct Reporter<'a> {
+    jobs: &'a [Job],
+    counts: Counts,
+    report: Option<NewFile>,
+    times: Option<NewFile>,
+    /// The jobs that are not written yet, by index in the list, with their positions.
+    open: BTreeSet<(usize, usize)>,
+    /// The lines that wait for earlier ones.
+    waiting: BTreeMap<usize, Vec<u8>>,
+}
+
+impl<'a> Reporter<'a> {
+    /// Begins a report. `all` is the number of jobs in the whole list.
+    ///
+    /// # Errors
+    /// If a file cannot be created.
+    pub(super) fn begin(
+        jobs: &'a [Job],
+        all: usize,
+        report: Option<&Path>,
+        times: Option<&Path>,
+    ) -> Result<Self, SaveError> {
+        Ok(Self {
+            jobs,
+            counts: Counts { jobs: all, ..Counts::default() },
+            report: report.map(NewFile::begin).transpose()?,
+            times: times.map(NewFile::begin).transpose()?,
+            open: jobs.iter().enumerate().map(|(i, job)| (job.index, i)).collect(),
+            waiting: BTreeMap::new(),
+        })
+    }
+
+    /// Adds the result of a job.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub(super) fn add(&mut self, outcome: &Outcome) -> Result<(), SaveError> {
+        let job = &self.jobs[outcome.job];
+        if let (Some(times), false) = (&mut self.times, outcome.result == Err(Fault::Cancelled)) {
+            let spent = outcome.spent;
+            let [load, draw, encode] = [spent.load, spent.draw, spent.encode]
+                .map(|time| (time.as_secs_f64() * 1e6).round() / 1e3);
+            let unchanged = outcome.result.as_ref().is_ok_and(|drawn| drawn.unchanged);
+            times.push(&line(&Times { index: job.index, unchanged, load, draw, encode }))?;
+        }
+        let text = Line::of(job, outcome);
+        self.counts.add(text.status);
+        if self.report.is_some() {
+            self.waiting.insert(job.index, line(&text));
+        } else {
+            self.open.remove(&(job.index, outcome.job));
+        }
+        self.write_ready()
+    }
+
+    /// Writes the lines that wait for no other.
+    fn write_ready(&mut self) -> Result<(), SaveError> {
+        let Some(report) = &mut self.report else { return Ok(()) };
+        while let Some((index, _)) = self.open.first() {
+            let Some(line) = self.waiting.remove(index) else { break };
+            report.push(&line)?;
+            self.open.pop_first();
+        }
+        Ok(())
+    }
+
+    /// Completes the report: jobs without a result are cancelled.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub(super) fn finish(mut self) -> Result<Counts, SaveError> {
+        let cancelled: Vec<usize> = self.open.iter().map(|(_, job)| *job).collect();
+        for job in cancelled {
+            if !self.waiting.contains_key(&self.jobs[job].index) {
+                let result = Err(Fault::Cancelled);
+                let spent = Spent::default();
+                self.add(&Outcome { job, result, in_sha256: None, spent })?;
+            }
+        }
+        let counts = self.counts;
+        if let Some(mut report) = self.report.take() {
+            report.push(&line(&Summary { summary: counts }))?;
+            report.finish()?;
+        }
+        if let Some(times) = self.times.take() {
+            times.finish()?;
+        }
+        Ok(counts)
+    }
+}

@@ -1,0 +1,143 @@
+//! Shards: parts of a list that different processes draw.
+//!
+//! All pictures of one model belong to one shard, so it is loaded once. Models are sorted by a hash
+//! of their path and dealt like cards, which spreads neighbours in the list, often of equal cost.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use sha2::{Digest as _, Sha256};
+
+/// The part of a list that this process draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Shard {
+    /// The number of the part, from 0.
+    pub(super) index: usize,
+    /// The number of parts.
+    pub(super) count: usize,
+}
+
+/// Environment variables with the number of a task, the number of tasks, and the number of the
+/// first task.
+const ENGINES: [[&str; 3]; 3] = [
+    ["SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN"],
+    ["JOB_COMPLETION_INDEX", "JOB_COMPLETIONS", ""],
+    ["AWS_BATCH_JOB_ARRAY_INDEX", "AWS_BATCH_JOB_ARRAY_SIZE", ""],
+];
+
+impl Shard {
+    /// The whole list.
+    pub(super) const WHOLE: Self = Self { index: 0, count: 1 };
+
+    /// Returns the shard of each model, by its path.
+    pub(super) fn of_files<'a>(
+        count: usize,
+        files: impl Iterator<Item = &'a Path>,
+    ) -> BTreeMap<&'a Path, usize> {
+        let key = |file: &'a Path| {
+            let bytes = file.as_os_str().as_encoded_bytes();
+            (Sha256::digest(bytes).to_vec(), file)
+        };
+        let mut keys: Vec<(Vec<u8>, &Path)> = files.map(key).collect();
+        keys.sort();
+        keys.dedup();
+        keys.into_iter().enumerate().map(|(i, (_, file))| (file, i % count)).collect()
+    }
+}
+
+/// Parses the value of `--shard`: "3/64", counted from 0, or "auto".
+///
+/// # Errors
+/// The reason, if it is invalid, or the environment names no task.
+pub(super) fn shard(text: &str) -> Result<Shard, String> {
+    shard_in(text, &|name| std::env::var(name).ok())
+}
+
+fn shard_in(text: &str, variable: &dyn Fn(&str) -> Option<String>) -> Result<Shard, String> {
+    let number = |name: &str| variable(name)?.trim().parse::<usize>().ok();
+    if text != "auto" {
+        let parts = text.split_once('/').map(|(index, count)| (index.parse(), count.parse()));
+        let Some((Ok(index), Ok(count))) = parts else {
+            return Err("write the number of the part, from 0, and the number of parts, as 3/64; \
+                        or auto"
+                .to_owned());
+        };
+        return checked(index, count);
+    }
+    for [index, count, first] in ENGINES {
+        let Some(task) = number(index) else { continue };
+        let count = number(count).ok_or_else(|| {
+            format!("{index} is {task}, but {count} does not say of how many; write {task}/COUNT")
+        })?;
+        let first = number(first).unwrap_or_default();
+        let task = task.checked_sub(first).ok_or("the task number is below the first one")?;
+        return checked(task, count);
+    }
+    let names: Vec<&str> = ENGINES.iter().map(|[index, ..]| *index).collect();
+    Err(format!("auto needs one of the variables {}", names.join(", ")))
+}
+
+fn checked(index: usize, count: usize) -> Result<Shard, String> {
+    if index < count {
+        return Ok(Shard { index, count });
+    }
+    match count {
+        0 => Err("there is at least one part".to_owned()),
+        _ => Err(format!("parts are counted from 0: the last of {count} is {}/{count}", count - 1)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_model_is_in_one_shard_and_shards_have_equal_sizes() {
+        let names: Vec<String> = (0..100).map(|i| format!("models/{i}.obj")).collect();
+        for count in (1..=17).chain([64]) {
+            let twice = names.iter().chain(&names).map(Path::new);
+            let shards = Shard::of_files(count, twice);
+            assert_eq!(shards.len(), 100);
+            for shard in 0..count {
+                let size = shards.values().filter(|other| **other == shard).count();
+                assert!(size.abs_diff(100 / count) <= 1, "{shard}/{count}: {size}");
+            }
+        }
+    }
+
+    #[test]
+    fn shards_are_written_or_found_in_the_environment() {
+        let none = |_: &str| None;
+        assert_eq!(shard_in("3/64", &none), Ok(Shard { index: 3, count: 64 }));
+        assert_eq!(shard_in("0/1", &none), Ok(Shard::WHOLE));
+        for (wrong, reason) in [
+            ("1/1", "from 0"),
+            ("0/0", "at least one"),
+            ("x/3", "as 3/64"),
+            ("3", "as 3/64"),
+            ("-1/3", "as 3/64"),
+            ("auto", "SLURM_ARRAY_TASK_ID"),
+        ] {
+            assert!(shard_in(wrong, &none).unwrap_err().contains(reason), "{wrong}");
+        }
+        let environment = |pairs: &'static [(&str, &str)]| {
+            move |name: &str| {
+                let found = pairs.iter().find(|(other, _)| *other == name);
+                found.map(|(_, value)| (*value).to_owned())
+            }
+        };
+        let slurm = environment(&[
+            ("SLURM_ARRAY_TASK_ID", "3"),
+            ("SLURM_ARRAY_TASK_COUNT", "8"),
+            ("SLURM_ARRAY_TASK_MIN", "1"),
+        ]);
+        assert_eq!(shard_in("auto", &slurm), Ok(Shard { index: 2, count: 8 }));
+        let kubernetes = environment(&[("JOB_COMPLETION_INDEX", "5"), ("JOB_COMPLETIONS", "6")]);
+        assert_eq!(shard_in("auto", &kubernetes), Ok(Shard { index: 5, count: 6 }));
+        let unknown = environment(&[("JOB_COMPLETION_INDEX", "5")]);
+        assert!(shard_in("auto", &unknown).unwrap_err().contains("5/COUNT"));
+        let aws =
+            environment(&[("AWS_BATCH_JOB_ARRAY_INDEX", "9"), ("AWS_BATCH_JOB_ARRAY_SIZE", "10")]);
+        assert_eq!(shard_in("auto", &aws), Ok(Shard { index: 9, count: 10 }));
+    }
+}

@@ -1,0 +1,386 @@
+//! Draws the jobs of a batch.
+//!
+//! Small pictures cannot be split between threads without loss, so each thread draws its own: it is
+//! the only thread of a rayon pool. Pictures of more than a megapixel are drawn one after the other
+//! by all threads. A further thread reads models ahead, so reading, drawing and encoding overlap.
+//! Pixels depend on none of this.
+
+use std::borrow::Cow;
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::Sender;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::Picture;
+use marraztu_io::{self as io, Progress};
+use marraztu_render::{Renderer, plan_frame, without_ground};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use super::cache::StageCache;
+use super::digest::{Stamper, hash_of, hash_of_file};
+use super::jobs::{Job, Row};
+use super::outcome::{Drawn, Fault, Outcome, Spent};
+use crate::cli::failure::Failure;
+use crate::cli::render::look;
+use crate::cli::stage::Stage;
+
+/// Pictures with more pixels are drawn by all threads.
+const LARGE: usize = 1 << 20;
+
+/// The number of models that are read ahead.
+const AHEAD: usize = 2;
+
+/// How a batch is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Manner {
+    /// The number of threads that draw.
+    pub(super) threads: usize,
+    /// Whether pictures with the right stamp are skipped.
+    pub(super) resume: bool,
+    /// Whether a report needs hashes and findings.
+    pub(super) reports: bool,
+    /// The time limit of a picture.
+    pub(super) limit: Option<Duration>,
+    /// The limit of memory for models, in bytes.
+    pub(super) memory: usize,
+}
+
+/// The state that the threads of a batch share.
+#[derive(Debug)]
+pub(super) struct Studio {
+    jobs: Vec<Job>,
+    manner: Manner,
+    /// The position of the next job.
+    next: AtomicUsize,
+    stopped: AtomicBool,
+    cache: StageCache,
+    stamper: Stamper,
+    /// The pool for large pictures.
+    large: Mutex<Option<ThreadPool>>,
+    /// The folders that exist and are free of leftovers.
+    folders: Mutex<BTreeSet<PathBuf>>,
+    /// The files being read, with their time limits.
+    reading: Mutex<Vec<(Option<Instant>, Progress)>>,
+}
+
+/// A picture that is being drawn.
+struct Attempt<'a> {
+    studio: &'a Studio,
+    job: &'a Job,
+    until: Option<Instant>,
+    spent: Spent,
+}
+
+impl Studio {
+    pub(super) fn new(jobs: Vec<Job>, manner: Manner) -> Self {
+        Self {
+            jobs,
+            manner,
+            next: AtomicUsize::new(0),
+            stopped: AtomicBool::new(false),
+            cache: StageCache::new(manner.memory),
+            stamper: Stamper::new(),
+            large: Mutex::default(),
+            folders: Mutex::default(),
+            reading: Mutex::default(),
+        }
+    }
+
+    /// Returns the jobs, in the order of drawing.
+    pub(super) fn jobs(&self) -> &[Job] {
+        &self.jobs
+    }
+
+    /// Returns the number of threads that draw.
+    pub(super) const fn threads(&self) -> usize {
+        self.manner.threads
+    }
+
+    /// Ends the batch: pictures that are being drawn are given up.
+    pub(super) fn stop(&self) {
+        self.stopped.store(true, Ordering::Relaxed);
+        for (_, progress) in self.reading.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+            progress.cancel();
+        }
+    }
+
+    /// Gives up files that are being read beyond their time limit.
+    pub(super) fn enforce_limits(&self) {
+        let now = Instant::now();
+        let reading = self.reading.lock().unwrap_or_else(PoisonError::into_inner);
+        for (until, progress) in reading.iter() {
+            if until.is_some_and(|until| until < now) {
+                progress.cancel();
+            }
+        }
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
+    /// Draws jobs on this thread until none is left, and sends their results.
+    pub(super) fn work(&self, results: &Sender<Outcome>) {
+        // If the pool cannot be built, drawing uses the pool of all threads.
+        let _pool = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+        let mut renderer = Renderer::default();
+        while !self.is_stopped() {
+            let number = self.next.fetch_add(1, Ordering::Relaxed);
+            let Some(job) = self.jobs.get(number) else { return };
+            let until = self.manner.limit.map(|limit| Instant::now() + limit);
+            let mut attempt = Attempt { studio: self, job, until, spent: Spent::default() };
+            let result = guarded(|| attempt.picture(&mut renderer)).unwrap_or_else(|panic| {
+                renderer = Renderer::default();
+                Err(Fault::Program(panic))
+            });
+            let model = || guarded(|| self.stamper.model(&job.row.file)).ok().flatten();
+            let wanted = self.manner.reports && result != Err(Fault::Cancelled);
+            let in_sha256 = if wanted { model().map(|model| model.file) } else { None };
+            let outcome = Outcome { job: number, result, in_sha256, spent: attempt.spent };
+            if results.send(outcome).is_err() {
+                return;
+            }
+        }
+    }
+
+    /// Reads the models of the next jobs until none is left.
+    pub(super) fn read_ahead(&self) {
+        let mut at = 0;
+        while let (Some(job), false) = (self.jobs.get(at), self.is_stopped()) {
+            let file = &job.row.file;
+            let group = self.jobs[at..].iter().take_while(|other| other.row.file == *file).count();
+            // Wait until the jobs before are nearly done.
+            let models_between = |next: usize| {
+                let between = self.jobs.get(next..at).unwrap_or_default();
+                between.chunk_by(|a, b| a.row.file == b.row.file).count()
+            };
+            while models_between(self.next.load(Ordering::Relaxed)) >= AHEAD
+                || (at > self.next.load(Ordering::Relaxed) && !self.cache.has_room_for(file))
+            {
+                if self.is_stopped() {
+                    return;
+                }
+                std::thread::sleep(Duration::from_millis(2));
+            }
+            if self.next.load(Ordering::Relaxed) < at + group && !self.is_up_to_date(job) {
+                // A panic is reported by the job that meets it again.
+                let until = self.manner.limit.map(|limit| Instant::now() + limit);
+                let _ = guarded(|| self.scene(&job.row, until));
+            }
+            at += group;
+        }
+    }
+
+    /// Returns the scene of a row, without a camera.
+    fn scene(&self, row: &Row, until: Option<Instant>) -> Result<std::sync::Arc<Stage>, Fault> {
+        let progress = Progress::new();
+        let lock = || self.reading.lock().unwrap_or_else(PoisonError::into_inner);
+        lock().push((until, progress.clone()));
+        if self.is_stopped() {
+            progress.cancel();
+        }
+        let loaded = self.cache.get(row, &progress, &self.stopped);
+        // Whatever the position, one finished entry is removed for each one added.
+        progress.cancel();
+        lock().retain(|(_, other)| !other.is_cancelled());
+        loaded
+    }
+
+    /// Returns whether an earlier run has drawn the picture of a job.
+    fn is_up_to_date(&self, job: &Job) -> bool {
+        self.manner.resume && self.finished(job).is_some()
+    }
+
+    /// Returns the stamp of an earlier run, if it is right.
+    fn finished(&self, job: &Job) -> Option<String> {
+        let found = io::read_stamp(&job.out)?;
+        let hash = found.split(' ').next()?.to_owned();
+        (Some(hash) == self.stamper.stamp(job)).then_some(found)
+    }
+
+    /// Runs the drawing of a picture: on this thread, or on all threads if it is large, one picture
+    /// after the other.
+    fn on_threads<T: Send>(
+        &self,
+        is_large: bool,
+        draw: impl FnOnce() -> T + Send,
+    ) -> Result<T, Fault> {
+        if !is_large || self.manner.threads == 1 {
+            return Ok(draw());
+        }
+        let mut large = self.large.lock().unwrap_or_else(PoisonError::into_inner);
+        if large.is_none() {
+            let pool = ThreadPoolBuilder::new().num_threads(self.manner.threads).build();
+            *large = Some(pool.map_err(|error| Fault::Program(error.to_string()))?);
+        }
+        let pool = large.as_ref().expect("it has just been built");
+        Ok(pool.install(draw))
+    }
+
+    /// Creates a folder, and removes the leftovers of killed processes from it.
+    fn prepare_folder(&self, folder: &Path) -> Result<(), Fault> {
+        let lock = || self.folders.lock().unwrap_or_else(PoisonError::into_inner);
+        if lock().contains(folder) {
+            return Ok(());
+        }
+        let created =
+            if folder.as_os_str().is_empty() { Ok(()) } else { std::fs::create_dir_all(folder) };
+        created.map_err(|error| {
+            Fault::Output(format!("the folder {} cannot be created: {error}", folder.display()))
+        })?;
+        io::sweep_once(if folder.as_os_str().is_empty() { Path::new(".") } else { folder });
+        lock().insert(folder.to_owned());
+        Ok(())
+    }
+}
+
+impl Attempt<'_> {
+    /// Draws and writes the picture, unless it is up to date.
+    fn picture(&mut self, renderer: &mut Renderer) -> Result<Drawn, Fault> {
+        let (studio, job) = (self.studio, self.job);
+        let folder = job.out.parent().unwrap_or(Path::new(""));
+        if studio.manner.resume
+            && let Some(stamp) = studio.finished(job)
+        {
+            // Whole files are read, and models with findings loaded, only for a report.
+            studio.prepare_folder(folder)?;
+            let has_findings = !stamp.ends_with(" 0");
+            return self.unchanged(has_findings);
+        }
+        let (stage, findings) = self.stage()?;
+        stage.sources(std::slice::from_ref(&job.row.file)).spare(&job.out).map_err(output)?;
+        studio.prepare_folder(folder)?;
+        io::check_replaced(&job.out).map_err(output)?;
+        let content = self.content(renderer, &stage, findings.len())?;
+        let begin = Instant::now();
+        io::save_encoded(&job.out, &content).map_err(output)?;
+        self.spent.encode += begin.elapsed();
+        Ok(Drawn {
+            sha256: studio.manner.reports.then(|| hash_of(&content)),
+            bytes: content.len() as u64,
+            findings,
+            unchanged: false,
+        })
+    }
+
+    /// Returns the result of a picture that an earlier run has drawn.
+    fn unchanged(&mut self, has_findings: bool) -> Result<Drawn, Fault> {
+        let mut drawn = Drawn { unchanged: true, ..Drawn::default() };
+        let out = &self.job.out;
+        let failed = |error: std::io::Error| Fault::Output(format!("{}: {error}", out.display()));
+        if self.studio.manner.reports {
+            drawn.bytes = out.metadata().map_err(failed)?.len();
+            drawn.sha256 = Some(hash_of_file(out).map_err(failed)?);
+            if has_findings {
+                drawn.findings = self.stage()?.1;
+            }
+        }
+        Ok(drawn)
+    }
+
+    /// Returns the scene with its camera, and the findings.
+    fn stage(&mut self) -> Result<(Stage, Vec<String>), Fault> {
+        let begin = Instant::now();
+        let (row, job) = (&self.job.row, self.job);
+        let loaded = self.studio.scene(row, self.until);
+        self.spent.load += begin.elapsed();
+        let mut stage = Stage::clone(&*loaded?);
+        let options = &row.parsed.options;
+        let failed = |failure: Failure| Fault::of(&failure);
+        look(&mut stage, &options.seeing, &job.camera().aim).map_err(failed)?;
+        stage.settings = options.accuracy.of_file(&stage.settings);
+        let findings = stage.findings.iter().map(ToString::to_string);
+        let findings = findings.chain(stage.notes.iter().cloned()).collect();
+        Ok((stage, findings))
+    }
+
+    /// Draws and encodes the picture.
+    fn content(
+        &mut self,
+        renderer: &mut Renderer,
+        stage: &Stage,
+        findings: usize,
+    ) -> Result<Vec<u8>, Fault> {
+        let (studio, job) = (self.studio, self.job);
+        let begin = Instant::now();
+        let shot = stage.shot(job.size());
+        let transparent = job.row.parsed.options.transparent;
+        let (until, stopped) = (self.until, &studio.stopped);
+        let is_late = || until.is_some_and(|until| until < Instant::now());
+        let wanted = || !stopped.load(Ordering::Relaxed) && !is_late();
+        let is_large = shot.size.area() > LARGE;
+        let picture =
+            studio.on_threads(is_large, || draw(renderer, &shot, transparent, &wanted))?;
+        self.spent.draw += begin.elapsed();
+        let stopped = if studio.is_stopped() { Fault::Cancelled } else { Fault::Timeout };
+        let picture = picture.filter(|_| !is_late()).ok_or(stopped)?;
+        let begin = Instant::now();
+        let hash = studio.stamper.stamp(job);
+        let hash = hash.ok_or_else(|| Fault::Input("the model has disappeared".to_owned()))?;
+        // The number of findings tells a later run whether its report needs the model.
+        let content = io::encode_stamped(job.format, &picture, &format!("{hash} {findings}"));
+        self.spent.encode += begin.elapsed();
+        content.map_err(|reason| Fault::Output(format!("{}: {reason}", job.out.display())))
+    }
+}
+
+fn output(error: io::SaveError) -> Fault {
+    Fault::Output(error.to_string())
+}
+
+/// Draws a picture, unless it is no longer wanted.
+fn draw<'a>(
+    renderer: &'a mut Renderer,
+    shot: &Shot,
+    transparent: bool,
+    wanted: &(dyn Fn() -> bool + Sync),
+) -> Option<Cow<'a, Picture>> {
+    if transparent {
+        // The scene takes every background.
+        return without_ground(renderer, shot).ok().map(Cow::Owned);
+    }
+    renderer.render_while(&plan_frame(shot), wanted).ok().map(Cow::Borrowed)
+}
+
+thread_local! {
+    /// The place of the last panic on this thread.
+    static PLACE: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Replaces the message that a panic prints: a batch reports it.
+pub(super) fn silence_panics() {
+    std::panic::set_hook(Box::new(|panic| {
+        let place = panic.location().map(|place| format!(" ({}:{})", place.file(), place.line()));
+        PLACE.replace(place.unwrap_or_default());
+    }));
+}
+
+/// Runs a part of a job. A panic is an error, with its message.
+fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
+        let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+        let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+        let place = PLACE.take();
+        format!("{}{place}", text.as_deref().unwrap_or("a panic without a message"))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_one_error_with_its_message() {
+        assert_eq!(guarded(|| 7), Ok(7));
+        let error = guarded(|| -> u8 { panic!("index {}", 9) }).unwrap_err();
+        assert!(error.starts_with("index 9"), "{error}");
+        assert!(
+            guarded(|| std::panic::panic_any(7_u8)).unwrap_err().starts_with("a panic without")
+        );
+    }
+}

@@ -1,0 +1,153 @@
+//! `marraztu compare`: compares two pictures.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::{PathBufValueParser, TypedValueParser};
+use marraztu_core::base::image::Picture;
+use marraztu_io::{self as io, PictureFormat};
+use marraztu_lab::error::amplified;
+use marraztu_lab::flip::Perceived;
+
+use super::failure::Failure;
+use super::say;
+
+/// The exit status if the pictures cannot be compared.
+const INCOMPARABLE: u8 = 2;
+
+/// The factor of differences in the picture of differences.
+const AMPLIFIED: u16 = 16;
+
+/// The pictures to compare.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Prints the largest difference of a channel in steps of 1/255 (with alpha), the number of pixels that
+differ, the root of the mean square error in steps, and FLIP: the difference that a viewer sees when
+flipping between the pictures, from 0 to 1 (Andersson and others, 2020).
+
+Examples:
+  marraztu compare a.png b.png                  equal pixels
+  marraztu compare a.png b.png --max 2          no channel differs by more than 2 steps
+  marraztu compare a.png b.png --max 255 --flip 0.05
+  marraztu compare a.png b.png --out diff.png   write the difference, times 16
+
+Exit status: 0 if the difference is within the limits, 1 if it is not, 2 if the pictures cannot be
+compared.")]
+pub(crate) struct Compare {
+    /// The first picture
+    a: PathBuf,
+    /// The second picture
+    b: PathBuf,
+    /// The largest difference of a channel that counts as the same, in steps
+    #[arg(long, value_name = "STEPS", default_value_t = 0)]
+    max: u8,
+    /// The largest FLIP that counts as the same, from 0 to 1
+    #[arg(long, value_name = "LIMIT", value_parser = flip)]
+    flip: Option<f64>,
+    /// The picture of differences to write, amplified 16 times
+    #[arg(short, long, value_name = "FILE")]
+    #[arg(value_parser = PathBufValueParser::new().try_map(picture))]
+    out: Option<PathBuf>,
+}
+
+/// The differences of two pictures of one size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Difference {
+    largest: u8,
+    pixels: usize,
+    rmse: f64,
+    flip: f64,
+}
+
+/// Compares two pictures.
+pub(super) fn compare(arguments: &Compare) -> Result<(), Failure> {
+    let Compare { a, b, max, flip, out } = arguments;
+    let [first, second] = match [load(a), load(b)] {
+        [Ok(first), Ok(second)] => [first, second],
+        [Err(failure), _] | [_, Err(failure)] => return Err(incomparable(&failure)),
+    };
+    let sizes = [first.size(), second.size()];
+    if sizes[0] != sizes[1] {
+        let [a_size, b_size] = sizes.map(|size| format!("{}x{}", size.width, size.height));
+        let (a, b) = (a.display(), b.display());
+        return Err(incomparable(&format!("{a} has {a_size} pixels, but {b} has {b_size}")));
+    }
+    let difference = difference(&first, &second);
+    let Difference { largest, pixels, rmse, flip: seen } = difference;
+    let all = sizes[0].area();
+    let text = format!(
+        "largest difference  {largest}\ndiffering pixels    {pixels} of {all}\nRMSE                \
+         {rmse:.4}\nFLIP                {seen:.4}\n"
+    );
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        // The reader has closed the pipe, like `head`.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {}
+        written => written.map_err(Failure::Output)?,
+    }
+    if let Some(out) = out {
+        io::check_picture_target(out)?;
+        io::save_picture(out, &amplified(&first, &second, AMPLIFIED))?;
+    }
+    let is_same = largest <= *max && flip.is_none_or(|flip| seen <= flip);
+    if is_same { Ok(()) } else { Err(Failure::Told) }
+}
+
+fn load(path: &Path) -> Result<Picture, String> {
+    io::load_picture(path).map_err(|error| error.to_string())
+}
+
+fn incomparable(reason: &str) -> Failure {
+    say("error", &reason);
+    Failure::Status(INCOMPARABLE)
+}
+
+/// Measures the differences of two pictures of one size.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 bytes")]
+fn difference(a: &Picture, b: &Picture) -> Difference {
+    let (mut largest, mut pixels, mut squares) = (0, 0, 0_u64);
+    for (a, b) in a.pixels().iter().zip(b.pixels()) {
+        let steps: [u8; 4] = std::array::from_fn(|i| a[i].abs_diff(b[i]));
+        pixels += usize::from(steps != [0; 4]);
+        for step in steps {
+            largest = largest.max(step);
+            squares += u64::from(step) * u64::from(step);
+        }
+    }
+    // Alpha counts only if a picture has it.
+    let has_alpha = [a, b].iter().any(|picture| picture.least_alpha() < 255);
+    let channels = if has_alpha { 4 } else { 3 } * a.pixels().len().max(1);
+    let rmse = libm::sqrt(squares as f64 / channels as f64);
+    let flip = if largest == 0 { 0.0 } else { Perceived::new(a).difference(&Perceived::new(b)) };
+    Difference { largest, pixels, rmse, flip }
+}
+
+fn picture(path: PathBuf) -> Result<PathBuf, String> {
+    PictureFormat::of(&path).map(|_| path)
+}
+
+fn flip(text: &str) -> Result<f64, String> {
+    let limit = text.parse().ok().filter(|limit| (0.0..=1.0).contains(limit));
+    limit.ok_or_else(|| "write a number from 0 to 1".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use marraztu_core::base::image::Size;
+
+    #[test]
+    fn differences_are_counted_by_hand() {
+        let picture =
+            |pixels: [[u8; 4]; 2]| Picture::from_pixels(Size::new(2, 1), pixels.to_vec()).unwrap();
+        let a = picture([[10, 20, 30, 255], [0, 0, 0, 255]]);
+        let none = Difference { largest: 0, pixels: 0, rmse: 0.0, flip: 0.0 };
+        assert_eq!(difference(&a, &a), none);
+        let opaque = difference(&a, &picture([[13, 20, 26, 255], [0, 0, 0, 255]]));
+        assert_eq!((opaque.largest, opaque.pixels), (4, 1));
+        assert!((opaque.rmse - libm::sqrt(25.0 / 6.0)).abs() < 1e-12 && opaque.flip > 0.0);
+        let clear = difference(&a, &picture([[10, 20, 30, 255], [0, 0, 0, 253]]));
+        assert_eq!((clear.largest, clear.pixels), (2, 1));
+        assert!((clear.rmse - libm::sqrt(4.0 / 8.0)).abs() < 1e-12);
+    }
+}
