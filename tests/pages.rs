@@ -25,6 +25,7 @@ const PAGES: &[&str] = &[
     "docs/effects.md",
     "docs/glossary.md",
     "docs/keys.md",
+    "docs/many.md",
     "docs/speed.md",
     "docs/stability.md",
     "docs/tasks.md",

@@ -158,7 +158,9 @@ mod tests {
 
     fn line_of(index: usize, status: &str) -> String {
         format!(
-            r#"{{"index":{index},"in":"{index}.obj","in_sha256":null,"view":"0","out":"{index}.png","out_sha256":null,"bytes":null,"status":"{status}","findings":[],"error":null}}"#
+            "{{\"index\":{index},\"in\":\"{index}.obj\",\"in_sha256\":null,\"view\":\"0\",\
+             \"out\":\"{index}.png\",\"out_sha256\":null,\"bytes\":null,\
+             \"status\":\"{status}\",\"findings\":[],\"error\":null}}"
         )
     }
 
@@ -170,12 +172,16 @@ mod tests {
         Ok(merged)
     }
 
+    fn summary_of(jobs: usize) -> String {
+        let counts = Counts { jobs, ..Counts::default() };
+        serde_json::to_string(&Summary { summary: counts }).unwrap()
+    }
+
     #[test]
     fn a_retry_replaces_a_failure_and_absent_pictures_are_listed() {
-        let summary =
-            r#"{"summary":{"jobs":4,"done":0,"invalid":0,"failed":0,"timeout":0,"cancelled":0}}"#;
-        let first = [line_of(0, "done"), line_of(2, "timeout"), summary.to_owned()];
-        let retry = [line_of(2, "done"), line_of(1, "invalid"), summary.to_owned()];
+        let summary = summary_of(4);
+        let first = [line_of(0, "done"), line_of(2, "timeout"), summary.clone()];
+        let retry = [line_of(2, "done"), line_of(1, "invalid"), summary];
         let merged = merged(&[&first, &retry, &first]).unwrap();
         let counts = merged.counts();
         assert_eq!((counts.jobs, counts.done, counts.invalid, counts.timeout), (4, 2, 1, 0));
@@ -186,12 +192,11 @@ mod tests {
 
     #[test]
     fn reports_of_different_lists_are_rejected() {
-        let summary = |jobs: usize| {
-            format!(
-                r#"{{"summary":{{"jobs":{jobs},"done":0,"invalid":0,"failed":0,"timeout":0,"cancelled":0}}}}"#
-            )
-        };
-        assert!(merged(&[&[summary(3)], &[summary(4)]]).unwrap_err().contains("different lengths"));
+        assert!(
+            merged(&[&[summary_of(3)], &[summary_of(4)]])
+                .unwrap_err()
+                .contains("different lengths")
+        );
         let other = line_of(0, "done").replace("0.obj", "x.obj");
         assert!(merged(&[&[line_of(0, "done")], &[other]]).unwrap_err().contains("disagree"));
         assert!(merged(&[&["nonsense".to_owned()]]).unwrap_err().starts_with("r:1: "));

@@ -31,8 +31,8 @@ const STACK: usize = 16 << 20;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Writes a PNG with a transparent background, whatever the name of OUT. The content of IN tells
-whether it is a model or a scene; MTL files and textures are used if they are there. After 5 seconds,
-a coarser picture is written.
+whether it is a model or a scene; MTL files and textures are used if they are there. After 5
+seconds, a coarser picture is written.
 
 Examples:
   marraztu thumbnail --size 256 teapot.obj teapot-small.png")]

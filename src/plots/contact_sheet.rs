@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn long_labels_are_shortened() {
-        let long = "a very long name of a model that nobody can read".repeat(4);
+        let long = "a very long name of a model".repeat(4);
         let short = shortened(&long, 100.0);
         assert!(short.ends_with("...") && size_of(&short, FONT)[0] <= 100.0, "{short}");
         assert_eq!(shortened("a", 100.0), "a");

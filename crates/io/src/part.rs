@@ -1,8 +1,8 @@
 //! Temporary files for new content, and the removal of leftovers.
 //!
-//! A temporary file is named `.NAME.HOST-PID-RANDOM.part`. Processes on several hosts and in several
-//! containers may write to one folder. Their process numbers repeat, so the host is part of the
-//! name, and each process draws a random number. On Linux, the host includes the number of the
+//! A temporary file is named `.NAME.HOST-PID-RANDOM.part`. Processes on several hosts and in
+//! several containers may write to one folder. Their process numbers repeat, so the host is part of
+//! the name, and each process draws a random number. On Linux, the host includes the number of the
 //! process namespace.
 //!
 //! A killed process leaves its file behind. The first write to a folder removes the files of

@@ -82,15 +82,13 @@ impl StageCache {
         loaded
     }
 
-    /// Returns whether another model of this file probably fits.
-    pub(super) fn has_room_for(&self, file: &Path) -> bool {
-        /// A loaded model takes about this many times the bytes of its file.
+    /// Returns whether `count` models like this file fit within the limit.
+    pub(super) fn has_room_for(&self, file: &Path, count: usize) -> bool {
+        // A loaded model takes about this many times the bytes of its file.
         const GROWTH: usize = 6;
-        let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
-        let used: usize = entries.map.values().map(|entry| entry.bytes).sum();
         let size = file.metadata().map_or(0, |metadata| metadata.len());
         let size = usize::try_from(size).unwrap_or(usize::MAX);
-        used.saturating_add(size.saturating_mul(GROWTH)) <= self.most
+        size.saturating_mul(GROWTH).saturating_mul(count) <= self.most
     }
 
     /// Notes the size of a new model, and drops others above the limit.

@@ -52,6 +52,11 @@ impl Job {
         &self.row.views[self.view]
     }
 
+    /// Returns whether its row has no other view.
+    pub(super) fn is_only_view(&self) -> bool {
+        self.row.views.len() == 1
+    }
+
     /// Returns the size of the picture.
     pub(super) fn size(&self) -> Size {
         self.row.parsed.options.size.or(self.camera().size).unwrap_or(SIZE)

@@ -155,7 +155,7 @@ fn json_value(json: &Json) -> Result<Option<Value>, String> {
     }
 }
 
-/// Makes an entry from columns, one of which is the file.
+/// Makes an entry from columns; one of them is the file.
 fn entry(place: String, mut values: Vec<(String, Value)>) -> Result<Entry, String> {
     let file = values.iter().position(|(name, _)| name == FILE).map(|i| values.remove(i).1);
     match file {
@@ -218,7 +218,9 @@ mod tests {
                 entry(3, "c.obj", &[]),
             ]
         );
-        let json = "{\"file\":\"a, b.obj\",\"from\":[30,-5.5],\"edges\":true}\n\n{\"file\":\"c.obj\",\"size\":64}";
+        let json = r#"{"file":"a, b.obj","from":[30,-5.5],"edges":true}
+
+            {"file":"c.obj","size":64}"#;
         assert_eq!(
             from_json_lines("list", json).unwrap(),
             [

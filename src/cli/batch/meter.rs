@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::outcome::Outcome;
+use super::outcome::{Fault, Outcome};
 use crate::cli::say;
 use crate::cli::talk;
 
@@ -58,6 +58,7 @@ impl Meter {
             bar.inc(1);
         }
         let fault = match &outcome.result {
+            Err(Fault::Cancelled) => return,
             Err(fault) => fault,
             Ok(drawn) => {
                 self.unchanged += usize::from(drawn.unchanged);

@@ -17,6 +17,7 @@ mod options;
 mod outcome;
 pub(super) mod report;
 mod shard;
+mod sheets;
 mod studio;
 mod template;
 pub(super) mod views;
@@ -40,6 +41,7 @@ use self::outcome::Outcome;
 pub(super) use self::outcome::Status;
 use self::report::{Counts, Reporter};
 use self::shard::{Shard, shard};
+use self::sheets::{Grid, grid, write_sheets};
 use self::studio::{Manner, Studio, silence_panics};
 use super::failure::Failure;
 use super::talk::{Talk, note};
@@ -60,9 +62,10 @@ const STACK: usize = 16 << 20;
 /// The pictures to draw.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-A list has one model or scene per row: .csv with a header, .jsonl, or plain lines. The column \"file\"
-names the model; further columns are options of the pictures, \"views\" and \"out\", and override the
-options of the command line for their row. Everything is checked before the first picture is drawn.
+A list has one model or scene per row: .csv with a header, .jsonl, or plain lines. The column
+\"file\" names the model; further columns are options of the pictures, \"views\" and \"out\", and
+override the options of the command line for their row. Everything is checked before the first
+picture is drawn.
 
 Names in --out have the fields {dir} {stem} {name} {index} {view} {view_name} {ext}; {index:06} and
 {view:03} have leading zeros, and {{ is a brace.
@@ -96,6 +99,12 @@ pub(crate) struct Batch {
     #[arg(long, value_name = "FORMAT", help = format_help(), default_value = "png")]
     #[arg(hide_default_value = true, value_parser = format)]
     format: &'static PictureFormat,
+    /// Also write contact sheets with labels, of these columns and rows
+    #[arg(long, value_name = "COLSxROWS", value_parser = grid, conflicts_with = "shard")]
+    sheet: Option<Grid>,
+    /// The folder of contact sheets
+    #[arg(long, value_name = "FOLDER", default_value = ".", requires = "sheet")]
+    sheets: PathBuf,
     /// Print the jobs, one per line: number, file, view and output, separated by tabs
     #[arg(long)]
     dry_run: bool,
@@ -155,6 +164,7 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
     let studio = Arc::new(Studio::new(jobs, manner));
     let mut reporter = Reporter::begin(studio.jobs(), all, report, times)?;
     let mut meter = Meter::of(studio.jobs().len());
+    let mut done = Vec::new();
     let signal = watched_signals();
     silence_panics();
     let results = start(&studio)?;
@@ -163,12 +173,20 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
         let Some(outcome) = outcome else { return Ok(true) };
         meter.add(&outcome);
         reporter.add(&outcome)?;
+        if outcome.result.is_ok() {
+            done.push(outcome.job);
+        }
         Ok(!arguments.stop || outcome.result.is_ok())
     });
     meter.finish();
     let unchanged = meter.unchanged();
     let counts = reporter.finish()?;
     ended?;
+    if let Some(grid) = arguments.sheet {
+        let mut jobs: Vec<&Job> = done.iter().map(|job| &studio.jobs()[*job]).collect();
+        jobs.sort_by_key(|job| job.index);
+        write_sheets(grid, &arguments.sheets, &jobs)?;
+    }
     tell(&counts, unchanged, meter.rate());
     status(&counts, signal.load(Ordering::Relaxed), arguments.strict_exit)
 }

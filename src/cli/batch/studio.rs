@@ -160,7 +160,8 @@ impl Studio {
                 between.chunk_by(|a, b| a.row.file == b.row.file).count()
             };
             while models_between(self.next.load(Ordering::Relaxed)) >= AHEAD
-                || (at > self.next.load(Ordering::Relaxed) && !self.cache.has_room_for(file))
+                || (at > self.next.load(Ordering::Relaxed)
+                    && !self.cache.has_room_for(file, AHEAD + 1))
             {
                 if self.is_stopped() {
                     return;

@@ -1,0 +1,67 @@
+//! Contact sheets of the pictures of a batch.
+//!
+//! Sheets are made from the files after the last picture is drawn, so they show what is there,
+//! whatever run has drawn it.
+
+use std::path::{Path, PathBuf};
+
+use marraztu::plots::{SheetCell, contact_sheet};
+use marraztu_io as io;
+
+use super::jobs::Job;
+use super::template::stem;
+use crate::cli::failure::Failure;
+
+/// The columns and rows of a sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Grid {
+    columns: usize,
+    rows: usize,
+}
+
+/// Parses columns and rows, such as "4x2".
+pub(super) fn grid(text: &str) -> Result<Grid, String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=100).contains(side));
+    let sides = text.split_once(['x', 'X']).map(|(columns, rows)| (side(columns), side(rows)));
+    match sides {
+        Some((Some(columns), Some(rows))) => Ok(Grid { columns, rows }),
+        _ => Err("write columns x rows, each from 1 to 100, as 4x2".to_owned()),
+    }
+}
+
+/// Writes the sheets of these jobs, in their order, to numbered files in a folder.
+///
+/// # Errors
+/// If a picture cannot be read, or a sheet cannot be written.
+pub(super) fn write_sheets(grid: Grid, folder: &Path, jobs: &[&Job]) -> Result<(), Failure> {
+    let failed = |error| Failure::Write(folder.to_owned(), error);
+    std::fs::create_dir_all(folder).map_err(failed)?;
+    for (i, jobs) in jobs.chunks(grid.columns * grid.rows).enumerate() {
+        let cells = jobs.iter().map(|job| cell(job)).collect::<Result<Vec<_>, _>>()?;
+        let path: PathBuf = folder.join(format!("sheet-{i:03}.png"));
+        io::check_replaced(&path)?;
+        io::save_picture(&path, &contact_sheet(&cells, grid.columns, &[])?)?;
+    }
+    Ok(())
+}
+
+/// Returns a picture with the name of its model and view.
+fn cell(job: &Job) -> Result<SheetCell, Failure> {
+    let picture = io::load_picture(&job.out)?;
+    let stem = stem(&job.row.file);
+    let label = if job.is_only_view() { stem } else { format!("{stem} {}", job.camera().name) };
+    Ok(SheetCell { picture, label })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_has_columns_and_rows() {
+        assert_eq!(grid("4x2"), Ok(Grid { columns: 4, rows: 2 }));
+        for wrong in ["", "4", "0x2", "4x101", "axb", "1x2x3"] {
+            assert!(grid(wrong).is_err(), "{wrong}");
+        }
+    }
+}
