@@ -89,7 +89,7 @@ impl Jobs {
         check_outputs(&jobs)?;
         let all = jobs.len();
         let shard = arguments.shard.unwrap_or(Shard::WHOLE);
-        Ok(Self { jobs: ordered(jobs, shard), all })
+        Ok(Self { jobs: ordered(&jobs, shard), all })
     }
 }
 
@@ -236,11 +236,11 @@ fn check_outputs(jobs: &[Job]) -> Result<(), Failure> {
 
 /// Returns the jobs of a shard. The jobs of a model follow each other, in the order in which models
 /// first occur in the list.
-fn ordered(jobs: Vec<Job>, shard: Shard) -> Vec<Job> {
+fn ordered(jobs: &[Job], shard: Shard) -> Vec<Job> {
     let shards = Shard::of_files(shard.count, jobs.iter().map(|job| &*job.row.file));
     let mut groups: BTreeMap<PathBuf, usize> = BTreeMap::new();
     let mut keyed = Vec::new();
-    for job in &jobs {
+    for job in jobs {
         if shards[&*job.row.file] == shard.index {
             let group = groups.entry(job.row.file.clone()).or_insert(job.index);
             keyed.push((*group, job.index));

@@ -254,12 +254,15 @@ impl Attempt<'_> {
             return self.unchanged(has_findings);
         }
         let (stage, findings) = self.stage()?;
-        stage.sources(std::slice::from_ref(&job.row.file)).spare(&job.out).map_err(output)?;
+        stage
+            .sources(std::slice::from_ref(&job.row.file))
+            .spare(&job.out)
+            .map_err(|error| output(&error))?;
         studio.prepare_folder(folder)?;
-        io::check_replaced(&job.out).map_err(output)?;
+        io::check_replaced(&job.out).map_err(|error| output(&error))?;
         let content = self.content(renderer, &stage, findings.len())?;
         let begin = Instant::now();
-        io::save_encoded(&job.out, &content).map_err(output)?;
+        io::save_encoded(&job.out, &content).map_err(|error| output(&error))?;
         self.spent.encode += begin.elapsed();
         Ok(Drawn {
             sha256: studio.manner.reports.then(|| hash_of(&content)),
@@ -330,7 +333,7 @@ impl Attempt<'_> {
     }
 }
 
-fn output(error: io::SaveError) -> Fault {
+fn output(error: &io::SaveError) -> Fault {
     Fault::Output(error.to_string())
 }
 
