@@ -158,7 +158,8 @@ fn the_shards_of_any_number_draw_the_same_files_and_merge_to_the_same_report() {
         let mut merge = vec!["merge".to_owned(), "--out".to_owned(), "report.jsonl".to_owned()];
         for index in 0..count {
             let (shard, name) = (format!("{index}/{count}"), format!("r{index}.jsonl"));
-            ends_with(0, parts.path(), &all_models(&["--shard", &shard, "--report", &name]));
+            let part = ["--shard", &shard, "--report", &name, "--memory", "1K"];
+            ends_with(0, parts.path(), &all_models(&part));
             merge.push(name);
         }
         ends_with(0, parts.path(), &merge.iter().map(String::as_str).collect::<Vec<_>>());

@@ -1,7 +1,8 @@
-//! Contact sheets: pictures in rows, with labels.
+//! Contact sheets: pictures in rows, with labels below them.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
+use plotters::style::{FontStyle, register_font};
 
 use super::{LIGHT, PlotError, size_of, styled};
 use marraztu_core::base::image::{Picture, Size};
@@ -47,17 +48,18 @@ pub fn contact_sheet(
     let size = Size::new(columns * step_x + GAP, rows * step_y + GAP + notes_height);
     let paper = [LIGHT.paper.0, LIGHT.paper.1, LIGHT.paper.2];
     let mut bytes = paper.repeat(size.area());
-    let mut texts = Vec::new();
+    let (mut labels, mut lines) = (Vec::new(), Vec::new());
     for (i, cell) in cells.iter().enumerate() {
         let (x, y) = (GAP + i % columns * step_x, GAP + i / columns * step_y);
         paste(&mut bytes, size, [x, y], &cell.picture);
-        texts.push((shortened(&cell.label, width as f32), [x, y + height]));
+        labels.push((shortened(&cell.label, width as f32), [x, y + height]));
     }
     for (i, note) in notes.iter().enumerate() {
         let at = [GAP, rows * step_y + GAP + i * LINE];
-        texts.push((shortened(note, (size.width - 2 * GAP) as f32), at));
+        lines.push((note.clone(), at));
     }
-    write_all(&mut bytes, size, &texts)?;
+    write_all(&mut bytes, size, &labels, styled(FONT, LIGHT.ink, HPos::Left, VPos::Top))?;
+    write_all(&mut bytes, size, &lines, fixed_width())?;
     let pixels = bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2], 255]).collect();
     Picture::from_pixels(size, pixels).ok_or_else(|| PlotError("its size is wrong".to_owned()))
 }
@@ -89,19 +91,29 @@ fn shortened(text: &str, width: f32) -> String {
     short(fits.saturating_sub(1))
 }
 
-/// Writes texts at their upper left corners.
+/// Returns the font of notes. Their columns are aligned with blanks.
+fn fixed_width() -> TextStyle<'static> {
+    // Registering a valid font cannot fail, and repeating it has no effect.
+    let _ = register_font("monospace", FontStyle::Normal, epaint_default_fonts::HACK_REGULAR);
+    TextStyle {
+        font: ("monospace", FONT - 2).into_font(),
+        ..styled(FONT, LIGHT.ink, HPos::Left, VPos::Top)
+    }
+}
+
+/// Writes texts at their upper left corners. The border of the sheet cuts them off.
 fn write_all(
     bytes: &mut [u8],
     size: Size,
     texts: &[(String, [usize; 2])],
+    style: TextStyle<'_>,
 ) -> Result<(), PlotError> {
     let side = |side: usize| u32::try_from(side).map_err(|error| PlotError(error.to_string()));
     let sides = (side(size.width)?, side(size.height)?);
     let area = BitMapBackend::with_buffer(bytes, sides).into_drawing_area();
     for (text, [x, y]) in texts {
         let place = |side: usize| i32::try_from(side).unwrap_or(i32::MAX);
-        let style = styled(FONT, LIGHT.ink, HPos::Left, VPos::Top);
-        area.draw(&Text::new(text.clone(), (place(*x), place(*y) + 2), style))
+        area.draw(&Text::new(text.clone(), (place(*x), place(*y) + 4), style.clone()))
             .map_err(|error| PlotError(error.to_string()))?;
     }
     area.present().map_err(|error| PlotError(error.to_string()))
