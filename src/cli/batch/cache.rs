@@ -160,3 +160,45 @@ fn textures_of(object: &Object) -> impl Iterator<Item = &Texture> {
     });
     object.texture.as_deref().into_iter().chain(of_material)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::jobs_of;
+    use super::*;
+
+    #[test]
+    fn models_above_the_limit_are_dropped_and_a_single_large_one_is_still_loaded() {
+        let folder = tempfile::tempdir().unwrap();
+        let files = ["a.obj", "b.obj", "c.obj"].map(|name| folder.path().join(name));
+        for file in &files {
+            std::fs::write(file, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        }
+        let names: Vec<&str> = files.iter().map(|file| file.to_str().unwrap()).collect();
+        let jobs = jobs_of(&names).unwrap();
+        for (most, kept) in [(1, 1), (usize::MAX, 3)] {
+            let cache = StageCache::new(most);
+            for job in &jobs {
+                let loaded = cache.get(&job.row, &Progress::new(), &AtomicBool::new(false));
+                assert_eq!(loaded.unwrap().scene.objects.len(), 1);
+            }
+            assert_eq!(cache.entries.lock().unwrap().map.len(), kept, "limit {most}");
+        }
+        // A model is read once: the second request does not see that the file is gone.
+        let cache = StageCache::new(usize::MAX);
+        let get = |stopped: bool, progress: &Progress| {
+            cache.get(&jobs[0].row, progress, &AtomicBool::new(stopped)).map(drop)
+        };
+        assert_eq!(get(false, &Progress::new()), Ok(()));
+        std::fs::remove_file(&files[0]).unwrap();
+        assert_eq!(get(false, &Progress::new()), Ok(()));
+        // A load that is cancelled at its limit is not repeated; one that is stopped leaves nothing.
+        let cancelled = Progress::new();
+        cancelled.cancel();
+        let other = |stopped, progress: &Progress| {
+            cache.get(&jobs[1].row, progress, &AtomicBool::new(stopped)).map(drop)
+        };
+        assert_eq!(other(true, &cancelled), Err(Fault::Cancelled));
+        assert_eq!(other(false, &cancelled), Err(Fault::Timeout));
+        assert_eq!(other(false, &Progress::new()), Err(Fault::Timeout));
+    }
+}

@@ -249,3 +249,20 @@ fn ordered(jobs: &[Job], shard: Shard) -> Vec<Job> {
     keyed.sort_unstable();
     keyed.into_iter().map(|(_, index)| jobs[index].clone()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::jobs_of;
+    use super::*;
+
+    #[test]
+    fn the_jobs_of_a_model_follow_each_other_and_keep_their_numbers() {
+        let arguments = ["a.obj", "b.obj", "a.obj", "--out", "{index}.png", "--views", "2"];
+        let jobs = jobs_of(&arguments).unwrap();
+        let order: Vec<usize> = jobs.iter().map(|job| job.index).collect();
+        assert_eq!(order, [0, 1, 4, 5, 2, 3]);
+        let size = |arguments: &[&str]| jobs_of(arguments).unwrap()[0].size();
+        assert_eq!(size(&["a.obj"]), SIZE);
+        assert_eq!(size(&["a.obj", "--size", "32x16"]), Size::new(32, 16));
+    }
+}

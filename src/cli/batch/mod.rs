@@ -327,6 +327,14 @@ fn bytes(text: &str) -> Result<usize, String> {
 mod tests {
     use super::*;
 
+    /// Returns the jobs of a command line.
+    pub(super) fn jobs_of(arguments: &[&str]) -> Result<Vec<Job>, Failure> {
+        let command = Batch::augment_args(clap::Command::new("batch").no_binary_name(true));
+        let matches = command.get_matches_from(arguments);
+        let batch = <Batch as clap::FromArgMatches>::from_arg_matches(&matches).unwrap();
+        Jobs::of(&batch).map(|jobs| jobs.jobs)
+    }
+
     #[test]
     fn sizes_and_formats_are_read_or_rejected() {
         assert_eq!(bytes("500M"), Ok(500 << 20));
