@@ -58,8 +58,8 @@ pub fn contact_sheet(
         let at = [GAP, rows * step_y + GAP + i * LINE];
         lines.push((note.clone(), at));
     }
-    write_all(&mut bytes, size, &labels, styled(FONT, LIGHT.ink, HPos::Left, VPos::Top))?;
-    write_all(&mut bytes, size, &lines, fixed_width())?;
+    write_all(&mut bytes, size, &labels, &styled(FONT, LIGHT.ink, HPos::Left, VPos::Top))?;
+    write_all(&mut bytes, size, &lines, &fixed_width())?;
     let pixels = bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2], 255]).collect();
     Picture::from_pixels(size, pixels).ok_or_else(|| PlotError("its size is wrong".to_owned()))
 }
@@ -106,7 +106,7 @@ fn write_all(
     bytes: &mut [u8],
     size: Size,
     texts: &[(String, [usize; 2])],
-    style: TextStyle<'_>,
+    style: &TextStyle<'_>,
 ) -> Result<(), PlotError> {
     let side = |side: usize| u32::try_from(side).map_err(|error| PlotError(error.to_string()));
     let sides = (side(size.width)?, side(size.height)?);
