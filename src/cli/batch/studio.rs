@@ -12,11 +12,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::Sender;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use marraztu_core::accuracy::Shot;
-use marraztu_core::base::image::Picture;
+use marraztu_core::base::image::{Picture, Size};
 use marraztu_io::{self as io, Progress};
 use marraztu_render::{Renderer, plan_frame, without_ground};
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -204,23 +204,17 @@ impl Studio {
         (Some(hash) == self.stamper.stamp(job)).then_some(found)
     }
 
-    /// Runs the drawing of a picture: on this thread, or on all threads if it is large, one picture
-    /// after the other.
-    fn on_threads<T: Send>(
-        &self,
-        is_large: bool,
-        draw: impl FnOnce() -> T + Send,
-    ) -> Result<T, Fault> {
-        if !is_large || self.manner.threads == 1 {
-            return Ok(draw());
+    /// Returns the pool for a large picture, as soon as it is free; `None` for a small one.
+    fn pool_for(&self, size: Size) -> Result<Option<MutexGuard<'_, Option<ThreadPool>>>, Fault> {
+        if size.area() <= LARGE || self.manner.threads == 1 {
+            return Ok(None);
         }
         let mut large = self.large.lock().unwrap_or_else(PoisonError::into_inner);
         if large.is_none() {
             let pool = ThreadPoolBuilder::new().num_threads(self.manner.threads).build();
             *large = Some(pool.map_err(|error| Fault::Program(error.to_string()))?);
         }
-        let pool = large.as_ref().expect("it has just been built");
-        Ok(pool.install(draw))
+        Ok(Some(large))
     }
 
     /// Creates a folder, and removes the leftovers of killed processes from it.
@@ -312,14 +306,20 @@ impl Attempt<'_> {
     ) -> Result<Vec<u8>, Fault> {
         let (studio, job) = (self.studio, self.job);
         let begin = Instant::now();
+        let pool = studio.pool_for(job.size())?;
+        // Waiting for other pictures does not count.
+        let until = self.until.map(|until| until + begin.elapsed());
+        let begin = Instant::now();
         let shot = stage.shot(job.size());
         let transparent = job.row.parsed.options.transparent;
-        let (until, stopped) = (self.until, &studio.stopped);
+        let stopped = &studio.stopped;
         let is_late = || until.is_some_and(|until| until < Instant::now());
         let wanted = || !stopped.load(Ordering::Relaxed) && !is_late();
-        let is_large = shot.size.area() > LARGE;
-        let picture =
-            studio.on_threads(is_large, || draw(renderer, &shot, transparent, &wanted))?;
+        let picture = match pool.as_ref().and_then(|pool| pool.as_ref()) {
+            Some(pool) => pool.install(|| draw(renderer, &shot, transparent, &wanted)),
+            None => draw(renderer, &shot, transparent, &wanted),
+        };
+        drop(pool);
         self.spent.draw += begin.elapsed();
         let stopped = if studio.is_stopped() { Fault::Cancelled } else { Fault::Timeout };
         let picture = picture.filter(|_| !is_late()).ok_or(stopped)?;
