@@ -191,7 +191,8 @@ mod tests {
         assert_eq!(get(false, &Progress::new()), Ok(()));
         std::fs::remove_file(&files[0]).unwrap();
         assert_eq!(get(false, &Progress::new()), Ok(()));
-        // A load that is cancelled at its limit is not repeated; one that is stopped leaves nothing.
+        // A load that is cancelled at its limit is not repeated; one that is stopped leaves
+        // nothing.
         let cancelled = Progress::new();
         cancelled.cancel();
         let other = |stopped, progress: &Progress| {

@@ -36,7 +36,8 @@ pub(super) struct Meter {
 impl Meter {
     /// Begins to show the progress of `all` jobs.
     pub(super) fn of(all: usize) -> Self {
-        let is_wanted = !talk::is_quiet() && std::io::stderr().is_terminal();
+        let is_lines = talk::is_quiet() || talk::tells_progress();
+        let is_wanted = !is_lines && std::io::stderr().is_terminal();
         let bar = is_wanted.then(|| {
             let target = ProgressDrawTarget::stderr();
             let bar = ProgressBar::with_draw_target(u64::try_from(all).ok(), target);

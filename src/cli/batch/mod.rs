@@ -81,7 +81,7 @@ Exit status: 0 if all pictures are there, 1 if some are missing, 2 for invalid a
 SIGTERM.")]
 pub(crate) struct Batch {
     /// Models (.obj, .obj.gz) and scenes (.marraztu), one picture or set of views each; patterns
-    /// such as \"models/**/*.obj\" are expanded
+    /// such as "models/**/*.obj" are expanded
     #[arg(required_unless_present = "list")]
     files: Vec<PathBuf>,
     /// A list of models: .csv, .jsonl, or plain lines; "-" is standard input

@@ -19,6 +19,7 @@ use crate::cli::values::size;
 
 /// The options of one picture.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Pictures")]
 pub(super) struct PictureOptions {
     /// Width and height in pixels; one number for a square [default: 800x800]
     #[arg(long, value_name = "WxH", value_parser = size)]

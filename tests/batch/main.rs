@@ -2,6 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
+mod pictures;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -94,56 +96,6 @@ fn drawn_and_unchanged(times: &Path) -> (usize, usize) {
     let lines = report(times);
     let unchanged = lines.iter().filter(|line| line["unchanged"] == true).count();
     (lines.len() - unchanged, unchanged)
-}
-
-#[test]
-fn a_batch_draws_the_pixels_of_render_from_each_view() {
-    let folder = folder();
-    let base = ["--size", "64x48", "--material", "gold"];
-    let (_, err) = ends_with(
-        0,
-        folder.path(),
-        &[&["batch", "models/cam.obj", "models/plate.obj", "--views", "front,iso"], &base[..]]
-            .concat(),
-    );
-    assert!(err.starts_with("note: 4 drawn, 0 missing"), "{err}");
-    for (i, from) in ["0,0", "45,35.264389682754654"].iter().enumerate() {
-        let arguments = ["render", "models/cam.obj", "--out", "one.png", "--from", from];
-        ends_with(0, folder.path(), &[&arguments[..], &base].concat());
-        let load = |name: &str| io::load_picture(&folder.path().join(name)).unwrap();
-        assert!(load("one.png") == load(&format!("cam-00{i}.png")), "{from}");
-    }
-    // Sheets hold the pictures with their labels.
-    let sheet = ["batch", "models/cam.obj", "models/plate.obj", "--sheet", "2x1", "--sheets", "s"];
-    ends_with(0, folder.path(), &[&sheet[..], &base].concat());
-    let sheets = contents(&folder.path().join("s"));
-    assert_eq!(sheets.keys().collect::<Vec<_>>(), [Path::new("sheet-000.png")]);
-    // Without views, the camera of the options is used, and the name is the model's.
-    ends_with(
-        0,
-        folder.path(),
-        &[&["batch", "models/cam.obj", "--from", "0,0"], &base[..]].concat(),
-    );
-    let load = |name: &str| io::load_picture(&folder.path().join(name)).unwrap();
-    assert!(load("cam.png") == load("cam-000.png"));
-}
-
-#[test]
-fn a_large_picture_and_a_transparent_one_are_those_of_render() {
-    let folder = folder();
-    for options in
-        [&["--size", "1100x1000", "--samples", "1"][..], &["--size", "64", "--transparent"]]
-    {
-        let file = ["models/plate.obj"];
-        ends_with(
-            0,
-            folder.path(),
-            &[&["batch", "--out", "a.png", "--threads", "2"], &file[..], options].concat(),
-        );
-        ends_with(0, folder.path(), &[&["render", "--out", "b.png"], &file[..], options].concat());
-        let (out, _) = ends_with(0, folder.path(), &["compare", "a.png", "b.png"]);
-        assert!(out.starts_with("largest difference  0\n"), "{out}");
-    }
 }
 
 #[test]
@@ -437,119 +389,4 @@ fn a_signal_ends_a_batch_with_a_complete_report_and_no_half_files() {
                 .all(|name| io::load_picture(&folder.path().join("out").join(name)).is_ok())
         );
     }
-}
-
-#[test]
-fn a_picture_beyond_its_time_limit_is_reported_as_such() {
-    let folder = folder();
-    let arguments = [
-        "batch",
-        "models/x_wing.obj",
-        "--size",
-        "3000",
-        "--samples",
-        "16",
-        "--timeout",
-        "0.05",
-        "--report",
-        "r.jsonl",
-    ];
-    ends_with(1, folder.path(), &arguments);
-    assert_eq!(report(&folder.path().join("r.jsonl"))[0]["status"], "timeout");
-    assert!(!folder.path().join("x_wing.png").exists());
-}
-
-#[test]
-fn an_output_never_replaces_an_input_or_a_file_that_is_no_picture() {
-    let folder = folder();
-    let at = |name: &str| folder.path().join("models").join(name);
-    std::fs::write(at("cam.png"), "my notes").unwrap();
-    let before = contents(folder.path());
-    for (file, out) in
-        [("models/square.obj", "models/square.ppm"), ("models/cam.obj", "models/cam.png")]
-    {
-        ends_with(1, folder.path(), &[&["batch", file, "--out", out], &SMALL[..]].concat());
-    }
-    assert!(contents(folder.path()) == before);
-}
-
-#[test]
-fn cameras_of_a_file_place_the_camera_and_the_size() {
-    let folder = folder();
-    let json = r#"{"w": 48, "h": 32, "fl_x": 40, "frames": [
-        {"file_path": "a.png", "transform_matrix": [[1,0,0,0.5],[0,1,0,0.5],[0,0,1,2]]},
-        {"file_path": "b.png", "transform_matrix": [[1,0,0,0.5],[0,1,0,0.5],[0,0,1,900]]}]}"#;
-    std::fs::write(folder.path().join("cameras.json"), json).unwrap();
-    ends_with(
-        0,
-        folder.path(),
-        &[
-            "batch",
-            "models/square.obj",
-            "--views",
-            "cameras.json",
-            "--out",
-            "{view_name}.png",
-            "--samples",
-            "1",
-        ],
-    );
-    let [near, far] =
-        ["a.png", "b.png"].map(|name| io::load_picture(&folder.path().join(name)).unwrap());
-    assert_eq!((near.size().width, near.size().height), (48, 32));
-    // At distance 2, the unit square is 40 / 2 = 20 pixels wide.
-    let is_square = |x: usize| near.pixel(x, 16) != near.pixel(0, 0);
-    let width = (0..48).filter(|x| is_square(*x)).count();
-    assert_eq!((width, is_square(13), is_square(35)), (20, false, false));
-    assert!((0..48).all(|x| far.pixel(x, 16) == far.pixel(0, 0)) || far != near);
-}
-
-#[test]
-fn pictures_are_compared_with_an_exit_status() {
-    let folder = folder();
-    let render = |name: &str, more: &[&str]| {
-        let arguments = ["render", "models/cam.obj", "--samples", "1", "--out", name];
-        ends_with(0, folder.path(), &[&arguments[..], more].concat());
-    };
-    render("a.png", &["--size", "64"]);
-    render("b.png", &["--size", "64", "--background", "1,2,3"]);
-    render("c.png", &["--size", "32"]);
-    let compare = |status, arguments: &[&str]| {
-        ends_with(status, folder.path(), &[&["compare"], arguments].concat())
-    };
-    assert!(compare(0, &["a.png", "a.png"]).0.contains("differing pixels    0 of 4096"));
-    let (out, _) = compare(1, &["a.png", "b.png", "--out", "diff.png"]);
-    assert!(out.contains("largest difference") && out.contains("FLIP"), "{out}");
-    assert!(folder.path().join("diff.png").exists());
-    compare(0, &["a.png", "b.png", "--max", "255"]);
-    compare(1, &["a.png", "b.png", "--max", "255", "--flip", "0.0001"]);
-    for wrong in [["a.png", "c.png"], ["a.png", "absent.png"], ["a.png", "models/cam.obj"]] {
-        let (_, err) = compare(2, &wrong);
-        assert!(err.starts_with("error: ") && err.lines().count() == 1, "{err}");
-    }
-}
-
-#[test]
-fn views_and_thumbnails_show_a_model_whatever_its_name() {
-    let folder = folder();
-    let (out, _) =
-        ends_with(0, folder.path(), &["views", "models/square.obj", "--size", "100", "--quiet"]);
-    assert!(out.contains("vertices") && out.contains("findings"), "{out}");
-    let sheet = io::load_picture(&folder.path().join("square-views.png")).unwrap();
-    assert!(sheet.size().width > 200 && sheet.size().height > 240, "{:?}", sheet.size());
-    let at = |name: &str| folder.path().join(name);
-    std::fs::copy(at("models/x_wing.obj"), at("gnome-desktop-file-to-thumbnail")).unwrap();
-    ends_with(
-        0,
-        folder.path(),
-        &["thumbnail", "--size", "128", "gnome-desktop-file-to-thumbnail", "t"],
-    );
-    std::fs::rename(at("t"), at("t.png")).unwrap();
-    let picture = io::load_picture(&at("t.png")).unwrap();
-    assert_eq!((picture.size().width, picture.pixel(0, 0)), (128, [0; 4]));
-    assert!(picture.pixels().iter().any(|pixel| pixel[3] == 255));
-    std::fs::write(at("noise"), [0, 1, 2, 3]).unwrap();
-    let (_, err) = ends_with(1, folder.path(), &["thumbnail", "noise", "n.png"]);
-    assert!(err.starts_with("error: noise: "), "{err}");
-    assert!(!at("n.png").exists());
 }
