@@ -56,6 +56,9 @@ fn places(samples: Samples) -> Vec<[f64; 2]> {
         Samples::SixtyFour => {
             (0..64).map(|i| [i % 8, i / 8].map(|i| (f64::from(i) + 0.5) / 8.0)).collect()
         }
+        Samples::TwoFiftySix => {
+            (0..256).map(|i| [i % 16, i / 16].map(|i| (f64::from(i) + 0.5) / 16.0)).collect()
+        }
     }
 }
 
@@ -560,8 +563,9 @@ fn the_reference_of_samples_is_the_mean_of_256_positions() {
     let (mut scene, view) = flat::scene(std::slice::from_ref(&triangles), SIDE);
     scene.background = Color([9, 99, 199]);
     let shot = Shot::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
-    let mut studio = Studio::new(shot);
-    let picture = studio.sampled(&Settings { samples: Samples::Four, ..Settings::default() });
+    let light = LightAt::Sample;
+    let settings = Settings { samples: Samples::TwoFiftySix, light, ..Settings::default() };
+    let picture = Studio::new(shot).rendering(&settings);
     let mut pixels = vec![Vec::new(); SIDE * SIDE];
     for i in 0..256 {
         let place = [i % 16, i / 16].map(|i| (f64::from(i) + 0.5) / 16.0);

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::{
     Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, FormerAxis, Interpolation, LightAt,
-    LightValues, NormalMatrix, Rounding, Samples, Settings, ShadowMethod, SpecularForm,
+    LightValues, NormalMatrix, Resolution, Rounding, Samples, Settings, ShadowMethod, SpecularForm,
     SpecularPower, Subpixels, Tangents, Terminator, Transparency, VertexArithmetic,
 };
 use marraztu_core::base::Shared;
@@ -165,6 +165,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         arithmetic: Arithmetic::F64,
         light: LightAt::Vertex,
         samples: Samples::Sixteen,
+        resolution: Resolution::Half,
         filter: Filter::Nearest,
         specular: SpecularForm::HalfVector,
         power: SpecularPower::Schlick,

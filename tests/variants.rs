@@ -9,7 +9,7 @@ use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::Shot;
 use marraztu_core::accuracy::{
     ACCURACY_PRESETS, AXES, Arithmetic, Axis, Coverage, DepthFormat, Filter, Interpolation,
-    NormalMatrix, Rounding, Settings, SpecularPower, Subpixels, VertexArithmetic,
+    NormalMatrix, Points, Rounding, Settings, SpecularPower, Subpixels, VertexArithmetic,
 };
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
@@ -17,7 +17,7 @@ use marraztu_core::scene::{
     Light, LightId, LightKind, Material, MaterialChoice, MeshSource, Model, NONE, Object, ObjectId,
     Part, Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
 };
-use marraztu_io::lesson_scene;
+use marraztu_io::{lesson_on, lesson_scene};
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
 
@@ -143,7 +143,7 @@ fn holes_classified_by_block_and_triangle_equal_holes_by_pixel() {
 fn every_choice_of_every_axis_changes_its_lesson_or_says_why_not() {
     // At the size of a lesson, the coarsest choice is visible.
     for axis in AXES {
-        let opened = lesson_scene(axis.lesson.scene).unwrap();
+        let opened = lesson_scene(&lesson_on(axis).scene).unwrap();
         let picture = |settings: &Settings| draw(&opened.scene, &opened.view, settings, 300);
         let usual = Settings::default();
         let coarse = &axis.choices[0];
@@ -154,7 +154,7 @@ fn every_choice_of_every_axis_changes_its_lesson_or_says_why_not() {
             "{} {} is not seen in {}",
             axis.key,
             coarse.word,
-            axis.lesson.scene
+            lesson_on(axis).scene
         );
     }
 }
@@ -406,7 +406,8 @@ fn presets_of_history_show_their_faults_and_list_them() {
         covered(&draw(&opened.scene, &opened.view, &Settings::default(), 800), &opened.scene);
     for preset in history {
         let settings = preset.of(&Settings::default());
-        for (key, word) in preset.points {
+        let Points::Listed(points) = preset.points else { panic!("an ancestor lists its points") };
+        for (key, word) in points {
             assert_eq!(Axis::named(key).unwrap().chosen(&settings).word, *word);
         }
         let picture = draw(&opened.scene, &opened.view, &settings, 800);

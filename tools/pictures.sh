@@ -32,13 +32,14 @@ moving() {
 
 # A picture of the window with these files, once it shows something and has stood still.
 window() {
+  # The last change is that of the dial, which needs some seconds.
   local name=$1 quiet=0 end=$((SECONDS + 90))
   shift
   "$program" "$@" 2>"$work/editor" &
   editor=$!
   xdotool mousemove 1150 740
   import -window root "$work/now.png"
-  while [ $quiet -lt 6 ]; do
+  while [ $quiet -lt 12 ]; do
     [ $SECONDS -lt $end ] || { echo "tools/pictures.sh: no still picture of $name" >&2; exit 1; }
     kill -0 $editor || { cat "$work/editor" >&2; exit 1; }
     mv "$work/now.png" "$work/last.png"

@@ -42,18 +42,18 @@ fn no_command_replaces_a_file_that_it_has_read() {
     ];
     // The laboratory writes into a folder that contains a file of the scene.
     fs::create_dir(folder.at("lab")).unwrap();
-    fs::rename(folder.at("s.png"), folder.at("lab/exact.png")).unwrap();
-    fs::write(folder.at("room.mtl"), "newmtl m\nKd 1 1 1\nmap_Kd t.png\nmap_Ks lab/exact.png\n")
+    fs::rename(folder.at("s.png"), folder.at("lab/ideal.png")).unwrap();
+    fs::write(folder.at("room.mtl"), "newmtl m\nKd 1 1 1\nmap_Kd t.png\nmap_Ks lab/ideal.png\n")
         .unwrap();
     let mtl = folder.read("room.mtl");
     for command in commands {
-        let own = command.iter().map(|word| if *word == "s.png" { "lab/exact.png" } else { word });
+        let own = command.iter().map(|word| if *word == "s.png" { "lab/ideal.png" } else { word });
         let told = folder.ends(1, &own.collect::<Vec<_>>());
         assert!(told.contains("is read"), "{command:?}: {told}");
     }
     for (name, before) in files.iter().zip(&before) {
         match name.as_str() {
-            "s.png" => assert_eq!(folder.read("lab/exact.png"), *before),
+            "s.png" => assert_eq!(folder.read("lab/ideal.png"), *before),
             "room.mtl" => assert_eq!(folder.read("room.mtl"), mtl),
             name => assert_eq!(folder.read(name), *before, "{name}"),
         }

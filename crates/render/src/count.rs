@@ -159,7 +159,7 @@ impl FramePlan {
         let front = if corners.iter().all(ScreenVertex::is_inside) {
             doubled_area(corners.map(|corner| corner.at())) < 0
         } else {
-            let screen = Screen::new(own.clip_from_object, self.size);
+            let screen = Screen::new(own.clip_from_object, self.viewport);
             faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
         };
         front == own.mirrored

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 
 use glam::DVec4;
 
-use crate::frame::FramePlan;
 use crate::frame::draw::{Draw, Lines};
+use crate::frame::{FramePlan, Viewport};
 use crate::screen::coverage::PixelBox;
 use crate::screen::tiles::{TILE, tiles_of};
 use marraztu_core::base::image::Size;
@@ -162,6 +162,8 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
     // The other fields are compared draw by draw, or are not visible in the picture.
     let FramePlan {
         size,
+        viewport,
+        enlarged,
         background,
         eye,
         arithmetic,
@@ -169,6 +171,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         samples,
         lit_by_sample,
         shift: _,
+        spacing: _,
         filter,
         transparency,
         variants,
@@ -183,6 +186,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         light_ids: _,
     } = after;
     let moved = *eye != before.eye
+        || *viewport != before.viewport
         || !same_bits(view_from_world, &before.view_from_world)
         || !same_bits(clip_from_view, &before.clip_from_view);
     let settings = *arithmetic != before.arithmetic
@@ -195,7 +199,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         || *line_width != before.line_width
         || *rules != before.rules;
     match () {
-        () if *size != before.size => Some(DamageCause::Size),
+        () if (*size, *enlarged) != (before.size, before.enlarged) => Some(DamageCause::Size),
         () if moved => Some(DamageCause::Camera),
         () if settings => Some(DamageCause::Settings),
         () if *background != before.background => Some(DamageCause::Background),
@@ -227,16 +231,12 @@ fn reach(draw: &Draw, plan: &FramePlan) -> PixelBox {
 
 /// Bounds the pixels that the convex hull of points in clip space may cover, plus a margin. `None`
 /// if the hull reaches the near plane.
-#[expect(
-    clippy::cast_precision_loss,
-    clippy::cast_possible_truncation,
-    reason = "brought into the picture, which is small"
-)]
+#[expect(clippy::cast_possible_truncation, reason = "brought into the picture, which is small")]
 fn around(plan: &FramePlan, points: &[DVec4], margin: f64) -> Option<PixelBox> {
     let [right, bottom] = [plan.size.width, plan.size.height]
         .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
     let all = PixelBox { left: 0, top: 0, right, bottom };
-    let (width, height) = (plan.size.width as f64, plan.size.height as f64);
+    let Viewport { width, height } = plan.viewport;
     let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for clip in points {
         let before_the_near_plane = clip.w > 0.0 && clip.z <= clip.w;

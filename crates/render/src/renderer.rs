@@ -4,7 +4,9 @@
 //! with the same bytes as a result. No setting is read here: the plan holds every decision. Queries
 //! about the last picture are in [`picking`].
 
+mod enlarged;
 mod picking;
+mod supersampled;
 
 use std::sync::{Mutex, PoisonError};
 
@@ -43,7 +45,12 @@ pub use picking::Hit;
 #[derive(Debug)]
 pub struct Renderer {
     level: Level,
+    /// The drawn picture.
     picture: Picture,
+    /// The finished picture, if it was drawn at half resolution.
+    enlarged: Picture,
+    /// Draws larger pictures to be averaged.
+    larger: Option<Box<Self>>,
     frame: ScreenGeometry,
     /// The blocks of each tile that are filled with one colour.
     filled: Vec<Filled>,
@@ -86,6 +93,8 @@ impl Renderer {
         Self {
             level,
             picture: Picture::default(),
+            enlarged: Picture::default(),
+            larger: None,
             frame: ScreenGeometry::default(),
             filled: Vec::new(),
             caches: ShadingCaches::default(),
@@ -116,7 +125,7 @@ impl Renderer {
         self.forget();
         self.redraw_by(plan, &Cancellation::new(&|| true).telling(tell))
             .expect("it is always wanted");
-        &self.picture
+        self.picture()
     }
 
     /// Draws a plan from scratch, like [`Self::render`].
@@ -130,7 +139,7 @@ impl Renderer {
     ) -> Result<&Picture, Cancelled> {
         self.forget();
         self.redraw_by(plan, &Cancellation::new(wanted))?;
-        Ok(&self.picture)
+        Ok(self.picture())
     }
 
     /// Forces the next picture to be drawn completely.
@@ -174,6 +183,9 @@ impl Renderer {
             }
             // If each sample was drawn separately, the geometry is that of the last sample.
             (self.finished, self.built) = (true, !plan.lit_by_sample);
+            if let Some(size) = plan.enlarged {
+                enlarged::enlarge(self.level, &self.picture, size, &mut self.enlarged);
+            }
         }
         self.plan = Some(plan.clone());
         Ok(damage)
@@ -193,6 +205,10 @@ impl Renderer {
         self.timings = Timings::default();
         self.rays = RayCount::default();
         self.path_pixels = PathPixels::default();
+        if plan.is_supersampled() {
+            self.built = false;
+            return self.draw_supersampled(plan, damage, watch);
+        }
         self.shadows.update(plan);
         let passes = passes(plan.samples);
         let pictures = if plan.lit_by_sample { shifts(plan.samples).len() } else { passes.len() };
@@ -276,10 +292,11 @@ impl Renderer {
         }
     }
 
-    /// Returns the last picture drawn.
+    /// Returns the last picture.
     #[must_use]
-    pub const fn picture(&self) -> &Picture {
-        &self.picture
+    pub fn picture(&self) -> &Picture {
+        let is_enlarged = self.plan.as_ref().is_some_and(|plan| plan.enlarged.is_some());
+        if is_enlarged { &self.enlarged } else { &self.picture }
     }
 
     /// Returns the time taken by each stage of the last picture.

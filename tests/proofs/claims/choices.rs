@@ -11,7 +11,7 @@ use std::hint::black_box;
 use marraztu_core::accuracy::{AXES, Axis, AxisKind, Settings, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{Scene, View};
-use marraztu_lab::candidates::{Group, candidates};
+use marraztu_lab::candidates::{Group, Thoroughness, candidates};
 use marraztu_lab::suite::{SUITE, SuiteScene};
 use marraztu_render::{FramePlan, Renderer, plan_frame};
 use rayon::prelude::*;
@@ -34,7 +34,7 @@ const MARGIN: f64 = 0.01;
 /// The settings counted on a scene, in order: the default, then every other choice of its axes.
 fn counted(suite: &SuiteScene, scene: &Scene, view: &View) -> Vec<Settings> {
     let default = Settings::default();
-    let mut found = candidates(scene, view, &default, &suite.measured(), 0).all;
+    let mut found = candidates(scene, view, &default, &suite.measured(), &Thoroughness::AXIS).all;
     found.retain(|candidate| matches!(candidate.group, Group::Axis(_)));
     let others = found.into_iter().map(|it| it.settings).filter(|settings| *settings != default);
     std::iter::once(default).chain(others).collect()

@@ -5,7 +5,7 @@ mod presets;
 mod settings;
 mod shot;
 
-pub use axes::{AXES, Axis, AxisKind, Choice, Lesson, uncapitalized};
-pub use presets::{ACCURACY_PRESETS, AccuracyPreset};
+pub use axes::{AXES, Axis, AxisKind, Choice, uncapitalized};
+pub use presets::{ACCURACY_PRESETS, AccuracyPreset, Points};
 pub use settings::*;
 pub use shot::Shot;

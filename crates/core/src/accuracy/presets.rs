@@ -1,7 +1,7 @@
-//! Presets of accuracy, the reference of some settings, and how settings are worded.
+//! Presets of accuracy, the reference and the ideal, and how settings are worded.
 
 use crate::accuracy::axes::{AXES, Axis, AxisKind};
-use crate::accuracy::{Coverage, Samples, Settings};
+use crate::accuracy::{Coverage, Resolution, Samples, Settings};
 
 /// Settings with a name.
 #[derive(Debug)]
@@ -10,42 +10,63 @@ pub struct AccuracyPreset {
     pub word: &'static str,
     /// Its name on a button.
     pub label: &'static str,
-    /// Its purpose, in a sentence.
+    /// What it is, and what it gives up, in a sentence or two.
     pub what: &'static str,
-    /// The choices that differ from the default, by the key of the axis and the choice's word.
-    pub points: &'static [(&'static str, &'static str)],
+    /// The settings that it stands for.
+    pub points: Points,
     /// The known faults of an ancestor's algorithms.
     pub faults: &'static [&'static str],
 }
 
-/// The presets, from the fast to the exact, then those of the two ancestors.
+/// The settings that a preset stands for. Axes that are models keep their choices.
+#[derive(Clone, Copy, Debug)]
+pub enum Points {
+    /// The default, except for these choices: the key of the axis and the choice's word.
+    Listed(&'static [(&'static str, &'static str)]),
+    /// [`Settings::reference`], at the default number of samples.
+    Reference,
+    /// [`Settings::ideal`].
+    Ideal,
+}
+
+/// The presets: those of the dial, from the fast to the exact, then those of the two ancestors.
 pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
     AccuracyPreset {
         word: "draft",
         label: "Draft",
-        what: "Fast: light at vertices, nearest texel.",
-        points: &[("shading", "vertex"), ("filter", "nearest")],
+        what: "A quarter of the pixels, enlarged. Gives up fine detail and sharp edges.",
+        points: Points::Listed(&[("resolution", "half")]),
         faults: &[],
     },
     AccuracyPreset {
         word: "default",
         label: "Default",
-        what: "The default of the editor: loses at most a quarter of a byte step of light.",
-        points: &[],
+        what: "Light within a quarter of a byte step. Gives up smooth edges and distant textures \
+            unless it is refined.",
+        points: Points::Listed(&[]),
         faults: &[],
     },
     AccuracyPreset {
         word: "exact",
         label: "Exact",
-        what: "At most one byte step from the reference on every pixel.",
-        points: &[("arithmetic", "f64"), ("power", "library")],
+        what: "Every choice at its most exact: the reference with as many samples. Gives up what \
+            more samples would show, and time.",
+        points: Points::Reference,
+        faults: &[],
+    },
+    AccuracyPreset {
+        word: "ideal",
+        label: "Ideal",
+        what: "Exact, with 256 samples in every pixel: all others are judged against it. Gives up \
+            time alone.",
+        points: Points::Ideal,
         faults: &[],
     },
     AccuracyPreset {
         word: "ancestor-a",
         label: "Ancestor A (points)",
         what: "Like ancestor A: points every 0.1 unit, lit at vertices, in 32 bits.",
-        points: &[
+        points: Points::Listed(&[
             ("shading", "vertex"),
             ("power", "library"),
             ("stretched", "as-it-is"),
@@ -55,7 +76,7 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
             ("filter", "nearest"),
             ("rounding", "truncated"),
             ("transparency", "threshold"),
-        ],
+        ]),
         faults: &[
             "holes in surfaces nearer than 97 units",
             "17 writes per pixel at a distance of 400, 100 at 966",
@@ -70,7 +91,7 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
         word: "ancestor-b",
         label: "Ancestor B (scan lines)",
         what: "Like ancestor B: rows of pixels, textures without perspective.",
-        points: &[
+        points: Points::Listed(&[
             ("shading", "vertex"),
             ("vertices", "f32"),
             ("coverage", "scan-lines"),
@@ -79,7 +100,7 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
             ("filter", "nearest"),
             ("rounding", "truncated"),
             ("transparency", "threshold"),
-        ],
+        ]),
         faults: &[
             "textures bend along the diagonal of every square",
             "outlines a pixel too wide, and seams written twice",
@@ -98,18 +119,30 @@ impl AccuracyPreset {
         ACCURACY_PRESETS.iter().find(|preset| preset.word == word)
     }
 
+    /// The presets of the dial, from the fast to the exact.
+    #[must_use]
+    pub fn dial() -> &'static [Self] {
+        let ideal = ACCURACY_PRESETS.iter().position(|it| matches!(it.points, Points::Ideal));
+        &ACCURACY_PRESETS[..=ideal.expect("the ideal is a preset")]
+    }
+
     /// The preset's settings. Axes that are models keep their choices.
     #[must_use]
     pub fn of(&self, settings: &Settings) -> Settings {
-        self.points.iter().fold(Settings::default().modelled_as(settings), |settings, point| {
-            let choice = Axis::named(point.0).and_then(|axis| axis.choice(point.1));
-            choice.expect("presets name axes and choices of the table").of(&settings)
-        })
+        let default = Settings::default().modelled_as(settings);
+        match self.points {
+            Points::Listed(points) => points.iter().fold(default, |settings, point| {
+                let choice = Axis::named(point.0).and_then(|axis| axis.choice(point.1));
+                choice.expect("presets name axes and choices of the table").of(&settings)
+            }),
+            Points::Reference => default.reference(),
+            Points::Ideal => default.ideal(),
+        }
     }
 }
 
 impl AccuracyPreset {
-    /// Its purpose and its faults.
+    /// What it is and its faults.
     #[must_use]
     pub fn in_words(&self) -> String {
         match self.faults {
@@ -120,35 +153,38 @@ impl AccuracyPreset {
 }
 
 impl Settings {
-    /// The reference: every axis at its most exact choice, one sample at the centre of each pixel.
-    /// Axes that are models keep their choices. Samples per pixel are judged against
-    /// [`Self::sampled`].
+    /// The ideal that pictures are judged against: every axis at its most exact choice, with 256
+    /// samples per pixel, each lit. Axes that are models keep their choices.
     #[must_use]
-    pub fn reference(&self) -> Self {
-        // The most exact choices of other axes may depend on those that are scored apart.
-        let apart = |axis: &&Axis| axis.kind == AxisKind::ScoredApart;
-        let base = AXES
-            .iter()
-            .filter(apart)
-            .fold(*self, |settings, axis| axis.default_choice().of(&settings));
-        let others = AXES.iter().filter(|axis| !apart(axis));
-        others.fold(base, |settings, axis| axis.most_exact(&settings).of(&settings))
+    pub fn ideal(&self) -> Self {
+        // Some choices are the most exact ones only with several samples, so these come first.
+        let start = Self { samples: Samples::TwoFiftySix, ..*self };
+        AXES.iter().fold(start, |settings, axis| axis.most_exact(&settings).of(&settings))
     }
 
-    /// The settings of the 256 pictures that are averaged as the reference for samples per pixel:
-    /// the default, with the models of these settings. They do not depend on any other choice.
+    /// The reference with the same number of samples: all other axes as in the ideal.
     #[must_use]
-    pub fn sampled(&self) -> Self {
-        Self::default().modelled_as(self)
+    pub fn reference(&self) -> Self {
+        Self { samples: self.samples, ..self.ideal() }
+    }
+
+    /// The picture that shows what one axis alone changes: these settings with this axis at its
+    /// most exact choice, or at the default choice if it is a model.
+    #[must_use]
+    pub fn exact_in(&self, axis: &Axis) -> Self {
+        match axis.kind {
+            AxisKind::Scored => axis.most_exact(self).of(self),
+            AxisKind::Model => axis.default_choice().of(self),
+        }
     }
 
     /// Whether a picture can be refined by more samples per pixel: the ancestors' algorithms have
-    /// one.
+    /// one, and half resolution is chosen to save time.
     #[must_use]
     pub const fn can_refine(&self) -> bool {
-        match self.coverage {
-            Coverage::Exact | Coverage::F32Edges => true,
-            Coverage::ScanLines | Coverage::Points => false,
+        match (self.coverage, self.resolution) {
+            (Coverage::ScanLines | Coverage::Points, _) | (_, Resolution::Half) => false,
+            (Coverage::Exact | Coverage::F32Edges, Resolution::Full) => true,
         }
     }
 
@@ -156,11 +192,14 @@ impl Settings {
     /// window in which nothing moves.
     #[must_use]
     pub const fn refined(self) -> Self {
-        let more = Self::REFINED.count() > self.samples.count();
-        Self {
-            samples: if more && self.can_refine() { Self::REFINED } else { self.samples },
-            ..self
-        }
+        self.refined_to(Self::REFINED)
+    }
+
+    /// These settings with at least this number of samples per pixel, if they can be refined.
+    #[must_use]
+    pub const fn refined_to(self, samples: Samples) -> Self {
+        let is_more = samples.count() > self.samples.count();
+        Self { samples: if is_more && self.can_refine() { samples } else { self.samples }, ..self }
     }
 
     /// The samples per pixel of a picture in a file.

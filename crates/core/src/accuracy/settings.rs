@@ -15,6 +15,8 @@ pub struct Settings {
     pub light: LightAt,
     /// Samples per pixel.
     pub samples: Samples,
+    /// The part of the pixels that is drawn.
+    pub resolution: Resolution,
     /// How a texture is filtered between its texels.
     pub filter: Filter,
     /// The form of the highlight.
@@ -98,7 +100,7 @@ pub enum LightAt {
 
 /// Samples per pixel, written as a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(into = "u8", try_from = "u8")]
+#[serde(into = "u16", try_from = "u16")]
 pub enum Samples {
     /// One, at the pixel's centre.
     #[default]
@@ -107,33 +109,40 @@ pub enum Samples {
     Four,
     /// Sixteen.
     Sixteen,
-    /// Sixty-four: the reference.
+    /// Sixty-four.
     SixtyFour,
+    /// Two hundred and fifty-six: the ideal.
+    TwoFiftySix,
 }
 
-impl From<Samples> for u8 {
+impl From<Samples> for u16 {
     fn from(samples: Samples) -> Self {
         match samples {
             Samples::One => 1,
             Samples::Four => 4,
             Samples::Sixteen => 16,
             Samples::SixtyFour => 64,
+            Samples::TwoFiftySix => 256,
         }
     }
 }
 
-impl TryFrom<u8> for Samples {
+impl TryFrom<u16> for Samples {
     type Error = String;
 
-    fn try_from(count: u8) -> Result<Self, String> {
-        let found = Self::ALL.into_iter().find(|samples| u8::from(*samples) == count);
-        found.ok_or_else(|| format!("a pixel has 1, 4, 16 or 64 samples, not {count}"))
+    fn try_from(count: u16) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|samples| u16::from(*samples) == count);
+        found.ok_or_else(|| format!("a pixel has 1, 4, 16, 64 or 256 samples, not {count}"))
     }
 }
 
 impl Samples {
-    /// All of them, from one to sixty-four.
-    pub const ALL: [Self; 4] = [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour];
+    /// All of them, from one to the ideal.
+    pub const ALL: [Self; 5] =
+        [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour, Self::TwoFiftySix];
+
+    /// Those that a picture is refined to while nothing moves: the ideal takes too long.
+    pub const REFINING: [Self; 4] = [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour];
 
     /// The number of samples.
     #[must_use]
@@ -143,8 +152,19 @@ impl Samples {
             Self::Four => 4,
             Self::Sixteen => 16,
             Self::SixtyFour => 64,
+            Self::TwoFiftySix => 256,
         }
     }
+}
+
+/// The part of the pixels that is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Resolution {
+    /// Half of the width and height, enlarged with bilinear interpolation.
+    Half,
+    /// Every pixel.
+    #[default]
+    Full,
 }
 
 /// How a texture is filtered between its texels.

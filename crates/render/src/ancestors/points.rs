@@ -92,14 +92,13 @@ struct Window<'a> {
 }
 
 impl<'a> Window<'a> {
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     fn new(
         plan: &'a FramePlan,
         (clip, shift): (PixelBox, [i32; 2]),
         corners: &[DVec3; 3],
     ) -> Option<Self> {
         let shift = shift.map(|shift| f64::from(shift) / f64::from(SUBPIXELS));
-        let half = [plan.size.width as f64 / 2.0, plan.size.height as f64 / 2.0];
+        let half = [plan.viewport.width / 2.0, plan.viewport.height / 2.0];
         let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
         // The length of a world unit in view space.
         let unit = plan.view_from_world.x_axis.truncate().length();

@@ -20,8 +20,12 @@ use marraztu_core::scene::LightId;
 /// All data of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
-    /// The size in pixels.
+    /// The size in pixels: of the whole picture, or of a window of it.
     pub(crate) size: Size,
+    /// The size of the whole picture.
+    pub(crate) viewport: Viewport,
+    /// The size that the picture is enlarged to, if it is drawn at half resolution.
+    pub(crate) enlarged: Option<Size>,
     /// The background colour.
     pub(crate) background: Color,
     /// The kind of projection, which determines the direction V to the observer.
@@ -35,8 +39,10 @@ pub struct FramePlan {
     /// Whether each sample is lit like the centre of a pixel; `light_at` is then `Pixel`.
     pub(crate) lit_by_sample: bool,
     /// The offset of the sample from the centre of its pixel, in subpixels, if each sample is drawn
-    /// as a separate picture.
+    /// as a separate picture; in a window, the offset of the window, too.
     pub(crate) shift: [i32; 2],
+    /// The distance between samples that are lit, in pixels: textures are filtered for it.
+    pub(crate) spacing: f64,
     /// The filter of textures.
     pub(crate) filter: Filter,
     /// The blending method of transparent surfaces.
@@ -63,6 +69,21 @@ pub struct FramePlan {
     pub(crate) rules: Rules,
 }
 
+/// The width and height of the picture that a projection fills, in pixels of the drawn picture:
+/// halves at half resolution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Viewport {
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+}
+
+impl From<Size> for Viewport {
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    fn from(size: Size) -> Self {
+        Self { width: size.width as f64, height: size.height as f64 }
+    }
+}
+
 /// The direction to the observer, by projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Eye {
@@ -87,6 +108,12 @@ impl FramePlan {
     #[must_use]
     pub fn seen_from(&self, shift: [i32; 2]) -> Self {
         Self { shift, ..self.clone() }
+    }
+
+    /// Returns whether each pixel is the mean of a square of 16 x 16 samples, each lit. Such
+    /// pictures are drawn larger and averaged.
+    pub(crate) fn is_supersampled(&self) -> bool {
+        self.lit_by_sample && self.samples == Samples::TwoFiftySix
     }
 
     /// Computes every derived table of the meshes. Drawing threads must not compute any of them:
@@ -117,10 +144,10 @@ impl FramePlan {
         places
     }
 
-    /// Returns the size in pixels.
+    /// Returns the size of the finished picture in pixels.
     #[must_use]
-    pub const fn size(&self) -> Size {
-        self.size
+    pub fn size(&self) -> Size {
+        self.enlarged.unwrap_or(self.size)
     }
 
     /// Returns the stages of each pipeline by name, in order: two frames with the same keys do the

@@ -66,9 +66,9 @@ impl Variants {
     pub(crate) fn of(settings: &Settings) -> Self {
         // What is decided for each draw, or stands elsewhere in the plan, is left at its default.
         let Settings { arithmetic, light, samples, filter, .. } = Settings::default();
-        let Settings { specular, stretched, transparency, .. } = Settings::default();
+        let Settings { specular, stretched, transparency, resolution, .. } = Settings::default();
         let settings = Settings { arithmetic, light, samples, filter, ..*settings };
-        Self(Settings { specular, stretched, transparency, ..settings })
+        Self(Settings { specular, stretched, transparency, resolution, ..settings })
     }
 
     /// Returns the same variants with light computed in stored values.
@@ -103,6 +103,11 @@ impl Variants {
             (Subpixels::Bits12, Coverage::Exact) => Grid::Fine,
             _ => Grid::Usual,
         }
+    }
+
+    /// Returns the same variants on the grid of 1/256 pixel.
+    pub(crate) fn on_usual_grid(self) -> Self {
+        Self(Settings { subpixels: Subpixels::default(), ..self.0 })
     }
 
     /// Returns whether vertices are transformed and snapped by the defaults.

@@ -5,10 +5,9 @@
 
 use crate::frame::color_path::{ColorPath, ColorPaths, FullPath, ListPath};
 use crate::frame::draw::{Back, Draw, Pipeline, Shaded};
-use crate::frame::{Eye, FramePlan};
+use crate::frame::{Eye, FramePlan, Viewport};
 use crate::screen::clip::Screen;
 use marraztu_core::accuracy::{Arithmetic, Coverage, Interpolation, LightAt, Rounding};
-use marraztu_core::base::image::Size;
 
 /// Chooses the paths of all draws of a frame.
 pub(crate) fn choose(plan: &FramePlan, to: &mut ColorPaths) {
@@ -147,7 +146,7 @@ const ENOUGH_PIXELS: f64 = 2.0;
 fn few_are_hidden(plan: &FramePlan) -> bool {
     let (mut pixels, mut triangles) = (0.0, 0.0);
     for draw in &plan.draws {
-        pixels += box_on_screen(draw, plan.size);
+        pixels += box_on_screen(draw, plan.viewport);
         triangles += draw.model.mesh.triangle_count() as f64;
     }
     pixels / triangles >= ENOUGH_PIXELS
@@ -155,9 +154,9 @@ fn few_are_hidden(plan: &FramePlan) -> bool {
 
 /// Returns the pixels of the box around a draw on the screen, also those outside of the picture;
 /// infinite if some of it lies at the height of the observer or behind.
-fn box_on_screen(draw: &Draw, size: Size) -> f64 {
+fn box_on_screen(draw: &Draw, viewport: Viewport) -> f64 {
     let Some(bounds) = draw.model.mesh.bounds() else { return 0.0 };
-    let screen = Screen::new(draw.clip_from_object, size);
+    let screen = Screen::new(draw.clip_from_object, viewport);
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
     for corner in bounds.corners() {

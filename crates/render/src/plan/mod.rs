@@ -31,7 +31,10 @@ use self::view_lights::view_lights;
 use crate::frame::shadows::Shadows;
 use crate::frame::variants::Variants;
 use crate::frame::{Eye, FramePlan, Rules};
-use marraztu_core::accuracy::{Arithmetic, LightAt, LightValues, Samples, Settings, Shot};
+use marraztu_core::accuracy::{
+    Arithmetic, LightAt, LightValues, Resolution, Samples, Settings, Shot,
+};
+use marraztu_core::base::image::Size;
 use marraztu_core::scene::Projection;
 
 /// Plans the picture of a shot.
@@ -83,7 +86,12 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
     let shot = &shot.with(Settings { light, ..shot.settings });
     let Shot { scene, view, settings, size } = shot;
     let plan = FramePlan {
-        size: *size,
+        size: match settings.resolution {
+            Resolution::Full => *size,
+            Resolution::Half => Size::new(size.width.div_ceil(2), size.height.div_ceil(2)),
+        },
+        viewport: observer.viewport,
+        enlarged: (settings.resolution == Resolution::Half).then_some(*size),
         background: scene.background,
         eye: match view.projection {
             Projection::Perspective => Eye::Point,
@@ -94,6 +102,10 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         samples: settings.samples,
         lit_by_sample: by_sample && settings.samples != Samples::One,
         shift: [0; 2],
+        spacing: match by_sample {
+            true => 1.0 / libm::sqrt(f64::from(settings.samples.count())),
+            false => 1.0,
+        },
         filter: settings.filter,
         transparency: settings.transparency,
         variants: Variants::of(settings),

@@ -2,9 +2,10 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
+use crate::frame::Viewport;
 use crate::lights::region::Region;
 use crate::screen::clip::Screen;
-use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{Resolution, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::base::math;
 use marraztu_core::scene::{Lens, Projection, Spheres};
@@ -23,6 +24,15 @@ fn unit(lens: &Lens, projection: Projection) -> f64 {
     FAR / math::power_of_two_near(far.clamp(1e-120, 1e120))
 }
 
+/// Returns the size of the picture that is drawn, before it is enlarged.
+fn drawn_viewport(size: Size, resolution: Resolution) -> Viewport {
+    let Viewport { width, height } = size.into();
+    match resolution {
+        Resolution::Full => Viewport { width, height },
+        Resolution::Half => Viewport { width: width / 2.0, height: height / 2.0 },
+    }
+}
+
 /// The observer's spaces.
 ///
 /// View space has a separate unit, a power of two, with the far plane about a thousand units away.
@@ -35,7 +45,10 @@ pub(crate) struct ObserverSpace {
     pub(crate) world_from_view: DMat4,
     pub(crate) view_from_world: DMat4,
     pub(crate) clip_from_view: DMat4,
+    /// The size of the finished picture, for marks with a size in pixels.
     pub(crate) size: Size,
+    /// The size of the drawn picture.
+    pub(crate) viewport: Viewport,
 }
 
 impl ObserverSpace {
@@ -63,16 +76,16 @@ impl ObserverSpace {
             view_from_world: DMat4::from_scale(DVec3::splat(unit)) * turned,
             clip_from_view: lens.clip_from_view(view.projection, size),
             size,
+            viewport: drawn_viewport(size, shot.settings.resolution),
         }
     }
 
     /// Returns whether a box is completely outside one of the frustum's planes, far enough that no
     /// line along its border reaches in.
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     pub(super) fn misses(&self, clip_from_object: DMat4, corners: [DVec3; 8]) -> bool {
         let clip = corners.map(|corner| clip_from_object * corner.extend(1.0));
-        let aside = |pixels: usize| 1.0 + 2.0 * LINE / pixels as f64;
-        let (x, y) = (aside(self.size.width), aside(self.size.height));
+        let aside = |pixels: f64| 1.0 + 2.0 * LINE / pixels;
+        let (x, y) = (aside(self.viewport.width), aside(self.viewport.height));
         // A margin for rounding: nothing may be culled that geometry would keep.
         let beyond = |distance: &dyn Fn(DVec4) -> f64| {
             clip.iter().all(|p| distance(*p) < -1e-9 * (p.w.abs() + p.abs().max_element()))
@@ -87,12 +100,11 @@ impl ObserverSpace {
 
     /// Returns the frustum's planes for spheres in the world, moved outwards as in
     /// [`Self::misses`].
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     pub(super) fn spheres_outside(&self) -> SpherePlanes {
         let rows = (self.clip_from_view * self.view_from_world).transpose();
         let [x, y, z, w] = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis];
-        let aside = |pixels: usize| 1.0 + 2.0 * LINE / pixels as f64;
-        let (wx, wy) = (w * aside(self.size.width), w * aside(self.size.height));
+        let aside = |pixels: f64| 1.0 + 2.0 * LINE / pixels;
+        let (wx, wy) = (w * aside(self.viewport.width), w * aside(self.viewport.height));
         let sizes = [x, y, z, w].map(|row| row.abs());
         let sum = sizes.into_iter().sum::<DVec4>();
         SpherePlanes {
@@ -106,7 +118,7 @@ impl ObserverSpace {
     /// Returns whether a box is far enough inside the clipping planes that nothing in it is
     /// clipped.
     pub(super) fn holds(&self, clip_from_object: DMat4, corners: [DVec3; 8]) -> bool {
-        let screen = Screen::new(clip_from_object, self.size);
+        let screen = Screen::new(clip_from_object, self.viewport);
         corners.iter().all(|corner| screen.holds(screen.clip(corner.to_array())))
     }
 
@@ -128,11 +140,10 @@ impl ObserverSpace {
     }
 
     /// Returns the size of a pixel in view space at w = 1.
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     fn pixel(&self) -> f64 {
-        let Size { width, height } = self.size;
-        let across = 2.0 / (width as f64 * self.clip_from_view.x_axis.x);
-        across.max(2.0 / (height as f64 * self.clip_from_view.y_axis.y))
+        let Viewport { width, height } = self.viewport;
+        let across = 2.0 / (width * self.clip_from_view.x_axis.x);
+        across.max(2.0 / (height * self.clip_from_view.y_axis.y))
     }
 }
 

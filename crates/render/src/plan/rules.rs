@@ -79,7 +79,7 @@ impl Thing<'_> {
     /// Returns whether all of its faces are culled as back faces; only tested for small meshes.
     #[must_use]
     pub(crate) fn is_turned_away(&self) -> bool {
-        !self.draws_normals() && is_turned_away(self.draw, self.observer.size)
+        !self.draws_normals() && is_turned_away(self.draw, self.observer.viewport)
     }
 
     /// Returns whether its polygons are filled.

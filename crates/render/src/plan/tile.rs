@@ -8,9 +8,9 @@ use glam::DVec3;
 
 use super::rules::{LitSurface, Reading};
 use crate::frame::draw::{Pipeline, Shaded, Stage};
-use crate::frame::{Eye, FramePlan};
+use crate::frame::{Eye, FramePlan, Viewport};
 use crate::lights::region::Region;
-use crate::screen::coverage::PixelBox;
+use crate::screen::coverage::{PixelBox, SUBPIXELS};
 use marraztu_core::accuracy::Samples;
 
 /// The error of interpolating a depth or 1/w in f32, relative to the largest value.
@@ -124,10 +124,11 @@ impl TilePlan {
 fn region(plan: &FramePlan, bounds: PixelBox, [low, high]: [f64; 2]) -> Region {
     let m = &plan.clip_from_view;
     let (zz, zw) = (m.z_axis.z, m.w_axis.z);
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-    let (width, height) = (plan.size.width as f64, plan.size.height as f64);
+    let Viewport { width, height } = plan.viewport;
+    let [right, down] = plan.shift.map(|shift| f64::from(shift) / f64::from(SUBPIXELS));
     let ray = |x: i32, y: i32| {
-        let (x, y) = (f64::from(x) * 2.0 / width - 1.0, 1.0 - f64::from(y) * 2.0 / height);
+        let (x, y) = (f64::from(x) + right, f64::from(y) + down);
+        let (x, y) = (x * 2.0 / width - 1.0, 1.0 - y * 2.0 / height);
         [x / m.x_axis.x, y / m.y_axis.y]
     };
     let rays = [

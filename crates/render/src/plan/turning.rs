@@ -4,12 +4,12 @@
 use crate::accel::Accelerated as _;
 use glam::DVec3;
 
+use crate::frame::Viewport;
 use crate::frame::draw::{Back, Draw};
 use crate::lights::turning::Turning;
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::coverage::doubled_area;
 use marraztu_core::accuracy::LightAt;
-use marraztu_core::base::image::Size;
 use marraztu_core::base::math;
 use marraztu_core::scene::{Normals, Projection, dvec3};
 
@@ -71,12 +71,12 @@ fn shows_front(draw: &Draw, polygon: u32, projection: Projection) -> bool {
 
 /// Returns whether all triangles of a small mesh are culled as back faces, with corners snapped as
 /// in the rasteriser.
-pub(super) fn is_turned_away(draw: &Draw, size: Size) -> bool {
+pub(super) fn is_turned_away(draw: &Draw, viewport: Viewport) -> bool {
     let order = draw.model.mesh.draw_order();
     if draw.back != Back::Culled || order.triangles.len() > FEW {
         return false;
     }
-    let screen = Screen::new(draw.clip_from_object, size);
+    let screen = Screen::new(draw.clip_from_object, viewport);
     order.triangles.iter().all(|triangle| {
         let place = |vertex: u32| screen.vertex(screen.clip(order.position(vertex)));
         let corners = triangle.vertices.map(place);

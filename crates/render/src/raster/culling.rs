@@ -7,9 +7,11 @@
 use glam::{DMat3, DVec3};
 
 use crate::accel::{CLUSTER, Cluster, DrawTriangle};
+use crate::frame::Viewport;
 use crate::frame::draw::{Back, Draw};
 use crate::screen::clip::{Clip, Screen};
 use crate::screen::coverage::SUBPIXELS;
+use marraztu_core::base::image::Size;
 
 /// The thinnest and the smallest triangles on the screen that snapping cannot reverse: height in
 /// pixels over the longest side, and doubled area in square pixels.
@@ -23,11 +25,19 @@ const SMALLEST: f64 = 1.2 * 2.0 * 2.0 / (SUBPIXELS as f64 * SUBPIXELS as f64);
 /// A margin around the picture, in pixels; nothing inside it counts as out of view.
 const MARGIN: f64 = 2.0;
 
+/// Returns the transform to a picture, or a window of one, with clipping planes this many pixels
+/// beyond its border.
+fn close_to_picture(screen: Screen, size: Size, pixels: f64) -> Screen {
+    let (Viewport { width, height }, [left, top]) = (size.into(), screen.shift_in_pixels());
+    let half = [width / 2.0, height / 2.0];
+    screen.close_to([left + half[0], top + half[1]], half.map(|half| half + pixels))
+}
+
 /// The culling of one draw.
 #[derive(Debug)]
 pub(crate) struct Culling {
     screen: Screen,
-    /// The same transform with clipping planes close to the picture's border.
+    /// The transform to the drawn picture, with clipping planes close to its border.
     view: Screen,
     /// The gradient lengths of both sets of distances, and the lengths of the rows of clip space.
     slopes: [[f64; 6]; 2],
@@ -41,12 +51,13 @@ pub(crate) struct Culling {
 }
 
 impl Culling {
-    pub(crate) fn new(draw: &Draw, screen: Screen) -> Self {
-        Self::with(screen, draw.mirrored, draw.back == Back::Culled)
+    /// Prepares to cull a draw for a picture, or a window of one, of this size.
+    pub(crate) fn new(draw: &Draw, screen: Screen, size: Size) -> Self {
+        Self::with(screen, size, draw.mirrored, draw.back == Back::Culled)
     }
 
-    fn with(screen: Screen, mirrored: bool, one_sided: bool) -> Self {
-        let view = screen.close_to_picture(MARGIN);
+    fn with(screen: Screen, size: Size, mirrored: bool, one_sided: bool) -> Self {
+        let view = close_to_picture(screen, size, MARGIN);
         // Twice the area of a triangle on the screen, with the corners (x, y, w) = M p + t, is
         //
         //   -half_x half_y det[M p_i + t] / (w0 w1 w2),   det = (h p0 - e) . n,
@@ -99,7 +110,7 @@ impl Culling {
         let clip = self.screen.clip(centre);
         let far = |slope: &f64| slope * radius;
         // Frustum culling: the bounding sphere is outside one of the planes close to the picture.
-        let distances = self.view.distances(clip);
+        let distances = self.view.distances(self.view.clip(centre));
         if distances.iter().zip(&self.slopes[1]).any(|(at, slope)| *at < -far(slope)) {
             return true;
         }
@@ -154,7 +165,6 @@ mod tests {
     use crate::accel::Accelerated as _;
     use crate::screen::clip::ScreenVertex;
     use crate::screen::coverage::doubled_area;
-    use marraztu_core::base::image::Size;
     use marraztu_core::scene::{Lens, Mesh, MeshSource, NONE, Part, Projection, SourceCorner};
 
     /// Random numbers from -1 to 1.
@@ -232,7 +242,7 @@ mod tests {
             };
             let lens = lens.clip_from_view(projection, size);
             let screen = Screen::new(lens * object, size);
-            let culling = Culling::with(screen, mirror < 0.0, true);
+            let culling = Culling::with(screen, size, mirror < 0.0, true);
             for (i, cluster) in order.clusters.iter().enumerate() {
                 looked_at += 1;
                 if !culling.leaves_out(cluster) {
@@ -256,7 +266,7 @@ mod tests {
                         assert!(area > 0 || out, "round {round}, {area}: {at:?}");
                         turned_away += usize::from(!out);
                     } else {
-                        let pieces = screen.close_to_picture(1.0).cut(corners);
+                        let pieces = close_to_picture(screen, size, 1.0).cut(corners);
                         assert!(pieces.is_empty(), "round {round}: {pieces:?}");
                     }
                 }

@@ -14,10 +14,10 @@ use super::hits::PACK;
 use super::setup::NARROW;
 use super::vertices::fetch_vertices;
 use crate::accel::DrawTriangle;
+use crate::frame::Viewport;
 use crate::frame::draw::{Back, Draw};
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::coverage::doubled_area;
-use marraztu_core::base::image::Size;
 use marraztu_core::scene::Mesh;
 
 /// The colour of an outline. An edge gets the largest one of its polygons.
@@ -55,14 +55,14 @@ pub(crate) struct Facing<'a> {
 }
 
 impl<'a> Facing<'a> {
-    pub(crate) fn new(draw: &'a Draw, vertices: &'a [ScreenVertex], size: Size) -> Self {
+    pub(crate) fn new(draw: &'a Draw, vertices: &'a [ScreenVertex], viewport: Viewport) -> Self {
         let back = match draw.back {
             Back::Lit => Outline::Own,
             Back::Red => Outline::Back,
             Back::Culled => Outline::Not,
         };
         let outlines = if draw.mirrored { [back, Outline::Own] } else { [Outline::Own, back] };
-        let screen = Screen::new(draw.clip_from_object, size);
+        let screen = Screen::new(draw.clip_from_object, viewport);
         Self { draw, mesh: &draw.model.mesh, vertices, screen, outlines }
     }
 

@@ -21,9 +21,9 @@ use super::vertex_variants;
 use super::vertices::Vertices;
 use super::work::{FEW, FEW_VERTICES, What, WorkList, piece_of};
 use crate::cancellation::Cancellation;
-use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
 use crate::frame::variants::Variants;
+use crate::frame::{FramePlan, Viewport};
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::coverage::Grid;
 use crate::screen::sample_positions::SamplePositions;
@@ -32,7 +32,6 @@ use crate::work_stealing::{WorkStealing, together};
 use marraztu_core::accuracy::Transparency;
 use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
-use marraztu_core::base::image::Size;
 use marraztu_core::base::math::same_bits;
 use marraztu_core::scene::Model;
 
@@ -69,7 +68,7 @@ pub(crate) struct ScreenGeometry {
 struct Held {
     model: Shared<Model>,
     clip_from_object: DMat4,
-    size: Size,
+    viewport: Viewport,
     variants: Variants,
     shift: [i32; 2],
     vertex: usize,
@@ -77,15 +76,16 @@ struct Held {
 
 impl Held {
     fn new(draw: &Draw, plan: &FramePlan, vertex: usize) -> Self {
-        let FramePlan { size, variants, shift, .. } = *plan;
+        let FramePlan { viewport, variants, shift, .. } = *plan;
         let (model, clip_from_object) = (draw.model.clone(), draw.clip_from_object);
-        Self { model, clip_from_object, size, variants, shift, vertex }
+        Self { model, clip_from_object, viewport, variants, shift, vertex }
     }
 
     fn is_of(&self, draw: &Draw, plan: &FramePlan, vertex: usize) -> bool {
         Shared::same(&self.model, &draw.model)
             && same_bits(&self.clip_from_object, &draw.clip_from_object)
-            && (self.size, self.variants, self.shift) == (plan.size, plan.variants, plan.shift)
+            && self.viewport == plan.viewport
+            && (self.variants, self.shift) == (plan.variants, plan.shift)
             && self.vertex == vertex
     }
 }
@@ -154,7 +154,7 @@ impl ScreenGeometry {
         for (i, draw) in plan.draws.iter().enumerate().filter(|(i, _)| self.held[*i].is_none()) {
             let order = draw.model.mesh.draw_order();
             let position = |i| order.position(number(i));
-            self.placing.add((i, draw), ((), order.x.len()), plan.size, position);
+            self.placing.add((i, draw), ((), order.x.len()), plan, position);
         }
         // The output slices of all pieces, in the order of adding.
         let (mut rest, mut pieces) = (&mut self.vertices.usual[..], Vec::new());
@@ -173,7 +173,7 @@ impl ScreenGeometry {
         together(threads, || {
             while let Some(work) = shares.next().map(|i| &work[i]).filter(|_| watch.goes_on()) {
                 let draw = &plan.draws[work.draw];
-                let screen = Screen::new(draw.clip_from_object, plan.size);
+                let screen = Screen::new(draw.clip_from_object, plan.viewport);
                 let order = draw.model.mesh.draw_order();
                 let out = &mut *pieces[work.place].lock().unwrap_or_else(PoisonError::into_inner);
                 vertex_variants::transform(plan.variants, level, &screen, order, work.from, out);
@@ -204,7 +204,7 @@ impl ScreenGeometry {
         unsnapped.resize(if is_fine { 0 } else { usual.len() }, [0.0; 2]);
         // Draws are transformed one after the other here, each in parallel pieces.
         for (draw, start) in plan.draws.iter().zip(&self.starts) {
-            let screen = Screen::new(draw.clip_from_object, plan.size).on(grid);
+            let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
             let screen = screen.seen_from(grid.offset(plan.shift));
             let (order, own) = (draw.model.mesh.draw_order(), start.vertex..start.vertex_end);
             let piece = piece_of(own.len());
@@ -239,7 +239,7 @@ impl ScreenGeometry {
             let triangles = mesh.draw_order().triangles.len();
             let mut add = |what: What, count| {
                 let position = |i| what.position(draw, i);
-                self.set_up.add((i, draw), (what, count), plan.size, position);
+                self.set_up.add((i, draw), (what, count), plan, position);
             };
             if draw.filled {
                 add(What::Triangles, triangles);
@@ -288,9 +288,9 @@ impl ScreenGeometry {
             next = start.normal + number(normals.len());
             start.line_end = next;
             let position = |edge| What::Edges.position(draw, edge);
-            self.lines.add((i, draw), (What::Edges, edges), plan.size, position);
+            self.lines.add((i, draw), (What::Edges, edges), plan, position);
             let position = |i: usize| What::Normals.position(draw, normals[i].polygon as usize);
-            self.lines.add((i, draw), (What::Normals, normals.len()), plan.size, position);
+            self.lines.add((i, draw), (What::Normals, normals.len()), plan, position);
         }
         if self.lines.len() > 0 {
             let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);

@@ -90,13 +90,13 @@ impl<'a> Parts<'a> {
         let Work { draw: i, what, from, to, .. } = *work;
         let draw = &self.plan.draws[i];
         let mesh = &draw.model.mesh;
-        let (vertices, size) = (self.vertices_of(i), self.plan.size);
+        let (vertices, viewport) = (self.vertices_of(i), self.plan.viewport);
         match what {
             What::Triangles => {
                 // The screen corners of this draw, on the grid and with the variants of the frame.
                 let pipelines = &self.plan.pipelines;
                 let corners = self.corners().of(i);
-                let setup = Setup::new(draw, pipelines, corners, size, self.starts[i].number);
+                let setup = Setup::new(draw, pipelines, corners, viewport, self.starts[i].number);
                 let mut setup = setup.seen_from(self.plan.shift, self.plan.variants.grid());
                 setup.coverage = self.plan.variants.coverage;
                 setup.holes = self.holes.map_or(&[], |holes| holes.of_draw(i));
@@ -110,7 +110,7 @@ impl<'a> Parts<'a> {
                     setup.run::<R>(level, triangles, pipelines, (bins, brush));
                 } else {
                     let clusters = &order.clusters[from / CLUSTER..];
-                    let culling = Culling::new(draw, setup.screen);
+                    let culling = Culling::new(draw, setup.screen, self.plan.size);
                     culling.each_left(clusters, triangles, |some| {
                         setup.run::<R>(level, some, pipelines, (bins, brush));
                     });
@@ -118,11 +118,11 @@ impl<'a> Parts<'a> {
             }
             What::Facing => {
                 let triangles = &mesh.draw_order().triangles[from..to];
-                let facing = Facing::new(draw, vertices, size);
+                let facing = Facing::new(draw, vertices, viewport);
                 facing.of_triangles(level, triangles, self.outlines_of(i));
             }
             What::FacingOneByOne => {
-                let facing = Facing::new(draw, vertices, size);
+                let facing = Facing::new(draw, vertices, viewport);
                 for polygon in from..to {
                     facing.one(number(polygon), self.outlines_of(i));
                 }
@@ -141,7 +141,7 @@ impl<'a> Parts<'a> {
     pub(crate) fn edge_setup(&self, i: usize) -> EdgeSetup<'a> {
         let plan = self.plan;
         let (draw, first) = (&plan.draws[i], self.starts[i].line);
-        let screen = Screen::new(draw.clip_from_object, plan.size).seen_from(plan.shift);
+        let screen = Screen::new(draw.clip_from_object, plan.viewport).seen_from(plan.shift);
         let (vertices, outlines) = (self.vertices_of(i), self.outlines_of(i));
         EdgeSetup { draw, vertices, screen, outlines, first, width: plan.line_width }
     }

@@ -19,13 +19,13 @@ use super::small;
 use super::tile_queues::FIRST_SIZE;
 use super::vertices::{fetch, fetch_vertices};
 use crate::accel::{DrawOrder, DrawTriangle};
+use crate::frame::Viewport;
 use crate::frame::draw::{Back, Draw, Pipeline, Shaded};
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::coverage::{Grid, PixelBox, doubled_area};
 use crate::screen::sample_positions::FOUR;
 use crate::texture::opacity::Holes;
 use marraztu_core::accuracy::Coverage;
-use marraztu_core::base::image::Size;
 use marraztu_core::base::math::each;
 
 /// The largest bounding box, in subpixels, with a doubled area of at most 31 bits.
@@ -78,7 +78,7 @@ impl<'a> Setup<'a> {
         draw: &'a Draw,
         pipelines: &[Pipeline],
         vertices: &'a [ScreenVertex],
-        size: Size,
+        viewport: Viewport,
         base: u32,
     ) -> Self {
         let transparent =
@@ -91,7 +91,7 @@ impl<'a> Setup<'a> {
                     pipeline.is_cutout() || (!transparent && pipeline.opacity().is_some())
                 })
             });
-        let screen = Screen::new(draw.clip_from_object, size);
+        let screen = Screen::new(draw.clip_from_object, viewport);
         let order = draw.model.mesh.draw_order();
         Self {
             draw,

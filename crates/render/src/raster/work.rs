@@ -7,6 +7,7 @@
 
 use crate::accel::Accelerated as _;
 use crate::accel::CLUSTER;
+use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
 use crate::screen::clip::Screen;
 use crate::screen::tiles::{TILE, tiles_of};
@@ -87,16 +88,16 @@ impl<W: Copy> WorkList<W> {
         &mut self,
         (i, draw): (usize, &Draw),
         (what, count): (W, usize),
-        size: Size,
+        plan: &FramePlan,
         position: impl Fn(usize) -> [f64; 3],
     ) {
-        let screen = Screen::new(draw.clip_from_object, size);
+        let screen = Screen::new(draw.clip_from_object, plan.viewport).seen_from(plan.shift);
         self.count += count;
         let piece = piece_of(count);
         let places = self.pieces.len()..;
         self.pieces.extend(places.zip((0..count).step_by(piece)).map(|(place, from)| {
             let to = count.min(from + piece);
-            let home = home(&screen, size, position(from.midpoint(to)));
+            let home = home(&screen, plan.size, position(from.midpoint(to)));
             Work { draw: i, what, from, to, place, home }
         }));
     }
@@ -154,10 +155,10 @@ impl What {
 /// Returns the tile of the picture that contains a position, or is nearest to it.
 #[expect(clippy::cast_possible_truncation, reason = "held to the picture")]
 fn home(screen: &Screen, size: Size, place: [f64; 3]) -> usize {
-    let at = screen.pixels(screen.clip(place));
+    let (at, shift) = (screen.pixels(screen.clip(place)), screen.shift_in_pixels());
     let tiles = tiles_of(size);
-    let [column, row] =
-        [0, 1].map(|axis| ((at[axis] as i32) / TILE).clamp(0, (tiles[axis] - 1).max(0)));
+    let [column, row] = [0, 1]
+        .map(|axis| (((at[axis] - shift[axis]) as i32) / TILE).clamp(0, (tiles[axis] - 1).max(0)));
     usize::try_from(row * tiles[0] + column).expect("not negative")
 }
 

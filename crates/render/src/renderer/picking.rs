@@ -40,6 +40,14 @@ pub struct Hit {
     pub depth: f32,
 }
 
+/// Returns the drawn pixel that a pixel of the finished picture shows; `None` outside.
+fn drawn_pixel(plan: &FramePlan, [x, y]: [usize; 2]) -> Option<[i32; 2]> {
+    let Size { width, height } = plan.size();
+    let by = if plan.enlarged.is_some() { 2 } else { 1 };
+    let at = [x / by, y / by].map(|i| i32::try_from(i).expect("inside the picture"));
+    (x < width && y < height).then_some(at)
+}
+
 impl Renderer {
     /// Rebuilds the geometry of the last finished picture if another frame has been started since.
     fn build_again(&mut self) {
@@ -59,11 +67,7 @@ impl Renderer {
     pub fn hit(&mut self, x: usize, y: usize) -> Option<Hit> {
         self.build_again();
         let plan = self.plan.as_ref()?;
-        let Size { width, height } = plan.size;
-        if x >= width || y >= height {
-            return None;
-        }
-        let [x, y] = [x, y].map(|i| i32::try_from(i).expect("inside the picture"));
+        let [x, y] = drawn_pixel(plan, [x, y])?;
         let [columns, _] = tiles_of(plan.size);
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
         // Only this pixel's tile is rasterised again.
@@ -86,12 +90,8 @@ impl Renderer {
     pub fn explain(&mut self, x: usize, y: usize) -> Option<PixelColor> {
         self.build_again();
         let plan = self.plan.as_ref()?;
-        let Size { width, height } = plan.size;
-        if x >= width || y >= height {
-            return None;
-        }
+        let at = drawn_pixel(plan, [x, y])?;
         plan.prepare();
-        let at = [x, y].map(|i| i32::try_from(i).expect("inside the picture"));
         Some(match plan.arithmetic {
             Arithmetic::F32 => self.explain_in::<f32>(plan, at),
             Arithmetic::F64 => self.explain_in::<f64>(plan, at),
@@ -147,7 +147,7 @@ impl Renderer {
             });
             ControlFlow::Continue(())
         });
-        pixels
+        self.spread(pixels)
     }
 
     /// Returns the item shown at each pixel, row by row from the top, or `None` if every one of
@@ -173,7 +173,7 @@ impl Renderer {
             }
             if items.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        (!items.is_empty()).then_some(pixels)
+        (!items.is_empty()).then(|| self.spread(pixels))
     }
 
     /// Counts the pixels that each effect of the last picture takes part in. Takes about as long as
@@ -198,10 +198,20 @@ impl Renderer {
             pixels[at] = word as u32;
             ControlFlow::Continue(())
         });
-        pixels
+        self.spread(pixels)
     }
 
-    /// Returns the size of the last finished picture; 0 x 0 before the first.
+    /// Gives each pixel of the finished picture what its drawn pixel has.
+    fn spread<T: Copy>(&self, drawn: Vec<T>) -> Vec<T> {
+        let Some((plan, size)) = self.plan.as_ref().and_then(|plan| Some((plan, plan.enlarged?)))
+        else {
+            return drawn;
+        };
+        let row = |y: usize| (0..size.width).map(move |x| y / 2 * plan.size.width + x / 2);
+        (0..size.height).flat_map(row).map(|at| drawn[at]).collect()
+    }
+
+    /// Returns the size of the last picture as it was drawn; 0 x 0 before the first.
     fn seen_size(&self) -> Size {
         self.plan.as_ref().map_or(Size::new(0, 0), |plan| plan.size)
     }

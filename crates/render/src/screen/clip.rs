@@ -12,7 +12,7 @@
 use glam::{DMat4, DVec3};
 
 use super::coverage::{Grid, SUBPIXELS, Snapped};
-use marraztu_core::base::image::Size;
+use crate::frame::Viewport;
 
 /// The guard band: the largest distance of a coordinate from the picture's centre, in pixels.
 const GUARD: f64 = 1_048_576.0;
@@ -105,9 +105,9 @@ pub(crate) fn snapped(number: f64) -> i32 {
 }
 
 impl Screen {
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-    pub(crate) fn new(clip_from_object: DMat4, size: Size) -> Self {
-        let half = [size.width as f64 / 2.0, size.height as f64 / 2.0];
+    pub(crate) fn new(clip_from_object: DMat4, viewport: impl Into<Viewport>) -> Self {
+        let Viewport { width, height } = viewport.into();
+        let half = [width / 2.0, height / 2.0];
         Self {
             rows: clip_from_object.transpose().to_cols_array_2d(),
             half,
@@ -150,9 +150,17 @@ impl Screen {
         Self { guard: self.half.map(|half| pixels / half - 1.0), ..self }
     }
 
-    /// Returns the same transform with a guard band that ends this many pixels beyond the picture.
-    pub(crate) fn close_to_picture(self, pixels: f64) -> Self {
-        Self { guard: self.half.map(|half| 1.0 + pixels / half), ..self }
+    /// Returns the transform to a part of the picture that is centred at `middle` and reaches
+    /// `half` to each side, both in pixels; the guard band ends there. Only distances to the planes
+    /// are meaningful.
+    pub(crate) fn close_to(self, middle: [f64; 2], half: [f64; 2]) -> Self {
+        // From -1 to 1, with y up.
+        let x = middle[0] / self.half[0] - 1.0;
+        let y = 1.0 - middle[1] / self.half[1];
+        let [of_x, of_y, z, w] = self.rows;
+        let less = |row: [f64; 4], by: f64| std::array::from_fn(|i| row[i] - by * w[i]);
+        let rows = [less(of_x, x), less(of_y, y), z, w];
+        Self { rows, guard: [half[0] / self.half[0], half[1] / self.half[1]], ..self }
     }
 
     /// Transforms a position from object space to clip space.

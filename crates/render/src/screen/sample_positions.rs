@@ -2,11 +2,11 @@
 //!
 //! A sample is the pixel's centre moved by whole subpixels. It shows what the centre would show if
 //! all corners were moved the opposite way, so everything that is exact with one sample is exact
-//! with several. Samples are drawn four at a time, each group of four around the centre. Sixteen
-//! and sixty-four samples take four and sixteen passes, and the MSAA resolve adds their colours.
+//! with several. Samples are drawn four at a time, each group of four around the centre. More
+//! samples take several passes, and the MSAA resolve adds their colours.
 //!
 //! Four and sixteen samples are at Vulkan's "Standard sample locations", multiples of 1/16 pixel;
-//! sixty-four are on a grid of 8 x 8.
+//! sixty-four and 256 are on a grid of 8 x 8 and 16 x 16.
 
 use marraztu_core::accuracy::Samples;
 
@@ -33,11 +33,16 @@ impl SamplePositions {
 
     /// Creates four samples, given in sixteenths of a pixel from the upper left corner.
     const fn new(sixteenths: [[i32; 2]; FOUR]) -> Self {
+        Self::of_parts(sixteenths, 16)
+    }
+
+    /// Creates four samples, given in `parts` of a pixel from the upper left corner.
+    const fn of_parts(places: [[i32; 2]; FOUR], parts: i32) -> Self {
         let mut positions = Self { least: [128; 2], most: [-128; 2], many: true, ..Self::MIDDLE };
         let mut i = 0;
         while i < 2 * FOUR {
             let (sample, axis) = (i / 2, i % 2);
-            let shift = (sixteenths[sample][axis] - 8) * 16;
+            let shift = places[sample][axis] * (256 / parts) - 128;
             positions.shifts[sample][axis] = shift;
             if shift < positions.least[axis] {
                 positions.least[axis] = shift;
@@ -80,6 +85,7 @@ pub(crate) const fn passes(samples: Samples) -> &'static [SamplePositions] {
         Samples::Four => &QUARTERS,
         Samples::Sixteen => &SIXTEEN,
         Samples::SixtyFour => &SIXTY_FOUR,
+        Samples::TwoFiftySix => &TWO_FIFTY_SIX,
     }
 }
 
@@ -100,19 +106,23 @@ const SIXTEEN: [SamplePositions; 4] = [
     SamplePositions::new([[0, 8], [15, 4], [14, 15], [1, 0]]),
 ];
 
-/// A grid of 8 x 8: each position in the upper left quarter with its rotations by quarter turns,
-/// the nearest first.
-const SIXTY_FOUR: [SamplePositions; 16] = {
-    let mut passes = [SamplePositions::MIDDLE; 16];
+/// Grids of 8 x 8 and 16 x 16.
+const SIXTY_FOUR: [SamplePositions; 16] = grid(8);
+const TWO_FIFTY_SIX: [SamplePositions; 64] = grid(16);
+
+/// Returns a grid of `side` x `side` samples: each position in the upper left quarter with its
+/// rotations by quarter turns, the nearest first.
+const fn grid<const PASSES: usize>(side: i32) -> [SamplePositions; PASSES] {
+    let (mut passes, half, parts) = ([SamplePositions::MIDDLE; PASSES], side / 2, 2 * side);
     let mut i = 0;
-    while i < 16 {
-        let (x, y) = (7 - 2 * (i % 4), 7 - 2 * (i / 4));
-        passes[i as usize] =
-            SamplePositions::new([[x, y], [16 - y, x], [16 - x, 16 - y], [y, 16 - x]]);
+    while i < half * half {
+        let (x, y) = (side - 1 - 2 * (i % half), side - 1 - 2 * (i / half));
+        let turned = [[x, y], [parts - y, x], [parts - x, parts - y], [y, parts - x]];
+        passes[i as usize] = SamplePositions::of_parts(turned, parts);
         i += 1;
     }
     passes
-};
+}
 
 #[cfg(test)]
 mod tests {
@@ -124,8 +134,8 @@ mod tests {
 
     #[test]
     fn each_four_lie_around_the_middle() {
-        for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
-            for SamplePositions { shifts, .. } in passes(samples) {
+        for samples in &Samples::ALL[1..] {
+            for SamplePositions { shifts, .. } in passes(*samples) {
                 // In every direction, some lie on one side of a line through the centre, some on
                 // the other.
                 for line in shifts {
@@ -138,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn sixteen_are_on_sixteen_rows_and_columns_and_sixty_four_on_a_grid() {
+    fn sixteen_are_on_sixteen_rows_and_columns_and_more_on_grids() {
         for axis in 0..2 {
             let mut sixteen: Vec<i32> = all(Samples::Sixteen).iter().map(|at| at[axis]).collect();
             sixteen.sort_unstable();
@@ -147,6 +157,10 @@ mod tests {
         let mut grid = all(Samples::SixtyFour);
         grid.sort_unstable();
         let want = (0..64).map(|i| [i / 8, i % 8].map(|i| 32 * i - 112));
+        assert!(grid.iter().copied().eq(want), "{grid:?}");
+        let mut grid = all(Samples::TwoFiftySix);
+        grid.sort_unstable();
+        let want = (0..256).map(|i| [i / 16, i % 16].map(|i| 16 * i - 120));
         assert!(grid.iter().copied().eq(want), "{grid:?}");
     }
 }

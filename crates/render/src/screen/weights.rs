@@ -42,7 +42,7 @@ impl Weights {
         let order = draw.model.mesh.draw_order();
         let ids = order.vertices_of(number);
         let own = each(ids, |vertex| vertices[vertex as usize]);
-        let screen = Screen::new(draw.clip_from_object, plan.size);
+        let screen = Screen::new(draw.clip_from_object, plan.viewport);
         let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
         // Clipped triangles have corners without a screen position.
         let method = if !own.iter().all(ScreenVertex::is_inside) {
@@ -170,9 +170,8 @@ pub(crate) struct HomogeneousWeights {
 
 impl HomogeneousWeights {
     /// Sets up a triangle, `shift` subpixels from pixel centres.
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     pub(crate) fn new(plan: &FramePlan, draw: &Draw, number: u32, shift: [i32; 2]) -> Self {
-        let screen = Screen::new(draw.clip_from_object, plan.size);
+        let screen = Screen::new(draw.clip_from_object, plan.viewport);
         let order = draw.model.mesh.draw_order();
         let vertices = order.vertices_of(number);
         let [p, q, r] = each(vertices, |vertex| {
@@ -183,7 +182,7 @@ impl HomogeneousWeights {
         let normals = [q.cross(r), r.cross(p), p.cross(q)];
         let volume = p.dot(normals[0]);
         let scale = if volume == 0.0 { 1.0 } else { 1.0 / volume };
-        let (right, down) = (2.0 / plan.size.width as f64, -2.0 / plan.size.height as f64);
+        let (right, down) = (2.0 / plan.viewport.width, -2.0 / plan.viewport.height);
         let centre =
             |axis: usize| 0.5 + f64::from(shift[axis] + plan.shift[axis]) / f64::from(SUBPIXELS);
         // The position of the first pixel, from -1 to 1.
@@ -254,13 +253,12 @@ const COLUMNS: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// Projects the point of a clipped triangle with these weights to pixels. Points in the observer's
 /// own plane have no screen position; the result is then arbitrary.
-#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 pub(crate) fn cut_place(plan: &FramePlan, draw: &Draw, number: u32, weights: DVec3) -> [f64; 2] {
-    let screen = Screen::new(draw.clip_from_object, plan.size);
+    let screen = Screen::new(draw.clip_from_object, plan.viewport);
     let order = draw.model.mesh.draw_order();
     let corners = order.vertices_of(number).map(|vertex| screen.clip(order.position(vertex)));
     let [x, y, w] = [0, 1, 3].map(|i| weights.dot(DVec3::from_array(corners.map(|c| c[i]))));
     let w = if w == 0.0 { 1.0 } else { w };
-    let half = [plan.size.width as f64 / 2.0, plan.size.height as f64 / 2.0];
+    let half = [plan.viewport.width / 2.0, plan.viewport.height / 2.0];
     [(x / w + 1.0) * half[0], (1.0 - y / w) * half[1]]
 }

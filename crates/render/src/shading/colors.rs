@@ -124,6 +124,27 @@ impl Colors {
     }
 }
 
+/// Returns the mean of 2^`log2` opaque pixels, of their light if they are `linear`.
+#[inline(always)]
+pub(crate) fn mean<'a>(
+    pixels: impl Iterator<Item = &'a [u8; 4]>,
+    log2: u32,
+    linear: bool,
+) -> [u8; 4] {
+    let mut sums = [0; 3];
+    for pixel in pixels {
+        for (sum, byte) in sums.iter_mut().zip(pixel) {
+            *sum += if linear { parts(*byte, true) } else { u32::from(*byte) };
+        }
+    }
+    let [r, g, b] = sums.map(|sum| {
+        let byte =
+            if linear { encoded_byte(sum >> log2) } else { (sum + (1 << log2 >> 1)) >> log2 };
+        byte.to_le_bytes()[0]
+    });
+    [r, g, b, 255]
+}
+
 /// Converts a byte to fixed point: the middle of its step, or its linear value.
 fn parts(byte: u8, linear: bool) -> u32 {
     if linear {
@@ -169,7 +190,7 @@ fn encoded_byte(value: u32) -> u32 {
     u32::try_from(least.partition_point(|least| *least <= value)).unwrap_or(255)
 }
 
-/// The colours of a block's pixels, summed over their samples: at most 2^6 samples, each below
+/// The colours of a block's pixels, summed over their samples: at most 2^8 samples, each below
 /// 2^24.
 #[derive(Clone, Debug)]
 pub(crate) struct Sums {
@@ -298,7 +319,7 @@ mod tests {
                 _ => (f32::from(round) * 64.0 + i as f32) / 128_000.0,
             });
             let [pixels, colors] = both(&numbers);
-            for (samples, log2) in [(4, 2), (64, 6)] {
+            for (samples, log2) in [(4, 2), (64, 6), (256, 8)] {
                 let mut sums = Sums::new(false);
                 sums.add_all(&colors, &indices, &[samples / 4; BATCH]);
                 sums.add_all(&colors, &indices, &[samples / 4 * 3; BATCH]);

@@ -16,7 +16,7 @@ use super::fragments::Fragments;
 use super::texels::product;
 use super::triangle_attributes::{TriangleAttributes, picked};
 use crate::frame::draw::Draw;
-use crate::frame::{Eye, FramePlan};
+use crate::frame::{Eye, FramePlan, Viewport};
 use crate::lights::{Batch, Rows, Sample, load, set, store};
 use crate::screen::coverage::SUBPIXELS;
 use crate::screen::perspective::between;
@@ -165,10 +165,9 @@ struct Rays<T> {
 }
 
 impl<T: Number> Rays<T> {
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     fn new(plan: &FramePlan) -> Self {
         let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
-        let (width, height) = (plan.size.width as f64, plan.size.height as f64);
+        let Viewport { width, height } = plan.viewport;
         let mut x = [2.0 / width / px, -1.0 / px];
         let mut y = [-2.0 / height / py, 1.0 / py];
         // A sample is offset from the centre of its pixel.

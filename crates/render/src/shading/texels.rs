@@ -269,7 +269,7 @@ impl PlacedTexture<'_> {
     }
 }
 
-/// Computes the [`Steps`] of a triangle. `None` if it has no area.
+/// Computes the [`Steps`] of a triangle, from one lit sample to the next. `None` if it has no area.
 pub(crate) fn steps<T: AttributeNumber>(
     (plan, draw): (&FramePlan, &Draw),
     attributes: &TriangleAttributes<T>,
@@ -277,7 +277,8 @@ pub(crate) fn steps<T: AttributeNumber>(
 ) -> Option<Steps> {
     if attributes.cut >> slot & 1 == 1 {
         let number = attributes.numbers[slot];
-        return Some(HomogeneousWeights::new(plan, draw, number, [0; 2]).steps());
+        let steps = HomogeneousWeights::new(plan, draw, number, [0; 2]).steps();
+        return Some(steps.map(|steps| steps.map(|step| step * plan.spacing)));
     }
     let corners = attributes.corners(slot);
     let [a, b, c] = corners.map(|corner| [corner.x, corner.y].map(f64::from));
@@ -287,7 +288,7 @@ pub(crate) fn steps<T: AttributeNumber>(
         return None;
     }
     let by_w: [f64; 3] = [0, 1, 2].map(|corner| attributes.by_w[corner][slot].into());
-    let per_pixel = f64::from(attributes.grid.parts()) / area;
+    let per_pixel = attributes.parts_per_sample() / area;
     // The steps of the barycentric coordinates of the second and third corner.
     let right = [c[1] - a[1], a[1] - b[1]].map(|step| step * per_pixel);
     let down = [a[0] - c[0], b[0] - a[0]].map(|step| step * per_pixel);
@@ -313,7 +314,7 @@ pub(super) fn lane_steps<S: Simd>(
     // All corners as f64, for sixteen triangles in two halves.
     let by_w = [wide(simd, w0, at), wide(simd, w1, at), wide(simd, w2, at)];
     let (b, c) = ([less(bx, ax), less(by, ay)], [less(cx, ax), less(cy, ay)]);
-    let parts = f64::from(attributes.grid.parts());
+    let parts = attributes.parts_per_sample();
     let zero = f64x8::splat(simd, 0.0);
     let (mut steps, mut flat) = ([[[zero; 2]; 3]; 2], 0);
     for half in 0..2 {

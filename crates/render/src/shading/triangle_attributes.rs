@@ -61,6 +61,8 @@ pub(crate) struct TriangleAttributes<T> {
     draw: Option<u32>,
     /// The grid of the corners.
     pub(crate) grid: Grid,
+    /// The distance between lit samples, in pixels.
+    spacing: f64,
 }
 
 impl<T: Number> Default for TriangleAttributes<T> {
@@ -84,6 +86,7 @@ impl<T: Number> Default for TriangleAttributes<T> {
             back: 0,
             draw: None,
             grid: Grid::Usual,
+            spacing: 1.0,
         }
     }
 }
@@ -213,14 +216,14 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         plan: &FramePlan,
         vertices: &[ScreenVertex],
     ) {
-        self.grid = plan.variants.grid();
+        (self.grid, self.spacing) = (plan.variants.grid(), plan.spacing);
         T::prepare(level, self, vertices);
         if !T::EXACT && plan.eye == Eye::Point {
             return;
         }
         // Exact arithmetic and orthographic depth need the positions themselves.
         let order = draw.model.mesh.draw_order();
-        let screen = Screen::new(draw.clip_from_object, plan.size);
+        let screen = Screen::new(draw.clip_from_object, plan.viewport);
         for (slot, ids) in self.ids[..self.count].iter().enumerate().skip(self.kept) {
             for (corner, vertex) in ids.iter().copied().enumerate() {
                 let place = order.position(vertex);
@@ -233,6 +236,12 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
                 }
             }
         }
+    }
+
+    /// Returns the steps of the grid from one lit sample to the next.
+    #[inline(always)]
+    pub(crate) fn parts_per_sample(&self) -> f64 {
+        f64::from(self.grid.parts()) * self.spacing
     }
 
     /// Prefetches the inputs of [`Self::carry_normals`], if vertices have normals.
@@ -409,7 +418,7 @@ fn is_front(ids: [u32; 3], draw: &Draw, plan: &FramePlan, vertices: &[ScreenVert
         return doubled_area(own.map(|vertex| vertex.at())) < 0;
     }
     let order = draw.model.mesh.draw_order();
-    let screen = Screen::new(draw.clip_from_object, plan.size);
+    let screen = Screen::new(draw.clip_from_object, plan.viewport);
     faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
 }
 

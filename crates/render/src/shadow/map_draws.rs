@@ -73,6 +73,8 @@ impl MapDraws {
         let draws = casters.iter().map(|caster| draw(caster, &mut pipelines)).collect();
         let plan = FramePlan {
             size: Size::new(form.side, form.side),
+            viewport: Size::new(form.side, form.side).into(),
+            enlarged: None,
             samples: Samples::One,
             lit_by_sample: false,
             shift: [0; 2],
@@ -114,8 +116,11 @@ impl MapDraws {
             return None;
         }
         // Slopes are computed from the corners of visible triangles in clip space.
-        let screens: Vec<Screen> =
-            plan.draws.iter().map(|draw| Screen::new(draw.clip_from_object, plan.size)).collect();
+        let screens: Vec<Screen> = plan
+            .draws
+            .iter()
+            .map(|draw| Screen::new(draw.clip_from_object, plan.viewport))
+            .collect();
         Tile { level, plan, geometry, screens: &screens }.draw_all(count, shown);
         // Bias needs the neighbours of each texel, so it starts after all tiles are drawn.
         let picture = Picture { side: form.side, depths: &shown.depths, slopes: &shown.slopes };

@@ -1,7 +1,7 @@
 //! The axes of geometry: vertices, subpixels, coverage, interpolation, normals.
 
 use super::sense::{if_any_object, is_any, is_stretched};
-use super::{Axis, AxisKind, Choice, Lesson};
+use super::{Axis, AxisKind, Choice};
 use crate::accuracy::{Coverage, Interpolation, NormalMatrix, Subpixels, VertexArithmetic};
 use crate::scene::{Projection, Scene, View};
 
@@ -25,17 +25,6 @@ pub(super) const VERTICES: Axis = Axis {
             "none"),
     ],
     sense: anything,
-    lesson: Lesson {
-        title: "Why scenes far from the origin tremble",
-        what: "A position far from the origin spends most of its digits on the distance; few are \
-            left for its position in the picture.",
-        coarse: "In 32 bits, the difference between the positions of object and camera has few \
-            digits left: far from the origin, objects are displaced and tremble as the view moves.",
-        shows: "On a ball 5,000,000 units from the origin, with the camera next to it: compare 32 \
-            and 64 bits, then move.",
-        scene: "far",
-        choice: None,
-    },
 };
 
 pub(super) const SUBPIXELS: Axis = Axis {
@@ -63,16 +52,6 @@ pub(super) const SUBPIXELS: Axis = Axis {
             "0.003% of the pixels"),
     ],
     sense: anything,
-    lesson: Lesson {
-        title: "Why thin spokes break into steps",
-        what: "Coverage is computed in whole numbers, so vertices are first snapped to a grid \
-            finer than the pixels.",
-        coarse: "On a coarse grid, small triangles change their shape, thin ones vanish, and \
-            slow objects jump from pixel to pixel.",
-        shows: "On the thin spokes of the wheel: with 0 bits they break into steps.",
-        scene: "wheel",
-        choice: None,
-    },
 };
 
 pub(super) const COVERAGE: Axis = Axis {
@@ -99,16 +78,6 @@ pub(super) const COVERAGE: Axis = Axis {
             "none except the snapping of vertices"),
     ],
     sense: anything,
-    lesson: Lesson {
-        title: "Why points leave holes",
-        what: "A triangle covers the pixels whose centres lie inside. A centre on the edge between \
-            two triangles must belong to exactly one of them.",
-        coarse: "Close to the camera, points leave holes; far away, they cost a hundred writes \
-            per pixel. Rounded rows make everything a little too large.",
-        shows: "On the ball close to the camera: choose Points and look through it.",
-        scene: "near",
-        choice: None,
-    },
 };
 
 pub(super) const INTERPOLATION: Axis = Axis {
@@ -137,16 +106,6 @@ pub(super) const INTERPOLATION: Axis = Axis {
             Projection::Orthographic => Err("an orthographic projection has no perspective"),
         }
     },
-    lesson: Lesson {
-        title: "Why textures bend and swim",
-        what: "One pixel is a longer step on a surface that is farther away, so vertex attributes \
-            have to be divided by their distance before they are interpolated.",
-        coarse: "Interpolated linearly, a texture bends along the diagonal of every square and \
-            swims as the view moves.",
-        shows: "On a long floor covered with pictures: compare Affine with Perspective.",
-        scene: "floor",
-        choice: None,
-    },
 };
 
 pub(super) const STRETCHED: Axis = Axis {
@@ -164,14 +123,4 @@ pub(super) const STRETCHED: Axis = Axis {
             "none"),
     ],
     sense: |scene, view| if_any_object(scene, view, is_stretched, "no visible object is stretched"),
-    lesson: Lesson {
-        title: "Why stretched objects are lit wrongly",
-        what: "A normal is perpendicular to its surface. Stretching it with the object makes it \
-            lean, so normals need a different matrix.",
-        coarse: "Transformed by the object's own matrix, normals lean with the stretch, and a \
-            flattened object is lit as if it were elongated.",
-        shows: "On the upper side of a flattened ball: compare both.",
-        scene: "pressed",
-        choice: None,
-    },
 };

@@ -2,8 +2,8 @@
 //!
 //! Menus, the command line and the laboratory read this table, and tests compare a scene file's
 //! words with it, so a row is all that a new axis needs. A row defines the purpose of the axis, how
-//! its choices are set in [`Settings`] and read back, the most exact choice, the scenes in which
-//! the axis matters, and its lesson. The default is [`Settings::default`].
+//! its choices are set in [`Settings`] and read back, the most exact choice, and the scenes in
+//! which the axis matters. The default is [`Settings::default`].
 
 /// A choice that sets one field of the settings to one value.
 macro_rules! choice {
@@ -63,8 +63,6 @@ pub struct Axis {
     pub choices: &'static [Choice],
     /// Returns whether it can change the picture of a scene in a view, or else the reason.
     pub sense: fn(&Scene, &View) -> Result<(), &'static str>,
-    /// Its lesson.
-    pub lesson: Lesson,
 }
 
 /// Whether the choices of an axis can be ranked.
@@ -72,9 +70,6 @@ pub struct Axis {
 pub enum AxisKind {
     /// The last choice is the most exact one; the errors of the others are measured against it.
     Scored,
-    /// Like [`Self::Scored`], but the exact choice changes the picture so much that the references
-    /// of all other axes keep the default of this one.
-    ScoredApart,
     /// The choices are different models: none is an error of another.
     Model,
 }
@@ -101,23 +96,6 @@ pub struct Choice {
     is: fn(&Settings) -> bool,
 }
 
-/// The lesson of an axis, in three sentences.
-#[derive(Debug)]
-pub struct Lesson {
-    /// The question that it answers: "Why Gouraud misses a highlight".
-    pub title: &'static str,
-    /// An explanation of the axis.
-    pub what: &'static str,
-    /// The faults of a coarse choice.
-    pub coarse: &'static str,
-    /// Where the difference is visible.
-    pub shows: &'static str,
-    /// The built-in scene that shows the difference clearly.
-    pub scene: &'static str,
-    /// The word of the choice that the scene opens with, if it is not the coarsest.
-    pub choice: Option<&'static str>,
-}
-
 /// Every axis, in the order of the interface.
 pub const AXES: &[Axis] = &[
     light::SHADING,
@@ -130,6 +108,7 @@ pub const AXES: &[Axis] = &[
     transparency::TRANSPARENCY,
     shadows::SHADOW_METHOD,
     sampling::SAMPLES,
+    sampling::RESOLUTION,
     geometry::INTERPOLATION,
     geometry::STRETCHED,
     texture::FILTER,
@@ -152,13 +131,6 @@ impl Axis {
     #[must_use]
     pub fn choice(&self, word: &str) -> Option<&'static Choice> {
         self.choices.iter().find(|choice| choice.word == word)
-    }
-
-    /// The choice that its lesson opens with: the one with the most visible faults.
-    #[must_use]
-    pub fn lesson_choice(&self) -> &'static Choice {
-        let named = self.lesson.choice.and_then(|word| self.choice(word));
-        named.unwrap_or(&self.choices[0])
     }
 
     /// The choice of these settings.
@@ -186,7 +158,7 @@ impl Axis {
     pub fn most_exact(&self, settings: &Settings) -> &'static Choice {
         let own = |choice: &&Choice| (choice.among)(settings).is_ok();
         match (self.kind, self.choices.iter().rfind(own)) {
-            (AxisKind::Scored | AxisKind::ScoredApart, Some(last)) => last,
+            (AxisKind::Scored, Some(last)) => last,
             _ => self.chosen(settings),
         }
     }

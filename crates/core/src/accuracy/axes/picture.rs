@@ -1,7 +1,7 @@
 //! The axes of values stored per pixel: depth and rounding.
 
 use super::sense::{if_any, if_any_object, is_any, is_lit};
-use super::{Axis, AxisKind, Choice, Lesson};
+use super::{Axis, AxisKind, Choice};
 use crate::accuracy::{DepthFormat, Rounding};
 
 pub(super) const DEPTH: Axis = Axis {
@@ -26,17 +26,6 @@ pub(super) const DEPTH: Axis = Axis {
             "0.000058 units at z 1000"),
     ],
     sense: |scene, view| if_any_object(scene, view, is_any, "no object is visible"),
-    lesson: Lesson {
-        title: "Why surfaces show through each other",
-        what: "A depth is stored for every pixel to decide which surface is in front. Perspective \
-            leaves few of its steps for distant surfaces.",
-        coarse: "If two surfaces are closer to each other than a step, one shows through the \
-            other in stripes that crawl as the view moves (z-fighting).",
-        shows: "On two plates that lean against each other at a distance of 1000: with 16 bits, \
-            the line where they meet dissolves.",
-        scene: "fence",
-        choice: None,
-    },
 };
 
 pub(super) const ROUNDING: Axis = Axis {
@@ -57,15 +46,4 @@ pub(super) const ROUNDING: Axis = Axis {
             "half a step, the smallest possible with bytes"),
     ],
     sense: |scene, view| if_any(scene, view, is_lit, "no visible surface is lit"),
-    lesson: Lesson {
-        title: "Why dim walls fall into bands",
-        what: "A colour has many digits, and a byte has 256 steps: a value between two steps is \
-            rounded down, to the nearest, or by a pattern of neighbouring pixels.",
-        coarse: "Truncation makes every colour half a step too dark. Without a pattern, a gradual \
-            change falls into bands.",
-        shows: "On a wall in dim light: it has bands with Nearest and, seen from afar, none with \
-            Dither.",
-        scene: "dusk",
-        choice: None,
-    },
 };

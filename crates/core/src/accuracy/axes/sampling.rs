@@ -1,15 +1,15 @@
-//! The axis of samples per pixel.
+//! The axes of samples: how many a pixel has, and how many pixels are drawn.
 
 use super::sense::{if_any, is_there};
-use super::{Axis, AxisKind, Choice, Lesson};
-use crate::accuracy::Samples;
+use super::{Axis, AxisKind, Choice};
+use crate::accuracy::{Resolution, Samples};
 
 pub(super) const SAMPLES: Axis = Axis {
     key: "samples",
     label: "Samples per pixel",
     phrase: "{} samples per pixel",
     what: "Samples per pixel",
-    kind: AxisKind::ScoredApart,
+    kind: AxisKind::Scored,
     choices: &[
         choice!("1" "1" samples = Samples::One,
             "One sample, at the pixel's centre.",
@@ -23,17 +23,26 @@ pub(super) const SAMPLES: Axis = Axis {
         choice!("64" "64" samples = Samples::SixtyFour,
             "The mean of sixty-four samples per pixel: slow.",
             "on edges, about a hundredth of the difference between the two sides"),
+        choice!("256" "256" samples = Samples::TwoFiftySix,
+            "The mean of 256 samples per pixel: very slow.",
+            "none: the ideal"),
     ],
     sense: |scene, view| if_any(scene, view, is_there, "no object is visible"),
-    lesson: Lesson {
-        title: "Why edges are staircases",
-        what: "A pixel is a small square, and an edge may run through it. It can show what its \
-            centre sees, or the mean of several samples.",
-        coarse: "With one sample, an edge becomes a staircase that crawls as the view moves, and \
-            anything narrower than a pixel breaks into dots.",
-        shows: "On every outline, most clearly if it is almost horizontal or vertical and the \
-            colours on its two sides differ.",
-        scene: "ball",
-        choice: None,
-    },
+};
+
+pub(super) const RESOLUTION: Axis = Axis {
+    key: "resolution",
+    label: "Resolution",
+    phrase: "{} resolution",
+    what: "The part of the pixels that is drawn",
+    kind: AxisKind::Scored,
+    choices: &[
+        choice!("half" "Half" resolution = Resolution::Half,
+            "Draws half of the width and height, and enlarges it with bilinear interpolation.",
+            "on edges and in textures, up to the difference between neighbouring pixels"),
+        choice!("full" "Full" resolution = Resolution::Full,
+            "Draws every pixel.",
+            "none"),
+    ],
+    sense: |scene, view| if_any(scene, view, is_there, "no object is visible"),
 };

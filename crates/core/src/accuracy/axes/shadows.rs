@@ -1,6 +1,6 @@
 //! The axes of shadows: how shadows are computed, and where shadow rays start.
 
-use super::{Axis, AxisKind, Choice, Lesson};
+use super::{Axis, AxisKind, Choice};
 use crate::accuracy::{ShadowMethod, Terminator};
 use crate::scene::{Fill, Scene, View};
 
@@ -65,17 +65,6 @@ pub(super) const SHADOW_METHOD: Axis = Axis {
             "none"),
     ],
     sense: are_cast,
-    lesson: Lesson {
-        title: "Why shadows have stairs and leaks",
-        what: "A shadow map is a picture of depths as the light sees them: a point is in shadow if \
-            something nearer covers its texel.",
-        coarse: "A texel has one depth for all points in it, so borders are stairs, and a surface \
-            would shade itself in stripes (acne). A bias hides the stripes, but lets light in \
-            where two surfaces touch (leaks).",
-        shows: "Under the low sun, along the shadow of the ring and where it stands on the ground.",
-        scene: "shadow",
-        choice: None,
-    },
 };
 
 pub(super) const TERMINATOR: Axis = Axis {
@@ -93,14 +82,4 @@ pub(super) const TERMINATOR: Axis = Axis {
             "a model, not scored"),
     ],
     sense: are_cast,
-    lesson: Lesson {
-        title: "Why the shadow terminator is jagged",
-        what: "Vertex normals light a ball of triangles as if it were round, but its triangles are \
-            flat: near the terminator, some are already turned away from the light.",
-        coarse: "Neither is an error of the other: whole triangles fall into their own shadow. \
-            Rays that start on the round surface keep the light that the normals suggest.",
-        shows: "Along the edge between light and shadow of a coarse ball.",
-        scene: "night",
-        choice: Some("smooth"),
-    },
 };

@@ -1,6 +1,6 @@
 use super::*;
 use crate::accuracy::AccuracyPreset;
-use crate::accuracy::{Arithmetic, Filter, LightAt, Samples, SpecularForm, SpecularPower};
+use crate::accuracy::{Filter, LightAt, Resolution, Samples, SpecularForm};
 
 #[test]
 fn each_choice_is_read_back_as_set_and_changes_no_other_axis() {
@@ -18,58 +18,66 @@ fn each_choice_is_read_back_as_set_and_changes_no_other_axis() {
 }
 
 #[test]
-fn the_reference_has_every_axis_at_its_most_exact_and_keeps_the_models() {
+fn the_ideal_has_every_axis_at_its_most_exact_and_keeps_the_models() {
     let chosen = Settings {
         light: LightAt::Face,
         specular: SpecularForm::HalfVector,
         ..Settings::default()
     };
-    let reference = chosen.reference();
-    assert_eq!(reference.arithmetic, Arithmetic::F64);
-    assert_eq!(reference.light, LightAt::Pixel);
-    assert_eq!(reference.filter, Filter::Trilinear);
-    assert_eq!(reference.power, SpecularPower::Library);
-    assert_eq!(reference.specular, SpecularForm::HalfVector);
+    let ideal = chosen.ideal();
+    for axis in AXES.iter().filter(|axis| axis.kind == AxisKind::Scored) {
+        assert_eq!(axis.chosen(&ideal).word, axis.choices.last().unwrap().word, "{}", axis.key);
+    }
+    assert_eq!(ideal.specular, SpecularForm::HalfVector);
+    assert_eq!((ideal.samples, ideal.light), (Samples::TwoFiftySix, LightAt::Sample));
+    assert_eq!(chosen.reference(), Settings { samples: Samples::One, ..ideal });
 }
 
 #[test]
-fn the_references_depend_on_no_choice_but_models() {
+fn the_ideal_depends_on_no_choice_but_models_and_the_reference_on_the_samples_too() {
     let one = Settings::default();
     for axis in AXES.iter().filter(|axis| axis.kind != AxisKind::Model) {
         for choice in axis.choices {
             let chosen = choice.of(&one);
-            assert_eq!(chosen.reference(), one.reference(), "{} {}", axis.key, choice.word);
-            assert_eq!(chosen.sampled(), one, "{} {}", axis.key, choice.word);
+            assert_eq!(chosen.ideal(), one.ideal(), "{} {}", axis.key, choice.word);
+            let reference = Settings { samples: chosen.samples, ..one.reference() };
+            assert_eq!(chosen.reference(), reference, "{} {}", axis.key, choice.word);
         }
     }
-    assert_eq!((one.reference().samples, one.reference().light), (Samples::One, LightAt::Pixel));
     let sample = Axis::named("shading").unwrap().choice("sample").unwrap();
     assert_eq!((sample.among)(&one), Err("a pixel has one sample"));
     assert_eq!((sample.among)(&Settings { samples: Samples::Four, ..one }), Ok(()));
-    let half = Settings { specular: SpecularForm::HalfVector, ..one };
-    assert_eq!(half.sampled(), half);
+}
+
+#[test]
+fn one_axis_alone_is_judged_against_its_own_most_exact_choice() {
+    let chosen = Settings { light: LightAt::Face, filter: Filter::Nearest, ..Settings::default() };
+    let shading = chosen.exact_in(Axis::named("shading").unwrap());
+    assert_eq!(shading, Settings { light: LightAt::Pixel, ..chosen });
+    let half = Settings { specular: SpecularForm::HalfVector, ..chosen };
+    assert_eq!(half.exact_in(Axis::named("specular").unwrap()), chosen);
 }
 
 #[test]
 fn presets_have_the_settings_that_their_names_promise() {
     let of = |word: &str| AccuracyPreset::named(word).unwrap().of(&Settings::default());
-    let draft = Settings { light: LightAt::Vertex, filter: Filter::Nearest, ..of("default") };
+    let draft = Settings { resolution: Resolution::Half, ..of("default") };
     assert_eq!(of("draft"), draft);
     assert_eq!(of("default"), Settings::default());
-    let exact = Settings {
-        arithmetic: Arithmetic::F64,
-        power: SpecularPower::Library,
-        ..Settings::default()
-    };
-    assert_eq!(of("exact"), exact);
+    // Exact is the reference itself, also when it is refined.
+    let exact = of("exact");
+    assert_eq!(exact, Settings::default().reference());
+    let refined = exact.refined();
+    assert_eq!(refined, refined.reference());
+    assert_eq!(of("ideal"), Settings::default().ideal());
+    assert_eq!(of("ideal").refined(), of("ideal"));
+    let dial: Vec<&str> = AccuracyPreset::dial().iter().map(|preset| preset.word).collect();
+    assert_eq!(dial, ["draft", "default", "exact", "ideal"]);
     assert_eq!(draft.in_words(), "Draft");
     let other = Settings { specular: SpecularForm::HalfVector, ..of("exact") };
     assert_eq!(other.in_words(), "Exact, highlights by N.H");
-    let other = Settings { light: LightAt::Face, ..other };
-    assert_eq!(
-        other.in_words(),
-        "flat shading, light in 64 bits, specular power by libm, highlights by N.H"
-    );
+    let other = Settings { light: LightAt::Face, ..draft };
+    assert_eq!(other.in_words(), "flat shading, half resolution");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The axis of transparency.
 
 use super::sense::{if_any, is_transparent};
-use super::{Axis, AxisKind, Choice, Lesson};
+use super::{Axis, AxisKind, Choice};
 use crate::accuracy::Transparency;
 
 pub(super) const TRANSPARENCY: Axis = Axis {
@@ -27,15 +27,4 @@ pub(super) const TRANSPARENCY: Axis = Axis {
             "none"),
     ],
     sense: |scene, view| if_any(scene, view, is_transparent, "no visible surface is transparent"),
-    lesson: Lesson {
-        title: "Why glass comes out in the wrong order",
-        what: "Surfaces behind a transparent surface have to be drawn before it. The order \
-            differs from pixel to pixel, and two panes that cut through each other change places.",
-        coarse: "Object by object, a pane is entirely in front of or behind another. A weighted \
-            mean ignores the order. A threshold cannot draw glass.",
-        shows: "On two panes that cut through each other in front of a tiled wall: by object, the \
-            line where they meet is missing.",
-        scene: "panes",
-        choice: Some("objects"),
-    },
 };
