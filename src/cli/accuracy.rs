@@ -24,11 +24,10 @@ impl Accuracy {
     }
 
     /// Returns the settings for a picture file: refined as in an idle window, unless the samples
-    /// per pixel or a quick preset are chosen.
+    /// per pixel are chosen.
     pub(crate) fn of_file(&self, settings: &Settings) -> Settings {
         let settings = self.of(settings);
-        let is_quick = self.preset.is_some_and(|preset| preset.word == "draft");
-        if is_quick || self.names_samples { settings } else { settings.refined() }
+        if self.names_samples { settings } else { settings.refined() }
     }
 }
 

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use marraztu::plots::{self, Look};
-use marraztu_core::accuracy::{AXES, Axis, Settings};
+use marraztu::plots::{self, Look, PagePicture};
+use marraztu_core::accuracy::{AXES, AccuracyPreset, Axis, Settings};
 use marraztu_core::base::image::Size;
-use marraztu_io as io;
+use marraztu_io::{self as io, PictureFormat};
 use marraztu_lab::attribution::attribute;
 use marraztu_lab::candidates::{Thoroughness, all_axes};
 use marraztu_lab::error::{Measure, Region, amplified};
@@ -49,6 +49,10 @@ pub(crate) struct Lab {
     /// The folder for tables, plots and pictures; created if it does not exist
     #[arg(short, long, value_name = "FOLDER")]
     out: Option<PathBuf>,
+    /// Also write one self-contained page: the verdict, the plots, a slider between pictures, the
+    /// table, the machine and the command
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["suite", "pixel"])]
+    html: Option<PathBuf>,
     /// Width and height in pixels; one number for a square [default: 800x800; suite: 1280x720]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<Size>,
@@ -112,12 +116,18 @@ pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
         let sources = stage.sources(files);
         RESULTS.iter().try_for_each(|name| sources.spare(&folder.join(name)))?;
     }
+    if let Some(path) = &arguments.html {
+        stage.sources(files).spare(path)?;
+    }
     let mut studio = Studio::new(stage.shot(size.unwrap_or(Size::new(800, 800))));
     if let Some(Pixel(at)) = arguments.pixel {
         return explain_pixel(&mut studio, &settings, at);
     }
     let report = measured(arguments, &mut studio, settings)?;
     print(&report::text(&report))?;
+    if let Some(path) = &arguments.html {
+        write_page(path, &report, &mut studio, &settings)?;
+    }
     match &arguments.out {
         Some(folder) => save(folder, &report, &mut studio, &settings),
         None => Ok(()),
@@ -253,7 +263,7 @@ const RESULTS: [&str; 11] = [
     "plots-light.png",
     "plots-dark.svg",
     "plots-dark.png",
-    "exact.png",
+    "ideal.png",
     "error-x1.png",
     "error-x16.png",
     "error-x256.png",
@@ -281,16 +291,50 @@ fn save(
         write(&format!("plots-{word}.svg"), plots::svg(report, look)?)?;
         io::save_picture(&place(&format!("plots-{word}.png")), &plots::png(report, look)?)?;
     }
-    // Error pictures show the difference to the exact picture, amplified to be visible.
-    studio.draw(&settings.reference());
-    let exact = studio.picture().clone();
-    io::save_picture(&place("exact.png"), &exact)?;
+    // Error pictures show the difference to the ideal, amplified to be visible.
+    studio.draw(&settings.ideal());
+    let ideal = studio.picture().clone();
+    io::save_picture(&place("ideal.png"), &ideal)?;
     studio.draw(settings);
     for factor in [1, 16, 256] {
-        let error = amplified(studio.picture(), &exact, factor);
+        let error = amplified(studio.picture(), &ideal, factor);
         io::save_picture(&place(&format!("error-x{factor}.png")), &error)?;
     }
     Ok(())
+}
+
+/// Writes the measurement as one page, with a picture of each preset.
+fn write_page(
+    path: &Path,
+    report: &Report,
+    studio: &mut Studio,
+    settings: &Settings,
+) -> Result<(), Failure> {
+    let png = PictureFormat::of(Path::new("page.png")).map_err(Failure::Absent)?;
+    let mut pictures = Vec::new();
+    for preset in AccuracyPreset::dial() {
+        let settings = preset.of(settings);
+        let point = report.findings.points.iter().find(|point| point.settings == settings);
+        let figures = point.map_or_else(String::new, |point| {
+            let error = point.ideal.map_or(0.0, |error| error.whole.rmse);
+            format!("{} ms, error {}", report::brief(point.ms), report::brief(error))
+        });
+        studio.draw(&settings);
+        let png = png.encode(studio.picture()).map_err(Failure::Absent)?;
+        pictures.push(PagePicture { name: preset.label.to_owned(), figures, png });
+    }
+    let findings = &report.findings;
+    let machine = format!(
+        "Marraztu {} on {} {}, {} threads, {}",
+        env!("CARGO_PKG_VERSION"),
+        std::env::consts::OS,
+        std::env::consts::ARCH,
+        findings.threads,
+        findings.instructions
+    );
+    let page = plots::report_page(report, &pictures, &machine)?;
+    let fail = |error| Failure::Write(path.to_owned(), error);
+    std::fs::write(path, page).map_err(fail)
 }
 
 fn axis_words() -> PossibleValuesParser {

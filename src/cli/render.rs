@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::edit::framing::Sphere;
 use marraztu_core::edit::{framing, items, lighting};
@@ -10,6 +10,8 @@ use marraztu_core::scene::{
     Camera, CameraId, Command, Fill, Item, ItemId, Lens, Object, ObjectId, Pose, Tracked,
 };
 use marraztu_io::{self as io, Progress};
+use marraztu_lab::dial::{Dial, Figures, Step};
+use marraztu_lab::report::brief;
 use marraztu_render::accel::Accelerated as _;
 use marraztu_render::{Renderer, Unseen, fitted_exposure, plan_frame, unseen, without_ground};
 
@@ -50,9 +52,32 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     drop(bar);
     tell_unseen(&mut renderer, &shot);
     written(arguments, &target, renderer.picture())?;
+    if arguments.report {
+        tell_cost(&mut renderer, &shot);
+    }
     // The process ends here, so freeing a million vertices would only waste time.
     std::mem::forget((stage, plan, renderer));
     Ok(())
+}
+
+/// Notes the time of a picture and its error against the ideal.
+fn tell_cost(renderer: &mut Renderer, shot: &Shot) {
+    // The difference from another picture shows where the details are.
+    let presets = AccuracyPreset::dial().iter().map(|preset| preset.of(&shot.settings));
+    let other = presets.into_iter().find(|settings| *settings != shot.settings);
+    let all: Vec<Settings> = other.into_iter().chain([shot.settings]).collect();
+    let mut dial = Dial::new(shot, &all);
+    // It is always wanted, so it is never cancelled.
+    while dial.step(renderer, &|| true) != Ok(Step::Done) {}
+    let figures = dial.figures();
+    let found = figures.iter().find(|figures| figures.settings == shot.settings);
+    let Some(Figures { ms, error: Some(error), .. }) = found else { return };
+    note(&format_args!(
+        "{} ms a picture with {} threads; error {} of 255 against the ideal (RMSE)",
+        brief(*ms),
+        rayon::current_num_threads(),
+        brief(*error)
+    ));
 }
 
 /// Writes the picture, and prints its path if the user did not choose it.

@@ -31,11 +31,11 @@ fn basis(reports: &[Report]) -> String {
     let threads = if findings.threads == 1 { "thread" } else { "threads" };
     format!(
         "Measured at {width} x {height} on {} {threads} with {}. Times are relative to the \
-            default, as medians of pairs drawn in turn. The uncertainty of a time is the interval \
-            of its median (95%, by a sign test), or the noise of the default against itself if \
-            that is larger; two times differ only if their intervals do not overlap. Errors are \
-            over all pixels, in steps of 255, relative to every axis at its most exact; errors of \
-            samples per pixel are relative to 256 samples, each lit.",
+            default, drawn in turn: a low quantile of each, which other programs hardly disturb. \
+            The uncertainty of a time is its interval (95%, by a bootstrap), or the noise of the \
+            default against itself if that is larger; two times differ only if their intervals do \
+            not overlap. Errors are over all pixels, in steps of 255, relative to the default with \
+            this axis alone at its most exact.",
         findings.threads, findings.instructions
     )
 }
@@ -64,8 +64,8 @@ pub fn page_markdown(reports: &[Report], picture: &dyn Fn(&str) -> String) -> St
     text
 }
 
-const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem}\
-    svg{max-width:100%;height:auto}\
+pub(super) const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem auto;\
+    padding:0 1rem}svg{max-width:100%;height:auto}\
     table{border-collapse:collapse;font-size:.85rem}td,th{padding:.2rem .6rem;text-align:right;\
     border-bottom:1px solid #8884}td:first-child,th:first-child{text-align:left}\
     .dark{display:none}@media(prefers-color-scheme:dark){body{background:#18181c;color:#e6e6ea}\
@@ -119,6 +119,6 @@ fn html_table(markdown: &str) -> String {
     text + "</table>\n"
 }
 
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

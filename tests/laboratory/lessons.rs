@@ -4,19 +4,19 @@
 //! Catches: a scene in which the choice makes no difference, and a reference with the same fault as
 //! the picture.
 
-use marraztu_core::accuracy::{AXES, Settings, Shot};
+use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::Size;
 use marraztu_io as io;
 use marraztu_lab::picture_source::{PictureSource as _, Reference, Studio};
 
 #[test]
 fn every_lesson_opens_on_an_error_that_can_be_seen() {
-    for axis in AXES {
-        let opened = io::lesson_scene(axis.lesson.scene).unwrap();
-        let settings = axis.lesson_choice().of(&Settings::default());
+    for lesson in io::lessons() {
+        let (axis, settings) = (lesson.axis(), lesson.settings());
+        let opened = io::lesson_scene(&lesson.scene).unwrap();
         let size = Size::new(480, 300);
         let mut studio = Studio::new(Shot::new(&opened.scene, &opened.view, &settings, size));
-        let exact = studio.reference(&settings, Reference::of(axis));
+        let exact = studio.rendering(&Reference::Alone(axis).of(&settings));
         let error = studio.rendering(&settings).error(&exact);
         // Faint lights and rounding promise at most one step. Their lessons show the error
         // amplified, so it has to affect many bytes.

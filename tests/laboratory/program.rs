@@ -43,7 +43,7 @@ fn a_sweep_prints_its_table_and_leaves_everything_in_its_folder() {
         "saves more than the noise",
         "are noise",
         "combinations",
-        "not measured: Texture filter: no visible surface has a texture",
+        "Not measured here: ",
         "the fastest with RMSE in byte steps at most 255: ",
         "the most exact within",
         "equal results",
@@ -62,9 +62,9 @@ fn a_sweep_prints_its_table_and_leaves_everything_in_its_folder() {
         assert!(read(&format!("plots-{look}.svg")).contains("<svg"));
         assert!(io::load_picture(&found.join(format!("plots-{look}.png"))).is_ok());
     }
-    let [exact, x1, x256] = ["exact", "error-x1", "error-x256"]
+    let [ideal, x1, x256] = ["ideal", "error-x1", "error-x256"]
         .map(|name| io::load_picture(&found.join(format!("{name}.png"))).unwrap());
-    assert_eq!((exact.size().width, exact.size().height), (48, 36));
+    assert_eq!((ideal.size().width, ideal.size().height), (48, 36));
     let sum = |picture: &marraztu_core::base::image::Picture| -> u64 {
         picture.pixels().iter().flat_map(|p| &p[..3]).map(|byte| u64::from(*byte)).sum()
     };
@@ -89,7 +89,8 @@ fn a_pixel_is_explained_and_one_outside_is_refused() {
     let (out, _) = lab(0, folder.path(), &[&arguments[..], &["--pixel", "0,0"]].concat());
     assert!(out.contains("shows  the background") && out.contains("0 byte steps off"), "{out}");
     assert!(out.contains("shading pixel instead of face"), "{out}");
-    assert!(out.contains("filter trilinear instead of nearest"), "{out}");
+    assert!(out.contains("resolution full instead of half"), "{out}");
+    assert!(out.contains("filter trilinear instead of bilinear"), "{out}");
     let (_, err) = lab(1, folder.path(), &[&arguments[..], &["--pixel", "64,0"]].concat());
     assert!(err.contains("there is no 64,0"), "{err}");
 }
@@ -103,9 +104,33 @@ fn single_axes_override_a_preset() {
         io::load_picture(&folder.path().join("p.png")).unwrap()
     };
     let draft = drawn(&["--preset", "draft"]);
-    assert!(draft == drawn(&["--shading", "vertex", "--filter", "nearest"]));
+    assert!(draft == drawn(&["--resolution", "half"]));
     assert!(draft != drawn(&[]));
-    assert!(drawn(&["--preset", "draft", "--shading", "pixel"]) == drawn(&[]));
+    assert!(drawn(&["--preset", "draft", "--resolution", "full"]) == drawn(&[]));
+    let fine = |arguments: &[&str]| {
+        let fixed = ["render", "--size", "64x64", "--out", "p.png"];
+        lab(0, folder.path(), &[&fixed[..], arguments].concat());
+        io::load_picture(&folder.path().join("p.png")).unwrap()
+    };
+    let ideal = fine(&["--preset", "ideal"]);
+    assert!(ideal == fine(&["--preset", "exact", "--samples", "256", "--threads", "1"]));
+    assert!(ideal != fine(&["--preset", "exact"]));
+}
+
+#[test]
+fn a_report_of_a_picture_has_its_time_and_its_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = |preset: &str| {
+        let arguments =
+            ["render", "--size", "96x64", "--out", "p.png", "--report", "--preset", preset];
+        let (_, err) = lab(0, folder.path(), &arguments);
+        let line = err.lines().find(|line| line.contains("against the ideal")).unwrap().to_owned();
+        let error = line.split("error ").nth(1).unwrap().split(' ').next().unwrap();
+        assert!(line.contains(" ms a picture with "), "{line}");
+        error.parse::<f64>().unwrap()
+    };
+    let errors = ["draft", "default", "ideal"].map(render);
+    assert!(errors[0] > errors[1] && errors[1] > 0.0 && errors[2] == 0.0, "{errors:?}");
 }
 
 #[test]

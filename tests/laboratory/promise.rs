@@ -1,20 +1,22 @@
-//! The presets keep their promises, on the first scene and on ten random ones.
+//! The presets keep their promises, on the first scene, the examples and ten random scenes.
 //!
-//! Exact is compared with the laboratory's reference, Default with Exact. The reference uses
-//! mipmaps, which no preset promises; here it filters textures as the presets do.
+//! Draft draws a quarter of the pixels, light of Default is as exact as in f64, Exact is the
+//! reference with as many samples, and Ideal has no error. How long they take is measured by
+//! `benches` and by `tools/evidence`, not here.
 //!
 //! Catches: a preset with too coarse a choice, f32 light with larger errors than promised, a
-//! reference that differs from the presets.
+//! reference that differs from the presets, a draft that draws every pixel.
 
 use marraztu_core::accuracy::Shot;
-use marraztu_core::accuracy::{AccuracyPreset, Filter, Settings};
+use marraztu_core::accuracy::{AccuracyPreset, Arithmetic, Samples, Settings, SpecularPower};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{Command, Item, MaterialChoice, Scene, View};
 use marraztu_io as io;
 use marraztu_lab::error::Error;
 use marraztu_lab::picture_source::{PictureSource as _, Studio};
-use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
+use marraztu_render::screen::coverage::PixelBox;
+use marraztu_render::{PathPixels, Renderer};
 
 use crate::random_scenes::random_scene;
 
@@ -29,8 +31,10 @@ fn preset(word: &str) -> Settings {
     AccuracyPreset::named(word).unwrap().of(&Settings::default())
 }
 
-fn reference() -> Settings {
-    Settings { filter: Filter::Bilinear, ..preset("exact").reference() }
+/// The default with exact light.
+fn exact_light() -> Settings {
+    let (arithmetic, power) = (Arithmetic::F64, SpecularPower::Library);
+    Settings { arithmetic, power, ..Settings::default() }
 }
 
 fn studios() -> Vec<(String, Studio)> {
@@ -40,7 +44,13 @@ fn studios() -> Vec<(String, Studio)> {
         let it = random_scene(seed);
         (format!("scene {seed}"), Studio::new(Shot::new(&it.scene, &it.view, &it.settings, SIZE)))
     });
-    std::iter::once(("the first scene".to_owned(), first)).chain(random).collect()
+    let example = |example: &io::Example| {
+        let opened = io::open(example.path.as_ref(), &io::Progress::new()).unwrap();
+        let shot = Shot::new(&opened.scene, &opened.view, &Settings::default(), SIZE);
+        (example.title.to_owned(), Studio::new(shot))
+    };
+    let first = std::iter::once(("the first scene".to_owned(), first));
+    first.chain(io::EXAMPLES.iter().map(example)).chain(random).collect()
 }
 
 /// Compares pictures with two settings: the error per scene, and the share of bytes that differ.
@@ -58,21 +68,68 @@ fn apart(ours: &Settings, exact: &Settings) -> (Vec<(String, Error)>, f64) {
 }
 
 #[test]
-fn exact_is_a_byte_step_off_the_reference_at_most_and_hardly_ever_that() {
-    let (errors, differing) = apart(&preset("exact"), &reference());
+fn exact_is_the_reference_with_as_many_samples_on_every_pixel() {
+    for samples in [Samples::One, Samples::Four] {
+        let exact = preset("exact").refined_to(samples);
+        let reference = Settings { samples, ..Settings::default() }.reference();
+        let (errors, _) = apart(&exact, &reference);
+        for (name, error) in &errors {
+            assert_eq!(error.whole.largest, 0, "{name}: {error:?}");
+        }
+    }
+}
+
+#[test]
+fn light_of_the_default_is_a_byte_step_off_at_most_and_hardly_ever_that() {
+    let (errors, differing) = apart(&preset("default"), &exact_light());
     for (name, error) in &errors {
-        assert!(error.inside.largest <= 1, "{name}: {error:?}");
+        assert!(error.inside.largest <= 1 && error.coverage == 0, "{name}: {error:?}");
     }
     assert!(differing <= 0.0005, "{differing}");
 }
 
 #[test]
-fn the_default_is_a_byte_step_off_exact_at_most_and_hardly_ever_that() {
-    let (errors, differing) = apart(&preset("default"), &preset("exact"));
-    for (name, error) in &errors {
-        assert!(error.inside.largest <= 1 && error.coverage == 0, "{name}: {error:?}");
+fn the_draft_colours_a_quarter_of_the_pixels() {
+    for (name, studio) in studios() {
+        let pixels = |settings: &Settings| {
+            let mut renderer = Renderer::default();
+            let picture = renderer.render(&plan_frame(&studio.shot().with(*settings))).size();
+            assert_eq!(picture, SIZE);
+            let PathPixels { filled, corners, lit, alone, joined, tiny, faces, early } =
+                renderer.path_pixels();
+            filled + corners + lit + alone + joined + tiny + faces + early
+        };
+        let (draft, default) = (pixels(&preset("draft")), pixels(&preset("default")));
+        // Lines are as wide in drawn pixels, so they have half of their pixels.
+        assert!(draft * 3 <= default + 300, "{name}: {draft} of {default}");
     }
-    assert!(differing <= 0.0005, "{differing}");
+}
+
+#[test]
+fn the_ideal_of_a_window_is_that_of_the_whole_picture_and_nothing_is_more_exact() {
+    let (scene, view) = io::default_scene();
+    let size = Size::new(150, 90);
+    let shot = Shot::new(&scene, &view, &Settings::default(), size);
+    let plan = plan_frame(&shot.with(preset("ideal")));
+    let mut renderer = Renderer::default();
+    let whole = renderer.render(&plan).clone();
+    let window = PixelBox { left: 20, top: 30, right: 75, bottom: 64 };
+    let part = Renderer::default().render_window(&plan, window, &|| true).unwrap();
+    for y in 30..64 {
+        for x in 20..75 {
+            assert_eq!(part.pixel(x - 20, y - 30), whole.pixel(x, y), "{x}, {y}");
+        }
+    }
+    // More samples come closer to it.
+    let mut studio = Studio::new(shot);
+    let ideal = studio.rendering(&preset("ideal"));
+    let error = |studio: &mut Studio, samples| {
+        let settings = preset("exact").refined_to(samples);
+        studio.rendering(&settings).error(&ideal).whole.rmse
+    };
+    let errors = [Samples::One, Samples::Four, Samples::Sixteen, Samples::SixtyFour]
+        .map(|samples| error(&mut studio, samples));
+    assert!(errors.windows(2).all(|two| two[1] < 0.7 * two[0]), "{errors:?}");
 }
 
 /// The resolution of light before rounding, in parts of a byte step.
@@ -119,7 +176,7 @@ fn light_of_the_default_is_within_a_quarter_of_a_byte_step_before_it_is_rounded(
     let (scene, view) = io::default_scene();
     let view = View { marks: false, ..view };
     let [ours, exact] =
-        ["default", "exact"].map(|word| before_rounding(&scene, &view, &preset(word)));
+        [preset("default"), exact_light()].map(|of| before_rounding(&scene, &view, &of));
     let turned = exact.iter().filter(|light| (0.1..254.0).contains(*light)).count();
     // Both values have an uncertainty of half a part.
     let off = ours.iter().zip(&exact).map(|(a, b)| (a - b).abs() - 1.0 / f64::from(PARTS));

@@ -49,7 +49,7 @@ fn a_tiny_suite_gives_a_page_with_a_section_for_every_axis() {
         let findings = &reports[place].findings;
         let axis = Axis::named(key).unwrap();
         let row = findings.rows_of(axis).find(|row| row.name == label).unwrap();
-        findings.error_of(row).whole.rmse
+        row.error.whole.rmse
     };
     assert!(rmse("highlights", "shading", "Flat") > 2.0 * rmse("highlights", "shading", "Phong"));
     assert!(rmse("edges", "samples", "1") > 1.5 * rmse("edges", "samples", "4"));

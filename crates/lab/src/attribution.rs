@@ -56,17 +56,11 @@ pub fn attribute(
         Some(([r, g, b], source.primitives()[at[1] * size.width + at[0]]))
     };
     // A pixel with several samples is judged against the same number, each lit.
-    let reference = Settings { samples: settings.samples, ..settings.reference() };
-    let lit = AXES.iter().filter(|axis| axis.kind == AxisKind::Scored);
-    let reference = lit.fold(reference, |now, axis| axis.most_exact(&now).of(&now));
-    let (exact, exact_primitive) = look(&reference)?;
+    let (exact, exact_primitive) = look(&settings.reference())?;
     let (ours, primitive) = look(settings)?;
     // Make one axis exact at a time, starting from the judged settings.
     let mut shares = Vec::new();
-    let judged = |axis: &&Axis| match axis.kind {
-        AxisKind::Scored => true,
-        AxisKind::ScoredApart | AxisKind::Model => false,
-    };
+    let judged = |axis: &&Axis| axis.kind == AxisKind::Scored && axis.key != "samples";
     for axis in AXES.iter().filter(judged) {
         let (chosen, best) = (axis.chosen(settings), axis.most_exact(settings));
         if chosen.word == best.word {

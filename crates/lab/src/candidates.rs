@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::pairs::Limits;
-use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Settings};
+use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Samples, Settings};
 use marraztu_core::scene::{Scene, View};
 
 /// The thoroughness of a measurement.
@@ -18,6 +18,8 @@ pub struct Thoroughness {
     pub combinations: usize,
     /// The time after which no new combination is started.
     pub time: Duration,
+    /// Whether presets are measured, and everything is compared with the ideal.
+    pub presets: bool,
 }
 
 impl Thoroughness {
@@ -27,6 +29,15 @@ impl Thoroughness {
         limits: Limits { pairs: 11, least: 7, time: Duration::from_millis(300) },
         combinations: 12,
         time: Duration::from_secs(20),
+        presets: true,
+    };
+    /// One axis in a second or two: only its choices.
+    pub const AXIS: Self = Self {
+        word: "axis",
+        limits: Limits { pairs: 15, least: 5, time: Duration::from_millis(250) },
+        combinations: 0,
+        time: Duration::from_secs(10),
+        presets: false,
     };
     /// At most 4 minutes for the first scene on two cores.
     pub const WHOLE: Self = Self {
@@ -34,6 +45,7 @@ impl Thoroughness {
         limits: Limits { pairs: 31, least: 7, time: Duration::from_secs(3) },
         combinations: 48,
         time: Duration::from_secs(200),
+        presets: true,
     };
 }
 
@@ -87,8 +99,9 @@ pub fn candidates(
     view: &View,
     current: &Settings,
     axes: &[&'static Axis],
-    most_combinations: usize,
+    thoroughness: &Thoroughness,
 ) -> Candidates {
+    let most_combinations = thoroughness.combinations;
     let base = Settings::default().modelled_as(current);
     let mut found = Candidates::default();
     let mut add = |group, name: String, settings| {
@@ -106,10 +119,12 @@ pub fn candidates(
             add(Group::Axis(axis.key), choice.label.to_owned(), choice.of(&base));
         }
     }
-    for preset in ACCURACY_PRESETS.iter().filter(|preset| preset.of(current) != base) {
-        add(Group::Preset, preset.label.to_owned(), preset.of(current));
+    if thoroughness.presets {
+        for preset in ACCURACY_PRESETS.iter().filter(|preset| preset.of(current) != base) {
+            add(Group::Preset, preset.label.to_owned(), preset.of(current));
+        }
+        add(Group::Current, current.in_words(), *current);
     }
-    add(Group::Current, current.in_words(), *current);
     let (combinations, count) = combinations(&base, &sensible, (scene, view), most_combinations);
     for settings in combinations {
         add(Group::Combination, settings.in_words(), settings);
@@ -127,6 +142,10 @@ pub fn candidates(
             }
         }
     }
+    if sensible.iter().any(|axis| axis.choices.iter().any(|choice| is_ideal(choice, &base))) {
+        let what = "256 samples per pixel".to_owned();
+        found.left_out.push(LeftOut { what, reason: "the ideal has as many".to_owned() });
+    }
     if count > most_combinations {
         found.left_out.push(LeftOut {
             what: format!("{} of {count} combinations", count - most_combinations),
@@ -143,7 +162,8 @@ fn offered<'a>(
     (scene, view): (&'a Scene, &'a View),
     settings: &'a Settings,
 ) -> impl Iterator<Item = &'static Choice> + 'a {
-    axis.choices.iter().filter(|choice| choice.is_of_its_own(scene, view, settings).is_ok())
+    let is_own = |choice: &&Choice| choice.is_of_its_own(scene, view, settings).is_ok();
+    axis.choices.iter().filter(is_own).filter(|choice| !is_ideal(choice, settings))
 }
 
 /// A choice that is combined with others, and the index of its axis.
@@ -194,17 +214,21 @@ fn combinations(
     (chosen, count)
 }
 
+/// Returns whether a choice has the samples of the ideal, which is drawn only once.
+fn is_ideal(choice: &Choice, base: &Settings) -> bool {
+    choice.of(base).samples == Samples::TwoFiftySix
+}
+
 /// Returns whether a choice is combined with others. Excluded are choices without an effect,
-/// models, historical choices, and the number of samples that all others are judged against.
+/// models, historical choices, and the number of samples of the ideal.
 fn is_combined(
     axis: &Axis,
     choice: &Choice,
     base: &Settings,
     (scene, view): (&Scene, &View),
 ) -> bool {
-    let judges = axis.kind == AxisKind::ScoredApart && choice.word == axis.most_exact(base).word;
     axis.kind != AxisKind::Model
-        && !judges
+        && !is_ideal(choice, base)
         && !choice.is(base)
         && !HISTORICAL.contains(&(axis.key, choice.word))
         && (choice.sense)(scene, view).is_ok()
@@ -267,7 +291,8 @@ mod tests {
     /// Returns up to `most` combinations in the first scene.
     fn combined(most: usize) -> Vec<Settings> {
         let (scene, view) = marraztu_io::default_scene();
-        let found = candidates(&scene, &view, &Settings::default(), &all_axes(), most);
+        let thoroughness = Thoroughness { combinations: most, ..Thoroughness::QUICK };
+        let found = candidates(&scene, &view, &Settings::default(), &all_axes(), &thoroughness);
         let all = found.all.into_iter().filter(|it| it.group == Group::Combination);
         all.map(|it| it.settings).collect()
     }
@@ -325,7 +350,7 @@ mod tests {
         for (i, settings) in all.iter().enumerate() {
             assert!(words(settings).len() >= 2, "{}", settings.in_words());
             assert!(!all[..i].contains(settings), "{}", settings.in_words());
-            let one = settings.samples == marraztu_core::accuracy::Samples::One;
+            let one = settings.samples == Samples::One;
             assert!(!one || settings.light != marraztu_core::accuracy::LightAt::Sample);
         }
     }

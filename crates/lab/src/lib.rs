@@ -15,6 +15,7 @@
 pub mod attribution;
 pub mod candidates;
 pub mod cost;
+pub mod dial;
 pub mod error;
 pub mod flip;
 pub mod front;

@@ -1,39 +1,48 @@
 //! Draws the pictures that the laboratory times and judges.
 
-use rayon::prelude::*;
-
 use super::error::Rendering;
 use super::hash::fnv1a;
 use marraztu_core::accuracy::Shot;
-use marraztu_core::accuracy::{Axis, AxisKind, Samples, Settings};
+use marraztu_core::accuracy::{Axis, Samples, Settings};
 use marraztu_core::base::image::Picture;
 use marraztu_io::Progress;
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
 
 /// The reference that pictures are judged against.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub enum Reference {
-    /// All axes at their most exact, one sample per pixel, with the chosen models.
+    /// The ideal: 256 samples per pixel, each lit, every axis at its most exact, with the chosen
+    /// models. It answers how far a picture is from the truth.
     #[default]
-    Exact,
-    /// 256 samples per pixel, each lit.
-    Sampled,
-    /// Like [`Self::Exact`], with the default models.
-    DefaultModel,
+    Ideal,
+    /// The same settings, with this axis alone at its most exact, or at the default of a model. It
+    /// answers what one choice changes, however small.
+    Alone(&'static Axis),
 }
 
 impl Reference {
-    /// Returns the reference that reveals the effect of an axis.
+    /// The settings of the reference of a picture with these settings.
     #[must_use]
-    pub const fn of(axis: &Axis) -> Self {
-        match axis.kind {
-            AxisKind::Scored => Self::Exact,
-            AxisKind::ScoredApart => Self::Sampled,
-            AxisKind::Model => Self::DefaultModel,
+    pub fn of(self, settings: &Settings) -> Settings {
+        match self {
+            Self::Ideal => settings.ideal(),
+            Self::Alone(axis) => settings.exact_in(axis),
         }
     }
 }
+
+impl PartialEq for Reference {
+    fn eq(&self, other: &Self) -> bool {
+        let key = |reference: &Self| match reference {
+            Self::Ideal => None,
+            Self::Alone(axis) => Some(axis.key),
+        };
+        key(self) == key(other)
+    }
+}
+
+impl Eq for Reference {}
 
 /// Draws one scene, from one view and in one size, with any settings.
 pub trait PictureSource {
@@ -44,40 +53,18 @@ pub trait PictureSource {
     /// Returns the primitive at each pixel of the last picture.
     fn primitives(&mut self) -> Vec<u32>;
 
-    /// Draws the mean of 256 samples per pixel, each drawn as if it were the pixel's centre.
-    fn draw_sampled(&mut self, settings: &Settings) -> Picture;
-
-    /// Draws the reference for samples per pixel: [`Settings::sampled`] with 256 samples, each lit.
-    fn sampled(&mut self, settings: &Settings) -> Rendering {
-        let picture = self.draw_sampled(&settings.sampled());
-        let primitives = vec![0; picture.pixels().len()];
-        Rendering::new(picture, primitives).mixed()
-    }
-
-    /// Draws the reference for these settings.
-    fn reference(&mut self, settings: &Settings, reference: Reference) -> Rendering {
-        match reference {
-            Reference::Exact => self.rendering(&settings.reference()),
-            Reference::Sampled => self.sampled(settings),
-            Reference::DefaultModel => self.rendering(&Settings::default().reference()),
-        }
-    }
-
     /// Draws the picture for these settings, to be judged.
     fn rendering(&mut self, settings: &Settings) -> Rendering {
         self.draw(settings);
+        self.last_rendering(settings)
+    }
+
+    /// Returns the last picture, which has these settings, to be judged.
+    fn last_rendering(&mut self, settings: &Settings) -> Rendering {
         let primitives = self.primitives();
         let rendering = Rendering::new(self.picture().clone(), primitives);
         if settings.samples == Samples::One { rendering } else { rendering.mixed() }
     }
-}
-
-/// The samples per pixel of [`Reference::Sampled`].
-const SAMPLED: u16 = 256;
-
-/// Returns the sample positions, in 1/256 pixel from the centre: the centres of 16 x 16 squares.
-fn sample_shifts() -> impl Iterator<Item = [i32; 2]> {
-    (0..256).map(|i| [i % 16, i / 16].map(|i| 16 * i + 8 - 128))
 }
 
 /// A renderer with a scene.
@@ -128,27 +115,6 @@ impl PictureSource for Studio {
         let plan = plan_frame(&self.shot.with(*settings));
         // A cancelled picture is not used.
         let _ = self.renderer.render_while(&plan, &|| !self.progress.is_cancelled());
-    }
-
-    fn draw_sampled(&mut self, settings: &Settings) -> Picture {
-        // One plan serves all samples: only the subpixel shift changes.
-        let plan = plan_frame(&self.shot.with(Settings { samples: Samples::One, ..*settings }));
-        let mut sums = vec![[0_u16; 4]; self.shot.size.area()];
-        for shift in sample_shifts() {
-            let wanted = || !self.progress.is_cancelled();
-            if self.renderer.render_while(&plan.seen_from(shift), &wanted).is_err() {
-                break;
-            }
-            sums.par_iter_mut().zip(self.renderer.picture().pixels()).for_each(|(sum, pixel)| {
-                for (sum, byte) in sum.iter_mut().zip(pixel) {
-                    *sum += u16::from(*byte);
-                }
-            });
-        }
-        // The sum of 256 bytes fits into 16 bits, even with the half for rounding.
-        let mean = |sum: u16| ((sum + SAMPLED / 2) / SAMPLED) as u8;
-        let pixels = sums.into_iter().map(|sum| sum.map(mean)).collect();
-        Picture::from_pixels(self.shot.size, pixels).expect("a sum for each pixel")
     }
 
     fn picture(&self) -> &Picture {

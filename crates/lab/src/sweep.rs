@@ -1,10 +1,14 @@
 //! Measures the cost of accuracy: every choice of every axis against the default.
 //!
-//! Two references are drawn first, whatever the current settings: the picture with every axis at
-//! its most exact choice, and the mean of 256 samples per pixel, each lit. Most choices are judged
-//! against the first, samples per pixel against the second. The default is measured against itself.
-//! The spread of this control is the noise floor: smaller differences are ignored. Every candidate
-//! is then measured against the default in the same process, in alternation.
+//! Two questions are answered, each with its own reference. How far is a picture from the truth?
+//! The [ideal](marraztu_core::accuracy::Settings::ideal) answers, which is drawn once. What does
+//! one choice change? The picture that differs in its axis alone answers, with that axis at its
+//! most exact: aliasing, which is the same in both, hides nothing. Rows of axes show the second
+//! error; presets, combinations and the current settings show the first.
+//!
+//! The default is measured against itself. The spread of this control is the noise floor: smaller
+//! differences are ignored. Every candidate is then measured against the default in the same
+//! process, in alternation.
 //!
 //! Verdicts, plots and pages all use one interval, [`Ratio::noise`]: the larger of the control's
 //! noise and the ratio's own. Two choices differ in time only if their intervals do not overlap.
@@ -19,11 +23,11 @@ use super::error::{Error, Figures, Rendering};
 use super::instructions;
 use super::kernels::{self, Kernel};
 use super::pairs::{Ratio, Unmeasured, Watch, measure};
-use super::picture_source::{PictureSource, Studio, hash};
+use super::picture_source::{PictureSource, Reference, Studio, hash};
 use super::statistics::Quartiles;
-use super::timing::Clock;
+use super::timing::{Clock, Work};
 use marraztu_core::accuracy::Shot;
-use marraztu_core::accuracy::{AXES, Axis, AxisKind, Settings};
+use marraztu_core::accuracy::{Axis, Settings};
 use marraztu_core::base::image::Size;
 
 /// The task of a sweep.
@@ -78,11 +82,9 @@ pub struct Measured {
     pub ratio: Ratio,
     /// Whether the ratio exceeds the noise: see [`Findings::noise_of`].
     pub verdict: Verdict,
-    /// The error against the reference: every axis at its most exact, one sample per pixel.
-    pub error: Error,
-    /// The error against 256 samples per pixel, each lit; `None` for models other than the current
-    /// one.
-    pub sampled: Option<Error>,
+    /// The error against the ideal; `None` for models other than the current one, and if the
+    /// ideal was not drawn.
+    pub ideal: Option<Error>,
     /// The difference from the default's picture.
     pub change: Figures,
     /// The picture's hash, as 16 hexadecimal digits.
@@ -93,12 +95,10 @@ pub struct Measured {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Against {
-    /// Every axis at its most exact choice, one sample per pixel.
-    Exact,
-    /// 256 samples per pixel, each lit.
-    Sampled,
-    /// The reference of a model other than the current one.
-    Model,
+    /// The ideal.
+    Ideal,
+    /// The default with the row's axis at its most exact choice.
+    Axis,
 }
 
 impl Against {
@@ -106,25 +106,8 @@ impl Against {
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
-            Self::Exact => "exact",
-            Self::Sampled => "256 samples",
-            Self::Model => "model",
-        }
-    }
-
-    /// Returns the reference of a candidate.
-    fn of(candidate: &Candidate, base: &Settings) -> Self {
-        let Candidate { group, settings, .. } = candidate;
-        let apart = |axis: &Axis| axis.kind == AxisKind::ScoredApart;
-        let differs = |axis: &&Axis| apart(axis) && !axis.default_choice().is(settings);
-        if settings.modelled_as(base) != *settings {
-            Self::Model
-        } else if AXES.iter().any(|axis| differs(&axis))
-            || matches!(group, Group::Axis(key) if Axis::named(key).is_some_and(apart))
-        {
-            Self::Sampled
-        } else {
-            Self::Exact
+            Self::Ideal => "ideal",
+            Self::Axis => "axis",
         }
     }
 }
@@ -139,7 +122,12 @@ pub enum Verdict {
     Slower,
     /// Within the noise.
     Alike,
+    /// The machine was too busy: the time may be half or twice as long.
+    Busy,
 }
+
+/// Noise above this fraction says nothing.
+pub const TOO_BUSY: f64 = 1.0;
 
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -153,19 +141,11 @@ pub struct Row {
     pub point: usize,
     /// The reference of the row.
     pub against: Against,
+    /// The error against it.
+    pub error: Error,
 }
 
 impl Findings {
-    /// Returns the error of a row against its own reference.
-    #[must_use]
-    pub fn error_of(&self, row: &Row) -> &Error {
-        let point = &self.points[row.point];
-        match row.against {
-            Against::Exact | Against::Model => &point.error,
-            Against::Sampled => point.sampled.as_ref().unwrap_or(&point.error),
-        }
-    }
-
     /// Returns the interval of a point's ratio to the default. Two points differ in time if their
     /// intervals do not overlap.
     #[must_use]
@@ -179,9 +159,7 @@ impl Findings {
     #[must_use]
     pub fn noises(&self, points: impl Iterator<Item = usize>) -> [f64; 2] {
         let noise = |point: usize| {
-            let median = self.points[point].ratio.quartiles.median;
-            let [lower, upper] = self.noise_of(point);
-            (median / lower - 1.0).max(upper / median - 1.0)
+            noise_from(self.points[point].ratio.quartiles.median, self.noise_of(point))
         };
         let noises = points.filter(|point| *point != 0).map(noise);
         let ends = |ends: Option<[f64; 2]>, noise: f64| {
@@ -196,6 +174,11 @@ impl Findings {
     }
 }
 
+/// The larger distance of a ratio to the ends of its interval, as a fraction.
+fn noise_from(ratio: f64, [lower, upper]: [f64; 2]) -> f64 {
+    (ratio / lower - 1.0).max(upper / ratio - 1.0)
+}
+
 /// The interval of the default's ratio to itself.
 const DEFAULT: [f64; 2] = [1.0; 2];
 
@@ -203,7 +186,11 @@ impl Verdict {
     /// Judges a ratio to the default, ignoring differences up to `floor`.
     #[must_use]
     pub fn of(ratio: &Ratio, floor: f64) -> Self {
-        Self::between(ratio.noise(floor), DEFAULT)
+        let (noise, median) = (ratio.noise(floor), ratio.quartiles.median);
+        match Self::between(noise, DEFAULT) {
+            Self::Alike if noise_from(median, noise) > TOO_BUSY => Self::Busy,
+            verdict => verdict,
+        }
     }
 
     /// Judges one choice against another by the intervals of their ratios: they differ only if the
@@ -226,6 +213,7 @@ impl Verdict {
             Self::Faster => "faster",
             Self::Slower => "slower",
             Self::Alike => "alike",
+            Self::Busy => "busy",
         }
     }
 }
@@ -241,9 +229,9 @@ pub fn sweep(
     watch: &Watch,
     tell: &mut dyn FnMut(&Findings),
 ) -> Result<Findings, Unmeasured> {
-    let combinations = question.thoroughness.combinations;
     let Shot { scene, view, size, .. } = studio.shot().clone();
-    let candidates = candidates(&scene, &view, &question.current, &question.axes, combinations);
+    let candidates =
+        candidates(&scene, &view, &question.current, &question.axes, &question.thoroughness);
     let mut bench = Bench { clock, source: studio, watch, question, size };
     bench.run(candidates, tell)
 }
@@ -282,18 +270,22 @@ impl Bench<'_> {
         let thoroughness = self.question.thoroughness;
         let Candidates { all, left_out } = candidates;
         let base = all.first().expect("the default is always measured").settings;
-        // The references are drawn first, once, outside the timed part.
-        let mut references = References {
-            exact: vec![(base.reference(), self.source.rendering(&base.reference()))],
-            sampled: self.source.sampled(&base),
-            default: self.source.rendering(&base),
-        };
+        // The references are drawn once, outside the timed part, except that the ideal is timed.
+        let mut references = References { ideal_ms: 0.0, drawn: Vec::new() };
+        references.place(self.source, base);
+        if thoroughness.presets {
+            let (ideal, source) = (base.ideal(), &mut *self.source);
+            let time = self.clock.time(Work::Picture(&ideal), &mut || source.draw(&ideal));
+            references.ideal_ms = time.as_secs_f64() * 1e3;
+            references.drawn.push((ideal, self.source.last_rendering(&ideal)));
+        }
         self.watch.progress.reached(0, all.len())?;
         // The control measures the default against itself, which gives the noise floor.
         let control = self.measured(&base, &base)?;
         let mut findings = self.begin(control, left_out);
-        // Each kernel counts as a choice.
-        let steps = all.len() + kernels::COUNT;
+        // Each kernel counts as a choice; those are not measured for a single axis.
+        let kernels = if thoroughness.presets { kernels::COUNT } else { 0 };
+        let steps = all.len() + kernels;
         let mut late = 0;
         for (i, candidate) in all.into_iter().enumerate() {
             self.watch.progress.reached(i, steps)?;
@@ -312,8 +304,8 @@ impl Bench<'_> {
                 reason: "the time was up".to_owned(),
             });
         }
-        for i in 0..kernels::COUNT {
-            self.watch.progress.reached(steps - kernels::COUNT + i, steps)?;
+        for i in 0..kernels {
+            self.watch.progress.reached(steps - kernels + i, steps)?;
             let limits = &thoroughness.limits;
             findings.kernels.push(kernels::measure(i, self.clock, limits, self.watch)?);
         }
@@ -351,7 +343,6 @@ impl Bench<'_> {
         candidate: Candidate,
         references: &mut References,
     ) -> Result<(), Unmeasured> {
-        let against = Against::of(&candidate, base);
         let Candidate { group, name, settings } = candidate;
         let known = findings.points.iter().position(|point| point.settings == settings);
         let point = match known {
@@ -363,9 +354,19 @@ impl Bench<'_> {
             }
         };
         // The current settings get a row only if no other row shows them.
-        if group != Group::Current || known.is_none() {
-            findings.rows.push(Row { group, name, point, against });
+        if group == Group::Current && known.is_some() {
+            return Ok(());
         }
+        let axis = match group {
+            Group::Axis(key) => Axis::named(key),
+            Group::Preset | Group::Current | Group::Combination => None,
+        };
+        let reference = axis.map_or(Reference::Ideal, Reference::Alone);
+        let against = if axis.is_some() { Against::Axis } else { Against::Ideal };
+        let (exact, own) = (reference.of(&settings), settings);
+        let [exact, own] = [exact, own].map(|settings| references.place(self.source, settings));
+        let error = references.drawn[own].1.error(&references.drawn[exact].1);
+        findings.rows.push(Row { group, name, point, against, error });
         Ok(())
     }
 
@@ -377,43 +378,48 @@ impl Bench<'_> {
         references: &mut References,
     ) -> Result<Measured, Unmeasured> {
         let a_ms = findings.control.a_ms;
-        // All times are relative to the default. Its own ratio is the control's.
-        let (ratio, ms) = if settings == *base {
-            (findings.control.clone(), a_ms)
+        // All times are relative to the default. Its own ratio is the control's, and the ideal is
+        // too slow to be drawn again.
+        let ratio = if settings == *base {
+            findings.control.clone()
+        } else if settings == base.ideal() {
+            Ratio::once(references.ideal_ms / a_ms, a_ms)
         } else {
-            let ratio = self.measured(base, &settings)?;
-            let ms = a_ms * ratio.quartiles.median;
-            (ratio, ms)
+            self.measured(base, &settings)?
         };
-        // Each model has its own exact reference, drawn on first use.
-        let reference = settings.reference();
-        if references.exact.iter().all(|(settings, _)| *settings != reference) {
-            references.exact.push((reference, self.source.rendering(&reference)));
-        }
-        let exact = references.exact.iter().find(|(settings, _)| *settings == reference);
-        let (_, exact) = exact.expect("it was drawn if it was not there");
-        let rendering = self.source.rendering(&settings);
         let is_model = settings.modelled_as(base) != settings;
+        let [own, default] =
+            [settings, *base].map(|settings| references.place(self.source, settings));
+        let is_judged = !is_model && self.question.thoroughness.presets;
+        let ideal = is_judged.then(|| references.place(self.source, base.ideal()));
+        let rendering = &references.drawn[own].1;
         Ok(Measured {
             name: settings.in_words(),
             settings,
-            ms,
+            ms: if settings == *base { a_ms } else { a_ms * ratio.quartiles.median },
             verdict: Verdict::of(&ratio, findings.floor),
             ratio,
-            error: rendering.error(exact),
-            sampled: (!is_model).then(|| rendering.error(&references.sampled)),
-            change: rendering.change(&references.default),
+            ideal: ideal.map(|ideal| rendering.error(&references.drawn[ideal].1)),
+            change: rendering.change(&references.drawn[default].1),
             hash: format!("{:016x}", hash(rendering.picture())),
         })
     }
 }
 
-/// The reference pictures of errors.
+/// The pictures drawn so far, by their settings.
 struct References {
-    /// Every axis at its most exact, with the settings: one per model, the default's first.
-    exact: Vec<(Settings, Rendering)>,
-    /// 256 samples per pixel.
-    sampled: Rendering,
-    /// The default's picture.
-    default: Rendering,
+    /// The milliseconds of the ideal.
+    ideal_ms: f64,
+    drawn: Vec<(Settings, Rendering)>,
+}
+
+impl References {
+    /// Returns the place of the picture with these settings, and draws it on first use.
+    fn place(&mut self, source: &mut dyn PictureSource, settings: Settings) -> usize {
+        let known = self.drawn.iter().position(|(other, _)| *other == settings);
+        known.unwrap_or_else(|| {
+            self.drawn.push((settings, source.rendering(&settings)));
+            self.drawn.len() - 1
+        })
+    }
 }

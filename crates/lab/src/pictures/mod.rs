@@ -110,6 +110,7 @@ pub fn all() -> Vec<TestPicture> {
     let each_lit = Settings { light: LightAt::Sample, ..of(Samples::Four) };
     let half = Settings { specular: SpecularForm::HalfVector, ..settings };
     let (textured, rough) = (textured(&near), Settings { filter: Filter::Nearest, ..settings });
+    let filtered = Settings { filter: Filter::Trilinear, ..each_lit };
     // Overlapping random triangles stress coverage and depth.
     let (stage, from_above) = flat::scene(&[scattered()], SIDE);
     let mut all = vec![
@@ -129,6 +130,8 @@ pub fn all() -> Vec<TestPicture> {
         picture("four samples", &near, &drawn, of(Samples::Four)),
         picture("sixteen samples", &stage, &from_above, of(Samples::Sixteen)),
         picture("four samples, each lit", &near, &drawn, each_lit),
+        picture("texture, four samples, each lit and filtered", &textured, &view, filtered),
+        picture("texture, ideal", &textured, &view, settings.ideal()),
     ];
     // One picture for each choice that differs from the default and is portable.
     let bent = bent(&textured);

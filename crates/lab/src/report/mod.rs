@@ -9,7 +9,7 @@ use serde::Serialize;
 
 pub use self::labels::{TextBox, place};
 pub use self::panels::{Panel, PanelMark, Panels, Scale};
-pub use self::table::{brief, csv, heading, markdown, tabs, text};
+pub use self::table::{brief, csv, heading, left_out_in_words, markdown, tabs, text};
 use super::candidates::Group;
 use super::error::{Measure, Region};
 use super::front::{Point, fastest_within, front, most_exact_within};
@@ -61,22 +61,23 @@ impl Report {
     /// Returns the error of a row against its own reference.
     #[must_use]
     pub fn error(&self, row: &Row) -> f64 {
-        self.measure.of(self.findings.error_of(row), self.region)
+        self.measure.of(&row.error, self.region)
     }
 
-    /// Returns the points as time and error against 256 samples per pixel, a common reference.
-    /// Points with another model use their own reference.
+    /// Returns the points as time and error against the ideal. The error of another model is NaN:
+    /// it is not comparable.
     #[must_use]
     pub fn points(&self) -> Vec<Point> {
-        let error =
-            |p: &Measured| self.measure.of(p.sampled.as_ref().unwrap_or(&p.error), self.region);
+        let error = |p: &Measured| {
+            p.ideal.as_ref().map_or(f64::NAN, |error| self.measure.of(error, self.region))
+        };
         self.findings.points.iter().map(|p| Point { time: p.ms, error: error(p) }).collect()
     }
 
     /// Returns the points that share the common reference, with their indices.
     fn comparable(&self) -> (Vec<usize>, Vec<Point>) {
         let all = self.points().into_iter().enumerate();
-        all.filter(|(i, _)| self.findings.points[*i].sampled.is_some()).unzip()
+        all.filter(|(i, _)| self.findings.points[*i].ideal.is_some()).unzip()
     }
 
     /// Returns the front for a minimum cut of the error. A point within the noise gets the time of

@@ -101,7 +101,6 @@ impl Panels {
             title: axis.label.to_owned(),
             note: match axis.kind {
                 AxisKind::Scored => "",
-                AxisKind::ScoredApart => "against 256 samples per pixel",
                 AxisKind::Model => "a model, not scored",
             },
             marks: findings.rows_of(axis).map(of_row).collect(),
@@ -111,7 +110,7 @@ impl Panels {
             overview: Panel {
                 axis: None,
                 title: "Overview: nothing else is both faster and more exact".to_owned(),
-                note: "against 256 samples per pixel",
+                note: "against the ideal",
                 marks: overview.iter().map(named).collect(),
             },
             axes: AXES.iter().map(panel).filter(|panel| !panel.marks.is_empty()).collect(),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::Report;
 use crate::candidates::Group;
 use crate::error::Region;
-use crate::sweep::{Measured, Row, Verdict};
+use crate::sweep::{Measured, Row, TOO_BUSY, Verdict};
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind};
 
 /// Formats a number with three significant digits: "0", "0.0123", "4.57", "137", "1.2e-5".
@@ -42,7 +42,6 @@ pub fn heading(row: &Row) -> String {
             let Some(axis) = Axis::named(key) else { return key.to_owned() };
             let scored = match axis.kind {
                 AxisKind::Scored => "",
-                AxisKind::ScoredApart => " (against 256 samples, each lit)",
                 AxisKind::Model => " (a model: not scored)",
             };
             format!("{}{scored}, --{key}", axis.label)
@@ -64,7 +63,7 @@ pub fn text(report: &Report) -> String {
         "\n  {:30} {:>8} {:>15} {:>8} {:>5} {:7} {:>7} {:>8} {:>7} {:>7} {:>8} {:>8}",
         "",
         "time",
-        "IQR",
+        "spread",
         "ms",
         "pairs",
         "",
@@ -96,9 +95,9 @@ pub fn text(report: &Report) -> String {
     }
     let _ = writeln!(
         text,
-        "\n* the default  > now  + nothing is both faster and more exact against 256 samples.\n\
-         Errors are over {}, against every axis at its most exact with one sample\n\
-         per pixel; errors of samples per pixel, against 256 samples, each lit.",
+        "\n* the default  > now  + nothing is both faster and more exact against the ideal.\n\
+         Errors are over {}. Rows of an axis: against the default with this axis\n\
+         alone at its most exact. All others: against the ideal, 256 samples per pixel, each lit.",
         match report.region {
             Region::Whole => "all pixels",
             Region::Inside => "pixels with equal coverage",
@@ -119,22 +118,26 @@ fn head(report: &Report) -> String {
     );
     let _ = writeln!(
         text,
-        "The default takes {} ms. Against itself it took {:.3} times as long, with an\n\
-         interquartile range (IQR) of {} pairs from {:.3} to {:.3}: differences of less than\n\
-         {:.1} % are noise, and so are those within the interval of a row's median (95 %).",
+        "The default takes {} ms. Against itself it took {:.3} times as long ({} pairs).",
         brief(findings.control.a_ms),
         quartiles.median,
         findings.control.pairs,
-        quartiles.lower,
-        quartiles.upper,
-        findings.floor * 100.0
     );
+    let _ = match findings.floor {
+        floor if floor > TOO_BUSY => writeln!(text, "This machine is too busy to tell times."),
+        floor => writeln!(
+            text,
+            "Differences of less than {:.1} % are noise, and so are those within the interval of\n\
+             a row (95 %).",
+            floor * 100.0
+        ),
+    };
     text
 }
 
 fn figures(report: &Report, row: &Row) -> String {
     let point = &report.findings.points[row.point];
-    let (ratio, error) = (&point.ratio, report.findings.error_of(row));
+    let (ratio, error) = (&point.ratio, &row.error);
     let figures = error.over(report.region);
     let quartiles = &ratio.quartiles;
     let psnr = figures.psnr.map_or_else(|| "exact".to_owned(), |psnr| format!("{psnr:.1}"));
@@ -154,12 +157,21 @@ fn figures(report: &Report, row: &Row) -> String {
     )
 }
 
+/// Lists what was not measured in one line, with the reasons; empty if everything was.
+#[must_use]
+pub fn left_out_in_words(report: &Report) -> String {
+    let all = report.findings.left_out.iter();
+    let all: Vec<String> = all.map(|it| format!("{} ({})", it.what, it.reason)).collect();
+    if all.is_empty() { String::new() } else { format!("Not measured here: {}.", all.join("; ")) }
+}
+
 fn foot(text: &mut String, report: &Report) {
     for preset in ACCURACY_PRESETS.iter().filter(|preset| !preset.faults.is_empty()) {
         let _ = writeln!(text, "{}, --preset {}: {}", preset.label, preset.word, preset.in_words());
     }
-    for left_out in &report.findings.left_out {
-        let _ = writeln!(text, "not measured: {}: {}", left_out.what, left_out.reason);
+    let left_out = left_out_in_words(report);
+    if !left_out.is_empty() {
+        let _ = writeln!(text, "{}", wrapped(&left_out, 92));
     }
     if !report.findings.kernels.is_empty() {
         let _ = writeln!(text, "\narithmetic on one thread: SIMD against the plain loop");
@@ -210,12 +222,13 @@ pub fn markdown(report: &Report, axis: &Axis) -> String {
                     |---|--:|--:|--:|--:|--:|--:|--:|--:|\n"
         .to_owned();
     for row in report.findings.rows_of(axis) {
-        let (point, error) = (&report.findings.points[row.point], report.findings.error_of(row));
+        let (point, error) = (&report.findings.points[row.point], &row.error);
         let quartiles = &point.ratio.quartiles;
         // The default is exactly 1x by definition; its own measurement is the control.
         let star = if row.point == 0 { " (default)" } else { "" };
         let time = match (row.point, point.verdict) {
             (0, _) => "1x".to_owned(),
+            (_, Verdict::Busy) => "too busy to tell".to_owned(),
             (_, Verdict::Alike) => format!("{:.2}x (noise)", quartiles.median),
             _ => format!("{:.2}x", quartiles.median),
         };
@@ -289,10 +302,10 @@ fn cells(report: &Report) -> Vec<Vec<String>> {
     let head = ["group", "name"].into_iter().chain(axes).chain(FIGURES);
     let mut cells = vec![head.map(str::to_owned).collect()];
     for row in &report.findings.rows {
-        let Measured { settings, ms, ratio, verdict, sampled, hash, .. } =
+        let Measured { settings, ms, ratio, verdict, ideal, hash, .. } =
             &report.findings.points[row.point];
         // Errors refer to the row's own reference, which the column `against` names.
-        let error = report.findings.error_of(row);
+        let error = &row.error;
         let (whole, inside) = (&error.whole, &error.inside);
         let quartiles = &ratio.quartiles;
         let [lower, upper] = report.findings.noise_of(row.point);
@@ -317,7 +330,7 @@ fn cells(report: &Report) -> Vec<Vec<String>> {
             inside.largest.to_string(),
             inside.rmse.to_string(),
             inside.differing.to_string(),
-            sampled.map(|error| error.whole.rmse.to_string()).unwrap_or_default(),
+            ideal.map(|error| error.whole.rmse.to_string()).unwrap_or_default(),
             hash.clone(),
             front.contains(&row.point).to_string(),
             (current == Some(row.point)).to_string(),

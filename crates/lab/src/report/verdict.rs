@@ -7,7 +7,7 @@
 //! none is omitted.
 
 use super::Report;
-use crate::sweep::{Measured, Row, Verdict};
+use crate::sweep::{Measured, Row, TOO_BUSY, Verdict};
 use marraztu_core::accuracy::{AXES, Axis, AxisKind};
 
 /// Changes of the error below this fraction are ignored.
@@ -106,7 +106,11 @@ pub(super) fn verdict(report: &Report) -> Vec<String> {
 
 /// Formats the noise of some points in per cent: "1.2%", or "1.2 to 4.5%" if they differ.
 fn noise(report: &Report, points: impl Iterator<Item = usize>) -> String {
-    let [least, most] = report.findings.noises(points).map(|it| digits((it * 100.0).max(0.1)));
+    let noises = report.findings.noises(points);
+    if noises[1] > TOO_BUSY {
+        return "this machine is too busy to tell".to_owned();
+    }
+    let [least, most] = noises.map(|it| digits((it * 100.0).max(0.1)));
     if least == most { format!("{most}%") } else { format!("{least} to {most}%") }
 }
 
@@ -138,9 +142,10 @@ fn said(report: &Report) -> Vec<Said<'_>> {
         let default = finer(axis.default_choice().word);
         for row in report.findings.rows_of(axis).filter(|row| row.point != 0) {
             let point = &report.findings.points[row.point];
-            let before = Row { point: 0, ..row.clone() };
-            let rmse = |row: &Row| report.findings.error_of(row).whole.rmse;
-            let (error, before) = (rmse(row), rmse(&before));
+            // The default of an axis is one of its rows.
+            let default_row = report.findings.rows_of(axis).find(|row| row.point == 0);
+            let rmse = |row: &Row| row.error.whole.rmse;
+            let (error, before) = (rmse(row), default_row.map_or(0.0, rmse));
             let is_finer = finer(axis.chosen(&point.settings).word) > default;
             let Some(kind) = kind(point, [error, before], is_finer) else { continue };
             said.push(Said { axis, row, point, error, before, kind });
@@ -161,6 +166,7 @@ fn kind(point: &Measured, [error, before]: [f64; 2], is_finer: bool) -> Option<K
         (Verdict::Faster, _, true) => Kind::Saves,
         (Verdict::Faster, ..) => Kind::Free,
         // If a coarser choice is closer to the reference, then only in a few pixels.
+        (Verdict::Busy, ..) => return None,
         (Verdict::Alike, true, _) if seen && is_finer => Kind::Free,
         (Verdict::Alike, _, true) => Kind::Worse,
         (Verdict::Alike, ..) => return None,
@@ -236,7 +242,7 @@ fn free(it: &Said<'_>) -> String {
             let saves = it.verb("save");
             format!("{name} {saves} {}% and {} no accuracy here.", less(it), it.verb("cost"))
         }
-        Verdict::Slower | Verdict::Alike => {
+        Verdict::Slower | Verdict::Alike | Verdict::Busy => {
             let cut = it.verb("cut");
             format!("{name} {cut} {} in the same time.", it.error_change())
         }

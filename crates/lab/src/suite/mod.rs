@@ -6,7 +6,7 @@
 
 mod scenes;
 
-use super::candidates::{Group, Thoroughness, candidates};
+use super::candidates::{Thoroughness, candidates};
 use super::error::{Measure, Region};
 use super::pairs::{Limits, Unmeasured, Watch};
 use super::picture_source::Studio;
@@ -36,7 +36,7 @@ pub const SUITE: &[SuiteScene] = &[
     SuiteScene {
         word: "first",
         what: "the first scene of the editor",
-        axes: &["samples", "shading", "arithmetic"],
+        axes: &["samples", "resolution", "shading", "arithmetic"],
         make: |_| io::default_scene(),
     },
     SuiteScene {
@@ -116,7 +116,7 @@ impl SuiteDetail {
     /// Takes less than ten minutes on two cores.
     pub const WHOLE: Self = Self {
         size: Size::new(1280, 720),
-        thoroughness: Thoroughness { combinations: 0, ..Thoroughness::QUICK },
+        thoroughness: Thoroughness { combinations: 0, presets: false, ..Thoroughness::QUICK },
         detail: 1000,
     };
     /// Takes a few seconds, for a smoke test.
@@ -127,6 +127,7 @@ impl SuiteDetail {
             limits: Limits { pairs: 1, least: 1, time: Duration::ZERO },
             combinations: 0,
             time: Duration::ZERO,
+            presets: false,
         },
         detail: 2,
     };
@@ -191,13 +192,8 @@ fn measured(
     let (scene, view) = suite.open(detail.detail);
     let current = Settings::default();
     let question = Question { current, axes: suite.measured(), thoroughness: detail.thoroughness };
-    let mut found = candidates(&scene, &view, &current, &question.axes, 0);
-    // The default comes first. The ancestors' algorithms are skipped: on some scenes they would
-    // take minutes.
-    let mut first = true;
-    found.all.retain(|candidate| {
-        std::mem::take(&mut first) || matches!(candidate.group, Group::Axis(_))
-    });
+    // Presets are skipped: on some scenes the ancestors' algorithms would take minutes.
+    let found = candidates(&scene, &view, &current, &question.axes, &question.thoroughness);
     let mut studio = Studio::new(Shot::new(&scene, &view, &current, detail.size));
     let size = detail.size;
     let mut bench = Bench { clock, source: &mut studio, watch, question: &question, size };
