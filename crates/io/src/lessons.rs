@@ -1,13 +1,110 @@
-//! The scenes of the lessons: each makes one kind of error as visible as possible.
+//! The lessons: one for each axis of accuracy, in a scene that makes its errors as visible as
+//! possible.
 //!
-//! They are ordinary scene files, built into the program with their models.
+//! Their texts are data in `assets/lessons/*.ron`, and their scenes are ordinary scene files. Both
+//! are built into the program.
 
 use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use marraztu_core::accuracy::{AXES, Axis, Choice, Settings};
+use marraztu_core::base::once::get_or_compute;
+use serde::Deserialize;
 
 use super::progress::Progress;
 use super::scene_file::{Opened, SceneFileError, open_text};
 
-/// The scenes, by the names in [`marraztu_core::accuracy::Lesson::scene`].
+/// A lesson about an axis: a title and two sentences.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lesson {
+    /// The key of the axis.
+    pub axis: String,
+    /// The question that it answers: "Why Gouraud misses a highlight".
+    pub title: String,
+    /// The reason, in a sentence.
+    pub why: String,
+    /// The place to look at, in a sentence.
+    pub look: String,
+    /// The name of its scene: see [`lesson_scene`].
+    pub scene: String,
+    /// The word of the choice that it opens with: the one with the most visible faults.
+    pub choice: String,
+}
+
+impl Lesson {
+    /// The axis.
+    ///
+    /// # Panics
+    /// Never: a test compares every lesson with the table of axes.
+    #[must_use]
+    pub fn axis(&self) -> &'static Axis {
+        Axis::named(&self.axis).expect("a lesson is about an axis")
+    }
+
+    /// The choice that it opens with.
+    ///
+    /// # Panics
+    /// Never, like [`Self::axis`].
+    #[must_use]
+    pub fn opens_with(&self) -> &'static Choice {
+        self.axis().choice(&self.choice).expect("a lesson opens with a choice of its axis")
+    }
+
+    /// The settings that it opens with.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        self.opens_with().of(&Settings::default())
+    }
+}
+
+/// The texts, in the order of [`AXES`].
+const TEXTS: &[&str] = &[
+    include_str!("../../../assets/lessons/shading.ron"),
+    include_str!("../../../assets/lessons/arithmetic.ron"),
+    include_str!("../../../assets/lessons/power.ron"),
+    include_str!("../../../assets/lessons/vertices.ron"),
+    include_str!("../../../assets/lessons/subpixels.ron"),
+    include_str!("../../../assets/lessons/coverage.ron"),
+    include_str!("../../../assets/lessons/depth.ron"),
+    include_str!("../../../assets/lessons/transparency.ron"),
+    include_str!("../../../assets/lessons/shadow-method.ron"),
+    include_str!("../../../assets/lessons/samples.ron"),
+    include_str!("../../../assets/lessons/resolution.ron"),
+    include_str!("../../../assets/lessons/interpolation.ron"),
+    include_str!("../../../assets/lessons/stretched.ron"),
+    include_str!("../../../assets/lessons/filter.ron"),
+    include_str!("../../../assets/lessons/bumps.ron"),
+    include_str!("../../../assets/lessons/rounding.ron"),
+    include_str!("../../../assets/lessons/specular.ron"),
+    include_str!("../../../assets/lessons/tangents.ron"),
+    include_str!("../../../assets/lessons/terminator.ron"),
+    include_str!("../../../assets/lessons/values.ron"),
+];
+
+/// Returns the lessons, in the order of [`AXES`].
+///
+/// # Panics
+/// Never: a test reads every text.
+#[must_use]
+pub fn lessons() -> &'static [Lesson] {
+    static LESSONS: OnceLock<Vec<Lesson>> = OnceLock::new();
+    let read = |text: &&str| ron::from_str(text).expect("a lesson of the program");
+    let all: &Vec<Lesson> = get_or_compute(&LESSONS, || TEXTS.iter().map(read).collect());
+    all
+}
+
+/// Returns the lesson about an axis.
+///
+/// # Panics
+/// Never: every axis has a lesson.
+#[must_use]
+pub fn lesson_on(axis: &Axis) -> &'static Lesson {
+    let place = AXES.iter().position(|other| other.key == axis.key);
+    &lessons()[place.expect("an axis of the table")]
+}
+
+/// The scenes, by the names in [`Lesson::scene`].
 const LESSONS: &[(&str, &str)] = &[
     ("ball", include_str!("../../../assets/lessons/ball.marraztu")),
     ("dimples", include_str!("../../../assets/lessons/dimples.marraztu")),
@@ -42,14 +139,21 @@ pub fn lesson_scene(name: &str) -> Result<Opened, SceneFileError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use marraztu_core::accuracy::AXES;
 
     #[test]
-    fn every_axis_has_a_scene_in_which_it_means_something() {
-        for axis in AXES {
-            let Opened { scene, view, .. } = lesson_scene(axis.lesson.scene).unwrap();
+    fn every_axis_has_a_lesson_in_a_scene_in_which_it_matters() {
+        for (axis, lesson) in AXES.iter().zip(lessons()) {
+            assert_eq!(lesson.axis, axis.key);
+            let Opened { scene, view, .. } = lesson_scene(&lesson.scene).unwrap();
             assert_eq!((axis.sense)(&scene, &view), Ok(()), "{}", axis.key);
+            assert!(axis.choice(&lesson.choice).is_some(), "{}", axis.key);
+            // Two sentences, short enough for all of them to be read in five minutes.
+            for sentence in [&lesson.why, &lesson.look] {
+                assert!(sentence.ends_with('.') && !sentence.contains(". "), "{sentence}");
+            }
+            assert!(lesson.why.len() + lesson.look.len() < 320, "{}", axis.key);
         }
+        assert_eq!(lessons().len(), AXES.len());
         assert!(lesson_scene("nothing").is_err());
     }
 }

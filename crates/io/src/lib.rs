@@ -58,7 +58,7 @@ pub use input::Input;
 pub use keeping::{
     Abandoned, Discarded, Helpers, Journal, MOST_RECENT, OwnFolders, Preferences, Theme, Unsaved,
 };
-pub use lessons::lesson_scene;
+pub use lessons::{Lesson, lesson_on, lesson_scene, lessons};
 pub use obj::{Loaded, load, parse};
 pub use part::sweep_once;
 pub use picture::{

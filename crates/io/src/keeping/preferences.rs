@@ -39,6 +39,8 @@ pub struct Preferences {
     pub shares: BTreeMap<String, f32>,
     /// Whether the selection's outline, axes and marks of lights are drawn over the picture.
     pub overlays: bool,
+    /// Whether the dial of accuracy lies over the picture.
+    pub dial: bool,
     /// Overlays that help to judge positions.
     pub helpers: Helpers,
     /// Whether models are reloaded when their files change.
@@ -92,6 +94,7 @@ impl Default for Preferences {
             maximized: false,
             shares: BTreeMap::new(),
             overlays: true,
+            dial: true,
             helpers: Helpers::default(),
             watches: false,
             up: UpAxis::default(),
