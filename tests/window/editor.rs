@@ -30,7 +30,7 @@ impl Editor {
 
     /// An editor in a window so tall that its panels need no scrolling.
     pub(crate) fn tall() -> Self {
-        Self::sized(egui::vec2(1200.0, 1600.0), |ui, app| app.editor_ui(ui))
+        Self::sized(egui::vec2(1200.0, 1700.0), |ui, app| app.editor_ui(ui))
     }
 
     pub(crate) fn of_size(width: f32, height: f32) -> Self {

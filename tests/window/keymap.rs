@@ -48,7 +48,7 @@ fn a_clash_is_reported_before_a_key_changes_its_action() {
 fn chosen_keys_are_kept() {
     let folder = tempfile::tempdir().unwrap();
     let folders = OwnFolders::within(folder.path());
-    let keys = [("Redo".to_owned(), vec!["k".to_owned()])].into();
+    let keys = [("Redo".to_owned(), vec!["j".to_owned()])].into();
     Preferences { keys, ..Preferences::default() }.save(&folders, &[]).unwrap();
     let mut editor = Editor::small();
     let (preferences, said) = Preferences::load(&folders);
@@ -57,7 +57,7 @@ fn chosen_keys_are_kept() {
     editor.settle();
     editor.perform(Action::StepXUp);
     editor.perform(Action::Undo);
-    editor.press(Lower(Key::K));
+    editor.press(Lower(Key::J));
     assert_eq!(editor.steps(), 1);
     editor.harness.state_mut().end_keeping();
     assert_eq!(Preferences::load(&folders).0.keys, preferences.keys);
@@ -67,7 +67,7 @@ fn chosen_keys_are_kept() {
 fn keys_of_an_older_version_are_read_and_changes_reported_once() {
     let folder = tempfile::tempdir().unwrap();
     let folders = OwnFolders::within(folder.path());
-    let keys = [("ToggleStatistics", "k"), ("Duplicate", "w"), ("Gone", "j")];
+    let keys = [("ToggleStatistics", "j"), ("Duplicate", "w"), ("Gone", "k")];
     let keys = keys.map(|(action, key)| (action.to_owned(), vec![key.to_owned()])).into();
     Preferences { keys, ..Preferences::default() }.save(&folders, &[]).unwrap();
     for is_first in [true, false] {
@@ -79,9 +79,9 @@ fn keys_of_an_older_version_are_read_and_changes_reported_once() {
         let told = editor.state().notices.iter().flat_map(|notice| &notice.details);
         assert_eq!(told.count(), if is_first { 2 } else { 0 });
         assert_eq!(editor.shows("custom keys could not be restored"), is_first);
-        editor.press(Lower(Key::K));
+        editor.press(Lower(Key::J));
         assert!(editor.state().panels.has(Panel::Statistics), "k has opened the panel");
-        editor.press(Lower(Key::K));
+        editor.press(Lower(Key::J));
         let before = editor.scene().cameras.len();
         editor.press(Lower(Key::W));
         assert_eq!(editor.scene().cameras.len(), before + 1, "w has duplicated the camera");

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
 
 mod clipboard;
+mod dial;
 mod dialogs;
 mod editor;
 mod examples;

@@ -6,6 +6,7 @@ use crate::app::panels::OpenPanels;
 use crate::app::state::DrawingChoices;
 use crate::app::state::layout::Layout;
 use crate::app::widgets::regions::Way;
+use marraztu_core::accuracy::Settings;
 use marraztu_core::edit::selection::Selection;
 use marraztu_core::edit::several::Others;
 use marraztu_core::scene::{Command, ItemId, ObjectId, Subject, View};
@@ -56,6 +57,12 @@ pub(crate) enum Intent {
     Overlays,
     /// Show or hide the gizmo.
     Gizmo,
+    /// Show or hide the dial.
+    Dial,
+    /// Show or hide the loupe.
+    Loupe,
+    /// Draw with these settings.
+    Settings(Settings),
     /// Allow or forbid reduced quality while something moves.
     Coarse,
     /// Start or stop watching files.

@@ -45,7 +45,9 @@ impl Action {
 
 impl Group {
     /// The actions of [`Self::Show`] for things drawn over the picture, not in it.
-    pub const OVER_PICTURE: [Action; 6] = [
+    pub const OVER_PICTURE: [Action; 8] = [
+        Action::ToggleDial,
+        Action::ToggleLoupe,
         Action::ToggleOverlays,
         Action::ToggleMarks,
         Action::ToggleGizmo,

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::table::Action;
 use crate::app::chord::Chord;
-use crate::app::state::laboratory::{Compare, Side};
+use crate::app::state::laboratory::Compare;
 use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, State};
 use marraztu_core::accuracy::Settings;
@@ -16,6 +16,7 @@ use marraztu_core::scene::{Command, ItemId, ObjectId, UpAxis, View};
 use marraztu_io::Preferences;
 use marraztu_lab::candidates::Thoroughness;
 use marraztu_lab::error::{Measure, Region};
+use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::Budgets;
 use marraztu_lab::suite::SuiteDetail;
 
@@ -181,17 +182,13 @@ pub enum LabRequest {
     Budgets(Budgets),
     /// Compare the picture with the exact one in this way.
     Compare(Compare),
-    /// Compare with 256 samples per pixel, or with one.
-    Sampled(bool),
+    /// Compare with this picture.
+    Against(Reference),
     /// Start or stop picking a pixel with the next click.
     Pick(bool),
     /// Attribute the error of this pixel.
     Attribute([usize; 2]),
-    /// Show this panel next to the plots.
-    Side(Side),
-    /// Show the lesson of this axis, given by its key; opens the laboratory if needed.
-    Lesson(&'static str),
-    /// Open the scene of this lesson.
+    /// Open the scene of the lesson on this axis, given by its key, and show the lesson.
     ShowLesson(&'static str),
     /// Return from the scene of a lesson to the user's scene.
     Back,

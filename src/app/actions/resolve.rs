@@ -187,6 +187,12 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::ToggleMarks => viewed(state, |view| view.marks ^= true),
         Action::ToggleOverlays => Ok(Intent::Overlays),
         Action::ToggleGizmo => Ok(Intent::Gizmo),
+        Action::ToggleDial => Ok(Intent::Dial),
+        Action::ToggleLoupe => Ok(Intent::Loupe),
+        Action::DialDraft | Action::DialDefault | Action::DialExact | Action::DialIdeal => {
+            let preset = action.preset().expect("an action of the dial has a preset");
+            Ok(Intent::Settings(preset.of(&state.settings)))
+        }
         Action::ToggleCoarse => Ok(Intent::Coarse),
         Action::ToggleGrid => helpers(state, |helpers| helpers.grid ^= true),
         Action::ToggleDimensions => helpers(state, |helpers| helpers.dimensions ^= true),

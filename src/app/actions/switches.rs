@@ -4,6 +4,7 @@ use egui::ThemePreference;
 
 use super::table::Action;
 use crate::app::state::State;
+use marraztu_core::accuracy::AccuracyPreset;
 use marraztu_core::edit::lights;
 use marraztu_core::scene::{
     CameraMode, Fill, Frame, ItemId, NormalLength, Normals, Observer, Projection, Subject,
@@ -31,6 +32,17 @@ impl Action {
         let at = LIGHT_SWITCHES.iter().position(|action| *action == self)?;
         u32::try_from(at).ok()
     }
+
+    /// Returns the preset of the dial that the action chooses.
+    #[must_use]
+    pub fn preset(self) -> Option<&'static AccuracyPreset> {
+        let place = Self::DIAL.iter().position(|action| *action == self)?;
+        AccuracyPreset::dial().get(place)
+    }
+
+    /// The actions of the dial, in the order of its presets.
+    pub const DIAL: [Self; 4] =
+        [Self::DialDraft, Self::DialDefault, Self::DialExact, Self::DialIdeal];
 
     /// Returns whether the action's switch is on; `None` if the action is not a switch.
     #[must_use]
@@ -74,6 +86,11 @@ impl Action {
             Self::ToggleMarks => view.marks,
             Self::ToggleOverlays => state.overlays,
             Self::ToggleGizmo => state.gizmo,
+            Self::ToggleDial => state.dial.shown,
+            Self::ToggleLoupe => state.loupe,
+            Self::DialDraft | Self::DialDefault | Self::DialExact | Self::DialIdeal => {
+                self.preset()?.of(&state.settings) == state.settings
+            }
             Self::ToggleWatch => state.watches,
             Self::ToggleGrid => state.helpers.grid,
             Self::ToggleDimensions => state.helpers.dimensions,

@@ -287,6 +287,24 @@ actions! {
         "Refine when still"
         "Increases the samples per pixel while nothing moves."
         "antialiasing smooth edges samples progressive quality sharp";
+    DialDraft Show ONCE [Named(Key::F7)]
+        "Draft accuracy" "Draws a quarter of the pixels, for speed."
+        "preset quality fast preview low dial";
+    DialDefault Show ONCE [Named(Key::F8)]
+        "Default accuracy" "Draws with the default of every choice."
+        "preset quality normal medium reset dial";
+    DialExact Show ONCE [Named(Key::F9)]
+        "Exact accuracy" "Draws with every choice at its most exact."
+        "preset quality high reference best dial";
+    DialIdeal Show ONCE [Named(Key::F10)]
+        "Ideal accuracy" "Draws 256 samples per pixel, with every choice at its most exact."
+        "preset quality highest supersampling ground truth dial";
+    ToggleDial Show ONCE []
+        "Accuracy dial" "Shows or hides what accuracy costs in this view."
+        "presets time error milliseconds quality cost";
+    ToggleLoupe Show ONCE [Either(Key::K)]
+        "Loupe" "Shows the pixels under the pointer next to the ideal; hold the key or press it."
+        "magnifier zoom pixels compare difference ideal";
     ToggleLightNormals Show ONCE [Either(Key::I)]
         "Flat shading (face normals)"
         "Lights polygons with face normals instead of vertex normals."

@@ -2,6 +2,7 @@
 
 pub(crate) mod adaptive_quality;
 pub(crate) mod border;
+pub(crate) mod dial;
 pub(crate) mod images;
 pub(crate) mod motion;
 pub(crate) mod reduction;

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use marraztu_core::accuracy::{Samples, Settings};
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{ItemId, Scene, View};
+use marraztu_core::scene::{Frame, ItemId, Scene, Steps, Subject, Transformation, View};
 
 /// All inputs of a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,11 +21,25 @@ pub(crate) struct Snapshot {
     pub(crate) budget: Duration,
     /// The samples per pixel that the picture is refined to while nothing happens.
     pub(crate) refined: Option<Samples>,
+    /// Whether the dial is measured, and the samples per pixel that its pictures are refined to.
+    pub(crate) dial: Option<Option<Samples>>,
     /// Whether to explain the effects of the picture.
     pub(crate) explain: bool,
     /// The selected items to outline in the picture. The first has a separate border; the others
     /// share one.
     pub(crate) outlined: Vec<ItemId>,
+}
+
+/// Returns a view without what no picture shows: the item that the keys act on, and their steps.
+pub(crate) fn pictured(view: &View) -> View {
+    View {
+        subject: Subject::Object,
+        light: None,
+        transformation: Transformation::Translation,
+        frame: Frame::Local,
+        steps: Steps::default(),
+        ..view.clone()
+    }
 }
 
 impl Snapshot {

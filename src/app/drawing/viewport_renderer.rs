@@ -10,15 +10,17 @@ use egui::ColorImage;
 
 use super::adaptive_quality::{AdaptiveQuality, Attempt};
 use super::border::Border;
+use super::dial::{DialFigures, IdleDial};
 use super::images::present;
 use super::reduction::{Applicable, Reduction};
 use super::refinement::{difference, next_samples};
 use super::snapshot::Snapshot;
 use marraztu_core::accuracy::{Samples, Shot};
-use marraztu_core::base::image::Size;
+use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{ItemId, Surface};
 use marraztu_lab::cost::{self, Explained};
 use marraztu_render::plan_frame;
+use marraztu_render::screen::coverage::PixelBox;
 use marraztu_render::{Cancelled, Damage, FramePlan, Hit, Renderer};
 
 /// A drawn picture.
@@ -49,6 +51,8 @@ pub(crate) enum Finer {
     Measured,
     /// The picture is refined.
     Refined(Box<Drawn>),
+    /// There are better figures for the dial.
+    Dial(Box<DialFigures>),
 }
 
 /// The frame that is wanted while a frame is being drawn.
@@ -73,6 +77,7 @@ pub(crate) struct ViewportRenderer {
     /// The clock; tests replace it.
     clock: fn() -> Instant,
     quality: AdaptiveQuality,
+    dial: IdleDial,
     /// The reduction of the last finished picture; `None` before the first.
     shown: Option<Reduction>,
     /// Whether the last frame was cancelled.
@@ -93,6 +98,7 @@ impl ViewportRenderer {
             refined: None,
             clock,
             quality: AdaptiveQuality::default(),
+            dial: IdleDial::default(),
             shown: None,
             gave_up: false,
             explained: None,
@@ -192,8 +198,11 @@ impl ViewportRenderer {
             self.quality.measured(reduction, time, error);
             return Finer::Measured;
         }
-        // Each step raises the number of samples, so intermediate results appear early.
-        let Some(samples) = next_samples(snapshot, self.refined) else { return Finer::Done };
+        // Each step raises the number of samples, so intermediate results appear early. The dial
+        // comes last.
+        let Some(samples) = next_samples(snapshot, self.refined) else {
+            return self.dial.step(snapshot, wanted);
+        };
         let settings = marraztu_core::accuracy::Settings { samples, ..snapshot.settings };
         let shot = Shot::new(&snapshot.scene, &snapshot.view, &settings, snapshot.size);
         let Ok(changes) = self.finer.redraw(&plan_frame(&shot), wanted) else {
@@ -223,6 +232,16 @@ impl ViewportRenderer {
         }
         self.explained = Some(Arc::new(explained));
         self.explained.clone()
+    }
+
+    /// Draws a window of the ideal of the last picture.
+    pub(crate) fn ideal(
+        &mut self,
+        last: &Snapshot,
+        window: PixelBox,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Picture> {
+        self.dial.ideal(last, window, wanted)
     }
 
     /// Returns the hit at a pixel of the picture at full size.
@@ -290,8 +309,20 @@ mod tests {
         let (scene, view) = io::default_scene();
         let budget = Duration::from_millis(33);
         let (settings, moving, explain, outlined) = (Settings::default(), false, false, Vec::new());
-        let (coarse, refined) = (true, None);
-        Snapshot { scene, view, settings, size, moving, coarse, budget, refined, explain, outlined }
+        let (coarse, refined, dial) = (true, None, None);
+        Snapshot {
+            scene,
+            view,
+            settings,
+            size,
+            moving,
+            coarse,
+            budget,
+            refined,
+            dial,
+            explain,
+            outlined,
+        }
     }
 
     /// Changes the background colour of a snapshot, which requires a full redraw.

@@ -15,11 +15,14 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::border::Border;
+use super::dial::DialFigures;
 use super::snapshot::Snapshot;
 use super::viewport_renderer::{Asked, Drawn, Finer, ViewportRenderer};
+use marraztu_core::base::image::Picture;
 use marraztu_core::scene::ItemId;
 use marraztu_lab::cost::Explained;
 use marraztu_render::Hit;
+use marraztu_render::screen::coverage::PixelBox;
 
 /// The time without events after which the picture is refined.
 const QUIET: Duration = Duration::from_millis(120);
@@ -42,6 +45,10 @@ pub(crate) struct News<P> {
     /// others.
     pub(crate) outline: Option<[Option<Border>; 2]>,
     pub(crate) explained: Option<Arc<Explained>>,
+    /// The figures of the dial for the last picture.
+    pub(crate) dial: Option<Box<DialFigures>>,
+    /// A window of the ideal of the last picture, as requested.
+    pub(crate) ideal: Option<(PixelBox, Picture)>,
     pub(crate) picked: Vec<(Pick<P>, Option<Hit>)>,
     pub(crate) failed: bool,
 }
@@ -72,6 +79,8 @@ struct Desk<P> {
     picks: VecDeque<Pick<P>>,
     /// The item to outline, on request.
     border: Option<ItemId>,
+    /// The window of the ideal to draw, on request.
+    ideal: Option<PixelBox>,
     news: News<P>,
     busy: bool,
     /// When drawing of the current picture began.
@@ -87,10 +96,11 @@ impl<P: Copy + Send + 'static> Worker<P> {
     /// Starts the thread; `wake` is called whenever there are results.
     pub(crate) fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let news = News::none();
-        let (wanted, picks, border) = (None, VecDeque::new(), None);
+        let (wanted, picks, border, ideal) = (None, VecDeque::new(), None, None);
         let (settled, quiet_at) = (true, Instant::now());
         let (busy, begun, closed) = (false, None, false);
-        let desk = Desk { wanted, picks, border, news, busy, begun, closed, settled, quiet_at };
+        let desk =
+            Desk { wanted, picks, border, ideal, news, busy, begun, closed, settled, quiet_at };
         let shared = Arc::new(Shared {
             desk: Mutex::new(desk),
             changed: Condvar::new(),
@@ -113,6 +123,8 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.last = Some(snapshot.clone());
         let mut desk = self.shared.lock();
         desk.wanted = Some(snapshot);
+        // These belong to the picture before.
+        (desk.news.dial, desk.news.ideal, desk.ideal) = (None, None, None);
         self.shared.disturb(&mut desk);
         self.shared.newer.store(true, Ordering::Relaxed);
         drop(desk);
@@ -148,6 +160,15 @@ impl<P: Copy + Send + 'static> Worker<P> {
     pub(crate) fn border(&self, item: ItemId) {
         let mut desk = self.shared.lock();
         desk.border = Some(item);
+        self.shared.disturbed.store(true, Ordering::Relaxed);
+        drop(desk);
+        self.shared.changed.notify_all();
+    }
+
+    /// Requests a window of the ideal of the last picture.
+    pub(crate) fn ideal(&self, window: PixelBox) {
+        let mut desk = self.shared.lock();
+        desk.ideal = Some(window);
         self.shared.disturbed.store(true, Ordering::Relaxed);
         drop(desk);
         self.shared.changed.notify_all();
@@ -195,14 +216,26 @@ impl<P> Drop for Worker<P> {
 
 impl<P> News<P> {
     const fn none() -> Self {
-        let (border, drawn, refined, outline, explained) = (None, None, None, None, None);
-        Self { border, drawn, refined, outline, explained, picked: Vec::new(), failed: false }
+        Self {
+            border: None,
+            drawn: None,
+            refined: None,
+            outline: None,
+            explained: None,
+            dial: None,
+            ideal: None,
+            picked: Vec::new(),
+            failed: false,
+        }
     }
 }
 
 impl<P> Desk<P> {
     fn has_work(&self) -> bool {
-        self.wanted.is_some() || !self.picks.is_empty() || self.border.is_some()
+        self.wanted.is_some()
+            || !self.picks.is_empty()
+            || self.border.is_some()
+            || self.ideal.is_some()
     }
 }
 
@@ -231,12 +264,12 @@ impl<P> Shared<P> {
                 desk.busy = true;
                 desk.begun = desk.wanted.is_some().then(Instant::now);
                 self.newer.store(false, Ordering::Relaxed);
-                let picks = std::mem::take(&mut desk.picks);
-                return Some(Work::Asked(
-                    picks,
-                    desk.border.take(),
-                    desk.wanted.take().map(Box::new),
-                ));
+                return Some(Work::Asked(Box::new(Asking {
+                    picks: std::mem::take(&mut desk.picks),
+                    border: desk.border.take(),
+                    ideal: desk.ideal.take(),
+                    wanted: desk.wanted.take(),
+                })));
             }
             // Without anything to refine, the thread sleeps until a request or the end.
             if desk.settled {
@@ -255,10 +288,19 @@ impl<P> Shared<P> {
     }
 }
 
+/// Requests of the window: answer picks, outline an item, draw a window of the ideal, draw a
+/// picture.
+struct Asking<P> {
+    picks: VecDeque<Pick<P>>,
+    border: Option<ItemId>,
+    ideal: Option<PixelBox>,
+    wanted: Option<Snapshot>,
+}
+
 /// The next task of the thread.
 enum Work<P> {
-    /// Answer picks, outline an item, draw a picture.
-    Asked(VecDeque<Pick<P>>, Option<ItemId>, Option<Box<Snapshot>>),
+    /// Answer requests.
+    Asked(Box<Asking<P>>),
     /// Refine the last picture by a step.
     Refine,
 }
@@ -269,8 +311,8 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
     let mut last = None;
     let mut outlined = Vec::new();
     while let Some(work) = shared.next() {
-        let (picks, border, wanted) = match work {
-            Work::Asked(picks, border, wanted) => (picks, border, wanted),
+        let Asking { picks, border, ideal, wanted } = match work {
+            Work::Asked(asking) => *asking,
             Work::Refine => {
                 refine(shared, wake, &mut painter, last.as_ref());
                 continue;
@@ -286,6 +328,15 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
             drop(desk);
             wake();
         }
+        if let (Some(window), Some(last), None) = (ideal, &last, &wanted) {
+            let goes_on =
+                || !shared.newer.load(Ordering::Relaxed) && !shared.over.load(Ordering::Relaxed);
+            let drawn = catch_unwind(AssertUnwindSafe(|| painter.ideal(last, window, &goes_on)));
+            if let Ok(Some(picture)) = drawn {
+                shared.lock().news.ideal = Some((window, picture));
+                wake();
+            }
+        }
         let Some(wanted) = wanted else { continue };
         if !draw(shared, wake, &mut painter, &wanted, &mut outlined) {
             // A renderer that panicked may hold inconsistent buffers, so it is replaced.
@@ -299,7 +350,7 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
             shared.lock().news.explained = Some(explained);
             wake();
         }
-        last = Some(*wanted);
+        last = Some(wanted);
     }
 }
 
@@ -356,6 +407,10 @@ fn refine<P: Copy + Send>(
     match catch_unwind(AssertUnwindSafe(step)) {
         Ok(Finer::Refined(drawn)) => {
             shared.lock().news.refined = Some(*drawn);
+            wake();
+        }
+        Ok(Finer::Dial(figures)) => {
+            shared.lock().news.dial = Some(figures);
             wake();
         }
         Ok(Finer::Disturbed | Finer::Measured) => {}

@@ -54,7 +54,7 @@ impl App {
     fn compared_now(&self) -> Option<Compared> {
         let State { scene, view, settings, lab, .. } = &self.state;
         let size = self.viewport.size().filter(|_| lab.compare != Compare::Off)?;
-        let against = lab.against(settings);
+        let against = lab.reference;
         let (scene, view) = (scene.clone(), view.clone());
         Some(Compared { scene, view, settings: *settings, size, against })
     }

@@ -17,6 +17,7 @@ use crate::app::documents::material_dialog::{
 };
 use crate::app::documents::wanted::{After, Wanted};
 use crate::app::drawing::images;
+use crate::app::state::dial::DialState;
 use crate::app::state::{Notice, Offer, Reduction, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
@@ -395,6 +396,7 @@ impl App {
         let State { panels, theme, drawing, layout, overlays, greeting, .. } = self.state;
         let State { gizmo, helpers, watches, up, zoom, narrow, .. } = self.state;
         let statistics = self.state.statistics.clone();
+        let dial = DialState { shown: self.state.dial.shown, ..DialState::default() };
         let recent = std::mem::take(&mut self.state.recent);
         let recoverable = std::mem::take(&mut self.state.recoverable);
         let discarded = std::mem::take(&mut self.state.discarded);
@@ -409,6 +411,7 @@ impl App {
             drawing,
             layout,
             overlays,
+            dial,
             gizmo,
             helpers,
             watches,

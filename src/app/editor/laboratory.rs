@@ -10,12 +10,11 @@ use egui::Context;
 
 use super::App;
 use crate::app::actions::LabRequest;
-use crate::app::panels::Panel;
 use crate::app::state::State;
-use crate::app::state::laboratory::{Compare, Side};
+use crate::app::state::laboratory::Compare;
 use crate::app::tasks::{Outcome, Task};
 use marraztu_core::accuracy::Shot;
-use marraztu_core::accuracy::{AXES, Axis, Settings};
+use marraztu_core::accuracy::{AXES, Axis};
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::selection;
 use marraztu_io as io;
@@ -34,6 +33,8 @@ pub(crate) struct Work {
     watch: Watch,
     sweep: Option<Task<Result<Findings, Unmeasured>>>,
     suite: Option<Task<Result<Vec<Report>, Unmeasured>>>,
+    /// When the running measurement began.
+    begun: Option<Instant>,
     /// The latest intermediate findings.
     so_far: Arc<Mutex<Option<Findings>>>,
     blame: Option<Task<Option<Explained>>>,
@@ -57,6 +58,12 @@ impl Work {
     /// Returns the time between two drawings of the window.
     fn rest_now(&self) -> Duration {
         REST.max(PAIRS_BETWEEN * self.watch.pair())
+    }
+
+    /// Returns the seconds that the running measurement will still take; `None` in the beginning.
+    fn left(&self, fraction: f64) -> Option<f64> {
+        let spent = self.begun?.elapsed().as_secs_f64();
+        (fraction > 0.05 && spent > 1.0).then(|| spent * (1.0 - fraction) / fraction)
     }
 
     const fn is_measuring(&self) -> bool {
@@ -113,7 +120,7 @@ impl App {
             LabRequest::Measure(thoroughness) => self.sweep(ctx, thoroughness, all_axes()),
             LabRequest::MeasureAxis(key) => {
                 let axes = Axis::named(key).into_iter().collect();
-                self.sweep(ctx, Thoroughness { combinations: 0, ..Thoroughness::QUICK }, axes);
+                self.sweep(ctx, Thoroughness::AXIS, axes);
             }
             LabRequest::Suite(detail) => self.measure_suite(ctx, detail),
             LabRequest::ShowSuite(place) => lab.shown_suite = place,
@@ -140,18 +147,10 @@ impl App {
                 self.tell_report();
             }
             LabRequest::Compare(compare) => lab.compare = compare,
-            LabRequest::Sampled(sampled) => {
-                lab.reference = if sampled { Reference::Sampled } else { Reference::Exact };
-            }
+            LabRequest::Against(reference) => lab.reference = reference,
             LabRequest::Pick(picking) => lab.picking = picking,
             LabRequest::Attribute(at) => self.explain(ctx, at),
-            LabRequest::Side(side) => lab.side = side,
-            LabRequest::Lesson(key) => {
-                lab.lesson = Axis::named(key).unwrap_or(lab.lesson);
-                lab.side = Side::Lessons;
-                self.state.panels = self.state.panels.with(Panel::Laboratory, true);
-            }
-            LabRequest::ShowLesson(key) => self.show_lesson(key),
+            LabRequest::ShowLesson(key) => self.show_lesson(ctx, key),
             LabRequest::Back => self.back_to_scene(),
         }
     }
@@ -180,6 +179,7 @@ impl App {
         match Task::start(ctx, "Measuring".to_owned(), work) {
             Ok(task) => {
                 self.lab.sweep = Some(task);
+                self.lab.begun = Some(Instant::now());
                 let mut command = command(&self.state, size, &thoroughness);
                 if let Some(key) = only {
                     command += &format!(" --axes {key}");
@@ -209,6 +209,7 @@ impl App {
         match Task::start(ctx, "Measuring the suite".to_owned(), work) {
             Ok(task) => {
                 self.lab.suite = Some(task);
+                self.lab.begun = Some(Instant::now());
                 let lab = &mut self.state.lab;
                 (lab.running, lab.failed) = (Some(0.0), None);
             }
@@ -219,7 +220,8 @@ impl App {
     /// Shows the reports of the suite.
     fn hear_suite(&mut self, ctx: &Context) {
         let Some(task) = &self.lab.suite else { return };
-        self.state.lab.running = Some(task.progress.fraction());
+        let fraction = task.progress.fraction();
+        (self.state.lab.running, self.state.lab.left) = (Some(fraction), self.lab.left(fraction));
         match task.outcome() {
             Outcome::Running => return ctx.request_repaint_after(self.lab.rest_now()),
             Outcome::Done(Ok(reports)) => {
@@ -278,7 +280,8 @@ impl App {
         self.hear_blame();
         self.hear_suite(ctx);
         let Some(task) = &self.lab.sweep else { return };
-        self.state.lab.running = Some(task.progress.fraction());
+        let fraction = task.progress.fraction();
+        (self.state.lab.running, self.state.lab.left) = (Some(fraction), self.lab.left(fraction));
         let outcome = task.outcome();
         let so_far = self.lab.so_far.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let Some(findings) = so_far {
@@ -340,25 +343,28 @@ impl App {
         }
     }
 
-    /// Opens the scene of a lesson with the settings that show its effect best, and sets the user's
-    /// scene aside.
-    pub(crate) fn show_lesson(&mut self, key: &str) {
+    /// Shows the lesson on an axis in its scene, with the settings that show its effect best, and
+    /// sets the user's scene aside. The choices of the axis are measured, for the lesson to quote.
+    pub(crate) fn show_lesson(&mut self, ctx: &Context, key: &str) {
         let Some(axis) = Axis::named(key) else { return };
-        match io::lesson_scene(axis.lesson.scene) {
+        let lesson = io::lesson_on(axis);
+        match io::lesson_scene(&lesson.scene) {
             Ok(opened) => {
-                let settings = axis.lesson_choice().of(&Settings::default());
+                let settings = lesson.settings();
                 let mut state = State { settings, ..State::new(opened.scene, opened.view) };
                 selection::settle(&state.scene, &mut state.view);
-                (state.lab.lesson, state.lab.side) = (axis, Side::Lessons);
+                state.lab.lesson = Some(lesson);
                 state.lab.compare = compare_of(axis);
-                state.lab.reference = Reference::of(axis);
+                state.lab.reference = Reference::Alone(axis);
                 state.lab.away = true;
                 state.lab.costs.clone_from(&self.state.lab.costs);
-                state.tell(Some(format!("Lesson: {}", axis.lesson.title)));
                 // A lesson opened from a lesson keeps the user's scene, not the lesson's.
                 let own = self.swap(state);
                 if !own.lab.away {
                     self.waiting_scene = Some(Box::new(own));
+                }
+                if !self.state.lab.costs.contains_key(axis.key) {
+                    self.sweep(ctx, Thoroughness::AXIS, vec![axis]);
                 }
             }
             Err(error) => self.dialogs.tell_fault(format!("{error}.")),
@@ -368,7 +374,6 @@ impl App {
     /// Returns from the scene of a lesson to the user's scene, with its complete state.
     pub(crate) fn back_to_scene(&mut self) {
         let Some(mut own) = self.waiting_scene.take() else { return };
-        (own.lab.lesson, own.lab.side) = (self.state.lab.lesson, self.state.lab.side);
         own.lab.costs = std::mem::take(&mut self.state.lab.costs);
         own.tell(Some("Back in your scene".to_owned()));
         self.swap(*own);

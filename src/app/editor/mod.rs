@@ -5,6 +5,7 @@
 
 mod clipboard;
 mod comparing;
+mod dialling;
 mod explaining;
 mod exposing;
 mod files;
@@ -84,6 +85,8 @@ pub struct App {
     motion: Motion,
     /// The time of the last frame with an animated scene.
     moved_at: Option<f64>,
+    /// When the key of the loupe was pressed, while it is held.
+    loupe_held: Option<f64>,
     /// The times of the pictures of the last second.
     shown_at: VecDeque<f64>,
     title: String,
@@ -118,6 +121,7 @@ impl App {
             leaving: false,
             motion: Motion::default(),
             moved_at: None,
+            loupe_held: None,
             shown_at: VecDeque::new(),
             title: String::new(),
             first_steps: None,
@@ -162,6 +166,7 @@ impl App {
     pub fn editor_ui(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         let mut requests = Vec::new();
+        self.note_dial();
         let _touch = self.lab.touch();
         self.begin(&ctx, &mut requests);
         self.state.zoom = ctx.zoom_factor();
@@ -274,6 +279,9 @@ impl App {
                 let rate = u32::try_from(self.shown_at.len()).unwrap_or(u32::MAX);
                 self.state.statistics.note(drawn, rate);
             }
+            if let Some(figures) = &news.dial {
+                self.state.dial.last = Some(figures.clone());
+            }
             if let Some(explained) = &news.explained {
                 self.state.plan.explained = Some(Arc::clone(explained));
             }
@@ -289,6 +297,7 @@ impl App {
             }
         }
         self.tick(ctx);
+        self.release_loupe(ctx);
         // On a high-density screen, a line of one pixel is hardly visible.
         self.state.view.wide_lines = ctx.pixels_per_point() >= 1.5;
     }
@@ -323,6 +332,7 @@ impl App {
             coarse,
             budget,
             refined,
+            dial: self.state.dial_refined_to(),
             explain,
             outlined,
         };

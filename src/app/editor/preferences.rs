@@ -40,6 +40,7 @@ impl App {
         state.theme = theme;
         state.panels = OpenPanels::of_kept(&it.panels);
         state.overlays = it.overlays;
+        state.dial.shown = it.dial;
         state.helpers = it.helpers;
         state.watches = it.watches;
         state.up = it.up;

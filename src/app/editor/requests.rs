@@ -49,6 +49,7 @@ impl App {
         }
         if std::mem::take(&mut self.state.aiming)
             || std::mem::take(&mut self.state.explaining)
+            || std::mem::take(&mut self.state.loupe)
             || std::mem::take(&mut self.state.lab.picking)
             || Panel::MOMENTARY.into_iter().any(|panel| self.closes(panel))
             || self.state.renaming.take().is_some()
@@ -208,6 +209,9 @@ impl App {
             Ok(Intent::FitExposure) => self.fit_exposure(),
             Ok(Intent::Helpers(helpers)) => self.state.helpers = helpers,
             Ok(Intent::Gizmo) => self.state.gizmo ^= true,
+            Ok(Intent::Dial) => self.state.dial.shown ^= true,
+            Ok(Intent::Loupe) => self.toggle_loupe(ctx),
+            Ok(Intent::Settings(settings)) => self.state.settings = settings,
             Ok(Intent::Coarse) => self.state.coarse_while_moving ^= true,
             Ok(Intent::TypeAmount) => self.type_amount(ctx),
             Ok(Intent::Others(others)) => self.state.several = others,

@@ -199,9 +199,9 @@ mod tests {
     #[test]
     fn names_that_mean_nothing_are_said_and_change_nothing() {
         let (keymap, said) =
-            read(&[("Rename", "Hyper+Q"), ("Undo", "k Hyper+Z"), ("Nothing", "x")]);
+            read(&[("Rename", "Hyper+Q"), ("Undo", "j Hyper+Z"), ("Nothing", "x")]);
         assert_eq!(keymap.keys(Action::Rename), Action::Rename.info().keys);
-        assert_eq!(keymap.keys(Action::Undo), [Chord::Lower(Key::K)]);
+        assert_eq!(keymap.keys(Action::Undo), [Chord::Lower(Key::J)]);
         let expected = [
             "This version has no action \"Nothing\".",
             "\"Hyper+Q\" cannot be a key of \"Rename\".",
@@ -222,8 +222,8 @@ mod tests {
             ("ToggleViewPanel", Panel::View),
         ];
         for (name, panel) in older {
-            let (keymap, said) = read(&[(name, "k")]);
-            assert_eq!(keymap.keys(Action::Panel(panel)), [Chord::Lower(Key::K)], "{name}");
+            let (keymap, said) = read(&[(name, "j")]);
+            assert_eq!(keymap.keys(Action::Panel(panel)), [Chord::Lower(Key::J)], "{name}");
             assert!(said.is_empty(), "{said:?}");
         }
     }
@@ -239,7 +239,7 @@ mod tests {
         );
         assert_eq!(Keymap::of_names(&keymap.names()), (keymap, Vec::new()), "it is said once");
         // If the user has given two actions the same key, the first one in the table keeps it.
-        let (keymap, said) = read(&[("Redo", "k"), ("Undo", "k x")]);
+        let (keymap, said) = read(&[("Redo", "j"), ("Undo", "j x")]);
         assert!(keymap.keys(Action::Redo).is_empty() && keymap.keys(Action::StepXUp).is_empty());
         assert_eq!((keymap.keys(Action::Undo).len(), said.len()), (2, 2));
     }

@@ -3,7 +3,7 @@
 use egui::{Frame, Layout, Margin, Rect, Ui, UiBuilder};
 
 use super::{Dock, Panel, Side, each_panel};
-use super::{greeting, menu_bar, palette, splitters, status_line};
+use super::{dial, greeting, lesson_card, menu_bar, palette, splitters, status_line};
 use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::state::layout::Places;
@@ -53,7 +53,9 @@ impl Arrangement {
         for panel in Panel::ALL.iter().filter(open) {
             contents(*panel)(&mut child, state, requests);
         }
+        dial::show(ui, self.places.picture, state, requests);
         greeting::show(ui, self.places.picture, state, requests);
+        lesson_card::show(ui, self.places.picture, state, requests);
         splitters::show(ui, state, self.area, &self.places, requests);
     }
 }

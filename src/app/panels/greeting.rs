@@ -10,7 +10,7 @@ use crate::app::theme;
 use crate::app::widgets::regions;
 use crate::app::widgets::text::file_name;
 use marraztu_core::accuracy::Axis;
-use marraztu_io::EXAMPLES;
+use marraztu_io::{EXAMPLES, lesson_on};
 
 /// The lessons to offer, by their axes, with their topics.
 const LESSONS: [(&str, &str); 3] =
@@ -69,7 +69,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.horizontal_wrapped(|ui| {
         ui.weak("Or try a lesson:");
         for (key, about) in LESSONS {
-            let hint = Axis::named(key).map_or("", |axis| axis.lesson.title);
+            let hint = Axis::named(key).map_or("", |axis| lesson_on(axis).title.as_str());
             if ui.button(about).on_hover_text(hint).clicked() {
                 requests.push(Request::Lab(LabRequest::ShowLesson(key)));
             }

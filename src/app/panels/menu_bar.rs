@@ -14,8 +14,7 @@ use crate::app::theme;
 use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::text::file_name;
-use marraztu_core::accuracy::AXES;
-use marraztu_io::EXAMPLES;
+use marraztu_io::{EXAMPLES, lessons};
 
 /// The actions of [`Group::Window`] in the submenu for themes.
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];
@@ -231,14 +230,13 @@ fn recent_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
-/// Lists the lessons; a click shows one in the laboratory.
+/// Lists the lessons; a click shows one in its scene.
 fn lessons_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
-    for axis in AXES {
-        let title = axis.lesson.title;
-        let response = ui.button(title);
-        response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, title));
-        if response.on_hover_text(axis.lesson.what).clicked() {
-            requests.push(Request::Lab(LabRequest::Lesson(axis.key)));
+    for lesson in lessons() {
+        let response = ui.button(&lesson.title);
+        response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, &lesson.title));
+        if response.on_hover_text(&lesson.why).clicked() {
+            requests.push(Request::Lab(LabRequest::ShowLesson(&lesson.axis)));
             ui.close();
         }
     }

@@ -7,9 +7,11 @@
 mod about;
 pub(crate) mod arrange;
 mod cheat_sheet;
+mod dial;
 mod greeting;
 mod history;
 mod lab;
+mod lesson_card;
 mod menu_bar;
 pub(crate) mod notices;
 mod outline;
@@ -202,11 +204,13 @@ impl OpenPanels {
         self.with(panel, !self.has(panel))
     }
 
-    /// Returns these panels without the ones that Esc closes.
+    /// Returns these panels without the ones that Esc closes, and without the laboratory, which
+    /// would take half of the next start.
     #[must_use]
     pub const fn lasting(self) -> Self {
         let [a, b, c] = Panel::MOMENTARY;
-        self.with(a, false).with(b, false).with(c, false)
+        let without = self.with(a, false).with(b, false).with(c, false);
+        without.with(Panel::Laboratory, false)
     }
 
     /// Converts the set to the form in files.

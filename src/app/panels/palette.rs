@@ -15,11 +15,11 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::color_picker::hexadecimal;
 use crate::app::widgets::controls;
-use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES};
+use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset};
 use marraztu_core::base::color::Color;
 use marraztu_core::edit::{Gesture, items, several};
 use marraztu_core::scene::{Command, ItemId, Material, MaterialChoice, Object, ObjectId, PresetId};
-use marraztu_io::EXAMPLES;
+use marraztu_io::{EXAMPLES, lessons};
 
 const WIDTH: f32 = 560.0;
 
@@ -301,7 +301,8 @@ fn settings(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
             entries.push(Entry { label, kind, hint, key, on, refused, score, request });
         }
     };
-    for preset in ACCURACY_PRESETS {
+    // The presets of the dial are actions.
+    for preset in &ACCURACY_PRESETS[AccuracyPreset::dial().len()..] {
         let to = preset.of(&now);
         let label = format!("Accuracy: {}", preset.label);
         add(label, "quality preset", "Setting", preset.what, to == now, Request::Settings(to));
@@ -312,9 +313,11 @@ fn settings(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
             let to = Request::Settings(choice.of(&now));
             add(label, "accuracy quality", "Setting", choice.what, choice.is(&now), to);
         }
-        let lesson = Request::Lab(LabRequest::Lesson(axis.key));
-        let label = format!("Lesson: {}", axis.lesson.title);
-        add(label, "learn help", "Lesson", axis.lesson.what, false, lesson);
+    }
+    for lesson in lessons() {
+        let show = Request::Lab(LabRequest::ShowLesson(&lesson.axis));
+        let label = format!("Lesson: {}", lesson.title);
+        add(label, "learn help", "Lesson", &lesson.why, false, show);
     }
     for example in EXAMPLES {
         let open = Request::LoadFiles(vec![example.path.into()]);

@@ -144,6 +144,12 @@ const ROWS: &[Row] = &[
         copy: |from, to| to.overlays = from.overlays,
     },
     Row {
+        label: "Accuracy dial",
+        hint: "What accuracy costs in this view, measured while nothing moves.",
+        ui: |ui, it, _| switch(ui, "Shown over the picture", &mut it.dial),
+        copy: |from, to| to.dial = from.dial,
+    },
+    Row {
         label: "Gizmo",
         hint: "Handles that move, rotate and scale the selection.",
         ui: |ui, it, _| switch(ui, "Shown over the selection", &mut it.gizmo),
@@ -240,6 +246,7 @@ pub(crate) fn now(ctx: &egui::Context, state: &State, before: Option<[f32; 2]>) 
         maximized,
         shares: state.layout.shares(),
         overlays: state.overlays,
+        dial: state.dial.shown,
         helpers: state.helpers,
         watches: state.watches,
         up: state.up,
@@ -339,6 +346,7 @@ mod tests {
             maximized: true,
             shares: [("left".to_owned(), 200.0)].into(),
             overlays: false,
+            dial: false,
             helpers,
             watches: true,
             up: UpAxis::Z,

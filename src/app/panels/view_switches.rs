@@ -34,7 +34,9 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             ui.spacing_mut().item_spacing.y = 0.0;
             // Flat shading is in the section above.
             let here = |action: &Action| {
-                *action != Action::ToggleLightNormals && !Group::OVER_PICTURE.contains(action)
+                *action != Action::ToggleLightNormals
+                    && !Group::OVER_PICTURE.contains(action)
+                    && action.preset().is_none()
             };
             for action in Group::Show.actions().filter(here) {
                 action_switch(ui, state, requests, action);

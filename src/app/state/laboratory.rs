@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::State;
-use marraztu_core::accuracy::{AXES, Axis, Samples, Settings};
+use crate::app::drawing::snapshot::pictured;
+use marraztu_core::accuracy::{AXES, Settings};
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{Scene, View};
+use marraztu_io::Lesson;
 use marraztu_lab::error::{Error, Measure, Region};
 use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::{Budgets, Report, brief};
@@ -21,6 +23,8 @@ pub struct Laboratory {
     pub shown_suite: Option<usize>,
     /// The progress of the running measurement, from 0 to 1.
     pub running: Option<f64>,
+    /// The seconds that the running measurement will still take, if they can be told.
+    pub left: Option<f64>,
     /// The error message of the last measurement, if it failed.
     pub failed: Option<String>,
     /// The error metric.
@@ -33,7 +37,7 @@ pub struct Laboratory {
     pub budgets: Budgets,
     /// How the picture is compared with the exact one.
     pub compare: Compare,
-    /// The picture to compare with; several samples per pixel are always compared with 256.
+    /// The picture to compare with.
     pub reference: Reference,
     /// The error of the picture at the last comparison.
     pub judged: Option<Judged>,
@@ -41,14 +45,12 @@ pub struct Laboratory {
     pub picking: bool,
     /// The last attribution, in lines.
     pub attribution: Option<Vec<String>>,
-    /// The axis of the lesson on show.
-    pub lesson: &'static Axis,
+    /// The lesson on show.
+    pub lesson: Option<&'static Lesson>,
     /// Whether the scene is that of a lesson, with the user's scene to return to.
     pub away: bool,
     /// The measured effect of each axis, as a sentence, by the axis's key.
     pub costs: BTreeMap<&'static str, String>,
-    /// The panel next to the plots.
-    pub side: Side,
     /// The scene, the view and the size that were measured.
     pub(crate) measured: Option<(Scene, View, Size)>,
 }
@@ -60,6 +62,7 @@ impl Default for Laboratory {
             suite: Vec::new(),
             shown_suite: None,
             running: None,
+            left: None,
             failed: None,
             measure: Measure::default(),
             region: Region::default(),
@@ -72,21 +75,10 @@ impl Default for Laboratory {
             judged: None,
             picking: false,
             attribution: None,
-            lesson: &AXES[0],
-            side: Side::Table,
+            lesson: None,
             measured: None,
         }
     }
-}
-
-/// The panel next to the plots.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Side {
-    /// Every choice with its measurements.
-    #[default]
-    Table,
-    /// A lesson about each axis.
-    Lessons,
 }
 
 impl Laboratory {
@@ -106,24 +98,11 @@ impl Laboratory {
         }
     }
 
-    /// Returns the picture to compare with: several samples per pixel are compared with 256.
-    pub(crate) fn against(&self, settings: &Settings) -> Reference {
-        if settings.samples == Samples::One { self.reference } else { Reference::Sampled }
-    }
-
     /// Returns whether the measured scene, view or size differs from the viewport's.
     #[must_use]
     pub fn is_stale(&self, state: &State) -> bool {
         self.measured.as_ref().is_some_and(|(scene, view, size)| {
-            // The item that the keys act on and the size of their steps do not affect the picture.
-            let same_view = View {
-                subject: view.subject,
-                light: view.light,
-                transformation: view.transformation,
-                frame: view.frame,
-                steps: view.steps,
-                ..state.view.clone()
-            } == *view;
+            let same_view = pictured(&state.view) == pictured(view);
             let same_size = state.statistics.size == *size;
             !same_view || !same_size || *scene != state.scene
         })

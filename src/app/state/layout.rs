@@ -144,7 +144,7 @@ impl Layout {
         let mut rest = area;
         // The laboratory spans the width of the window, so it is cut off first.
         let laboratory = panels.has(Panel::Laboratory).then(|| {
-            let height = share(area.height(), self.laboratory.unwrap_or(0.58), 150.0, 150.0);
+            let height = share(area.height(), self.laboratory.unwrap_or(0.5), 150.0, 150.0);
             let (above, place) = cut(rest, area.bottom() - height);
             rest = above;
             place

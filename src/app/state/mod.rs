@@ -1,5 +1,6 @@
 //! Everything that panels read. Only the app writes it.
 
+pub mod dial;
 pub mod laboratory;
 mod last_picture;
 pub mod layout;
@@ -13,6 +14,7 @@ use egui::ThemePreference;
 
 pub use crate::app::drawing::reduction::{Reduction, Shrink};
 use crate::app::panels::OpenPanels;
+use dial::DialState;
 use laboratory::Laboratory;
 pub use last_picture::{ExplainedPixel, Measured, Plan, Statistics};
 use layout::Layout;
@@ -61,6 +63,10 @@ pub struct State {
     pub palette: bool,
     /// Whether the selection's outline, axes and marks of lights are drawn over the picture.
     pub overlays: bool,
+    /// The dial over the picture.
+    pub dial: DialState,
+    /// Whether the loupe is shown at the pointer.
+    pub loupe: bool,
     /// Whether handles to move, rotate and scale the selection lie over the picture.
     pub gizmo: bool,
     /// The other helpers drawn over the picture.
@@ -153,6 +159,8 @@ impl State {
             layout: Layout::default(),
             palette: false,
             overlays: true,
+            dial: DialState::default(),
+            loupe: false,
             gizmo: true,
             helpers: Helpers::default(),
             watches: false,

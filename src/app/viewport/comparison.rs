@@ -14,8 +14,7 @@ use crate::app::state::laboratory::{Compare, in_words};
 use crate::app::tasks::Task;
 use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
-use marraztu_core::accuracy::Settings;
-use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{Settings, Shot, uncapitalized};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{Scene, View};
 use marraztu_io::Progress;
@@ -50,7 +49,7 @@ pub(crate) struct Drawing {
 pub(crate) fn draw(of: Compared, progress: &Progress) -> Option<Pair> {
     let shot = Shot::new(&of.scene, &of.view, &of.settings, of.size);
     let mut studio = Studio::watched(shot, progress.clone());
-    let exact = studio.reference(&of.settings, of.against);
+    let exact = studio.rendering(&of.against.of(&of.settings));
     if progress.is_cancelled() {
         return None;
     }
@@ -105,12 +104,18 @@ impl Comparison {
     pub(crate) fn ui(&mut self, ui: &Ui, rect: Rect, state: &State, requests: &mut Vec<Request>) {
         match state.lab.compare {
             Compare::Off => {}
-            Compare::Split(part) => self.split_ui(ui, rect, part, requests),
+            Compare::Split(part) => self.split_ui(ui, rect, (part, state), requests),
             Compare::Error(factor) => self.error_ui(ui, rect, factor),
         }
     }
 
-    fn split_ui(&self, ui: &Ui, rect: Rect, part: f32, requests: &mut Vec<Request>) {
+    fn split_ui(
+        &self,
+        ui: &Ui,
+        rect: Rect,
+        (part, state): (f32, &State),
+        requests: &mut Vec<Request>,
+    ) {
         let scale = ui.ctx().pixels_per_point();
         // The split is aligned to whole pixels, so it cuts through none.
         let x = ((rect.left() + part * rect.width()) * scale).round() / scale;
@@ -131,15 +136,23 @@ impl Comparison {
         let response = ui.interact(grip_at(rect, part), Id::unique("split"), Sense::drag());
         let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
         response.widget_info(|| {
-            egui::WidgetInfo::slider(true, f64::from(part), "Split between exact and drawn")
+            egui::WidgetInfo::slider(
+                true,
+                f64::from(part),
+                "Split between the reference and the picture",
+            )
         });
         ui.painter().rect_filled(handle, 4.0, theme::accent(ui.visuals()));
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
             let part = ((at.x - rect.left()) / rect.width()).clamp(0.02, 0.98);
             requests.push(Request::Lab(LabRequest::Compare(Compare::Split(part))));
         }
-        let exact = if self.current { "exact" } else { "exact: drawing" };
-        plate_ui(ui, left.with_max_x(x - 4.0), Align2::RIGHT_TOP, exact.to_owned());
+        let name = match state.lab.reference {
+            Reference::Ideal => "ideal".to_owned(),
+            Reference::Alone(axis) => format!("exact {}", uncapitalized(axis.label)),
+        };
+        let name = if self.current { name } else { format!("{name}: drawing") };
+        plate_ui(ui, left.with_max_x(x - 4.0), Align2::RIGHT_TOP, name);
         plate_ui(ui, rect.with_min_x(x + 4.0), Align2::LEFT_TOP, "drawn".to_owned());
     }
 
@@ -204,12 +217,14 @@ fn load(ctx: &Context, texture: &mut Option<TextureHandle>, name: &str, picture:
 #[cfg(test)]
 mod tests {
     use super::*;
+    use marraztu_core::accuracy::AXES;
 
     #[test]
     fn a_comparison_that_is_cancelled_gives_no_pictures() {
         let (scene, view) = marraztu_io::default_scene();
         let (settings, size) = (Settings::default(), Size::new(64, 48));
-        for against in [Reference::Exact, Reference::Sampled] {
+        let shading = Reference::Alone(&AXES[0]);
+        for against in [Reference::Ideal, shading] {
             let (scene, view) = (scene.clone(), view.clone());
             let of = Compared { scene, view, settings, size, against };
             let progress = Progress::new();

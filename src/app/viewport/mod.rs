@@ -8,6 +8,7 @@ mod clicks;
 pub(crate) mod comparison;
 pub(crate) mod gizmo;
 mod helpers;
+mod loupe;
 mod marks;
 mod menu;
 mod mouse;
@@ -31,6 +32,7 @@ use crate::app::input::keyboard::{Keyboard, Letters};
 use crate::app::state::State;
 use crate::app::widgets::plate::plate_ui;
 use gizmo::{Gizmo, Grab};
+use loupe::Loupe;
 use marks::Projection;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::ItemId;
@@ -76,6 +78,7 @@ pub(crate) struct Viewport {
     stale: bool,
     /// The item of the last border requested for this picture.
     asked: Option<ItemId>,
+    loupe: Loupe,
     /// The pixel and the observer of the last click. A second click there selects the item behind.
     clicked: Option<([usize; 2], DMat4)>,
 }
@@ -143,7 +146,11 @@ impl Viewport {
         if let Some(outline) = news.outline {
             self.outline = outline;
         }
+        if let Some((window, picture)) = news.ideal {
+            self.loupe.take(window, picture);
+        }
         if let Some(drawn) = news.drawn {
+            self.loupe.forget();
             self.take(ctx, drawn.image);
             // A new picture may show another item under the pointer; until the pick, the old hit is
             // used.
@@ -210,7 +217,17 @@ impl Viewport {
         self.border_ui(ui, worker);
         self.over_ui(ui, state, &response, &projection, &over);
         self.overlay(ui, state);
+        self.loupe_ui(ui, state, &response, worker);
         self.menu_ui(ui, state, requests);
+    }
+
+    /// Shows the loupe at the pointer.
+    fn loupe_ui(&mut self, ui: &Ui, state: &State, response: &Response, worker: &Worker<Purpose>) {
+        let Some(pointer) = response.hover_pos().filter(|_| state.loupe) else { return };
+        let at = self.pixel(pointer);
+        let (Some((rect, size)), Some(image)) = (self.place, &self.image) else { return };
+        let ask = |window| worker.ideal(window);
+        self.loupe.ui(ui, (rect, size, at), (image, pointer), ask);
     }
 
     /// Picks the pixel under the pointer, once for each pixel that the pointer enters.

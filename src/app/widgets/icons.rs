@@ -42,6 +42,8 @@ pub(crate) enum Icon {
     Redo,
     /// Search.
     Search,
+    /// The loupe.
+    Loupe,
     /// Up.
     Up,
     /// Down.
@@ -106,6 +108,7 @@ impl Icon {
             Self::Undo => icons::ICON_UNDO,
             Self::Redo => icons::ICON_REDO,
             Self::Search => icons::ICON_SEARCH,
+            Self::Loupe => icons::ICON_ZOOM_IN,
             Self::Up => icons::ICON_KEYBOARD_ARROW_UP,
             Self::Down => icons::ICON_KEYBOARD_ARROW_DOWN,
             Self::Left => icons::ICON_KEYBOARD_ARROW_LEFT,

@@ -9,7 +9,8 @@ use crate::app::theme;
 use crate::app::widgets::controls::{Choice, Switch, choices, choices_in_rows, row};
 use crate::app::widgets::number::Number;
 use crate::app::widgets::regions;
-use marraztu_core::accuracy::Samples;
+use marraztu_core::accuracy::{AXES, Axis, uncapitalized};
+use marraztu_io::Lesson;
 use marraztu_lab::candidates::Thoroughness;
 use marraztu_lab::error::{Measure, Region};
 use marraztu_lab::picture_source::Reference;
@@ -68,6 +69,9 @@ fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             }
         }
     });
+    if let Some(left) = lab.left.filter(|_| lab.running.is_some()) {
+        ui.weak(format!("About {left:.0} seconds left"));
+    }
     if let Some(why) = &lab.failed {
         ui.colored_label(theme::error(ui.visuals()), format!("Not measured: {why}."));
     }
@@ -187,7 +191,7 @@ fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let is_split = matches!(now, Compare::Split(_));
     let all = [
         ("Off", now == Compare::Off, "Shows only the picture", Compare::Off),
-        ("Split", is_split, "Shows the exact picture to the left of a slider", Compare::Split(0.5)),
+        ("Split", is_split, "Shows the ideal to the left of a slider", Compare::Split(0.5)),
         ("x1", now == Compare::Error(1), "Shows the error", Compare::Error(1)),
         ("x16", now == Compare::Error(16), "Shows 16 times the error", Compare::Error(16)),
         ("x256", now == Compare::Error(256), "Shows 256 times the error", Compare::Error(256)),
@@ -197,17 +201,37 @@ fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     if let Some(clicked) = row(ui, "Compare", |ui| choices(ui, &shown)) {
         requests.push(Request::Lab(LabRequest::Compare(all[clicked].3)));
     }
-    let one = state.settings.samples == Samples::One;
-    if now != Compare::Off && one {
-        let sampled = state.lab.reference == Reference::Sampled;
-        let switch = Switch::new("With 256 samples per pixel", sampled).ui(ui);
-        let hint = "Compares with the mean of 256 samples per pixel, each lit, instead of one";
-        if switch.on_hover_text(hint).clicked() {
-            requests.push(Request::Lab(LabRequest::Sampled(!sampled)));
-        }
+    if now != Compare::Off {
+        with_ui(ui, state, requests);
     }
     if let (Some(judged), true) = (&state.lab.judged, now != Compare::Off) {
         ui.label(RichText::new(format!("Error: {}", in_words(&judged.error))).small());
+    }
+}
+
+/// Chooses the picture to compare with: the ideal, or the one that differs in a single axis.
+fn with_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let now = state.lab.reference;
+    let alone = match now {
+        Reference::Alone(axis) => axis,
+        Reference::Ideal => {
+            let lesson = state.lab.lesson.map(Lesson::axis);
+            state.lab.panel.and_then(Axis::named).or(lesson).unwrap_or(&AXES[0])
+        }
+    };
+    let all = [Reference::Ideal, Reference::Alone(alone)];
+    let label = format!("Exact {}", uncapitalized(alone.label));
+    let hints = [
+        "256 samples per pixel, each lit, with every choice at its most exact",
+        "The same settings, except that this axis is at its most exact",
+    ];
+    let shown: Vec<Choice<'_>> = all
+        .iter()
+        .zip(["Ideal", label.as_str()].into_iter().zip(hints))
+        .map(|(with, (label, hint))| Choice::new("Compare with", label, *with == now, hint))
+        .collect();
+    if let Some(clicked) = row(ui, "With", |ui| choices(ui, &shown)) {
+        requests.push(Request::Lab(LabRequest::Against(all[clicked])));
     }
 }
 

@@ -11,6 +11,7 @@ use crate::app::theme;
 use crate::app::widgets::controls::{self, Choice, choices_in_rows};
 use crate::app::widgets::regions;
 use marraztu_lab::report::{Panel, PanelMark, Panels, Report, TextBox, brief, place};
+use marraztu_lab::sweep::{Against, Row};
 
 /// The usual height of a plot with its title, 420 points and a line, if the panel is high enough.
 const USUAL: f32 = 444.0;
@@ -18,7 +19,7 @@ const USUAL: f32 = 444.0;
 /// The minimum height, in a panel that is lower.
 const LEAST: f32 = 200.0;
 
-/// The height reserved for the verdict under the plot, if the panel is high enough.
+/// The height reserved for the verdict above the plot, if the panel is high enough.
 const VERDICT: f32 = 84.0;
 
 /// The radius of a mark.
@@ -42,20 +43,22 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     };
     let panels = Panels::new(report);
     let panel = panels.of(state.lab.panel);
-    panels_ui(ui, &panels, panel, requests);
     let height = height(ui.available_height());
     let area = ScrollArea::vertical().id_salt("plots").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
-        let size = vec2(ui.available_width(), height);
-        ui.allocate_ui(size, |ui| panel_ui(ui, (&panels, panel), (state, report), requests));
+        // The verdict comes first: it answers the question.
         for sentence in report.verdict() {
             ui.add(egui::Label::new(sentence).wrap());
         }
+        ui.add_space(theme::GAP);
+        panels_ui(ui, &panels, panel, requests);
+        let size = vec2(ui.available_width(), height);
+        ui.allocate_ui(size, |ui| panel_ui(ui, (&panels, panel), (state, report), requests));
     });
 }
 
 /// Returns the height of the plot. In a low panel the plot takes all of the height, so its scales
-/// are visible, and the user scrolls to the verdict.
+/// are visible when the user scrolls to it.
 fn height(room: f32) -> f32 {
     (room - VERDICT).max(room.min(USUAL)).max(LEAST)
 }
@@ -63,16 +66,44 @@ fn height(room: f32) -> f32 {
 fn empty_ui(ui: &mut Ui, state: &State) {
     let text = match state.lab.running {
         Some(_) => {
-            "The exact pictures are drawn first. Then the default is measured against itself to \
-                find the noise."
+            "The ideal is drawn first. Then the default is measured against itself to find the \
+                noise."
         }
         None => {
             "What does accuracy cost? Measure draws this picture with every choice, and plots the \
                 time and the error of each here."
         }
     };
-    ui.add_space(ui.available_height() * 0.35);
+    ui.add_space(theme::GAP);
     ui.vertical_centered(|ui| ui.add(egui::Label::new(text).wrap()));
+    let size = vec2(ui.available_width(), (ui.available_height() - 8.0).clamp(60.0, 220.0));
+    let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+    sketch_ui(ui, rect);
+}
+
+/// Sketches the plot that a measurement will show: a falling line of choices.
+fn sketch_ui(ui: &Ui, rect: Rect) {
+    let frame = Rect::from_center_size(rect.center(), vec2(rect.width().min(420.0), rect.height()));
+    let frame = frame.shrink2(vec2(34.0, 16.0));
+    let faint = ui.visuals().weak_text_color().gamma_multiply(0.6);
+    let line = Stroke::new(1.0, faint);
+    let painter = ui.painter();
+    painter.line_segment([frame.left_top(), frame.left_bottom()], line);
+    painter.line_segment([frame.left_bottom(), frame.right_bottom()], line);
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let label = |at: Pos2, align: egui::Align2, text: &str| {
+        painter.text(at, align, text, font.clone(), faint);
+    };
+    label(frame.right_bottom() + vec2(0.0, 2.0), egui::Align2::RIGHT_TOP, "time");
+    label(frame.left_top() - vec2(4.0, 0.0), egui::Align2::RIGHT_TOP, "error");
+    let marks =
+        [("Draft", 0.06, 0.1), ("Default", 0.3, 0.55), ("Exact", 0.66, 0.8), ("Ideal", 0.95, 0.97)];
+    let at = |(_, x, y): &(&str, f32, f32)| frame.min + vec2(*x, *y) * frame.size();
+    let _ = painter.line(marks.iter().map(at).collect(), Stroke::new(1.5, faint));
+    for mark in &marks {
+        painter.circle_filled(at(mark), MARK, faint);
+        label(at(mark) + vec2(8.0, -8.0), egui::Align2::LEFT_BOTTOM, mark.0);
+    }
 }
 
 /// Shows the choice between the scene on screen and the scenes of the suite.
@@ -264,10 +295,12 @@ fn tip_ui(ui: &mut Ui, mark: &PanelMark, report: &Report) {
         point.ratio.pairs,
     ));
     let in_words = crate::app::state::laboratory::in_words;
-    ui.label(format!("Error: {}; FLIP {}", in_words(&point.error), brief(point.error.flip)));
-    if let Some(sampled) = &point.sampled {
-        let rmse = brief(sampled.whole.rmse);
-        ui.label(format!("Against 256 samples per pixel, each lit: RMSE {rmse}"));
+    let is_it = |row: &&Row| row.point == mark.point && row.against == Against::Axis;
+    if let Some(row) = report.findings.rows.iter().find(is_it) {
+        ui.label(format!("What this axis alone changes: {}", in_words(&row.error)));
+    }
+    if let Some(ideal) = &point.ideal {
+        ui.label(format!("Against the ideal: {}; FLIP {}", in_words(ideal), brief(ideal.flip)));
     }
     ui.weak("Click to draw the picture with these settings.");
 }

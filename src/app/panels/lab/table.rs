@@ -8,8 +8,8 @@ use crate::app::theme;
 use crate::app::widgets::controls::{focus_ring, no_narrower, put_text, text};
 use crate::app::widgets::regions;
 use marraztu_lab::error::{Error, Region};
-use marraztu_lab::report::{Report, brief, heading};
-use marraztu_lab::sweep::{Measured, Row, Verdict};
+use marraztu_lab::report::{Report, brief, heading, left_out_in_words};
+use marraztu_lab::sweep::{Measured, Row, TOO_BUSY, Verdict};
 
 /// A column of the table.
 struct Column {
@@ -28,13 +28,13 @@ const NAMES: f32 = 0.30;
 const COLUMNS: [Column; 7] = [
     Column {
         heading: "time",
-        hint: "Time relative to the default: the median ratio of the pairs",
+        hint: "Time relative to the default, each without the disturbances of other programs",
         share: 0.09,
         value: |point, _, _| format!("{:.2}", point.ratio.quartiles.median),
     },
     Column {
-        heading: "IQR",
-        hint: "The interquartile range of the pairs' ratios: the middle half of them",
+        heading: "spread",
+        hint: "The quartiles of the ratio, by a bootstrap over the pairs",
         share: 0.15,
         value: |point, _, _| {
             let quartiles = &point.ratio.quartiles;
@@ -145,7 +145,7 @@ fn row_ui(
     (place, on_front): (Place, bool),
     requests: &mut Vec<Request>,
 ) {
-    let (point, error) = (&report.findings.points[row.point], report.findings.error_of(row));
+    let (point, error) = (&report.findings.points[row.point], &row.error);
     let now = point.settings == state.settings;
     let size = vec2(ui.available_width(), theme::ROW - 3.0);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
@@ -170,7 +170,8 @@ fn row_ui(
     put_text(ui, left, label, ink);
     for (i, column) in COLUMNS.iter().enumerate() {
         // Times within the noise are shown weakly.
-        let noise = i < 3 && point.verdict == Verdict::Alike && row.point != 0 && !now;
+        let is_noise = matches!(point.verdict, Verdict::Alike | Verdict::Busy);
+        let noise = i < 3 && is_noise && row.point != 0 && !now;
         let ink = if noise { ui.visuals().weak_text_color() } else { ink };
         right_text(ui, cell(rect, i), &(column.value)(point, error, report.region), ink);
     }
@@ -179,6 +180,7 @@ fn row_ui(
         Verdict::Faster => "faster than the default",
         Verdict::Slower => "slower than the default",
         Verdict::Alike => "no difference in time beyond the noise",
+        Verdict::Busy => "the machine was too busy to tell",
     };
     let hint = format!(
         "{verdict}, {} pairs, {} discarded; {} pixels show another triangle",
@@ -207,22 +209,22 @@ fn foot_ui(ui: &mut Ui, report: &Report) {
     small(
         ui,
         format!(
-            "{width} x {height} pixels, {} threads, {}. The default takes {} ms; against itself \
-                it differed by {:.1}% in {} pairs. Smaller differences are noise, and so are \
-                differences within the interval of a row's median (95%). * is the default; a bar \
-                marks choices that no other choice beats in both time and error. Errors are \
-                relative to every axis at its most exact; errors of samples per pixel, to 256 \
-                samples, each lit.",
+            "{width} x {height} pixels, {} threads, {}. The default takes {} ms; {}, and so are \
+                differences within the interval of a row (95%). * is the default; a bar marks \
+                choices that no other choice beats in both time and error. Errors of an axis are \
+                relative to the default with this axis alone at its most exact; all others, to \
+                the ideal: 256 samples per pixel, each lit.",
             findings.threads,
             findings.instructions,
             brief(findings.control.a_ms),
-            findings.floor * 100.0,
-            findings.control.pairs
+            if findings.floor > TOO_BUSY {
+                "the machine is too busy to tell times".to_owned()
+            } else {
+                format!("differences below {:.1}% are noise", findings.floor * 100.0)
+            }
         ),
     );
-    for left_out in &findings.left_out {
-        small(ui, format!("Not measured: {}: {}.", left_out.what, left_out.reason));
-    }
+    small(ui, left_out_in_words(report));
     for kernel in &findings.kernels {
         small(
             ui,

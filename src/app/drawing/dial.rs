@@ -1,0 +1,101 @@
+//! Measures the dial of the last picture while the user is idle.
+//!
+//! A measurement is kept until the picture is another one. Selecting something, or drawing with
+//! another preset, changes nothing that the dial measures.
+
+use super::snapshot::{Snapshot, pictured};
+use super::viewport_renderer::Finer;
+use marraztu_core::accuracy::{Samples, Settings, Shot};
+use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::scene::{Scene, View};
+use marraztu_lab::dial::{Dial, Figures, Step, of_dial};
+use marraztu_render::screen::coverage::PixelBox;
+use marraztu_render::{Renderer, plan_frame};
+
+/// Everything that the figures of the dial depend on.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Dialled {
+    pub(crate) scene: Scene,
+    /// The view, without what the picture does not show.
+    pub(crate) view: View,
+    pub(crate) size: Size,
+    /// The models; all other axes are at their defaults.
+    pub(crate) models: Settings,
+    /// The samples per pixel that pictures are refined to.
+    pub(crate) refined: Option<Samples>,
+}
+
+/// The figures of the dial.
+#[derive(Clone, Debug)]
+pub(crate) struct DialFigures {
+    pub(crate) of: Dialled,
+    /// The time and the error of each preset, in their order; fewer before the ideal is known.
+    pub(crate) figures: Vec<Figures>,
+}
+
+impl Dialled {
+    pub(crate) fn of(
+        (scene, view): (&Scene, &View),
+        settings: &Settings,
+        size: Size,
+        refined: Option<Samples>,
+    ) -> Self {
+        let models = Settings::default().modelled_as(settings);
+        Self { scene: scene.clone(), view: pictured(view), size, models, refined }
+    }
+
+    fn shot(&self) -> Shot {
+        Shot::new(&self.scene, &self.view, &self.models, self.size)
+    }
+}
+
+/// The measurement of the last picture.
+#[derive(Debug, Default)]
+pub(crate) struct IdleDial {
+    /// Draws what is measured, and windows of the ideal. No picture in the window comes from it.
+    renderer: Renderer,
+    of: Option<Dialled>,
+    /// The measurement, while it is in progress.
+    dial: Option<Dial>,
+}
+
+impl IdleDial {
+    /// Takes the next step of measuring a picture, unless its figures are known.
+    pub(crate) fn step(
+        &mut self,
+        snapshot: &Snapshot,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Finer {
+        let Some(refined) = snapshot.dial else { return Finer::Done };
+        let Snapshot { scene, view, settings, size, .. } = snapshot;
+        let of = Dialled::of((scene, view), settings, *size, refined);
+        if self.of.as_ref() != Some(&of) {
+            let all: Vec<Settings> =
+                of_dial(&of.models, refined).map(|(_, settings)| settings).collect();
+            self.dial = Some(Dial::new(&of.shot(), &all));
+            self.of = Some(of.clone());
+        }
+        let Some(dial) = &mut self.dial else { return Finer::Done };
+        let Ok(step) = dial.step(&mut self.renderer, wanted) else { return Finer::Disturbed };
+        let figures = dial.figures();
+        if step == Step::Done {
+            self.dial = None;
+        }
+        match step {
+            Step::More => Finer::Measured,
+            Step::Better | Step::Done => Finer::Dial(Box::new(DialFigures { of, figures })),
+        }
+    }
+
+    /// Draws a window of the ideal of a picture; `None` if that is no longer wanted.
+    pub(crate) fn ideal(
+        &mut self,
+        snapshot: &Snapshot,
+        window: PixelBox,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Picture> {
+        let Snapshot { scene, view, settings, size, .. } = snapshot;
+        let plan = plan_frame(&Shot::new(scene, view, &settings.ideal(), *size));
+        self.renderer.render_window(&plan, window, wanted).ok()
+    }
+}

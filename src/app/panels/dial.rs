@@ -1,0 +1,185 @@
+//! The dial: what accuracy costs in this view, over the picture and always visible.
+//!
+//! Each row is a preset with the time and the error of its picture. The editor measures them while
+//! nothing happens; until then, the figures are grey. A click draws with a preset.
+
+use egui::{Align2, Area, Color32, Frame, Id, Order, Rect, Role, Sense, TextStyle, Ui, WidgetInfo};
+use egui::{RichText, pos2, vec2};
+
+use crate::app::actions::{Action, Request};
+use crate::app::input::buttons::first_key;
+use crate::app::state::State;
+use crate::app::state::laboratory::Compare;
+use crate::app::theme;
+use crate::app::widgets::controls::{self, focus_ring, icon_at, put_text};
+use crate::app::widgets::icons::Icon;
+use crate::app::widgets::regions;
+use marraztu_core::accuracy::AccuracyPreset;
+use marraztu_lab::dial::{Figures, error_in_words, in_words};
+use marraztu_lab::report::brief;
+
+/// The width of the contents.
+const WIDTH: f32 = 216.0;
+
+/// The right ends of the columns of time and error.
+const COLUMNS: [f32; 2] = [152.0, WIDTH - 6.0];
+
+/// The dial is hidden over a smaller picture.
+const LEAST: egui::Vec2 = vec2(330.0, 240.0);
+
+/// Shows the dial; its requests are added to `requests`.
+pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Request>) {
+    let is_small = picture.width() < LEAST.x || picture.height() < LEAST.y;
+    // A comparison has its own labels there.
+    if !state.shows_dial() || is_small || state.lab.compare != Compare::Off {
+        return;
+    }
+    let area = Area::new(Id::unique("dial")).order(Order::Middle).constrain_to(picture);
+    let at = picture.left_top() + vec2(8.0, 8.0);
+    area.pivot(Align2::LEFT_TOP).fixed_pos(at).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).inner_margin(6.0).show(ui, |ui| {
+            regions::begin(ui, "dial");
+            ui.set_width(WIDTH);
+            ui.spacing_mut().item_spacing.y = 0.0;
+            contents(ui, state, requests);
+            regions::follow_focus(ui);
+        });
+    });
+}
+
+fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    head_ui(ui, state, requests);
+    let presets = AccuracyPreset::dial();
+    let ids: Vec<Id> = presets.iter().map(|preset| ui.scope_id().with(preset.word)).collect();
+    let is_on = |preset: &AccuracyPreset| preset.of(&state.settings) == state.settings;
+    let stop = regions::stop(ui, &ids, presets.iter().position(is_on), 1);
+    for (i, preset) in presets.iter().enumerate() {
+        let (id, action) = (ids[i], Action::DIAL[i]);
+        let row = Row { preset, action, is_on: is_on(preset), is_stop: i == stop, id };
+        if row.ui(ui, state) && !row.is_on {
+            requests.push(Request::Do(action));
+        }
+    }
+    // What the figures mean, in a sentence.
+    let said = in_words(state.dial.figures()).filter(|_| state.dial.current);
+    let mut said = said.unwrap_or_else(|| "Measured as soon as nothing moves".to_owned());
+    if !presets.iter().any(is_on) {
+        said += " The picture has other settings.";
+    }
+    ui.add_space(2.0);
+    ui.add(egui::Label::new(RichText::new(said).small()).wrap());
+}
+
+/// Shows the heads of the columns, and the button of the loupe.
+fn head_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let (rect, _) = ui.allocate_exact_size(vec2(WIDTH, theme::ROW - 2.0), Sense::hover());
+    let weak = ui.visuals().weak_text_color();
+    let heads = [
+        ("time", "Milliseconds of a picture of this view, as it is shown when nothing moves"),
+        (
+            "error",
+            "How far the picture is from the ideal, on average, in steps of colours from 0 to 255 \
+             (RMSE). Less than 1 is hard to see.",
+        ),
+    ];
+    let title = controls::text(ui, "Accuracy", TextStyle::Body, 80.0);
+    put_text(ui, rect.with_min_x(rect.left() + 4.0), title, weak);
+    for ((head, hint), right) in heads.into_iter().zip(COLUMNS) {
+        let cell = column(rect, right);
+        right_text(ui, cell, head, weak);
+        ui.interact(cell, ui.scope_id().with(("head", head)), Sense::hover()).on_hover_text(hint);
+    }
+    let square =
+        Rect::from_center_size(pos2(rect.left() + 72.0, rect.center().y), vec2(20.0, 18.0));
+    let response = ui.interact(square, ui.scope_id().with("loupe"), Sense::click());
+    if state.loupe {
+        ui.painter().rect_filled(square, 3.0, ui.visuals().selection.bg_fill);
+    }
+    icon_at(ui, square, &response, Icon::Loupe, "Loupe", true);
+    let hint = "Loupe: shows the pixels under the pointer next to the ideal. Or hold the key k.";
+    if response.on_hover_text(hint).clicked() {
+        requests.push(Request::Do(Action::ToggleLoupe));
+    }
+}
+
+/// A row of the dial.
+struct Row {
+    preset: &'static AccuracyPreset,
+    action: Action,
+    is_on: bool,
+    is_stop: bool,
+    id: Id,
+}
+
+impl Row {
+    /// Shows the row. Returns whether it was clicked.
+    fn ui(&self, ui: &mut Ui, state: &State) -> bool {
+        let Self { preset, action, is_on, is_stop, id } = *self;
+        let (rect, _) = ui.allocate_exact_size(vec2(WIDTH, theme::ROW - 2.0), Sense::hover());
+        let response = ui.interact(rect, id, regions::sense(Sense::click(), is_stop));
+        let figures = state.dial.of(preset);
+        let name = match figures {
+            Some(Figures { ms, error: Some(error), .. }) => {
+                format!("{}: {} ms, error {}", preset.label, brief(ms), error_in_words(error))
+            }
+            _ => preset.label.to_owned(),
+        };
+        response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_on, &name));
+        let visuals = ui.visuals();
+        let (fill, ink) = match (is_on, response.hovered()) {
+            (true, _) => (visuals.selection.bg_fill, visuals.selection.stroke.color),
+            (false, true) => (visuals.widgets.hovered.bg_fill, visuals.text_color()),
+            (false, false) => (Color32::TRANSPARENT, visuals.text_color()),
+        };
+        ui.painter().rect_filled(rect, 3.0, fill);
+        if is_on {
+            let bar =
+                Rect::from_min_size(rect.min + vec2(0.0, 3.0), vec2(2.0, rect.height() - 6.0));
+            ui.painter().rect_filled(bar, 1.0, theme::accent(ui.visuals()));
+        }
+        let label = controls::text(ui, preset.label, TextStyle::Body, 80.0);
+        put_text(ui, rect.with_min_x(rect.left() + 8.0), label, ink);
+        // Figures of another picture are grey.
+        let faint = ui.visuals().weak_text_color().gamma_multiply(0.6);
+        let ink = if state.dial.current { ink } else { faint };
+        let texts = match figures {
+            None => ["...".to_owned(), "...".to_owned()],
+            Some(Figures { ms, error, .. }) => {
+                [milliseconds(ms), error.map_or_else(|| "...".to_owned(), error_in_words)]
+            }
+        };
+        for (text, right) in texts.iter().zip(COLUMNS) {
+            right_text(ui, column(rect, right), text, ink);
+        }
+        focus_ring(ui, rect, &response);
+        let key = first_key(ui, action);
+        response
+            .on_hover_ui(|ui| {
+                ui.label(preset.what);
+                if let Some(key) = key {
+                    ui.weak(format!("Key: {key}"));
+                }
+            })
+            .clicked()
+    }
+}
+
+/// Formats a time: "0.42 ms", "12 ms", "3.1 s".
+fn milliseconds(ms: f64) -> String {
+    match ms {
+        1000.0.. => format!("{:.1} s", ms / 1e3),
+        9.95.. => format!("{ms:.0} ms"),
+        1.0.. => format!("{ms:.1} ms"),
+        _ => format!("{ms:.2} ms"),
+    }
+}
+
+fn column(row: Rect, right: f32) -> Rect {
+    Rect::from_x_y_ranges(row.left() + right - 62.0..=row.left() + right, row.y_range())
+}
+
+fn right_text(ui: &Ui, rect: Rect, value: &str, ink: Color32) {
+    let galley = controls::text(ui, value, TextStyle::Body, rect.width());
+    let at = pos2(rect.right() - galley.size().x, rect.center().y - galley.size().y / 2.0);
+    ui.painter().galley_with_override_text_color(at, galley, ink);
+}

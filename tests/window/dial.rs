@@ -1,0 +1,125 @@
+//! The dial and the loupe: what accuracy costs and gives in this view.
+//!
+//! Catches: figures of another view that look current, a preset that a key or a click does not
+//! choose, a window that measures forever, a loupe that stays after its key is released.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
+use marraztu::app::actions::Chord::Named;
+use marraztu::app::actions::{Action, LabRequest, Request};
+use marraztu::app::state::laboratory::Compare;
+use marraztu_core::accuracy::{AccuracyPreset, Settings};
+use marraztu_lab::dial::in_words;
+
+use crate::editor::Editor;
+use crate::helpers::texts;
+use crate::panels::control;
+
+/// A window with the dial, measured.
+fn measured() -> Editor {
+    let mut editor = Editor::of_size(1000.0, 640.0);
+    editor.perform(Action::ToggleDial);
+    rest(&mut editor);
+    editor
+}
+
+fn rest(editor: &mut Editor) {
+    editor.settle();
+    editor.harness.run_steps(15);
+    editor.settle();
+    editor.harness.state().wait_until_refined();
+    editor.harness.run_steps(3);
+}
+
+fn preset(word: &str) -> Settings {
+    AccuracyPreset::named(word).unwrap().of(&Settings::default())
+}
+
+#[test]
+fn the_dial_is_measured_when_nothing_moves_and_then_draws_nothing_more() {
+    let mut editor = measured();
+    let dial = &editor.state().dial;
+    assert!(dial.current);
+    let figures = dial.figures();
+    let settings: Vec<Settings> = figures.iter().map(|it| it.settings).collect();
+    assert_eq!(settings, ["draft", "default", "exact", "ideal"].map(preset));
+    let errors: Vec<f64> = figures.iter().filter_map(|it| it.error).collect();
+    assert!(errors[0] > errors[1] && errors[3] == 0.0, "{errors:?}");
+    let said = in_words(figures).unwrap();
+    assert!(editor.shows(&said), "{said}");
+    // It is measured once.
+    let pictures = editor.state().statistics.pictures;
+    editor.harness.run_steps(5);
+    assert_eq!(editor.state().statistics.pictures, pictures);
+    let waiting = editor.harness.output().viewport_output.values().map(|it| it.repaint_delay);
+    assert!(waiting.min().unwrap() > std::time::Duration::from_secs(60), "nothing is to come");
+    // Figures of another view are stale, until that one is measured.
+    editor.perform_all(&[Action::SubjectObject, Action::StepXUp]);
+    editor.harness.step();
+    assert!(!editor.state().dial.current && !editor.shows(&said));
+    rest(&mut editor);
+    assert!(editor.state().dial.current);
+    // What the keys act on does not matter.
+    editor.perform(Action::SubjectLight);
+    editor.harness.step();
+    assert!(editor.state().dial.current);
+}
+
+#[test]
+fn a_preset_is_chosen_by_its_row_and_by_its_key() {
+    let mut editor = measured();
+    for (key, word) in
+        [(Key::F7, "draft"), (Key::F9, "exact"), (Key::F10, "ideal"), (Key::F8, "default")]
+    {
+        editor.press(Named(key));
+        assert_eq!(editor.state().settings, preset(word), "{word}");
+        assert!(editor.state().dial.current, "all presets are measured already");
+    }
+    for word in ["exact", "default"] {
+        let label = AccuracyPreset::named(word).unwrap().label;
+        let row = texts_of_rows(&editor).into_iter().find(|name| name.starts_with(label)).unwrap();
+        control(&editor, Role::RadioButton, &row).click();
+        editor.settle();
+        assert_eq!(editor.state().settings, preset(word), "{word}");
+    }
+    editor.perform(Action::ToggleDial);
+    assert!(texts_of_rows(&editor).is_empty());
+}
+
+/// The names of the rows, which contain their figures.
+fn texts_of_rows(editor: &Editor) -> Vec<String> {
+    let all = editor.harness.query_all(By::new().role(Role::RadioButton));
+    let names = all.filter_map(|node| node.accesskit_node().label());
+    names.filter(|name| name.contains(" ms, error ")).collect()
+}
+
+#[test]
+fn the_loupe_follows_the_pointer_while_its_key_is_held() {
+    let mut editor = Editor::of_size(1000.0, 640.0);
+    let middle = editor.at(0.5, 0.5);
+    editor.hover(middle);
+    let shows = |editor: &Editor| texts(editor).iter().any(|text| text == "difference, 8 times");
+    editor.perform(Action::ToggleLoupe);
+    assert!(editor.state().loupe && shows(&editor));
+    // The ideal arrives from the drawing thread.
+    editor.settle();
+    assert!(!texts(&editor).iter().any(|text| text == "drawing"));
+    editor.perform(Action::ToggleLoupe);
+    assert!(!shows(&editor));
+    // Held and released.
+    editor.key(Key::K, true, Modifiers::NONE);
+    editor.harness.run_steps(60);
+    assert!(shows(&editor));
+    editor.key(Key::K, false, Modifiers::NONE);
+    editor.harness.run_steps(2);
+    assert!(!editor.state().loupe && !shows(&editor));
+}
+
+#[test]
+fn a_comparison_hides_the_dial() {
+    let mut editor = measured();
+    assert!(!texts_of_rows(&editor).is_empty());
+    editor.ask(Request::Lab(LabRequest::Compare(Compare::Split(0.5))));
+    assert!(texts_of_rows(&editor).is_empty());
+}
