@@ -10,15 +10,15 @@ pub struct AccuracyPreset {
     pub word: &'static str,
     /// Its name on a button.
     pub label: &'static str,
-    /// What it is, and what it gives up, in a sentence or two.
+    /// A description of the preset and its drawbacks, in a sentence or two.
     pub what: &'static str,
-    /// The settings that it stands for.
+    /// The settings of the preset.
     pub points: Points,
     /// The known faults of an ancestor's algorithms.
     pub faults: &'static [&'static str],
 }
 
-/// The settings that a preset stands for. Axes that are models keep their choices.
+/// The settings of a preset. Axes that are models keep their choices.
 #[derive(Clone, Copy, Debug)]
 pub enum Points {
     /// The default, except for these choices: the key of the axis and the choice's word.
@@ -29,7 +29,7 @@ pub enum Points {
     Ideal,
 }
 
-/// The presets: those of the dial, from the fast to the exact, then those of the two ancestors.
+/// All presets: first the dial's, from fast to exact, then the two ancestors.
 pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
     AccuracyPreset {
         word: "draft",
@@ -142,7 +142,7 @@ impl AccuracyPreset {
 }
 
 impl AccuracyPreset {
-    /// What it is and its faults.
+    /// Describes the preset and its faults.
     #[must_use]
     pub fn in_words(&self) -> String {
         match self.faults {

@@ -141,7 +141,7 @@ impl Samples {
     pub const ALL: [Self; 5] =
         [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour, Self::TwoFiftySix];
 
-    /// Those that a picture is refined to while nothing moves: the ideal takes too long.
+    /// The steps of refinement while nothing moves. The ideal would take too long.
     pub const REFINING: [Self; 4] = [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour];
 
     /// The number of samples.
