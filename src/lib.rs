@@ -1,7 +1,7 @@
 //! An editor for 3D scenes of `.obj` models whose pictures are drawn by the CPU alone.
 //!
 //! This crate is the program: [`app`] is the window, [`plots`] draws the laboratory's plots as SVG
-//! and PNG, and the binary adds the command line. The
+//! and PNG, [`picture_file`] draws into files, and the binary adds the command line. The
 //! libraries under `crates` do the work, and know neither of windows nor of arguments:
 //!
 //! ```text
@@ -14,4 +14,5 @@
 //! * [`marraztu_lab`]: what drawing costs in time, and what accuracy costs.
 
 pub mod app;
+pub mod picture_file;
 pub mod plots;

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use marraztu::picture_file::draw_into;
 use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
-use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::image::Size;
 use marraztu_core::edit::framing::Sphere;
 use marraztu_core::edit::{framing, items, lighting};
 use marraztu_core::scene::{
@@ -13,7 +14,7 @@ use marraztu_io::{self as io, Progress};
 use marraztu_lab::dial::{Dial, Figures, Step};
 use marraztu_lab::report::brief;
 use marraztu_render::accel::Accelerated as _;
-use marraztu_render::{Renderer, Unseen, fitted_exposure, plan_frame, unseen, without_ground};
+use marraztu_render::{Renderer, Unseen, fitted_exposure, plan_frame, unseen};
 
 use super::accuracy::Accuracy;
 use super::arguments::{
@@ -38,27 +39,41 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
         object.model.mesh.draw_as_filed();
     }
     let shot = stage.shot(arguments.picture.size);
-    let mut renderer = Renderer::default();
-    if arguments.transparent {
-        let picture = without_ground(&mut renderer, &shot)?;
-        drop(bar);
-        return written(arguments, &target, &picture);
-    }
-    let plan = plan_frame(&shot);
-    renderer.render_watched(&plan, &|done, all| {
-        // Nothing cancels this progress.
-        let _ = progress.reached(done, all);
+    let transparent = arguments.transparent;
+    let drawn = draw_into(&shot, transparent, &progress, |size, next| {
+        target.write(size, transparent, next)
     });
     drop(bar);
-    tell_unseen(&mut renderer, &shot);
-    written(arguments, &target, renderer.picture())?;
+    // Nothing cancels this progress.
+    let Ok((written, bands)) = drawn else { return Ok(()) };
+    written?;
+    tell_path(arguments, &target);
+    if transparent {
+        return Ok(());
+    }
+    let is_whole = bands.is_one();
+    let mut renderer = bands.into_renderer();
+    if is_whole {
+        tell_unseen(&mut renderer, &shot);
+    } else {
+        let Size { width, height } = shot.size;
+        let longest = width.max(height);
+        let side = |side: usize| (side * LOOKED_THROUGH / longest).max(1);
+        let smaller = Shot { size: Size::new(side(width), side(height)), ..shot.clone() };
+        renderer.render(&plan_frame(&smaller));
+        tell_unseen(&mut renderer, &smaller);
+    }
     if arguments.report {
         tell_cost(&mut renderer, &shot);
     }
     // The process ends here, so freeing a million vertices would only waste time.
-    std::mem::forget((stage, plan, renderer));
+    std::mem::forget((stage, renderer));
     Ok(())
 }
+
+/// The longest side of the picture in which objects are looked for, if the whole picture was never
+/// in memory.
+const LOOKED_THROUGH: usize = 4096;
 
 /// Notes the time of a picture and its error against the ideal.
 fn tell_cost(renderer: &mut Renderer, shot: &Shot) {
@@ -80,13 +95,11 @@ fn tell_cost(renderer: &mut Renderer, shot: &Shot) {
     ));
 }
 
-/// Writes the picture, and prints its path if the user did not choose it.
-fn written(arguments: &Render, target: &Target, picture: &Picture) -> Result<(), Failure> {
-    target.write(picture)?;
+/// Prints the path of the picture if the user did not choose it.
+fn tell_path(arguments: &Render, target: &Target) {
     if let (None, Target::File(path)) = (&arguments.out, target) {
         note(&format_args!("the picture is in {}", path.display()));
     }
-    Ok(())
 }
 
 /// Notes why some objects are invisible, with one line per reason.

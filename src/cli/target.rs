@@ -1,10 +1,10 @@
 //! The target of a picture: standard output or a file. The default file name derives from the input
 //! files.
 
-use std::io::{ErrorKind, IsTerminal, Write};
+use std::io::{BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-use marraztu_core::base::image::Picture;
+use marraztu_core::base::image::Size;
 use marraztu_io::{self as io, PICTURE_FORMATS, Sources};
 
 use super::arguments::Render;
@@ -56,13 +56,22 @@ impl Target {
         Ok(())
     }
 
-    /// Writes the picture.
-    pub(super) fn write(&self, picture: &Picture) -> Result<(), Failure> {
+    /// Writes the picture, which arrives in bands of rows.
+    pub(super) fn write(
+        &self,
+        size: Size,
+        transparent: bool,
+        next: &mut io::NextBand<'_>,
+    ) -> Result<(), Failure> {
         match self {
-            Self::File(path) => Ok(io::save_picture(path, picture)?),
+            Self::File(path) => Ok(io::save_bands(path, size, transparent, next)?),
             Self::Output => {
-                let bytes = PICTURE_FORMATS[0].encode(picture).map_err(Failure::Absent)?;
-                match std::io::stdout().lock().write_all(&bytes) {
+                let mut output = BufWriter::new(std::io::stdout().lock());
+                let png = &PICTURE_FORMATS[0];
+                let written = png
+                    .encode_bands(size, transparent, next, &mut output)
+                    .and_then(|()| output.flush());
+                match written {
                     // The reader has closed the pipe, like `head`.
                     Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
                     written => written.map_err(Failure::Output),

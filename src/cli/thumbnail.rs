@@ -88,7 +88,7 @@ fn draw(file: &Path, size: Size, pictures: &Sender<Result<Picture, Failure>>) {
         let settings = with_samples(&stage.settings, samples);
         let stage = Stage { settings, ..stage.clone() };
         let picture = without_ground(&mut renderer, &stage.shot(size));
-        if pictures.send(picture.map_err(Failure::from)).is_err() {
+        if pictures.send(Ok(picture)).is_err() {
             return;
         }
     }

@@ -84,7 +84,7 @@ pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
         let shot =
             Stage { scene, view, findings: Vec::new(), notes: Vec::new(), ..stage }.shot(size);
         if transparent {
-            writer.push(&without_ground(&mut renderer, &shot)?)?;
+            writer.push(&without_ground(&mut renderer, &shot))?;
         } else {
             writer.push(renderer.render(&plan_frame(&shot)))?;
         }

@@ -7,6 +7,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
+mod bands;
 #[path = "../common/mod.rs"]
 mod common;
 mod shadows;

@@ -37,7 +37,7 @@ fn a_picture_has_the_size_the_samples_and_the_ground_that_were_chosen() {
     let settings = Settings { samples: Samples::Four, ..editor.state().settings };
     let size = Size::new(window.width, window.height);
     let shot = Shot::new(&editor.scene(), &editor.view(), &settings, size);
-    let expected = without_ground(&mut Renderer::default(), &shot).unwrap();
+    let expected = without_ground(&mut Renderer::default(), &shot);
     assert!(io::load_picture(&path).unwrap() == expected);
 }
 

@@ -62,8 +62,8 @@ pub use lessons::{Lesson, lesson_on, lesson_scene, lessons};
 pub use obj::{Loaded, load, parse};
 pub use part::sweep_once;
 pub use picture::{
-    PICTURE_FORMATS, PictureFormat, check_alpha, check_picture_target, check_replaced,
-    save_encoded, save_picture,
+    NextBand, PICTURE_FORMATS, PictureFormat, check_alpha, check_picture_target, check_replaced,
+    save_bands, save_encoded, save_picture,
 };
 pub use progress::{Cancelled, Progress};
 pub use read::check_file;

@@ -9,10 +9,10 @@ use std::path::Path;
 
 use image::codecs::jpeg::JpegEncoder;
 use image::codecs::webp::WebPEncoder;
-use image::{ExtendedColorType, ImageEncoder};
+use image::{ExtendedColorType, GenericImageView, ImageEncoder, Rgb};
 
 use super::replace::{SaveError, Worth, check_target, replace, replace_by};
-use marraztu_core::base::image::Picture;
+use marraztu_core::base::image::{Picture, Size};
 
 /// The quality of a JPEG, from 1 to 100: artefacts are barely visible.
 const JPEG_QUALITY: u8 = 92;
@@ -30,18 +30,35 @@ pub struct PictureFormat {
     /// Whether pixels can be transparent.
     pub has_alpha: bool,
     encode: fn(&Picture, &mut dyn Write) -> Result<(), std::io::Error>,
+    /// Encodes rows as they come; `None` if the encoder needs all of them at once.
+    stream: Option<Stream>,
 }
+
+type Stream = fn(&Header<'_>, &mut Rows<'_>, &mut dyn Write) -> std::io::Result<()>;
+
+/// Passes the rows of a picture to a function, from top to bottom.
+type Rows<'a> = dyn FnMut(&mut Put<'_>) -> std::io::Result<()> + 'a;
+
+type Put<'a> = dyn FnMut(&Picture) -> std::io::Result<()> + 'a;
 
 /// The output formats of pictures.
 pub static PICTURE_FORMATS: &[PictureFormat] = &[
-    PictureFormat { name: "PNG", endings: &["png"], has_alpha: true, encode: write_png },
+    PictureFormat {
+        name: "PNG",
+        endings: &["png"],
+        has_alpha: true,
+        encode: write_png,
+        stream: Some(stream_png),
+    },
     PictureFormat {
         name: "JPEG",
         endings: &["jpg", "jpeg"],
         has_alpha: false,
         encode: |picture, to| {
-            write_opaque(picture, JpegEncoder::new_with_quality(to, JPEG_QUALITY))
+            let mut encoder = JpegEncoder::new_with_quality(to, JPEG_QUALITY);
+            encoder.encode_image(&Opaque(picture)).map_err(std::io::Error::other)
         },
+        stream: None,
     },
     PictureFormat {
         name: "WebP",
@@ -51,8 +68,15 @@ pub static PICTURE_FORMATS: &[PictureFormat] = &[
             let picture_to = WebPEncoder::new_lossless(to);
             write(picture, picture_to)
         },
+        stream: None,
     },
-    PictureFormat { name: "PPM", endings: &["ppm"], has_alpha: false, encode: write_ppm },
+    PictureFormat {
+        name: "PPM",
+        endings: &["ppm"],
+        has_alpha: false,
+        encode: write_ppm,
+        stream: Some(stream_ppm),
+    },
 ];
 
 impl PictureFormat {
@@ -82,6 +106,52 @@ impl PictureFormat {
         (self.encode)(picture, &mut content).map_err(|error| error.to_string())?;
         Ok(content)
     }
+
+    /// Encodes a picture of this size that arrives in bands. `transparent` says whether pixels may
+    /// be transparent; if the picture is a single band, its pixels are asked.
+    ///
+    /// # Errors
+    /// If `next` fails, or `to` cannot be written.
+    pub fn encode_bands(
+        &self,
+        size: Size,
+        transparent: bool,
+        next: &mut NextBand<'_>,
+        to: &mut dyn Write,
+    ) -> std::io::Result<()> {
+        let Some(first) = next()? else { return Ok(()) };
+        if first.size() == size {
+            return (self.encode)(&first, to);
+        }
+        let Some(stream) = self.stream else {
+            let mut pixels = Vec::with_capacity(size.area());
+            pixels.extend_from_slice(first.pixels());
+            drop(first);
+            while let Some(band) = next()? {
+                pixels.extend_from_slice(band.pixels());
+            }
+            let whole = Picture::from_pixels(size, pixels);
+            let whole = whole.ok_or_else(|| std::io::Error::other("a part is missing"))?;
+            return (self.encode)(&whole, to);
+        };
+        let mut first = Some(first);
+        let mut rows = |put: &mut Put<'_>| {
+            first.take().map_or(Ok(()), |band| put(&band))?;
+            while let Some(band) = next()? {
+                put(&band)?;
+            }
+            Ok(())
+        };
+        stream(&Header { size, has_alpha: transparent, text: None }, &mut rows, to)
+    }
+}
+
+/// The facts at the start of a file.
+struct Header<'t> {
+    size: Size,
+    has_alpha: bool,
+    /// A keyword with a text.
+    text: Option<(&'t str, &'t str)>,
 }
 
 /// Joins words for a sentence: "a, b or c".
@@ -107,6 +177,29 @@ pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
         file.flush()
     })
 }
+
+/// Saves a picture that arrives in bands of rows, from top to bottom. PNG and PPM are written band
+/// by band; other formats need the whole picture.
+///
+/// # Errors
+/// If the extension is unknown, `next` fails, or the file cannot be written; an existing file is
+/// unchanged.
+pub fn save_bands(
+    path: &Path,
+    size: Size,
+    transparent: bool,
+    next: &mut NextBand<'_>,
+) -> Result<(), SaveError> {
+    let format = PictureFormat::of(path).map_err(|reason| SaveError::new(path, reason))?;
+    replace_by(path, Worth::Product, &mut |file| {
+        let mut file = std::io::BufWriter::new(file);
+        format.encode_bands(size, transparent, next, &mut file)?;
+        file.flush()
+    })
+}
+
+/// A function that returns the next rows of a picture, and `None` after the last ones.
+pub type NextBand<'a> = dyn FnMut() -> std::io::Result<Option<Picture>> + 'a;
 
 /// Saves an encoded picture.
 ///
@@ -176,6 +269,22 @@ fn write(picture: &Picture, encoder: impl ImageEncoder) -> std::io::Result<()> {
     written.map_err(std::io::Error::other)
 }
 
+/// A picture without its alpha channel, for encoders that ask for pixels.
+struct Opaque<'a>(&'a Picture);
+
+impl GenericImageView for Opaque<'_> {
+    type Pixel = Rgb<u8>;
+
+    fn dimensions(&self) -> (u32, u32) {
+        sides(self.0).into()
+    }
+
+    fn get_pixel(&self, x: u32, y: u32) -> Rgb<u8> {
+        let [r, g, b, _] = self.0.pixel(x as usize, y as usize);
+        Rgb([r, g, b])
+    }
+}
+
 fn write_opaque(picture: &Picture, encoder: impl ImageEncoder) -> std::io::Result<()> {
     let [width, height] = sides(picture);
     let bytes = opaque_bytes(picture.pixels());
@@ -186,7 +295,10 @@ fn write_opaque(picture: &Picture, encoder: impl ImageEncoder) -> std::io::Resul
 
 /// Returns the width and height of a picture, as formats store them.
 pub(super) fn sides(picture: &Picture) -> [u32; 2] {
-    let size = picture.size();
+    sides_of(picture.size())
+}
+
+fn sides_of(size: Size) -> [u32; 2] {
     [size.width, size.height].map(|side| u32::try_from(side).unwrap_or(u32::MAX))
 }
 
@@ -215,37 +327,47 @@ fn write_png_with(
     text: Option<(&str, &str)>,
     to: &mut dyn Write,
 ) -> std::io::Result<()> {
-    let [width, height] = sides(picture);
-    let has_alpha = has_alpha(picture);
+    let (size, has_alpha) = (picture.size(), has_alpha(picture));
+    stream_png(&Header { size, has_alpha, text }, &mut |put| put(picture), to)
+}
+
+fn stream_png(header: &Header<'_>, rows: &mut Rows<'_>, to: &mut dyn Write) -> std::io::Result<()> {
+    let [width, height] = sides_of(header.size);
     let mut encoder = png::Encoder::new(to, width, height);
-    encoder.set_color(if has_alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    encoder.set_color(if header.has_alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
     encoder.set_depth(png::BitDepth::Eight);
     // Fast compression with adaptive filters: drawing should not wait for the encoder.
     encoder.set_compression(png::Compression::Fast);
     encoder.set_filter(png::Filter::Adaptive);
-    if let Some((keyword, text)) = text {
+    if let Some((keyword, text)) = header.text {
         encoder.add_text_chunk(keyword.to_owned(), text.to_owned())?;
     }
     let mut writer = encoder.write_header()?;
     let mut stream = writer.stream_writer()?;
-    for band in picture.pixels().chunks(BAND * picture.size().width.max(1)) {
-        match has_alpha {
-            true => stream.write_all(band.as_flattened())?,
-            false => stream.write_all(&opaque_bytes(band))?,
-        }
-    }
+    rows(&mut |picture| {
+        picture.pixels().chunks(BAND * picture.size().width.max(1)).try_for_each(
+            |band| match header.has_alpha {
+                true => stream.write_all(band.as_flattened()),
+                false => stream.write_all(&opaque_bytes(band)),
+            },
+        )
+    })?;
     stream.finish()?;
     writer.finish()?;
     Ok(())
 }
 
 fn write_ppm(picture: &Picture, to: &mut dyn Write) -> std::io::Result<()> {
-    let size = picture.size();
-    write!(to, "P6\n{} {}\n255\n", size.width, size.height)?;
-    for band in picture.pixels().chunks(BAND * size.width.max(1)) {
-        to.write_all(&opaque_bytes(band))?;
-    }
-    Ok(())
+    let header = Header { size: picture.size(), has_alpha: false, text: None };
+    stream_ppm(&header, &mut |put| put(picture), to)
+}
+
+fn stream_ppm(header: &Header<'_>, rows: &mut Rows<'_>, to: &mut dyn Write) -> std::io::Result<()> {
+    write!(to, "P6\n{} {}\n255\n", header.size.width, header.size.height)?;
+    rows(&mut |picture| {
+        let mut bands = picture.pixels().chunks(BAND * picture.size().width.max(1));
+        bands.try_for_each(|band| to.write_all(&opaque_bytes(band)))
+    })
 }
 
 fn opaque_bytes(pixels: &[[u8; 4]]) -> Vec<u8> {
@@ -256,7 +378,6 @@ fn opaque_bytes(pixels: &[[u8; 4]]) -> Vec<u8> {
 mod tests {
     use super::*;
     use crate::load_picture;
-    use marraztu_core::base::image::Size;
 
     fn picture(alpha: u8) -> Picture {
         let pixels = vec![[255, 0, 0, 255], [0, 255, 0, alpha], [0, 0, 255, 255], [1, 2, 3, 255]];
@@ -336,5 +457,26 @@ mod tests {
         assert!(save_picture(&folder.path().join("b.png"), &picture(255)).is_err());
         assert!(save_picture(&folder.path().join("none/c.png"), &picture(255)).is_err());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    /// Bands of one row are read back as the same pixels as the whole picture.
+    #[test]
+    fn a_picture_in_bands_is_the_same_file_and_an_incomplete_one_is_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let size = Size::new(2, 2);
+        let band = |row: usize, alpha: u8| {
+            let pixels = picture(alpha).pixels()[2 * row..][..2].to_vec();
+            Picture::from_pixels(Size::new(2, 1), pixels).unwrap()
+        };
+        for (format, alpha) in PICTURE_FORMATS.iter().flat_map(|it| [(it, 255), (it, 7)]) {
+            let path = folder.path().join(format!("a.{}", format.endings[0]));
+            let mut rows = [0, 1].map(|row| band(row, alpha)).into_iter();
+            save_bands(&path, size, alpha < 255, &mut || Ok(rows.next())).unwrap();
+            let file = std::fs::read(&path).unwrap();
+            assert!(file == format.encode(&picture(alpha)).unwrap(), "{} {alpha}", format.name);
+            let fails: &mut NextBand<'_> = &mut || Err(std::io::Error::other("no more"));
+            assert!(save_bands(&folder.path().join("b.png"), size, false, fails).is_err());
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), PICTURE_FORMATS.len());
     }
 }

@@ -7,6 +7,7 @@
 //! Numbers are compared by their bits: 0 and -0 are equal, but their reciprocals are not.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use glam::DVec4;
 
@@ -76,6 +77,14 @@ impl Damage {
     pub(crate) fn all(cause: DamageCause, size: Size) -> Self {
         let tiles = Tiles::all(size);
         Self { surfaces: tiles.clone(), tiles, geometry: true, cause }
+    }
+
+    /// Damages these rows of tiles of a picture that was never drawn.
+    pub(crate) fn rows(size: Size, rows: &Range<usize>) -> Self {
+        let mut tiles = Tiles::none(size);
+        let columns = usize::try_from(tiles.columns).expect("not negative");
+        tiles.painted[rows.start * columns..rows.end * columns].fill(true);
+        Self { surfaces: tiles.clone(), tiles, geometry: true, cause: DamageCause::First }
     }
 
     /// Compares two plans.

@@ -56,11 +56,12 @@
 //! * `shadow`: rays from lit points to lights, and what stands between.
 //! * `shading`: the colours of what is visible, and their bytes in the picture.
 //! * `tile_layers`: what the pixels of a tile show.
-//! * `renderer`, `damage`, `count`, `unseen`, `exposure`, `without_ground`: draw plans, and answer
-//!   questions about what was drawn.
+//! * `renderer`, `damage`, `count`, `unseen`, `exposure`, `without_ground`, `bands`: draw plans, and
+//!   answer questions about what was drawn.
 
 pub mod accel;
 mod ancestors;
+mod bands;
 mod cancellation;
 mod count;
 mod damage;
@@ -81,6 +82,7 @@ mod unseen;
 mod without_ground;
 mod work_stealing;
 
+pub use bands::Bands;
 pub use damage::{Change, Damage, DamageCause};
 pub use exposure::fitted_exposure;
 pub use frame::FramePlan;
@@ -91,4 +93,4 @@ pub use shading::pixel_color::{LightRay, Part, PixelColor, SurfacePoint, Term};
 pub use shadow::rays::RayCount;
 pub use timings::Timings;
 pub use unseen::{Unseen, unseen};
-pub use without_ground::without_ground;
+pub use without_ground::{without_ground, without_ground_while};

@@ -8,6 +8,7 @@ mod enlarged;
 mod picking;
 mod supersampled;
 
+use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use fearless_simd::Level;
@@ -45,8 +46,10 @@ pub use picking::Hit;
 #[derive(Debug)]
 pub struct Renderer {
     level: Level,
-    /// The drawn picture.
+    /// The drawn picture, or a band of it.
     picture: Picture,
+    /// The first row of tiles in `picture`; not 0 only in a band.
+    first_row: usize,
     /// The finished picture, if it was drawn at half resolution.
     enlarged: Picture,
     /// Draws larger pictures to be averaged.
@@ -93,6 +96,7 @@ impl Renderer {
         Self {
             level,
             picture: Picture::default(),
+            first_row: 0,
             enlarged: Picture::default(),
             larger: None,
             frame: ScreenGeometry::default(),
@@ -163,7 +167,8 @@ impl Renderer {
         self.redraw_by(plan, &Cancellation::new(wanted))
     }
 
-    fn redraw_by(
+    /// See [`Self::redraw`].
+    pub(crate) fn redraw_by(
         &mut self,
         plan: &FramePlan,
         watch: &Cancellation<'_>,
@@ -171,7 +176,7 @@ impl Renderer {
         let damage = self.damage(plan);
         self.built &= !damage.geometry;
         if plan.rules == Rules::Ignored || !damage.is_nothing() {
-            self.resize(plan.size);
+            self.resize(plan.size, 0);
             self.finished = false;
             // Runs on a drawing thread, so the caller sleeps and wakes only once per frame.
             rayon::scope(|_| {
@@ -191,10 +196,41 @@ impl Renderer {
         Ok(damage)
     }
 
-    /// Resizes the picture if its size changed.
-    fn resize(&mut self, size: Size) {
-        if self.picture.size() != size {
+    /// Draws some rows of tiles of a plan, and returns the band of the picture that they fill.
+    /// `follows` says that the last call drew the rows before them, so their geometry is reused.
+    ///
+    /// # Errors
+    /// See [`Self::redraw`].
+    pub(crate) fn render_rows(
+        &mut self,
+        plan: &FramePlan,
+        rows: &Range<usize>,
+        follows: bool,
+        watch: &Cancellation<'_>,
+    ) -> Result<&mut Picture, Cancelled> {
+        if !follows {
+            self.forget();
+            self.built = false;
+        }
+        self.finished = false;
+        let Size { width, height } = plan.size;
+        let band = (rows.end * TILE_SIDE).min(height) - rows.start * TILE_SIDE;
+        self.resize(Size::new(width, band), rows.start);
+        let damage = Damage::rows(plan.size, rows);
+        rayon::scope(|_| {
+            plan.prepare();
+            self.draw_damage(plan, &damage, watch);
+        });
+        self.built = !watch.is_given_up() && !plan.lit_by_sample;
+        if watch.is_given_up() { Err(Cancelled) } else { Ok(&mut self.picture) }
+    }
+
+    /// Resizes the picture, of which `first_row` is the first row of tiles, if its size or place
+    /// changed.
+    fn resize(&mut self, size: Size, first_row: usize) {
+        if self.picture.size() != size || self.first_row != first_row {
             self.picture.resize(size);
+            self.first_row = first_row;
             let [columns, rows] = [size.width, size.height].map(|n| n.div_ceil(TILE_SIDE));
             self.filled.clear();
             self.filled.resize(columns * rows, Filled::default());
@@ -234,7 +270,9 @@ impl Renderer {
                 let one = passes.len() == 1 && !sample_positions.are_many();
                 // Hits are coloured even in tiles that are not painted, so this only pays if most
                 // tiles are.
-                let pays = one && 2 * damage.tiles() >= self.filled.len();
+                let [columns, rows] = tiles_of(plan.size);
+                let all = usize::try_from(columns * rows).expect("not negative");
+                let pays = one && 2 * damage.tiles() >= all;
                 let light = pays.then(|| VertexLight::new(self.level, plan, lit, terms)).flatten();
                 let light = light.as_ref().map(|light| light as &dyn CornerLight);
                 self.timings +=
@@ -354,6 +392,7 @@ impl Renderer {
         let tracer = tracer.as_ref();
         let faces = looks_up.then_some(&*faces);
         let context = ShadingContext { level, plan, frame, lit, terms, faces, paths, tracer };
+        let first_row = self.first_row;
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
         // One band per row of tiles. A thread locks a band while it writes a tile to it.
@@ -364,7 +403,7 @@ impl Renderer {
             .zip(self.filled.chunks_mut(columns))
             .map(|(pixels, filled)| Mutex::new(Band { pixels, filled }))
             .collect();
-        let tiles = bands.len() * columns;
+        let tiles = plan.size.height.div_ceil(TILE_SIDE) * columns;
         let shares = frame.shares_of_tiles(tiles);
         painters.resize_with(rayon::current_num_threads(), Painter::default);
         // Every painter begins, even if its thread comes too late to paint a tile.
@@ -375,8 +414,8 @@ impl Renderer {
             loop {
                 // Each thread takes the next tile until none is left or the frame is cancelled.
                 let Some(tile) = shares.next().filter(|_| watch.goes_on()) else { return };
-                let row = tile / columns;
                 if damage.tiles.contains(tile) {
+                    let row = tile / columns - first_row;
                     match pass.sums.get(tile) {
                         None => painter.paint(&context, tile, &bands[row]),
                         Some(sums) => painter.add(&context, tile, sums),

@@ -5,30 +5,50 @@
 //! the background. Every effect that covers a pixel partly is therefore exact: samples, lines,
 //! transparency. Porter and Duff, "Compositing Digital Images", SIGGRAPH 1984.
 
-use super::Renderer;
+use super::frame::FramePlan;
 use super::plan::plan_frame;
+use super::{Cancelled, Renderer};
 use marraztu_core::accuracy::Shot;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Picture;
-use marraztu_core::scene::{Command, CommandError};
 
 /// Renders a picture with a transparent background; colours are not premultiplied.
 ///
+/// # Panics
+/// Never: it cannot be cancelled.
+pub fn without_ground(renderer: &mut Renderer, shot: &Shot) -> Picture {
+    without_ground_while(renderer, shot, &|| true).expect("it is always wanted")
+}
+
+/// Works like [`without_ground`].
+///
 /// # Errors
-/// Never: a scene takes every background.
-pub fn without_ground(renderer: &mut Renderer, shot: &Shot) -> Result<Picture, CommandError> {
-    let mut over = |ground: Color| -> Result<Picture, CommandError> {
+/// See [`Renderer::redraw`].
+pub fn without_ground_while(
+    renderer: &mut Renderer,
+    shot: &Shot,
+    wanted: &(dyn Fn() -> bool + Sync),
+) -> Result<Picture, Cancelled> {
+    let [black, white] = over_black_and_white(shot);
+    let mut picture = renderer.render_while(&black, wanted)?.clone();
+    uncover(&mut picture, renderer.render_while(&white, wanted)?);
+    Ok(picture)
+}
+
+/// Plans a picture over black and over white.
+pub(crate) fn over_black_and_white(shot: &Shot) -> [FramePlan; 2] {
+    [Color::BLACK, Color::WHITE].map(|ground| {
         let mut shot = shot.clone();
-        Command::Background(ground).apply(&mut shot.scene)?;
-        Ok(renderer.render(&plan_frame(&shot)).clone())
-    };
-    let black = over(Color::BLACK)?;
-    let white = over(Color::WHITE)?;
-    let mut picture = black.clone();
-    for (pixel, white) in picture.pixels_mut().iter_mut().zip(white.pixels()) {
+        shot.scene.background = ground;
+        plan_frame(&shot)
+    })
+}
+
+/// Removes the background of a picture over black, by the same picture over white.
+pub(crate) fn uncover(black: &mut Picture, white: &Picture) {
+    for (pixel, white) in black.pixels_mut().iter_mut().zip(white.pixels()) {
         *pixel = covered(*pixel, *white);
     }
-    Ok(picture)
 }
 
 /// Converts a pixel over black and over white to colour and alpha.

@@ -23,6 +23,7 @@ const ROOMS: &[&str] = &[
     "renderer",
     "unseen",
     "without_ground",
+    "bands",
     "exposure",
 ];
 

@@ -13,11 +13,12 @@ use crate::app::drawing::images;
 use crate::app::state::{Notice, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
+use crate::picture_file::draw_into;
 use marraztu_core::accuracy::{Settings, Shot};
 use marraztu_core::edit::turntable::turned;
 use marraztu_core::scene::View;
 use marraztu_io::{self as io, Animation, AnimationWriter, Progress, Sources};
-use marraztu_render::{Renderer, plan_frame, without_ground};
+use marraztu_render::{Renderer, plan_frame, without_ground_while};
 
 /// The outcome of making a file.
 #[derive(Debug)]
@@ -207,23 +208,11 @@ fn part_of(shown: &ColorImage, rect: Rect, scale: f32) -> Option<ColorImage> {
 
 /// Draws a picture into a file.
 fn picture(path: &Path, shot: &Shot, transparent: bool, progress: &Progress) -> Made {
-    let mut renderer = Renderer::default();
-    let picture = if transparent {
-        without_ground(&mut renderer, shot).map_err(|error| error.to_string())
-    } else {
-        let drawn = renderer.redraw(&plan_frame(shot), &|| !progress.is_cancelled());
-        match drawn {
-            Ok(_) => Ok(renderer.picture().clone()),
-            Err(marraztu_render::Cancelled) => return Made::Cancelled,
-        }
-    };
-    if progress.is_cancelled() {
-        return Made::Cancelled;
-    }
-    let saved = picture.and_then(|it| io::save_picture(path, &it).map_err(|it| it.to_string()));
-    match saved {
-        Ok(()) => Made::Done(path.to_owned(), Vec::new()),
-        Err(why) => Made::Failed(why),
+    let save = |size, next: &mut io::NextBand<'_>| io::save_bands(path, size, transparent, next);
+    match draw_into(shot, transparent, progress, save) {
+        Ok((Ok(()), _)) => Made::Done(path.to_owned(), Vec::new()),
+        Ok((Err(why), _)) => Made::Failed(why.to_string()),
+        Err(io::Cancelled) => Made::Cancelled,
     }
 }
 
@@ -262,16 +251,14 @@ fn turn_into(
         let scene = turned(&shot.scene, &shot.view, turn, part).map_err(|it| fail(&it))?;
         let view = View { time: shot.view.time + seconds * part, ..shot.view.clone() };
         let shot = Shot { scene, view, ..shot.clone() };
-        if transparent {
-            let picture = without_ground(&mut renderer, &shot).map_err(|it| fail(&it))?;
-            writer.push(&picture).map_err(|it| fail(&it))?;
+        let wanted = || !progress.is_cancelled();
+        let drawn = if transparent {
+            without_ground_while(&mut renderer, &shot, &wanted)
         } else {
-            let wanted = || !progress.is_cancelled();
-            if renderer.redraw(&plan_frame(&shot), &wanted).is_err() {
-                return Ok(None);
-            }
-            writer.push(renderer.picture()).map_err(|it| fail(&it))?;
-        }
+            renderer.redraw(&plan_frame(&shot), &wanted).map(|_| renderer.picture().clone())
+        };
+        let Ok(picture) = drawn else { return Ok(None) };
+        writer.push(&picture).map_err(|it| fail(&it))?;
         if progress.reached(i as usize + 1, frames as usize).is_err() {
             return Ok(None);
         }

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_io::{self as io, Progress};
-use marraztu_render::{Renderer, plan_frame, without_ground};
+use marraztu_render::{Renderer, plan_frame, without_ground_while};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::cache::StageCache;
@@ -345,8 +345,7 @@ fn draw<'a>(
     wanted: &(dyn Fn() -> bool + Sync),
 ) -> Option<Cow<'a, Picture>> {
     if transparent {
-        // The scene takes every background.
-        return without_ground(renderer, shot).ok().map(Cow::Owned);
+        return without_ground_while(renderer, shot, wanted).ok().map(Cow::Owned);
     }
     renderer.render_while(&plan_frame(shot), wanted).ok().map(Cow::Borrowed)
 }

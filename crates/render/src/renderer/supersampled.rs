@@ -78,7 +78,8 @@ impl Renderer {
                 continue;
             }
             let Ok(colors) = larger.averaged(plan, window, &|| watch.goes_on()) else { break };
-            let at = [window.left, window.top];
+            let first_row = i32::try_from(self.first_row).expect("below 2^26");
+            let at = [window.left, window.top - first_row * TILE];
             copy(&colors, window, at, self.picture.pixels_mut(), plan.size.width);
             (0..count).for_each(|_| watch.tile_is_painted());
         }
