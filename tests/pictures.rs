@@ -5,11 +5,13 @@
 
 mod common;
 
+use std::path::Path;
+
 use common::{at, ball, covered, cube, draw, edit, model, scene, square};
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::Shot;
-use marraztu_core::accuracy::{Arithmetic, LightAt, Settings, SpecularForm};
+use marraztu_core::accuracy::{Arithmetic, LightAt, Samples, Settings, SpecularForm};
 use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::{Picture, Size};
@@ -94,6 +96,20 @@ fn the_first_scene_is_the_same_to_a_step_in_both_arithmetics_and_everywhere_at_i
     assert_eq!(covered(&fast, &scene), covered(&exact, &scene));
     let differing = fast.pixels().iter().zip(exact.pixels()).filter(|(a, b)| a != b).count();
     assert!(differing * 2000 < 800 * 800 * 4, "{differing} pixels differ");
+}
+
+/// To renew them: `marraztu render assets/examples/NAME.marraztu --size 288x180 --out
+/// assets/examples/NAME.png`.
+#[test]
+fn the_thumbnails_of_the_examples_are_their_pictures() {
+    for example in marraztu_io::EXAMPLES {
+        let opened =
+            marraztu_io::open(Path::new(example.path), &marraztu_io::Progress::new()).unwrap();
+        let settings = opened.settings.refined_to(Samples::Sixteen);
+        let shot = Shot::new(&opened.scene, &opened.view, &settings, Size::new(288, 180));
+        let drawn = Renderer::default().render(&plan_frame(&shot)).clone();
+        assert!(example.thumbnail() == Some(drawn), "{}", example.title);
+    }
 }
 
 #[test]

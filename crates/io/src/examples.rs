@@ -11,6 +11,7 @@ use super::obj::{Loaded, parse};
 use super::progress::Progress;
 use super::texture::own_picture;
 use marraztu_core::base::Shared;
+use marraztu_core::base::image::Picture;
 use marraztu_core::scene::{LoadOptions, Texture, Wrap};
 
 /// The prefix of paths to the built-in examples.
@@ -23,7 +24,17 @@ pub struct Example {
     pub title: &'static str,
     /// The path that [`super::open`] takes.
     pub path: &'static str,
+    /// A PNG of 288 x 180 pixels, drawn by `marraztu render`.
+    thumbnail: &'static [u8],
     text: &'static str,
+}
+
+impl Example {
+    /// Decodes its thumbnail: the picture that `marraztu render` draws, 288 x 180 pixels.
+    #[must_use]
+    pub fn thumbnail(&self) -> Option<Picture> {
+        own_picture(self.thumbnail)
+    }
 }
 
 /// The examples, in the order of the menu.
@@ -31,16 +42,19 @@ pub const EXAMPLES: &[Example] = &[
     Example {
         title: "Still life",
         path: "example:/still-life.marraztu",
+        thumbnail: include_bytes!("../../../assets/examples/still-life.png"),
         text: include_str!("../../../assets/examples/still-life.marraztu"),
     },
     Example {
         title: "Chess",
         path: "example:/chess.marraztu",
+        thumbnail: include_bytes!("../../../assets/examples/chess.png"),
         text: include_str!("../../../assets/examples/chess.marraztu"),
     },
     Example {
         title: "Harbour",
         path: "example:/harbour.marraztu",
+        thumbnail: include_bytes!("../../../assets/examples/harbour.png"),
         text: include_str!("../../../assets/examples/harbour.marraztu"),
     },
 ];

@@ -1,7 +1,10 @@
 //! The greeting: first steps, over the lower edge of the first picture. It disappears with the
 //! first change and never takes keyboard focus.
 
-use egui::{Align2, Area, Frame, Id, Order, Rect, Ui, vec2};
+use egui::{
+    Align2, Area, Color32, ColorImage, FontId, Frame, Id, Order, Rect, Role, Sense, Stroke,
+    StrokeKind, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+};
 
 use super::status_line::middle_elided;
 use crate::app::actions::{Action, LabRequest, Request};
@@ -10,7 +13,7 @@ use crate::app::theme;
 use crate::app::widgets::regions;
 use crate::app::widgets::text::file_name;
 use marraztu_core::accuracy::Axis;
-use marraztu_io::{EXAMPLES, lesson_on};
+use marraztu_io::{EXAMPLES, Example, lesson_on};
 
 /// The lessons to offer, by their axes, with their topics.
 const LESSONS: [(&str, &str); 3] =
@@ -20,7 +23,13 @@ const LESSONS: [(&str, &str); 3] =
 const RECENT: usize = 3;
 
 /// The greeting is hidden over a smaller picture.
-const LEAST: egui::Vec2 = vec2(420.0, 260.0);
+const LEAST: Vec2 = vec2(420.0, 260.0);
+
+/// Over a smaller picture, examples are shown by name only.
+const LEAST_FOR_THUMBNAILS: Vec2 = vec2(540.0, 440.0);
+
+/// The size of a thumbnail in points: half of its pixels.
+const THUMBNAIL: Vec2 = vec2(144.0, 90.0);
 
 /// Shows the greeting; its requests are added to `requests`.
 pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Request>) {
@@ -35,13 +44,15 @@ pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Req
         Frame::popup(ui.style()).show(ui, |ui| {
             regions::begin(ui, "greeting");
             ui.set_max_width(width);
-            contents(ui, state, requests);
+            let is_roomy = picture.width() >= LEAST_FOR_THUMBNAILS.x
+                && picture.height() >= LEAST_FOR_THUMBNAILS.y;
+            contents(ui, is_roomy, state, requests);
         });
     });
 }
 
 /// Shows one row each for files to open, examples, and lessons.
-fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn contents(ui: &mut Ui, is_roomy: bool, state: &State, requests: &mut Vec<Request>) {
     ui.horizontal_wrapped(|ui| {
         ui.weak("Drop a model here, or");
         let hint = "Shows a model alone, framed and lit";
@@ -61,7 +72,12 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         ui.weak("Or open an example:");
         for example in EXAMPLES {
             let hint = "Opens it in place of this scene";
-            if ui.button(example.title).on_hover_text(hint).clicked() {
+            let thumbnail = thumbnail(ui, example).filter(|_| is_roomy);
+            let button = match thumbnail {
+                Some(picture) => thumbnail_button(ui, &picture, example.title),
+                None => ui.button(example.title),
+            };
+            if button.on_hover_text(hint).clicked() {
                 requests.push(Request::LoadFiles(vec![example.path.into()]));
             }
         }
@@ -79,4 +95,35 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             requests.push(Request::EndGreeting);
         }
     });
+}
+
+/// Returns the thumbnail of an example, decoded on first use.
+fn thumbnail(ui: &Ui, example: &Example) -> Option<TextureHandle> {
+    let id = Id::unique(("thumbnail", example.path));
+    let known = ui.data(|data| data.get_temp::<TextureHandle>(id));
+    known.or_else(|| {
+        let picture = example.thumbnail()?;
+        let size = [picture.size().width, picture.size().height];
+        let image = ColorImage::from_rgba_unmultiplied(size, picture.pixels().as_flattened());
+        let texture = ui.ctx().load_texture(example.path, image, TextureOptions::LINEAR);
+        ui.data_mut(|data| data.insert_temp(id, texture.clone()));
+        Some(texture)
+    })
+}
+
+/// A button that is a picture with its title on the lower edge.
+fn thumbnail_button(ui: &mut Ui, picture: &TextureHandle, title: &str) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(THUMBNAIL, Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, title));
+    let painter = ui.painter();
+    let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    painter.image(picture.id(), rect, whole, Color32::WHITE);
+    let strip = Rect::from_min_max(pos2(rect.left(), rect.bottom() - 20.0), rect.max);
+    painter.rect_filled(strip, 0.0, Color32::from_black_alpha(170));
+    let font = FontId::proportional(13.0);
+    painter.text(strip.center(), Align2::CENTER_CENTER, title, font, Color32::WHITE);
+    let is_marked = response.hovered() || response.has_focus();
+    let color = if is_marked { ui.visuals().selection.bg_fill } else { Color32::TRANSPARENT };
+    painter.rect_stroke(rect, 2.0, Stroke::new(2.0, color), StrokeKind::Outside);
+    response
 }
