@@ -8,7 +8,7 @@ use clap::builder::PossibleValuesParser;
 use marraztu::plots::{self, Look, PagePicture};
 use marraztu_core::accuracy::{AXES, AccuracyPreset, Axis, Settings};
 use marraztu_core::base::image::Size;
-use marraztu_io::{self as io, PictureFormat};
+use marraztu_io::{self as io, NewFile, PictureFormat};
 use marraztu_lab::attribution::attribute;
 use marraztu_lab::candidates::{Thoroughness, all_axes};
 use marraztu_lab::error::{Measure, Region, amplified};
@@ -333,8 +333,9 @@ fn write_page(
         findings.instructions
     );
     let page = plots::report_page(report, &pictures, &machine)?;
-    let fail = |error| Failure::Write(path.to_owned(), error);
-    std::fs::write(path, page).map_err(fail)
+    let mut file = NewFile::begin(path)?;
+    file.push(page.as_bytes())?;
+    Ok(file.finish()?)
 }
 
 fn axis_words() -> PossibleValuesParser {

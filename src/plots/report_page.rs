@@ -9,6 +9,7 @@ use base64::prelude::BASE64_STANDARD;
 use super::page::{STYLE, escaped};
 use super::{Look, PlotError, svg};
 use marraztu_lab::report::{Report, brief, heading};
+use marraztu_lab::sweep::Verdict;
 
 /// A picture of the page.
 #[derive(Clone, Debug)]
@@ -83,16 +84,16 @@ fn slider(pictures: &[PagePicture]) -> String {
             escaped(&picture.figures)
         );
     }
-    let first = others.first().map(data).unwrap_or_default();
+    // The script shows the first picture, which is thus in the page once.
     let _ = write!(
         text,
-        "</select></label> Right: {} ({})</p>\n<div class=\"pair\"><img id=\"a\" alt=\"left\" \
-         src=\"{first}\"><img id=\"b\" alt=\"right\" src=\"{}\"></div>\n<input type=\"range\" \
+        "</select></label> Right: {} ({})</p>\n<div class=\"pair\"><img id=\"a\" alt=\"left\">\
+         <img id=\"b\" alt=\"right\" src=\"{}\"></div>\n<input type=\"range\" \
          id=\"cut\" min=\"0\" max=\"100\" value=\"50\" \
          aria-label=\"Border between the pictures\">\n\
          <script>const e=i=>document.getElementById(i);\
          e('cut').oninput=()=>e('b').style.setProperty('--cut',e('cut').value+'%');\
-         e('left').onchange=()=>e('a').src=e('left').value;</script>\n",
+         const show=()=>e('a').src=e('left').value;e('left').onchange=show;show();</script>\n",
         escaped(&last.name),
         escaped(&last.figures),
         data(last)
@@ -114,13 +115,18 @@ fn table(report: &Report) -> String {
         }
         let point = &report.findings.points[row.point];
         let (whole, flip) = (&row.error.whole, row.error.flip);
+        let time = match point.verdict {
+            Verdict::Busy => "too busy to tell".to_owned(),
+            Verdict::Faster | Verdict::Slower | Verdict::Alike => {
+                format!("{:.2}x</td><td>{}", point.ratio.quartiles.median, brief(point.ms))
+            }
+        };
+        let columns = if point.verdict == Verdict::Busy { 2 } else { 1 };
         let _ = writeln!(
             text,
-            "<tr><td>{}</td><td>{:.2}x</td><td>{}</td><td>{}</td><td>{}</td><td>{}%</td>\
+            "<tr><td>{}</td><td colspan=\"{columns}\">{time}</td><td>{}</td><td>{}</td><td>{}%</td>\
              <td>{}</td></tr>",
             escaped(&row.name),
-            point.ratio.quartiles.median,
-            brief(point.ms),
             whole.largest,
             brief(whole.rmse),
             brief(whole.differing * 100.0),

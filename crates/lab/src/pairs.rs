@@ -145,6 +145,15 @@ impl Ratio {
         [lower.min(median / (1.0 + floor)), upper.max(median * (1.0 + floor))]
     }
 
+    /// The ratio of equal settings: 1, with a spread that includes what was measured.
+    #[must_use]
+    pub fn around_one(&self) -> Self {
+        let Quartiles { lower, upper, .. } = self.quartiles;
+        let quartiles = Quartiles { lower: lower.min(1.0), median: 1.0, upper: upper.max(1.0) };
+        let [from, to] = self.interval;
+        Self { quartiles, interval: [from.min(1.0), to.max(1.0)], ..self.clone() }
+    }
+
     /// A ratio that was measured once, without pairs.
     #[must_use]
     pub const fn once(ratio: f64, a_ms: f64) -> Self {

@@ -378,10 +378,10 @@ impl Bench<'_> {
         references: &mut References,
     ) -> Result<Measured, Unmeasured> {
         let a_ms = findings.control.a_ms;
-        // All times are relative to the default. Its own ratio is the control's, and the ideal is
-        // too slow to be drawn again.
+        // All times are relative to the default, whose own ratio is 1 with the control's spread.
+        // The ideal is too slow to be drawn again.
         let ratio = if settings == *base {
-            findings.control.clone()
+            findings.control.around_one()
         } else if settings == base.ideal() {
             Ratio::once(references.ideal_ms / a_ms, a_ms)
         } else {

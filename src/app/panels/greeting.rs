@@ -26,7 +26,7 @@ const RECENT: usize = 3;
 const LEAST: Vec2 = vec2(420.0, 260.0);
 
 /// Over a smaller picture, examples are shown by name only.
-const LEAST_FOR_THUMBNAILS: Vec2 = vec2(540.0, 440.0);
+const LEAST_FOR_THUMBNAILS: Vec2 = vec2(640.0, 500.0);
 
 /// The size of a thumbnail in points: half of its pixels.
 const THUMBNAIL: Vec2 = vec2(144.0, 90.0);

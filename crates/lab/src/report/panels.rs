@@ -134,7 +134,8 @@ fn ratio(report: &Report, point: usize) -> f64 {
     if point == 0 { 1.0 } else { report.findings.points[point].ratio.quartiles.median.max(1e-3) }
 }
 
-/// Makes a scale of ratios with ticks at 1, 2 and 5 of each decade, and more on a short scale.
+/// Makes a scale of ratios with ticks at 1, 2 and 5 of each decade; more on a short scale, and
+/// fewer on a long one.
 fn time_scale(logarithms: impl Iterator<Item = f64>) -> Scale {
     let [least, most] = bounds(logarithms);
     let room = ((most - least) * 0.1).max(0.08);
@@ -146,7 +147,9 @@ fn time_scale(logarithms: impl Iterator<Item = f64>) -> Scale {
         inside.map(|place| (place, format!("{}x", brief(libm::pow(10.0, place))))).collect()
     };
     let mut ticks = at(&[1.0, 2.0, 5.0]);
-    if ticks.len() < 3 {
+    if ticks.len() > 8 {
+        ticks = at(&[1.0]);
+    } else if ticks.len() < 3 {
         ticks = at(&[0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 3.0, 5.0]);
     }
     Scale { label: "time, the default is 1x".to_owned(), range, ticks }

@@ -1,14 +1,14 @@
 //! The laboratory: what accuracy costs, in sentences, in plots of time against error, and in a
 //! table.
 //!
-//! The controls are at the left, the verdict and the plots in the middle, the table at the right. A
-//! click on a mark or on a row of the table applies its settings.
+//! The controls are at the left. To the right, the verdict is above a plot and the table. A click on
+//! a mark or on a row of the table applies its settings.
 
 mod controls_ui;
 mod plots;
 mod table;
 
-use egui::{Id, Layout, Rect, Ui, UiBuilder, vec2};
+use egui::{Id, Layout, Rect, ScrollArea, Ui, UiBuilder, vec2};
 
 use crate::app::actions::Request;
 use crate::app::state::State;
@@ -18,6 +18,9 @@ use crate::app::widgets::regions;
 
 /// The width of the controls.
 const ASKED: f32 = 264.0;
+
+/// The share of the height that the verdict may take.
+const VERDICT: f32 = 0.4;
 
 /// Narrower panels show one part at a time.
 const WIDE: f32 = 1100.0;
@@ -31,7 +34,12 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let all = whole.shrink2(vec2(0.0, 2.0));
     let gap = f32::from(theme::MARGIN);
     let asked = all.with_max_x(all.left() + ASKED);
-    let rest = all.with_min_x(asked.right() + gap);
+    let mut rest = all.with_min_x(asked.right() + gap);
+    within(ui, rest, |ui| {
+        regions::begin(ui, "verdict");
+        verdict_ui(ui, state, requests);
+        rest = ui.available_rect_before_wrap();
+    });
     let middle = rest.with_max_x(rest.left() + (rest.width() * 0.47).round());
     let right = rest.with_min_x(middle.right() + gap);
     within(ui, asked, |ui| controls_ui::show(ui, state, requests));
@@ -71,10 +79,22 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         1 => {
             let rest = ui.available_rect_before_wrap();
             let rest = rest.with_max_x(rest.right() - f32::from(theme::MARGIN));
-            within(ui, rest, |ui| plots::show(ui, state, requests));
+            within(ui, rest, |ui| {
+                verdict_ui(ui, state, requests);
+                plots::show(ui, state, requests);
+            });
         }
         _ => table::show(ui, state, requests),
     }
+}
+
+/// Shows the verdict, in at most a share of the height.
+fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let most = VERDICT * ui.available_height();
+    let area =
+        ScrollArea::vertical().id_salt("verdict").max_height(most).auto_shrink([false, true]);
+    area.show(ui, |ui| plots::verdict_ui(ui, state, requests));
+    ui.add_space(theme::GAP);
 }
 
 fn within(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {

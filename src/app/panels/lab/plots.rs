@@ -1,7 +1,9 @@
 //! The plots of time against error: an overview, or the panel of an axis. A click on a mark applies
 //! its settings.
 
-use egui::{Color32, Id, Pos2, Rect, Response, RichText, ScrollArea, Sense, Stroke, Ui, Visuals};
+use egui::{
+    Color32, ComboBox, Id, Pos2, Rect, Response, RichText, ScrollArea, Sense, Stroke, Ui, Visuals,
+};
 use egui::{WidgetInfo, pos2, vec2};
 use egui_plot::{GridMark, Plot, PlotPoint, PlotTransform, Span};
 
@@ -13,14 +15,14 @@ use crate::app::widgets::regions;
 use marraztu_lab::report::{Panel, PanelMark, Panels, Report, TextBox, brief, place};
 use marraztu_lab::sweep::{Against, Row};
 
-/// The usual height of a plot with its title, 420 points and a line, if the panel is high enough.
+/// The largest height of a plot with its title: 420 points and a line.
 const USUAL: f32 = 444.0;
 
 /// The minimum height, in a panel that is lower.
-const LEAST: f32 = 200.0;
+const LEAST: f32 = 180.0;
 
-/// The height reserved for the verdict above the plot, if the panel is high enough.
-const VERDICT: f32 = 84.0;
+/// The height of the choice of a plot.
+const CHOICE: f32 = 44.0;
 
 /// The radius of a mark.
 const MARK: f32 = 5.0;
@@ -35,9 +37,16 @@ fn mark_color(visuals: &Visuals, mark: &PanelMark) -> Color32 {
     if mark.is_default { default_color(visuals) } else { theme::accent(visuals) }
 }
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+/// Shows the choice of the scene, and the verdict: it comes first, because it answers the question.
+pub(crate) fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     suite_ui(ui, state, requests);
+    for sentence in state.lab.shown().map(Report::verdict).unwrap_or_default() {
+        ui.add(egui::Label::new(sentence).wrap());
+    }
+}
+
+/// Shows a plot; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let Some(report) = state.lab.shown() else {
         return empty_ui(ui, state);
     };
@@ -46,21 +55,15 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let height = height(ui.available_height());
     let area = ScrollArea::vertical().id_salt("plots").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
-        // The verdict comes first: it answers the question.
-        for sentence in report.verdict() {
-            ui.add(egui::Label::new(sentence).wrap());
-        }
-        ui.add_space(theme::GAP);
         panels_ui(ui, &panels, panel, requests);
         let size = vec2(ui.available_width(), height);
         ui.allocate_ui(size, |ui| panel_ui(ui, (&panels, panel), (state, report), requests));
     });
 }
 
-/// Returns the height of the plot. In a low panel the plot takes all of the height, so its scales
-/// are visible when the user scrolls to it.
+/// Returns the height of the plot below the choice of a plot.
 fn height(room: f32) -> f32 {
-    (room - VERDICT).max(room.min(USUAL)).max(LEAST)
+    (room - CHOICE).clamp(LEAST, USUAL)
 }
 
 fn empty_ui(ui: &mut Ui, state: &State) {
@@ -128,18 +131,17 @@ fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 
 /// Shows the choice of a plot.
 fn panels_ui(ui: &mut Ui, panels: &Panels, shown: &Panel, requests: &mut Vec<Request>) {
-    let all: Vec<&Panel> = std::iter::once(&panels.overview).chain(&panels.axes).collect();
-    let chips: Vec<Choice<'_>> = all
-        .iter()
-        .map(|panel| {
-            let label = panel.axis.map_or("Overview", |axis| axis.label);
-            Choice::new("Plot", label, panel.title == shown.title, "Time against error")
-        })
-        .collect();
-    if let Some(clicked) = choices_in_rows(ui, &chips) {
-        let key = all[clicked].axis.map(|axis| axis.key);
-        requests.push(Request::Lab(LabRequest::Panel(key)));
-    }
+    let label = |panel: &Panel| panel.axis.map_or("Overview", |axis| axis.label);
+    let combo = ComboBox::from_id_salt("plot").selected_text(label(shown)).width(180.0);
+    let combo = combo.height(400.0).show_ui(ui, |ui| {
+        for panel in std::iter::once(&panels.overview).chain(&panels.axes) {
+            if ui.selectable_label(panel.title == shown.title, label(panel)).clicked() {
+                let key = panel.axis.map(|axis| axis.key);
+                requests.push(Request::Lab(LabRequest::Panel(key)));
+            }
+        }
+    });
+    combo.response.accessible_name("Plot").on_hover_text("Time against error");
 }
 
 fn panel_ui(
@@ -310,10 +312,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_plot_fits_into_a_low_panel_and_leaves_room_for_the_verdict_in_a_high_one() {
-        assert_eq!(height(290.0), 290.0);
-        assert_eq!(height(USUAL + 20.0), USUAL);
-        assert_eq!(height(700.0), 700.0 - VERDICT);
+    fn a_plot_takes_the_height_below_its_choice_within_limits() {
+        assert_eq!(height(290.0), 290.0 - CHOICE);
+        assert_eq!(height(700.0), USUAL);
         assert_eq!(height(100.0), LEAST);
     }
 }
