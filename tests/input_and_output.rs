@@ -100,7 +100,7 @@ fn a_picture_replaces_neither_a_file_of_another_kind_nor_its_own_source() {
         [&["wood.obj"][..], &["square.obj", "--texture", "wood.png", "-o", "./wood.png"]]
     {
         let (_, err) = ends_with(1, folder.path(), &[&["render"], arguments].concat(), b"");
-        assert!(err.contains("the scene is read from this file"), "{err}");
+        assert!(err.contains("this file is an input"), "{err}");
         assert_eq!(io::load_picture(&at("wood.png")).unwrap(), texture);
     }
 }

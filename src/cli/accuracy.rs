@@ -64,7 +64,8 @@ fn help_of(axis: &Axis) -> String {
         format!("{}{star}", choice.word)
     };
     let words: Vec<String> = axis.choices.iter().map(star).collect();
-    format!("{}: {}", axis.what, words.join(", "))
+    let of_files = if axis.key == SAMPLES { "; 16 in files" } else { "" };
+    format!("{}: {}{of_files}", axis.what, words.join(", "))
 }
 
 impl FromArgMatches for Accuracy {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use marraztu_core::base::image::Picture;
-use marraztu_io::{self as io, PictureFormat};
+use marraztu_io::{self as io, PictureFormat, Sources};
 use marraztu_lab::error::amplified;
 use marraztu_lab::flip::Perceived;
 
@@ -63,6 +63,11 @@ struct Difference {
 /// Compares two pictures.
 pub(super) fn compare(arguments: &Compare) -> Result<(), Failure> {
     let Compare { a, b, max, flip, out } = arguments;
+    if let Some(out) = out {
+        let sources = Sources::default().with([a, b]);
+        let checked = sources.spare(out).and_then(|()| io::check_picture_target(out));
+        checked.map_err(|error| incomparable(&error.to_string()))?;
+    }
     let [first, second] = match [load(a), load(b)] {
         [Ok(first), Ok(second)] => [first, second],
         [Err(failure), _] | [_, Err(failure)] => return Err(incomparable(&failure)),
@@ -86,7 +91,6 @@ pub(super) fn compare(arguments: &Compare) -> Result<(), Failure> {
         written => written.map_err(Failure::Output)?,
     }
     if let Some(out) = out {
-        io::check_picture_target(out)?;
         io::save_picture(out, &amplified(&first, &second, AMPLIFIED))?;
     }
     let is_same = largest <= *max && flip.is_none_or(|flip| seen <= flip);

@@ -140,6 +140,10 @@ fn pictures_are_compared_with_an_exit_status() {
     assert!(folder.path().join("diff.png").exists());
     compare(0, &["a.png", "b.png", "--max", "255"]);
     compare(1, &["a.png", "b.png", "--max", "255", "--flip", "0.0001"]);
+    let before = std::fs::read(folder.path().join("a.png")).unwrap();
+    let (_, err) = compare(2, &["a.png", "b.png", "--out", "a.png"]);
+    assert!(err.contains("this file is an input"), "{err}");
+    assert_eq!(std::fs::read(folder.path().join("a.png")).unwrap(), before);
     for wrong in [["a.png", "c.png"], ["a.png", "absent.png"], ["a.png", "models/cam.obj"]] {
         let (_, err) = compare(2, &wrong);
         assert!(err.starts_with("error: ") && err.lines().count() == 1, "{err}");

@@ -61,13 +61,11 @@ impl Sources {
         match place.and_then(|place| self.places.get(&place)) {
             None => Ok(()),
             Some(file) if file == target => {
-                Err(SaveError::new(target, "the scene is read from this file; choose another name"))
+                Err(SaveError::new(target, "this file is an input; choose another name"))
             }
             Some(file) => {
-                let reason = format!(
-                    "the scene is read from this file ({}); choose another name",
-                    file.display()
-                );
+                let reason =
+                    format!("this file is an input ({}); choose another name", file.display());
                 Err(SaveError::new(target, reason))
             }
         }

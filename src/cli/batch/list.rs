@@ -91,8 +91,15 @@ fn column_name(column: &str) -> String {
 
 fn from_csv(name: &str, text: &str) -> Result<Vec<Entry>, String> {
     let mut reader = csv::ReaderBuilder::new().from_reader(text.as_bytes());
+    // A row's position is before the empty lines that precede it.
+    let line_of = |position: Option<&csv::Position>| {
+        let (line, byte) = position.map_or((1, 0), |at| (at.line(), at.byte()));
+        let rest = text.as_bytes().iter().skip(usize::try_from(byte).unwrap_or(usize::MAX));
+        let empty = rest.take_while(|byte| matches!(byte, b'\r' | b'\n'));
+        line + empty.filter(|byte| **byte == b'\n').count() as u64
+    };
     let of_line = |error: &csv::Error| {
-        let line = error.position().map_or(1, csv::Position::line);
+        let line = line_of(error.position());
         match error.kind() {
             csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
                 format!("{name}:{line}: the row has {len} columns, but the header {expected_len}")
@@ -108,7 +115,7 @@ fn from_csv(name: &str, text: &str) -> Result<Vec<Entry>, String> {
     let mut entries = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| of_line(&error))?;
-        let line = record.position().map_or(1, csv::Position::line);
+        let line = line_of(record.position());
         // Empty cells keep the option of the command line.
         let cells = header.iter().zip(&record).filter(|(_, cell)| !cell.is_empty());
         let values = cells.map(|(name, cell)| (name.clone(), Value::Text(cell.to_owned())));
@@ -253,6 +260,8 @@ mod tests {
             ("size\n64\n", "list:1: the header has no column"),
             ("file,size\na.obj\n", "list:2: the row has 1 columns, but the header 2"),
             ("file,size\n,64\n", "list:2: the row names no file"),
+            ("file,size\na.obj,64\n\n\r\n,64\n", "list:5: the row names no file"),
+            ("file,size\na.obj,64\n\nb.obj\n", "list:4: the row has 1 columns"),
         ] {
             assert!(from_csv("list", csv).unwrap_err().starts_with(reason), "{csv}");
         }
