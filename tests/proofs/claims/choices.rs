@@ -1,5 +1,6 @@
 //! Counts the instructions of each choice of accuracy on the scenes of the laboratory's suite. A
-//! coarser choice takes no more than a more exact one, unless its axis states a reason.
+//! coarser choice takes no more than a more exact one, unless its axis states a reason, and Draft
+//! never takes more than the default.
 //!
 //! Times are noisy, and an approximation that seems slower than the exact method would mislead.
 //! callgrind counts the same number in every run. It lacks AVX-512, so frames are drawn with AVX2,
@@ -8,7 +9,7 @@
 use std::fmt::Write as _;
 use std::hint::black_box;
 
-use marraztu_core::accuracy::{AXES, Axis, AxisKind, Settings, Shot};
+use marraztu_core::accuracy::{AXES, AccuracyPreset, Axis, AxisKind, Settings, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{Scene, View};
 use marraztu_lab::candidates::{Group, Thoroughness, candidates};
@@ -31,13 +32,20 @@ const DETAIL: u32 = 250;
 /// The tolerance for a coarser choice, relative. Sorting and memory cause differences of this size.
 const MARGIN: f64 = 0.01;
 
-/// The settings counted on a scene, in order: the default, then every other choice of its axes.
+/// The settings counted on a scene, in order: the default, Draft, then every other choice of the
+/// scene's axes.
 fn counted(suite: &SuiteScene, scene: &Scene, view: &View) -> Vec<Settings> {
     let default = Settings::default();
+    let draft = draft();
     let mut found = candidates(scene, view, &default, &suite.measured(), &Thoroughness::AXIS).all;
     found.retain(|candidate| matches!(candidate.group, Group::Axis(_)));
-    let others = found.into_iter().map(|it| it.settings).filter(|settings| *settings != default);
-    std::iter::once(default).chain(others).collect()
+    let others = found.into_iter().map(|it| it.settings);
+    let others = others.filter(|settings| ![default, draft].contains(settings));
+    [default, draft].into_iter().chain(others).collect()
+}
+
+fn draft() -> Settings {
+    AccuracyPreset::dial()[0].of(&Settings::default())
 }
 
 /// Draws a scene twice with one of its settings: a warm-up, then the counted call.
@@ -75,6 +83,15 @@ pub(crate) fn count(word: &str, tell: &mut dyn FnMut(&str)) -> Result<String, St
         let counts: Result<Vec<u64>, String> =
             (0..settings.len()).into_par_iter().map(|which| callgrind(suite, which)).collect();
         let counts: Vec<(Settings, u64)> = settings.into_iter().zip(counts?).collect();
+        let [(_, usual), (_, draft), ..] = &counts[..] else { continue };
+        let share = *draft as f64 / *usual as f64;
+        tell(&format!(
+            "\nDraft takes {share:.3} of the default's instructions on {}.\n",
+            suite.word
+        ));
+        if share > 1.0 + MARGIN {
+            wrong.push(format!("{}: Draft takes {share:.3} of the default", suite.word));
+        }
         for axis in suite.measured() {
             let own = choices_of(axis, &counts);
             let table = table(suite, axis, &own);

@@ -15,6 +15,7 @@ mod far;
 mod hostile;
 pub(crate) mod instructions;
 mod plan;
+mod presets;
 mod presses;
 #[path = "../../random_scenes/mod.rs"]
 mod random_scenes;
@@ -60,6 +61,7 @@ pub(crate) static PROOFS: &[Proof] = &[
     undo::PROOF,
     sizes::PROOF,
     plan::PLAN,
+    presets::PROOF,
     absent::PROOF,
 ];
 
