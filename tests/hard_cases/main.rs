@@ -34,3 +34,9 @@ mod surfaces;
 mod textures;
 mod transparency;
 mod undo;
+
+use marraztu_core::accuracy::Filter;
+
+/// Every texture filter.
+const FILTERS: [Filter; 4] =
+    [Filter::Nearest, Filter::Bilinear, Filter::Trilinear, Filter::Anisotropic];

@@ -187,7 +187,7 @@ fn case_39_a_pixel_is_a_hole_exactly_if_its_alpha_is_below_one_half() {
     let uvs = square(-0.5, 0.25, 1.5, 1.0);
     let (scene, view) = quad(wall(), uvs, &texture);
     let (mut wrong, mut holes, mut pixels) = (0, 0, 0);
-    for filter in [Filter::Nearest, Filter::Bilinear, Filter::Trilinear] {
+    for filter in crate::FILTERS {
         let transparency = Transparency::Threshold;
         let settings = Settings { filter, transparency, ..Settings::default() };
         let picture = draw(&scene, &view, &settings, SIDE);
@@ -201,7 +201,7 @@ fn case_39_a_pixel_is_a_hole_exactly_if_its_alpha_is_below_one_half() {
                     let moved = |by: f64| grey(&texture, [at[0] + by, at[1] + by], filter) - 127.5;
                     [0.002, -0.002].iter().all(|by| moved(*by).signum() == alpha.signum())
                 }
-                Filter::Bilinear | Filter::Trilinear => alpha.abs() > 2.0,
+                Filter::Bilinear | Filter::Trilinear | Filter::Anisotropic => alpha.abs() > 2.0,
             };
             if is_clear && inside(x, y) {
                 pixels += 1;
@@ -303,18 +303,18 @@ fn case_37_a_floor_is_right_up_to_its_horizon() {
     let corners = [corners[0], corners[1], corners[2], DVec3::new(-3e3, -20.0, -1500.0)];
     let texture = noise(64, 64, Wrap::Repeat, [1.0; 2]);
     let (scene, view) = quad(corners, square(0.0, 0.0, 180.0, 60.0), &texture);
-    let settings = Settings { filter: Filter::Trilinear, ..Settings::default() };
-    let exact = Settings { arithmetic: Arithmetic::F64, ..settings };
-    let [ours, exact] = [&settings, &exact].map(|own| draw(&scene, &view, own, SIDE));
-    let pairs = ours.pixels().iter().zip(exact.pixels());
-    let off = pairs.map(|(a, b)| (f64::from(a[0]) - f64::from(b[0])).abs()).fold(0.0, f64::max);
-    Figure {
-        case: 37,
-        what: "trilinear texels of a floor up to its horizon, against f64",
-        naive: None,
-        ours: off,
-        bound: 1.0,
-        unit: "steps of 255",
+    let off = |filter| {
+        let settings = Settings { filter, ..Settings::default() };
+        let exact = Settings { arithmetic: Arithmetic::F64, ..settings };
+        let [ours, exact] = [&settings, &exact].map(|own| draw(&scene, &view, own, SIDE));
+        let pairs = ours.pixels().iter().zip(exact.pixels());
+        pairs.map(|(a, b)| (f64::from(a[0]) - f64::from(b[0])).abs()).fold(0.0, f64::max)
+    };
+    for (filter, what) in [
+        (Filter::Trilinear, "trilinear texels of a floor up to its horizon, against f64"),
+        (Filter::Anisotropic, "anisotropic texels of a floor up to its horizon, against f64"),
+    ] {
+        let (case, ours) = (37, off(filter));
+        Figure { case, what, naive: None, ours, bound: 1.0, unit: "steps of 255" }.hold();
     }
-    .hold();
 }

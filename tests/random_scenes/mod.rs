@@ -74,7 +74,12 @@ pub(crate) fn random_scene(seed: u64) -> RandomScene {
         scene.objects = List::from_iter(reversed);
     }
     let view = view(rng, &scene);
-    RandomScene { seed, view, settings: settings(rng), scene, size }
+    let mut settings = settings(rng);
+    if settings.filter == Filter::Bilinear {
+        let smooth = [Filter::Bilinear, Filter::Trilinear, Filter::Anisotropic];
+        settings.filter = smooth[usize::try_from(seed % 3).unwrap_or(0)];
+    }
+    RandomScene { seed, view, settings, scene, size }
 }
 
 /// Cameras with one unit per pixel in orthographic projection.

@@ -225,8 +225,8 @@ impl Renderer {
         if watch.is_given_up() { Err(Cancelled) } else { Ok(&mut self.picture) }
     }
 
-    /// Resizes the picture, of which `first_row` is the first row of tiles, if its size or place
-    /// changed.
+    /// Resizes the picture if its size or place changed. It begins with the row of tiles
+    /// `first_row`.
     fn resize(&mut self, size: Size, first_row: usize) {
         if self.picture.size() != size || self.first_row != first_row {
             self.picture.resize(size);

@@ -175,8 +175,22 @@ pub enum Filter {
     /// A weighted mean of the four nearest texels.
     #[default]
     Bilinear,
-    /// A mean of the texels that a pixel covers, from mipmaps.
+    /// A mean of the texels that a pixel covers, from mipmaps: a square as wide as the pixel's
+    /// longer side on the texture.
     Trilinear,
+    /// A mean of the texels that a pixel covers: up to 16 trilinear samples along its longer side.
+    Anisotropic,
+}
+
+impl Filter {
+    /// Returns whether the filter reads smaller copies of the texture.
+    #[must_use]
+    pub const fn reads_mips(self) -> bool {
+        match self {
+            Self::Nearest | Self::Bilinear => false,
+            Self::Trilinear | Self::Anisotropic => true,
+        }
+    }
 }
 
 /// The form of the highlight. The two are different models: neither is an error of the other.

@@ -210,6 +210,7 @@ fn texture(it: &Facts<'_>) -> EffectState {
         Filter::Nearest => "nearest texel",
         Filter::Bilinear => "bilinear",
         Filter::Trilinear => "trilinear",
+        Filter::Anisotropic => "anisotropic",
     };
     let left_out = if !it.draw.filled {
         "edges only"

@@ -13,7 +13,7 @@ use crate::simd::power::Power;
 use crate::simd::{Encoding, Number};
 use crate::texture::lanes::prepare_decoding;
 use crate::texture::mips::Mips;
-use marraztu_core::accuracy::{Filter, Rounding};
+use marraztu_core::accuracy::Rounding;
 use marraztu_core::base::Shared;
 use marraztu_core::scene::Texture;
 
@@ -115,8 +115,8 @@ fn mipped<'a>(
     let colors = shaded.texture.iter().chain(extras.colors()).map(move |it| (it, decoding));
     let numbers = extras.exponent.iter().map(|it| (it, Decoding::Stored));
     let bumps = extras.bump.iter().map(|bump| (&bump.map, Decoding::Stored));
-    let filtered = plan.filter == Filter::Trilinear;
-    let bumps_filtered = plan.variants.bump_filter() == Filter::Trilinear;
+    let filtered = plan.filter.reads_mips();
+    let bumps_filtered = plan.variants.bump_filter().reads_mips();
     let of_frame = colors.chain(numbers).filter(move |_| filtered);
     of_frame.chain(bumps.filter(move |_| bumps_filtered))
 }

@@ -76,8 +76,8 @@ impl<'a> TexelSource<'a> {
         footprint: impl FnOnce() -> [[f64; 2]; 2],
     ) -> [T; 4] {
         match self.mips {
-            Some(mips) if self.filter == Filter::Trilinear => {
-                mips.sample_beside(uv, beside, footprint())
+            Some(mips) if self.filter.reads_mips() => {
+                mips.sample_beside((uv, beside), footprint(), self.filter)
             }
             _ => sample_as(self.texture, (uv, beside), self.filter, self.decoding),
         }

@@ -1,6 +1,8 @@
 //! Texels of fragments, sixteen at a time, and the footprint of a pixel on its texture.
 
-use fearless_simd::{Simd, SimdBase as _, SimdMask as _, SimdWiden as _, f32x16, f64x8, i32x16};
+use fearless_simd::{
+    Select as _, Simd, SimdBase as _, SimdMask as _, SimdWiden as _, f32x16, f64x8, i32x16,
+};
 use glam::DVec3;
 
 use super::barycentrics::Barycentrics;
@@ -202,9 +204,18 @@ impl PlacedTexture<'_> {
         lanes.store(position[0], &mut to.position[0], at);
         lanes.store(position[1], &mut to.position[1], at);
         if self.sampler.reads_mips() {
-            let (right, below) =
-                (self.squared_step(simd, of, way, 0), self.squared_step(simd, of, way, 1));
-            lanes.store(Real::max(right, below), &mut to.footprint, at);
+            let [right, below] = [0, 1].map(|which| self.step(simd, of, way, which));
+            let squared = |[u, v]: [f32x16<S>; 2]| u * u + v * v;
+            let squares = [squared(right), squared(below)];
+            lanes.store(Real::max(squares[0], squares[1]), &mut to.footprint, at);
+            if self.sampler.is_anisotropic() {
+                lanes.store(Real::min(squares[0], squares[1]), &mut to.shorter, at);
+                let is_right = squares[0].simd_ge(squares[1]);
+                for axis in 0..2 {
+                    let longer = is_right.select(right[axis], below[axis]);
+                    lanes.store(longer, &mut to.longer[axis], at);
+                }
+            }
         }
     }
 
@@ -248,24 +259,24 @@ impl PlacedTexture<'_> {
         Real::min(texels, of.pick(simd, &self.placement.high[axis]))
     }
 
-    /// Returns the square of the distance in texels to the next pixel on the right (0) or below
-    /// (1). With u = U w, where U and 1/w change by dU and d to that pixel:
+    /// Returns the texels along u and v to the next pixel on the right (0) or below (1). With
+    /// u = U w, where U and 1/w change by dU and d to that pixel:
     ///
     ///   (U + dU) / (1/w + d) - U w = (dU - u d) w / (1 + w d)
     #[inline(always)]
-    fn squared_step<S: Simd>(
+    fn step<S: Simd>(
         &self,
         simd: S,
         of: &impl Triangles<S>,
         ([u, v], w): ([f32x16<S>; 2], f32x16<S>),
         which: usize,
-    ) -> f32x16<S> {
+    ) -> [f32x16<S>; 2] {
         let Placement { steps, by_w_steps, .. } = self.placement;
         let by_w = of.pick(simd, &by_w_steps[which]);
         let per = w / (by_w * w + 1.0);
         let u = (of.pick(simd, &steps[which][0]) - u * by_w) * per;
         let v = (of.pick(simd, &steps[which][1]) - v * by_w) * per;
-        u * u + v * v
+        [u, v]
     }
 }
 

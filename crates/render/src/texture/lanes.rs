@@ -11,11 +11,14 @@ use fearless_simd::{
 
 use self::mip_level::{Footprint, ManyAround, MipLevel};
 use super::sample::{brightness, linear_factors};
-use crate::lights::{Rows, store};
+use crate::lights::{Rows, load, store};
 use crate::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3, log2};
 use marraztu_core::accuracy::Filter;
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::scene::{Texture, Wrap};
+
+/// The most samples along the longer side of a pixel. Graphics cards have the same limit.
+pub(super) const MOST_PROBES: f32 = 16.0;
 
 /// The largest number of mipmap levels: textures have at most 32,768 texels a side.
 const LEVELS: usize = 16;
@@ -35,7 +38,7 @@ pub(crate) struct Sampler<'a> {
 type Positions<S> = [f32x16<S>; 2];
 
 impl<'a> Sampler<'a> {
-    /// Creates a sampler of the first level, or of all levels if the filter is trilinear. `None` if
+    /// Creates a sampler of the first level, or of all levels if the filter reads mipmaps. `None` if
     /// the texture has no texels.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
     pub(crate) fn new(levels: &'a [Texture], filter: Filter) -> Option<Self> {
@@ -55,7 +58,12 @@ impl<'a> Sampler<'a> {
 
     /// Returns whether the filter reads mipmaps.
     pub(crate) fn reads_mips(&self) -> bool {
-        self.filter == Filter::Trilinear
+        self.filter.reads_mips()
+    }
+
+    /// Returns whether the filter reads several samples along the longer side of a pixel.
+    pub(crate) fn is_anisotropic(&self) -> bool {
+        self.filter == Filter::Anisotropic
     }
 
     /// Samples red, green and blue, as factors, at the first `len` places.
@@ -115,7 +123,9 @@ impl<'a> Sampler<'a> {
                     store(lanes, color.times(lanes.set(1.0 / 255.0)), to, at);
                 }
             }
-            Filter::Trilinear => self.trilinear::<S, D>(simd, places, len, to),
+            Filter::Trilinear | Filter::Anisotropic => {
+                self.mipmapped::<S, D>(simd, places, len, to);
+            }
         }
     }
 
@@ -137,7 +147,7 @@ impl<'a> Sampler<'a> {
         let level = MipLevel::first(self, simd);
         let number = match self.filter {
             Filter::Nearest => N::of(level.nearest(simd, self, position)),
-            Filter::Bilinear | Filter::Trilinear => {
+            Filter::Bilinear | Filter::Trilinear | Filter::Anisotropic => {
                 let Footprint { texels, s, t } = level.footprint(simd, self, position);
                 let [[a, b], [c, d]] = texels;
                 let (a, b, c, d) = (N::of(a), N::of(b), N::of(c), N::of(d));
@@ -177,21 +187,80 @@ impl<'a> Sampler<'a> {
         }
     }
 
+    /// Averages trilinear samples along the longer side of each pixel's footprint, or takes one
+    /// sample if the filter is trilinear.
     #[inline(always)]
-    fn trilinear<S: Simd, D: Decode>(
+    fn mipmapped<S: Simd, D: Decode>(
         &self,
         simd: S,
         places: &mut TexelPlaces,
         len: usize,
         to: &mut Rows<f32>,
     ) {
+        let most = if self.is_anisotropic() { count_probes(simd, places, len) } else { 1.0 };
+        let same = self.find_levels(simd, places, len);
+        let middle = places.position;
+        let mut sums = [[0.0; BATCH]; 3];
+        let mut probe = 0.0;
+        // Sampling is compiled once for both filters.
+        loop {
+            if most > 1.0 {
+                self.go_to_probe(simd, places, len, (probe, &middle));
+            }
+            self.mix_levels::<S, D>(simd, places, (len, &same), to);
+            if most > 1.0 {
+                add_probe(simd, places, len, (probe, to), &mut sums);
+            }
+            probe += 1.0;
+            if probe >= most {
+                break;
+            }
+        }
+        if most > 1.0 {
+            for (to, sums) in to.iter_mut().zip(&sums) {
+                to[..len].copy_from_slice(&sums[..len]);
+            }
+        }
+    }
+
+    /// Moves each place from the middle of its pixel to a sample. Missing samples repeat the last
+    /// one.
+    #[inline(always)]
+    fn go_to_probe<S: Simd>(
+        &self,
+        simd: S,
+        places: &mut TexelPlaces,
+        len: usize,
+        (probe, middle): (f32, &[[f32; BATCH]; 2]),
+    ) {
+        let lanes = Sixteen(simd);
+        for at in (0..len).step_by(16) {
+            let count = lanes.load(&places.probes, at);
+            let own = Real::min(lanes.set(probe), count - 1.0);
+            let part = (own + 0.5) / count - 0.5;
+            for (axis, middle) in middle.iter().enumerate() {
+                let way = lanes.load(&places.longer[axis], at) * part;
+                let position = self.reduced(lanes.load(middle, at) + way, axis);
+                lanes.store(position, &mut places.position[axis], at);
+            }
+        }
+    }
+
+    /// Computes the two levels of each place and the weight of the coarser one. Returns the finer
+    /// level of each group of sixteen places, if all of them share one.
+    #[inline(always)]
+    fn find_levels<S: Simd>(
+        &self,
+        simd: S,
+        places: &mut TexelPlaces,
+        len: usize,
+    ) -> [Option<usize>; BATCH / 16] {
         let lanes = Sixteen(simd);
         #[expect(clippy::cast_precision_loss, reason = "at most 16")]
         let last = lanes.set((self.levels.len() - 1) as f32);
         let (zero, one) = (lanes.set(0.0), lanes.set(1.0));
-        // The level of each group of sixteen places, if all of them share one.
         let mut same = [None; BATCH / 16];
-        // First loop: the levels. log2 of the squared footprint, halved, is log2 of the footprint.
+        // log2 of the squared footprint, halved, is log2 of the footprint.
         for (at, same) in (0..len).step_by(16).zip(&mut same) {
             let level = log2(Real::max(lanes.load(&places.footprint, at), one)) * 0.5;
             let level = Real::max(Real::min(level, last), zero);
@@ -202,29 +271,40 @@ impl<'a> Sampler<'a> {
             let first = number[0];
             *same = number.simd_eq(first).all_true().then_some(first.cast_unsigned() as usize);
         }
-        // Second loop: the addresses. The coarser level is skipped if no place of the group needs
+        same
+    }
+
+    /// Samples the two levels of each place, and mixes them.
+    #[inline(always)]
+    fn mix_levels<S: Simd, D: Decode>(
+        &self,
+        simd: S,
+        places: &mut TexelPlaces,
+        (len, same): (usize, &[Option<usize>; BATCH / 16]),
+        to: &mut Rows<f32>,
+    ) {
+        let lanes = Sixteen(simd);
+        // First loop: the addresses. The coarser level is skipped if no place of the group needs
         // it.
         for (at, same) in (0..len).step_by(16).zip(same) {
             let position = places.at(lanes, at);
-            let around = self.level::<S, 0>(simd, places, at, same).around(simd, position);
+            let around = self.level::<S, 0>(simd, places, at, *same).around(simd, position);
             places.finer.store(at, &around);
             if lanes.load(&places.levels[1], at).simd_gt(0.0).any_true() {
-                let around = self.level::<S, 1>(simd, places, at, same).around(simd, position);
+                let around = self.level::<S, 1>(simd, places, at, *same).around(simd, position);
                 places.coarser.store(at, &around);
             }
         }
-        // Third loop: fetching and mixing.
+        // Second loop: fetching and mixing.
         for (at, same) in (0..len).step_by(16).zip(same) {
             let around = places.finer.load(simd, at);
-            let mut color =
-                self.level::<S, 0>(simd, places, at, same).texels(simd, self, &around).color::<D>();
+            let finer = self.level::<S, 0>(simd, places, at, *same);
+            let mut color = finer.texels(simd, self, &around).color::<D>();
             let part = lanes.load(&places.levels[1], at);
             if part.simd_gt(0.0).any_true() {
                 let around = places.coarser.load(simd, at);
-                let far = self
-                    .level::<S, 1>(simd, places, at, same)
-                    .texels(simd, self, &around)
-                    .color::<D>();
+                let coarser = self.level::<S, 1>(simd, places, at, *same);
+                let far = coarser.texels(simd, self, &around).color::<D>();
                 color = between(color, far, part);
             }
             store(lanes, color.times(lanes.set(1.0 / 255.0)), to, at);
@@ -251,13 +331,61 @@ impl<'a> Sampler<'a> {
     }
 }
 
+/// Computes the number of samples along the longer side of each pixel, and the footprint of one
+/// sample. Returns the largest number.
+///
+/// The extension `EXT_texture_filter_anisotropic` of OpenGL: N = ceil(longer / shorter), at most
+/// 16, and the level is that of longer / N. Sides shorter than a texel count as one.
+#[inline(always)]
+fn count_probes<S: Simd>(simd: S, places: &mut TexelPlaces, len: usize) -> f32 {
+    let lanes = Sixteen(simd);
+    let one = lanes.set(1.0);
+    let mut most = one;
+    for at in (0..len).step_by(16) {
+        let longer = lanes.load(&places.footprint, at);
+        let shorter = Real::max(lanes.load(&places.shorter, at), one);
+        let count = Real::max((longer / shorter).sqrt().ceil(), one);
+        let count = Real::min(count, lanes.set(MOST_PROBES));
+        lanes.store(longer / (count * count), &mut places.footprint, at);
+        lanes.store(count, &mut places.probes, at);
+        most = Real::max(most, count);
+    }
+    <[f32; 16]>::from(most).into_iter().fold(1.0, f32::max)
+}
+
+/// Adds a sample to the sum of each place, with the weight 1/N.
+#[inline(always)]
+fn add_probe<S: Simd>(
+    simd: S,
+    places: &TexelPlaces,
+    len: usize,
+    (probe, texels): (f32, &Rows<f32>),
+    sums: &mut Rows<f32>,
+) {
+    let lanes = Sixteen(simd);
+    for at in (0..len).step_by(16) {
+        let count = lanes.load(&places.probes, at);
+        let is_there = lanes.set(probe).simd_lt(count);
+        let weight = is_there.select(lanes.set(1.0) / count, lanes.set(0.0));
+        let sum = load(lanes, sums, at).plus(load(lanes, texels, at).times(weight));
+        store(lanes, sum, sums, at);
+    }
+}
+
 /// Places on a texture to be sampled.
 #[derive(Debug)]
 pub(crate) struct TexelPlaces {
     /// The positions, in texels of the first level.
     pub(crate) position: [[f32; BATCH]; 2],
-    /// The squared number of texels that a pixel covers along a side, if the filter reads mipmaps.
+    /// The squared number of texels that a pixel covers along its longer side, if the filter reads
+    /// mipmaps.
     pub(crate) footprint: [f32; BATCH],
+    /// The same along its shorter side, if the filter is anisotropic.
+    pub(crate) shorter: [f32; BATCH],
+    /// The longer side in texels, if the filter is anisotropic.
+    pub(crate) longer: [[f32; BATCH]; 2],
+    /// The number of samples along the longer side.
+    probes: [f32; BATCH],
     /// The finer level that trilinear filtering mixes, and the weight of the coarser one.
     levels: [[f32; BATCH]; 2],
     /// The texels around the positions, on the finer and on the coarser level.
@@ -271,6 +399,9 @@ impl Default for TexelPlaces {
         Self {
             position: [row; 2],
             footprint: row,
+            shorter: row,
+            longer: [row; 2],
+            probes: row,
             levels: [row; 2],
             finer: ManyAround::default(),
             coarser: ManyAround::default(),

@@ -2,11 +2,14 @@
 //! a quarter, an eighth of its size and so on.
 //!
 //! The footprint of a pixel is the longer of the distances on the texture to its right and lower
-//! neighbours. Its logarithm selects the two levels to interpolate between.
+//! neighbours. Its logarithm selects the two levels to interpolate between (trilinear). The
+//! anisotropic filter divides the longer distance into parts as long as the shorter one, and
+//! averages a trilinear sample in each.
 //!
 //! Williams, "Pyramidal Parametrics", SIGGRAPH 1983. The longer distance follows the OpenGL 4.6
-//! specification, 8.14.1.
+//! specification, 8.14.1, and the anisotropic filter its extension `EXT_texture_filter_anisotropic`.
 
+use super::lanes::MOST_PROBES;
 use super::sample::{linear_factors, sample_as};
 use crate::frame::variants::Decoding;
 use crate::simd::Number;
@@ -51,10 +54,36 @@ impl Mips {
     /// `uv`. `ways` are the differences to the neighbouring pixels on the screen.
     pub(crate) fn sample_beside<T: Number>(
         &self,
-        uv: [f64; 2],
-        beside: [f64; 2],
+        (uv, beside): ([f64; 2], [f64; 2]),
         ways: [[f64; 2]; 2],
+        filter: Filter,
     ) -> [T; 4] {
+        let [right, below] = ways.map(|way| self.texels(way));
+        let (way, longer, shorter) =
+            if right >= below { (ways[0], right, below) } else { (ways[1], below, right) };
+        let count = match filter {
+            Filter::Anisotropic => {
+                (longer / shorter.max(1.0)).ceil().clamp(1.0, MOST_PROBES.into())
+            }
+            Filter::Nearest | Filter::Bilinear | Filter::Trilinear => 1.0,
+        };
+        let level = self.level(longer / count);
+        if count <= 1.0 {
+            return self.trilinear((uv, beside), level);
+        }
+        let (mut sum, mut probe) = ([T::from_f64(0.0); 4], 0.0);
+        while probe < count {
+            let part = (probe + 0.5) / count - 0.5;
+            let uv = [uv[0] + way[0] * part, uv[1] + way[1] * part];
+            let own: [T; 4] = self.trilinear((uv, beside), level);
+            sum = std::array::from_fn(|i| sum[i] + own[i] * T::from_f64(1.0 / count));
+            probe += 1.0;
+        }
+        sum
+    }
+
+    /// Mixes the two levels around a fractional one.
+    fn trilinear<T: Number>(&self, (uv, beside): ([f64; 2], [f64; 2]), level: f64) -> [T; 4] {
         let of = |level: usize| {
             let sides = |level: &Texture| {
                 let Size { width, height } = level.picture.size();
@@ -66,13 +95,11 @@ impl Mips {
             let beside = [0, 1].map(|axis| beside[axis] * own[axis] as f64 / whole[axis] as f64);
             sample_as::<T>(&self.levels[level], (uv, beside), Filter::Bilinear, self.decoding)
         };
-        let level = self.level(ways);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 32")]
         let below = level as usize;
         let near = of(below);
         #[expect(clippy::cast_precision_loss, reason = "below 32")]
         let part = T::from_f64(level - below as f64);
-        // Trilinear: the two levels around the fractional level are mixed.
         match self.levels.get(below + 1) {
             Some(_) if level > 0.0 => {
                 let far = of(below + 1);
@@ -82,16 +109,19 @@ impl Mips {
         }
     }
 
-    /// Computes the mipmap level: log2 of the texels that a pixel covers, clamped to existing
-    /// levels.
+    /// Returns the length of a way in texels of the full size.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-    fn level(&self, ways: [[f64; 2]; 2]) -> f64 {
+    fn texels(&self, [u, v]: [f64; 2]) -> f64 {
         let Texture { picture, scale, .. } = &self.levels[0];
         let Size { width, height } = picture.size();
-        let texels = ways
-            .map(|[u, v]| libm::hypot(u * scale[0] * width as f64, v * scale[1] * height as f64));
-        let most = texels[0].max(texels[1]);
-        if most > 1.0 { libm::log2(most).min((self.levels.len() - 1) as f64) } else { 0.0 }
+        libm::hypot(u * scale[0] * width as f64, v * scale[1] * height as f64)
+    }
+
+    /// Computes the mipmap level: log2 of the texels that a pixel covers, clamped to existing
+    /// levels.
+    #[expect(clippy::cast_precision_loss, reason = "at most 16")]
+    fn level(&self, texels: f64) -> f64 {
+        if texels > 1.0 { libm::log2(texels).min((self.levels.len() - 1) as f64) } else { 0.0 }
     }
 }
 
@@ -126,6 +156,31 @@ mod tests {
     use super::*;
     use marraztu_core::scene::Wrap;
 
+    const TRILINEAR: Filter = Filter::Trilinear;
+
+    /// Columns of black and white texels.
+    fn striped(side: usize) -> Shared<Texture> {
+        let at = |i: usize| if i.is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] };
+        let picture =
+            Picture::from_pixels(Size::new(side, side), (0..side * side).map(at).collect());
+        let picture = picture.unwrap().into();
+        Shared::new(Texture { picture, ..Texture::clone(&chequered(1)) })
+    }
+
+    /// A pixel that is eight texels high and half a texel wide lies within one column.
+    #[test]
+    fn a_pixel_along_a_stripe_shows_its_colour_only_with_the_anisotropic_filter() {
+        let mips = Mips::new(&striped(16), Decoding::Stored);
+        let at = |column: f64, filter: Filter| -> [f64; 4] {
+            let uv = [(column + 0.5) / 16.0, 0.37];
+            mips.sample_beside((uv, [0.0; 2]), [[0.5 / 16.0, 0.0], [0.0, 8.0 / 16.0]], filter)
+        };
+        let shown = [0.0, 1.0].map(|column| at(column, Filter::Anisotropic)[0]);
+        assert!((shown[0] - 1.0).abs() < 1e-9 && shown[1].abs() < 1e-9, "{shown:?}");
+        let grey = [0.0, 1.0].map(|column| at(column, TRILINEAR)[0]);
+        assert!(grey.iter().all(|grey| (grey - 0.5).abs() < 0.003), "{grey:?}");
+    }
+
     fn chequered(side: usize) -> Shared<Texture> {
         let at = |i: usize| {
             if (i % side + i / side).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] }
@@ -143,11 +198,12 @@ mod tests {
         assert_eq!(mips.levels.len(), 5);
         for i in 0..40 {
             let uv = [f64::from(i) * 0.137, f64::from(i) * 0.071];
-            let afar: [f64; 4] = mips.sample_beside(uv, [0.0; 2], [[2.0 / 16.0, 0.0], [0.0, 0.01]]);
+            let afar: [f64; 4] =
+                mips.sample_beside((uv, [0.0; 2]), [[2.0 / 16.0, 0.0], [0.0, 0.01]], TRILINEAR);
             assert!((afar[0] - 0.5).abs() < 0.003, "{afar:?}");
         }
         let near: [f64; 4] =
-            mips.sample_beside([0.5 / 16.0; 2], [0.0; 2], [[0.01, 0.0], [0.0, 0.01]]);
+            mips.sample_beside(([0.5 / 16.0; 2], [0.0; 2]), [[0.01, 0.0], [0.0, 0.01]], TRILINEAR);
         // The picture's rows run down, so (0, 0) is its lower left texel.
         assert!(near[0] == 0.0 || near[0] == 1.0, "{near:?}");
     }
@@ -156,7 +212,7 @@ mod tests {
     fn between_two_sizes_both_are_mixed() {
         let mips = Mips::new(&chequered(2), Decoding::Stored);
         let at = |texels: f64| -> [f64; 4] {
-            mips.sample_beside([0.25; 2], [0.0; 2], [[texels / 2.0, 0.0], [0.0, 0.0]])
+            mips.sample_beside(([0.25; 2], [0.0; 2]), [[texels / 2.0, 0.0], [0.0, 0.0]], TRILINEAR)
         };
         let (near, half, far) = (at(1.0)[0], at(2.0_f64.sqrt())[0], at(2.0)[0]);
         assert!((far - 128.0 / 255.0).abs() < 1e-9 && (near == 0.0 || near == 1.0));
@@ -174,7 +230,7 @@ mod tests {
             let mips = Mips::new(&Shared::new(texture), Decoding::Stored);
             assert_eq!(mips.levels.len(), levels);
             let color: [f64; 4] =
-                mips.sample_beside([0.3, 0.7], [0.0; 2], [[9.0, 0.0], [0.0, 9.0]]);
+                mips.sample_beside(([0.3, 0.7], [0.0; 2]), [[9.0, 0.0], [0.0, 9.0]], TRILINEAR);
             assert!((color[0] - 9.0 / 255.0).abs() < 1e-12);
         }
     }

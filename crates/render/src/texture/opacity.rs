@@ -168,7 +168,7 @@ fn texels(
     let (before, after) = match filter {
         Filter::Nearest => (0.0, 0),
         // The alpha test reads no mipmaps.
-        Filter::Bilinear | Filter::Trilinear => (0.5, 1),
+        Filter::Bilinear | Filter::Trilinear | Filter::Anisotropic => (0.5, 1),
     };
     let first = (a.min(b) * side - before - MARGIN).floor() as i64;
     let last = (a.max(b) * side - before + MARGIN).floor() as i64 + after;

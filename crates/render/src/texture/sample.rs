@@ -53,7 +53,7 @@ pub(crate) fn sample_as<T: Number>(
     match filter {
         Filter::Nearest => texel(whole(x), whole(y)),
         // Sampled at full size; the caller handles mipmaps.
-        Filter::Bilinear | Filter::Trilinear => {
+        Filter::Bilinear | Filter::Trilinear | Filter::Anisotropic => {
             let (x, y) = (x - 0.5, y - 0.5);
             let (column, row) = (whole(x), whole(y));
             let (s, t) = (T::from_f64(x - x.floor()), T::from_f64(y - y.floor()));

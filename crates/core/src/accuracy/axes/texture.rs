@@ -18,7 +18,11 @@ pub(super) const FILTER: Axis = Axis {
             "A weighted mean of the four nearest texels.",
             "from afar, up to the difference between the texels that a pixel covers"),
         choice!("trilinear" "Trilinear" filter = Filter::Trilinear,
-            "A mean of the texels that a pixel covers, from mipmaps.",
+            "A mean of the texels that a pixel covers, from mipmaps. Blurs surfaces seen edge-on.",
+            "on a surface seen edge-on, up to the difference between the texels of a square as \
+             wide as the pixel's longer side on it"),
+        choice!("anisotropic" "Anisotropic" filter = Filter::Anisotropic,
+            "Up to 16 trilinear samples along the longer side of the pixel on the texture.",
             "none"),
     ],
     sense: |scene, view| if_any(scene, view, is_textured, "no visible surface has a texture"),
