@@ -56,8 +56,8 @@
 //! * `shadow`: rays from lit points to lights, and what stands between.
 //! * `shading`: the colours of what is visible, and their bytes in the picture.
 //! * `tile_layers`: what the pixels of a tile show.
-//! * `picture_camera`, `layers`: the camera of a picture, and its depths, normals and ids, for other
-//!   programs.
+//! * `picture_camera`, `layers`: the camera of a picture, and its depths, normals and ids, for
+//!   other programs.
 //! * `renderer`, `damage`, `count`, `unseen`, `exposure`, `without_ground`: draw plans, and answer
 //!   questions about what was drawn.
 

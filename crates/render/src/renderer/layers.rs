@@ -13,13 +13,15 @@ use crate::accel::Accelerated as _;
 use crate::cancellation::Cancellation;
 use crate::frame::FramePlan;
 use crate::frame::draw::{Back, Draw};
-use crate::layers::{Layer, LayerNames, LayerSet, LayerValues, Layers, NormalSpace, id_at};
+use crate::layers::{
+    Layer, LayerNames, LayerSet, LayerType, LayerValues, Layers, NormalSpace, id_at,
+};
 use crate::picture_camera::{AxesConvention, PictureCamera};
 use crate::plan::plan_frame;
 use crate::raster::geometry::ScreenGeometry;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::sample_positions::SamplePositions;
-use crate::screen::tiles::{BLOCK_PIXELS, TILE_SIDE, tiles_of};
+use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE_SIDE, tiles_of};
 use crate::screen::weights::Weights;
 use crate::shading::painter::bounds_of;
 use crate::shading::triangle_attributes::is_front;
@@ -64,7 +66,7 @@ impl Renderer {
             }
             self.frame.build(self.level, &plan, (SamplePositions::default(), None), &watch);
             if !watch.is_given_up() {
-                let source = Source::new(&shot, &plan, (&self.frame, &names), normals);
+                let source = Source::new(&shot, &plan, (&self.frame, &names), &layers);
                 self.fill(&source, &mut layers, &watch);
             }
         });
@@ -88,15 +90,19 @@ impl Renderer {
                         if frame.is_empty(tile) && !frame.is_layered(tile) {
                             continue;
                         }
-                        tile_seen.draw(*level, plan, frame, (tile, bounds_of(tile, size)));
+                        let bounds = bounds_of(tile, size);
+                        tile_seen.draw(*level, plan, frame, (tile, bounds));
                         for block in 0..BLOCK_PIXELS {
-                            tile_seen.each(*level, frame, block, |at, word, _| {
-                                let Visible::Triangle(number) = seen(word) else { return };
-                                let surface = surfaces.of(source, number);
-                                let [x, y] = at.map(|i| i.cast_unsigned() as usize);
-                                let place = y % TILE_SIDE * size.width + x;
-                                source.put(surface, at, &mut band, place);
-                            });
+                            let words = tile_seen.nearest(*level, frame, block);
+                            let [left, top] = tile_seen.visibility.corner(block);
+                            for (place, word) in (0..).zip(words.iter().flatten()) {
+                                let at = [left + place % BLOCK, top + place / BLOCK];
+                                let is_inside = at[0] < bounds.right && at[1] < bounds.bottom;
+                                if let (true, Visible::Triangle(number)) = (is_inside, seen(*word))
+                                {
+                                    source.put(surfaces.of(source, number), at, &mut band);
+                                }
+                            }
                         }
                     }
                 });
@@ -155,7 +161,12 @@ struct Source<'a> {
     /// The id of each draw's object.
     objects: Vec<i32>,
     camera: PictureCamera,
-    normals: NormalSpace,
+    /// The rotation of normals from the camera's frame; `None` if they stay in it.
+    turn: Option<DMat3>,
+    /// The width of the picture.
+    width: usize,
+    /// Whether any layer depends on the point that a pixel shows.
+    has_points: bool,
     /// The number of world units per unit of view space.
     unit: f64,
 }
@@ -179,7 +190,7 @@ impl<'a> Source<'a> {
         shot: &Shot,
         plan: &'a FramePlan,
         (frame, names): (&'a ScreenGeometry, &'a LayerNames),
-        normals: NormalSpace,
+        layers: &Layers,
     ) -> Self {
         let id = |draw: &Draw| match draw.item {
             ItemId::Object(object) => shot.scene.objects.position(object).map_or(0, id_at),
@@ -187,7 +198,12 @@ impl<'a> Source<'a> {
         };
         let objects = plan.draws.iter().map(id).collect();
         let unit = 1.0 / plan.view_from_world.x_axis.length();
-        Self { plan, frame, names, objects, camera: PictureCamera::of(shot), normals, unit }
+        let camera = PictureCamera::of(shot);
+        let world = DMat3::from_mat4(camera.world_from_camera(AxesConvention::OpenGl));
+        let turn = (layers.normals == NormalSpace::World).then_some(world);
+        let has_points = layers.values.keys().any(|it| it.number_type() == LayerType::F32);
+        let width = shot.size.width;
+        Self { plan, frame, names, objects, camera, turn, width, has_points, unit }
     }
 
     /// Prepares a triangle.
@@ -232,14 +248,11 @@ impl<'a> Source<'a> {
 
     /// Writes the layers of a pixel.
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
-    fn put(
-        &self,
-        surface: &SurfaceTriangle,
-        at: [i32; 2],
-        band: &mut [(Layer, Rows<'_>)],
-        place: usize,
-    ) {
-        let weights = surface.weights.at(at);
+    fn put(&self, surface: &SurfaceTriangle, at: [i32; 2], band: &mut [(Layer, Rows<'_>)]) {
+        let [x, y] = at.map(|i| i.cast_unsigned() as usize);
+        let place = y % TILE_SIDE * self.width + x;
+        // Ids are the same in the whole triangle.
+        let weights = if self.has_points { surface.weights.at(at) } else { DVec3::X };
         let [a, b, c] = surface.corners;
         let position = a + b * weights.y + c * weights.z;
         let [object, part, material, polygon] = surface.ids;
@@ -280,16 +293,13 @@ impl<'a> Source<'a> {
     /// Returns the unit normal at a point of a triangle.
     fn normal(&self, surface: &SurfaceTriangle, weights: DVec3) -> DVec3 {
         let [a, b, c] = surface.normals;
-        let normal = math::unit(a * weights.x + b * weights.y + c * weights.z)
-            .or_else(|| math::unit(surface.normal))
-            .unwrap_or(DVec3::Z);
-        match self.normals {
-            NormalSpace::Camera => normal,
-            NormalSpace::World => {
-                let world = self.camera.world_from_camera(AxesConvention::OpenGl);
-                DMat3::from_mat4(world) * normal
-            }
-        }
+        let sum = a * weights.x + b * weights.y + c * weights.z;
+        // Corners with opposite normals have none between them.
+        let normal = match sum.length_squared() {
+            square if square > 1e-12 => sum / square.sqrt(),
+            _ => math::unit(surface.normal).unwrap_or(DVec3::Z),
+        };
+        self.turn.map_or(normal, |turn| turn * normal)
     }
 }
 
