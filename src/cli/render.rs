@@ -1,9 +1,9 @@
 //! `marraztu render`: draws a picture into a file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
-use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::image::Size;
 use marraztu_core::edit::framing::Sphere;
 use marraztu_core::edit::{framing, items, lighting};
 use marraztu_core::scene::{
@@ -13,15 +13,19 @@ use marraztu_io::{self as io, Progress};
 use marraztu_lab::dial::{Dial, Figures, Step};
 use marraztu_lab::report::brief;
 use marraztu_render::accel::Accelerated as _;
-use marraztu_render::{Renderer, Unseen, fitted_exposure, plan_frame, unseen, without_ground};
+use marraztu_render::{
+    LayerNames, Renderer, Unseen, fitted_exposure, plan_frame, unseen, without_ground,
+};
 
 use super::accuracy::Accuracy;
 use super::arguments::{
     Exposure, PictureArguments, Reading, Render, Seeing, ShadowSlots, Slots, Surfaces,
 };
 use super::bar::Bar;
+use super::cameras::{CameraFrame, write_cameras};
 use super::draw_along;
 use super::failure::{Failure, usage};
+use super::layers::LayerContent;
 use super::stage::{Stage, Watch};
 use super::talk::note;
 use super::target::Target;
@@ -37,12 +41,20 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     for (_, object) in stage.scene.objects.iter() {
         object.model.mesh.draw_as_filed();
     }
-    let shot = stage.shot(arguments.picture.size);
+    let shot = stage.shot(target.size(arguments.picture.size));
     let mut renderer = Renderer::default();
-    if arguments.transparent {
-        let picture = without_ground(&mut renderer, &shot)?;
+    let options = &arguments.layers;
+    let numbers = match options.set() {
+        set if set.is_empty() => None,
+        set => Some(renderer.layers(&shot, set, options.normal_space())),
+    };
+    let numbers = numbers.as_ref();
+    if arguments.transparent || !options.has_color() {
+        let color = arguments.transparent.then(|| without_ground(&mut renderer, &shot));
+        let color = color.transpose()?;
         drop(bar);
-        return written(arguments, &target, &picture);
+        let content = LayerContent::new(&shot, color.as_ref(), numbers, arguments.transparent);
+        return written(arguments, &target, &stage, &content);
     }
     let plan = plan_frame(&shot);
     renderer.render_watched(&plan, &|done, all| {
@@ -51,7 +63,8 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     });
     drop(bar);
     tell_unseen(&mut renderer, &shot);
-    written(arguments, &target, renderer.picture())?;
+    let content = LayerContent::new(&shot, Some(renderer.picture()), numbers, false);
+    written(arguments, &target, &stage, &content)?;
     if arguments.report {
         tell_cost(&mut renderer, &shot);
     }
@@ -80,11 +93,29 @@ fn tell_cost(renderer: &mut Renderer, shot: &Shot) {
     ));
 }
 
-/// Writes the picture, and prints its path if the user did not choose it.
-fn written(arguments: &Render, target: &Target, picture: &Picture) -> Result<(), Failure> {
-    target.write(picture)?;
-    if let (None, Target::File(path)) = (&arguments.out, target) {
-        note(&format_args!("the picture is in {}", path.display()));
+/// Writes the picture with its layers, and prints its path if the user did not choose it.
+fn written(
+    arguments: &Render,
+    target: &Target,
+    stage: &Stage,
+    content: &LayerContent<'_>,
+) -> Result<(), Failure> {
+    let Render { layers: options, picture, .. } = arguments;
+    target.write(content, options)?;
+    let Target::Files(files) = target else { return Ok(()) };
+    if options.are_given() {
+        let names = options.has_ids().then(|| LayerNames::of(&stage.scene));
+        let inputs: Vec<String> =
+            picture.files.iter().map(|file| file.display().to_string()).collect();
+        let scene = (inputs.join(" "), "0");
+        let shot = stage.shot(picture.size);
+        let folder = files.first().and_then(|file| file.path.parent()).unwrap_or(Path::new(""));
+        let files = (folder, &files[..]);
+        let frame = CameraFrame::new(&shot, files, scene, (options, names.as_ref()));
+        write_cameras("cameras.json", vec![frame])?;
+    }
+    if let (None, [first, ..]) = (&arguments.out, &files[..]) {
+        note(&format_args!("the picture is in {}", first.path.display()));
     }
     Ok(())
 }
