@@ -7,8 +7,10 @@ use clap::Args;
 use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 
 use super::accuracy::Accuracy;
+use super::layers::{Encoding, LayerOptions};
 use super::talk::Talk;
-use super::values::{color, is_standard, size, threads};
+use super::terminal::TerminalForm;
+use super::values::{color, is_standard, is_terminal, size, threads};
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{
@@ -30,16 +32,24 @@ picture never overwrites an input file, or a file that is not a picture.
 
 Examples:
   marraztu render teapot.obj
+  marraztu render teapot.obj --out terminal
   xz -dc pot.obj.xz | marraztu render - --out - > pot.png
   marraztu render bunny.obj --out bunny.png --size 1920x1080 --material gold
   marraztu render room.obj --out room.png --up z --surface texture --filter nearest
   marraztu render spot.obj --out spot.png --from 145,20
   marraztu render shelf.marraztu --out shelf.ppm --camera 2 --time 1.5
+  marraztu render cow.obj --out cow-{layer}.png --layers color,depth,normal,object
+  marraztu render cow.obj --out cow.exr --layers all
   marraztu render ship.obj --out lines.png --edges --projection orthographic --background 0,0,0")]
 pub(crate) struct Render {
     #[arg(short, long, value_name = "FILE", help = out_help())]
     #[arg(value_parser = PathBufValueParser::new().try_map(picture))]
     pub(crate) out: Option<PathBuf>,
+    /// How to show the picture with "--out terminal": kitty, sixel, blocks (half blocks in 24-bit
+    /// colours) [default: the best one that the terminal is known to support]
+    #[arg(long, value_name = "FORM", hide_possible_values = true)]
+    #[arg(value_parser = choice(&TerminalForm::ALL))]
+    pub(crate) terminal: Option<TerminalForm>,
     /// Omit the background: the picture gets an alpha channel
     #[arg(long)]
     pub(crate) transparent: bool,
@@ -49,13 +59,15 @@ pub(crate) struct Render {
     pub(crate) report: bool,
     #[command(flatten)]
     pub(crate) picture: PictureArguments,
+    #[command(flatten)]
+    pub(crate) layers: LayerOptions,
 }
 
 /// A picture: what it shows and how it is drawn.
 #[derive(Debug, Args)]
 pub(crate) struct PictureArguments {
-    /// Models (.obj, .obj.gz), and at most one scene (.marraztu) to add them to; "-" is standard
-    /// input
+    /// Models (.obj, .stl, also .gz), and at most one scene (.marraztu) to add them to; "-" is
+    /// standard input
     pub(crate) files: Vec<PathBuf>,
 
     /// Width and height in pixels; one number for a square
@@ -82,7 +94,7 @@ pub(crate) struct PictureArguments {
 #[command(next_help_heading = "Reading models")]
 pub(crate) struct Reading {
     /// The up axis of the file: x, y*, z, -x, -y, -z; by default, the axis stated in comments at
-    /// the top of the file. The model is rotated, not mirrored
+    /// the top of the file, and z for STL. The model is rotated, not mirrored
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
     #[arg(hide_possible_values = true, value_parser = choice(&UP_AXES))]
     up: Option<UpAxis>,
@@ -219,7 +231,7 @@ Examples:
   marraztu info teapot.obj
   marraztu info --up z parts/*.obj shelf.marraztu")]
 pub(crate) struct Info {
-    /// Models (.obj, .obj.gz) and scenes (.marraztu); "-" is standard input
+    /// Models (.obj, .stl, also .gz) and scenes (.marraztu); "-" is standard input
     #[arg(required = true)]
     pub(crate) files: Vec<PathBuf>,
     #[command(flatten)]
@@ -257,7 +269,10 @@ impl Reading {
             Some(input) => input.stated_up(),
             None => io::stated_up(file),
         };
+        // STL files are for printers and machines, and the plane of the table is z = 0.
+        let is_stl = || input.map_or_else(|| io::is_stl(file), Input::is_stl);
         let up = self.up.or_else(|| stated().map(|stated| stated.up));
+        let up = up.or_else(|| is_stl().then_some(UpAxis::Z));
         LoadOptions {
             up: up.unwrap_or_default(),
             scale: self.scale.unwrap_or_default(),
@@ -287,8 +302,8 @@ pub(super) fn choice<T: Copy + Send + Sync>(
 
 fn out_help() -> String {
     format!(
-        "The picture to write: {}; \"-\" writes a {} to standard output [default: the name of the \
-         scene or first model with .{}, in the current folder]",
+        "The picture to write: {}; \"-\" writes a {} to standard output, and \"terminal\" shows it \
+         [default: the name of the scene or first model with .{}, in the current folder]",
         PictureFormat::usual_endings(),
         PICTURE_FORMATS[0].name,
         PICTURE_FORMATS[0].endings[0],
@@ -301,7 +316,11 @@ fn texture_help() -> String {
 
 /// Checks the file name before the picture is drawn, which may take long.
 fn picture(path: PathBuf) -> Result<PathBuf, String> {
-    if is_standard(&path) { Ok(path) } else { PictureFormat::of(&path).map(|_| path) }
+    if is_standard(&path) || is_terminal(&path) {
+        Ok(path)
+    } else {
+        Encoding::of(&path).map(|_| path)
+    }
 }
 
 fn scale(text: &str) -> Result<Scale, String> {

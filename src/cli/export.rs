@@ -24,8 +24,8 @@ Examples:
   marraztu export shelf.marraztu --out shelf.obj
   marraztu export room.obj --up z --out room.gltf")]
 pub(crate) struct Export {
-    /// Models (.obj, .obj.gz), and at most one scene (.marraztu) to add them to; "-" is standard
-    /// input
+    /// Models (.obj, .stl, also .gz), and at most one scene (.marraztu) to add them to; "-" is
+    /// standard input
     files: Vec<PathBuf>,
     /// The file to write: .obj, .gltf or .glb [default: the name of the scene or first model with
     /// .glb, in the current folder]

@@ -1,6 +1,6 @@
 //! `marraztu render`: draws a picture into a file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use marraztu::picture_file::draw_into;
 use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
@@ -14,15 +14,19 @@ use marraztu_io::{self as io, Progress};
 use marraztu_lab::dial::{Dial, Figures, Step};
 use marraztu_lab::report::brief;
 use marraztu_render::accel::Accelerated as _;
-use marraztu_render::{Renderer, Unseen, fitted_exposure, plan_frame, unseen};
+use marraztu_render::{
+    LayerNames, Renderer, Unseen, fitted_exposure, plan_frame, unseen, without_ground,
+};
 
 use super::accuracy::Accuracy;
 use super::arguments::{
     Exposure, PictureArguments, Reading, Render, Seeing, ShadowSlots, Slots, Surfaces,
 };
 use super::bar::Bar;
+use super::cameras::{CameraFrame, write_cameras};
 use super::draw_along;
 use super::failure::{Failure, usage};
+use super::layers::LayerContent;
 use super::stage::{Stage, Watch};
 use super::talk::note;
 use super::target::Target;
@@ -38,23 +42,69 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     for (_, object) in stage.scene.objects.iter() {
         object.model.mesh.draw_as_filed();
     }
-    let shot = stage.shot(arguments.picture.size);
+    let shot = stage.shot(target.size(arguments.picture.size));
+    if let Some(path) = target.plain_file(&arguments.layers) {
+        let done = render_file(arguments, &shot, path, &progress, bar);
+        // The process ends here, so freeing a million vertices would only waste time.
+        std::mem::forget(stage);
+        return done;
+    }
+    let mut renderer = Renderer::default();
+    let options = &arguments.layers;
+    let numbers = match options.set() {
+        set if set.is_empty() => None,
+        set => Some(renderer.layers(&shot, set, options.normal_space())),
+    };
+    let numbers = numbers.as_ref();
+    if arguments.transparent || !options.has_color() {
+        let color = arguments.transparent.then(|| without_ground(&mut renderer, &shot));
+        drop(bar);
+        let content = LayerContent::new(&shot, color.as_ref(), numbers, arguments.transparent);
+        return written(arguments, &target, &stage, &content);
+    }
+    let plan = plan_frame(&shot);
+    renderer.render_watched(&plan, &|done, all| {
+        // Nothing cancels this progress.
+        let _ = progress.reached(done, all);
+    });
+    drop(bar);
+    tell_unseen(&mut renderer, &shot);
+    let content = LayerContent::new(&shot, Some(renderer.picture()), numbers, false);
+    written(arguments, &target, &stage, &content)?;
+    if arguments.report {
+        tell_cost(&mut renderer, &shot);
+    }
+    // The process ends here, so freeing a million vertices would only waste time.
+    std::mem::forget((stage, renderer));
+    Ok(())
+}
+
+/// Draws a picture into a file in bands of rows, without keeping all of it in memory.
+fn render_file(
+    arguments: &Render,
+    shot: &Shot,
+    path: &Path,
+    progress: &Progress,
+    bar: Bar,
+) -> Result<(), Failure> {
     let transparent = arguments.transparent;
-    let drawn = draw_into(&shot, transparent, &progress, |size, next| {
-        target.write(size, transparent, next)
+    let drawn = draw_into(shot, transparent, progress, |size, next| {
+        io::save_bands(path, size, transparent, next)
     });
     drop(bar);
     // Nothing cancels this progress.
     let Ok((written, bands)) = drawn else { return Ok(()) };
     written?;
-    tell_path(arguments, &target);
+    if arguments.out.is_none() {
+        note(&format_args!("the picture is in {}", path.display()));
+    }
     if transparent {
         return Ok(());
     }
     let is_whole = bands.is_one();
     let mut renderer = bands.into_renderer();
     if is_whole {
-        tell_unseen(&mut renderer, &shot);
+        tell_unseen(&mut renderer, shot);
     } else {
         let Size { width, height } = shot.size;
         let longest = width.max(height);
@@ -64,10 +114,9 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
         tell_unseen(&mut renderer, &smaller);
     }
     if arguments.report {
-        tell_cost(&mut renderer, &shot);
+        tell_cost(&mut renderer, shot);
     }
-    // The process ends here, so freeing a million vertices would only waste time.
-    std::mem::forget((stage, renderer));
+    std::mem::forget(renderer);
     Ok(())
 }
 
@@ -95,10 +144,29 @@ fn tell_cost(renderer: &mut Renderer, shot: &Shot) {
     ));
 }
 
-/// Prints the path of the picture if the user did not choose it.
-fn tell_path(arguments: &Render, target: &Target) {
-    if let (None, Target::File(path)) = (&arguments.out, target) {
-        note(&format_args!("the picture is in {}", path.display()));
+/// Writes the picture with its layers, and prints its path if the user did not choose it.
+fn written(
+    arguments: &Render,
+    target: &Target,
+    stage: &Stage,
+    content: &LayerContent<'_>,
+) -> Result<(), Failure> {
+    let Render { layers: options, picture, .. } = arguments;
+    target.write(content, options)?;
+    let Target::Files(files) = target else { return Ok(()) };
+    if options.are_given() {
+        let names = options.has_ids().then(|| LayerNames::of(&stage.scene));
+        let inputs: Vec<String> =
+            picture.files.iter().map(|file| file.display().to_string()).collect();
+        let scene = (inputs.join(" "), "0");
+        let shot = stage.shot(picture.size);
+        let folder = files.first().and_then(|file| file.path.parent()).unwrap_or(Path::new(""));
+        let files = (folder, &files[..]);
+        let frame = CameraFrame::new(&shot, files, scene, (options, names.as_ref()));
+        write_cameras("cameras.json", vec![frame])?;
+    }
+    if let (None, [first, ..]) = (&arguments.out, &files[..]) {
+        note(&format_args!("the picture is in {}", first.path.display()));
     }
 }
 

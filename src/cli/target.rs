@@ -1,7 +1,7 @@
 //! The target of a picture: standard output or a file. The default file name derives from the input
 //! files.
 
-use std::io::{BufWriter, ErrorKind, IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use marraztu_core::base::image::Size;
@@ -9,76 +9,148 @@ use marraztu_io::{self as io, PICTURE_FORMATS, Sources};
 
 use super::arguments::Render;
 use super::failure::{Failure, usage};
+use super::layers::{Encoding, FIELD, LayerContent, LayerFile, LayerOptions, OutputLayer};
 use super::stage::is_scene;
-use super::values::is_standard;
+use super::terminal::{TerminalForm, cells};
+use super::values::{is_standard, is_terminal};
 
 /// The picture's name if no input file has a name.
 const UNNAMED: &str = "scene";
 
 /// The target of a picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub(super) enum Target {
-    /// A file.
-    File(PathBuf),
+    /// The files of the picture and its layers.
+    Files(Vec<LayerFile>),
     /// Standard output, as PNG.
     Output,
+    /// The terminal.
+    Terminal(TerminalForm),
 }
 
 impl Target {
     /// Returns the target given in the arguments, checked before anything is read or drawn.
     pub(super) fn of(arguments: &Render) -> Result<Self, Failure> {
-        let target = match &arguments.out {
-            Some(out) if is_standard(out) => Self::Output,
-            Some(out) => Self::File(out.clone()),
-            None => Self::File(default_name(&arguments.picture.files)),
-        };
-        match &target {
-            Self::Output if std::io::stdout().is_terminal() => Err(usage(
-                "standard output is a terminal: send it to a file or another program, as in \
-                 `marraztu render --out - > picture.png`",
-            )),
-            Self::Output => Ok(target),
-            Self::File(path) => {
-                io::check_picture_target(path)?;
-                Ok(target)
+        let layers = &arguments.layers;
+        let out = match &arguments.out {
+            Some(out) if is_standard(out) => {
+                if layers.are_given() {
+                    return Err(usage("layers are written to files, not to standard output"));
+                }
+                if std::io::stdout().is_terminal() {
+                    return Err(usage(
+                        "standard output is a terminal: send it to a file or another program, as \
+                         in `marraztu render --out - > picture.png`",
+                    ));
+                }
+                return Ok(Self::Output);
             }
+            Some(out) if is_terminal(out) => {
+                if layers.are_given() {
+                    return Err(usage("layers are written to files, not to the terminal"));
+                }
+                let variable = |name: &str| std::env::var(name).ok();
+                let form = arguments.terminal.unwrap_or_else(|| TerminalForm::of(&variable));
+                return Ok(Self::Terminal(form));
+            }
+            Some(out) => out.clone(),
+            None if layers.are_given() => {
+                let name = default_name(&arguments.picture.files);
+                let stem = name.file_stem().unwrap_or_default().to_string_lossy();
+                PathBuf::from(format!("{stem}-{FIELD}.png"))
+            }
+            None => default_name(&arguments.picture.files),
+        };
+        let path = |layer: &str| match out.to_str() {
+            Some(name) if layers.are_given() => PathBuf::from(name.replace(FIELD, layer)),
+            _ => out.clone(),
+        };
+        let files = layers.files(path).map_err(Failure::Usage)?;
+        for file in &files {
+            io::check_layer_target(&file.path)?;
+        }
+        Ok(Self::Files(files))
+    }
+
+    /// Returns the file, if the picture is written to one in a common format, without layers.
+    pub(super) fn plain_file(&self, options: &LayerOptions) -> Option<&Path> {
+        match self {
+            Self::Files(files) if !options.are_given() => match &files[..] {
+                [LayerFile { path, encoding: Encoding::Picture(_), .. }] => Some(path),
+                _ => None,
+            },
+            Self::Files(_) | Self::Output | Self::Terminal(_) => None,
+        }
+    }
+
+    /// Returns the size of the picture.
+    pub(super) fn size(&self, size: Size) -> Size {
+        match self {
+            Self::Terminal(form) => form.size(size, cells()),
+            Self::Files(_) | Self::Output => size,
         }
     }
 
     /// Refuses to overwrite an input file, and rejects formats without an alpha channel if the
     /// picture needs one.
     pub(super) fn check(&self, sources: &Sources, transparent: bool) -> Result<(), Failure> {
-        let Self::File(path) = self else { return Ok(()) };
-        sources.spare(path)?;
-        if transparent {
-            io::check_alpha(path)?;
+        let Self::Files(files) = self else { return Ok(()) };
+        for LayerFile { path, encoding, .. } in files {
+            sources.spare(path)?;
+            if let (true, Encoding::Picture(_)) = (transparent, encoding) {
+                io::check_alpha(path)?;
+            }
         }
         Ok(())
     }
 
-    /// Writes the picture, which arrives in bands of rows.
+    /// Writes the picture and its layers.
     pub(super) fn write(
         &self,
-        size: Size,
-        transparent: bool,
-        next: &mut io::NextBand<'_>,
+        content: &LayerContent<'_>,
+        options: &LayerOptions,
     ) -> Result<(), Failure> {
-        match self {
-            Self::File(path) => Ok(io::save_bands(path, size, transparent, next)?),
-            Self::Output => {
-                let mut output = BufWriter::new(std::io::stdout().lock());
-                let png = &PICTURE_FORMATS[0];
-                let written = png
-                    .encode_bands(size, transparent, next, &mut output)
-                    .and_then(|()| output.flush());
-                match written {
-                    // The reader has closed the pipe, like `head`.
-                    Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-                    written => written.map_err(Failure::Output),
+        match (self, content.color) {
+            (Self::Files(files), _) => {
+                for file in files {
+                    match (file.encoding, &file.layers[..], content.color) {
+                        // A large picture is encoded directly into its file.
+                        (Encoding::Picture(_), [OutputLayer::Color], Some(picture)) => {
+                            io::save_picture(&file.path, picture)?;
+                        }
+                        _ => save(file, content, options)?,
+                    }
                 }
+                Ok(())
+            }
+            (Self::Output | Self::Terminal(_), None) => Ok(()),
+            (Self::Terminal(form), Some(picture)) => {
+                print(form.encode(picture).map_err(Failure::Absent)?.as_bytes())
+            }
+            (Self::Output, Some(picture)) => {
+                print(&PICTURE_FORMATS[0].encode(picture).map_err(Failure::Absent)?)
             }
         }
     }
+}
+
+/// Writes to standard output.
+fn print(bytes: &[u8]) -> Result<(), Failure> {
+    match std::io::stdout().lock().write_all(bytes) {
+        // The reader has closed the pipe, like `head`.
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        written => written.map_err(Failure::Output),
+    }
+}
+
+fn save(
+    file: &LayerFile,
+    content: &LayerContent<'_>,
+    options: &LayerOptions,
+) -> Result<(), Failure> {
+    let wrong = |reason| Failure::Absent(format!("{}: {reason}", file.path.display()));
+    let encoded = file.encode(content, &options.png(), None).map_err(wrong)?;
+    Ok(io::save_encoded(&file.path, &encoded)?)
 }
 
 /// Returns the name of the scene or first model with .png, in the current folder.

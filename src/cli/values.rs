@@ -13,6 +13,11 @@ pub(crate) fn is_standard(file: &Path) -> bool {
     file == Path::new("-")
 }
 
+/// Returns whether a file name refers to the terminal.
+pub(crate) fn is_terminal(file: &Path) -> bool {
+    file == Path::new("terminal")
+}
+
 /// Parses a picture size: "800x600", or "800" for a square.
 pub(super) fn size(text: &str) -> Result<Size, String> {
     let side = |text: &str| text.parse().ok().filter(|side| (1..=LONGEST_SIDE).contains(side));

@@ -34,7 +34,7 @@ Examples:
   marraztu views teapot.obj
   marraztu views part.obj --up z --out sheet.png --views front,right,back,left,top,bottom")]
 pub(crate) struct Views {
-    /// A model (.obj, .obj.gz) or a scene (.marraztu); "-" is standard input
+    /// A model (.obj, .stl, also .gz) or a scene (.marraztu); "-" is standard input
     file: PathBuf,
     /// The sheet to write [default: the name of the model with -views.png, in the current folder]
     #[arg(short, long, value_name = "FILE")]

@@ -261,7 +261,7 @@ fn a_reader_that_closes_the_pipe_causes_no_error() {
 fn invalid_arguments_end_with_2_and_draw_nothing() {
     let folder = folder();
     let wrong: &[(&[&str], &str)] = &[
-        (&["render", "-o", "a.gif"], "its name has to end in .png, .jpg, .webp or .ppm"),
+        (&["render", "-o", "a.gif"], "its name has to end in .png, .jpg, .webp, .ppm, .exr"),
         (&["render", "-o", "a.png", "--size", "0x5"], "800x600"),
         (&["render", "-o", "a.png", "--material", "cheese"], "brass, bronze"),
         (&["render", "-o", "a.png", "--shading", "gouraud"], "vertex"),

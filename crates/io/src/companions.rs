@@ -7,7 +7,6 @@
 //! The list may name more files than loading reads, such as the MTL file with the model's name.
 
 use std::collections::BTreeMap;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use memchr::memmem;
@@ -17,9 +16,9 @@ use super::locate::Locator;
 use super::mtl::map_names;
 use super::obj::MOST_BYTES;
 use super::obj::lines::Lines;
-use super::packed::{Unpacked, unpacked_name};
+use super::packed::{unpacked, unpacked_name};
 use super::progress::Progress;
-use super::read::{MOST_WORDS, open, read, utf_8};
+use super::read::{MOST_WORDS, read, utf_8};
 
 /// A file that a model refers to.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,15 +61,6 @@ pub fn companions(path: &Path) -> Result<Vec<Companion>, LoadError> {
         }
     }
     Ok(found.into_iter().map(|(name, path)| Companion { name, path }).collect())
-}
-
-fn unpacked(path: &Path, file: &str) -> Result<Vec<u8>, LoadError> {
-    let (packed, _) = open(path, MOST_BYTES)?;
-    let mut text = Vec::new();
-    let limit = u64::try_from(MOST_BYTES).unwrap_or(u64::MAX);
-    let read = Unpacked::new(packed).take(limit).read_to_end(&mut text);
-    read.map_err(|error| LoadError::system(file, &error))?;
-    Ok(text)
 }
 
 /// Returns the names in `mtllib` statements, once each.

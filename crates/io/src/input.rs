@@ -9,6 +9,7 @@ use super::packed::{MAGIC, Unpacked};
 use super::progress::Progress;
 use super::read::open as open_file;
 use super::scene_file::{Opened, SceneFileError, open_text};
+use super::stl::has_stl_content;
 use super::up_axis::{StatedUp, stated_in};
 use marraztu_core::scene::LoadOptions;
 
@@ -78,6 +79,12 @@ impl Input {
     #[must_use]
     pub fn stated_up(&self) -> Option<StatedUp> {
         stated_in(&self.bytes)
+    }
+
+    /// Returns whether the input is an STL file.
+    #[must_use]
+    pub fn is_stl(&self) -> bool {
+        has_stl_content(&self.bytes, self.bytes.len())
     }
 
     /// Parses the input as a model.

@@ -28,6 +28,7 @@ mod findings;
 mod fingerprint;
 mod input;
 mod keeping;
+mod layers;
 mod lessons;
 mod locate;
 mod mtl;
@@ -41,6 +42,7 @@ mod replace;
 mod scene_file;
 mod sources;
 mod stamp;
+mod stl;
 mod texture;
 mod up_axis;
 mod window_state;
@@ -58,12 +60,16 @@ pub use input::Input;
 pub use keeping::{
     Abandoned, Discarded, Helpers, Journal, MOST_RECENT, OwnFolders, Preferences, Theme, Unsaved,
 };
+pub use layers::{
+    ExrCamera, IdPixels, LayerKind, LayerNumbers, LayerPicture, PngNumbers, layer_npy, layer_png,
+    layers_exr,
+};
 pub use lessons::{Lesson, lesson_on, lesson_scene, lessons};
 pub use obj::{Loaded, load, parse};
 pub use part::sweep_once;
 pub use picture::{
-    NextBand, PICTURE_FORMATS, PictureFormat, check_alpha, check_picture_target, check_replaced,
-    save_bands, save_encoded, save_picture,
+    NextBand, PICTURE_FORMATS, PictureFormat, check_alpha, check_layer_target,
+    check_picture_target, check_replaced, save_bands, save_encoded, save_picture,
 };
 pub use progress::{Cancelled, Progress};
 pub use read::check_file;
@@ -73,7 +79,8 @@ pub use scene_file::{
     material_to_text, open, save, save_with_window, to_text,
 };
 pub use sources::Sources;
-pub use stamp::{encode_stamped, read_stamp};
+pub use stamp::{encode_stamped, read_stamp, stamped_at_end};
+pub use stl::is_stl;
 pub use texture::{
     load_picture, load_texture, load_texture_with, texture_endings, texture_formats,
 };

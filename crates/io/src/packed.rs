@@ -1,8 +1,13 @@
 //! Unpacks gzip files.
 
 use std::io::{Error, ErrorKind, Read};
+use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
+
+use super::error::LoadError;
+use super::obj::MOST_BYTES;
+use super::read::open;
 
 /// The first bytes of every gzip archive (RFC 1952, section 2.3.1).
 pub(super) const MAGIC: &[u8] = b"\x1F\x8B";
@@ -34,6 +39,19 @@ impl<R: Read> Read for Unpacked<R> {
             _ => error,
         })
     }
+}
+
+/// Reads and unpacks the model at `path`, named `file` in messages.
+///
+/// # Errors
+/// If it cannot be read, or is damaged.
+pub(super) fn unpacked(path: &Path, file: &str) -> Result<Vec<u8>, LoadError> {
+    let (packed, _) = open(path, MOST_BYTES)?;
+    let mut text = Vec::new();
+    let limit = u64::try_from(MOST_BYTES).unwrap_or(u64::MAX);
+    let read = Unpacked::new(packed).take(limit).read_to_end(&mut text);
+    read.map_err(|error| LoadError::system(file, &error))?;
+    Ok(text)
 }
 
 #[cfg(test)]

@@ -17,6 +17,9 @@ use marraztu_core::base::image::{Picture, Size};
 /// The quality of a JPEG, from 1 to 100: artefacts are barely visible.
 const JPEG_QUALITY: u8 = 92;
 
+/// The first bytes of an array of NumPy.
+const NUMPY: &[u8] = b"\x93NUMPY";
+
 /// The number of bytes that identify the format of a picture.
 const SIGNATURE: u64 = 64;
 
@@ -231,6 +234,14 @@ pub fn check_alpha(path: &Path) -> Result<(), SaveError> {
 /// If it cannot.
 pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
     PictureFormat::of(path).map_err(|reason| SaveError::new(path, reason))?;
+    check_layer_target(path)
+}
+
+/// Works like [`check_picture_target`], for any format of layers.
+///
+/// # Errors
+/// If a file cannot be saved at `path`.
+pub fn check_layer_target(path: &Path) -> Result<(), SaveError> {
     check_target(path)?;
     check_replaced(path)
 }
@@ -245,7 +256,7 @@ pub fn check_replaced(path: &Path) -> Result<(), SaveError> {
     let Ok(file) = File::open(path) else { return Ok(()) };
     match file.take(SIGNATURE).read_to_end(&mut begin) {
         Ok(0) => Ok(()),
-        Ok(_) if image::guess_format(&begin).is_ok() => Ok(()),
+        Ok(_) if image::guess_format(&begin).is_ok() || begin.starts_with(NUMPY) => Ok(()),
         _ => Err(fail("a file with this name exists and is not a picture; choose another name")),
     }
 }

@@ -11,6 +11,7 @@
 //! | JPEG | a comment segment (ITU-T T.81, B.2.4.5) |
 //! | WebP | an unknown chunk at the end of an extended file (RFC 9649, section 2.7) |
 //! | PPM | a comment in the header |
+//! | OpenEXR, NumPy | a line after the content, which readers ignore |
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -20,7 +21,7 @@ use super::picture::{PictureFormat, has_alpha, png_with_text, sides};
 use marraztu_core::base::image::Picture;
 
 /// The keyword of the text in a PNG.
-const KEYWORD: &str = "Marraztu-Stamp";
+pub(super) const KEYWORD: &str = "Marraztu-Stamp";
 
 /// The beginning of a stamp in formats whose comments have no keyword.
 const MARK: &str = "Marraztu-Stamp: ";
@@ -57,6 +58,13 @@ pub fn encode_stamped(
         "PPM" => Ok(stamped_ppm(content, stamp)),
         name => Err(format!("{name} files have no place for a stamp")),
     }
+}
+
+/// Appends a stamp to a file of numbers: OpenEXR or NumPy. The stamp is printable ASCII.
+#[must_use]
+pub fn stamped_at_end(mut content: Vec<u8>, stamp: &str) -> Vec<u8> {
+    content.extend_from_slice([MARK, stamp, "\n"].concat().as_bytes());
+    content
 }
 
 /// Inserts a comment after the first segment, which readers expect to be JFIF's.
@@ -117,6 +125,10 @@ pub fn read_stamp(path: &Path) -> Option<String> {
         [0xFF, 0xD8, ..] => (jpeg_stamp(&head)?, ends_with(&mut file, b"\xFF\xD9")),
         [b'R', b'I', b'F', b'F', ..] => webp_stamp(&head, &mut file, length)?,
         [b'P', b'6', b'\n', ..] => ppm_stamp(&head, length)?,
+        // A stamp at the end shows that the file is complete.
+        [0x76, 0x2F, 0x31, 0x01, ..] | [0x93, b'N', b'U', b'M', ..] => {
+            (stamp_at_end(&mut file, length)?, true)
+        }
         _ => return None,
     };
     is_whole.then(|| String::from_utf8(stamp).ok()).flatten()
@@ -182,6 +194,17 @@ fn webp_stamp(head: &[u8], file: &mut File, length: u64) -> Option<(Vec<u8>, boo
     Some((stamp.to_vec(), u64::from(number(4)?) + 8 == length))
 }
 
+/// Reads the stamp after the content.
+fn stamp_at_end(file: &mut File, length: u64) -> Option<Vec<u8>> {
+    let most = (MARK.len() + LONGEST + 1) as u64;
+    file.seek(SeekFrom::Start(length.saturating_sub(most))).ok()?;
+    let mut last = Vec::new();
+    file.read_to_end(&mut last).ok()?;
+    let text = last.strip_suffix(b"\n")?;
+    let at = text.windows(MARK.len()).rposition(|part| part == MARK.as_bytes())?;
+    Some(text[at + MARK.len()..].to_vec())
+}
+
 /// Finds the comment in the header. The file is complete if it contains all pixels.
 fn ppm_stamp(head: &[u8], length: u64) -> Option<(Vec<u8>, bool)> {
     let mark = ["# ", MARK].concat();
@@ -233,6 +256,23 @@ mod tests {
             }
         }
         assert_eq!(read_stamp(&folder.path().join("absent.png")), None);
+    }
+
+    #[test]
+    fn numbers_keep_their_stamp_at_the_end() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        for begin in [&b"\x93NUMPY\x01\x00"[..], b"\x76\x2F\x31\x01"] {
+            let plain = [begin, &[0xAB; 400]].concat();
+            let content = stamped_at_end(plain.clone(), STAMP);
+            assert_eq!(content[..plain.len()], plain);
+            std::fs::write(&path, &content).unwrap();
+            assert_eq!(read_stamp(&path).as_deref(), Some(STAMP));
+            for end in 0..content.len() {
+                std::fs::write(&path, &content[..end]).unwrap();
+                assert_eq!(read_stamp(&path), None, "{end} bytes");
+            }
+        }
     }
 
     #[test]

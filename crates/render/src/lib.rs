@@ -56,8 +56,10 @@
 //! * `shadow`: rays from lit points to lights, and what stands between.
 //! * `shading`: the colours of what is visible, and their bytes in the picture.
 //! * `tile_layers`: what the pixels of a tile show.
-//! * `renderer`, `damage`, `count`, `unseen`, `exposure`, `without_ground`, `bands`: draw plans, and
-//!   answer questions about what was drawn.
+//! * `picture_camera`, `layers`: the camera of a picture, and its depths, normals and ids, for
+//!   other programs.
+//! * `renderer`, `damage`, `count`, `unseen`, `exposure`, `without_ground`, `bands`: draw plans,
+//!   and answer questions about what was drawn.
 
 pub mod accel;
 mod ancestors;
@@ -67,7 +69,9 @@ mod count;
 mod damage;
 mod exposure;
 mod frame;
+mod layers;
 pub mod lights;
+mod picture_camera;
 pub mod plan;
 mod raster;
 mod renderer;
@@ -87,6 +91,11 @@ pub use damage::{Change, Damage, DamageCause};
 pub use exposure::fitted_exposure;
 pub use frame::FramePlan;
 pub use frame::color_path::PathPixels;
+pub use layers::{
+    Layer, LayerNames, LayerSet, LayerType, LayerValues, Layers, NamedObject, NamedPart,
+    NormalSpace,
+};
+pub use picture_camera::{AxesConvention, PictureCamera};
 pub use plan::{Effect, EffectState, EffectUse, explain_frame, plan_everything, plan_frame};
 pub use renderer::{Cancelled, Hit, Renderer};
 pub use shading::pixel_color::{LightRay, Part, PixelColor, SurfacePoint, Term};

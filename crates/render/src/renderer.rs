@@ -5,6 +5,7 @@
 //! about the last picture are in [`picking`].
 
 mod enlarged;
+mod layers;
 mod picking;
 mod supersampled;
 

@@ -82,6 +82,23 @@ impl TileLayers {
         }
     }
 
+    /// Returns the nearest words of a block's pixels, row by row, with one sample per pixel. `None`
+    /// if the block shows nothing.
+    pub(crate) fn nearest(
+        &mut self,
+        level: Level,
+        frame: &ScreenGeometry,
+        block: usize,
+    ) -> Option<[u64; BLOCK_PIXELS]> {
+        if !self.layers.touches(block) {
+            let shows = self.visibility.shows(block);
+            return shows.then(|| self.visibility.entries(level, block, 0));
+        }
+        let mut tops = [[0; BLOCK_PIXELS]; FOUR];
+        self.find_layers(level, frame, block, &mut tops);
+        Some(tops[0])
+    }
+
     /// Finds the words of all samples of a block, and the nearest word of each sample.
     fn find_layers(
         &mut self,

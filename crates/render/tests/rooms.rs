@@ -18,6 +18,8 @@ const ROOMS: &[&str] = &[
     "shadow",
     "shading",
     "tile_layers",
+    "picture_camera",
+    "layers",
     "count",
     "damage",
     "renderer",

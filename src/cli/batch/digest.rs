@@ -68,7 +68,7 @@ impl Stamper {
             camera.aim,
             size.width,
             size.height,
-            job.format.name,
+            job.encodings(),
         );
         Some(hex(&Sha256::digest(text)))
     }

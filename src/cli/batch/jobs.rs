@@ -4,19 +4,21 @@
 //! are numbered over the whole list, whatever part of it this process draws.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use marraztu_core::base::image::Size;
-use marraztu_io::{self as io, PictureFormat};
+use marraztu_io as io;
 
 use super::Batch;
+use super::dataset::{Dataset, Place};
 use super::list::{self, Entry, expanded, read_list};
 use super::options::{OptionParser, OptionTexts, Parsed, Value, WrongOption};
 use super::shard::Shard;
 use super::template::{Fields, Template};
 use super::views::{CameraView, own_view, parse_views};
 use crate::cli::failure::{Failure, usage};
+use crate::cli::layers::{Encoding, LayerFile};
 use crate::cli::values::is_standard;
 
 /// The size of pictures without `--size`.
@@ -25,13 +27,23 @@ const SIZE: Size = Size::new(800, 800);
 /// A row with its options.
 #[derive(Clone, Debug)]
 pub(super) struct Row {
+    /// The number in the list, from 0.
+    pub(super) number: usize,
     /// The place for messages, such as "list.csv:3".
     place: String,
     pub(super) file: PathBuf,
     pub(super) parsed: Arc<Parsed>,
     views: Arc<Vec<CameraView>>,
-    template: Arc<Template>,
+    names: Names,
     ext: &'static str,
+}
+
+/// The names of files.
+#[derive(Clone, Debug)]
+enum Names {
+    Template(Arc<Template>),
+    /// A data set in a folder.
+    Dataset(Dataset, PathBuf),
 }
 
 /// A picture to draw.
@@ -42,14 +54,30 @@ pub(super) struct Job {
     pub(super) row: Arc<Row>,
     /// The number of the view in its row.
     view: usize,
-    pub(super) out: PathBuf,
-    pub(super) format: &'static PictureFormat,
+    /// The files of the picture and its layers: at least one.
+    pub(super) files: Vec<LayerFile>,
 }
 
 impl Job {
+    /// Returns the first file.
+    pub(super) fn out(&self) -> &Path {
+        &self.files[0].path
+    }
+
+    /// Names the formats of all files.
+    pub(super) fn encodings(&self) -> String {
+        let names: Vec<&str> = self.files.iter().map(|file| file.encoding.name()).collect();
+        names.join(" ")
+    }
+
     /// Returns the camera.
     pub(super) fn camera(&self) -> &CameraView {
         &self.row.views[self.view]
+    }
+
+    /// Returns the number of the view in its row.
+    pub(super) const fn view(&self) -> usize {
+        self.view
     }
 
     /// Returns whether its row has no other view.
@@ -101,18 +129,26 @@ struct RowReader {
     templates: BTreeMap<String, Arc<Template>>,
     base_views: Option<String>,
     base_out: Option<String>,
-    format: &'static PictureFormat,
+    dataset: Option<Dataset>,
+    /// The number of rows so far.
+    rows: usize,
+    format: &'static str,
 }
 
 impl RowReader {
     fn new(arguments: &Batch) -> Result<Self, Failure> {
+        let needed = arguments.dataset.into_iter().flat_map(Dataset::options);
+        let base = arguments.options.clone();
+        let base = needed.fold(base, |base, (name, value)| base.and(name, value));
         let mut reader = Self {
             parser: OptionParser::new(),
-            base: arguments.options.clone(),
+            base,
             views: BTreeMap::new(),
             templates: BTreeMap::new(),
             base_views: arguments.views.clone(),
             base_out: arguments.out.clone(),
+            dataset: arguments.dataset,
+            rows: 0,
             format: arguments.format,
         };
         // Errors of the command line are not errors of the first row.
@@ -122,7 +158,7 @@ impl RowReader {
         if let Some(text) = &arguments.views {
             check(reader.views(text).map(drop), "views")?;
         }
-        if let Some(text) = &arguments.out {
+        if let (Some(text), None) = (&arguments.out, arguments.dataset) {
             check(reader.template(text).map(drop), "out")?;
         }
         Ok(reader)
@@ -187,11 +223,20 @@ impl RowReader {
             Some(text) => self.views(&text).map_err(|reason| wrong(Some("views"), &reason))?,
             None => Arc::new(own_view()),
         };
-        let template = match out {
-            Some(text) => self.template(&text).map_err(|reason| wrong(Some("out"), &reason))?,
-            None => Arc::new(Template::of_views(views.len())),
+        let names = match (self.dataset, out) {
+            (Some(dataset), out) => Names::Dataset(dataset, out.unwrap_or_default().into()),
+            (None, Some(text)) => {
+                let template = self.template(&text);
+                Names::Template(template.map_err(|reason| wrong(Some("out"), &reason))?)
+            }
+            (None, None) => {
+                let by_layer = parsed.options.layers.are_given() && self.format != "exr";
+                Names::Template(Arc::new(Template::of_views(views.len(), by_layer)))
+            }
         };
-        Ok(Row { place, file, parsed, views, template, ext: self.format.endings[0] })
+        let number = self.rows;
+        self.rows += 1;
+        Ok(Row { number, place, file, parsed, views, names, ext: self.format })
     }
 }
 
@@ -202,16 +247,25 @@ fn jobs_of(rows: &[Arc<Row>]) -> Result<Vec<Job>, Failure> {
         for (view, camera) in row.views.iter().enumerate() {
             let index = jobs.len();
             let (file, ext) = (&*row.file, row.ext);
-            let fields = Fields { file, index, view, view_name: &camera.name, ext };
-            let out = row.template.path(&fields);
-            let format = PictureFormat::of(&out).map_err(|reason| {
-                Failure::Usage(format!("{}: {}: {reason}", row.place, out.display()))
-            })?;
-            if row.parsed.options.transparent {
-                io::check_alpha(&out)
-                    .map_err(|error| Failure::Usage(format!("{}: {error}", row.place)))?;
+            let view_name = &camera.name;
+            let path = |layer: &str| match &row.names {
+                Names::Template(template) => {
+                    template.path(&Fields { file, index, view, view_name, layer, ext })
+                }
+                Names::Dataset(dataset, folder) => {
+                    let place = Place { file, row: row.number, view, index };
+                    dataset.path(folder, &place, layer)
+                }
+            };
+            let options = &row.parsed.options;
+            let wrong = |reason: String| Failure::Usage(format!("{}: {reason}", row.place));
+            let files = options.layers.files(path).map_err(wrong)?;
+            for file in files.iter().filter(|_| options.transparent) {
+                if let Encoding::Picture(_) = file.encoding {
+                    io::check_alpha(&file.path).map_err(|error| wrong(error.to_string()))?;
+                }
             }
-            jobs.push(Job { index, row: Arc::clone(row), view, out, format });
+            jobs.push(Job { index, row: Arc::clone(row), view, files });
         }
     }
     Ok(jobs)
@@ -220,13 +274,14 @@ fn jobs_of(rows: &[Arc<Row>]) -> Result<Vec<Job>, Failure> {
 /// Rejects pictures that would overwrite each other.
 fn check_outputs(jobs: &[Job]) -> Result<(), Failure> {
     let mut outputs: BTreeMap<&PathBuf, &Job> = BTreeMap::new();
-    for job in jobs {
-        let Some(other) = outputs.insert(&job.out, job) else { continue };
+    let all = jobs.iter().flat_map(|job| job.files.iter().map(move |file| (file, job)));
+    for (file, job) in all {
+        let Some(other) = outputs.insert(&file.path, job) else { continue };
         let of = |job: &Job| format!("{}, view {}", job.row.place, job.camera().name);
         return Err(Failure::Usage(format!(
             "two pictures would be written to {}: {} and {}; tell them apart in --out by {{dir}}, \
              {{view}} or {{index}}",
-            job.out.display(),
+            file.path.display(),
             of(other),
             of(job),
         )));

@@ -9,6 +9,7 @@
 //! ([`studio`]), and the main thread collects the results ([`report`]).
 
 mod cache;
+mod dataset;
 mod digest;
 mod jobs;
 pub(super) mod list;
@@ -23,7 +24,7 @@ mod template;
 pub(super) mod views;
 
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -31,9 +32,10 @@ use std::thread::Builder;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use marraztu_io::{PICTURE_FORMATS, PictureFormat};
+use marraztu_io::PICTURE_FORMATS;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
+use self::dataset::{Dataset, write_tables};
 use self::jobs::{Job, Jobs};
 use self::meter::Meter;
 use self::options::OptionTexts;
@@ -43,7 +45,10 @@ use self::report::{Counts, Reporter};
 use self::shard::{Shard, shard};
 use self::sheets::{Grid, grid, write_sheets};
 use self::studio::{Manner, Studio, silence_panics};
+use super::arguments::choice;
+use super::cameras::write_cameras;
 use super::failure::Failure;
+use super::layers::NUMBER_ENDINGS;
 use super::talk::{Talk, note};
 use super::values::threads;
 
@@ -67,8 +72,8 @@ A list has one model or scene per row: .csv with a header, .jsonl, or plain line
 override the options of the command line for their row. Everything is checked before the first
 picture is drawn.
 
-Names in --out have the fields {dir} {stem} {name} {index} {view} {view_name} {ext}; {index:06} and
-{view:03} have leading zeros, and {{ is a brace.
+Names in --out have the fields {dir} {stem} {name} {index} {view} {view_name} {layer} {ext};
+{index:06} and {view:03} have leading zeros, and {{ is a brace.
 
 Examples:
   marraztu batch \"models/**/*.obj\" --views 8 --size 256 --out \"out/{dir}/{stem}-{view:02}.png\"
@@ -80,8 +85,8 @@ Exit status: 0 if all pictures are there, 1 if some are missing, 2 for invalid a
 --strict-exit if all missing pictures are caused by their input, 130 after SIGINT, 143 after
 SIGTERM.")]
 pub(crate) struct Batch {
-    /// Models (.obj, .obj.gz) and scenes (.marraztu), one picture or set of views each; patterns
-    /// such as "models/**/*.obj" are expanded
+    /// Models (.obj, .stl, also .gz) and scenes (.marraztu), one picture or set of views each;
+    /// patterns such as "models/**/*.obj" are expanded
     #[arg(required_unless_present = "list")]
     files: Vec<PathBuf>,
     /// A list of models: .csv, .jsonl, or plain lines; "-" is standard input
@@ -92,13 +97,19 @@ pub(crate) struct Batch {
     /// NeRF (.json) [default: the view of the other options]
     #[arg(long, value_name = "VIEWS")]
     views: Option<String>,
-    /// The names of the pictures [default: {stem}.{ext}, or {stem}-{view:03}.{ext} for several
-    /// views, in the current folder]
+    /// The names of the pictures, or the folder of a data set [default: {stem}.{ext}, or
+    /// {stem}-{view:03}.{ext} for several views, in the current folder]
     #[arg(short, long, value_name = "TEMPLATE")]
     out: Option<String>,
     #[arg(long, value_name = "FORMAT", help = format_help(), default_value = "png")]
     #[arg(hide_default_value = true, value_parser = format)]
-    format: &'static PictureFormat,
+    format: &'static str,
+    /// Write a data set for training into the folder of --out: nerf (nerfstudio), bop, coco
+    /// (panoptic). A unit of the models is a metre
+    #[arg(long, value_name = "KIND", hide_possible_values = true, requires = "out")]
+    #[arg(value_parser = choice(&Dataset::ALL))]
+    #[arg(conflicts_with_all = ["layers", "ids", "format", "shard", "resume", "sheet"])]
+    dataset: Option<Dataset>,
     /// Also write contact sheets with labels, of these columns and rows
     #[arg(long, value_name = "COLSxROWS", value_parser = grid, conflicts_with = "shard")]
     sheet: Option<Grid>,
@@ -159,28 +170,45 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
         reports: arguments.report.is_some(),
         limit: arguments.timeout,
         memory: arguments.memory,
+        dataset: arguments.dataset,
     };
     let (report, times) = (arguments.report.as_deref(), arguments.times.as_deref());
     let studio = Arc::new(Studio::new(jobs, manner));
     let mut reporter = Reporter::begin(studio.jobs(), all, report, times)?;
     let mut meter = Meter::of(studio.jobs().len());
-    let mut done = Vec::new();
+    let (mut done, mut cameras, mut images) = (Vec::new(), Vec::new(), Vec::new());
     let signal = watched_signals();
     silence_panics();
     let results = start(&studio)?;
     let ended = collect(&studio, &results, &signal, &mut |outcome| {
         meter.tick();
-        let Some(outcome) = outcome else { return Ok(true) };
+        let Some(mut outcome) = outcome else { return Ok(true) };
         meter.add(&outcome);
         reporter.add(&outcome)?;
-        if outcome.result.is_ok() {
+        if let Ok(drawn) = &mut outcome.result {
             done.push(outcome.job);
+            cameras.extend(drawn.camera.take().map(|camera| *camera));
+            images.extend(drawn.image.take().map(|image| *image));
         }
         Ok(!arguments.stop || outcome.result.is_ok())
     });
     meter.finish();
     let unchanged = meter.unchanged();
     let counts = reporter.finish()?;
+    let name = match arguments.shard {
+        Some(shard) if shard != Shard::WHOLE => {
+            format!("cameras-{}-of-{}.json", shard.index, shard.count)
+        }
+        _ if arguments.dataset == Some(Dataset::Nerf) => "transforms.json".to_owned(),
+        _ => "cameras.json".to_owned(),
+    };
+    match arguments.dataset {
+        Some(dataset @ (Dataset::Bop | Dataset::Coco)) => {
+            let folder = Path::new(arguments.out.as_deref().unwrap_or_default());
+            write_tables(dataset, folder, studio.jobs(), images)?;
+        }
+        Some(Dataset::Nerf) | None => write_cameras(&name, cameras)?,
+    }
     ended?;
     if let Some(grid) = arguments.sheet {
         let mut jobs: Vec<&Job> = done.iter().map(|job| &studio.jobs()[*job]).collect();
@@ -196,7 +224,7 @@ fn print(jobs: &[Job]) -> Result<(), Failure> {
     let mut output = std::io::BufWriter::new(std::io::stdout().lock());
     let mut print = || {
         for job in jobs {
-            let (file, out) = (job.row.file.display(), job.out.display());
+            let (file, out) = (job.row.file.display(), job.out().display());
             writeln!(output, "{}\t{file}\t{}\t{out}", job.index, job.camera().name)?;
         }
         output.flush()
@@ -290,9 +318,12 @@ fn status(counts: &Counts, signal: usize, strict: bool) -> Result<(), Failure> {
     }
 }
 
-fn format(text: &str) -> Result<&'static PictureFormat, String> {
+/// Returns the usual extension of a format.
+fn format(text: &str) -> Result<&'static str, String> {
     let ending = text.trim_start_matches('.').to_ascii_lowercase();
     let found = PICTURE_FORMATS.iter().find(|format| format.endings.contains(&&*ending));
+    let found = found.map(|format| format.endings[0]);
+    let found = found.or_else(|| NUMBER_ENDINGS.into_iter().find(|other| *other == ending));
     found.ok_or_else(|| format!("possible values: {}", endings()))
 }
 
@@ -300,9 +331,10 @@ fn format_help() -> String {
     format!("The format of names with {{ext}}, or of default names: {}", endings())
 }
 
-/// Lists the usual extensions: "png*, jpg, webp, ppm".
+/// Lists the usual extensions: "png*, jpg, webp, ppm, exr, npy".
 fn endings() -> String {
-    let endings: Vec<&str> = PICTURE_FORMATS.iter().map(|format| format.endings[0]).collect();
+    let endings = PICTURE_FORMATS.iter().map(|format| format.endings[0]);
+    let endings: Vec<&str> = endings.chain(NUMBER_ENDINGS).collect();
     endings.join(", ").replacen("png", "png*", 1)
 }
 
@@ -342,7 +374,7 @@ mod tests {
         for wrong in ["", "G", "-1", "1.5G", "1X", "99999999999T"] {
             assert!(bytes(wrong).is_err(), "{wrong}");
         }
-        assert_eq!(format(".JPG").unwrap().name, "JPEG");
+        assert_eq!((format(".JPEG"), format("exr")), (Ok("jpg"), Ok("exr")));
         assert!(format("gif").unwrap_err().contains("png*, jpg"));
         assert!(limit("0").is_err() && limit("1.5").is_ok());
     }

@@ -15,6 +15,7 @@ use marraztu_core::base::image::Size;
 
 use crate::cli::accuracy::Accuracy;
 use crate::cli::arguments::{Reading, Seeing, Surfaces};
+use crate::cli::layers::LayerOptions;
 use crate::cli::values::size;
 
 /// The options of one picture.
@@ -35,6 +36,8 @@ pub(super) struct PictureOptions {
     pub(super) seeing: Seeing,
     #[command(flatten)]
     pub(super) accuracy: Accuracy,
+    #[command(flatten)]
+    pub(super) layers: LayerOptions,
 }
 
 /// Options as text: values by name, and `None` for switches.
@@ -84,6 +87,14 @@ pub(super) struct OptionParser {
     /// The options that a loaded model depends on.
     of_models: Vec<String>,
     parsed: BTreeMap<OptionTexts, Arc<Parsed>>,
+}
+
+impl OptionTexts {
+    /// Returns the options with another one, which has a value.
+    pub(super) fn and(mut self, name: &str, value: &str) -> Self {
+        self.0.insert(name.to_owned(), Some(value.into()));
+        self
+    }
 }
 
 impl OptionParser {

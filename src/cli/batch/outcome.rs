@@ -5,6 +5,8 @@ use std::time::Duration;
 use marraztu_io::LoadError;
 use serde::{Deserialize, Serialize};
 
+use super::dataset::DatasetImage;
+use crate::cli::cameras::CameraFrame;
 use crate::cli::failure::Failure;
 
 /// The status of a picture.
@@ -82,16 +84,30 @@ impl Fault {
 }
 
 /// A finished picture.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Drawn {
-    /// The SHA-256 of the file, if a report needs it.
-    pub(super) sha256: Option<String>,
-    /// The size of the file.
-    pub(super) bytes: u64,
+    /// The first file.
+    pub(super) first: FileSum,
+    /// The other files: layers.
+    pub(super) layers: Vec<FileSum>,
+    /// The camera, if the picture has layers.
+    pub(super) camera: Option<Box<CameraFrame>>,
+    /// The entries in the tables of a data set.
+    pub(super) image: Option<Box<DatasetImage>>,
     /// The findings of the model, if a report needs them.
     pub(super) findings: Vec<String>,
     /// Whether an earlier run has drawn it.
     pub(super) unchanged: bool,
+}
+
+/// A file of a picture.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct FileSum {
+    pub(super) out: String,
+    /// The SHA-256, if a report needs it.
+    #[serde(rename = "out_sha256")]
+    pub(super) sha256: Option<String>,
+    pub(super) bytes: u64,
 }
 
 /// The time that a picture took.

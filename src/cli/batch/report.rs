@@ -10,7 +10,7 @@ use marraztu_io::{NewFile, SaveError};
 use serde::{Deserialize, Serialize};
 
 use super::jobs::Job;
-use super::outcome::{Drawn, Fault, Outcome, Spent, Status};
+use super::outcome::{Drawn, Fault, FileSum, Outcome, Spent, Status};
 
 /// The line of a picture.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -25,6 +25,9 @@ pub(crate) struct Line {
     pub(crate) out: String,
     out_sha256: Option<String>,
     bytes: Option<u64>,
+    /// The further files of the picture: its layers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    layers: Vec<FileSum>,
     pub(crate) status: Status,
     findings: Vec<String>,
     error: Option<String>,
@@ -86,9 +89,10 @@ impl Line {
             input: shown(&job.row.file),
             in_sha256: outcome.in_sha256.clone(),
             view: job.camera().name.clone(),
-            out: shown(&job.out),
-            out_sha256: drawn.sha256.clone(),
-            bytes: (status == Status::Done).then_some(drawn.bytes),
+            out: shown(job.out()),
+            out_sha256: drawn.first.sha256.clone(),
+            bytes: (status == Status::Done).then_some(drawn.first.bytes),
+            layers: drawn.layers.clone(),
             status,
             findings: drawn.findings.clone(),
             error,
@@ -97,7 +101,7 @@ impl Line {
 }
 
 /// Formats a path with slashes, as on every system.
-fn shown(path: &Path) -> String {
+pub(super) fn shown(path: &Path) -> String {
     let text = path.to_string_lossy();
     if cfg!(windows) { text.replace('\\', "/") } else { text.into_owned() }
 }

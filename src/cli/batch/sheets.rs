@@ -47,7 +47,7 @@ pub(super) fn write_sheets(grid: Grid, folder: &Path, jobs: &[&Job]) -> Result<(
 
 /// Returns a picture with the name of its model and view.
 fn cell(job: &Job) -> Result<SheetCell, Failure> {
-    let picture = io::load_picture(&job.out)?;
+    let picture = io::load_picture(job.out())?;
     let stem = stem(&job.row.file);
     let label = if job.is_only_view() { stem } else { format!("{stem} {}", job.camera().name) };
     Ok(SheetCell { picture, label })

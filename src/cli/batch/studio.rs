@@ -18,14 +18,19 @@ use std::time::{Duration, Instant};
 use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_io::{self as io, Progress};
-use marraztu_render::{Renderer, plan_frame, without_ground_while};
+use marraztu_render::{LayerNames, Layers, Renderer, plan_frame, without_ground_while};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::cache::StageCache;
+use super::dataset::{self, Dataset, DatasetImage};
 use super::digest::{Stamper, hash_of, hash_of_file};
 use super::jobs::{Job, Row};
-use super::outcome::{Drawn, Fault, Outcome, Spent};
+use super::options::PictureOptions;
+use super::outcome::{Drawn, Fault, FileSum, Outcome, Spent};
+use super::report::shown;
+use crate::cli::cameras::CameraFrame;
 use crate::cli::failure::Failure;
+use crate::cli::layers::{LayerContent, LayerFile};
 use crate::cli::render::look;
 use crate::cli::stage::Stage;
 
@@ -48,6 +53,8 @@ pub(super) struct Manner {
     pub(super) limit: Option<Duration>,
     /// The limit of memory for models, in bytes.
     pub(super) memory: usize,
+    /// The data set that the pictures are a part of.
+    pub(super) dataset: Option<Dataset>,
 }
 
 /// The state that the threads of a batch share.
@@ -199,9 +206,12 @@ impl Studio {
 
     /// Returns the stamp of an earlier run, if it is right.
     fn finished(&self, job: &Job) -> Option<String> {
-        let found = io::read_stamp(&job.out)?;
+        let found = io::read_stamp(job.out())?;
         let hash = found.split(' ').next()?.to_owned();
-        (Some(hash) == self.stamper.stamp(job)).then_some(found)
+        let layers = &job.files[1..];
+        let is_whole =
+            layers.iter().all(|file| io::read_stamp(&file.path).as_ref() == Some(&found));
+        (is_whole && Some(hash) == self.stamper.stamp(job)).then_some(found)
     }
 
     /// Returns the pool for a large picture, as soon as it is free; `None` for a small one.
@@ -238,45 +248,106 @@ impl Attempt<'_> {
     /// Draws and writes the picture, unless it is up to date.
     fn picture(&mut self, renderer: &mut Renderer) -> Result<Drawn, Fault> {
         let (studio, job) = (self.studio, self.job);
-        let folder = job.out.parent().unwrap_or(Path::new(""));
+        let folders = job.files.iter().map(|file| file.path.parent().unwrap_or(Path::new("")));
         if studio.manner.resume
             && let Some(stamp) = studio.finished(job)
         {
             // Whole files are read, and models with findings loaded, only for a report.
-            studio.prepare_folder(folder)?;
+            folders.clone().try_for_each(|folder| studio.prepare_folder(folder))?;
             let has_findings = !stamp.ends_with(" 0");
             return self.unchanged(has_findings);
         }
         let (stage, findings) = self.stage()?;
-        stage
-            .sources(std::slice::from_ref(&job.row.file))
-            .spare(&job.out)
-            .map_err(|error| output(&error))?;
-        studio.prepare_folder(folder)?;
-        io::check_replaced(&job.out).map_err(|error| output(&error))?;
-        let content = self.content(renderer, &stage, findings.len())?;
+        let sources = stage.sources(std::slice::from_ref(&job.row.file));
+        for file in &job.files {
+            sources.spare(&file.path).map_err(|error| output(&error))?;
+        }
+        folders.clone().try_for_each(|folder| studio.prepare_folder(folder))?;
+        for file in &job.files {
+            io::check_replaced(&file.path).map_err(|error| output(&error))?;
+        }
+        let contents = self.contents(renderer, &stage, findings.len())?;
+        let image = self.dataset_image(renderer, &stage)?;
         let begin = Instant::now();
-        io::save_encoded(&job.out, &content).map_err(|error| output(&error))?;
+        for (file, content) in job.files.iter().zip(&contents) {
+            io::save_encoded(&file.path, content).map_err(|error| output(&error))?;
+        }
         self.spent.encode += begin.elapsed();
-        Ok(Drawn {
-            sha256: studio.manner.reports.then(|| hash_of(&content)),
+        let sum = |(file, content): (&LayerFile, &Vec<u8>)| FileSum {
+            out: shown(&file.path),
+            sha256: studio.manner.reports.then(|| hash_of(content)),
             bytes: content.len() as u64,
-            findings,
-            unchanged: false,
-        })
+        };
+        let mut sums = job.files.iter().zip(&contents).map(sum);
+        let first = sums.next().unwrap_or_default();
+        let camera = self.camera(&stage);
+        let layers = sums.collect();
+        Ok(Drawn { first, layers, camera, image, findings, unchanged: false })
+    }
+
+    /// Writes the masks of a data set, and describes the picture for its tables.
+    fn dataset_image(
+        &self,
+        renderer: &mut Renderer,
+        stage: &Stage,
+    ) -> Result<Option<Box<DatasetImage>>, Fault> {
+        let (studio, job) = (self.studio, self.job);
+        let Some(dataset @ (Dataset::Bop | Dataset::Coco)) = studio.manner.dataset else {
+            return Ok(None);
+        };
+        let wanted = || !studio.is_stopped();
+        let shot = stage.shot(job.size());
+        let (files, image) = dataset::image(dataset, renderer, (job, &shot), &wanted)?;
+        for (path, content) in files {
+            studio.prepare_folder(path.parent().unwrap_or(Path::new("")))?;
+            io::check_replaced(&path).map_err(|error| output(&error))?;
+            io::save_encoded(&path, &content).map_err(|error| output(&error))?;
+        }
+        Ok(Some(Box::new(image)))
+    }
+
+    /// Describes the camera, if the picture has layers.
+    fn camera(&self, stage: &Stage) -> Option<Box<CameraFrame>> {
+        let job = self.job;
+        let options = &job.row.parsed.options.layers;
+        if !options.are_given() {
+            return None;
+        }
+        let names = options.has_ids().then(|| LayerNames::of(&stage.scene));
+        let scene = (shown(&job.row.file), &*job.camera().name);
+        let shot = stage.shot(job.size());
+        let folder = job.out().parent().unwrap_or(Path::new(""));
+        let folder = match self.studio.manner.dataset {
+            // The layers have folders of their own.
+            Some(Dataset::Nerf) => folder.parent().unwrap_or(folder),
+            Some(Dataset::Bop | Dataset::Coco) | None => folder,
+        };
+        let frame = CameraFrame::new(&shot, (folder, &job.files), scene, (options, names.as_ref()));
+        Some(Box::new(frame))
     }
 
     /// Returns the result of a picture that an earlier run has drawn.
     fn unchanged(&mut self, has_findings: bool) -> Result<Drawn, Fault> {
         let mut drawn = Drawn { unchanged: true, ..Drawn::default() };
-        let out = &self.job.out;
-        let failed = |error: std::io::Error| Fault::Output(format!("{}: {error}", out.display()));
-        if self.studio.manner.reports {
-            drawn.bytes = out.metadata().map_err(failed)?.len();
-            drawn.sha256 = Some(hash_of_file(out).map_err(failed)?);
-            if has_findings {
-                drawn.findings = self.stage()?.1;
-            }
+        let reports = self.studio.manner.reports;
+        if reports {
+            let sum = |file: &LayerFile| -> std::io::Result<FileSum> {
+                let (out, bytes) = (shown(&file.path), file.path.metadata()?.len());
+                Ok(FileSum { out, sha256: Some(hash_of_file(&file.path)?), bytes })
+            };
+            let mut sums = self.job.files.iter().map(|file| {
+                let shown = file.path.display();
+                sum(file).map_err(|error| Fault::Output(format!("{shown}: {error}")))
+            });
+            drawn.first = sums.next().unwrap_or_else(|| Ok(FileSum::default()))?;
+            drawn.layers = sums.collect::<Result<_, _>>()?;
+        }
+        // The cameras of a picture with layers are written again: another shard may have drawn it.
+        let has_layers = self.job.row.parsed.options.layers.are_given();
+        if (reports && has_findings) || has_layers {
+            let (stage, findings) = self.stage()?;
+            drawn.camera = self.camera(&stage);
+            drawn.findings = if reports { findings } else { Vec::new() };
         }
         Ok(drawn)
     }
@@ -297,13 +368,13 @@ impl Attempt<'_> {
         Ok((stage, findings))
     }
 
-    /// Draws and encodes the picture.
-    fn content(
+    /// Draws the picture and its layers, and encodes its files.
+    fn contents(
         &mut self,
         renderer: &mut Renderer,
         stage: &Stage,
         findings: usize,
-    ) -> Result<Vec<u8>, Fault> {
+    ) -> Result<Vec<Vec<u8>>, Fault> {
         let (studio, job) = (self.studio, self.job);
         let begin = Instant::now();
         let pool = studio.pool_for(job.size())?;
@@ -311,25 +382,32 @@ impl Attempt<'_> {
         let until = self.until.map(|until| until + begin.elapsed());
         let begin = Instant::now();
         let shot = stage.shot(job.size());
-        let transparent = job.row.parsed.options.transparent;
+        let options = &job.row.parsed.options;
         let stopped = &studio.stopped;
         let is_late = || until.is_some_and(|until| until < Instant::now());
         let wanted = || !stopped.load(Ordering::Relaxed) && !is_late();
         let picture = match pool.as_ref().and_then(|pool| pool.as_ref()) {
-            Some(pool) => pool.install(|| draw(renderer, &shot, transparent, &wanted)),
-            None => draw(renderer, &shot, transparent, &wanted),
+            Some(pool) => pool.install(|| draw(renderer, &shot, options, &wanted)),
+            None => draw(renderer, &shot, options, &wanted),
         };
         drop(pool);
         self.spent.draw += begin.elapsed();
         let stopped = if studio.is_stopped() { Fault::Cancelled } else { Fault::Timeout };
-        let picture = picture.filter(|_| !is_late()).ok_or(stopped)?;
+        let (color, numbers) = picture.filter(|_| !is_late()).ok_or(stopped)?;
         let begin = Instant::now();
         let hash = studio.stamper.stamp(job);
         let hash = hash.ok_or_else(|| Fault::Input("the model has disappeared".to_owned()))?;
         // The number of findings tells a later run whether its report needs the model.
-        let content = io::encode_stamped(job.format, &picture, &format!("{hash} {findings}"));
+        let stamp = format!("{hash} {findings}");
+        let content =
+            LayerContent::new(&shot, color.as_deref(), numbers.as_ref(), options.transparent);
+        let contents = job.files.iter().map(|file| {
+            let encoded = file.encode(&content, &options.layers.png(), Some(&stamp));
+            encoded.map_err(|reason| Fault::Input(format!("{}: {reason}", file.path.display())))
+        });
+        let contents = contents.collect();
         self.spent.encode += begin.elapsed();
-        content.map_err(|reason| Fault::Output(format!("{}: {reason}", job.out.display())))
+        contents
     }
 }
 
@@ -337,17 +415,26 @@ fn output(error: &io::SaveError) -> Fault {
     Fault::Output(error.to_string())
 }
 
-/// Draws a picture, unless it is no longer wanted.
+/// Draws a picture and its layers, unless they are no longer wanted.
 fn draw<'a>(
     renderer: &'a mut Renderer,
     shot: &Shot,
-    transparent: bool,
+    options: &PictureOptions,
     wanted: &(dyn Fn() -> bool + Sync),
-) -> Option<Cow<'a, Picture>> {
-    if transparent {
-        return without_ground_while(renderer, shot, wanted).ok().map(Cow::Owned);
-    }
-    renderer.render_while(&plan_frame(shot), wanted).ok().map(Cow::Borrowed)
+) -> Option<(Option<Cow<'a, Picture>>, Option<Layers>)> {
+    let PictureOptions { layers, transparent, .. } = options;
+    let numbers = match layers.set() {
+        set if set.is_empty() => None,
+        set => Some(renderer.layers_while(shot, set, layers.normal_space(), wanted).ok()?),
+    };
+    let color = match (layers.has_color(), transparent) {
+        (false, _) => None,
+        (true, true) => Some(Cow::Owned(without_ground_while(renderer, shot, wanted).ok()?)),
+        (true, false) => {
+            Some(Cow::Borrowed(renderer.render_while(&plan_frame(shot), wanted).ok()?))
+        }
+    };
+    Some((color, numbers))
 }
 
 thread_local! {

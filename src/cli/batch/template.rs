@@ -21,18 +21,21 @@ enum Field {
     View,
     /// The name of the view.
     ViewName,
+    /// The name of the layer.
+    Layer,
     /// The extension of the format.
     Ext,
 }
 
 impl Field {
-    const ALL: [(&'static str, Self); 7] = [
+    const ALL: [(&'static str, Self); 8] = [
         ("dir", Self::Dir),
         ("stem", Self::Stem),
         ("name", Self::Name),
         ("index", Self::Index),
         ("view", Self::View),
         ("view_name", Self::ViewName),
+        ("layer", Self::Layer),
         ("ext", Self::Ext),
     ];
 
@@ -61,6 +64,7 @@ pub(super) struct Fields<'a> {
     pub(super) index: usize,
     pub(super) view: usize,
     pub(super) view_name: &'a str,
+    pub(super) layer: &'a str,
     pub(super) ext: &'a str,
 }
 
@@ -98,13 +102,16 @@ impl Template {
         Ok(Self(pieces))
     }
 
-    /// Returns the default template: the name of the model, with the view if there are several.
-    pub(super) fn of_views(count: usize) -> Self {
+    /// Returns the default template: the name of the model, with the view if there are several, and
+    /// the layer if each has its own file.
+    pub(super) fn of_views(count: usize, by_layer: bool) -> Self {
         let stem = Piece::Field(Field::Stem, 0);
         let ending = [Piece::Text(".".to_owned()), Piece::Field(Field::Ext, 0)];
         let view = [Piece::Text("-".to_owned()), Piece::Field(Field::View, 3)];
         let view = if count > 1 { &view[..] } else { &[] };
-        Self([&[stem], view, &ending].concat())
+        let layer = [Piece::Text("-".to_owned()), Piece::Field(Field::Layer, 0)];
+        let layer = if by_layer { &layer[..] } else { &[] };
+        Self([&[stem], view, layer, &ending].concat())
     }
 
     /// Returns the file of a picture.
@@ -120,6 +127,7 @@ impl Template {
                 Piece::Field(Field::Index, width) => write!(path, "{:0width$}", fields.index),
                 Piece::Field(Field::View, width) => write!(path, "{:0width$}", fields.view),
                 Piece::Field(Field::ViewName, _) => write!(path, "{}", fields.view_name),
+                Piece::Field(Field::Layer, _) => write!(path, "{}", fields.layer),
                 Piece::Field(Field::Ext, _) => write!(path, "{}", fields.ext),
             };
         }
@@ -176,8 +184,8 @@ mod tests {
     use super::*;
 
     fn path(template: &str, file: &str) -> PathBuf {
-        let fields =
-            Fields { file: Path::new(file), index: 42, view: 7, view_name: "front", ext: "png" };
+        let (file, view_name, layer) = (Path::new(file), "front", "depth");
+        let fields = Fields { file, index: 42, view: 7, view_name, layer, ext: "png" };
         Template::parse(template).unwrap().path(&fields)
     }
 
@@ -186,6 +194,7 @@ mod tests {
         for (template, file, expected) in [
             ("out/{dir}/{stem}/{view:03}.{ext}", "models/a.b.obj", "out/models/a.b/007.png"),
             ("{index:06}-{view_name}.{ext}", "a.obj", "000042-front.png"),
+            ("{stem}-{layer}.{ext}", "a.obj", "a-depth.png"),
             ("{name}.{ext}", "models/a.obj.gz", "a.obj.gz.png"),
             ("{stem}.jpg", "models/a.OBJ.GZ", "a.jpg"),
             ("{{{stem}}}-{index}.png", "a.obj", "{a}-42.png"),
@@ -195,9 +204,15 @@ mod tests {
         ] {
             assert_eq!(path(template, file), Path::new(expected), "{template} {file}");
         }
-        let named = |count| Template::of_views(count);
-        assert_eq!(named(1), Template::parse("{stem}.{ext}").unwrap());
-        assert_eq!(named(2), Template::parse("{stem}-{view:03}.{ext}").unwrap());
+        for (count, by_layer, template) in [
+            (1, false, "{stem}.{ext}"),
+            (2, false, "{stem}-{view:03}.{ext}"),
+            (1, true, "{stem}-{layer}.{ext}"),
+            (2, true, "{stem}-{view:03}-{layer}.{ext}"),
+        ] {
+            let named = Template::of_views(count, by_layer);
+            assert_eq!(named, Template::parse(template).unwrap());
+        }
     }
 
     #[test]

@@ -42,6 +42,7 @@ use super::mtl::Library;
 use super::packed::{Unpacked, unpacked_name};
 use super::progress::Progress;
 use super::read;
+use super::stl::{self, is_stl};
 use super::texture::{Pictures, texture_endings};
 use marraztu_core::scene::{
     ClosedBodies, CornerLists, FileMaterial, LoadOptions, Mesh, MeshSource, Model, Part, Scale,
@@ -63,10 +64,11 @@ pub struct Loaded {
     pub findings: Vec<Finding>,
 }
 
-/// Loads an OBJ file with its MTL files and textures. A file with the extension `.gz` is unpacked.
+/// Loads an OBJ file with its MTL files and textures, or an STL file. A file with the extension
+/// `.gz` is unpacked.
 ///
 /// # Errors
-/// If the file cannot be read, is not an OBJ file, has an unreadable number, or has only unusable
+/// If the file cannot be read, is not such a file, has an unreadable number, or has only unusable
 /// faces; and if `progress` is cancelled.
 pub fn load(path: &Path, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
     load_with(path, options, &mut Pictures::default(), progress)
@@ -79,6 +81,9 @@ pub(super) fn load_with(
     pictures: &mut Pictures,
     progress: &Progress,
 ) -> Result<Loaded, LoadError> {
+    if is_stl(path) {
+        return stl::load(path, options, progress);
+    }
     let file = shown(path);
     let (text, size) = read::open(path, MOST_BYTES)?;
     let mut findings = Findings::new(&file);
@@ -99,7 +104,8 @@ pub(super) fn load_with(
     Ok(loaded)
 }
 
-/// Parses the text of an OBJ file. MTL files are searched for in `folder`, if given.
+/// Parses the text of an OBJ file, or an STL file. MTL files are searched for in `folder`, if
+/// given.
 ///
 /// # Errors
 /// The same as [`load`].
@@ -110,6 +116,9 @@ pub fn parse(
     options: &LoadOptions,
     progress: &Progress,
 ) -> Result<Loaded, LoadError> {
+    if stl::has_stl_content(bytes, bytes.len()) {
+        return stl::parse(bytes, file, options, progress);
+    }
     let mut findings = Findings::new(file);
     let content = content(bytes, bytes.len(), file, &mut findings, &progress.part(0.0, 0.6))?;
     let mut pictures = Pictures::default();
@@ -390,7 +399,7 @@ const fn placement(options: &LoadOptions) -> (UpAxis, Scale, Winding) {
 }
 
 /// Rotates and scales the positions and normals of a file as requested.
-fn place(positions: &mut [[f64; 3]], normals: &mut [[f32; 3]], options: &LoadOptions) {
+pub(super) fn place(positions: &mut [[f64; 3]], normals: &mut [[f32; 3]], options: &LoadOptions) {
     let LoadOptions { up, scale, .. } = options;
     let turned = options.winding == Winding::Turned;
     positions.par_iter_mut().for_each(|row| *row = up.upright(*row).map(|x| x * scale.get()));

@@ -412,7 +412,12 @@ fn fronts<S: Simd>(
 }
 
 /// Returns whether a triangle with these vertices faces the observer if nothing is mirrored.
-fn is_front(ids: [u32; 3], draw: &Draw, plan: &FramePlan, vertices: &[ScreenVertex]) -> bool {
+pub(crate) fn is_front(
+    ids: [u32; 3],
+    draw: &Draw,
+    plan: &FramePlan,
+    vertices: &[ScreenVertex],
+) -> bool {
     let own = each(ids, |vertex| vertices[vertex as usize]);
     if own.iter().all(ScreenVertex::is_inside) {
         return doubled_area(own.map(|vertex| vertex.at())) < 0;
