@@ -23,6 +23,7 @@ const PAGES: &[&str] = &[
     "docs/accuracy.md",
     "docs/breakages.md",
     "docs/effects.md",
+    "docs/engines.md",
     "docs/glossary.md",
     "docs/keys.md",
     "docs/many.md",

@@ -168,6 +168,7 @@ fn written(
     if let (None, [first, ..]) = (&arguments.out, &files[..]) {
         note(&format_args!("the picture is in {}", first.path.display()));
     }
+    Ok(())
 }
 
 /// Notes why some objects are invisible, with one line per reason.

@@ -17,12 +17,17 @@ pub(super) struct Shard {
     pub(super) count: usize,
 }
 
-/// Environment variables with the number of a task, the number of tasks, and the number of the
-/// first task.
-const ENGINES: [[&str; 3]; 3] = [
-    ["SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN"],
-    ["JOB_COMPLETION_INDEX", "JOB_COMPLETIONS", ""],
-    ["AWS_BATCH_JOB_ARRAY_INDEX", "AWS_BATCH_JOB_ARRAY_SIZE", ""],
+/// Environment variables with the number of a task, the number of tasks, and the numbers of the
+/// first and the last task.
+const ENGINES: [[&str; 4]; 3] = [
+    [
+        "SLURM_ARRAY_TASK_ID",
+        "SLURM_ARRAY_TASK_COUNT",
+        "SLURM_ARRAY_TASK_MIN",
+        "SLURM_ARRAY_TASK_MAX",
+    ],
+    ["JOB_COMPLETION_INDEX", "JOB_COMPLETIONS", "", ""],
+    ["AWS_BATCH_JOB_ARRAY_INDEX", "AWS_BATCH_JOB_ARRAY_SIZE", "", ""],
 ];
 
 impl Shard {
@@ -64,12 +69,16 @@ fn shard_in(text: &str, variable: &dyn Fn(&str) -> Option<String>) -> Result<Sha
         };
         return checked(index, count);
     }
-    for [index, count, first] in ENGINES {
+    for [index, count, first, last] in ENGINES {
         let Some(task) = number(index) else { continue };
         let count = number(count).ok_or_else(|| {
             format!("{index} is {task}, but {count} does not say of how many; write {task}/COUNT")
         })?;
         let first = number(first).unwrap_or_default();
+        // An array such as 3,7 or 0-15:4 does not say of how many parts its tasks are.
+        if number(last).is_some_and(|last| last.checked_sub(first) != count.checked_sub(1)) {
+            return Err(format!("the task array has gaps; write {task}/COUNT instead of auto"));
+        }
         let task = task.checked_sub(first).ok_or("the task number is below the first one")?;
         return checked(task, count);
     }
@@ -130,8 +139,17 @@ mod tests {
             ("SLURM_ARRAY_TASK_ID", "3"),
             ("SLURM_ARRAY_TASK_COUNT", "8"),
             ("SLURM_ARRAY_TASK_MIN", "1"),
+            ("SLURM_ARRAY_TASK_MAX", "8"),
         ]);
         assert_eq!(shard_in("auto", &slurm), Ok(Shard { index: 2, count: 8 }));
+        // Parts 3 and 7 of an earlier array, submitted again.
+        let gaps = environment(&[
+            ("SLURM_ARRAY_TASK_ID", "3"),
+            ("SLURM_ARRAY_TASK_COUNT", "2"),
+            ("SLURM_ARRAY_TASK_MIN", "3"),
+            ("SLURM_ARRAY_TASK_MAX", "7"),
+        ]);
+        assert!(shard_in("auto", &gaps).unwrap_err().contains("3/COUNT"));
         let kubernetes = environment(&[("JOB_COMPLETION_INDEX", "5"), ("JOB_COMPLETIONS", "6")]);
         assert_eq!(shard_in("auto", &kubernetes), Ok(Shard { index: 5, count: 6 }));
         let unknown = environment(&[("JOB_COMPLETION_INDEX", "5")]);
