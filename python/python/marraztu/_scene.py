@@ -140,7 +140,8 @@ class Scene:
         self._nodes: list[Node] = []
         self.findings: list[str] = []
         self.unit = unit
-        """The factor of the layers depth, distance and position: metres per unit of the models."""
+        """The factor of the layers depth, distance and position: metres per unit of the models.
+        Poses stay in units of the models."""
         for mesh in meshes:
             self.add(mesh)
         if lights is not None:
