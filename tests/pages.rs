@@ -27,10 +27,12 @@ const PAGES: &[&str] = &[
     "docs/glossary.md",
     "docs/keys.md",
     "docs/many.md",
+    "docs/python.md",
     "docs/speed.md",
     "docs/stability.md",
     "docs/tasks.md",
     "fuzz/README.md",
+    "python/README.md",
 ];
 
 fn root() -> &'static Path {

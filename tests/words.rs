@@ -83,7 +83,9 @@ fn files(folder: &str, endings: &[&str]) -> Vec<PathBuf> {
 /// Every source and page, by its path in the project.
 fn texts() -> Vec<(String, String)> {
     let mut paths = Vec::new();
-    for folder in ["src", "crates", "tests", "benches", "docs", "tools", "fuzz/fuzz_targets"] {
+    for folder in
+        ["src", "crates", "python", "tests", "benches", "docs", "tools", "fuzz/fuzz_targets"]
+    {
         paths.extend(files(folder, &["rs", "md", "sh", "py"]));
     }
     for page in ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"] {
@@ -200,8 +202,14 @@ fn all_faults() -> BTreeSet<(String, &'static str)> {
         all.extend(faults(name, text).into_iter().map(|fault| (name.clone(), fault)));
     }
     let mut seen = BTreeSet::new();
-    let folders =
-        ["src", "crates/core/src", "crates/io/src", "crates/render/src", "crates/lab/src"];
+    let folders = [
+        "src",
+        "crates/core/src",
+        "crates/io/src",
+        "crates/render/src",
+        "crates/lab/src",
+        "python/src",
+    ];
     for folder in folders {
         for file in ["lib.rs", "main.rs"] {
             let file = root().join(folder).join(file);

@@ -5,11 +5,8 @@ use std::path::{Path, PathBuf};
 use marraztu::picture_file::draw_into;
 use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
 use marraztu_core::base::image::Size;
-use marraztu_core::edit::framing::Sphere;
 use marraztu_core::edit::{framing, items, lighting};
-use marraztu_core::scene::{
-    Camera, CameraId, Command, Fill, Item, ItemId, Lens, Object, ObjectId, Pose, Tracked,
-};
+use marraztu_core::scene::{CameraId, Command, Fill, ItemId, Object, Pose};
 use marraztu_io::{self as io, Progress};
 use marraztu_lab::dial::{Dial, Figures, Step};
 use marraztu_lab::report::brief;
@@ -353,29 +350,10 @@ fn frame(stage: &mut Stage, from: [f64; 2]) -> Result<(), Failure> {
 /// Places the camera. The lights of models without a scene are those of the default view, so they
 /// are the same for all positions, except for the camera's own spot.
 fn place_camera(stage: &mut Stage, pose: Pose, half_angle: Option<f64>) -> Result<(), Failure> {
-    let scene = &stage.scene;
-    let visible = scene.objects.iter().filter(|(_, object)| object.visible);
-    let ids: Vec<ObjectId> = visible.map(|(id, _)| id).collect();
-    let sphere = framing::sphere(scene, &stage.view, &ids);
-    let lens = scene.selected_camera(&stage.view).lens;
     if stage.models_alone {
         frame(stage, framing::MODELS_FROM)?;
     }
-    let half_angle = half_angle.unwrap_or(lens.half_angle);
-    let mut lens = Lens { half_angle, ..lens };
-    if let Some(Sphere { centre, radius }) = sphere {
-        let radius = if radius > 0.0 { radius } else { 1.0 };
-        let distance = pose.eye.distance(centre);
-        // The planes enclose everything, as close as the depth buffer needs.
-        let near = ((distance - radius) / 2.0).max(radius / 1000.0).min(1.0);
-        let far = 2000.0_f64.max(distance + 2.0 * radius);
-        let parallel_near = lens.parallel_near.min(near);
-        let half_size = 1.1 * radius;
-        lens = Lens { near, far, half_size, parallel_near, parallel_far: far, ..lens };
-    }
-    let camera = stage.scene.selected_camera(&stage.view);
-    let camera = Camera { pose: Tracked::new(pose), lens, ..camera.clone() };
-    stage.change(Command::Replace(Item::Camera(stage.view.camera, Box::new(camera))))
+    stage.change(framing::from_pose(&stage.scene, &stage.view, pose, half_angle))
 }
 
 /// Switches the lights in these slots on and all others off.

@@ -338,6 +338,17 @@ impl Renderer {
         if is_enlarged { &self.enlarged } else { &self.picture }
     }
 
+    /// Returns the last picture without copying it. The next one is drawn completely, and queries
+    /// about the last one find nothing.
+    #[must_use]
+    pub fn take_picture(&mut self) -> Picture {
+        self.forget();
+        match self.plan.take().and_then(|plan| plan.enlarged) {
+            Some(_) => std::mem::take(&mut self.enlarged),
+            None => std::mem::take(&mut self.picture),
+        }
+    }
+
     /// Returns the time taken by each stage of the last picture.
     #[must_use]
     pub const fn timings(&self) -> Timings {

@@ -6,10 +6,10 @@
 
 use std::path::Path;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::framing::MODELS_FROM;
-use marraztu_core::scene::{CameraMode, Pose};
+use marraztu_core::scene::Pose;
 use serde::Deserialize;
 
 use crate::cli::render::Aim;
@@ -244,20 +244,11 @@ fn from_json(json: &[u8]) -> Result<Vec<CameraView>, String> {
 
 /// Converts a matrix from camera to world, given as rows.
 fn pose(rows: &[[f64; 4]]) -> Result<Pose, String> {
-    /// The largest difference of a matrix to a rotation.
-    const MOST: f64 = 1e-3;
     let [a, b, c, ..] = *rows else { return Err("transform_matrix has fewer than 3 rows".into()) };
-    let column = |i: usize| DVec3::new(a[i], b[i], c[i]);
-    let axes = DMat3::from_cols(column(0), column(1), column(2));
-    let is_rotation = (axes * axes.transpose()).abs_diff_eq(DMat3::IDENTITY, MOST);
-    if !is_rotation || axes.determinant() < 0.0 || !column(3).is_finite() {
-        return Err("transform_matrix is not a rotation with a position".to_owned());
-    }
-    // Files have few digits, so the axes are made orthonormal again.
-    let z = axes.z_axis.normalize_or_zero();
-    let x = axes.y_axis.cross(z).normalize_or_zero();
-    let axes = DMat3::from_cols(x, z.cross(x), z);
-    Ok(Pose { eye: column(3), axes, mode: CameraMode::Fly })
+    let rows = [a, b, c, [0.0, 0.0, 0.0, 1.0]].map(DVec4::from_array);
+    let [a, b, c, d] = rows;
+    Pose::from_matrix(DMat4::from_cols(a, b, c, d).transpose())
+        .ok_or_else(|| "transform_matrix is not a rotation with a position".to_owned())
 }
 
 #[cfg(test)]

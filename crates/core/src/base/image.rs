@@ -96,6 +96,12 @@ impl Picture {
         &self.pixels
     }
 
+    /// Returns all pixels, row by row from the top, without copying them.
+    #[must_use]
+    pub fn into_pixels(self) -> Vec<[u8; 4]> {
+        self.pixels
+    }
+
     /// Returns all pixels for writing, and drops the properties computed from them.
     pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
         self.derived = Derived::default();

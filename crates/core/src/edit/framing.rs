@@ -14,7 +14,9 @@ use glam::{DMat3, DVec3};
 
 use super::{GesturePhase, Refusal, set_transform};
 use crate::base::math;
-use crate::scene::{CameraMode, Command, Lens, Object, ObjectId, Observer, Pose, Scene, View};
+use crate::scene::{
+    Camera, CameraMode, Command, Item, Lens, Object, ObjectId, Observer, Pose, Scene, Tracked, View,
+};
 
 /// The bounding sphere to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,6 +107,25 @@ pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Result<Comma
     let axes =
         math::rotation(DVec3::Y, right.to_radians()) * math::rotation(DVec3::X, -up.to_radians());
     framed(scene, view, &shown(scene, view), axes, MARGIN)
+}
+
+/// Places the selected camera. `half_angle` is the new one of its lens, in degrees, if given. The
+/// planes of the lens enclose everything visible, as closely as the depth buffer needs.
+#[must_use]
+pub fn from_pose(scene: &Scene, view: &View, pose: Pose, half_angle: Option<f64>) -> Command {
+    let camera = scene.selected_camera(view);
+    let mut lens = Lens { half_angle: half_angle.unwrap_or(camera.lens.half_angle), ..camera.lens };
+    if let Some(Sphere { centre, radius }) = sphere(scene, view, &shown(scene, view)) {
+        let radius = if radius > 0.0 { radius } else { 1.0 };
+        let distance = pose.eye.distance(centre);
+        let near = ((distance - radius) / 2.0).max(radius / 1000.0).min(1.0);
+        let far = 2000.0_f64.max(distance + 2.0 * radius);
+        let parallel_near = lens.parallel_near.min(near);
+        let half_size = 1.1 * radius;
+        lens = Lens { near, far, half_size, parallel_near, parallel_far: far, ..lens };
+    }
+    let camera = Camera { pose: Tracked::new(pose), lens, ..camera.clone() };
+    Command::Replace(Item::Camera(view.camera, Box::new(camera)))
 }
 
 /// Returns the distance at which [`models`] shows a sphere of radius `r`.

@@ -61,6 +61,23 @@ impl Pose {
         math::placed(self.axes, self.eye)
     }
 
+    /// Creates a pose from a matrix `world_from_camera`; `None` unless it is a rotation with a
+    /// position. Matrices in files have few digits, so the axes are made orthonormal again.
+    #[must_use]
+    pub fn from_matrix(world_from_camera: DMat4) -> Option<Self> {
+        /// The largest difference of an entry of R R' from the identity.
+        const MOST: f64 = 1e-3;
+        let (axes, eye) = (DMat3::from_mat4(world_from_camera), world_from_camera.w_axis);
+        let is_rotation = (axes * axes.transpose()).abs_diff_eq(DMat3::IDENTITY, MOST);
+        if !is_rotation || axes.determinant() < 0.0 || !eye.is_finite() {
+            return None;
+        }
+        let z = axes.z_axis.normalize_or_zero();
+        let x = axes.y_axis.cross(z).normalize_or_zero();
+        let axes = DMat3::from_cols(x, z.cross(x), z);
+        Some(Self { eye: eye.truncate(), axes, mode: CameraMode::Fly })
+    }
+
     /// Returns the current mode. The camera orbits only while its target is the selected object.
     #[must_use]
     pub fn mode_with(&self, selected: Option<ObjectId>) -> CameraMode {

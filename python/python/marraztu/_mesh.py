@@ -1,0 +1,233 @@
+"""Meshes from files, arrays and trimesh."""
+
+from __future__ import annotations
+
+import math
+import os
+import warnings
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from . import _marraztu
+from ._values import Material
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+CREASE = math.radians(60)
+"""The largest angle between two faces with a smooth edge, unless the mesh has normals."""
+
+
+class FindingWarning(UserWarning):
+    """Something in a file was repaired, left out or odd."""
+
+
+def warn_of(findings: list[str]) -> None:
+    """Warns of each finding, at the caller of the public function."""
+    for finding in findings:
+        warnings.warn(finding, FindingWarning, stacklevel=3)
+
+
+class Mesh:
+    """A shape with its materials. It never changes, and scenes and threads may share it.
+
+    `vertices` has the shape (n, 3). `faces` has the shape (m, 3), or (m, 4) and so on, or is a list
+    of polygons of any size; its numbers are vertices from 0, counter-clockwise seen from the front.
+    The other arrays have a row per vertex: `normals` (n, 3), `uv` (n, 2) with (0, 0) at the lower
+    left of the texture, and `colors` (n, 3) or (n, 4) as bytes or as factors from 0 to 1; alpha is
+    ignored. `texture` is a picture file, an array of bytes (height, width, 3 or 4), or a picture of
+    PIL. `material` is a `Material` or the name of one. Without normals, edges between faces are
+    smooth up to the angle `crease` in radians; 0 gives flat faces.
+    """
+
+    __slots__ = ("_mesh",)
+
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        faces: ArrayLike | Sequence[Sequence[int]],
+        *,
+        normals: ArrayLike | None = None,
+        uv: ArrayLike | None = None,
+        colors: ArrayLike | None = None,
+        texture: Any = None,
+        material: Material | str | None = None,
+        crease: float = CREASE,
+        name: str = "mesh",
+    ) -> None:
+        import numpy as np
+
+        positions = _array(vertices, np.float64, None, 3, "vertices")
+        count = len(positions)
+        corners, arities = _polygons(faces, count)
+        if colors is not None:
+            colors = np.asarray(colors)
+            factor = 255 if colors.dtype == np.uint8 else 1
+            if colors.ndim == 2 and colors.shape[1] == 4:
+                colors = colors[:, :3]
+            colors = _array(colors / factor, np.float32, count, 3, "colors")
+        arrays = {
+            "name": name,
+            "vertices": positions,
+            "corners": corners,
+            "arities": arities,
+            "normals": _array(normals, np.float32, count, 3, "normals"),
+            "uvs": _array(uv, np.float32, count, 2, "uv"),
+            "colors": colors,
+            "texture": None if texture is None else pixels_of(texture),
+            "material": material,
+            "crease": crease,
+        }
+        self._mesh = _marraztu.Mesh.from_arrays(arrays)
+
+    @classmethod
+    def _wrap(cls, kernel: _marraztu.Mesh) -> Mesh:
+        mesh = cls.__new__(cls)
+        mesh._mesh = kernel
+        return mesh
+
+    @classmethod
+    def load(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        up: str | None = None,
+        scale: float = 1.0,
+        flip_winding: bool = False,
+        crease: float = CREASE,
+        bump_maps: str = "auto",
+    ) -> Mesh:
+        """Loads an .obj or .obj.gz file, with its MTL files and textures.
+
+        `up` is the axis of the file that points up: x, y, z, -x, -y or -z; by default the axis
+        stated in its comments, or y. `crease` is in radians, and used if the file has neither
+        normals nor smoothing groups. Repairs are warnings (`FindingWarning`) and in `findings`.
+
+        Raises `LoadError` with `file`, `line` and `reason`.
+        """
+        reading = {
+            "up": up,
+            "scale": scale,
+            "flip_winding": flip_winding,
+            "crease": crease,
+            "bump_maps": bump_maps,
+        }
+        mesh = cls._wrap(_marraztu.Mesh.load(os.fspath(path), reading))
+        warn_of(mesh.findings)
+        return mesh
+
+    @classmethod
+    def from_trimesh(cls, mesh: Any, *, name: str | None = None, crease: float = CREASE) -> Mesh:
+        """Converts a `trimesh.Trimesh`, with its texture or vertex colours."""
+        visual = mesh.visual
+        arrays: dict[str, Any] = {}
+        uv = getattr(visual, "uv", None)
+        if uv is not None:
+            arrays["uv"] = uv
+            material = getattr(visual, "material", None)
+            # Names of trimesh's SimpleMaterial and PBRMaterial.
+            image = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
+            if image is not None:
+                arrays["texture"] = image
+        elif getattr(visual, "kind", None) == "vertex":
+            arrays["colors"] = visual.vertex_colors
+        name = name or mesh.metadata.get("name") or "mesh"
+        return cls(mesh.vertices, mesh.faces, name=name, crease=crease, **arrays)
+
+    @property
+    def name(self) -> str:
+        """The name of the file without its ending, or the given name."""
+        return self._mesh.name
+
+    @property
+    def findings(self) -> list[str]:
+        """Everything that was repaired, left out or odd in the file."""
+        return self._mesh.findings
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """The positions of the vertices, (n, 3)."""
+        return self._mesh.vertices()
+
+    @property
+    def triangles(self) -> NDArray[np.uint32]:
+        """The vertices of each triangle, (n, 3)."""
+        return self._mesh.triangles()
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """The smallest and the largest corner of the bounding box, (2, 3)."""
+        import numpy as np
+
+        if self._mesh.bounds is None:
+            raise ValueError("the mesh has no vertices")
+        return np.array(self._mesh.bounds)
+
+    def __repr__(self) -> str:
+        return f"<Mesh {self.name!r} of {self._mesh.polygons} polygons>"
+
+
+def _array(values: ArrayLike | None, dtype: type, rows: int | None, columns: int, what: str) -> Any:
+    """Converts values to a contiguous array of the kernel."""
+    import numpy as np
+
+    if values is None:
+        return None
+    array: NDArray[Any] = np.ascontiguousarray(values, dtype)
+    if array.ndim != 2 or array.shape[1] != columns or rows not in (None, len(array)):
+        shape = f"({'n' if rows is None else rows}, {columns})"
+        raise ValueError(f"{what} needs the shape {shape}, not {array.shape}")
+    return array
+
+
+def _polygons(faces: Any, count: int) -> tuple[Any, Any]:
+    """Returns the corners of all polygons, and the number of corners of each."""
+    import numpy as np
+
+    array: Any
+    try:
+        array = np.asarray(faces)
+    except ValueError:
+        # Lists of different lengths are not an array.
+        array = None
+    if array is None or array.dtype == object:
+        lists = [np.asarray(face) for face in faces]
+        arities = np.array([len(face) for face in lists], np.uint32)
+        array = np.concatenate(lists) if lists else np.empty(0, np.int64)
+    elif array.size == 0:
+        arities = np.empty(0, np.uint32)
+        array = array.astype(np.int64)
+    elif array.ndim == 2:
+        arities = np.full(array.shape[0], array.shape[1], np.uint32)
+    else:
+        raise ValueError(f"faces needs the shape (m, 3), not {array.shape}")
+    if array.dtype.kind not in "iu":
+        raise ValueError(f"faces are numbers of vertices, not {array.dtype}")
+    corners = array.ravel()
+    if corners.size and not 0 <= corners.min() <= corners.max() < count:
+        wrong = corners.min() if corners.min() < 0 else corners.max()
+        raise ValueError(f"a face refers to vertex {wrong}, but there are {count} vertices")
+    if arities.size and arities.min() < 3:
+        raise ValueError(f"face {int(arities.argmin())} has fewer than 3 corners")
+    return np.ascontiguousarray(corners, np.uint32), arities
+
+
+def pixels_of(picture: Any) -> NDArray[np.uint8]:
+    """Converts a file, an array or a picture of PIL to an array of RGBA bytes."""
+    import numpy as np
+
+    if isinstance(picture, (str, os.PathLike)):
+        return _marraztu.load_picture(os.fspath(picture))
+    if hasattr(picture, "convert"):
+        picture = picture.convert("RGBA")
+    array = np.asarray(picture)
+    if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] not in (3, 4):
+        raise ValueError(
+            "a picture is a file, an array of bytes of shape (height, width, 3 or 4), or a picture "
+            f"of PIL, not {array.dtype} {array.shape}"
+        )
+    if array.shape[2] == 3:
+        alpha = np.full((*array.shape[:2], 1), 255, np.uint8)
+        array = np.concatenate([array, alpha], axis=2)
+    return np.ascontiguousarray(array)

@@ -1,0 +1,168 @@
+"""Materials, lights, colours and the axes of accuracy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from . import _marraztu
+
+Triple = tuple[float, float, float]
+"""Three numbers: a point, a direction, or red, green and blue."""
+
+
+def bytes_of(color: Sequence[int] | str) -> tuple[int, int, int]:
+    """Checks a colour: three bytes, or "#rrggbb"."""
+    if isinstance(color, str):
+        digits = color.removeprefix("#")
+        if len(digits) != 6 or color == digits:
+            raise ValueError(f'a colour is three bytes or "#rrggbb", not {color!r}')
+        color = [int(digits[i : i + 2], 16) for i in (0, 2, 4)]
+    red, green, blue = (int(channel) for channel in color)
+    if not all(0 <= channel <= 255 for channel in (red, green, blue)):
+        raise ValueError(f"the channels of a colour are from 0 to 255, not {color!r}")
+    return red, green, blue
+
+
+def tuples(values: dict[str, Any]) -> dict[str, Any]:
+    """Converts arrays of the kernel to tuples: bytes arrive as bytes, other arrays as lists."""
+    arrays = (bytes, list)
+    return {
+        key: tuple(value) if isinstance(value, arrays) else value for key, value in values.items()
+    }
+
+
+class Material(NamedTuple):
+    """A material of Phong's model: factors from 0 to 1, and the exponent of the highlight.
+
+    `Material.named("gold")` is one of 19 materials; wherever a material is expected, its name may
+    be given instead.
+    """
+
+    diffuse: Triple = (0.8, 0.8, 0.8)
+    """The fraction of a light that is reflected diffusely: Kd."""
+    ambient: Triple = (0.2, 0.2, 0.2)
+    """The fraction of ambient light that is reflected: Ka."""
+    specular: Triple = (0.0, 0.0, 0.0)
+    """The fraction of a light that is reflected specularly: Ks."""
+    exponent: float = 32.0
+    """The exponent of the highlight: Ns, at least 0."""
+    emission: Triple = (0.0, 0.0, 0.0)
+    """The emitted light: Ke, at least 0."""
+
+    @classmethod
+    def named(cls, name: str) -> Material:
+        """Returns a material by its name."""
+        for other, values in _marraztu.materials():
+            if other == name:
+                return cls(**tuples(values))
+        raise ValueError(f"there is no material {name!r}; write {', '.join(cls.names())}")
+
+    @staticmethod
+    def names() -> list[str]:
+        """Lists the names of materials."""
+        return [name for name, _ in _marraztu.materials()]
+
+
+class Light(NamedTuple):
+    """A light. Build one with `ambient`, `sun`, `bulb` or `spot`."""
+
+    kind: str
+    """ambient, sun, bulb or spot."""
+    name: str = ""
+    color: tuple[int, int, int] = (255, 255, 255)
+    shadows: bool = False
+    """Whether objects cast shadows in this light."""
+    position: Triple | None = None
+    direction: Triple | None = None
+    """The direction in which the light travels."""
+    angle: float = 0.0
+    """Of a spot: radians from the axis to the edge of the cone, at most pi / 2."""
+    exponent: float = 0.0
+    """Of a spot: the concentration of the light along the axis."""
+    attenuation: Triple = (1.0, 0.0, 0.0)
+    """(c, l, q): light is divided by c + l d + q d^2 at the distance d."""
+
+    @classmethod
+    def ambient(cls, color: Sequence[int] | str = (255, 255, 255)) -> Light:
+        """Light from everywhere."""
+        return cls("ambient", "ambient", bytes_of(color))
+
+    @classmethod
+    def sun(
+        cls,
+        direction: Sequence[float],
+        color: Sequence[int] | str = (255, 255, 255),
+        *,
+        shadows: bool = False,
+    ) -> Light:
+        """Light from infinitely far away. `direction` is the direction in which it travels."""
+        return cls("sun", "sun", bytes_of(color), shadows, direction=_point(direction))
+
+    @classmethod
+    def bulb(
+        cls,
+        position: Sequence[float],
+        color: Sequence[int] | str = (255, 255, 255),
+        *,
+        attenuation: Sequence[float] = (1.0, 0.0, 0.0),
+        shadows: bool = False,
+    ) -> Light:
+        """Light from a point in all directions."""
+        return cls(
+            "bulb",
+            "bulb",
+            bytes_of(color),
+            shadows,
+            position=_point(position),
+            attenuation=_point(attenuation),
+        )
+
+    @classmethod
+    def spot(
+        cls,
+        position: Sequence[float] | None = None,
+        direction: Sequence[float] | None = None,
+        color: Sequence[int] | str = (255, 255, 255),
+        *,
+        angle: float = math.pi / 8,
+        exponent: float = 5.0,
+        attenuation: Sequence[float] = (1.0, 0.0, 0.0),
+        shadows: bool = False,
+    ) -> Light:
+        """Light from a point within a cone. Without position and direction, the camera holds it."""
+        return cls(
+            "spot",
+            "spot",
+            bytes_of(color),
+            shadows,
+            position=None if position is None else _point(position),
+            direction=None if direction is None else _point(direction),
+            angle=angle,
+            exponent=exponent,
+            attenuation=_point(attenuation),
+        )
+
+
+def _point(values: Sequence[float]) -> Triple:
+    x, y, z = (float(value) for value in values)
+    return x, y, z
+
+
+class Axis(NamedTuple):
+    """A decision between exact and fast."""
+
+    name: str
+    """The argument of `Scene.render`: "samples", "filter"."""
+    what: str
+    """The purpose: "How a texture is filtered between its texels"."""
+    choices: tuple[str, ...]
+    """The choices, from the coarse to the exact if they can be ranked."""
+
+
+def axes() -> list[Axis]:
+    """Lists the axes of accuracy, which are arguments of `Scene.render`."""
+    return [
+        Axis(key.replace("-", "_"), what, tuple(choices)) for key, what, choices in _marraztu.axes()
+    ]

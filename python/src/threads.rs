@@ -1,0 +1,120 @@
+//! The threads that draw, and their state after a fork.
+//!
+//! A call of Python borrows a painter: a pool of threads with a renderer. Calls at the same time
+//! have different painters, so they never wait for each other. Everything that may use rayon runs
+//! in a painter's pool, because a fork copies no threads: a child process that waited for the
+//! threads of its parent would hang. The child abandons the painters and makes new ones. If a
+//! painter was busy during the fork, locks may stay closed in the child, so all calls fail there.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError, TryLockError};
+
+use marraztu_render::Renderer;
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::errors::Failure;
+
+/// The most threads of a pool.
+const MOST_THREADS: usize = 1024;
+
+/// The most painters that wait for the next call.
+const MOST_IDLE: usize = 64;
+
+/// A renderer with its threads.
+struct Painter {
+    pool: ThreadPool,
+    renderer: Renderer,
+}
+
+struct Painters {
+    idle: Vec<Painter>,
+    busy: usize,
+}
+
+static PAINTERS: Mutex<Painters> = Mutex::new(Painters { idle: Vec::new(), busy: 0 });
+
+/// Whether this process was forked while a painter was busy.
+static IS_LOST: AtomicBool = AtomicBool::new(false);
+
+/// Returns an error in processes that cannot draw.
+pub(crate) fn check_fork() -> Result<(), Failure> {
+    if IS_LOST.load(Ordering::Acquire) { Err(Failure::Forked) } else { Ok(()) }
+}
+
+/// Runs work in a pool of this number of threads (0: one per core), without Python's lock.
+pub(crate) fn work<T: Send>(
+    py: Python<'_>,
+    threads: usize,
+    work: impl FnOnce(&mut Renderer) -> Result<T, Failure> + Send,
+) -> PyResult<T> {
+    check_fork()?;
+    if threads > MOST_THREADS {
+        return Err(Failure::value(format!("threads is at most {MOST_THREADS}")).into());
+    }
+    Ok(py.detach(|| {
+        let mut painter = borrow(threads)?;
+        let Painter { pool, renderer } = &mut painter;
+        let done = catch_unwind(AssertUnwindSafe(|| pool.install(|| work(renderer))));
+        // After a panic, the renderer may be in any state.
+        give_back(done.is_ok().then_some(painter));
+        done.unwrap_or_else(|panic| {
+            let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+            let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+            Err(Failure::Panic(text.unwrap_or_else(|| "a panic without a message".to_owned())))
+        })
+    })?)
+}
+
+/// Returns the number of threads that the process may run at the same time.
+#[pyfunction]
+pub(crate) fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+fn borrow(threads: usize) -> Result<Painter, Failure> {
+    let threads = if threads == 0 { cores() } else { threads };
+    let mut painters = PAINTERS.lock().unwrap_or_else(PoisonError::into_inner);
+    let has = |painter: &Painter| painter.pool.current_num_threads() == threads;
+    if let Some(at) = painters.idle.iter().rposition(has) {
+        painters.busy += 1;
+        return Ok(painters.idle.remove(at));
+    }
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| Failure::Panic(error.to_string()))?;
+    painters.busy += 1;
+    Ok(Painter { pool, renderer: Renderer::default() })
+}
+
+fn give_back(painter: Option<Painter>) {
+    let mut painters = PAINTERS.lock().unwrap_or_else(PoisonError::into_inner);
+    painters.busy -= 1;
+    let mut oldest = None;
+    if let Some(painter) = painter {
+        if painters.idle.len() >= MOST_IDLE {
+            oldest = Some(painters.idle.remove(0));
+        }
+        painters.idle.push(painter);
+    }
+    // Ending threads needs no lock.
+    drop(painters);
+    drop(oldest);
+}
+
+/// Python calls this in a child process after each fork, before all other code.
+#[pyfunction]
+pub(crate) fn after_fork() {
+    let painters = match PAINTERS.try_lock() {
+        Ok(painters) => Some(painters),
+        Err(TryLockError::Poisoned(painters)) => Some(painters.into_inner()),
+        Err(TryLockError::WouldBlock) => None,
+    };
+    match painters {
+        Some(mut painters) if painters.busy == 0 => {
+            // Dropping a pool would wait for threads that do not exist here.
+            std::mem::forget(std::mem::take(&mut painters.idle));
+        }
+        _ => IS_LOST.store(true, Ordering::Release),
+    }
+}

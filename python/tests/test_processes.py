@@ -1,0 +1,110 @@
+"""Forks, spawned processes and the import."""
+
+import os
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+HEAD = """
+import os, threading, time
+import marraztu as mz
+mesh = mz.Mesh([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], [[0, 1, 2, 3]])
+scene = mz.Scene([mesh])
+"""
+
+
+def run(code, *, limit=60):
+    """Runs a program in a new process. A hang fails by the time limit."""
+    code = textwrap.dedent(HEAD) + textwrap.dedent(code)
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, timeout=limit
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
+
+
+@needs_fork
+def test_a_child_of_a_fork_draws_the_same_picture():
+    output = run(
+        """
+        expected = scene.render(200, 200, threads=4).rgba.tobytes()
+        for threads in (1, 4, None):
+            child = os.fork()
+            if child == 0:
+                same = scene.render(200, 200, threads=threads).rgba.tobytes() == expected
+                new = mz.Scene([mz.Mesh(mesh.vertices, [[0, 1, 2]])]).render(50, 50)
+                os._exit(0 if same and new.width == 50 else 1)
+            assert os.waitpid(child, 0)[1] == 0
+        assert scene.render(200, 200, threads=4).rgba.tobytes() == expected
+        print("done")
+        """
+    )
+    assert output == "done\n"
+
+
+@needs_fork
+def test_a_fork_while_another_thread_draws_raises_an_error_that_names_spawn():
+    output = run(
+        """
+        thread = threading.Thread(target=scene.render, args=(3000, 3000), kwargs={"samples": 256})
+        thread.start()
+        time.sleep(0.3)
+        child = os.fork()
+        if child == 0:
+            calls = [
+                lambda: scene.render(8, 8),
+                lambda: scene.background,
+                lambda: mz.Mesh(mesh.vertices, [[0, 1, 2]]),
+                lambda: list(mz.render_many([])) or scene.shot(8, 8),
+            ]
+            for call in calls:
+                try:
+                    call()
+                except RuntimeError as error:
+                    assert "spawn" in str(error), error
+                else:
+                    os._exit(1)
+            os._exit(0)
+        assert thread.is_alive(), "the picture was drawn too early"
+        status = os.waitpid(child, 0)[1]
+        print(status)
+        os._exit(0)
+        """
+    )
+    assert output.strip() == "0"
+
+
+def test_processes_that_are_spawned_draw(tmp_path):
+    path = tmp_path / "job.py"
+    path.write_text(
+        textwrap.dedent(
+            """
+            import multiprocessing
+            import marraztu as mz
+
+            def draw(size):
+                mesh = mz.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+                return mz.Scene([mesh]).render(size, size).rgba.tobytes()
+
+            if __name__ == "__main__":
+                with multiprocessing.get_context("spawn").Pool(2) as pool:
+                    assert pool.map(draw, [20, 30]) == [draw(20), draw(30)]
+            """
+        )
+    )
+    subprocess.run([sys.executable, path], check=True, timeout=60)
+
+
+def test_the_import_loads_neither_numpy_nor_pools():
+    """NumPy takes longer to load than everything else."""
+    code = (
+        "import sys, marraztu\n"
+        "print({'numpy', 'PIL', 'concurrent.futures', 'trimesh'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"

@@ -1,0 +1,214 @@
+"""Scenes, nodes, lights and cameras."""
+
+import math
+
+import marraztu as mz
+import numpy as np
+import pytest
+
+FRONT = mz.Camera.look_at((0, 0, 8), (0, 0, 0), yfov=math.pi / 4)
+
+
+def test_a_pose_moves_a_node(quad):
+    scene = mz.Scene(lights=[mz.Light.ambient()])
+    pose = np.eye(4)
+    pose[0, 3] = 2
+    node = scene.add(quad, pose=pose, material=mz.Material(ambient=(1, 1, 1)), name="sign")
+    lit = scene.render(80, 80, camera=FRONT, samples=1).color[..., 0] == 255
+    columns = np.flatnonzero(lit.any(axis=0))
+    # 8 tan(pi / 8) = 3.31 units are 40 pixels, so the square lies from 1 to 3 units.
+    scale = 40 / (8 * math.tan(math.pi / 8))
+    assert abs(columns[0] - (40 + scale)) < 1 and abs(columns[-1] + 1 - (40 + 3 * scale)) < 1
+    node.pose = np.diag([0.5, 0.5, 0.5, 1])
+    lit = scene.render(80, 80, camera=FRONT, samples=1).color[..., 0] == 255
+    assert abs(lit.any(axis=0).sum() - scale) <= 1
+    assert np.array_equal(node.pose, np.diag([0.5, 0.5, 0.5, 1])) and node.name == "sign"
+
+
+def test_nodes_are_hidden_removed_and_renamed(quad):
+    scene = mz.Scene([quad])
+    first = scene.nodes[0]
+    second = scene.add(quad, name="other", id=7)
+    assert (first.id, second.id) == (1, 7)
+    assert scene.add(quad).id == 2
+    for wrong, words in [(7, "has the id 7"), (0, "ids start at 1")]:
+        with pytest.raises(ValueError, match=words):
+            scene.add(quad, id=wrong)
+    second.name = "sign"
+    assert scene.render(8, 8).names[7] == "sign"
+    scene.remove(second)
+    assert 7 not in scene.render(8, 8).names and len(scene.nodes) == 2
+    with pytest.raises(ValueError, match="not in this scene"):
+        scene.remove(second)
+    with pytest.raises(ValueError, match="has been removed"):
+        second.visible = False
+    background = scene.background
+    for node in scene.nodes:
+        node.visible = False
+    assert (scene.render(16, 16).color == background).all()
+
+
+def test_a_failed_change_changes_nothing(quad):
+    scene = mz.Scene([quad])
+    node = scene.nodes[0]
+    before = scene.render(32, 32).color
+    for change in [
+        lambda: node.set_material("unobtainium"),
+        lambda: node.set_sides("none"),
+        lambda: setattr(node, "opacity", 2),
+        lambda: setattr(node, "pose", np.eye(3)),
+        lambda: setattr(node, "pose", np.eye(4) * np.nan),
+        lambda: setattr(scene, "background", (0, 0, 256)),
+        lambda: setattr(scene, "background", "blue"),
+        lambda: setattr(scene, "exposure", 11),
+        lambda: setattr(scene, "edges", "all"),
+        lambda: setattr(scene, "lights", [mz.Light.sun((0, 0, 0))]),
+        lambda: setattr(scene, "lights", [mz.Light("lamp")]),
+        lambda: setattr(scene, "lights", [mz.Light("sun")]),
+        lambda: setattr(scene, "lights", [mz.Light.bulb((0, 0, 0), attenuation=(0, 0, 0))]),
+        lambda: scene.add(quad, opacity=-1),
+    ]:
+        with pytest.raises(ValueError):
+            change()
+    assert np.array_equal(scene.render(32, 32).color, before)
+    assert len(scene.nodes) == 1 and node.opacity == 1
+
+
+def test_lights_that_are_read_can_be_written(cam):
+    scene = mz.Scene([cam])
+    camera = mz.Camera.around(0.3, 0.2)
+    lights = scene.lights
+    assert sorted(light.kind for light in lights) == ["ambient", "spot", "sun"]
+    before = scene.render(64, 48).color
+    scene.lights = lights
+    assert np.array_equal(scene.render(64, 48).color, before)
+    assert scene.lights == lights
+    scene.lights = [mz.Light.bulb((1, 2, 3), "#ff8000", attenuation=(1, 0, 0.5))]
+    assert scene.lights[0].color == (255, 128, 0) and scene.lights[0].position == (1, 2, 3)
+    dark = scene.render(64, 48).color
+    assert not np.array_equal(dark, before)
+    scene.lights = None
+    assert np.array_equal(scene.render(64, 48).color, before)
+    assert scene.render(64, 48, camera=camera).color.any()
+
+
+def test_a_spot_without_a_place_is_held_by_the_camera(quad):
+    material = mz.Material(diffuse=(1, 1, 1))
+    scene = mz.Scene(lights=[mz.Light.spot(angle=0.2, exponent=0)])
+    scene.add(quad, material=material)
+    for x in (-1, 0, 1):
+        camera = mz.Camera.look_at((x, 0, 4), (0, 0, 0))
+        picture = scene.render(65, 65, camera=camera, samples=1)
+        assert picture.color[32, 32].max() > 200
+    assert picture.color[32, 60].max() < 200
+
+
+def test_shadows_fall(quad):
+    scene = mz.Scene(lights=[mz.Light.sun((0, 0, -1))])
+    scene.add(quad, material=mz.Material(diffuse=(1, 1, 1)))
+    small = np.diag([0.3, 0.3, 1, 1])
+    small[2, 3] = 1
+    scene.add(quad, pose=small, material=mz.Material(diffuse=(0, 0, 1)))
+    side = mz.Camera.look_at((6, 0, 6), (0, 0, 0))
+    lit = scene.render(80, 80, camera=side, samples=1).color
+    scene.set_shadows(True)
+    shadowed = scene.render(80, 80, camera=side, samples=1).color
+    assert (shadowed.astype(int) <= lit).all() and (shadowed < lit).any()
+    assert scene.lights[0].shadows
+
+
+def test_the_axes_of_a_camera_are_stated():
+    assert "'opengl'" in repr(mz.Camera(yfov=1))
+    K = [[50, 0, 20], [0, 50, 10], [0, 0, 1]]
+    camera = mz.Camera(K, convention="opencv")
+    assert "'opencv'" in repr(camera) and np.array_equal(camera.K, K)
+    assert np.array_equal(camera.pose(), np.eye(4))
+    assert np.array_equal(camera.pose("opengl"), np.diag([1, -1, -1, 1]))
+    assert np.array_equal(mz.Camera(yfov=1).pose("opencv"), np.diag([1, -1, -1, 1]))
+    with pytest.raises(TypeError):
+        mz.Camera(K, np.eye(4), "opencv")
+
+
+def test_opencv_cameras_look_along_z(quad):
+    """The same picture from both conventions; x points to the right in both."""
+    corner = np.eye(4)
+    corner[:3, 3] = 0.8, 0.4, 0
+    scene = mz.Scene(lights=[mz.Light.ambient()])
+    scene.add(
+        quad, pose=corner @ np.diag([0.1, 0.1, 1, 1]), material=mz.Material(ambient=(1, 1, 1))
+    )
+    K = [[64, 0, 32], [0, 64, 32], [0, 0, 1]]
+    world = np.eye(4)
+    world[2, 3] = 4
+    opengl = scene.render(64, 64, camera=mz.Camera(K, world), samples=1)
+    flipped = world @ np.diag([1, -1, -1, 1])
+    opencv = scene.render(64, 64, camera=mz.Camera(K, flipped, convention="opencv"), samples=1)
+    assert np.array_equal(opengl.color, opencv.color)
+    rows, columns = np.nonzero(opengl.color[..., 0] == 255)
+    # (0.8, 0.4, -4) is projected to 32 + 64 * 0.8 / 4 and 32 - 64 * 0.4 / 4.
+    assert abs(columns.mean() + 0.5 - 44.8) < 0.5 and abs(rows.mean() + 0.5 - 25.6) < 0.5
+
+
+def test_the_camera_of_a_picture_draws_the_same_pixels(cam):
+    scene = mz.Scene([cam])
+    for size in [(64, 48), (48, 64)]:
+        picture = scene.render(*size)
+        K = picture.camera.K
+        assert (K[0, 2], K[1, 2]) == (size[0] / 2, size[1] / 2)
+        again = scene.render(*size, camera=picture.camera)
+        differing = (again.color != picture.color).any(axis=2).mean()
+        assert differing < 0.01, differing
+
+
+@pytest.mark.parametrize("size", [(64, 48), (48, 64), (50, 50)])
+def test_yfov_is_the_vertical_angle(quad, size):
+    picture = mz.Scene([quad]).render(*size, camera=mz.Camera(yfov=0.8))
+    focal = size[1] / 2 / math.tan(0.4)
+    assert np.allclose(
+        picture.camera.K, [[focal, 0, size[0] / 2], [0, focal, size[1] / 2], [0, 0, 1]]
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({}, "by K or by yfov"),
+        ({"yfov": 4}, "between 0 and pi"),
+        ({"yfov": 1, "pose": np.eye(3)}, "finite 4x4"),
+        ({"yfov": 1, "convention": "blender"}, "opengl or opencv"),
+        ({"K": np.eye(4)}, "3x3"),
+        ({"K": np.diag([50, 60, 1])}, "pixels are square"),
+        ({"K": [[50, 9, 0], [0, 50, 0], [0, 0, 1]]}, "K has rows"),
+    ],
+)
+def test_wrong_cameras_have_one_clear_error(arguments, words):
+    with pytest.raises(ValueError, match=words):
+        mz.Camera(**arguments)
+
+
+def test_principal_points_beside_the_centre_are_rejected(quad):
+    scene = mz.Scene([quad])
+    K = np.array([[50, 0, 31.5], [0, 50, 23.5], [0, 0, 1]])
+    with pytest.raises(ValueError, match="pixel_center=0"):
+        scene.render(64, 48, camera=mz.Camera(K))
+    assert scene.render(64, 48, camera=mz.Camera(K, pixel_center=0)).width == 64
+    with pytest.raises(ValueError, match="a rotation and a position"):
+        scene.render(64, 48, camera=mz.Camera(yfov=1, pose=np.diag([2, 2, 2, 1])))
+    with pytest.raises(ValueError, match="not parallel to up"):
+        mz.Camera.look_at((0, 1, 0), (0, 0, 0))
+
+
+def test_an_empty_scene_shows_its_background():
+    scene = mz.Scene(background=(1, 2, 3))
+    assert (scene.render(9, 9).color == (1, 2, 3)).all()
+    assert repr(scene) == "<Scene of nothing>"
+    with pytest.raises(TypeError, match="holds objects of Mesh"):
+        scene.add("cow.obj")
+
+
+def test_materials_have_names():
+    assert len(mz.Material.names()) == 19
+    gold = mz.Material.named("gold")
+    assert gold.diffuse == (0.75164, 0.60648, 0.22648) and gold.exponent == 51.2
+    with pytest.raises(ValueError, match="unobtainium"):
+        mz.Material.named("unobtainium")
