@@ -24,8 +24,41 @@ const MOST_IDLE: usize = 64;
 
 /// A renderer with its threads.
 struct Painter {
-    pool: ThreadPool,
+    threads: Threads,
     renderer: Renderer,
+}
+
+/// The threads of a painter.
+enum Threads {
+    /// The calling thread: waking another one would take longer than parts of a small picture.
+    Caller,
+    Pool(ThreadPool),
+}
+
+impl Threads {
+    fn count(&self) -> usize {
+        match self {
+            Self::Caller => 1,
+            Self::Pool(pool) => pool.current_num_threads(),
+        }
+    }
+
+    fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match self {
+            Self::Pool(pool) => pool.install(work),
+            Self::Caller => OWN_POOL.with(|own| {
+                // The calling thread is the pool's only thread, so this does not change threads.
+                let own = own.as_ref().expect("a thread joins one pool, and only here");
+                own.install(work)
+            }),
+        }
+    }
+}
+
+thread_local! {
+    /// A pool of this thread alone. It has no other threads, so it survives a fork.
+    static OWN_POOL: Option<ThreadPool> =
+        ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().ok();
 }
 
 struct Painters {
@@ -55,8 +88,8 @@ pub(crate) fn work<T: Send>(
     }
     Ok(py.detach(|| {
         let mut painter = borrow(threads)?;
-        let Painter { pool, renderer } = &mut painter;
-        let done = catch_unwind(AssertUnwindSafe(|| pool.install(|| work(renderer))));
+        let Painter { threads, renderer } = &mut painter;
+        let done = catch_unwind(AssertUnwindSafe(|| threads.run(|| work(renderer))));
         // After a panic, the renderer may be in any state.
         give_back(done.is_ok().then_some(painter));
         done.unwrap_or_else(|panic| {
@@ -76,15 +109,19 @@ pub(crate) fn cores() -> usize {
 fn borrow(threads: usize) -> Result<Painter, Failure> {
     let threads = if threads == 0 { cores() } else { threads };
     let mut painters = PAINTERS.lock().unwrap_or_else(PoisonError::into_inner);
-    let has = |painter: &Painter| painter.pool.current_num_threads() == threads;
+    let has = |painter: &Painter| painter.threads.count() == threads;
     if let Some(at) = painters.idle.iter().rposition(has) {
         painters.busy += 1;
         return Ok(painters.idle.remove(at));
     }
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| Failure::Panic(error.to_string()))?;
+    let threads = if threads == 1 {
+        Threads::Caller
+    } else {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        Threads::Pool(pool.map_err(|error| Failure::Panic(error.to_string()))?)
+    };
     painters.busy += 1;
-    Ok(Painter { pool, renderer: Renderer::default() })
+    Ok(Painter { threads, renderer: Renderer::default() })
 }
 
 fn give_back(painter: Option<Painter>) {
