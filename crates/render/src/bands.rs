@@ -40,8 +40,8 @@ impl Bands {
         Self::with_at_most(shot, transparent, LARGEST_BAND)
     }
 
-    /// Works like [`Self::new`], with bands of at most `pixels` pixels. A band has at least a row of
-    /// tiles and a sixteenth of the picture.
+    /// Works like [`Self::new`], with bands of at most `pixels` pixels. A band has at least a row
+    /// of tiles and a sixteenth of the picture.
     #[must_use]
     pub fn with_at_most(shot: &Shot, transparent: bool, pixels: usize) -> Self {
         let plans = match transparent {

@@ -1,6 +1,6 @@
 //! Exact keeps its promise on random scenes: with 16 samples per pixel it is the reference. Its
 //! distance to the ideal is counted beside that of the default, not judged: on few pixels with
-//! hard edges, either may be nearer by chance.
+//! hard edges, either may be nearer.
 
 use marraztu_core::accuracy::{AccuracyPreset, Samples, Settings, Shot};
 use marraztu_core::base::image::Picture;

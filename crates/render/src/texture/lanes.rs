@@ -38,8 +38,8 @@ pub(crate) struct Sampler<'a> {
 type Positions<S> = [f32x16<S>; 2];
 
 impl<'a> Sampler<'a> {
-    /// Creates a sampler of the first level, or of all levels if the filter reads mipmaps. `None` if
-    /// the texture has no texels.
+    /// Creates a sampler of the first level, or of all levels if the filter reads mipmaps. `None`
+    /// if the texture has no texels.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
     pub(crate) fn new(levels: &'a [Texture], filter: Filter) -> Option<Self> {
         let levels = &levels[..levels.len().min(LEVELS)];

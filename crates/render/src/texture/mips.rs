@@ -7,7 +7,7 @@
 //! averages a trilinear sample in each.
 //!
 //! Williams, "Pyramidal Parametrics", SIGGRAPH 1983. The longer distance follows the OpenGL 4.6
-//! specification, 8.14.1, and the anisotropic filter its extension `EXT_texture_filter_anisotropic`.
+//! specification, 8.14.1. The anisotropic filter follows `EXT_texture_filter_anisotropic`.
 
 use super::lanes::MOST_PROBES;
 use super::sample::{linear_factors, sample_as};

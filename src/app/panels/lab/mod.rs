@@ -1,8 +1,8 @@
 //! The laboratory: what accuracy costs, in sentences, in plots of time against error, and in a
 //! table.
 //!
-//! The controls are at the left. To the right, the verdict is above a plot and the table. A click on
-//! a mark or on a row of the table applies its settings.
+//! The controls are at the left. To the right, the verdict is above a plot and the table. A click
+//! on a mark or on a row of the table applies its settings.
 
 mod controls_ui;
 mod plots;
