@@ -90,7 +90,7 @@ fn a_pixel_is_explained_and_one_outside_is_refused() {
     assert!(out.contains("shows  the background") && out.contains("0 byte steps off"), "{out}");
     assert!(out.contains("shading pixel instead of face"), "{out}");
     assert!(out.contains("resolution full instead of half"), "{out}");
-    assert!(out.contains("filter trilinear instead of bilinear"), "{out}");
+    assert!(out.contains("filter anisotropic instead of bilinear"), "{out}");
     let (_, err) = lab(1, folder.path(), &[&arguments[..], &["--pixel", "64,0"]].concat());
     assert!(err.contains("there is no 64,0"), "{err}");
 }

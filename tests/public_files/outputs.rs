@@ -49,7 +49,7 @@ fn no_command_replaces_a_file_that_it_has_read() {
     for command in commands {
         let own = command.iter().map(|word| if *word == "s.png" { "lab/ideal.png" } else { word });
         let told = folder.ends(1, &own.collect::<Vec<_>>());
-        assert!(told.contains("is read"), "{command:?}: {told}");
+        assert!(told.contains("is an input"), "{command:?}: {told}");
     }
     for (name, before) in files.iter().zip(&before) {
         match name.as_str() {
@@ -68,7 +68,7 @@ fn a_folder_of_frames_does_not_replace_a_texture() {
     folder.picture("frames/frame-002.png", 2, |_, _| [1, 2, 3, 255]);
     let before = folder.read("frames/frame-002.png");
     let turn = ["turntable", "a.obj", "--out", "frames", "--size", "8", "--frames", "3"];
-    assert!(folder.ends(1, &turn).contains("is read"));
+    assert!(folder.ends(1, &turn).contains("is an input"));
     assert_eq!(folder.read("frames/frame-002.png"), before);
     assert!(!folder.at("frames/frame-001.png").exists(), "nothing is written before the check");
 }
