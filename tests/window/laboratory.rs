@@ -304,7 +304,8 @@ fn the_suite_is_measured_and_looked_through() {
     assert_eq!((lab(&editor).suite.len(), lab(&editor).shown_suite), (SUITE.len(), Some(0)));
     click(&mut editor, Role::RadioButton, "Measured: depth");
     assert!(lab(&editor).shown().unwrap().scene.ends_with("depth"));
-    click(&mut editor, Role::RadioButton, "Plot: Depth");
+    click(&mut editor, Role::ComboBox, "Plot");
+    click(&mut editor, Role::Button, "Depth");
     control(&editor, Role::RadioButton, "Draw with depth in 16 bits");
     assert_eq!(lab(&editor).costs.len(), AXES.len());
     click(&mut editor, Role::RadioButton, "Measured: This scene");
