@@ -21,7 +21,7 @@ const LARGEST_BAND: usize = 1 << 24;
 const MOST_BANDS: usize = 16;
 
 /// A picture that is drawn band by band. Together, the bands are the bytes of [`Renderer::render`]
-/// or [`without_ground`](super::without_ground).
+/// or [`without_ground`](super::without_ground()).
 #[derive(Debug)]
 pub struct Bands {
     /// The picture, or the same picture over black and over white.

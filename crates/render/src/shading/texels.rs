@@ -359,7 +359,7 @@ fn wide<S: Simd>(simd: S, row: &[f32; SLOTS], at: usize) -> Doubles<S> {
 }
 
 /// Computes the footprint of a pixel with these perspective-correct weights and w: the differences
-/// of uv to its neighbours on the right and below. See [`PlacedTexture::squared_step`].
+/// of uv to its neighbours on the right and below. See [`PlacedTexture::step`].
 pub(crate) fn footprint([a, b, c]: Uvs, weights: DVec3, w: f64, steps: Steps) -> [[f64; 2]; 2] {
     steps.map(|[first, second, third]| {
         let by_w = first + second + third;
