@@ -17,36 +17,59 @@ pub(super) fn enlarge(level: Level, drawn: &Picture, size: Size, into: &mut Pict
     let row = |y: usize| &drawn.pixels()[y * width..][..width];
     let rows = into.pixels_mut().par_chunks_mut(size.width).enumerate();
     rows.for_each_init(
-        || vec![[0; 4]; width],
-        |sums, (y, out)| {
+        || Rows::new(width),
+        |rows, (y, out)| {
             let nearest = y / 2;
             let is_upper = y.is_multiple_of(2);
             let other = if is_upper { nearest.saturating_sub(1) } else { nearest + 1 };
             let other = other.min(height - 1);
-            dispatch!(level, _ => enlarge_row(row(nearest), row(other), sums, out));
+            dispatch!(level, _ => rows.enlarge(row(nearest), row(other), out));
         },
     );
 }
 
-/// Computes a row between its nearest drawn row and another.
-#[inline(always)]
-fn enlarge_row(nearest: &[[u8; 4]], other: &[[u8; 4]], sums: &mut [[u16; 4]], out: &mut [[u8; 4]]) {
-    for ((sum, a), b) in sums.iter_mut().zip(nearest).zip(other) {
-        *sum = [0, 1, 2, 3].map(|i| 3 * u16::from(a[i]) + u16::from(b[i]));
+/// Rows of bytes that the compiler computes in lanes, one after the other.
+struct Rows {
+    /// Three times the nearest row and the other, with the first and the last pixel repeated.
+    sums: Vec<u16>,
+    /// The left half of each drawn pixel, and the right half.
+    left: Vec<u8>,
+    right: Vec<u8>,
+}
+
+impl Rows {
+    fn new(width: usize) -> Self {
+        let bytes = 4 * width;
+        Self { sums: vec![0; bytes + 8], left: vec![0; bytes], right: vec![0; bytes] }
     }
-    let mean = |near: [u16; 4], far: [u16; 4]| {
-        [0, 1, 2, 3].map(|i| ((3 * near[i] + far[i] + 8) >> 4).to_le_bytes()[0])
-    };
-    let last = sums.len() - 1;
-    let (mut before, mut pairs) = (sums[0], out.chunks_exact_mut(2));
-    for ((pair, sum), i) in (&mut pairs).zip(sums.iter()).zip(0..) {
-        let after = sums[last.min(i + 1)];
-        pair.copy_from_slice(&[mean(*sum, before), mean(*sum, after)]);
-        before = *sum;
-    }
-    // With an odd width, the last pixel has no partner.
-    if let [pixel] = pairs.into_remainder() {
-        *pixel = mean(sums[last], sums[last.saturating_sub(1)]);
+
+    /// Computes a row between its nearest drawn row and another.
+    #[inline(always)]
+    fn enlarge(&mut self, nearest: &[[u8; 4]], other: &[[u8; 4]], out: &mut [[u8; 4]]) {
+        let Self { sums, left, right } = self;
+        let (nearest, other) = (nearest.as_flattened(), other.as_flattened());
+        for ((sum, near), far) in sums[4..].iter_mut().zip(nearest).zip(other) {
+            *sum = 3 * u16::from(*near) + u16::from(*far);
+        }
+        let bytes = nearest.len();
+        sums.copy_within(4..8, 0);
+        sums.copy_within(bytes..bytes + 4, bytes + 4);
+        let mean = |near: u16, far: u16| ((3 * near + far + 8) >> 4).to_le_bytes()[0];
+        for ((left, near), before) in left.iter_mut().zip(&sums[4..]).zip(&sums[..]) {
+            *left = mean(*near, *before);
+        }
+        for ((right, near), after) in right.iter_mut().zip(&sums[4..]).zip(&sums[8..]) {
+            *right = mean(*near, *after);
+        }
+        let (left, right) = (left.as_chunks::<4>().0, right.as_chunks::<4>().0);
+        let (pairs, rest) = out.as_chunks_mut::<2>();
+        for ((pair, left), right) in pairs.iter_mut().zip(left).zip(right) {
+            *pair = [*left, *right];
+        }
+        // With an odd width, the last pixel has no partner.
+        if let ([pixel], Some(left)) = (rest, left.last()) {
+            *pixel = *left;
+        }
     }
 }
 
