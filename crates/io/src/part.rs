@@ -41,6 +41,9 @@ const LONG_AGO: Duration = Duration::from_hours(24);
 fn host() -> &'static str {
     static HOST: OnceLock<String> = OnceLock::new();
     let host: &String = get_or_compute(&HOST, || {
+        #[cfg(target_family = "wasm")]
+        let name = std::ffi::OsString::from("wasm");
+        #[cfg(not(target_family = "wasm"))]
         let name = gethostname::gethostname();
         let plain = |c: &char| c.is_ascii_alphanumeric();
         let name: String = name.to_string_lossy().chars().filter(plain).take(MOST_HOST).collect();
@@ -52,11 +55,16 @@ fn host() -> &'static str {
     host
 }
 
+/// Returns the number of this process; WebAssembly has no processes.
+pub(super) fn own_process() -> u32 {
+    if cfg!(target_family = "wasm") { 1 } else { std::process::id() }
+}
+
 /// Returns the random number of this process.
 fn random() -> u32 {
     static RANDOM: OnceLock<u32> = OnceLock::new();
     *get_or_compute(&RANDOM, || {
-        let bits = RandomState::new().hash_one(std::process::id());
+        let bits = RandomState::new().hash_one(own_process());
         u32::try_from(bits >> 32).unwrap_or_default()
     })
 }
@@ -70,7 +78,7 @@ pub(super) fn create_part(target: &Path) -> std::io::Result<(File, PathBuf)> {
     let mut attempts = 0;
     loop {
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let name = part_name(target, host(), std::process::id(), (random(), number));
+        let name = part_name(target, host(), own_process(), (random(), number));
         let part = folder(target).join(name);
         attempts += 1;
         match OpenOptions::new().write(true).create_new(true).open(&part) {
@@ -106,7 +114,7 @@ pub fn sweep_once(folder: &Path) {
 fn is_left_over(entry: &fs::DirEntry) -> bool {
     let name = entry.file_name();
     let Some((process, number)) = name.to_str().and_then(owner) else { return false };
-    if process == std::process::id() {
+    if process == own_process() {
         return number != random();
     }
     if Path::new("/proc/self").exists() {

@@ -14,6 +14,7 @@ use super::origin::head;
 use super::{Lock, OwnFolders, Slot, list_lock, made};
 use crate::error::reason;
 use crate::fingerprint::Fingerprint;
+use crate::part::own_process;
 use crate::replace::{Worth, replace};
 use crate::scene_file::text_with_window;
 use crate::window_state::WindowState;
@@ -72,6 +73,36 @@ impl Shared {
     fn desk(&self) -> MutexGuard<'_, Desk> {
         self.desk.lock().unwrap_or_else(PoisonError::into_inner)
     }
+
+    /// Does what the desk asks for.
+    fn follow(&self, mut desk: MutexGuard<'_, Desk>) {
+        let next = std::mem::take(&mut desk.next);
+        desk.busy = true;
+        drop(desk);
+        let result = match next {
+            Next::Nothing => Ok(false),
+            Next::Write(state) => write(&self.slot.work, &state).map(|()| true),
+            Next::Remove => {
+                // The file may not exist.
+                let _ = std::fs::remove_file(&self.slot.work);
+                Ok(false)
+            }
+        };
+        let mut desk = self.desk();
+        // Deleting work taken over is only safe after a successful write.
+        let replaced = match result {
+            Ok(true) => std::mem::take(&mut desk.replaced),
+            Ok(false) => Vec::new(),
+            Err(fault) => {
+                desk.fault = Some(fault);
+                Vec::new()
+            }
+        };
+        desk.busy = false;
+        drop(desk);
+        self.changed.notify_all();
+        replaced.into_iter().for_each(Abandoned::remove);
+    }
 }
 
 /// The unsaved work of this program, on disk. Dropping this value keeps the file; only
@@ -95,7 +126,7 @@ impl Journal {
         let fail = |error: std::io::Error| format!("{}: {}", folder.display(), reason(&error));
         // The lock on the list keeps other programs from taking the same slot.
         let list = list_lock(folder).map_err(fail)?;
-        let process = std::process::id();
+        let process = own_process();
         let taken = |number: &u32| {
             let slot = Slot::named(folder, &format!("{PREFIX}{process}-{number}"));
             let free = !slot.lock.exists() && !slot.work.exists();
@@ -108,24 +139,35 @@ impl Journal {
         drop(list);
         let desk = Mutex::new(Desk::default());
         let shared = Arc::new(Shared { desk, changed: Condvar::new(), slot });
-        let theirs = Arc::clone(&shared);
-        let thread = std::thread::Builder::new()
-            .name("journal".to_owned())
-            .spawn(move || keep(&theirs))
-            .map_err(fail)?;
-        Ok(Self { shared, thread: Some(thread), _lock: lock })
+        // WebAssembly has no threads, and its files are in memory.
+        let thread = if cfg!(target_family = "wasm") {
+            None
+        } else {
+            let theirs = Arc::clone(&shared);
+            let thread = std::thread::Builder::new().name("journal".to_owned());
+            Some(thread.spawn(move || keep(&theirs)).map_err(fail)?)
+        };
+        Ok(Self { shared, thread, _lock: lock })
     }
 
     /// Replaces the state to be written.
     pub fn keep(&self, state: Unsaved) {
         self.shared.desk().next = Next::Write(Box::new(state));
-        self.shared.changed.notify_all();
+        self.tell();
     }
 
     /// Reports that all changes are saved.
     pub fn all_saved(&self) {
         self.shared.desk().next = Next::Remove;
-        self.shared.changed.notify_all();
+        self.tell();
+    }
+
+    /// Wakes the thread, or does its work without one.
+    fn tell(&self) {
+        match &self.thread {
+            Some(_) => self.shared.changed.notify_all(),
+            None => self.shared.follow(self.shared.desk()),
+        }
     }
 
     /// Registers work taken over from another program, now part of the state to be written. It is
@@ -187,37 +229,12 @@ fn keep(shared: &Shared) {
             let waited = shared.changed.wait_timeout(desk, rest);
             desk = waited.unwrap_or_else(PoisonError::into_inner).0;
         }
-        let next = std::mem::take(&mut desk.next);
         let ended = desk.ended;
-        desk.busy = true;
-        drop(desk);
-        let result = match next {
-            Next::Nothing => Ok(false),
-            Next::Write(state) => write(&shared.slot.work, &state).map(|()| true),
-            Next::Remove => {
-                // The file may not exist.
-                let _ = std::fs::remove_file(&shared.slot.work);
-                Ok(false)
-            }
-        };
-        rested = Instant::now() + PAUSE;
-        let mut desk = shared.desk();
-        // Deleting work taken over is only safe after a successful write.
-        let replaced = match result {
-            Ok(true) => std::mem::take(&mut desk.replaced),
-            Ok(false) => Vec::new(),
-            Err(fault) => {
-                desk.fault = Some(fault);
-                Vec::new()
-            }
-        };
-        desk.busy = false;
-        drop(desk);
-        shared.changed.notify_all();
-        replaced.into_iter().for_each(Abandoned::remove);
+        shared.follow(desk);
         if ended {
             return;
         }
+        rested = Instant::now() + PAUSE;
     }
 }
 

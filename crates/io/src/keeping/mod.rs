@@ -23,6 +23,7 @@ pub use journal::{Journal, Unsaved};
 pub use preferences::{Helpers, MOST_RECENT, Preferences, Theme};
 
 use std::fs::{self, File, OpenOptions};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::error::reason;
@@ -64,14 +65,14 @@ impl Lock {
     /// Waits for the lock.
     fn take(path: &Path) -> std::io::Result<Self> {
         let file = Self::open(path)?;
-        file.lock()?;
+        unless_unsupported(file.lock())?;
         Ok(Self(file))
     }
 
     /// Takes the lock if it is free.
     fn try_take(path: &Path) -> Option<Self> {
         let file = Self::open(path).ok()?;
-        file.try_lock().ok()?;
+        unless_unsupported(file.try_lock().map_err(std::io::Error::from)).ok()?;
         Some(Self(file))
     }
 }
@@ -80,6 +81,14 @@ impl Drop for Lock {
     fn drop(&mut self) {
         // Closing the file unlocks it too.
         let _ = self.0.unlock();
+    }
+}
+
+/// Ignores that there are no locks: in WebAssembly, no other program has access to the files.
+fn unless_unsupported(locked: std::io::Result<()>) -> std::io::Result<()> {
+    match locked {
+        Err(error) if error.kind() == ErrorKind::Unsupported => Ok(()),
+        locked => locked,
     }
 }
 

@@ -25,7 +25,7 @@ use marraztu_core::base::color::Color;
 use marraztu_core::base::lists::concatenated;
 
 /// The most bytes in a text.
-pub(crate) const MOST_BYTES: usize = 4 << 30;
+pub(crate) const MOST_BYTES: usize = if usize::BITS > 32 { 4 << 30 } else { 1 << 30 };
 
 /// The most bytes in a statement.
 const MOST_STATEMENT: usize = 256 << 20;

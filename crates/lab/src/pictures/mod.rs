@@ -39,15 +39,20 @@ pub struct TestPicture {
 }
 
 impl TestPicture {
-    /// Draws the picture with these instructions and this number of threads.
+    /// Draws the picture with these instructions and this number of threads. WebAssembly has one
+    /// thread.
     ///
     /// # Panics
     /// If the system cannot start that many threads.
     #[must_use]
     pub fn draw(&self, level: Level, threads: usize) -> Picture {
+        let draw = || Renderer::new(level).render(&self.plan).clone();
+        if cfg!(target_family = "wasm") {
+            return draw();
+        }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.expect("the system gives threads");
-        pool.install(|| Renderer::new(level).render(&self.plan).clone())
+        pool.install(draw)
     }
 
     /// Returns the name of the picture as the name of a file without its ending.

@@ -4,7 +4,9 @@
 //! number per triangle, and pixels gather from them. Some processors have an instruction that
 //! permutes the lanes of a register; without it, numbers are gathered one by one.
 
-use fearless_simd::{Level, Select as _, Simd, SimdBase as _, i32x16};
+use fearless_simd::{Level, Simd, SimdBase as _, i32x16};
+
+use super::level::is_avx512;
 
 /// The length of a table.
 pub(crate) const SLOTS: usize = 64;
@@ -28,7 +30,7 @@ pub(crate) fn pick<S: Simd, const PAGES: usize>(
                 _ => {
                     let low = x86::of_two(token, page(token, row, 0), page(token, row, 1), slots);
                     let high = x86::of_two(token, page(token, row, 2), page(token, row, 3), slots);
-                    slots.simd_lt(32).select(low, high)
+                    fearless_simd::Select::select(slots.simd_lt(32), low, high)
                 }
             };
             i32x16::from_slice(simd, &<[i32; 16]>::from(picked))
@@ -52,7 +54,7 @@ pub(crate) fn pick<S: Simd, const PAGES: usize>(
 /// Returns whether one instruction permutes sixteen lanes.
 #[inline(always)]
 pub(crate) fn permutes(level: Level) -> bool {
-    level.as_avx512().is_some()
+    is_avx512(level)
 }
 
 /// Gathers the numbers in some lanes, all below sixteen.
@@ -86,10 +88,11 @@ pub(crate) fn permute<S: Simd>(of: i32x16<S>, lanes: i32x16<S>) -> i32x16<S> {
 
 /// Returns the number of slots up to which gathering takes no longer than from a few.
 pub(crate) fn most_gathered(level: Level) -> usize {
-    if level.as_avx512().is_some() { 32 } else { 16 }
+    if is_avx512(level) { 32 } else { 16 }
 }
 
 /// Loads sixteen numbers of a row.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 #[inline(always)]
 fn page<S: Simd>(simd: S, row: &[i32; SLOTS], page: usize) -> i32x16<S> {
     i32x16::from_slice(simd, &row[16 * page..16 * page + 16])

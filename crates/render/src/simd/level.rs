@@ -35,6 +35,19 @@ pub(crate) fn is_compiled(level: Level) -> bool {
     }
 }
 
+/// Returns whether an instruction set is AVX-512, which other processors do not know.
+pub(crate) fn is_avx512(level: Level) -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        level.as_avx512().is_some()
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        let _: Level = level;
+        false
+    }
+}
+
 /// Runs an operation that is compiled for the instruction set of a `Level`. The operation is
 /// inlined into a function of that instruction set, with `simd` as the token of its vectors.
 macro_rules! dispatch {

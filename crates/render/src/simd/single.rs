@@ -5,8 +5,8 @@
 //! and division, which would dominate lighting.
 
 use fearless_simd::{
-    Bytes as _, Level, Select as _, Simd, SimdBase, SimdFloat as _, SimdInt as _, SimdInto as _,
-    f32x16, i32x16,
+    Bytes as _, Select as _, Simd, SimdBase, SimdFloat as _, SimdInt as _, SimdInto as _, f32x16,
+    i32x16,
 };
 
 use super::power::Power;
@@ -220,7 +220,10 @@ impl Single for f32 {
 pub(super) fn has_own_maximum<S: Simd>(simd: S) -> bool {
     match simd.level() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Sse2(_) | Level::Sse4_2(_) | Level::Avx2(_) | Level::Avx512(_) => true,
+        fearless_simd::Level::Sse2(_)
+        | fearless_simd::Level::Sse4_2(_)
+        | fearless_simd::Level::Avx2(_)
+        | fearless_simd::Level::Avx512(_) => true,
         _ => false,
     }
 }
