@@ -13,6 +13,8 @@
 //! * [`marraztu_render`]: from a scene to a picture: plan, geometry, visibility, shading.
 //! * [`marraztu_lab`]: what drawing costs in time, and what accuracy costs.
 
+#[cfg(feature = "app")]
 pub mod app;
 pub mod picture_file;
+#[cfg(all(feature = "cli", not(target_family = "wasm")))]
 pub mod plots;

@@ -39,6 +39,7 @@ mod input;
 mod painter;
 pub mod panels;
 mod shell;
+#[cfg(feature = "desktop")]
 mod start;
 pub mod state;
 mod tasks;
@@ -47,5 +48,8 @@ mod viewport;
 pub mod widgets;
 
 pub use editor::App;
+pub use shell::{CanvasShell, Painted};
+#[cfg(feature = "desktop")]
 pub use shell::{Shell, StartError};
+#[cfg(feature = "desktop")]
 pub use start::run;

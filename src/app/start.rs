@@ -3,14 +3,12 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-use egui::ViewportBuilder;
+use egui::{Ui, ViewportBuilder};
 
 use crate::app::editor::App;
-use crate::app::fonts;
-use crate::app::shell::{self, Editor, Shell, StartError};
-use crate::app::theme;
+use crate::app::shell::{self, Editor, Parent, Shell, StartError};
 use marraztu_core::accuracy::AccuracyPreset;
-use marraztu_io::{self as io, OwnFolders, Preferences};
+use marraztu_io::{OwnFolders, Preferences};
 
 /// Opens the editor with these files and returns when the user leaves it. Models are shown alone,
 /// framed and lit; a scene replaces the first one. A preset sets the accuracy of the first scene.
@@ -30,22 +28,11 @@ pub fn run(
         shell,
         window,
         Box::new(move |ctx| -> Box<dyn Editor> {
-            // The theme and the fonts are needed for the first frame.
-            theme::install(ctx);
-            fonts::install(ctx);
-            let (scene, view) = io::default_scene();
-            let mut app = App::new(scene, view);
-            app.use_system_dialogs();
-            if let Some(((preferences, said), folders)) = own {
-                app.keep_in(ctx, folders, preferences, said);
-            }
+            let mut app = App::start(ctx, own);
             if let Some(preset) = preset {
                 app.use_preset(preset);
             }
-            if named.is_empty() {
-                app.greet();
-            }
-            app.load_at_start(ctx, named);
+            app.open_at_start(ctx, named);
             Box::new(app)
         }),
     );
@@ -66,6 +53,17 @@ fn again_without_gl(files: &[PathBuf], preset: Option<&AccuracyPreset>) -> Resul
     }
     program.arg("--").args(files);
     become_it(program).map_err(failed)
+}
+
+impl Editor for App {
+    fn frame(&mut self, ui: &mut Ui, parent: &dyn Parent) {
+        Self::frame(self, ui);
+        self.dialogs.open_system(ui.ctx(), parent);
+    }
+
+    fn left(&mut self) {
+        self.end();
+    }
 }
 
 /// Describes the window, with the size of the last session.

@@ -1,6 +1,6 @@
 //! Background tasks on separate threads, such as loading and the system's dialogs.
 
-use std::sync::mpsc::{self, Receiver, TryRecvError};
+use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 
 use egui::Context;
 
@@ -25,7 +25,8 @@ pub(crate) enum Outcome<T> {
 }
 
 impl<T: Send + 'static> Task<T> {
-    /// Starts `work` on a thread and wakes the window when it is done.
+    /// Starts `work` on a thread and wakes the window when it is done. Without threads, in
+    /// WebAssembly, the work is done at once.
     ///
     /// # Errors
     /// If the system provides no thread.
@@ -37,14 +38,25 @@ impl<T: Send + 'static> Task<T> {
         let (sender, receiver) = mpsc::channel();
         let progress = Progress::new();
         let (theirs, ctx) = (progress.clone(), ctx.clone());
-        std::thread::Builder::new().name(label.clone()).spawn(move || {
+        let work = move || {
             // Dropped last, so the window wakes after the result was sent.
             let _wake = Wake(ctx);
             let sender = sender;
             // The receiver may have been dropped.
             let _ = sender.send(work(&theirs));
-        })?;
+        };
+        if cfg!(target_family = "wasm") {
+            work();
+        } else {
+            std::thread::Builder::new().name(label.clone()).spawn(work)?;
+        }
         Ok(Self { label, progress, receiver })
+    }
+
+    /// Returns a task whose result is sent by somebody else.
+    pub(crate) fn promised(label: String) -> (Self, Sender<T>) {
+        let (sender, receiver) = mpsc::channel();
+        (Self { label, progress: Progress::new(), receiver }, sender)
     }
 
     /// Takes the result, if there is one. It can be taken only once.

@@ -5,18 +5,24 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use super::arguments::{Info, Render, choice};
+#[cfg(not(target_family = "wasm"))]
 use super::batch::Batch;
 use super::compare::Compare;
 use super::explain::Explain;
 use super::export::Export;
+#[cfg(feature = "desktop")]
 use super::keys::Keys;
+#[cfg(not(target_family = "wasm"))]
 use super::lab::Lab;
+#[cfg(not(target_family = "wasm"))]
 use super::merge::Merge;
 use super::plan::Plan;
 use super::thumbnail::Thumbnail;
 use super::turntable::Turntable;
 use super::verify::Verify;
+#[cfg(not(target_family = "wasm"))]
 use super::views::Views;
+#[cfg(feature = "desktop")]
 use marraztu::app::Shell;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset};
 
@@ -27,6 +33,7 @@ use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset};
     name = "marraztu",
     version,
     args_conflicts_with_subcommands = true,
+    subcommand_required = cfg!(not(feature = "desktop")),
     after_help = "\
 Examples:
   marraztu                                  open the editor with the first scene
@@ -44,8 +51,10 @@ pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Headless>,
     /// Models (.obj) and a scene (.marraztu) to open in the editor
+    #[cfg(feature = "desktop")]
     pub(crate) files: Vec<PathBuf>,
     /// How to draw the window: automatic*, gl (OpenGL), software (on the CPU, without OpenGL)
+    #[cfg(feature = "desktop")]
     #[arg(long, hide_possible_values = true, value_name = "WHAT", value_parser = choice(&[
         ("automatic", Shell::Automatic),
         ("gl", Shell::Gl),
@@ -53,6 +62,7 @@ pub(crate) struct Arguments {
     ]))]
     pub(crate) shell: Option<Shell>,
     /// The accuracy preset to start with: draft, default, exact, ancestor-a, ancestor-b
+    #[cfg(feature = "desktop")]
     #[arg(long, hide_possible_values = true, value_name = "CHOICE", value_parser = preset)]
     pub(crate) preset: Option<&'static AccuracyPreset>,
 }
@@ -63,12 +73,15 @@ pub(crate) enum Headless {
     /// Draw a picture into a file, with the same pixels as in the editor
     Render(Box<Render>),
     /// Draw many pictures: of all models of a list, from several views
+    #[cfg(not(target_family = "wasm"))]
     Batch(Box<Batch>),
     /// Join the reports of the parts of a batch
+    #[cfg(not(target_family = "wasm"))]
     Merge(Merge),
     /// Compare two pictures
     Compare(Compare),
     /// Draw standard views of a model into one picture, with its facts
+    #[cfg(not(target_family = "wasm"))]
     Views(Box<Views>),
     /// Draw a small picture for a file manager
     Thumbnail(Thumbnail),
@@ -83,13 +96,16 @@ pub(crate) enum Headless {
     /// Describe files: shape, parts, materials and problems
     Info(Info),
     /// List every key of the editor
+    #[cfg(feature = "desktop")]
     Keys(Keys),
     /// Measure the cost of accuracy: time and error of each choice of each axis
+    #[cfg(not(target_family = "wasm"))]
     Lab(Box<Lab>),
     /// Check that this processor draws the same pictures as all others
     Verify(Verify),
 }
 
+#[cfg(feature = "desktop")]
 fn preset(text: &str) -> Result<&'static AccuracyPreset, String> {
     AccuracyPreset::named(text).ok_or_else(|| {
         let words: Vec<&str> = ACCURACY_PRESETS.iter().map(|preset| preset.word).collect();

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+#[cfg(feature = "desktop")]
 use marraztu::app::StartError;
+#[cfg(not(target_family = "wasm"))]
 use marraztu::plots::PlotError;
 use marraztu_core::edit::Refusal;
 use marraztu_core::scene::CommandError;
@@ -49,9 +51,11 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Measure(#[from] Unmeasured),
     /// A plot could not be drawn.
+    #[cfg(not(target_family = "wasm"))]
     #[error(transparent)]
     Plot(#[from] PlotError),
     /// The window could not be opened.
+    #[cfg(feature = "desktop")]
     #[error(
         "{0}\nWithout a window, `marraztu render --out picture.png` draws the same pictures into \
          files"

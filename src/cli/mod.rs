@@ -6,6 +6,7 @@
 mod accuracy;
 mod arguments;
 mod bar;
+#[cfg(not(target_family = "wasm"))]
 mod batch;
 mod cameras;
 mod commands;
@@ -14,10 +15,14 @@ mod explain;
 mod export;
 mod failure;
 mod info;
+#[cfg(feature = "desktop")]
 mod keys;
+#[cfg(not(target_family = "wasm"))]
 mod lab;
 mod layers;
+#[cfg(not(target_family = "wasm"))]
 mod merge;
+#[cfg(feature = "desktop")]
 mod open;
 mod plan;
 mod render;
@@ -29,6 +34,7 @@ mod thumbnail;
 mod turntable;
 mod values;
 mod verify;
+#[cfg(not(target_family = "wasm"))]
 mod views;
 
 use std::io::Write;
@@ -44,7 +50,7 @@ use self::failure::Failure;
 pub(crate) fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(wrong) => return usage(&open::misspelt().unwrap_or(wrong)),
+        Err(wrong) => return usage(&corrected(wrong)),
     };
     if marraztu_render::simd::levels().is_empty() {
         say("error", &"drawing needs a processor with SSE4.2 (x86-64-v2)");
@@ -52,20 +58,28 @@ pub(crate) fn run() -> ExitCode {
     }
     let done = match arguments.command {
         Some(Headless::Render(arguments)) => render::render(&arguments),
+        #[cfg(not(target_family = "wasm"))]
         Some(Headless::Batch(arguments)) => batch::batch(&arguments),
         Some(Headless::Turntable(arguments)) => turntable::turntable(&arguments),
+        #[cfg(not(target_family = "wasm"))]
         Some(Headless::Merge(arguments)) => merge::merge(&arguments),
         Some(Headless::Compare(arguments)) => compare::compare(&arguments),
+        #[cfg(not(target_family = "wasm"))]
         Some(Headless::Views(arguments)) => views::views(&arguments),
         Some(Headless::Thumbnail(arguments)) => thumbnail::thumbnail(&arguments),
         Some(Headless::Export(arguments)) => export::export(&arguments),
         Some(Headless::Info(arguments)) => info::info(&arguments),
+        #[cfg(feature = "desktop")]
         Some(Headless::Keys(arguments)) => keys::keys(&arguments),
         Some(Headless::Plan(arguments)) => plan::plan(&arguments),
         Some(Headless::Explain(arguments)) => explain::explain(&arguments),
+        #[cfg(not(target_family = "wasm"))]
         Some(Headless::Lab(arguments)) => lab::lab(&arguments),
         Some(Headless::Verify(arguments)) => verify::verify(&arguments),
+        #[cfg(feature = "desktop")]
         None => open::open(&arguments.files, arguments.shell, arguments.preset),
+        #[cfg(not(feature = "desktop"))]
+        None => unreachable!("clap demands a command"),
     };
     // Usage errors are printed like clap's own, with exit status 2.
     match done {
@@ -81,6 +95,18 @@ pub(crate) fn run() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Suggests the command that the first argument is close to.
+#[cfg(feature = "desktop")]
+fn corrected(wrong: clap::Error) -> clap::Error {
+    open::misspelt().unwrap_or(wrong)
+}
+
+/// Without the editor, the first argument cannot be a file, and clap suggests the command itself.
+#[cfg(not(feature = "desktop"))]
+const fn corrected(wrong: clap::Error) -> clap::Error {
+    wrong
 }
 
 /// Adds this thread to the drawing pool of `threads` threads, or one per core. It would otherwise

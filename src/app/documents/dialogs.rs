@@ -5,6 +5,7 @@
 //! then takes its place.
 
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
 use egui::{Context, Id, Modal, Ui};
@@ -17,6 +18,7 @@ use super::picture_dialog::{self, PictureChoices, PictureDialog};
 use super::questions;
 use super::wanted::{After, Wanted};
 use crate::app::input::keyboard::Keyboard;
+#[cfg(feature = "desktop")]
 use crate::app::shell::Parent;
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::controls::{heading, take_focus};
@@ -38,6 +40,19 @@ pub(crate) struct Dialogs {
     waiting: Option<(Wanted, String)>,
     /// The open dialogs, the top one last.
     open: Vec<Dialog>,
+}
+
+/// A request for files to a shell without system dialogs.
+#[derive(Debug)]
+pub(crate) struct FileRequest {
+    /// Whether a file will be written, not read.
+    pub(crate) saves: bool,
+    /// The extensions of the files.
+    pub(crate) endings: Vec<&'static str>,
+    /// The suggested name.
+    pub(crate) name: String,
+    /// Takes the files.
+    pub(crate) answer: Sender<Option<Vec<PathBuf>>>,
 }
 
 /// A system dialog on its thread.
@@ -176,7 +191,19 @@ impl Dialogs {
         wanted.map(|wanted| wanted.description().0)
     }
 
+    /// Returns the request for files, which the shell has to answer. `None` as an answer opens the
+    /// built-in browser.
+    pub(crate) fn file_request(&mut self) -> Option<FileRequest> {
+        let (wanted, name) = self.waiting.take()?;
+        let (title, mode, endings) = wanted.description();
+        let (task, answer) = Task::promised(title.to_owned());
+        self.system =
+            Some(SystemDialog { wanted, name: name.clone(), begun: Instant::now(), task });
+        Some(FileRequest { saves: mode == Mode::Save, endings, name, answer })
+    }
+
     /// Opens the requested system dialog over its parent.
+    #[cfg(feature = "desktop")]
     pub(crate) fn open_system(&mut self, ctx: &Context, parent: &dyn Parent) {
         let Some((wanted, name)) = self.waiting.take() else { return };
         let (title, mode, endings) = wanted.description();

@@ -7,6 +7,7 @@
 //! While there are no requests, the last picture is refined step by step. Every request and every
 //! event of the window interrupts the refinement. After the last step, the thread sleeps.
 
+use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -59,6 +60,20 @@ pub(crate) struct Worker<P> {
     shared: Arc<Shared<P>>,
     last: Option<Snapshot>,
     thread: Option<JoinHandle<()>>,
+    /// The work, if there are no threads: it is done when results are taken.
+    here: Option<RefCell<Here>>,
+}
+
+/// The worker on the thread of the window.
+struct Here {
+    painter: Painter,
+    wake: Box<dyn Fn()>,
+}
+
+impl std::fmt::Debug for Here {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Here")
+    }
 }
 
 #[derive(Debug)]
@@ -93,7 +108,8 @@ struct Desk<P> {
 }
 
 impl<P: Copy + Send + 'static> Worker<P> {
-    /// Starts the thread; `wake` is called whenever there are results.
+    /// Starts the thread; `wake` is called whenever there are results. In WebAssembly, which has no
+    /// threads, the window's thread draws when it takes the results.
     pub(crate) fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let news = News::none();
         let (wanted, picks, border, ideal) = (None, VecDeque::new(), None, None);
@@ -108,11 +124,15 @@ impl<P: Copy + Send + 'static> Worker<P> {
             disturbed: AtomicBool::new(false),
             over: AtomicBool::new(false),
         });
+        if cfg!(target_family = "wasm") {
+            let here = RefCell::new(Here { painter: Painter::new(), wake: Box::new(wake) });
+            return Ok(Self { shared, last: None, thread: None, here: Some(here) });
+        }
         let theirs = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
             .name("painter".to_owned())
             .spawn(move || work(&theirs, &wake))?;
-        Ok(Self { shared, last: None, thread: Some(thread) })
+        Ok(Self { shared, last: None, thread: Some(thread), here: None })
     }
 
     /// Requests this picture, unless it equals the last request.
@@ -181,6 +201,9 @@ impl<P: Copy + Send + 'static> Worker<P> {
 
     /// Takes the results since the last call.
     pub(crate) fn news(&self) -> News<P> {
+        if let Some(here) = &self.here {
+            here.borrow_mut().work(&self.shared);
+        }
         let mut desk = self.shared.lock();
         std::mem::replace(&mut desk.news, News::none())
     }
@@ -259,32 +282,42 @@ impl<P> Shared<P> {
             if desk.closed {
                 return None;
             }
-            // Requests come before refinement, and all of them are taken at once.
-            if desk.has_work() {
-                desk.busy = true;
-                desk.begun = desk.wanted.is_some().then(Instant::now);
-                self.newer.store(false, Ordering::Relaxed);
-                return Some(Work::Asked(Box::new(Asking {
-                    picks: std::mem::take(&mut desk.picks),
-                    border: desk.border.take(),
-                    ideal: desk.ideal.take(),
-                    wanted: desk.wanted.take(),
-                })));
-            }
-            // Without anything to refine, the thread sleeps until a request or the end.
-            if desk.settled {
-                desk = self.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
-                continue;
-            }
-            // Refinement waits for a quiet moment, unless a request wakes the thread earlier.
-            let rest = desk.quiet_at.saturating_duration_since(Instant::now());
-            if rest.is_zero() {
-                self.disturbed.store(false, Ordering::Relaxed);
-                return Some(Work::Refine);
-            }
-            let waited = self.changed.wait_timeout(desk, rest);
-            desk = waited.unwrap_or_else(PoisonError::into_inner).0;
+            desk = match self.due(&mut desk) {
+                Due::Now(work) => return Some(work),
+                Due::In(rest) => {
+                    let waited = self.changed.wait_timeout(desk, rest);
+                    waited.unwrap_or_else(PoisonError::into_inner).0
+                }
+                Due::Never => self.changed.wait(desk).unwrap_or_else(PoisonError::into_inner),
+            };
         }
+    }
+
+    /// Takes the next work from the desk, if it is due.
+    fn due(&self, desk: &mut Desk<P>) -> Due<P> {
+        // Requests come before refinement, and all of them are taken at once.
+        if desk.has_work() {
+            desk.busy = true;
+            desk.begun = desk.wanted.is_some().then(Instant::now);
+            self.newer.store(false, Ordering::Relaxed);
+            return Due::Now(Work::Asked(Box::new(Asking {
+                picks: std::mem::take(&mut desk.picks),
+                border: desk.border.take(),
+                ideal: desk.ideal.take(),
+                wanted: desk.wanted.take(),
+            })));
+        }
+        // Without anything to refine, there is nothing to do until a request or the end.
+        if desk.settled {
+            return Due::Never;
+        }
+        // Refinement waits for a quiet moment, unless a request comes earlier.
+        let rest = desk.quiet_at.saturating_duration_since(Instant::now());
+        if !rest.is_zero() {
+            return Due::In(rest);
+        }
+        self.disturbed.store(false, Ordering::Relaxed);
+        Due::Now(Work::Refine)
     }
 }
 
@@ -305,18 +338,61 @@ enum Work<P> {
     Refine,
 }
 
+/// When there is work.
+enum Due<P> {
+    Now(Work<P>),
+    In(Duration),
+    Never,
+}
+
 /// Draws pictures and answers requests until the desk is closed.
 fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
-    let mut painter = ViewportRenderer::new(Instant::now);
-    let mut last = None;
-    let mut outlined = Vec::new();
+    let mut painter = Painter::new();
     while let Some(work) = shared.next() {
+        painter.work(shared, wake, work);
+    }
+}
+
+impl Here {
+    /// Answers all requests, or refines the picture by a step.
+    fn work<P: Copy + Send>(&mut self, shared: &Shared<P>) {
+        let Self { painter, wake } = self;
+        loop {
+            let mut desk = shared.lock();
+            (desk.busy, desk.begun) = (false, None);
+            let due = shared.due(&mut desk);
+            drop(desk);
+            match due {
+                Due::Now(work @ Work::Asked(_)) => painter.work(shared, wake, work),
+                Due::Now(Work::Refine) => {
+                    painter.work(shared, wake, Work::Refine);
+                    return wake();
+                }
+                // The next frame looks again.
+                Due::In(_) => return wake(),
+                Due::Never => return,
+            }
+        }
+    }
+}
+
+/// Draws pictures, and remembers what it has drawn last.
+struct Painter {
+    renderer: ViewportRenderer,
+    last: Option<Snapshot>,
+    outlined: Vec<ItemId>,
+}
+
+impl Painter {
+    fn new() -> Self {
+        Self { renderer: ViewportRenderer::new(Instant::now), last: None, outlined: Vec::new() }
+    }
+
+    fn work<P: Copy + Send>(&mut self, shared: &Shared<P>, wake: &impl Fn(), work: Work<P>) {
+        let Self { renderer: painter, last, outlined } = self;
         let Asking { picks, border, ideal, wanted } = match work {
             Work::Asked(asking) => *asking,
-            Work::Refine => {
-                refine(shared, wake, &mut painter, last.as_ref());
-                continue;
-            }
+            Work::Refine => return refine(shared, wake, painter, last.as_ref()),
         };
         // Picks and borders refer to the picture on screen, so they are answered before it changes.
         let picked: Vec<_> = picks.into_iter().map(|pick| (pick, painter.hit(pick.at))).collect();
@@ -328,7 +404,7 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
             drop(desk);
             wake();
         }
-        if let (Some(window), Some(last), None) = (ideal, &last, &wanted) {
+        if let (Some(window), Some(last), None) = (ideal, &*last, &wanted) {
             let goes_on =
                 || !shared.newer.load(Ordering::Relaxed) && !shared.over.load(Ordering::Relaxed);
             let drawn = catch_unwind(AssertUnwindSafe(|| painter.ideal(last, window, &goes_on)));
@@ -337,12 +413,12 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
                 wake();
             }
         }
-        let Some(wanted) = wanted else { continue };
-        if !draw(shared, wake, &mut painter, &wanted, &mut outlined) {
+        let Some(wanted) = wanted else { return };
+        if !draw(shared, wake, painter, &wanted, outlined) {
             // A renderer that panicked may hold inconsistent buffers, so it is replaced.
-            painter = ViewportRenderer::new(Instant::now);
-            last = None;
-            continue;
+            *painter = ViewportRenderer::new(Instant::now);
+            *last = None;
+            return;
         }
         shared.lock().settled = false;
         // The explanation comes after the picture, which it would delay.
@@ -350,7 +426,7 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
             shared.lock().news.explained = Some(explained);
             wake();
         }
-        last = Some(wanted);
+        *last = Some(wanted);
     }
 }
 

@@ -282,6 +282,9 @@ impl Keeping {
             // A failure here is repaired by writing the preferences at the end.
             let _ = preferences.save(&folders, &known);
         };
+        if cfg!(target_family = "wasm") {
+            return write();
+        }
         // So is the lack of a thread.
         let _ = std::thread::Builder::new().name("preferences".to_owned()).spawn(write);
     }

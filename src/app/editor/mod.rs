@@ -26,6 +26,7 @@ mod walking;
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -41,9 +42,9 @@ use crate::app::drawing::worker::Worker;
 use crate::app::fonts;
 use crate::app::input::keyboard::Keyboard;
 use crate::app::panels::{Panel, arrange, notices, pixel};
-use crate::app::shell::{Editor, Parent};
 use crate::app::state::layout::NARROW;
 use crate::app::state::{Notice, State};
+use crate::app::theme;
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
 use crate::app::widgets::number::take_bad_text;
@@ -54,9 +55,13 @@ use laboratory::Work;
 use making::Making;
 use marraztu_core::accuracy::AccuracyPreset;
 use marraztu_core::scene::{Scene, Steps, View};
+use marraztu_io::{OwnFolders, Preferences, default_scene};
 use measuring::Measuring;
 use reloading::Watch;
 use unseen::Search;
+
+/// The preferences with what is to be said about them, and the folders of the program's files.
+pub(crate) type Kept = ((Preferences, Option<String>), OwnFolders);
 
 /// The editor.
 #[derive(Debug)]
@@ -131,15 +136,33 @@ impl App {
         }
     }
 
+    /// Creates the editor of the first scene in a window that has shown no frame yet. It uses the
+    /// system's file dialogs, and keeps its own files in folders, if there are any.
+    pub(crate) fn start(ctx: &Context, own: Option<Kept>) -> Self {
+        // The theme and the fonts are needed for the first frame.
+        theme::install(ctx);
+        fonts::install(ctx);
+        let (scene, view) = default_scene();
+        let mut app = Self::new(scene, view);
+        app.dialogs.native = true;
+        if let Some(((preferences, said), folders)) = own {
+            app.keep_in(ctx, folders, preferences, said);
+        }
+        app
+    }
+
+    /// Loads files, or shows the greeting without any.
+    pub(crate) fn open_at_start(&mut self, ctx: &Context, files: Vec<PathBuf>) {
+        if files.is_empty() {
+            self.greet();
+        }
+        self.load_at_start(ctx, files);
+    }
+
     /// Returns the scene being edited, and everything shown about it.
     #[must_use]
     pub const fn state(&self) -> &State {
         &self.state
-    }
-
-    /// Uses the system's file dialogs, if there are any.
-    pub(crate) const fn use_system_dialogs(&mut self) {
-        self.dialogs.native = true;
     }
 
     /// Draws with the accuracy of a preset.
@@ -405,15 +428,12 @@ impl App {
     }
 }
 
-impl Editor for App {
-    fn frame(&mut self, ui: &mut egui::Ui, parent: &dyn Parent) {
+impl App {
+    /// Shows a frame. A panic costs one frame, not the user's work, unless every frame panics.
+    pub(crate) fn frame(&mut self, ui: &mut egui::Ui) {
         self.lab.rest();
-        // A panic costs one frame, not the user's work, unless every frame panics.
         match catch_unwind(AssertUnwindSafe(|| self.editor_ui(ui))) {
-            Ok(()) => {
-                self.faults = 0;
-                self.dialogs.open_system(ui.ctx(), parent);
-            }
+            Ok(()) => self.faults = 0,
             Err(fault) if self.faults >= MOST_FAULTS => resume_unwind(fault),
             Err(_) => {
                 self.faults += 1;
@@ -423,7 +443,9 @@ impl Editor for App {
         }
     }
 
-    fn left(&mut self) {
+    /// Ends after the window was asked to close and the editor did not object.
+    #[cfg(feature = "desktop")]
+    pub(crate) fn end(&mut self) {
         self.end_keeping();
         // Dropping the worker waits for its thread, which must not run while the program ends.
         self.worker = None;

@@ -57,7 +57,8 @@ pub(crate) struct Canvas<'a> {
 /// Paints a window, frame after frame.
 #[derive(Debug)]
 pub(crate) struct WindowPainter {
-    pool: rayon::ThreadPool,
+    /// `None` without threads, in WebAssembly.
+    pool: Option<rayon::ThreadPool>,
     textures: Textures,
     layers: Vec<Layer>,
     bands: Vec<Band>,
@@ -102,7 +103,8 @@ impl WindowPainter {
         let name = |i| format!("window {i}");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(name);
         let (textures, layers, bands) = (Textures::default(), Vec::new(), Vec::new());
-        Ok(Self { pool: pool.build()?, textures, layers, bands, setting: None })
+        let pool = if cfg!(target_family = "wasm") { None } else { Some(pool.build()?) };
+        Ok(Self { pool, textures, layers, bands, setting: None })
     }
 
     /// Paints a frame and returns the areas that changed since the frame before it. If none did,
@@ -144,13 +146,17 @@ impl WindowPainter {
         let Self { pool, textures: known, layers, bands, .. } = self;
         if width > 0 {
             let strips = canvas.pixels.par_chunks_mut(width * ROWS).zip(&*bands).enumerate();
-            pool.install(|| {
+            let paint = || {
                 strips.for_each(|(i, (pixels, band))| {
                     let area = area_of(i, size, band.since(canvas.age, size[0]));
                     let strip = Strip { pixels, width, top: area.top };
                     band.paint(strip, area, (layers, known), frame.ground);
                 });
-            });
+            };
+            match pool {
+                Some(pool) => pool.install(paint),
+                None => paint(),
+            }
         }
         self.textures.free(textures);
         // The window system is told the changes since the last frame, whatever the age of the

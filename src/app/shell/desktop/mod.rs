@@ -1,8 +1,8 @@
-//! The shells: the layer between the editor and the windows of the system.
+//! The windows of desktops.
 //!
 //! `gl` is eframe, which paints with OpenGL. `software` paints on the CPU, directly into the memory
 //! of the window, without OpenGL. Both show the same bytes. If OpenGL is itself implemented in
-//! software, `software` is several times as fast. The editor does not depend on the shell.
+//! software, `software` is several times as fast.
 
 mod gl;
 mod software;

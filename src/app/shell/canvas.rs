@@ -1,0 +1,224 @@
+//! The editor in an array of pixels, without a window of the system.
+//!
+//! The host, such as a page of a browser, passes egui's events, asks for frames, and shows the
+//! rectangles that have changed. There are no system dialogs: a request to open files goes to the
+//! host, and files are saved in [`CanvasShell::FILES`], where the host finds them.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::Sender;
+use std::time::Duration;
+
+use egui::{Context, Event, FullOutput, PlatformOutput, RawInput, Rect, TexturesDelta, Vec2};
+use egui::{ViewportId, ViewportInfo, pos2, vec2};
+use rayon::ThreadPoolBuildError;
+
+use crate::app::editor::App;
+use crate::app::painter::{Canvas, WindowFrame, WindowPainter};
+use marraztu_io::{OwnFolders, Preferences};
+use marraztu_render::screen::coverage::PixelBox;
+
+/// The editor, its pixels, and the input since the last frame.
+pub struct CanvasShell {
+    ctx: Context,
+    app: App,
+    painter: WindowPainter,
+    /// Textures that have not been painted yet.
+    textures: TexturesDelta,
+    input: RawInput,
+    pixels: Vec<u32>,
+    size: [usize; 2],
+    /// Pixels per point, without the zoom of the editor.
+    scale: f32,
+    /// Whether the pixels have not been painted yet.
+    is_new: bool,
+    /// The milliseconds until the next frame is due.
+    due: Arc<AtomicU64>,
+    /// Takes the files that the host was asked for.
+    answer: Option<Sender<Option<Vec<PathBuf>>>>,
+}
+
+impl std::fmt::Debug for CanvasShell {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { size, scale, .. } = self;
+        f.debug_struct("CanvasShell").field("size", size).field("scale", scale).finish()
+    }
+}
+
+/// The result of a frame.
+#[expect(missing_debug_implementations, reason = "egui's output has none")]
+pub struct Painted {
+    /// The areas that have changed.
+    pub changed: Vec<PixelBox>,
+    /// The cursor, the text for the clipboard, the place of the text cursor, links to open.
+    pub output: PlatformOutput,
+    /// The extensions of the files that the user wants to open; the host answers by
+    /// [`CanvasShell::answer`].
+    pub wants: Option<Vec<&'static str>>,
+}
+
+impl CanvasShell {
+    /// The folder for the user's files, if the host provides one.
+    pub const FILES: &str = "/files";
+
+    /// The folder for preferences and unsaved work.
+    const OWN: &str = "/own";
+
+    /// Starts the editor on a canvas of `size` pixels, with `scale` pixels per point. It opens
+    /// these files, or the first scene.
+    ///
+    /// # Errors
+    /// If no threads can be started, on systems that have them.
+    pub fn new(
+        size: [usize; 2],
+        scale: f32,
+        files: Vec<PathBuf>,
+    ) -> Result<Self, ThreadPoolBuildError> {
+        let ctx = Context::default();
+        // egui may lay out a frame twice, as in eframe.
+        ctx.options_mut(|options| options.max_passes = TWICE);
+        let due = Arc::new(AtomicU64::new(0));
+        let theirs = Arc::clone(&due);
+        ctx.set_request_repaint_callback(move |wish| {
+            theirs.fetch_min(milliseconds(wish.delay), Ordering::Relaxed);
+        });
+        let own = Path::new(Self::OWN).is_dir().then(|| {
+            let folders = OwnFolders::within(Path::new(Self::OWN));
+            (Preferences::load(&folders), folders)
+        });
+        let mut app = App::start(&ctx, own);
+        app.open_at_start(&ctx, files);
+        Ok(Self {
+            ctx,
+            app,
+            painter: WindowPainter::new()?,
+            textures: TexturesDelta::default(),
+            input: RawInput { focused: true, ..RawInput::default() },
+            pixels: vec![0; size[0] * size[1]],
+            size,
+            scale,
+            is_new: true,
+            due,
+            answer: None,
+        })
+    }
+
+    /// Changes the size of the canvas.
+    pub fn resize(&mut self, size: [usize; 2], scale: f32) {
+        (self.size, self.scale, self.is_new) = (size, scale, true);
+        self.pixels = vec![0; size[0] * size[1]];
+        self.due.store(0, Ordering::Relaxed);
+    }
+
+    /// Adds an event to the input of the next frame.
+    pub fn hear(&mut self, event: Event) {
+        if let Event::WindowFocused(focused) = event {
+            self.input.focused = focused;
+        }
+        self.input.events.push(event);
+        self.due.store(0, Ordering::Relaxed);
+    }
+
+    /// Drops files on the editor.
+    pub fn drop_files(&mut self, files: Vec<PathBuf>) {
+        self.app.open_files(&self.ctx, files);
+        self.due.store(0, Ordering::Relaxed);
+    }
+
+    /// Gives the files that the editor has asked for; none if the user has cancelled.
+    pub fn answer(&mut self, files: Vec<PathBuf>) {
+        if let Some(answer) = self.answer.take() {
+            // The editor may have stopped waiting.
+            let _ = answer.send(Some(files));
+        }
+        self.due.store(0, Ordering::Relaxed);
+    }
+
+    /// Returns the zoom of the editor, which multiplies the scale.
+    #[must_use]
+    pub fn zoom(&self) -> f32 {
+        self.ctx.zoom_factor()
+    }
+
+    /// Returns the time until the next frame is due, or `None` if nothing will change by itself.
+    #[must_use]
+    pub fn due(&self) -> Option<Duration> {
+        let due = self.due.load(Ordering::Relaxed);
+        (due != u64::MAX).then(|| Duration::from_millis(due))
+    }
+
+    /// Returns the pixels row by row: blue in the lowest byte, then green, red and a zero.
+    #[must_use]
+    pub fn pixels(&self) -> &[u32] {
+        &self.pixels
+    }
+
+    /// Returns the number of columns and rows.
+    #[must_use]
+    pub const fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// Runs the editor at a time in seconds, with the input since the last frame, and paints it.
+    pub fn frame(&mut self, time: f64) -> Painted {
+        self.due.store(u64::MAX, Ordering::Relaxed);
+        let mut input = self.input.take();
+        input.time = Some(time);
+        input.viewport_id = ViewportId::ROOT;
+        let points = self.extent() / (self.scale * self.zoom());
+        input.screen_rect = Some(Rect::from_min_size(pos2(0.0, 0.0), points));
+        let native_pixels_per_point = Some(self.scale);
+        let info = ViewportInfo { native_pixels_per_point, ..ViewportInfo::default() };
+        input.viewports.insert(ViewportId::ROOT, info);
+        let app = &mut self.app;
+        let output = self.ctx.run_ui(input, |ui| app.frame(ui));
+        let FullOutput { platform_output, textures_delta, shapes, pixels_per_point, .. } = output;
+        self.textures.append(textures_delta);
+        let primitives = self.ctx.tessellate(shapes, pixels_per_point);
+        let ground = self.ctx.global_style().visuals.panel_fill;
+        let frame = WindowFrame { primitives, scale: pixels_per_point, ground };
+        let age = usize::from(!std::mem::take(&mut self.is_new));
+        let mut canvas = Canvas { pixels: &mut self.pixels, size: self.size, age };
+        let mut changed = self.painter.paint(&mut canvas, frame, &mut self.textures);
+        if age == 0 {
+            let [right, bottom] = self.size.map(|count| i32::try_from(count).unwrap_or(i32::MAX));
+            changed = vec![PixelBox { left: 0, top: 0, right, bottom }];
+        }
+        Painted { changed, output: platform_output, wants: self.file_request() }
+    }
+
+    /// Passes a request to open files to the host. A file to be saved needs no question: the host
+    /// takes it from the folder of files.
+    fn file_request(&mut self) -> Option<Vec<&'static str>> {
+        let request = self.app.dialogs.file_request()?;
+        self.ctx.request_repaint();
+        if request.saves {
+            let name = if request.name.is_empty() { "untitled" } else { &request.name };
+            // The editor has just asked, so it listens.
+            let _ = request.answer.send(Some(vec![Path::new(Self::FILES).join(name)]));
+            return None;
+        }
+        self.answer = Some(request.answer);
+        Some(request.endings)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "canvases have fewer than 2^24 pixels a side")]
+    fn extent(&self) -> Vec2 {
+        vec2(self.size[0] as f32, self.size[1] as f32)
+    }
+}
+
+impl Drop for CanvasShell {
+    fn drop(&mut self) {
+        // egui reports dropped textures as a fault.
+        self.textures.clear();
+    }
+}
+
+const TWICE: std::num::NonZeroUsize = std::num::NonZeroUsize::new(2).expect("is not 0");
+
+/// Rounds a time up, so that the frame is not too early.
+fn milliseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_micros().div_ceil(1000)).unwrap_or(u64::MAX)
+}
