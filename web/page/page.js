@@ -1,0 +1,418 @@
+// The page around the editor: it passes events to the WebAssembly module, copies changed rectangles
+// to the canvas, and gives it files.
+//
+// A frame runs only after an event or when the editor has asked for one, so an idle page uses no
+// processor time.
+//
+// ?model=URL opens a model or a scene, with the files that it refers to beside it. ?verify compares the
+// listed pictures with those of this processor.
+
+import { ConsoleStdout, OpenFile, PreopenDirectory, File, WASI } from "./wasi/index.js";
+import { Files } from "./files.js";
+import { Touches } from "./touches.js";
+
+const canvas = document.getElementById("canvas");
+const text = document.getElementById("text");
+const picker = document.getElementById("files");
+const status = document.getElementById("status");
+const pen = canvas.getContext("2d", { alpha: false });
+const files = new Files();
+const encoder = new TextEncoder();
+const decoder = new TextDecoder();
+
+// The exports of the module.
+let editor = null;
+
+function write(value) {
+  const bytes = encoder.encode(value);
+  const address = editor.input(bytes.length);
+  new Uint8Array(editor.memory.buffer, address, bytes.length).set(bytes);
+}
+
+function read(length) {
+  return JSON.parse(decoder.decode(new Uint8Array(editor.memory.buffer, editor.output(), length)));
+}
+
+// Reports what stops the editor. The next visit offers the unsaved work.
+function fail(error) {
+  editor = null;
+  console.error(error);
+  status.textContent = `Marraztu has stopped: ${error}\nReload the page to go on; unsaved work is offered again.`;
+}
+
+// Frames.
+
+let asked = false;
+let timer = 0;
+
+function schedule() {
+  if (!asked && editor) {
+    asked = true;
+    requestAnimationFrame(run);
+  }
+}
+
+function run(time) {
+  asked = false;
+  if (!editor) {
+    return;
+  }
+  try {
+    const length = editor.frame(time / 1000);
+    obey(read(length));
+  } catch (error) {
+    fail(error);
+  }
+}
+
+function obey(frame) {
+  for (const [x, y, width, height] of frame.changed) {
+    const address = editor.rgba(x, y, width, height);
+    if (address) {
+      const bytes = new Uint8ClampedArray(editor.memory.buffer, address, width * height * 4);
+      pen.putImageData(new ImageData(bytes, width, height), x, y);
+    }
+  }
+  canvas.style.cursor = frame.cursor;
+  if (frame.copied !== undefined) {
+    copied = frame.copied;
+    if (!copying) {
+      // A menu or a button copies outside of a copy event.
+      navigator.clipboard?.writeText(copied).catch(() => {});
+    }
+  }
+  if (frame.link) {
+    window.open(frame.link, "_blank", "noopener");
+  }
+  // The hidden input is where the text is, so that input methods open their windows there.
+  text.inputMode = frame.edited ? "text" : "none";
+  if (frame.edited) {
+    const [x, y, , height] = frame.edited;
+    text.style.transform = `translate(${x}px, ${y + height}px)`;
+  }
+  if (frame.wants) {
+    choose(frame.wants);
+  }
+  for (const [name, bytes] of files.written()) {
+    download(name, bytes);
+  }
+  files.keep();
+  clearTimeout(timer);
+  if (frame.due !== undefined) {
+    if (frame.due < 5) {
+      schedule();
+    } else {
+      timer = setTimeout(schedule, frame.due);
+    }
+  }
+}
+
+function hear(event) {
+  if (!editor) {
+    return;
+  }
+  write(JSON.stringify(event));
+  editor.hear();
+  schedule();
+}
+
+// Pointer and keys.
+
+const isMac = /Mac|iPhone|iPad/.test(navigator.platform);
+
+function modifiers(event) {
+  return (event.altKey ? 1 : 0) | (event.ctrlKey ? 2 : 0) | (event.shiftKey ? 4 : 0) | (event.metaKey && isMac ? 8 : 0);
+}
+
+const touches = new Touches(hear);
+
+canvas.addEventListener("pointerdown", (event) => {
+  event.preventDefault();
+  text.focus({ preventScroll: true });
+  canvas.setPointerCapture(event.pointerId);
+  if (event.pointerType === "touch") {
+    touches.down(event);
+  } else {
+    hear({ kind: "button", x: event.offsetX, y: event.offsetY, button: event.button, pressed: true, modifiers: modifiers(event) });
+  }
+});
+
+canvas.addEventListener("pointermove", (event) => {
+  if (event.pointerType === "touch") {
+    touches.move(event);
+  } else {
+    hear({ kind: "moved", x: event.offsetX, y: event.offsetY, modifiers: modifiers(event) });
+    // Another button than the first one is pressed or released by a move.
+    if (event.button > 0) {
+      const pressed = (event.buttons & [1, 4, 2][event.button]) !== 0;
+      hear({ kind: "button", x: event.offsetX, y: event.offsetY, button: event.button, pressed, modifiers: modifiers(event) });
+    }
+  }
+});
+
+canvas.addEventListener("pointerup", (event) => {
+  if (event.pointerType === "touch") {
+    touches.up(event);
+  } else {
+    hear({ kind: "button", x: event.offsetX, y: event.offsetY, button: event.button, pressed: false, modifiers: modifiers(event) });
+  }
+});
+
+canvas.addEventListener("pointercancel", (event) => {
+  if (event.pointerType === "touch") {
+    touches.up(event);
+  }
+});
+
+canvas.addEventListener("pointerleave", (event) => {
+  if (event.pointerType !== "touch") {
+    hear({ kind: "gone" });
+  }
+});
+
+canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+
+canvas.addEventListener("wheel", (event) => {
+  event.preventDefault();
+  // Browsers report a pinch on a touchpad as a wheel with Ctrl.
+  if (event.ctrlKey && event.deltaMode === 0 && !Number.isInteger(event.deltaY)) {
+    hear({ kind: "zoom", factor: Math.exp(-event.deltaY / 100) });
+  } else {
+    hear({ kind: "wheel", x: event.deltaX, y: event.deltaY, mode: event.deltaMode, modifiers: modifiers(event) });
+  }
+}, { passive: false });
+
+// The keys that the browser keeps: they copy, cut and paste, reload, or open tools of developers.
+function isOfBrowser(event) {
+  const command = event.ctrlKey || event.metaKey;
+  return (command && ["c", "x", "v", "r"].includes(event.key.toLowerCase()))
+    || (command && event.shiftKey && ["i", "j"].includes(event.key.toLowerCase()))
+    || event.key === "F11";
+}
+
+function key(event, pressed) {
+  if (event.isComposing || event.key === "Process" || event.key === "Unidentified") {
+    return;
+  }
+  if (isOfBrowser(event)) {
+    return;
+  }
+  hear({ kind: "key", key: event.key, code: event.code, pressed, repeat: event.repeat, modifiers: modifiers(event) });
+  // Keys that write a letter go on to the hidden input.
+  const writes = event.key.length === 1 && !event.ctrlKey && !event.metaKey;
+  if (!writes) {
+    event.preventDefault();
+  }
+}
+
+text.addEventListener("keydown", (event) => key(event, true));
+text.addEventListener("keyup", (event) => key(event, false));
+text.addEventListener("input", (event) => {
+  if (event.isComposing) {
+    return;
+  }
+  if (text.value) {
+    hear({ kind: "text", text: text.value });
+  }
+  text.value = "";
+});
+text.addEventListener("compositionupdate", (event) => hear({ kind: "preedit", text: event.data }));
+text.addEventListener("compositionend", (event) => {
+  hear({ kind: "commit", text: event.data });
+  text.value = "";
+});
+window.addEventListener("focus", () => {
+  text.focus({ preventScroll: true });
+  hear({ kind: "focus", focused: true });
+});
+window.addEventListener("blur", () => hear({ kind: "focus", focused: false }));
+
+// The clipboard: browsers give access only during its events.
+
+let copied = "";
+let copying = false;
+
+function copy(event, kind) {
+  copied = "";
+  copying = true;
+  hear({ kind });
+  run(performance.now());
+  copying = false;
+  if (copied) {
+    event.clipboardData.setData("text/plain", copied);
+  }
+  event.preventDefault();
+}
+
+document.addEventListener("copy", (event) => copy(event, "copy"));
+document.addEventListener("cut", (event) => copy(event, "cut"));
+document.addEventListener("paste", (event) => {
+  event.preventDefault();
+  const pasted = event.clipboardData.getData("text/plain");
+  if (pasted) {
+    hear({ kind: "paste", text: pasted });
+  }
+});
+
+// Files.
+
+async function add(list) {
+  const paths = [];
+  for (const [name, file] of list) {
+    paths.push(files.add(name, new Uint8Array(await file.arrayBuffer())));
+  }
+  return paths;
+}
+
+// Of several files, models and scenes are opened; the others are what they refer to.
+function opened(paths) {
+  const models = paths.filter((path) => /\.(obj|obj\.gz|marraztu)$/i.test(path));
+  return models.length > 0 ? models : paths;
+}
+
+function choose(endings) {
+  // An ending such as .gz is too narrow a filter together with .mtl and textures.
+  const isModel = endings.includes("obj");
+  picker.accept = isModel ? "" : endings.map((ending) => `.${ending}`).join(",");
+  picker.value = "";
+  picker.click();
+}
+
+picker.addEventListener("change", async () => {
+  const paths = await add([...picker.files].map((file) => [file.name, file]));
+  write(opened(paths).join("\n"));
+  editor.answer();
+  schedule();
+});
+
+picker.addEventListener("cancel", () => {
+  write("");
+  editor.answer();
+  schedule();
+});
+
+canvas.addEventListener("dragover", (event) => event.preventDefault());
+canvas.addEventListener("drop", async (event) => {
+  event.preventDefault();
+  const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
+  const list = [];
+  for (const entry of entries) {
+    await walk(entry, "", list);
+  }
+  const paths = await add(list);
+  write(opened(paths).join("\n"));
+  editor.drop_files();
+  schedule();
+});
+
+// Lists the files of a dropped entry, which may be a folder.
+async function walk(entry, folder, list) {
+  if (entry.isFile) {
+    list.push([folder + entry.name, await new Promise((resolve, reject) => entry.file(resolve, reject))]);
+    return;
+  }
+  const reader = entry.createReader();
+  for (;;) {
+    const entries = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    if (entries.length === 0) {
+      return;
+    }
+    for (const inner of entries) {
+      await walk(inner, `${folder}${entry.name}/`, list);
+    }
+  }
+}
+
+function download(name, bytes) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([bytes]));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
+// Fetches a model or a scene, and the files that it refers to. Returns its path.
+async function fetched(url) {
+  const base = new URL(url, location.href);
+  const get = async (place) => {
+    const response = await fetch(place);
+    if (!response.ok) {
+      throw new Error(`${place}: ${response.status} ${response.statusText}`);
+    }
+    return new Uint8Array(await response.arrayBuffer());
+  };
+  const name = decodeURIComponent(base.pathname.split("/").pop()) || "model.obj";
+  const path = files.add(name, await get(base));
+  // An MTL file names textures, so the list grows once.
+  const tried = new Set();
+  for (let round = 0; round < 3; round++) {
+    write(path);
+    const missing = read(editor.missing()).filter((other) => !tried.has(other));
+    if (missing.length === 0) {
+      break;
+    }
+    for (const other of missing) {
+      tried.add(other);
+      const plain = other.replaceAll("\\", "/");
+      // A missing file is reported by the editor.
+      await get(new URL(plain, base)).then((bytes) => files.add(plain, bytes), () => {});
+    }
+  }
+  return path;
+}
+
+// The size of the canvas.
+
+let size = [0, 0];
+
+function measure() {
+  const scale = window.devicePixelRatio || 1;
+  const width = Math.max(1, Math.round(canvas.clientWidth * scale));
+  const height = Math.max(1, Math.round(canvas.clientHeight * scale));
+  return [width, height, scale];
+}
+
+function fit() {
+  const [width, height, scale] = measure();
+  if (!editor || (width === size[0] && height === size[1] && scale === size[2])) {
+    return;
+  }
+  size = [width, height, scale];
+  canvas.width = width;
+  canvas.height = height;
+  editor.resize(width, height, scale);
+  run(performance.now());
+}
+
+async function begin() {
+  const console_ = ConsoleStdout.lineBuffered((line) => console.log(line));
+  const fds = [new OpenFile(new File([])), console_, console_, new PreopenDirectory("/", files.root())];
+  const wasi = new WASI(["marraztu"], [], fds, { debug: false });
+  await files.restore();
+  const { instance } = await WebAssembly.instantiateStreaming(fetch("marraztu.wasm"), { wasi_snapshot_preview1: wasi.wasiImport });
+  wasi.initialize(instance);
+  editor = instance.exports;
+  const query = new URLSearchParams(location.search);
+  if (query.has("verify")) {
+    const begun = performance.now();
+    const { all, differing } = read(editor.verify());
+    const seconds = ((performance.now() - begun) / 1000).toFixed(1);
+    status.textContent = [`${all - differing.length} of ${all} pictures are as listed (${seconds} s)`, ...differing].join("\n");
+    return;
+  }
+  const model = query.get("model");
+  const path = model ? await fetched(model) : "";
+  size = measure();
+  [canvas.width, canvas.height] = size;
+  write(path);
+  if (editor.start(...size) !== 0) {
+    throw new Error("the editor cannot start");
+  }
+  status.textContent = "";
+  text.focus({ preventScroll: true });
+  new ResizeObserver(fit).observe(canvas);
+  run(performance.now());
+  performance.mark("first picture");
+}
+
+begin().catch(fail);

@@ -1,0 +1,97 @@
+//! The result of a frame, for the page.
+
+use egui::{CursorIcon, OutputCommand};
+use serde::Serialize;
+
+use marraztu::app::{CanvasShell, Painted};
+
+/// What the page has to do after a frame.
+#[derive(Debug, Serialize)]
+pub(crate) struct Frame {
+    /// The rectangles to copy to the canvas, in pixels: x, y, width, height.
+    changed: Vec<[i32; 4]>,
+    /// The cursor, as in CSS.
+    cursor: &'static str,
+    /// Text for the clipboard.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    copied: Option<String>,
+    /// A link to open.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    link: Option<String>,
+    /// Where text is being edited, in CSS pixels: x, y, width, height.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    edited: Option<[f32; 4]>,
+    /// The extensions of files that the user wants to open.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    wants: Option<Vec<&'static str>>,
+    /// The milliseconds until the next frame is due, if it is not only due after an event.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    due: Option<f64>,
+}
+
+impl Frame {
+    pub(crate) fn new(shell: &CanvasShell, painted: Painted) -> Self {
+        let Painted { changed, output, wants } = painted;
+        let changed = changed
+            .into_iter()
+            .map(|area| [area.left, area.top, area.width(), area.height()])
+            .filter(|[_, _, width, height]| *width > 0 && *height > 0)
+            .collect();
+        let (mut copied, mut link) = (None, None);
+        for command in output.commands {
+            match command {
+                OutputCommand::CopyText(text) => copied = Some(text),
+                OutputCommand::OpenUrl(url) => link = Some(url.url),
+                _ => {}
+            }
+        }
+        let zoom = shell.zoom();
+        let edited = output.ime.map(|ime| {
+            let rect = ime.cursor_rect;
+            [rect.left(), rect.top(), rect.width(), rect.height()].map(|length| length * zoom)
+        });
+        let due = shell.due().map(|due| due.as_secs_f64() * 1000.0);
+        Self { changed, cursor: css(output.cursor_icon), copied, link, edited, wants, due }
+    }
+}
+
+/// Returns the name of a cursor in CSS.
+const fn css(cursor: CursorIcon) -> &'static str {
+    match cursor {
+        CursorIcon::None => "none",
+        CursorIcon::ContextMenu => "context-menu",
+        CursorIcon::Help => "help",
+        CursorIcon::PointingHand => "pointer",
+        CursorIcon::Progress => "progress",
+        CursorIcon::Wait => "wait",
+        CursorIcon::Cell => "cell",
+        CursorIcon::Crosshair => "crosshair",
+        CursorIcon::Text => "text",
+        CursorIcon::VerticalText => "vertical-text",
+        CursorIcon::Alias => "alias",
+        CursorIcon::Copy => "copy",
+        CursorIcon::Move => "move",
+        CursorIcon::NoDrop => "no-drop",
+        CursorIcon::NotAllowed => "not-allowed",
+        CursorIcon::Grab => "grab",
+        CursorIcon::Grabbing => "grabbing",
+        CursorIcon::AllScroll => "all-scroll",
+        CursorIcon::ResizeHorizontal => "ew-resize",
+        CursorIcon::ResizeNeSw => "nesw-resize",
+        CursorIcon::ResizeNwSe => "nwse-resize",
+        CursorIcon::ResizeVertical => "ns-resize",
+        CursorIcon::ResizeEast => "e-resize",
+        CursorIcon::ResizeSouthEast => "se-resize",
+        CursorIcon::ResizeSouth => "s-resize",
+        CursorIcon::ResizeSouthWest => "sw-resize",
+        CursorIcon::ResizeWest => "w-resize",
+        CursorIcon::ResizeNorthWest => "nw-resize",
+        CursorIcon::ResizeNorth => "n-resize",
+        CursorIcon::ResizeNorthEast => "ne-resize",
+        CursorIcon::ResizeColumn => "col-resize",
+        CursorIcon::ResizeRow => "row-resize",
+        CursorIcon::ZoomIn => "zoom-in",
+        CursorIcon::ZoomOut => "zoom-out",
+        CursorIcon::Default => "default",
+    }
+}

@@ -1,0 +1,178 @@
+//! The editor as a WebAssembly module for a page of a browser.
+//!
+//! The module is built for WASI, so files, clocks and random numbers are those of the standard
+//! library; the page provides a file system in memory. The page's code is in `web/page`.
+//!
+//! Exported functions pass numbers. Longer values pass through two byte buffers: the page fills
+//! [`input`] before a call, and reads [`output`] after it. Events and results are JSON; see
+//! [`PageEvent`] and [`Frame`].
+
+mod events;
+mod frame;
+mod verify;
+
+use std::cell::RefCell;
+use std::path::PathBuf;
+
+use marraztu::app::CanvasShell;
+
+use events::PageEvent;
+use frame::Frame;
+use verify::Verified;
+
+/// The editor and the buffers.
+#[derive(Default)]
+struct Page {
+    shell: Option<CanvasShell>,
+    input: Vec<u8>,
+    output: Vec<u8>,
+    /// Red, green, blue and opacity of the pixels that the page copies.
+    rgba: Vec<u8>,
+}
+
+thread_local! {
+    static PAGE: RefCell<Page> = RefCell::default();
+}
+
+fn with<T>(work: impl FnOnce(&mut Page) -> T) -> T {
+    PAGE.with_borrow_mut(work)
+}
+
+impl Page {
+    /// Returns the paths in the input, one per line.
+    fn paths(&self) -> Vec<PathBuf> {
+        String::from_utf8_lossy(&self.input).lines().map(PathBuf::from).collect()
+    }
+
+    fn write(&mut self, output: &impl serde::Serialize) -> usize {
+        // Numbers, strings and lists always have a JSON form.
+        self.output = serde_json::to_vec(output).unwrap_or_default();
+        self.output.len()
+    }
+}
+
+/// Returns the address of an input buffer of `length` bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn input(length: usize) -> *mut u8 {
+    with(|page| {
+        page.input.resize(length, 0);
+        page.input.as_mut_ptr()
+    })
+}
+
+/// Returns the address of the output of the last call that returned a length.
+#[unsafe(no_mangle)]
+pub extern "C" fn output() -> *const u8 {
+    with(|page| page.output.as_ptr())
+}
+
+/// Starts the editor on a canvas of `width` x `height` pixels, with `scale` pixels per point, and
+/// opens the files whose paths are in the input. Returns 0, or 1 if it cannot start.
+#[unsafe(no_mangle)]
+pub extern "C" fn start(width: usize, height: usize, scale: f32) -> u32 {
+    with(|page| match CanvasShell::new([width, height], scale, page.paths()) {
+        Ok(shell) => {
+            page.shell = Some(shell);
+            0
+        }
+        Err(_no_threads) => 1,
+    })
+}
+
+/// Changes the size of the canvas.
+#[unsafe(no_mangle)]
+pub extern "C" fn resize(width: usize, height: usize, scale: f32) {
+    with(|page| {
+        if let Some(shell) = &mut page.shell {
+            shell.resize([width, height], scale);
+        }
+    });
+}
+
+/// Takes the event in the input. Returns 0, or 1 if it is not a [`PageEvent`].
+#[unsafe(no_mangle)]
+pub extern "C" fn hear() -> u32 {
+    with(|page| {
+        let Page { shell: Some(shell), input, .. } = page else { return 1 };
+        let Ok(event) = serde_json::from_slice::<PageEvent>(input) else { return 1 };
+        for event in event.into_events(shell.zoom()) {
+            shell.hear(event);
+        }
+        0
+    })
+}
+
+/// Opens the files whose paths are in the input, as if they were dropped on the editor.
+#[unsafe(no_mangle)]
+pub extern "C" fn drop_files() {
+    with(|page| {
+        let paths = page.paths();
+        if let Some(shell) = &mut page.shell {
+            shell.drop_files(paths);
+        }
+    });
+}
+
+/// Gives the editor the files that it has asked for. No paths in the input mean that the user has
+/// cancelled.
+#[unsafe(no_mangle)]
+pub extern "C" fn answer() {
+    with(|page| {
+        let paths = page.paths();
+        if let Some(shell) = &mut page.shell {
+            shell.answer(paths);
+        }
+    });
+}
+
+/// Runs a frame at a time in seconds. Returns the length of a [`Frame`] in the output.
+#[unsafe(no_mangle)]
+pub extern "C" fn frame(time: f64) -> usize {
+    with(|page| {
+        let Some(shell) = &mut page.shell else { return 0 };
+        let painted = shell.frame(time);
+        let frame = Frame::new(shell, painted);
+        page.write(&frame)
+    })
+}
+
+/// Returns the address of the RGBA bytes of a rectangle of the canvas, row by row; null if it is
+/// not within the canvas.
+#[unsafe(no_mangle)]
+pub extern "C" fn rgba(x: usize, y: usize, width: usize, height: usize) -> *const u8 {
+    with(|page| {
+        let Page { shell: Some(shell), rgba, .. } = page else { return std::ptr::null() };
+        rgba.clear();
+        for row in y..y + height {
+            let begin = row * shell.size()[0] + x;
+            let Some(pixels) = shell.pixels().get(begin..begin + width) else {
+                return std::ptr::null();
+            };
+            rgba.extend(pixels.iter().flat_map(|pixel| {
+                let [blue, green, red, _] = pixel.to_le_bytes();
+                [red, green, blue, 255]
+            }));
+        }
+        rgba.as_ptr()
+    })
+}
+
+/// Draws the listed pictures and compares their sums. Returns the length of a [`Verified`] in the
+/// output.
+#[unsafe(no_mangle)]
+pub extern "C" fn verify() -> usize {
+    with(|page| page.write(&Verified::now()))
+}
+
+/// Lists the files that the model at the path in the input refers to and that do not exist. Returns
+/// the length of a JSON list of names in the output.
+#[unsafe(no_mangle)]
+pub extern "C" fn missing() -> usize {
+    with(|page| {
+        let paths = page.paths();
+        let found = paths.iter().filter_map(|path| marraztu_io::companions(path).ok());
+        let missing = found.flatten().filter(|companion| companion.path.is_none());
+        let names: Vec<String> = missing.map(|companion| companion.name).collect();
+        page.write(&names)
+    })
+}
