@@ -1,5 +1,7 @@
 //! Background tasks on separate threads, such as loading and the system's dialogs.
 
+use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 
 use egui::Context;
@@ -25,8 +27,8 @@ pub(crate) enum Outcome<T> {
 }
 
 impl<T: Send + 'static> Task<T> {
-    /// Starts `work` on a thread and wakes the window when it is done. Without threads, in
-    /// WebAssembly, the work is done at once.
+    /// Starts `work` on a thread and wakes the window when it is done. WebAssembly has no threads:
+    /// there the shell does the work after this frame, by [`do_waiting`].
     ///
     /// # Errors
     /// If the system provides no thread.
@@ -37,7 +39,7 @@ impl<T: Send + 'static> Task<T> {
     ) -> std::io::Result<Self> {
         let (sender, receiver) = mpsc::channel();
         let progress = Progress::new();
-        let (theirs, ctx) = (progress.clone(), ctx.clone());
+        let (theirs, repaint, ctx) = (progress.clone(), ctx, ctx.clone());
         let work = move || {
             // Dropped last, so the window wakes after the result was sent.
             let _wake = Wake(ctx);
@@ -46,7 +48,8 @@ impl<T: Send + 'static> Task<T> {
             let _ = sender.send(work(&theirs));
         };
         if cfg!(target_family = "wasm") {
-            work();
+            WAITING.with_borrow_mut(|waiting| waiting.push_back(Box::new(work)));
+            repaint.request_repaint();
         } else {
             std::thread::Builder::new().name(label.clone()).spawn(work)?;
         }
@@ -66,6 +69,18 @@ impl<T: Send + 'static> Task<T> {
             Err(TryRecvError::Empty) => Outcome::Running,
             Err(TryRecvError::Disconnected) => Outcome::Lost,
         }
+    }
+}
+
+thread_local! {
+    /// Work for the thread of the window.
+    static WAITING: RefCell<VecDeque<Box<dyn FnOnce()>>> = RefCell::default();
+}
+
+/// Does the work that waits for the thread of the window, if any.
+pub(crate) fn do_waiting() {
+    while let Some(work) = WAITING.with_borrow_mut(VecDeque::pop_front) {
+        work();
     }
 }
 

@@ -16,6 +16,7 @@ use rayon::ThreadPoolBuildError;
 
 use crate::app::editor::App;
 use crate::app::painter::{Canvas, WindowFrame, WindowPainter};
+use crate::app::tasks::do_waiting;
 use marraztu_io::{OwnFolders, Preferences};
 use marraztu_render::screen::coverage::PixelBox;
 
@@ -163,6 +164,8 @@ impl CanvasShell {
     /// Runs the editor at a time in seconds, with the input since the last frame, and paints it.
     pub fn frame(&mut self, time: f64) -> Painted {
         self.due.store(u64::MAX, Ordering::Relaxed);
+        // Begun in the last frame, which has shown so.
+        do_waiting();
         let mut input = self.input.take();
         input.time = Some(time);
         input.viewport_id = ViewportId::ROOT;
