@@ -98,9 +98,9 @@ fn render_file(
     if transparent {
         return Ok(());
     }
-    let is_whole = bands.is_one();
+    let stays = bands.stays();
     let mut renderer = bands.into_renderer();
-    if is_whole {
+    if stays {
         tell_unseen(&mut renderer, shot);
     } else {
         let Size { width, height } = shot.size;
