@@ -6,6 +6,7 @@
 
 mod contact_sheet;
 mod page;
+mod picture_pages;
 mod report_page;
 
 use plotters::coord::Shift;
@@ -18,6 +19,7 @@ use marraztu_lab::report::{Panel, PanelMark, Panels, Report, Scale, TextBox, pla
 
 pub use contact_sheet::{SheetCell, contact_sheet};
 pub use page::{page_html, page_markdown, plot_name, sections};
+pub use picture_pages::{PageCell, compare_page, sheet_page};
 pub use report_page::{PagePicture, report_page};
 
 /// The error of a plot that could not be drawn.
