@@ -270,6 +270,25 @@ fn each_four_bits_of_the_subpixel_grid_leave_fewer_wrong_pixels() {
 }
 
 #[test]
+fn no_grid_hides_edges_behind_their_own_face() {
+    for (tilt, turn) in [(1.2, 0.3), (1.4, 0.1), (1.5, 0.0)] {
+        // A floor: its depth changes steeply from row to row.
+        let turned = DMat4::from_rotation_x(-tilt) * DMat4::from_rotation_z(turn);
+        let (scene, view) = scene(&[(square(), at(100.0, 3.7, -40.3, 0.0) * turned)]);
+        let shown = |subpixels: Subpixels| {
+            let settings = Settings { subpixels, ..Settings::default() };
+            let [with, without] = [true, false].map(|edges_over_fill| {
+                let view = View { edges_over_fill, ..unmarked(view.clone()) };
+                draw(&scene, &view, &settings, 200)
+            });
+            with.pixels().iter().zip(without.pixels()).filter(|(a, b)| a != b).count()
+        };
+        let [usual, fine] = [Subpixels::Bits8, Subpixels::Bits12].map(shown);
+        assert!(usual > 100 && 100 * fine >= 97 * usual, "{tilt}: {usual} and {fine} pixels");
+    }
+}
+
+#[test]
 fn far_from_the_origin_32_bits_lose_the_shape_of_things() {
     let opened = lesson_scene("far").unwrap();
     let seen = |vertices| {

@@ -17,6 +17,9 @@ use serde_json::{Map, Value, json};
 use super::failure::Failure;
 use super::layers::{LayerFile, LayerOptions, OutputLayer};
 
+/// The usual name of the file.
+pub(crate) const CAMERAS: &str = "cameras.json";
+
 /// The camera of a picture, as an entry of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CameraFrame {
@@ -160,6 +163,14 @@ pub(crate) fn write_cameras(name: &str, frames: Vec<CameraFrame>) -> Result<(), 
         io::save_encoded(&path, &written(&ids, all.into_values()))?;
     }
     Ok(())
+}
+
+/// Checks, before anything is drawn, that the file at `path` is missing or one of an earlier run.
+///
+/// # Errors
+/// If it has other content.
+pub(crate) fn check_cameras(path: &Path) -> Result<(), Failure> {
+    read(path).map(drop)
 }
 
 fn entries(frames: Vec<Map<String, Value>>) -> BTreeMap<String, Map<String, Value>> {

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PathBufValueParser, TypedValueParser};
+use marraztu::plots::{self, PagePicture};
 use marraztu_core::base::image::Picture;
-use marraztu_io::{self as io, PictureFormat, Sources};
+use marraztu_io::{self as io, PICTURE_FORMATS, PictureFormat, Sources};
 use marraztu_lab::error::amplified;
 use marraztu_lab::flip::Perceived;
 
 use super::failure::Failure;
+use super::page::{check_page, write_page};
 use super::say;
 
 /// The exit status if the pictures cannot be compared.
@@ -31,6 +33,7 @@ Examples:
   marraztu compare a.png b.png --max 2          no channel differs by more than 2 steps
   marraztu compare a.png b.png --max 255 --flip 0.05
   marraztu compare a.png b.png --out diff.png   write the difference, times 16
+  marraztu compare a.png b.png --html page.html
 
 Exit status: 0 if the difference is within the limits, 1 if it is not, 2 if the pictures cannot be
 compared.")]
@@ -49,6 +52,9 @@ pub(crate) struct Compare {
     #[arg(short, long, value_name = "FILE")]
     #[arg(value_parser = PathBufValueParser::new().try_map(picture))]
     out: Option<PathBuf>,
+    /// A page to write, with the measures, a slider between the pictures, and their difference
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
 }
 
 /// The differences of two pictures of one size.
@@ -62,11 +68,14 @@ struct Difference {
 
 /// Compares two pictures.
 pub(super) fn compare(arguments: &Compare) -> Result<(), Failure> {
-    let Compare { a, b, max, flip, out } = arguments;
+    let Compare { a, b, max, flip, out, html } = arguments;
+    let sources = Sources::default().with([a, b]);
     if let Some(out) = out {
-        let sources = Sources::default().with([a, b]);
         let checked = sources.spare(out).and_then(|()| io::check_picture_target(out));
         checked.map_err(|error| incomparable(&error.to_string()))?;
+    }
+    if let Some(html) = html {
+        check_page(html, &sources).map_err(|failure| incomparable(&failure.to_string()))?;
     }
     let [first, second] = match [load(a), load(b)] {
         [Ok(first), Ok(second)] => [first, second],
@@ -79,22 +88,46 @@ pub(super) fn compare(arguments: &Compare) -> Result<(), Failure> {
         return Err(incomparable(&format!("{a} has {a_size} pixels, but {b} has {b_size}")));
     }
     let difference = difference(&first, &second);
-    let Difference { largest, pixels, rmse, flip: seen } = difference;
-    let all = sizes[0].area();
-    let text = format!(
-        "largest difference  {largest}\ndiffering pixels    {pixels} of {all}\nRMSE                \
-         {rmse:.4}\nFLIP                {seen:.4}\n"
-    );
+    let rows = difference.rows(sizes[0].area());
+    let text: String = rows.iter().map(|[name, value]| format!("{name:<20}{value}\n")).collect();
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         // The reader has closed the pipe, like `head`.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {}
         written => written.map_err(Failure::Output)?,
     }
-    if let Some(out) = out {
-        io::save_picture(out, &amplified(&first, &second, AMPLIFIED))?;
+    let amplified =
+        (out.is_some() || html.is_some()).then(|| amplified(&first, &second, AMPLIFIED));
+    if let (Some(out), Some(amplified)) = (out, &amplified) {
+        io::save_picture(out, amplified)?;
     }
-    let is_same = largest <= *max && flip.is_none_or(|flip| seen <= flip);
+    if let (Some(html), Some(amplified)) = (html, &amplified) {
+        let part = |name: &str, picture: &Picture| -> Result<PagePicture, Failure> {
+            let png = PICTURE_FORMATS[0].encode(picture).map_err(Failure::Absent)?;
+            let size = format!("{} x {}", sizes[0].width, sizes[0].height);
+            Ok(PagePicture { name: name.to_owned(), figures: size, png })
+        };
+        let names = [a, b].map(|path| path.display().to_string());
+        let pictures = [part(&names[0], &first)?, part(&names[1], &second)?];
+        let amplified = part(&format!("Difference, times {AMPLIFIED}"), amplified)?;
+        let title = format!("{} and {}", names[0], names[1]);
+        write_page(html, &plots::compare_page(&title, &rows, &pictures, &amplified))?;
+    }
+    let is_same = difference.largest <= *max && flip.is_none_or(|flip| difference.flip <= flip);
     if is_same { Ok(()) } else { Err(Failure::Told) }
+}
+
+impl Difference {
+    /// Returns the measures with their names. `all` is the number of pixels.
+    fn rows(&self, all: usize) -> [[String; 2]; 4] {
+        let Self { largest, pixels, rmse, flip } = self;
+        [
+            ("largest difference", largest.to_string()),
+            ("differing pixels", format!("{pixels} of {all}")),
+            ("RMSE", format!("{rmse:.4}")),
+            ("FLIP", format!("{flip:.4}")),
+        ]
+        .map(|(name, value)| [name.to_owned(), value])
+    }
 }
 
 fn load(path: &Path) -> Result<Picture, String> {

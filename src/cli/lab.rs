@@ -8,7 +8,7 @@ use clap::builder::PossibleValuesParser;
 use marraztu::plots::{self, Look, PagePicture};
 use marraztu_core::accuracy::{AXES, AccuracyPreset, Axis, Settings};
 use marraztu_core::base::image::Size;
-use marraztu_io::{self as io, NewFile, PictureFormat};
+use marraztu_io::{self as io, PictureFormat};
 use marraztu_lab::attribution::attribute;
 use marraztu_lab::candidates::{Thoroughness, all_axes};
 use marraztu_lab::error::{Measure, Region, amplified};
@@ -24,6 +24,7 @@ use super::arguments::{Reading, Seeing, Surfaces};
 use super::bar::Bar;
 use super::draw_along;
 use super::failure::Failure;
+use super::page::{self, check_page};
 use super::render::staged;
 use super::talk::Talk;
 use super::values::{Pixel, pixel, size, threads};
@@ -117,7 +118,7 @@ pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
         RESULTS.iter().try_for_each(|name| sources.spare(&folder.join(name)))?;
     }
     if let Some(path) = &arguments.html {
-        stage.sources(files).spare(path)?;
+        check_page(path, &stage.sources(files))?;
     }
     let mut studio = Studio::new(stage.shot(size.unwrap_or(Size::new(800, 800))));
     if let Some(Pixel(at)) = arguments.pixel {
@@ -332,10 +333,8 @@ fn write_page(
         findings.threads,
         findings.instructions
     );
-    let page = plots::report_page(report, &pictures, &machine)?;
-    let mut file = NewFile::begin(path)?;
-    file.push(page.as_bytes())?;
-    Ok(file.finish()?)
+    let text = plots::report_page(report, &pictures, &machine)?;
+    Ok(page::write_page(path, &text)?)
 }
 
 fn axis_words() -> PossibleValuesParser {

@@ -2,19 +2,21 @@
 //!
 //! Lines are copied, not rewritten, so the result equals the report of a single run.
 
-use std::collections::btree_map::Entry;
+use std::collections::btree_map::Entry::{Occupied, Vacant};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use marraztu_io::NewFile;
+use marraztu::plots::{PageCell, sheet_page};
+use marraztu_io::Sources;
 
 use super::batch::Status;
-use super::batch::list::read_list;
-use super::batch::report::{Counts, Line, Summary, line};
-use super::failure::Failure;
+use super::batch::list::{Entry, expanded, read_list};
+use super::batch::report::{Counts, Line, Summary, begin, line};
+use super::failure::{Failure, usage};
+use super::page::{check_page, relative_url, write_page};
 use super::talk::{Talk, note};
 
 /// The reports to join.
@@ -24,13 +26,15 @@ Pictures are joined by their number in the list. If two reports hold the same pi
 retry, the one that is there is kept. Missing pictures are printed with their number, model, view
 and status, separated by tabs; \"absent\" pictures are in no report.
 
+The file of --out is never read, also if a pattern names it.
+
 Examples:
-  marraztu merge report-*.jsonl --out report.jsonl
+  marraztu merge \"report-*.jsonl\" --out report.jsonl --sheet page.html
   marraztu merge report-*.jsonl --out report.jsonl --expect list.csv
 
 Exit status: 0 if all pictures are there, 1 if some are missing, 2 for invalid arguments.")]
 pub(crate) struct Merge {
-    /// The reports of the parts
+    /// The reports of the parts; patterns such as "report-*.jsonl" are expanded
     #[arg(required = true)]
     reports: Vec<PathBuf>,
     /// The joined report
@@ -39,6 +43,9 @@ pub(crate) struct Merge {
     /// A list whose models all have to be in the reports
     #[arg(long, value_name = "LIST")]
     expect: Option<PathBuf>,
+    /// A page to write, with all pictures, and the missing ones first
+    #[arg(long, value_name = "PAGE")]
+    sheet: Option<PathBuf>,
     #[command(flatten)]
     talk: Talk,
 }
@@ -46,8 +53,8 @@ pub(crate) struct Merge {
 /// The lines of all reports.
 #[derive(Debug, Default)]
 struct Merged {
-    /// The parsed lines with their text, by index.
-    lines: BTreeMap<usize, (Line, String)>,
+    /// The parsed lines with their text and their report, by index.
+    lines: BTreeMap<usize, (Line, String, PathBuf)>,
     /// The number of jobs that the reports state.
     jobs: Option<usize>,
 }
@@ -56,7 +63,14 @@ struct Merged {
 pub(super) fn merge(arguments: &Merge) -> Result<(), Failure> {
     arguments.talk.apply();
     let mut merged = Merged::default();
-    for path in &arguments.reports {
+    let reports = reports(arguments)?;
+    if let Some(sheet) = &arguments.sheet {
+        if *sheet == arguments.out {
+            return Err(usage("--sheet and --out name the same file"));
+        }
+        check_page(sheet, &Sources::default().with(reports.iter().chain([&arguments.out])))?;
+    }
+    for path in &reports {
         let text = std::fs::read_to_string(path)
             .map_err(|error| Failure::Usage(format!("{}: {error}", path.display())))?;
         merged.add(path, &text).map_err(Failure::Usage)?;
@@ -66,13 +80,17 @@ pub(super) fn merge(arguments: &Merge) -> Result<(), Failure> {
         None => BTreeSet::new(),
     };
     let counts = merged.counts();
-    let mut out = NewFile::begin(&arguments.out)?;
-    for (_, text) in merged.lines.values() {
+    let mut out = begin(&arguments.out)?;
+    for (_, text, _) in merged.lines.values() {
         out.push(text.as_bytes())?;
         out.push(b"\n")?;
     }
     out.push(&line(&Summary { summary: counts }))?;
     out.finish()?;
+    if let Some(sheet) = &arguments.sheet {
+        let title = format!("{} of {} pictures", counts.done, counts.jobs);
+        write_page(sheet, &sheet_page(&title, &merged.cells(sheet, &counts, &expected)))?;
+    }
     let missing = merged.missing(&counts, &expected);
     match std::io::stdout().lock().write_all(missing.as_bytes()) {
         // The reader has closed the pipe, like `head`.
@@ -81,6 +99,23 @@ pub(super) fn merge(arguments: &Merge) -> Result<(), Failure> {
     }
     note(&format_args!("{} of {} pictures are there", counts.done, counts.jobs));
     if missing.is_empty() { Ok(()) } else { Err(Failure::Told) }
+}
+
+/// Returns the reports, without the file that the joined report is written to.
+fn reports(arguments: &Merge) -> Result<Vec<PathBuf>, Failure> {
+    let out = arguments.out.canonicalize().ok();
+    let mut reports = Vec::new();
+    for Entry { file, .. } in expanded(&arguments.reports)? {
+        if out.is_some() && file.canonicalize().ok() == out {
+            note(&format_args!("{} is the output, so it is not read", file.display()));
+        } else {
+            reports.push(file);
+        }
+    }
+    if reports.is_empty() {
+        return Err(usage("there are no reports besides the output"));
+    }
+    Ok(reports)
 }
 
 impl Merged {
@@ -100,22 +135,22 @@ impl Merged {
                 format!("{}: this is not a line of a report: {error}", place(i))
             })?;
             match self.lines.entry(line.index) {
-                Entry::Vacant(entry) => _ = entry.insert((line, text.to_owned())),
-                Entry::Occupied(mut entry) => {
-                    let (other, _) = entry.get();
+                Vacant(entry) => _ = entry.insert((line, text.to_owned(), path.to_owned())),
+                Occupied(mut entry) => {
+                    let (other, _, report) = entry.get();
                     let both = other.status == Status::Done && line.status == Status::Done;
                     if (&other.input, &other.out) != (&line.input, &line.out)
                         || (both && *other != line)
                     {
-                        let index = line.index;
+                        let (index, place, report) = (line.index, place(i), report.display());
                         return Err(format!(
-                            "{}: the reports disagree on picture {index}",
-                            place(i)
+                            "{place}: picture {index} differs from the one in {report}; leave out \
+                             reports of earlier runs"
                         ));
                     }
                     // The statuses are ordered: pictures that are there come first.
                     if line.status < other.status {
-                        entry.insert((line, text.to_owned()));
+                        entry.insert((line, text.to_owned(), path.to_owned()));
                     }
                 }
             }
@@ -126,7 +161,7 @@ impl Merged {
     fn counts(&self) -> Counts {
         let length = self.lines.last_key_value().map_or(0, |(index, _)| index + 1);
         let mut counts = Counts { jobs: self.jobs.unwrap_or(length), ..Counts::default() };
-        for (line, _) in self.lines.values() {
+        for (line, ..) in self.lines.values() {
             counts.add(line.status);
         }
         counts
@@ -138,17 +173,43 @@ impl Merged {
         for index in 0..counts.jobs {
             // Writing to a string cannot fail.
             let _ = match self.lines.get(&index) {
-                Some((line, _)) if line.status == Status::Done => Ok(()),
-                Some((line, _)) => writeln!(text, "{index}\t{line}"),
+                Some((line, ..)) if line.status == Status::Done => Ok(()),
+                Some((line, ..)) => writeln!(text, "{index}\t{line}"),
                 None => writeln!(text, "{index}\t\t\tabsent"),
             };
         }
-        let found: BTreeSet<&Path> =
-            self.lines.values().map(|(line, _)| Path::new(&line.input)).collect();
-        for file in expected.iter().filter(|file| !found.contains(file.as_path())) {
+        for file in self.absent(expected) {
             let _ = writeln!(text, "\t{}\t\tabsent", file.display());
         }
         text
+    }
+
+    /// Returns the expected models that are in no report.
+    fn absent<'a>(&self, expected: &'a BTreeSet<PathBuf>) -> impl Iterator<Item = &'a PathBuf> {
+        let lines = self.lines.values();
+        let found: BTreeSet<PathBuf> = lines.map(|(line, ..)| line.input.clone().into()).collect();
+        expected.iter().filter(move |file| !found.contains(*file))
+    }
+
+    /// Returns the pictures of a page at `page`.
+    fn cells(&self, page: &Path, counts: &Counts, expected: &BTreeSet<PathBuf>) -> Vec<PageCell> {
+        let cell = |index: usize| {
+            let Some((line, ..)) = self.lines.get(&index) else {
+                let label = format!("picture {index}");
+                return PageCell { label, picture: Err("absent".to_owned()) };
+            };
+            let picture = match (line.status, &line.error) {
+                (Status::Done, _) => Ok(relative_url(page, Path::new(line.shown_file()))),
+                (_, Some(error)) => Err(error.clone()),
+                (_, None) => Err("missing".to_owned()),
+            };
+            PageCell { label: format!("{}, view {}", line.input, line.view), picture }
+        };
+        let absent = self.absent(expected).map(|file| PageCell {
+            label: file.display().to_string(),
+            picture: Err("absent".to_owned()),
+        });
+        (0..counts.jobs).map(cell).chain(absent).collect()
     }
 }
 
@@ -198,7 +259,11 @@ mod tests {
                 .contains("different lengths")
         );
         let other = line_of(0, "done").replace("0.obj", "x.obj");
-        assert!(merged(&[&[line_of(0, "done")], &[other]]).unwrap_err().contains("disagree"));
+        assert!(
+            merged(&[&[line_of(0, "done")], &[other]])
+                .unwrap_err()
+                .contains("differs from the one in r")
+        );
         assert!(merged(&[&["nonsense".to_owned()]]).unwrap_err().starts_with("r:1: "));
     }
 }

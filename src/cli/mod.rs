@@ -24,6 +24,7 @@ mod layers;
 mod merge;
 #[cfg(feature = "desktop")]
 mod open;
+mod page;
 mod plan;
 mod render;
 mod stage;
@@ -41,15 +42,22 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser};
+use clap::{CommandFactory, FromArgMatches as _};
 
 use self::commands::{Arguments, Headless};
 use self::failure::Failure;
 
 /// Runs the command given by the arguments of this process.
 pub(crate) fn run() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
-        Ok(arguments) => arguments,
+    let mut command = Arguments::command();
+    let parsed = command.try_get_matches_from_mut(std::env::args_os()).and_then(|matches| {
+        let name = matches.subcommand_name().map(str::to_owned);
+        let arguments = Arguments::from_arg_matches(&matches);
+        let arguments = arguments.map_err(|wrong| wrong.format(&mut command))?;
+        Ok((arguments, name))
+    });
+    let (arguments, name) = match parsed {
+        Ok(parsed) => parsed,
         Err(wrong) => return usage(&corrected(wrong)),
     };
     if marraztu_render::simd::levels().is_empty() {
@@ -85,7 +93,8 @@ pub(crate) fn run() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Usage(reason)) => {
-            usage(&Arguments::command().error(ErrorKind::ArgumentConflict, reason))
+            let own = name.and_then(|name| command.find_subcommand(name)).unwrap_or(&command);
+            usage(&own.clone().error(ErrorKind::ArgumentConflict, reason))
         }
         Err(Failure::Unparsed(wrong)) => usage(&wrong),
         Err(Failure::Told) => ExitCode::FAILURE,

@@ -20,7 +20,7 @@ use super::arguments::{
     Exposure, PictureArguments, Reading, Render, Seeing, ShadowSlots, Slots, Surfaces,
 };
 use super::bar::Bar;
-use super::cameras::{CameraFrame, write_cameras};
+use super::cameras::{CAMERAS, CameraFrame, check_cameras, write_cameras};
 use super::draw_along;
 use super::failure::{Failure, usage};
 use super::layers::LayerContent;
@@ -33,6 +33,9 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     let target = Target::of(arguments)?;
     let stage = stage(&arguments.picture)?;
     target.check(&stage.sources(&arguments.picture.files), arguments.transparent)?;
+    if arguments.layers.are_given() {
+        check_cameras(&target.folder().join(CAMERAS))?;
+    }
     let progress = Progress::new();
     let bar = Bar::of("drawing", &progress);
     // For a single picture, computing a faster drawing order is not worth its time.
@@ -98,9 +101,9 @@ fn render_file(
     if transparent {
         return Ok(());
     }
-    let is_whole = bands.is_one();
+    let stays = bands.stays();
     let mut renderer = bands.into_renderer();
-    if is_whole {
+    if stays {
         tell_unseen(&mut renderer, shot);
     } else {
         let Size { width, height } = shot.size;
@@ -157,10 +160,9 @@ fn written(
             picture.files.iter().map(|file| file.display().to_string()).collect();
         let scene = (inputs.join(" "), "0");
         let shot = stage.shot(picture.size);
-        let folder = files.first().and_then(|file| file.path.parent()).unwrap_or(Path::new(""));
-        let files = (folder, &files[..]);
+        let files = (target.folder(), &files[..]);
         let frame = CameraFrame::new(&shot, files, scene, (options, names.as_ref()));
-        write_cameras("cameras.json", vec![frame])?;
+        write_cameras(CAMERAS, vec![frame])?;
     }
     if let (None, [first, ..]) = (&arguments.out, &files[..]) {
         note(&format_args!("the picture is in {}", first.path.display()));

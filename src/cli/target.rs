@@ -9,7 +9,7 @@ use marraztu_io::{self as io, PICTURE_FORMATS, Sources};
 
 use super::arguments::Render;
 use super::failure::{Failure, usage};
-use super::layers::{Encoding, FIELD, LayerContent, LayerFile, LayerOptions, OutputLayer};
+use super::layers::{Encoding, FIELD, LayerContent, LayerFile, LayerOptions};
 use super::stage::is_scene;
 use super::terminal::{TerminalForm, cells};
 use super::values::{is_standard, is_terminal};
@@ -83,6 +83,12 @@ impl Target {
         }
     }
 
+    /// Returns the folder of the first file.
+    pub(super) fn folder(&self) -> &Path {
+        let Self::Files(files) = self else { return Path::new("") };
+        files.first().and_then(|file| file.path.parent()).unwrap_or(Path::new(""))
+    }
+
     /// Returns the size of the picture.
     pub(super) fn size(&self, size: Size) -> Size {
         match self {
@@ -112,14 +118,11 @@ impl Target {
     ) -> Result<(), Failure> {
         match (self, content.color) {
             (Self::Files(files), _) => {
-                for file in files {
-                    match (file.encoding, &file.layers[..], content.color) {
-                        // A large picture is encoded directly into its file.
-                        (Encoding::Picture(_), [OutputLayer::Color], Some(picture)) => {
-                            io::save_picture(&file.path, picture)?;
-                        }
-                        _ => save(file, content, options)?,
-                    }
+                // If a layer cannot be encoded, no file is written.
+                let encoded = files.iter().map(|file| encoded(file, content, options));
+                let encoded = encoded.collect::<Result<Vec<_>, _>>()?;
+                for (file, encoded) in files.iter().zip(&encoded) {
+                    io::save_encoded(&file.path, encoded)?;
                 }
                 Ok(())
             }
@@ -143,14 +146,13 @@ fn print(bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-fn save(
+fn encoded(
     file: &LayerFile,
     content: &LayerContent<'_>,
     options: &LayerOptions,
-) -> Result<(), Failure> {
+) -> Result<Vec<u8>, Failure> {
     let wrong = |reason| Failure::Absent(format!("{}: {reason}", file.path.display()));
-    let encoded = file.encode(content, &options.png(), None).map_err(wrong)?;
-    Ok(io::save_encoded(&file.path, &encoded)?)
+    file.encode(content, &options.png(), None).map_err(wrong)
 }
 
 /// Returns the name of the scene or first model with .png, in the current folder.

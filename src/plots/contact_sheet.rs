@@ -1,10 +1,7 @@
 //! Contact sheets: pictures in rows, with labels below them.
 
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
-use plotters::style::{FontStyle, register_font};
-
-use super::{LIGHT, PlotError, size_of, styled};
+use super::text::{Face, Label, size_of};
+use super::{LIGHT, PlotError};
 use marraztu_core::base::image::{Picture, Size};
 
 /// The size of labels and notes, in pixels.
@@ -48,18 +45,22 @@ pub fn contact_sheet(
     let size = Size::new(columns * step_x + GAP, rows * step_y + GAP + notes_height);
     let paper = [LIGHT.paper.0, LIGHT.paper.1, LIGHT.paper.2];
     let mut bytes = paper.repeat(size.area());
-    let (mut labels, mut lines) = (Vec::new(), Vec::new());
+    let mut labels = Vec::new();
+    let label = |text: String, [x, y]: [usize; 2], size: u32| {
+        let place = |side: usize| i32::try_from(side).unwrap_or(i32::MAX);
+        Label::new(text, (place(x), place(y + 4)), size, LIGHT.ink)
+    };
     for (i, cell) in cells.iter().enumerate() {
         let (x, y) = (GAP + i % columns * step_x, GAP + i / columns * step_y);
         paste(&mut bytes, size, [x, y], &cell.picture);
-        labels.push((shortened(&cell.label, width as f32), [x, y + height]));
+        labels.push(label(shortened(&cell.label, width as f32), [x, y + height], FONT));
     }
     for (i, note) in notes.iter().enumerate() {
         let at = [GAP, rows * step_y + GAP + i * LINE];
-        lines.push((note.clone(), at));
+        // The columns of notes are aligned with blanks.
+        labels.push(Label { face: Face::Mono, ..label(note.clone(), at, FONT - 2) });
     }
-    write_all(&mut bytes, size, &labels, &styled(FONT, LIGHT.ink, HPos::Left, VPos::Top))?;
-    write_all(&mut bytes, size, &lines, &fixed_width())?;
+    labels.iter().for_each(|label| label.write(&mut bytes, size));
     let pixels = bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2], 255]).collect();
     Picture::from_pixels(size, pixels).ok_or_else(|| PlotError("its size is wrong".to_owned()))
 }
@@ -89,34 +90,6 @@ fn shortened(text: &str, width: f32) -> String {
     let counts: Vec<usize> = (0..signs.len()).collect();
     let fits = counts.partition_point(|count| size_of(&short(*count), FONT)[0] <= width);
     short(fits.saturating_sub(1))
-}
-
-/// Returns the font of notes. Their columns are aligned with blanks.
-fn fixed_width() -> TextStyle<'static> {
-    // Registering a valid font cannot fail, and repeating it has no effect.
-    let _ = register_font("monospace", FontStyle::Normal, epaint_default_fonts::HACK_REGULAR);
-    TextStyle {
-        font: ("monospace", FONT - 2).into_font(),
-        ..styled(FONT, LIGHT.ink, HPos::Left, VPos::Top)
-    }
-}
-
-/// Writes texts at their upper left corners. The border of the sheet cuts them off.
-fn write_all(
-    bytes: &mut [u8],
-    size: Size,
-    texts: &[(String, [usize; 2])],
-    style: &TextStyle<'_>,
-) -> Result<(), PlotError> {
-    let side = |side: usize| u32::try_from(side).map_err(|error| PlotError(error.to_string()));
-    let sides = (side(size.width)?, side(size.height)?);
-    let area = BitMapBackend::with_buffer(bytes, sides).into_drawing_area();
-    for (text, [x, y]) in texts {
-        let place = |side: usize| i32::try_from(side).unwrap_or(i32::MAX);
-        area.draw(&Text::new(text.clone(), (place(*x), place(*y) + 4), style.clone()))
-            .map_err(|error| PlotError(error.to_string()))?;
-    }
-    area.present().map_err(|error| PlotError(error.to_string()))
 }
 
 #[cfg(test)]

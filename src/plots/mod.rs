@@ -6,19 +6,23 @@
 
 mod contact_sheet;
 mod page;
+mod picture_pages;
 mod report_page;
+mod text;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{FontStyle, register_font};
+use plotters::style::text_anchor::{HPos, VPos};
 
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_lab::report::{Panel, PanelMark, Panels, Report, Scale, TextBox, place};
 
 pub use contact_sheet::{SheetCell, contact_sheet};
 pub use page::{page_html, page_markdown, plot_name, sections};
+pub use picture_pages::{PageCell, compare_page, sheet_page};
 pub use report_page::{PagePicture, report_page};
+
+use text::{Label, size_of};
 
 /// The error of a plot that could not be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -96,7 +100,7 @@ const MARK: i32 = 5;
 pub fn svg(report: &Report, look: Look) -> Result<String, PlotError> {
     let sheet = Sheet::new(report, look);
     let size = (WIDTH.cast_unsigned(), sheet.height().cast_unsigned());
-    drawn_svg(size, |area| sheet.draw(area))
+    drawn_svg(size, |area, labels| sheet.draw(area, labels))
 }
 
 /// Draws the panel of one axis as SVG, or the overview if the axis was not measured.
@@ -106,9 +110,9 @@ pub fn svg(report: &Report, look: Look) -> Result<String, PlotError> {
 pub fn panel_svg(report: &Report, key: Option<&str>, look: Look) -> Result<String, PlotError> {
     let sheet = Sheet::new(report, look);
     let (width, height) = (640, 340);
-    drawn_svg((640, 340), |area| {
+    drawn_svg((640, 340), |area, labels| {
         area.fill(&sheet.colors.paper)?;
-        sheet.panel(area, sheet.panels.of(key), [8, 8, width - 8, height - 8])
+        sheet.panel(area, labels, sheet.panels.of(key), [8, 8, width - 8, height - 8])
     })
 }
 
@@ -122,8 +126,11 @@ pub fn png(report: &Report, look: Look) -> Result<Picture, PlotError> {
     let size = Size::new(width as usize, height as usize);
     let mut bytes = vec![255; 3 * size.area()];
     let area = BitMapBackend::with_buffer(&mut bytes, (width, height)).into_drawing_area();
-    sheet.draw(&area).map_err(|error| PlotError(error.to_string()))?;
+    let mut labels = Vec::new();
+    let drawn = sheet.draw(&area, &mut labels).and_then(|()| area.present());
+    drawn.map_err(|error| PlotError(error.to_string()))?;
     drop(area);
+    labels.iter().for_each(|label| label.write(&mut bytes, size));
     let pixels = bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2], 255]).collect();
     Picture::from_pixels(size, pixels).ok_or_else(|| PlotError("its size is wrong".to_owned()))
 }
@@ -140,35 +147,24 @@ pub fn overview_names(report: &Report) -> Vec<(String, TextBox)> {
 
 fn drawn_svg(
     size: (u32, u32),
-    draw: impl for<'a> FnOnce(&DrawingArea<SVGBackend<'a>, Shift>) -> Drawn<SVGBackend<'a>>,
+    draw: impl for<'a> FnOnce(
+        &DrawingArea<SVGBackend<'a>, Shift>,
+        &mut Vec<Label>,
+    ) -> Drawn<SVGBackend<'a>>,
 ) -> Result<String, PlotError> {
-    let mut text = String::new();
+    let (mut text, mut labels) = (String::new(), Vec::new());
     let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-    draw(&area).and_then(|()| area.present()).map_err(|error| PlotError(error.to_string()))?;
+    let mut drawn = draw(&area, &mut labels);
+    for label in labels {
+        drawn = drawn.and_then(|()| area.draw(&label.element()));
+    }
+    drawn.and_then(|()| area.present()).map_err(|error| PlotError(error.to_string()))?;
     drop(area);
     Ok(text)
 }
 
 type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 type Rect = [i32; 4];
-
-/// Returns a font of the window, under its name in SVG.
-fn font(size: u32) -> TextStyle<'static> {
-    // Registering a valid font cannot fail, and repeating it has no effect.
-    let _ = register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
-    ("sans-serif", size).into_font().into()
-}
-
-fn styled(size: u32, color: RGBColor, h: HPos, v: VPos) -> TextStyle<'static> {
-    TextStyle { color: color.to_backend_color(), pos: Pos::new(h, v), ..font(size) }
-}
-
-/// Returns the size of a text, with a margin, since an SVG viewer may use another font.
-#[expect(clippy::cast_precision_loss, reason = "pixels of a plot")]
-fn size_of(text: &str, size: u32) -> [f32; 2] {
-    let (width, height) = font(size).font.box_size(text).unwrap_or((0, 0));
-    [width as f32 * 1.06 + 4.0, (height as f32).max(size as f32) + 2.0]
-}
 
 /// Returns the rectangle of the scales in the rectangle of a panel.
 const fn inner([left, top, right, bottom]: Rect) -> Rect {
@@ -213,24 +209,29 @@ impl Sheet {
         self.head() + OVERVIEW + 16 + (panels + COLUMNS - 1) / COLUMNS * ROW + 34
     }
 
-    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Drawn<DB> {
+    /// Draws everything except texts, and collects these in `labels`: SVG and PNG write them in
+    /// different ways.
+    fn draw<DB: DrawingBackend>(
+        &self,
+        area: &DrawingArea<DB, Shift>,
+        labels: &mut Vec<Label>,
+    ) -> Drawn<DB> {
         let colors = self.colors;
         area.fill(&colors.paper)?;
         // The title and the verdict, line by line.
-        let left = |size, color| styled(size, color, HPos::Left, VPos::Top);
-        area.draw(&Text::new(self.title.clone(), (EDGE, 14), left(18, colors.ink)))?;
+        labels.push(Label::new(&self.title, (EDGE, 14), 18, colors.ink));
         let mut y = 44;
         for line in &self.verdict {
-            area.draw(&Text::new(line.clone(), (EDGE, y), left(14, colors.ink)))?;
+            labels.push(Label::new(line, (EDGE, y), 14, colors.ink));
             y += LINE;
         }
-        self.panel(area, &self.panels.overview, self.overview_rect())?;
+        self.panel(area, labels, &self.panels.overview, self.overview_rect())?;
         let (top, width) = (self.head() + OVERVIEW + 16, (WIDTH - 2 * EDGE) / COLUMNS);
         // Panels fill the rows from left to right.
         let mut place = (0, 0);
         for panel in &self.panels.axes {
             let (x, y) = (EDGE + place.0 * width, top + place.1 * ROW);
-            self.panel(area, panel, [x, y, x + width - 10, y + ROW - 6])?;
+            self.panel(area, labels, panel, [x, y, x + width - 10, y + ROW - 6])?;
             place = if place.0 + 1 == COLUMNS { (0, place.1 + 1) } else { (place.0 + 1, place.1) };
         }
         let note = format!(
@@ -238,22 +239,22 @@ impl Sheet {
                 marks: uncertainty of the time. All panels have one scale.",
             self.panels.x.label, self.panels.y.label
         );
-        area.draw(&Text::new(note, (EDGE, self.height() - 26), left(13, colors.faint)))?;
-        area.present()
+        labels.push(Label::new(note, (EDGE, self.height() - 26), 13, colors.faint));
+        Ok(())
     }
 
     fn panel<DB: DrawingBackend>(
         &self,
         area: &DrawingArea<DB, Shift>,
+        labels: &mut Vec<Label>,
         panel: &Panel,
         rect: Rect,
     ) -> Drawn<DB> {
         let (colors, frame) = (self.colors, inner(rect));
-        let title = styled(15, colors.ink, HPos::Left, VPos::Top);
-        area.draw(&Text::new(panel.title.clone(), (frame[0], rect[1] + 2), title))?;
-        let note = styled(12, colors.faint, HPos::Right, VPos::Top);
-        area.draw(&Text::new(panel.note, (frame[2], rect[1] + 5), note))?;
-        self.scales(area, frame)?;
+        labels.push(Label::new(&panel.title, (frame[0], rect[1] + 2), 15, colors.ink));
+        let note = Label::new(panel.note, (frame[2], rect[1] + 5), 12, colors.faint);
+        labels.push(note.aligned(HPos::Right, VPos::Top));
+        self.scales(area, labels, frame)?;
         let at: Vec<(i32, i32)> =
             panel.marks.iter().map(|mark| self.place(frame, mark.at)).collect();
         area.draw(&PathElement::new(at.clone(), colors.data.stroke_width(2)))?;
@@ -269,12 +270,10 @@ impl Sheet {
                 area.draw(&Circle::new(*at, MARK + 4, colors.ink.stroke_width(2)))?;
             }
         }
-        // Names come last, on top of all lines.
         for (mark, text) in panel.marks.iter().zip(self.names(panel, frame)) {
             let Some(text) = text else { continue };
             let color = if mark.is_default { colors.default } else { colors.ink };
-            let style = styled(13, color, HPos::Left, VPos::Top);
-            area.draw(&Text::new(mark.label.clone(), corner(&text), style))?;
+            labels.push(Label::new(&mark.label, corner(&text), 13, color));
         }
         Ok(())
     }
@@ -300,40 +299,43 @@ impl Sheet {
         (along(&self.panels.x, x, left, right), along(&self.panels.y, y, bottom, top))
     }
 
-    fn scales<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, frame: Rect) -> Drawn<DB> {
+    fn scales<DB: DrawingBackend>(
+        &self,
+        area: &DrawingArea<DB, Shift>,
+        labels: &mut Vec<Label>,
+        frame: Rect,
+    ) -> Drawn<DB> {
         let (colors, panels, [left, top, right, bottom]) = (self.colors, &self.panels, frame);
-        let small = |h, v| styled(12, colors.faint, h, v);
+        let mut label = |text: &str, at, h, v| {
+            labels.push(Label::new(text, at, 12, colors.faint).aligned(h, v));
+        };
         // The noise band lies below the grid.
         let band = panels.noise.map(|x| along(&panels.x, x, left, right).clamp(left, right));
         let band = [(band[0], top), (band[1].max(band[0] + 1), bottom)];
         area.draw(&Rectangle::new(band, colors.noise.filled()))?;
         // Labels that would overlap the last one are skipped.
         let mut free = left;
-        for (x, label) in &panels.x.ticks {
+        for (x, tick) in &panels.x.ticks {
             let x = along(&panels.x, *x, left, right);
             area.draw(&PathElement::new(vec![(x, top), (x, bottom)], colors.grid))?;
             if x >= free {
-                let style = small(HPos::Center, VPos::Top);
-                area.draw(&Text::new(label.clone(), (x, bottom + 5), style))?;
+                label(tick, (x, bottom + 5), HPos::Center, VPos::Top);
                 free = x + 34;
             }
         }
         let mut free = bottom;
-        for (y, label) in &panels.y.ticks {
+        for (y, tick) in &panels.y.ticks {
             let y = along(&panels.y, *y, bottom, top);
-            let line = if label == "0" { colors.faint } else { colors.grid };
+            let line = if tick == "0" { colors.faint } else { colors.grid };
             area.draw(&PathElement::new(vec![(left, y), (right, y)], line))?;
             if y <= free {
-                let style = small(HPos::Right, VPos::Center);
-                area.draw(&Text::new(label.clone(), (left - 7, y), style))?;
+                label(tick, (left - 7, y), HPos::Right, VPos::Center);
                 free = y - 16;
             }
         }
-        area.draw(&Text::new(
-            panels.x.label.clone(),
-            (i32::midpoint(left, right), bottom + 21),
-            small(HPos::Center, VPos::Top),
-        ))
+        let middle = (i32::midpoint(left, right), bottom + 21);
+        label(&panels.x.label, middle, HPos::Center, VPos::Top);
+        Ok(())
     }
 }
 

@@ -64,7 +64,7 @@ pub fn page_markdown(reports: &[Report], picture: &dyn Fn(&str) -> String) -> St
     text
 }
 
-pub(super) const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem auto;\
+const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem auto;\
     padding:0 1rem}svg{max-width:100%;height:auto}\
     table{border-collapse:collapse;font-size:.85rem}td,th{padding:.2rem .6rem;text-align:right;\
     border-bottom:1px solid #8884}td:first-child,th:first-child{text-align:left}\
@@ -76,12 +76,8 @@ pub(super) const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:60rem;ma
 /// # Errors
 /// If a plot cannot be drawn.
 pub fn page_html(reports: &[Report]) -> Result<String, PlotError> {
-    let mut text = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
-         <title>What accuracy costs</title><style>{STYLE}</style></head><body>\n\
-         <h1>What accuracy costs</h1>\n<p>{}</p>\n<ul>\n",
-        escaped(&basis(reports))
-    );
+    let mut text = head("What accuracy costs", "");
+    let _ = writeln!(text, "<p>{}</p>\n<ul>", escaped(&basis(reports)));
     for report in reports {
         let _ = writeln!(text, "<li>{}</li>", escaped(&report.verdict().join(" ")));
     }
@@ -119,6 +115,18 @@ fn html_table(markdown: &str) -> String {
     text + "</table>\n"
 }
 
+/// Begins a page.
+pub(super) fn head(title: &str, style: &str) -> String {
+    let title = escaped(title);
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+         <meta name=\"viewport\" content=\"width=device-width\">\
+         <title>{title}</title><style>{STYLE}{style}</style></head>\n<body>\n<h1>{title}</h1>\n"
+    )
+}
+
+/// Escapes a text for HTML, also within an attribute.
 pub(super) fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    text.replace('"', "&quot;")
 }

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 
-use super::page::{STYLE, escaped};
+use super::page::{escaped, head};
 use super::{Look, PlotError, svg};
 use marraztu_lab::report::{Report, brief, heading};
 use marraztu_lab::sweep::Verdict;
@@ -32,13 +32,8 @@ pub fn report_page(
     pictures: &[PagePicture],
     machine: &str,
 ) -> Result<String, PlotError> {
-    let title = format!("What accuracy costs: {}", escaped(&report.scene));
-    let mut text = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
-         <meta name=\"viewport\" content=\"width=device-width\">\
-         <title>{title}</title><style>{STYLE}{PICTURE_STYLE}</style></head>\
-         <body>\n<h1>{title}</h1>\n"
-    );
+    let title = format!("What accuracy costs: {}", report.scene);
+    let mut text = head(&title, PICTURE_STYLE);
     for sentence in report.verdict() {
         let _ = writeln!(text, "<p>{}</p>", escaped(&sentence));
     }
@@ -63,17 +58,14 @@ pub fn report_page(
     Ok(text)
 }
 
-const PICTURE_STYLE: &str = ".pair{position:relative;line-height:0}.pair img{width:100%;\
+pub(super) const PICTURE_STYLE: &str = ".pair{position:relative;line-height:0}.pair img{width:100%;\
     image-rendering:pixelated}.pair img+img{position:absolute;left:0;top:0;\
     clip-path:inset(0 0 0 var(--cut,50%))}input[type=range]{width:100%}";
 
 /// Writes two pictures, one over the other, a slider for the border between them, and a choice of
 /// the left one.
-fn slider(pictures: &[PagePicture]) -> String {
+pub(super) fn slider(pictures: &[PagePicture]) -> String {
     let [others @ .., last] = pictures else { return String::new() };
-    let data = |picture: &PagePicture| {
-        format!("data:image/png;base64,{}", BASE64_STANDARD.encode(&picture.png))
-    };
     let mut text = "<h2>Compare</h2>\n<p><label>Left: <select id=\"left\">".to_owned();
     for picture in others {
         let _ = write!(
@@ -99,6 +91,11 @@ fn slider(pictures: &[PagePicture]) -> String {
         data(last)
     );
     text
+}
+
+/// Returns the URL of a picture that is part of the page.
+pub(super) fn data(picture: &PagePicture) -> String {
+    format!("data:image/png;base64,{}", BASE64_STANDARD.encode(&picture.png))
 }
 
 /// Writes the rows of the report as a table.

@@ -146,6 +146,29 @@ fn layers_are_resumed_and_divided_into_parts_with_the_same_bytes() {
 }
 
 #[test]
+fn layers_that_fail_leave_no_file() {
+    let folder = folder();
+    let layers = ["--layers", "color,depth", "--size", "64", "--samples", "1"];
+    let before = contents(folder.path());
+    // The depths of this model are above 65535 steps.
+    let far = ["--depth-scale", "1e9"];
+    let render = ["render", "models/cam.obj", "--out", "a-{layer}.png"];
+    let (_, err) = ends_with(1, folder.path(), &[&render[..], &layers, &far].concat());
+    assert!(err.starts_with("error: a-depth.png: "), "{err}");
+    let batch = ["batch", "models/cam.obj", "--out", "a-{layer}.png"];
+    ends_with(1, folder.path(), &[&batch[..], &layers, &far].concat());
+    assert!(contents(folder.path()) == before);
+    // A file of another program is kept.
+    std::fs::write(folder.path().join("cameras.json"), "[1]").unwrap();
+    let before = contents(folder.path());
+    for command in [render, batch] {
+        let (_, err) = ends_with(1, folder.path(), &[&command[..], &layers].concat());
+        assert!(err.contains("a file with this name exists and has other content"), "{err}");
+        assert!(contents(folder.path()) == before);
+    }
+}
+
+#[test]
 fn layers_that_do_not_fit_their_files_are_rejected() {
     let folder = folder();
     for (arguments, reason) in [

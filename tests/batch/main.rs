@@ -119,10 +119,31 @@ fn the_shards_of_any_number_draw_the_same_files_and_merge_to_the_same_report() {
         assert!(contents(&parts.path().join("out")) == expected, "{count} shards");
         assert!(std::fs::read(parts.path().join("report.jsonl")).unwrap() == report, "{count}");
     }
+    // An earlier joined report is not a part, and the page shows each picture.
+    let merge = ["merge", "r*.jsonl", "--out", "report.jsonl", "--sheet", "pages/page.html"];
+    let parts = folder();
+    for shard in ["0/2", "1/2"] {
+        let name = format!("new/folder/r{}.jsonl", &shard[..1]);
+        ends_with(0, parts.path(), &all_models(&["--shard", shard, "--report", &name]));
+        std::fs::copy(parts.path().join(&name), parts.path().join(format!("r{shard:.1}.jsonl")))
+            .unwrap();
+    }
+    std::fs::write(parts.path().join("report.jsonl"), "an earlier file").unwrap();
+    std::fs::create_dir(parts.path().join("pages")).unwrap();
+    let (_, err) = ends_with(0, parts.path(), &merge);
+    assert!(err.contains("report.jsonl is the output, so it is not read"), "{err}");
+    assert!(std::fs::read(parts.path().join("report.jsonl")).unwrap() == report);
+    let page = std::fs::read_to_string(parts.path().join("pages/page.html")).unwrap();
+    let pictures = expected.keys().map(|name| format!("src=\"../out/{}\"", name.display()));
+    assert!(pictures.into_iter().all(|picture| page.contains(&picture)), "{page}");
+    assert!(!page.contains("Missing"), "{page}");
     // A report that is left out is noticed.
     ends_with(0, whole.path(), &all_models(&["--shard", "0/2", "--report", "half.jsonl"]));
-    let (out, _) = ends_with(1, whole.path(), &["merge", "half.jsonl", "--out", "merged.jsonl"]);
+    let merge = ["merge", "half.jsonl", "--out", "merged.jsonl", "--sheet", "half.html"];
+    let (out, _) = ends_with(1, whole.path(), &merge);
     assert!(out.lines().count() > 0 && out.lines().all(|line| line.ends_with("\tabsent")), "{out}");
+    let page = std::fs::read_to_string(whole.path().join("half.html")).unwrap();
+    assert_eq!(page.matches("<td>absent</td>").count(), out.lines().count());
 }
 
 #[test]
@@ -274,6 +295,7 @@ fn mistakes_in_a_list_are_found_before_the_first_picture() {
         std::fs::write(folder.path().join("list.csv"), csv).unwrap();
         let (out, err) = ends_with(2, folder.path(), &["batch", "--list", "list.csv"]);
         assert!(err.starts_with("error: ") && err.contains(reason), "{csv}\n{err}");
+        assert!(err.contains("Usage: marraztu batch"), "{err}");
         assert_eq!(out, "");
     }
     for (arguments, reason) in [

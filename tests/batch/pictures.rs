@@ -72,7 +72,9 @@ fn a_picture_beyond_its_time_limit_is_reported_as_such() {
         "r.jsonl",
     ];
     ends_with(1, folder.path(), &arguments);
-    assert_eq!(report(&folder.path().join("r.jsonl"))[0]["status"], "timeout");
+    let line = &report(&folder.path().join("r.jsonl"))[0];
+    assert_eq!(line["status"], "timeout");
+    assert_eq!(line["error"], "models/x_wing.obj: the time limit was reached");
     assert!(!folder.path().join("x_wing.png").exists());
 }
 
@@ -138,6 +140,14 @@ fn pictures_are_compared_with_an_exit_status() {
     let (out, _) = compare(1, &["a.png", "b.png", "--out", "diff.png"]);
     assert!(out.contains("largest difference") && out.contains("FLIP"), "{out}");
     assert!(folder.path().join("diff.png").exists());
+    let (out, _) = compare(1, &["a.png", "b.png", "--html", "page.html"]);
+    let page = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
+    let value = out.lines().last().and_then(|line| line.split_whitespace().last()).unwrap();
+    assert!(page.contains(&format!("<td>FLIP</td><td>{value}</td>")), "{page}");
+    assert_eq!(page.matches("data:image/png;base64,").count(), 3);
+    compare(0, &["a.png", "a.png", "--html", "page.html"]);
+    let (_, err) = compare(2, &["a.png", "b.png", "--html", "models/cam.obj"]);
+    assert!(err.contains("is not a page"), "{err}");
     compare(0, &["a.png", "b.png", "--max", "255"]);
     compare(1, &["a.png", "b.png", "--max", "255", "--flip", "0.0001"]);
     let before = std::fs::read(folder.path().join("a.png")).unwrap();

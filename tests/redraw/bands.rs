@@ -9,6 +9,7 @@ use super::*;
 fn in_bands(shot: &Shot, transparent: bool, pixels: usize) -> (usize, Vec<[u8; 4]>) {
     let mut bands = Bands::with_at_most(shot, transparent, pixels);
     assert_eq!(bands.size(), shot.size);
+    assert_eq!(bands.stays(), shot.size.area() <= pixels);
     let (mut joined, mut count, mut reached) = (Vec::new(), 0, 0);
     let told = AtomicUsize::new(0);
     let tell = |done: usize, all: usize| {

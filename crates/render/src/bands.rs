@@ -31,6 +31,8 @@ pub struct Bands {
     rows: usize,
     /// The first row of the next band.
     next: usize,
+    /// Whether the picture stays in the renderer.
+    stays: bool,
 }
 
 impl Bands {
@@ -54,8 +56,9 @@ impl Bands {
         let is_whole = plans[0].enlarged.is_some();
         let fitting = pixels / (width * TILE_SIDE).max(1);
         let step = if is_whole { rows } else { fitting.max(rows.div_ceil(MOST_BANDS)).min(rows) };
+        let stays = step >= rows && plans[0].size().area() <= pixels;
         let layers = plans.into_iter().map(|plan| (Renderer::default(), plan)).collect();
-        Self { layers, step: step.max(1), rows, next: 0 }
+        Self { layers, step: step.max(1), rows, next: 0, stays }
     }
 
     /// Returns the size of the whole picture in pixels.
@@ -64,10 +67,11 @@ impl Bands {
         self.layers[0].1.size()
     }
 
-    /// Returns whether the whole picture is a single band.
+    /// Returns whether the whole picture is a single band that stays in the renderer, for
+    /// questions about it. A large picture at half resolution is one band that does not stay.
     #[must_use]
-    pub const fn is_one(&self) -> bool {
-        self.step >= self.rows
+    pub const fn stays(&self) -> bool {
+        self.stays
     }
 
     /// Draws the next band; `None` after the last one. `tell` receives the finished part of the
@@ -94,9 +98,8 @@ impl Bands {
             };
             let watch = Cancellation::new(wanted).telling(&tell);
             let drawn = if self.step >= self.rows {
-                // The picture stays in the renderer, for questions about it.
                 renderer.redraw_by(plan, &watch)?;
-                renderer.picture().clone()
+                if self.stays { renderer.picture().clone() } else { renderer.take_picture() }
             } else {
                 std::mem::take(renderer.render_rows(plan, &rows, follows, &watch)?)
             };
@@ -109,7 +112,7 @@ impl Bands {
         Ok(band)
     }
 
-    /// Returns the renderer. If the whole picture was one band, it is the renderer's last picture.
+    /// Returns the renderer. If the picture [stays](Self::stays), it is the renderer's last one.
     #[must_use]
     pub fn into_renderer(mut self) -> Renderer {
         self.layers.swap_remove(0).0

@@ -14,6 +14,7 @@ use marraztu_render::accel::Accelerated as _;
 
 use super::jobs::Row;
 use super::outcome::Fault;
+use super::report::shown;
 use crate::cli::render::cover;
 use crate::cli::stage::{Stage, Watch};
 
@@ -73,7 +74,7 @@ impl StageCache {
                 return loaded;
             }
             // Further views of the model would take as long.
-            loaded = Err(Fault::Timeout);
+            loaded = Err(Fault::Timeout(shown(&row.file)));
         }
         *slot = Some(loaded.clone());
         drop(slot);
@@ -198,8 +199,9 @@ mod tests {
         let other = |stopped, progress: &Progress| {
             cache.get(&jobs[1].row, progress, &AtomicBool::new(stopped)).map(drop)
         };
+        let late = Fault::Timeout(shown(&files[1]));
         assert_eq!(other(true, &cancelled), Err(Fault::Cancelled));
-        assert_eq!(other(false, &cancelled), Err(Fault::Timeout));
-        assert_eq!(other(false, &Progress::new()), Err(Fault::Timeout));
+        assert_eq!(other(false, &cancelled), Err(late.clone()));
+        assert_eq!(other(false, &Progress::new()), Err(late.clone()));
     }
 }

@@ -64,6 +64,16 @@ impl Job {
         &self.files[0].path
     }
 
+    /// Returns the folder of the file of cameras.
+    pub(super) fn cameras_folder(&self, dataset: Option<Dataset>) -> &Path {
+        let folder = self.out().parent().unwrap_or(Path::new(""));
+        match dataset {
+            // The layers have folders of their own.
+            Some(Dataset::Nerf) => folder.parent().unwrap_or(folder),
+            Some(Dataset::Bop | Dataset::Coco) | None => folder,
+        }
+    }
+
     /// Names the formats of all files.
     pub(super) fn encodings(&self) -> String {
         let names: Vec<&str> = self.files.iter().map(|file| file.encoding.name()).collect();

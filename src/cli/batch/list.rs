@@ -176,7 +176,7 @@ fn entry(place: String, mut values: Vec<(String, Value)>) -> Result<Entry, Strin
 ///
 /// # Errors
 /// If a pattern is invalid, or no file matches it.
-pub(super) fn expanded(files: &[PathBuf]) -> Result<Vec<Entry>, Failure> {
+pub(crate) fn expanded(files: &[PathBuf]) -> Result<Vec<Entry>, Failure> {
     let mut entries = Vec::new();
     for file in files {
         let place = file.display().to_string();

@@ -23,6 +23,7 @@ mod studio;
 mod template;
 pub(super) mod views;
 
+use std::collections::BTreeSet;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -46,7 +47,7 @@ use self::shard::{Shard, shard};
 use self::sheets::{Grid, grid, write_sheets};
 use self::studio::{Manner, Studio, silence_panics};
 use super::arguments::choice;
-use super::cameras::write_cameras;
+use super::cameras::{CAMERAS, check_cameras, write_cameras};
 use super::failure::Failure;
 use super::layers::NUMBER_ENDINGS;
 use super::talk::{Talk, note};
@@ -173,6 +174,10 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
         dataset: arguments.dataset,
     };
     let (report, times) = (arguments.report.as_deref(), arguments.times.as_deref());
+    let name = cameras_name(arguments);
+    if !matches!(arguments.dataset, Some(Dataset::Bop | Dataset::Coco)) {
+        check_all_cameras(&name, &jobs, arguments.dataset)?;
+    }
     let studio = Arc::new(Studio::new(jobs, manner));
     let mut reporter = Reporter::begin(studio.jobs(), all, report, times)?;
     let mut meter = Meter::of(studio.jobs().len());
@@ -195,13 +200,6 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
     meter.finish();
     let unchanged = meter.unchanged();
     let counts = reporter.finish()?;
-    let name = match arguments.shard {
-        Some(shard) if shard != Shard::WHOLE => {
-            format!("cameras-{}-of-{}.json", shard.index, shard.count)
-        }
-        _ if arguments.dataset == Some(Dataset::Nerf) => "transforms.json".to_owned(),
-        _ => "cameras.json".to_owned(),
-    };
     match arguments.dataset {
         Some(dataset @ (Dataset::Bop | Dataset::Coco)) => {
             let folder = Path::new(arguments.out.as_deref().unwrap_or_default());
@@ -217,6 +215,24 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
     }
     tell(&counts, unchanged, meter.rate());
     status(&counts, signal.load(Ordering::Relaxed), arguments.strict_exit)
+}
+
+/// Returns the name of the file of cameras.
+fn cameras_name(arguments: &Batch) -> String {
+    match arguments.shard {
+        Some(shard) if shard != Shard::WHOLE => {
+            format!("cameras-{}-of-{}.json", shard.index, shard.count)
+        }
+        _ if arguments.dataset == Some(Dataset::Nerf) => "transforms.json".to_owned(),
+        _ => CAMERAS.to_owned(),
+    }
+}
+
+/// Checks that no file of cameras would replace a file of another program.
+fn check_all_cameras(name: &str, jobs: &[Job], dataset: Option<Dataset>) -> Result<(), Failure> {
+    let with_layers = jobs.iter().filter(|job| job.row.parsed.options.layers.are_given());
+    let folders: BTreeSet<&Path> = with_layers.map(|job| job.cameras_folder(dataset)).collect();
+    folders.into_iter().try_for_each(|folder| check_cameras(&folder.join(name)))
 }
 
 /// Prints the jobs.

@@ -34,8 +34,8 @@ pub(super) enum Fault {
     Output(String),
     /// The program failed.
     Program(String),
-    /// The time limit was reached.
-    Timeout,
+    /// Reading or drawing this file took longer than the time limit.
+    Timeout(String),
     /// The batch ended.
     Cancelled,
 }
@@ -67,7 +67,7 @@ impl Fault {
         match self {
             Self::Input(_) => Status::Invalid,
             Self::Output(_) | Self::Program(_) => Status::Failed,
-            Self::Timeout => Status::Timeout,
+            Self::Timeout(_) => Status::Timeout,
             Self::Cancelled => Status::Cancelled,
         }
     }
@@ -77,7 +77,7 @@ impl Fault {
         match self {
             Self::Input(reason) | Self::Output(reason) => reason.clone(),
             Self::Program(reason) => format!("the program failed: {reason}"),
-            Self::Timeout => "the time limit was reached".to_owned(),
+            Self::Timeout(file) => format!("{file}: the time limit was reached"),
             Self::Cancelled => "the batch ended before".to_owned(),
         }
     }

@@ -21,7 +21,7 @@ pub(crate) struct Line {
     #[serde(rename = "in")]
     pub(crate) input: String,
     in_sha256: Option<String>,
-    view: String,
+    pub(crate) view: String,
     pub(crate) out: String,
     out_sha256: Option<String>,
     bytes: Option<u64>,
@@ -30,7 +30,7 @@ pub(crate) struct Line {
     layers: Vec<FileSum>,
     pub(crate) status: Status,
     findings: Vec<String>,
-    error: Option<String>,
+    pub(crate) error: Option<String>,
 }
 
 /// The counts of pictures by status.
@@ -78,6 +78,17 @@ impl std::fmt::Display for Line {
 }
 
 impl Line {
+    /// Returns the first file that browsers show, or the first one if there is none.
+    pub(crate) fn shown_file(&self) -> &str {
+        const SHOWN: [&str; 4] = ["png", "jpg", "jpeg", "webp"];
+        let files = std::iter::once(&self.out).chain(self.layers.iter().map(|file| &file.out));
+        let is_shown = |file: &&String| {
+            let ending = Path::new(file).extension().map(|ending| ending.to_ascii_lowercase());
+            ending.is_some_and(|ending| SHOWN.iter().any(|shown| ending == **shown))
+        };
+        files.into_iter().find(is_shown).unwrap_or(&self.out)
+    }
+
     fn of(job: &Job, outcome: &Outcome) -> Self {
         let none = Drawn::default();
         let (drawn, status, error) = match &outcome.result {
@@ -123,6 +134,18 @@ struct Times {
     encode: f64,
 }
 
+/// Begins a file, and creates its folder.
+///
+/// # Errors
+/// If it cannot be created.
+pub(crate) fn begin(path: &Path) -> Result<NewFile, SaveError> {
+    if let Some(folder) = path.parent() {
+        // If this fails, so does creating the file, with the reason.
+        let _ = std::fs::create_dir_all(folder);
+    }
+    NewFile::begin(path)
+}
+
 /// Collects outcomes, and writes them in the order of the list.
 #[derive(Debug)]
 pub(super) struct Reporter<'a> {
@@ -150,8 +173,8 @@ impl<'a> Reporter<'a> {
         Ok(Self {
             jobs,
             counts: Counts { jobs: all, ..Counts::default() },
-            report: report.map(NewFile::begin).transpose()?,
-            times: times.map(NewFile::begin).transpose()?,
+            report: report.map(begin).transpose()?,
+            times: times.map(begin).transpose()?,
             open: jobs.iter().enumerate().map(|(i, job)| (job.index, i)).collect(),
             waiting: BTreeMap::new(),
         })

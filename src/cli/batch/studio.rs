@@ -316,12 +316,7 @@ impl Attempt<'_> {
         let names = options.has_ids().then(|| LayerNames::of(&stage.scene));
         let scene = (shown(&job.row.file), &*job.camera().name);
         let shot = stage.shot(job.size());
-        let folder = job.out().parent().unwrap_or(Path::new(""));
-        let folder = match self.studio.manner.dataset {
-            // The layers have folders of their own.
-            Some(Dataset::Nerf) => folder.parent().unwrap_or(folder),
-            Some(Dataset::Bop | Dataset::Coco) | None => folder,
-        };
+        let folder = job.cameras_folder(self.studio.manner.dataset);
         let frame = CameraFrame::new(&shot, (folder, &job.files), scene, (options, names.as_ref()));
         Some(Box::new(frame))
     }
@@ -392,8 +387,11 @@ impl Attempt<'_> {
         };
         drop(pool);
         self.spent.draw += begin.elapsed();
-        let stopped = if studio.is_stopped() { Fault::Cancelled } else { Fault::Timeout };
-        let (color, numbers) = picture.filter(|_| !is_late()).ok_or(stopped)?;
+        let stopped = || match studio.is_stopped() {
+            true => Fault::Cancelled,
+            false => Fault::Timeout(shown(&job.row.file)),
+        };
+        let (color, numbers) = picture.filter(|_| !is_late()).ok_or_else(stopped)?;
         let begin = Instant::now();
         let hash = studio.stamper.stamp(job);
         let hash = hash.ok_or_else(|| Fault::Input("the model has disappeared".to_owned()))?;

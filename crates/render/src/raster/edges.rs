@@ -17,6 +17,7 @@ use super::vertices::fetch_vertices;
 use crate::accel::DrawEdge;
 use crate::frame::draw::{Draw, Lines};
 use crate::screen::clip::{Screen, ScreenVertex};
+use crate::screen::coverage::Grid;
 use crate::screen::sample_positions::FOUR;
 use marraztu_core::scene::{Corner, NONE, NormalSource, dvec3};
 
@@ -30,6 +31,8 @@ pub(crate) struct EdgeSetup<'a> {
     pub(crate) draw: &'a Draw,
     pub(crate) vertices: &'a [ScreenVertex],
     pub(crate) screen: Screen,
+    /// The grid of `vertices` and `screen`.
+    pub(crate) grid: Grid,
     /// The [`Outline`] of each polygon.
     pub(crate) outlines: &'a [AtomicU8],
     /// The number of the draw's first line in the frame.
@@ -88,7 +91,9 @@ impl EdgeSetup<'_> {
         odd = (odd | beyond.to_bitmask()) & shown;
         shown &= !odd;
         let ([xa, ya, _], [xb, yb, _]) = (a, b);
-        let short = (xb - xa).abs().simd_le(SHORT) & (yb - ya).abs().simd_le(SHORT);
+        // On the fine grid, all lines are stepped through.
+        let longest = if self.grid == Grid::Usual { SHORT } else { -1 };
+        let short = (xb - xa).abs().simd_le(longest) & (yb - ya).abs().simd_le(longest);
         let some = short & mask32x16::from_bitmask(simd, shown);
         let number = i32x16::from_slice(simd, &numbers).bitcast();
         for sample in 0..N {
@@ -136,7 +141,7 @@ impl EdgeSetup<'_> {
 
     /// Adds a line of any length.
     fn add(&self, ends: [ScreenVertex; 2], number: u32, nearer: u32, bins: &mut Bins) {
-        bins.add_line(ScreenLine { ends, number, nearer }, self.width);
+        bins.add_line(ScreenLine { ends, number, nearer, grid: self.grid }, self.width);
     }
 
     /// Adds an edge that may need clipping.

@@ -16,10 +16,10 @@ use fearless_simd::{
 
 use super::hits::{Hits, Pixels};
 use crate::screen::clip::ScreenVertex;
-use crate::screen::coverage::{PixelBox, SUBPIXELS, Snapped};
+use crate::screen::coverage::{Grid, PixelBox, SUBPIXELS, Snapped};
 use crate::screen::tiles::TILE;
 
-/// Half of a pixel.
+/// Half of a pixel on the usual grid.
 const HALF: i32 = SUBPIXELS / 2;
 
 /// The longest short line, in subpixels along its major axis. Dividends stay below 2^23, so f32
@@ -70,20 +70,24 @@ pub(crate) struct ScreenLine {
     pub(crate) number: u32,
     /// The depth bias: the line is drawn this many steps of depth nearer.
     pub(crate) nearer: u32,
+    /// The grid of the ends. It is that of the triangles: a line that is moved against its surface
+    /// would be hidden by it.
+    pub(crate) grid: Grid,
 }
 
 impl ScreenLine {
-    /// Returns the line relative to a sample with this offset in subpixels.
+    /// Returns the line relative to a sample with this offset in 1/256 pixel.
     #[inline(always)]
     pub(crate) fn seen_from(&self, shift: [i32; 2]) -> Self {
+        let shift = self.grid.offset(shift);
         Self { ends: self.ends.map(|end| end.seen_from(shift)), ..*self }
     }
 }
 
 /// Returns the bounding box of the pixels that a line may cover.
-pub(crate) fn bounds([a, b]: [Snapped; 2], width: i32) -> PixelBox {
-    let low = |p: i32, q: i32| p.min(q).div_euclid(SUBPIXELS) - width;
-    let high = |p: i32, q: i32| p.max(q).div_euclid(SUBPIXELS) + 1 + width;
+pub(crate) fn bounds(grid: Grid, [a, b]: [Snapped; 2], width: i32) -> PixelBox {
+    let low = |p: i32, q: i32| p.min(q).div_euclid(grid.parts()) - width;
+    let high = |p: i32, q: i32| p.max(q).div_euclid(grid.parts()) + 1 + width;
     PixelBox {
         left: low(a.x, b.x),
         top: low(a.y, b.y),
@@ -101,16 +105,17 @@ pub(crate) fn stretches(
 ) -> impl Iterator<Item = PixelBox> {
     let [a, b] = line.ends.map(|end| end.at());
     // u is the major axis: pixels are bounded per tile along it.
-    let all = bounds([a, b], width).intersection(clip);
+    let all = bounds(line.grid, [a, b], width).intersection(clip);
+    let parts = i64::from(line.grid.parts());
     let steep = (b.y - a.y).abs() > (b.x - a.x).abs();
     let (ua, va, ub, vb) = if steep { (a.y, a.x, b.y, b.x) } else { (a.x, a.y, b.x, b.y) };
     let (du, dv) = (i64::from(ub) - i64::from(ua), i64::from(vb) - i64::from(va));
     let (first, last) = if steep { (all.top, all.bottom) } else { (all.left, all.right) };
     // The line's minor coordinate at a major coordinate, rounded down to pixels.
     let across = move |pixel: i32| {
-        let along = i64::from(pixel) * i64::from(SUBPIXELS) - i64::from(ua);
+        let along = i64::from(pixel) * parts - i64::from(ua);
         let v = i64::from(va) + along * dv / if du == 0 { 1 } else { du };
-        i32::try_from(v.div_euclid(i64::from(SUBPIXELS))).unwrap_or(0)
+        i32::try_from(v.div_euclid(parts)).unwrap_or(0)
     };
     let tiles = first.div_euclid(TILE)..(last - 1).div_euclid(TILE) + 1;
     let tiles = if all.is_empty() { 0..0 } else { tiles };
@@ -140,11 +145,11 @@ pub(crate) fn pixels(
     clip: PixelBox,
     mut take: impl FnMut(i32, i32, f32),
 ) {
-    let [a, b] = line.ends;
+    let ([a, b], parts) = (line.ends, line.grid.parts());
     let steep = (b.at().y - a.at().y).abs() > (b.at().x - a.at().x).abs();
     // u runs along the major axis, v across it. A wide line is centred on the segment: the segment
     // is moved back by half of the added width, and each of its pixels is repeated.
-    let shift = (width - 1) * SUBPIXELS / 2;
+    let shift = (width - 1) * parts / 2;
     let turn = |p: ScreenVertex| {
         let Snapped { x, y } = p.at();
         if steep { (y, x - shift) } else { (x, y - shift) }
@@ -156,10 +161,10 @@ pub(crate) fn pixels(
     }
     let (columns, rows) = ((clip.left, clip.right), (clip.top, clip.bottom));
     let ((first, last), (low, high)) = if steep { (rows, columns) } else { (columns, rows) };
-    let begin = ua.min(ub).div_euclid(SUBPIXELS).max(first);
-    let end = (ua.max(ub).div_euclid(SUBPIXELS) + 1).min(last);
-    let pixel = i64::from(SUBPIXELS);
-    let at = |u: i32| i64::from(u) * pixel + i64::from(HALF) - i64::from(ua);
+    let begin = ua.min(ub).div_euclid(parts).max(first);
+    let end = (ua.max(ub).div_euclid(parts) + 1).min(last);
+    let pixel = i64::from(parts);
+    let at = |u: i32| i64::from(u) * pixel + pixel / 2 - i64::from(ua);
     let first = i64::from(va) * du + dv * at(begin);
     let mut crossing = Crossing::new(first, dv * pixel, du * pixel);
     for u in begin..end {
@@ -170,7 +175,7 @@ pub(crate) fn pixels(
         }
         // The diamond test only matters near the ends.
         let is_end = along.abs() <= pixel || (along - du).abs() <= pixel;
-        if is_end && !leaves(u, v, along, du, (ua, va), (ub, vb)) {
+        if is_end && !leaves(parts, [u, v], (along, du), [(ua, va), (ub, vb)]) {
             continue;
         }
         let t = (along as f64 / du as f64).clamp(0.0, 1.0);
@@ -219,11 +224,18 @@ impl Crossing {
     }
 }
 
-/// Returns whether a line leaves the diamond of the pixel in this column.
-fn leaves(u: i32, v: i32, along: i64, du: i64, from: (i32, i32), to: (i32, i32)) -> bool {
+/// Returns whether a line leaves the diamond of the pixel in this column. A pixel has `parts` grid
+/// steps.
+fn leaves(
+    parts: i32,
+    [u, v]: [i32; 2],
+    (along, du): (i64, i64),
+    [from, to]: [(i32, i32); 2],
+) -> bool {
+    let half = parts / 2;
     let within = |(pu, pv): (i32, i32)| {
-        let (cu, cv) = (u * SUBPIXELS + HALF, v * SUBPIXELS + HALF);
-        (pu - cu).abs() + (pv - cv).abs() < HALF
+        let (cu, cv) = (u * parts + half, v * parts + half);
+        (pu - cu).abs() + (pv - cv).abs() < half
     };
     if within(to) {
         return false;
@@ -251,7 +263,7 @@ pub(crate) struct Short<S: Simd> {
     pub(crate) sample: usize,
 }
 
-/// Draws sixteen lines of at most [`SHORT`], for one of `N` samples per pixel.
+/// Draws sixteen lines of at most [`SHORT`] on the usual grid, for one of `N` samples per pixel.
 ///
 /// In the axes of [`pixels`]: v = floor((va du + dv along) / (256 du)).
 #[inline(always)]
@@ -373,7 +385,7 @@ fn bounds_of<S: Simd>(
     if first.x > last.x {
         return PixelBox { left: 0, top: 0, right: 0, bottom: 0 };
     }
-    bounds([first, last], width)
+    bounds(Grid::Usual, [first, last], width)
 }
 
 #[cfg(test)]
@@ -395,11 +407,22 @@ mod tests {
         let vertex = |(x, y): (f64, f64)| {
             ScreenVertex::new(Snapped { x: (x * 256.0) as i32, y: (y * 256.0) as i32 }, 0.5)
         };
-        let line = ScreenLine { ends: ends.map(vertex), number: 0, nearer: 0 };
-        let mut pixels = Vec::new();
-        super::pixels(&line, width, EVERYWHERE, |x, y, _| pixels.push((x, y)));
-        pixels.sort_unstable();
-        pixels
+        let ends = ends.map(vertex);
+        let line = ScreenLine { ends, number: 0, nearer: 0, grid: Grid::Usual };
+        let taken = |line: &ScreenLine| {
+            let mut pixels = Vec::new();
+            super::pixels(line, width, EVERYWHERE, |x, y, _| pixels.push((x, y)));
+            pixels.sort_unstable();
+            pixels
+        };
+        // The same ends on the fine grid give the same line.
+        let fine = |end: ScreenVertex| {
+            let Snapped { x, y } = end.at();
+            ScreenVertex::new(Snapped { x: 16 * x, y: 16 * y }, 0.5)
+        };
+        let on_fine = ScreenLine { ends: ends.map(fine), grid: Grid::Fine, ..line };
+        assert_eq!(taken(&on_fine), taken(&line));
+        taken(&line)
     }
 
     /// The same line, drawn in a lane.
@@ -522,7 +545,8 @@ mod tests {
         let picture = PixelBox { left: 0, top: 0, right: 320, bottom: 256 };
         for i in 0..2000 {
             let ends = [0, 0].map(|_| ScreenVertex::new(Snapped { x: random(), y: random() }, 0.5));
-            let line = ScreenLine { ends, number: 0, nearer: 0 };
+            let grid = if i % 4 < 2 { Grid::Usual } else { Grid::Fine };
+            let line = ScreenLine { ends, number: 0, nearer: 0, grid };
             let width = 1 + i % 2;
             let boxes: Vec<PixelBox> = stretches(&line, width, picture).collect();
             pixels(&line, width, picture, |x, y, _| {

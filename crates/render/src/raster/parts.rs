@@ -141,9 +141,11 @@ impl<'a> Parts<'a> {
     pub(crate) fn edge_setup(&self, i: usize) -> EdgeSetup<'a> {
         let plan = self.plan;
         let (draw, first) = (&plan.draws[i], self.starts[i].line);
-        let screen = Screen::new(draw.clip_from_object, plan.viewport).seen_from(plan.shift);
-        let (vertices, outlines) = (self.vertices_of(i), self.outlines_of(i));
-        EdgeSetup { draw, vertices, screen, outlines, first, width: plan.line_width }
+        let grid = plan.variants.grid();
+        let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
+        let screen = screen.seen_from(grid.offset(plan.shift));
+        let (vertices, outlines) = (self.corners().of(i), self.outlines_of(i));
+        EdgeSetup { draw, vertices, screen, grid, outlines, first, width: plan.line_width }
     }
 
     fn vertices_of(&self, draw: usize) -> &'a [ScreenVertex] {

@@ -17,57 +17,56 @@ pub(super) fn enlarge(level: Level, drawn: &Picture, size: Size, into: &mut Pict
     let row = |y: usize| &drawn.pixels()[y * width..][..width];
     let rows = into.pixels_mut().par_chunks_mut(size.width).enumerate();
     rows.for_each_init(
-        || Rows::new(width),
-        |rows, (y, out)| {
+        || Means::new(width),
+        |means, (y, out)| {
             let nearest = y / 2;
             let is_upper = y.is_multiple_of(2);
             let other = if is_upper { nearest.saturating_sub(1) } else { nearest + 1 };
             let other = other.min(height - 1);
-            dispatch!(level, _ => rows.enlarge(row(nearest), row(other), out));
+            dispatch!(level, _ => means.enlarge_row(row(nearest), row(other), out));
         },
     );
 }
 
-/// Rows of bytes that the compiler computes in lanes, one after the other.
-struct Rows {
-    /// Three times the nearest row and the other, with the first and the last pixel repeated.
+/// The intermediate numbers of a row. Each loop over them reads and writes neighbours in order, so
+/// that the compiler uses SIMD instructions.
+struct Means {
+    /// The sums of two drawn rows by channel, with a pixel repeated before and after them.
     sums: Vec<u16>,
-    /// The left half of each drawn pixel, and the right half.
-    left: Vec<u8>,
-    right: Vec<u8>,
+    /// The left and the right one of the two pixels over each drawn pixel.
+    pairs: [Vec<[u8; 4]>; 2],
 }
 
-impl Rows {
+impl Means {
     fn new(width: usize) -> Self {
-        let bytes = 4 * width;
-        Self { sums: vec![0; bytes + 8], left: vec![0; bytes], right: vec![0; bytes] }
+        let pairs = [vec![[0; 4]; width], vec![[0; 4]; width]];
+        Self { sums: vec![0; 4 * (width + 2)], pairs }
     }
 
     /// Computes a row between its nearest drawn row and another.
     #[inline(always)]
-    fn enlarge(&mut self, nearest: &[[u8; 4]], other: &[[u8; 4]], out: &mut [[u8; 4]]) {
-        let Self { sums, left, right } = self;
-        let (nearest, other) = (nearest.as_flattened(), other.as_flattened());
-        for ((sum, near), far) in sums[4..].iter_mut().zip(nearest).zip(other) {
-            *sum = 3 * u16::from(*near) + u16::from(*far);
+    fn enlarge_row(&mut self, nearest: &[[u8; 4]], other: &[[u8; 4]], out: &mut [[u8; 4]]) {
+        let Self { sums, pairs: [left, right] } = self;
+        let count = 4 * nearest.len();
+        let rows = nearest.as_flattened().iter().zip(other.as_flattened());
+        for (sum, (a, b)) in sums[4..].iter_mut().zip(rows) {
+            *sum = 3 * u16::from(*a) + u16::from(*b);
         }
-        let bytes = nearest.len();
         sums.copy_within(4..8, 0);
-        sums.copy_within(bytes..bytes + 4, bytes + 4);
-        let mean = |near: u16, far: u16| ((3 * near + far + 8) >> 4).to_le_bytes()[0];
-        for ((left, near), before) in left.iter_mut().zip(&sums[4..]).zip(&sums[..]) {
-            *left = mean(*near, *before);
+        sums.copy_within(count..count + 4, count + 4);
+        let (before, near, after) = (&sums[..count], &sums[4..][..count], &sums[8..][..count]);
+        let means = left.as_flattened_mut().iter_mut().zip(right.as_flattened_mut());
+        for ((means, near), (before, after)) in means.zip(near).zip(before.iter().zip(after)) {
+            let near = 3 * near + 8;
+            *means.0 = ((near + before) >> 4).to_le_bytes()[0];
+            *means.1 = ((near + after) >> 4).to_le_bytes()[0];
         }
-        for ((right, near), after) in right.iter_mut().zip(&sums[4..]).zip(&sums[8..]) {
-            *right = mean(*near, *after);
-        }
-        let (left, right) = (left.as_chunks::<4>().0, right.as_chunks::<4>().0);
-        let (pairs, rest) = out.as_chunks_mut::<2>();
-        for ((pair, left), right) in pairs.iter_mut().zip(left).zip(right) {
-            *pair = [*left, *right];
+        let mut pairs = out.chunks_exact_mut(2);
+        for (pair, (left, right)) in (&mut pairs).zip(left.iter().zip(&*right)) {
+            pair.copy_from_slice(&[*left, *right]);
         }
         // With an odd width, the last pixel has no partner.
-        if let ([pixel], Some(left)) = (rest, left.last()) {
+        if let ([pixel], Some(left)) = (pairs.into_remainder(), left.last()) {
             *pixel = *left;
         }
     }

@@ -5,7 +5,7 @@
 //! the screen, which are snapped to 1/256 pixel, so the point always lies in the triangle. It is
 //! seen within 1/256 pixel of the pixel's centre.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 use rayon::prelude::*;
 
 use super::{Cancelled, Renderer};
@@ -20,11 +20,14 @@ use crate::picture_camera::{AxesConvention, PictureCamera};
 use crate::plan::plan_frame;
 use crate::raster::geometry::ScreenGeometry;
 use crate::raster::visibility_buffer::{Visible, seen};
+use crate::screen::clip::ScreenVertex;
+use crate::screen::coverage::PixelBox;
 use crate::screen::sample_positions::SamplePositions;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE_SIDE, tiles_of};
-use crate::screen::weights::Weights;
+use crate::screen::weights::{QuickWeights, Weights};
 use crate::shading::painter::bounds_of;
 use crate::shading::triangle_attributes::is_front;
+use crate::simd::dispatch;
 use crate::texture::uv::{Uvs, uv, uvs};
 use crate::tile_layers::TileLayers;
 use marraztu_core::accuracy::{Settings, Shot};
@@ -93,15 +96,10 @@ impl Renderer {
                         let bounds = bounds_of(tile, size);
                         tile_seen.draw(*level, plan, frame, (tile, bounds));
                         for block in 0..BLOCK_PIXELS {
-                            let words = tile_seen.nearest(*level, frame, block);
-                            let [left, top] = tile_seen.visibility.corner(block);
-                            for (place, word) in (0..).zip(words.iter().flatten()) {
-                                let at = [left + place % BLOCK, top + place / BLOCK];
-                                let is_inside = at[0] < bounds.right && at[1] < bounds.bottom;
-                                if let (true, Visible::Triangle(number)) = (is_inside, seen(*word))
-                                {
-                                    source.put(surfaces.of(source, number), at, &mut band);
-                                }
+                            let corner = tile_seen.visibility.corner(block);
+                            if let Some(words) = tile_seen.nearest(*level, frame, block) {
+                                let at = (corner, bounds);
+                                dispatch!(*level, _ => source.put(surfaces, &words, at, &mut band));
                             }
                         }
                     }
@@ -160,13 +158,16 @@ struct Source<'a> {
     names: &'a LayerNames,
     /// The id of each draw's object.
     objects: Vec<i32>,
-    camera: PictureCamera,
+    projection: Projection,
+    world_from_camera: DMat4,
     /// The rotation of normals from the camera's frame; `None` if they stay in it.
     turn: Option<DMat3>,
     /// The width of the picture.
     width: usize,
     /// Whether any layer depends on the point that a pixel shows.
     has_points: bool,
+    /// Whether the normals are wanted.
+    has_normals: bool,
     /// The number of world units per unit of view space.
     unit: f64,
 }
@@ -174,15 +175,23 @@ struct Source<'a> {
 /// A visible triangle, prepared for its pixels. Positions and normals are in the camera's frame, in
 /// units of the world.
 struct SurfaceTriangle {
-    weights: Weights,
+    /// Object, part, material and polygon.
+    ids: [i32; 4],
+    /// `None` if no layer depends on the point that a pixel shows.
+    shape: Option<Shape>,
+}
+
+/// The points of a visible triangle.
+struct Shape {
+    weights: QuickWeights,
     /// The first corner, and the vectors from it to the others.
     corners: [DVec3; 3],
+    /// The same in the world.
+    in_world: [DVec3; 3],
     normals: [DVec3; 3],
     /// The triangle's own normal, if its corners have opposite ones.
     normal: DVec3,
     uvs: Option<Uvs>,
-    /// Object, part, material and polygon.
-    ids: [i32; 4],
 }
 
 impl<'a> Source<'a> {
@@ -196,94 +205,202 @@ impl<'a> Source<'a> {
             ItemId::Object(object) => shot.scene.objects.position(object).map_or(0, id_at),
             ItemId::Camera(_) | ItemId::Light(_) => 0,
         };
-        let objects = plan.draws.iter().map(id).collect();
         let unit = 1.0 / plan.view_from_world.x_axis.length();
         let camera = PictureCamera::of(shot);
-        let world = DMat3::from_mat4(camera.world_from_camera(AxesConvention::OpenGl));
+        let world_from_camera = camera.world_from_camera(AxesConvention::OpenGl);
+        let world = DMat3::from_mat4(world_from_camera);
         let turn = (layers.normals == NormalSpace::World).then_some(world);
         let has_points = layers.values.keys().any(|it| it.number_type() == LayerType::F32);
+        let has_normals = layers.values.contains_key(&Layer::Normal);
         let width = shot.size.width;
-        Self { plan, frame, names, objects, camera, turn, width, has_points, unit }
+        let projection = camera.projection;
+        let objects = plan.draws.iter().map(id).collect();
+        Self {
+            plan,
+            frame,
+            names,
+            objects,
+            projection,
+            world_from_camera,
+            turn,
+            width,
+            has_points,
+            has_normals,
+            unit,
+        }
     }
 
     /// Prepares a triangle.
     fn surface(&self, number: u32) -> SurfaceTriangle {
+        let (index, start) = self.frame.draw_of(number);
+        let number = number - start.number;
+        let mesh = &self.plan.draws[index as usize].model.mesh;
+        let polygon = mesh.polygon_of(number);
+        let object = self.objects[index as usize];
+        let [part, material] = self.names.part_of(object, mesh.polygon_parts()[polygon as usize]);
+        SurfaceTriangle {
+            ids: [object, part, material, id_at(polygon as usize)],
+            shape: self.has_points.then(|| self.shape(index, number)),
+        }
+    }
+
+    /// Prepares the points of a draw's triangle.
+    fn shape(&self, index: u32, number: u32) -> Shape {
         let Self { plan, frame, .. } = *self;
-        let (index, start) = frame.draw_of(number);
         let draw = &plan.draws[index as usize];
         let vertices = frame.corners_of(index);
-        let number = number - start.number;
-        let mesh = &draw.model.mesh;
-        let order = mesh.draw_order();
+        let order = draw.model.mesh.draw_order();
         let ids = order.vertices_of(number);
         let [a, b, c] = each(ids, |vertex| {
             let place = DVec3::from_array(order.position(vertex));
             draw.view_from_object.transform_point3(place) * self.unit
         });
-        let polygon = mesh.polygon_of(number);
-        // Back faces are lit with reversed normals.
-        let turned =
-            draw.back != Back::Culled && is_front(ids, draw, plan, vertices) == draw.mirrored;
-        let turn = if turned { -draw.view_from_normal } else { draw.view_from_normal };
-        let points = order.points(draw.normal_source);
-        let normals = match draw.normals {
-            Normals::Face => [mesh.polygon_normals()[polygon as usize]; 3],
-            Normals::Vertex => {
-                each(points.of(order, number, ids), |point| points.normals[point as usize])
-            }
+        let normals = if self.has_normals {
+            self.normals(draw, (number, ids), vertices)
+        } else {
+            [DVec3::ZERO; 3]
         };
-        let normals = each(normals, |normal| turn * DVec3::from_array(normal.map(f64::from)));
-        let object = self.objects[index as usize];
-        let [part, material] = self.names.part_of(object, mesh.polygon_parts()[polygon as usize]);
         let across = (b - a).cross(c - a);
-        SurfaceTriangle {
-            weights: Weights::new(plan, draw, vertices, number, [0; 2]),
+        let world = |vector: DVec3| self.world_from_camera.transform_vector3(vector);
+        Shape {
+            weights: QuickWeights::new(Weights::new(plan, draw, vertices, number, [0; 2])),
             corners: [a, b - a, c - a],
+            in_world: [self.world_from_camera.transform_point3(a), world(b - a), world(c - a)],
             normals,
             normal: if across.dot(a) > 0.0 { -across } else { across },
             uvs: uvs(draw, number),
-            ids: [object, part, material, id_at(polygon as usize)],
         }
     }
 
-    /// Writes the layers of a pixel.
+    /// Returns the normals at the corners of a triangle, in the camera's frame.
+    fn normals(
+        &self,
+        draw: &Draw,
+        (number, ids): (u32, [u32; 3]),
+        vertices: &[ScreenVertex],
+    ) -> [DVec3; 3] {
+        let mesh = &draw.model.mesh;
+        let order = mesh.draw_order();
+        // Back faces are lit with reversed normals.
+        let turned =
+            draw.back != Back::Culled && is_front(ids, draw, self.plan, vertices) == draw.mirrored;
+        let turn = if turned { -draw.view_from_normal } else { draw.view_from_normal };
+        let normals = match draw.normals {
+            Normals::Face => [mesh.polygon_normals()[mesh.polygon_of(number) as usize]; 3],
+            Normals::Vertex => {
+                let points = order.points(draw.normal_source);
+                each(points.of(order, number, ids), |point| points.normals[point as usize])
+            }
+        };
+        each(normals, |normal| turn * DVec3::from_array(normal.map(f64::from)))
+    }
+
+    /// Writes the layers of a block from the words of its pixels. Neighbours mostly show the same
+    /// triangle, so they are written together, one layer after the other.
+    #[inline(always)]
+    fn put(
+        &self,
+        surfaces: &mut Surfaces,
+        words: &[u64; BLOCK_PIXELS],
+        ([left, top], bounds): ([i32; 2], PixelBox),
+        band: &mut [(Layer, Rows<'_>)],
+    ) {
+        let Surfaces { cached, points } = surfaces;
+        // The columns and rows of the block that are in the picture.
+        let [columns, rows] = [bounds.right - left, bounds.bottom - top];
+        let [columns, rows] =
+            [columns, rows].map(|side| side.clamp(0, BLOCK).cast_unsigned() as usize);
+        let first = left.cast_unsigned() as usize;
+        let mut from = 0;
+        while let Some(word) = words.get(from) {
+            let alike = words[from..].iter().take_while(|other| seen(**other) == seen(*word));
+            let to = from + alike.count();
+            if let Visible::Triangle(number) = seen(*word) {
+                let surface = of(cached, self, number);
+                points.clear();
+                let mut place = from;
+                while place < to {
+                    let (row, next) = (place / SIDE, to.min((place / SIDE + 1) * SIDE));
+                    let inside = next.min(row * SIDE + columns);
+                    if row < rows && place < inside {
+                        let y = top + i32::try_from(row).expect("a block has few rows");
+                        // Ids are the same in the whole triangle.
+                        let weights = surface.shape.as_ref().map(|it| it.weights.of_row([left, y]));
+                        let [a, b, c] = weights.unwrap_or_default();
+                        let begin = y.cast_unsigned() as usize % TILE_SIDE * self.width + first;
+                        points.extend((place - row * SIDE..inside - row * SIDE).map(|column| {
+                            (begin + column, DVec3::new(a[column], b[column], c[column]))
+                        }));
+                    }
+                    place = next;
+                }
+                self.put_points(surface, points, band);
+            }
+            from = to;
+        }
+    }
+
+    /// Writes the layers at points of a triangle: places in the band, with weights of its corners.
+    #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
-    fn put(&self, surface: &SurfaceTriangle, at: [i32; 2], band: &mut [(Layer, Rows<'_>)]) {
-        let [x, y] = at.map(|i| i.cast_unsigned() as usize);
-        let place = y % TILE_SIDE * self.width + x;
-        // Ids are the same in the whole triangle.
-        let weights = if self.has_points { surface.weights.at(at) } else { DVec3::X };
-        let [a, b, c] = surface.corners;
-        let position = a + b * weights.y + c * weights.z;
+    fn put_points(
+        &self,
+        surface: &SurfaceTriangle,
+        points: &[(usize, DVec3)],
+        band: &mut [(Layer, Rows<'_>)],
+    ) {
         let [object, part, material, polygon] = surface.ids;
+        let shape = surface.shape.as_ref();
         for (layer, rows) in band {
-            match (layer, rows) {
-                (Layer::Depth, Rows::F32(rows)) => rows[place] = -position.z as f32,
-                (Layer::Distance, Rows::F32(rows)) => {
-                    rows[place] = match self.camera.projection {
-                        Projection::Perspective => position.length() as f32,
-                        Projection::Orthographic => -position.z as f32,
+            match (layer, rows, shape) {
+                (Layer::Depth, Rows::F32(rows), Some(shape)) => {
+                    for (place, weights) in points {
+                        rows[*place] = -point(shape.corners, *weights).z as f32;
+                    }
+                }
+                (Layer::Distance, Rows::F32(rows), Some(shape)) => {
+                    for (place, weights) in points {
+                        let position = point(shape.corners, *weights);
+                        rows[*place] = match self.projection {
+                            Projection::Perspective => position.length() as f32,
+                            Projection::Orthographic => -position.z as f32,
+                        };
+                    }
+                }
+                (Layer::Normal, Rows::F32(rows), Some(shape)) => {
+                    for (place, weights) in points {
+                        let normal = self.normal(shape, *weights).as_vec3();
+                        rows[3 * place..][..3].copy_from_slice(&normal.to_array());
+                    }
+                }
+                (Layer::Position, Rows::F32(rows), Some(shape)) => {
+                    for (place, weights) in points {
+                        let position = point(shape.in_world, *weights).as_vec3();
+                        rows[3 * place..][..3].copy_from_slice(&position.to_array());
+                    }
+                }
+                (Layer::Uv, Rows::F32(rows), Some(shape)) => {
+                    let Some(uvs) = shape.uvs else {
+                        points.iter().for_each(|(at, _)| rows[2 * at..][..2].fill(0.0));
+                        continue;
                     };
+                    for (place, weights) in points {
+                        rows[2 * place..][..2]
+                            .copy_from_slice(&uv(uvs, *weights).map(|x| x as f32));
+                    }
                 }
-                (Layer::Normal, Rows::F32(rows)) => {
-                    let normal = self.normal(surface, weights);
-                    rows[3 * place..][..3].copy_from_slice(&normal.as_vec3().to_array());
+                (Layer::Object, Rows::I32(rows), _) => {
+                    points.iter().for_each(|it| rows[it.0] = object)
                 }
-                (Layer::Position, Rows::F32(rows)) => {
-                    let world = self.camera.world_from_camera(AxesConvention::OpenGl);
-                    let point = world.transform_point3(position).as_vec3();
-                    rows[3 * place..][..3].copy_from_slice(&point.to_array());
+                (Layer::Part, Rows::I32(rows), _) => points.iter().for_each(|it| rows[it.0] = part),
+                (Layer::Material, Rows::I32(rows), _) => {
+                    points.iter().for_each(|it| rows[it.0] = material);
                 }
-                (Layer::Uv, Rows::F32(rows)) => {
-                    let uv = surface.uvs.map_or([0.0; 2], |uvs| uv(uvs, weights));
-                    rows[2 * place..][..2].copy_from_slice(&uv.map(|x| x as f32));
+                (Layer::Polygon, Rows::I32(rows), _) => {
+                    points.iter().for_each(|it| rows[it.0] = polygon);
                 }
-                (Layer::Object, Rows::I32(rows)) => rows[place] = object,
-                (Layer::Part, Rows::I32(rows)) => rows[place] = part,
-                (Layer::Material, Rows::I32(rows)) => rows[place] = material,
-                (Layer::Polygon, Rows::I32(rows)) => rows[place] = polygon,
-                (Layer::Mask, Rows::U8(rows)) => rows[place] = 1,
-                (_, Rows::F32(_) | Rows::I32(_) | Rows::U8(_)) => {
+                (Layer::Mask, Rows::U8(rows), _) => points.iter().for_each(|it| rows[it.0] = 1),
+                (_, Rows::F32(_) | Rows::I32(_) | Rows::U8(_), _) => {
                     unreachable!("each layer has numbers of its type")
                 }
             }
@@ -291,36 +408,54 @@ impl<'a> Source<'a> {
     }
 
     /// Returns the unit normal at a point of a triangle.
-    fn normal(&self, surface: &SurfaceTriangle, weights: DVec3) -> DVec3 {
-        let [a, b, c] = surface.normals;
+    #[inline(always)]
+    fn normal(&self, shape: &Shape, weights: DVec3) -> DVec3 {
+        let [a, b, c] = shape.normals;
         let sum = a * weights.x + b * weights.y + c * weights.z;
         // Corners with opposite normals have none between them.
         let normal = match sum.length_squared() {
-            square if square > 1e-12 => sum / square.sqrt(),
-            _ => math::unit(surface.normal).unwrap_or(DVec3::Z),
+            square if square > 1e-12 => sum * (1.0 / square.sqrt()),
+            _ => math::unit(shape.normal).unwrap_or(DVec3::Z),
         };
         self.turn.map_or(normal, |turn| turn * normal)
     }
 }
 
-/// The triangles of the last pixels. Neighbouring pixels mostly show the same ones.
-struct Surfaces([Option<(u32, SurfaceTriangle)>; CACHED]);
+/// The side of a block of pixels.
+const SIDE: usize = BLOCK.cast_unsigned() as usize;
 
-/// The number of prepared triangles, by the lowest bits of their numbers.
+/// Returns the point with these weights, from a corner and the vectors to the others.
+#[inline(always)]
+fn point([a, b, c]: [DVec3; 3], weights: DVec3) -> DVec3 {
+    a + b * weights.y + c * weights.z
+}
+
+/// The triangles of the last pixels. Neighbouring pixels mostly show the same ones.
+struct Surfaces {
+    /// Prepared triangles, by the lowest bits of their numbers.
+    cached: [Option<(u32, SurfaceTriangle)>; CACHED],
+    /// The pixels of a block that show one triangle: places in the band, with weights.
+    points: Vec<(usize, DVec3)>,
+}
+
+/// The number of prepared triangles.
 const CACHED: usize = 64;
 
 impl Default for Surfaces {
     fn default() -> Self {
-        Self([const { None }; CACHED])
+        Self { cached: [const { None }; CACHED], points: Vec::new() }
     }
 }
 
-impl Surfaces {
-    fn of(&mut self, source: &Source<'_>, number: u32) -> &SurfaceTriangle {
-        let slot = &mut self.0[number as usize % CACHED];
-        if slot.as_ref().is_some_and(|(other, _)| *other != number) {
-            *slot = None;
-        }
-        &slot.get_or_insert_with(|| (number, source.surface(number))).1
+/// Returns a triangle, and prepares it if necessary.
+fn of<'a>(
+    cached: &'a mut [Option<(u32, SurfaceTriangle)>; CACHED],
+    source: &Source<'_>,
+    number: u32,
+) -> &'a SurfaceTriangle {
+    let slot = &mut cached[number as usize % CACHED];
+    if slot.as_ref().is_some_and(|(other, _)| *other != number) {
+        *slot = None;
     }
+    &slot.get_or_insert_with(|| (number, source.surface(number))).1
 }
