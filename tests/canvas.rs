@@ -76,7 +76,7 @@ impl Page {
 #[test]
 fn the_first_scene_appears_and_keys_and_pointer_change_it() {
     let mut page = Page::open();
-    assert_eq!(page.pixel(450, 250), 0x00_00_b4, "the background of the first scene is blue");
+    assert_eq!(page.pixel(450, 250), 0x00_00_b3, "the background of the first scene is blue");
     let before = page.shell.pixels().to_vec();
     // Dragging looks around.
     let at = |dx: f32| pos2(450.0 + dx, 250.0);

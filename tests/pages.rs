@@ -25,6 +25,7 @@ const PAGES: &[&str] = &[
     "docs/effects.md",
     "docs/engines.md",
     "docs/glossary.md",
+    "docs/install.md",
     "docs/keys.md",
     "docs/many.md",
     "docs/python.md",
