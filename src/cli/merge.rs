@@ -26,7 +26,7 @@ Pictures are joined by their number in the list. If two reports hold the same pi
 retry, the one that is there is kept. Missing pictures are printed with their number, model, view
 and status, separated by tabs; \"absent\" pictures are in no report.
 
-The file of --out is never read, also if a pattern names it.
+The file of --out is never read, even if a pattern names it.
 
 Examples:
   marraztu merge \"report-*.jsonl\" --out report.jsonl --sheet page.html

@@ -68,7 +68,7 @@ pub fn sheet_page(title: &str, cells: &[PageCell]) -> String {
     text + "</main>\n</body></html>\n"
 }
 
-const SHEET_STYLE: &str = "body{max-width:none}main{display:grid;gap:1rem;\
+const SHEET_STYLE: &str = "body{max-width:none}main{display:grid;gap:1rem;margin:1rem 0;\
     grid-template-columns:repeat(auto-fill,minmax(12rem,1fr))}figure{margin:0}\
     img{width:100%;aspect-ratio:1;object-fit:contain}\
     figcaption{font-size:.8rem;overflow-wrap:anywhere}td{text-align:left}";

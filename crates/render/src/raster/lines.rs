@@ -70,8 +70,8 @@ pub(crate) struct ScreenLine {
     pub(crate) number: u32,
     /// The depth bias: the line is drawn this many steps of depth nearer.
     pub(crate) nearer: u32,
-    /// The grid of the ends. It is that of the triangles: a line that is moved against its surface
-    /// would be hidden by it.
+    /// The grid of the ends, which is the grid of the triangles: on another one, a line would be
+    /// hidden by its own surface.
     pub(crate) grid: Grid,
 }
 

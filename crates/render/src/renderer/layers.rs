@@ -390,16 +390,30 @@ impl<'a> Source<'a> {
                     }
                 }
                 (Layer::Object, Rows::I32(rows), _) => {
-                    points.iter().for_each(|it| rows[it.0] = object)
+                    for (place, _) in points {
+                        rows[*place] = object;
+                    }
                 }
-                (Layer::Part, Rows::I32(rows), _) => points.iter().for_each(|it| rows[it.0] = part),
+                (Layer::Part, Rows::I32(rows), _) => {
+                    for (place, _) in points {
+                        rows[*place] = part;
+                    }
+                }
                 (Layer::Material, Rows::I32(rows), _) => {
-                    points.iter().for_each(|it| rows[it.0] = material);
+                    for (place, _) in points {
+                        rows[*place] = material;
+                    }
                 }
                 (Layer::Polygon, Rows::I32(rows), _) => {
-                    points.iter().for_each(|it| rows[it.0] = polygon);
+                    for (place, _) in points {
+                        rows[*place] = polygon;
+                    }
                 }
-                (Layer::Mask, Rows::U8(rows), _) => points.iter().for_each(|it| rows[it.0] = 1),
+                (Layer::Mask, Rows::U8(rows), _) => {
+                    for (place, _) in points {
+                        rows[*place] = 1;
+                    }
+                }
                 (_, Rows::F32(_) | Rows::I32(_) | Rows::U8(_), _) => {
                     unreachable!("each layer has numbers of its type")
                 }
