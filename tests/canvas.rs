@@ -19,7 +19,7 @@ impl Page {
         page
     }
 
-    /// Runs frames until none is due for a second. In every frame, all changes have to be within
+    /// Runs frames until none is due. In every frame, all changes have to be within
     /// the reported areas.
     fn rest(&mut self) -> Vec<Painted> {
         let mut frames = Vec::new();

@@ -21,7 +21,9 @@ const editor = instance.exports;
 
 function write(text) {
   const bytes = new TextEncoder().encode(text);
-  new Uint8Array(editor.memory.buffer, editor.input(bytes.length), bytes.length).set(bytes);
+  // A call may move the memory, so the address comes first.
+  const address = editor.input(bytes.length);
+  new Uint8Array(editor.memory.buffer, address, bytes.length).set(bytes);
 }
 
 function read(length) {
@@ -42,11 +44,11 @@ if (all === 0 || differing.length > 0) {
 const [width, height] = [1280, 800];
 let now = 0;
 
-// Runs frames until none is due.
+// Runs frames until none is due, except for a text cursor that blinks.
 async function rest() {
   for (let count = 0; count < 3000; count++) {
     const { due } = read(editor.frame(now));
-    if (due === undefined) {
+    if (due === undefined || due >= 400) {
       return;
     }
     now += Math.max(due, 5) / 1000;
@@ -78,7 +80,8 @@ await hear({ kind: "text", text: "overlays" });
 await hear(...press("Enter"));
 
 // The background of the first scene is blue; the picture is the rectangle around a blue pixel.
-const pixels = Buffer.from(editor.memory.buffer, editor.rgba(0, 0, width, height), 4 * width * height);
+const address = editor.rgba(0, 0, width, height);
+const pixels = Buffer.from(editor.memory.buffer, address, 4 * width * height);
 const isBlue = (x, y) => pixels.readUIntBE(4 * (y * width + x), 3) === 0x0000b3;
 let [left, right, top, bottom] = [640, 640, 200, 200];
 if (!isBlue(left, top)) {
