@@ -5,6 +5,8 @@ import { Directory, File } from "./wasi/index.js";
 
 const DATABASE = "marraztu";
 const STORE = "own";
+// The user's files, by path: unsaved work refers to them.
+const USER = "files";
 
 export class Files {
   constructor() {
@@ -12,7 +14,8 @@ export class Files {
     this.own = new Directory(new Map());
     // The content of each file of the user that the page knows.
     this.known = new Map();
-    this.kept = "";
+    // The content of /own that the database has.
+    this.kept = new Map();
     this.database = null;
   }
 
@@ -38,6 +41,8 @@ export class Files {
     folder.contents.set(last, file);
     const path = [...parts, last].join("/");
     this.known.set(path, file.data);
+    // Without room the editor works; recovered work then lacks this file.
+    this.database?.transaction(USER, "readwrite").objectStore(USER).put(bytes, path);
     return `/files/${path}`;
   }
 
@@ -54,7 +59,7 @@ export class Files {
         const full = path + name;
         if (entry instanceof Directory) {
           visit(entry, `${full}/`);
-        } else if (this.known.get(full) !== entry.data && !name.startsWith(".")) {
+        } else if (this.known.get(full) !== entry.data && !name.startsWith(".") && !name.endsWith("~")) {
           this.known.set(full, entry.data);
           found.push([name, entry.data]);
         }
@@ -68,21 +73,51 @@ export class Files {
   async restore() {
     try {
       this.database = await new Promise((resolve, reject) => {
-        const request = indexedDB.open(DATABASE, 1);
-        request.onupgradeneeded = () => request.result.createObjectStore(STORE);
+        const request = indexedDB.open(DATABASE, 2);
+        request.onupgradeneeded = () => {
+          for (const name of [STORE, USER]) {
+            if (!request.result.objectStoreNames.contains(name)) {
+              request.result.createObjectStore(name);
+            }
+          }
+        };
+        // Another tab has the former version.
+        request.onblocked = () => reject(new Error("another tab uses them"));
         request.onsuccess = () => resolve(request.result);
         request.onerror = () => reject(request.error);
       });
       const store = this.database.transaction(STORE).objectStore(STORE);
-      const all = await answer(store.get(STORE));
-      for (const [path, bytes] of Object.entries(all ?? {})) {
+      const all = Object.entries((await answer(store.get(STORE))) ?? {});
+      const isWork = ([path]) => path.startsWith("state/");
+      if (!(await isOnlyTab())) {
+        // Another tab keeps its work; this one gets the preferences alone, and keeps nothing.
+        console.warn("Another tab is open: preferences and unsaved work of this one are not kept.");
+        this.database = null;
+      }
+      for (const [path, bytes] of all.filter((file) => this.database || !isWork(file))) {
         this.put(path, bytes);
+      }
+      if (this.database) {
+        await this.restoreUser(all.some(([path]) => /^state\/.*\.marraztu$/.test(path)));
       }
     } catch (error) {
       // A private window may have no database; the editor works without.
       console.warn("Preferences and unsaved work are not kept:", error);
     }
-    this.kept = this.state();
+    this.kept = new Map(this.list());
+  }
+
+  // Reads the user's files if there is work that needs them, or else forgets them.
+  async restoreUser(isNeeded) {
+    const store = this.database.transaction(USER, "readwrite").objectStore(USER);
+    if (!isNeeded) {
+      await answer(store.clear());
+      return;
+    }
+    const [paths, contents] = await Promise.all([answer(store.getAllKeys()), answer(store.getAll())]);
+    for (const [index, path] of paths.entries()) {
+      this.add(path, contents[index]);
+    }
   }
 
   put(path, bytes) {
@@ -113,23 +148,31 @@ export class Files {
     return found;
   }
 
-  // Describes the content of /own; another content has another description.
-  state() {
-    const hash = (bytes) => bytes.reduce((sum, byte) => (Math.imul(sum, 31) + byte) | 0, 7);
-    return this.list().map(([path, bytes]) => `${path} ${bytes.length} ${hash(bytes)}`).join("\n");
-  }
-
-  // Keeps /own for the next visit, if it has changed.
+  // Keeps /own for the next visit, if it has changed. A written file has another array of bytes.
   keep() {
-    const state = this.state();
-    if (!this.database || state === this.kept) {
+    const list = this.list();
+    const isKept = ([path, bytes]) => this.kept.get(path) === bytes;
+    if (!this.database || (list.length === this.kept.size && list.every(isKept))) {
       return;
     }
-    this.kept = state;
+    this.kept = new Map(list);
     const store = this.database.transaction(STORE, "readwrite").objectStore(STORE);
     // The files are copied: the editor goes on writing.
-    store.put(Object.fromEntries(this.list().map(([path, bytes]) => [path, bytes.slice()])), STORE);
+    store.put(Object.fromEntries(list.map(([path, bytes]) => [path, bytes.slice()])), STORE);
   }
+}
+
+// Returns whether no other tab has the editor open. The answer holds until this page is closed.
+function isOnlyTab() {
+  if (!navigator.locks) {
+    return true;
+  }
+  return new Promise((resolve) => {
+    navigator.locks.request(DATABASE, { ifAvailable: true }, (lock) => {
+      resolve(lock !== null);
+      return lock && new Promise(() => {});
+    });
+  });
 }
 
 function answer(request) {

@@ -20,17 +20,19 @@ const files = new Files();
 const encoder = new TextEncoder();
 const decoder = new TextDecoder();
 
-// The exports of the module.
+// The exports of the module: `editor` is set when the editor has started, as no event may come
+// before.
+let module = null;
 let editor = null;
 
 function write(value) {
   const bytes = encoder.encode(value);
-  const address = editor.input(bytes.length);
-  new Uint8Array(editor.memory.buffer, address, bytes.length).set(bytes);
+  const address = module.input(bytes.length);
+  new Uint8Array(module.memory.buffer, address, bytes.length).set(bytes);
 }
 
 function read(length) {
-  return JSON.parse(decoder.decode(new Uint8Array(editor.memory.buffer, editor.output(), length)));
+  return JSON.parse(decoder.decode(new Uint8Array(module.memory.buffer, module.output(), length)));
 }
 
 // Reports what stops the editor. The next visit offers the unsaved work.
@@ -57,6 +59,10 @@ function run(time) {
   if (!editor) {
     return;
   }
+  // Another screen changes the scale without a resize; fitting runs a frame.
+  if (fit()) {
+    return;
+  }
   try {
     const length = editor.frame(time / 1000);
     obey(read(length));
@@ -80,6 +86,9 @@ function obey(frame) {
       // A menu or a button copies outside of a copy event.
       navigator.clipboard?.writeText(copied).catch(() => {});
     }
+  }
+  if (frame.picture) {
+    copyPicture(...frame.picture);
   }
   if (frame.link) {
     window.open(frame.link, "_blank", "noopener");
@@ -111,8 +120,12 @@ function hear(event) {
   if (!editor) {
     return;
   }
-  write(JSON.stringify(event));
-  editor.hear();
+  try {
+    write(JSON.stringify(event));
+    editor.hear();
+  } catch (error) {
+    fail(error);
+  }
   schedule();
 }
 
@@ -128,6 +141,10 @@ const touches = new Touches(hear);
 
 canvas.addEventListener("pointerdown", (event) => {
   event.preventDefault();
+  if (editor) {
+    // What was said about the start has been read.
+    status.textContent = "";
+  }
   text.focus({ preventScroll: true });
   canvas.setPointerCapture(event.pointerId);
   if (event.pointerType === "touch") {
@@ -185,7 +202,7 @@ canvas.addEventListener("wheel", (event) => {
 // The keys that the browser keeps: they copy, cut and paste, reload, or open tools of developers.
 function isOfBrowser(event) {
   const command = event.ctrlKey || event.metaKey;
-  return (command && ["c", "x", "v", "r"].includes(event.key.toLowerCase()))
+  return (command && !event.shiftKey && !event.altKey && ["c", "x", "v", "r"].includes(event.key.toLowerCase()))
     || (command && event.shiftKey && ["i", "j"].includes(event.key.toLowerCase()))
     || event.key === "F11";
 }
@@ -199,7 +216,9 @@ function key(event, pressed) {
   }
   hear({ kind: "key", key: event.key, code: event.code, pressed, repeat: event.repeat, modifiers: modifiers(event) });
   // Keys that write a letter go on to the hidden input.
-  const writes = event.key.length === 1 && !event.ctrlKey && !event.metaKey;
+  // AltGr reports Ctrl and Alt on Windows; a dead key waits for its letter.
+  const isLetter = event.key.length === 1 && ((!event.ctrlKey && !event.metaKey) || event.getModifierState("AltGraph"));
+  const writes = isLetter || event.key === "Dead";
   if (!writes) {
     event.preventDefault();
   }
@@ -242,6 +261,15 @@ function copy(event, kind) {
     event.clipboardData.setData("text/plain", copied);
   }
   event.preventDefault();
+}
+
+async function copyPicture(width, height) {
+  const bytes = new Uint8ClampedArray(editor.memory.buffer, editor.picture(), width * height * 4).slice();
+  const sheet = new OffscreenCanvas(width, height);
+  sheet.getContext("2d").putImageData(new ImageData(bytes, width, height), 0, 0);
+  const blob = sheet.convertToBlob({ type: "image/png" });
+  // A browser that denies it leaves the clipboard as it was.
+  await navigator.clipboard?.write([new ClipboardItem({ "image/png": blob })]).catch(console.warn);
 }
 
 document.addEventListener("copy", (event) => copy(event, "copy"));
@@ -294,10 +322,14 @@ picker.addEventListener("cancel", () => {
 canvas.addEventListener("dragover", (event) => event.preventDefault());
 canvas.addEventListener("drop", async (event) => {
   event.preventDefault();
+  // Both lists are read before the first wait, which empties them.
   const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
-  const list = [];
+  const list = entries.length > 0 ? [] : [...event.dataTransfer.files].map((file) => [file.name, file]);
   for (const entry of entries) {
     await walk(entry, "", list);
+  }
+  if (list.length === 0 || !editor) {
+    return;
   }
   const paths = await add(list);
   write(opened(paths).join("\n"));
@@ -341,21 +373,24 @@ async function fetched(url) {
     }
     return new Uint8Array(await response.arrayBuffer());
   };
-  const name = decodeURIComponent(base.pathname.split("/").pop()) || "model.obj";
-  const path = files.add(name, await get(base));
+  // The files keep their folders, so that "../" between them works.
+  const name = (place) => decodeURIComponent(place.pathname);
+  const path = files.add(name(base).replace(/\/$/, "/model.obj"), await get(base));
   // An MTL file names textures, so the list grows once.
   const tried = new Set();
   for (let round = 0; round < 3; round++) {
     write(path);
-    const missing = read(editor.missing()).filter((other) => !tried.has(other));
+    const missing = read(module.missing()).filter((other) => !tried.has(other));
     if (missing.length === 0) {
       break;
     }
     for (const other of missing) {
       tried.add(other);
-      const plain = other.replaceAll("\\", "/");
+      // Names of files may hold "#", "?" and "%".
+      const plain = other.replaceAll("\\", "/").split("/").map(encodeURIComponent).join("/");
+      const place = new URL(plain, base);
       // A missing file is reported by the editor.
-      await get(new URL(plain, base)).then((bytes) => files.add(plain, bytes), () => {});
+      await get(place).then((bytes) => files.add(name(place), bytes), () => {});
     }
   }
   return path;
@@ -375,13 +410,14 @@ function measure() {
 function fit() {
   const [width, height, scale] = measure();
   if (!editor || (width === size[0] && height === size[1] && scale === size[2])) {
-    return;
+    return false;
   }
   size = [width, height, scale];
   canvas.width = width;
   canvas.height = height;
   editor.resize(width, height, scale);
   run(performance.now());
+  return true;
 }
 
 async function begin() {
@@ -391,26 +427,43 @@ async function begin() {
   await files.restore();
   const { instance } = await WebAssembly.instantiateStreaming(fetch("marraztu.wasm"), { wasi_snapshot_preview1: wasi.wasiImport });
   wasi.initialize(instance);
-  editor = instance.exports;
+  module = instance.exports;
   const query = new URLSearchParams(location.search);
   if (query.has("verify")) {
     const begun = performance.now();
-    const { all, differing } = read(editor.verify());
+    const { all, differing } = read(module.verify());
     const seconds = ((performance.now() - begun) / 1000).toFixed(1);
     status.textContent = [`${all - differing.length} of ${all} pictures are as listed (${seconds} s)`, ...differing].join("\n");
     return;
   }
   const model = query.get("model");
-  const path = model ? await fetched(model) : "";
+  let unloaded = "";
+  let path = "";
+  if (model) {
+    status.textContent = `Loading ${model} ...`;
+    // The editor starts without the model, and says why.
+    path = await fetched(model).catch((error) => {
+      console.error(error);
+      unloaded = String(error);
+      return "";
+    });
+  }
   size = measure();
   [canvas.width, canvas.height] = size;
   write(path);
-  if (editor.start(...size) !== 0) {
+  if (module.start(...size) !== 0) {
     throw new Error("the editor cannot start");
   }
-  status.textContent = "";
+  editor = module;
+  status.textContent = unloaded;
   text.focus({ preventScroll: true });
-  new ResizeObserver(fit).observe(canvas);
+  // Another screen may change the scale alone, which is a resize only in pixels of the device.
+  const observer = new ResizeObserver(fit);
+  try {
+    observer.observe(canvas, { box: "device-pixel-content-box" });
+  } catch {
+    observer.observe(canvas);
+  }
   run(performance.now());
   performance.mark("first picture");
 }

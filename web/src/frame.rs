@@ -1,6 +1,6 @@
 //! The result of a frame, for the page.
 
-use egui::{CursorIcon, OutputCommand};
+use egui::{ColorImage, CursorIcon, OutputCommand};
 use serde::Serialize;
 
 use marraztu::app::{CanvasShell, Painted};
@@ -15,6 +15,10 @@ pub(crate) struct Frame {
     /// Text for the clipboard.
     #[serde(skip_serializing_if = "Option::is_none")]
     copied: Option<String>,
+    /// The width and height of a picture for the clipboard, whose bytes [`picture`](crate::picture)
+    /// returns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    picture: Option<[usize; 2]>,
     /// A link to open.
     #[serde(skip_serializing_if = "Option::is_none")]
     link: Option<String>,
@@ -30,19 +34,21 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    pub(crate) fn new(shell: &CanvasShell, painted: Painted) -> Self {
+    /// Also returns a picture for the clipboard.
+    pub(crate) fn new(shell: &CanvasShell, painted: Painted) -> (Self, Option<ColorImage>) {
         let Painted { changed, output, wants } = painted;
         let changed = changed
             .into_iter()
             .map(|area| [area.left, area.top, area.width(), area.height()])
             .filter(|[_, _, width, height]| *width > 0 && *height > 0)
             .collect();
-        let (mut copied, mut link) = (None, None);
+        let (mut copied, mut image, mut link) = (None, None, None);
         for command in output.commands {
             match command {
                 OutputCommand::CopyText(text) => copied = Some(text),
+                OutputCommand::CopyImage(copied) => image = Some(copied),
                 OutputCommand::OpenUrl(url) => link = Some(url.url),
-                _ => {}
+                OutputCommand::TextSelectionSettled(_) => {}
             }
         }
         let zoom = shell.zoom();
@@ -51,7 +57,9 @@ impl Frame {
             [rect.left(), rect.top(), rect.width(), rect.height()].map(|length| length * zoom)
         });
         let due = shell.due().map(|due| due.as_secs_f64() * 1000.0);
-        Self { changed, cursor: css(output.cursor_icon), copied, link, edited, wants, due }
+        let cursor = css(output.cursor_icon);
+        let picture = image.as_ref().map(|image| image.size);
+        (Self { changed, cursor, copied, picture, link, edited, wants, due }, image)
     }
 }
 

@@ -28,6 +28,8 @@ struct Page {
     output: Vec<u8>,
     /// Red, green, blue and opacity of the pixels that the page copies.
     rgba: Vec<u8>,
+    /// The same of a picture for the clipboard.
+    picture: Vec<u8>,
 }
 
 thread_local! {
@@ -131,9 +133,18 @@ pub extern "C" fn frame(time: f64) -> usize {
     with(|page| {
         let Some(shell) = &mut page.shell else { return 0 };
         let painted = shell.frame(time);
-        let frame = Frame::new(shell, painted);
+        let (frame, image) = Frame::new(shell, painted);
+        if let Some(image) = image {
+            page.picture = image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
+        }
         page.write(&frame)
     })
+}
+
+/// Returns the address of the RGBA bytes of the last picture for the clipboard, row by row.
+#[unsafe(no_mangle)]
+pub extern "C" fn picture() -> *const u8 {
+    with(|page| page.picture.as_ptr())
 }
 
 /// Returns the address of the RGBA bytes of a rectangle of the canvas, row by row; null if it is

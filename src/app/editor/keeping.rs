@@ -120,7 +120,11 @@ impl App {
         // Preferences are written once, after a drag or a series of changes has ended.
         match &keeping.changed {
             Some((before, since)) if *before == now => {
-                if time - since >= QUIET {
+                let rest = QUIET - (time - since);
+                if rest > 0.0 {
+                    // Asked for in every frame: a frame takes back the wishes of the one before.
+                    ctx.request_repaint_after(Duration::from_secs_f64(rest + 0.05));
+                } else {
                     keeping.preferences = now;
                     keeping.changed = None;
                     keeping.write_preferences();
@@ -304,7 +308,12 @@ fn scene_name(file: Option<&Path>) -> String {
 /// Describes offered work: "The program ended with unsaved changes to harbour.marraztu, from 3
 /// minutes ago."
 fn described(work: &Abandoned, now: SystemTime) -> String {
-    let (name, age) = (scene_name(work.scene_file.as_deref()), age(work.written, now));
+    let name = scene_name(work.scene_file.as_deref());
+    // The files of a page have no times.
+    if work.written == SystemTime::UNIX_EPOCH {
+        return format!("The program ended with unsaved changes to {name}.");
+    }
+    let age = age(work.written, now);
     format!("The program ended with unsaved changes to {name}, from {age}.")
 }
 

@@ -247,6 +247,10 @@ impl App {
         match intent {
             FileIntent::New => self.unless_unsaved(ctx, After::New),
             FileIntent::Open => self.unless_unsaved(ctx, After::Open(None)),
+            FileIntent::Quit if cfg!(target_family = "wasm") => {
+                let text = "The browser closes this page; the next visit offers unsaved changes";
+                self.state.tell(Some(text.to_owned()));
+            }
             FileIntent::Quit => self.unless_unsaved(ctx, After::Quit),
             FileIntent::Load => self.ask_file(ctx, Wanted::Model, ""),
             FileIntent::Save => self.save(ctx, None),
