@@ -287,7 +287,12 @@ document.addEventListener("paste", (event) => {
 async function add(list) {
   const paths = [];
   for (const [name, file] of list) {
-    paths.push(files.add(name, new Uint8Array(await file.arrayBuffer())));
+    try {
+      paths.push(files.add(name, new Uint8Array(await file.arrayBuffer())));
+    } catch (error) {
+      // The file may be gone, or not readable.
+      status.textContent = `${name}: ${error.message}`;
+    }
   }
   return paths;
 }
