@@ -13,7 +13,7 @@ struct Page {
 
 impl Page {
     fn open() -> Self {
-        let shell = CanvasShell::new(SIZE, 1.0, Vec::new()).unwrap();
+        let shell = CanvasShell::new(SIZE, 1.0, Vec::new()).expect("there are threads");
         let mut page = Self { shell, time: 0.0 };
         page.rest();
         page
@@ -47,7 +47,8 @@ impl Page {
     fn assert_changes_are_reported(&self, before: &[u32], painted: &Painted) {
         for (at, (old, new)) in before.iter().zip(self.shell.pixels()).enumerate() {
             if old != new {
-                let [x, y] = [at % SIZE[0], at / SIZE[0]].map(|at| i32::try_from(at).unwrap());
+                let place = [at % SIZE[0], at / SIZE[0]];
+                let [x, y] = place.map(|at| i32::try_from(at).expect("the canvas is small"));
                 let is_in = painted.changed.iter().any(|area| {
                     (area.left..area.right).contains(&x) && (area.top..area.bottom).contains(&y)
                 });
