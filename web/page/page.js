@@ -268,8 +268,9 @@ async function copyPicture(width, height) {
   const sheet = new OffscreenCanvas(width, height);
   sheet.getContext("2d").putImageData(new ImageData(bytes, width, height), 0, 0);
   const blob = sheet.convertToBlob({ type: "image/png" });
-  // A browser that denies it leaves the clipboard as it was.
-  await navigator.clipboard?.write([new ClipboardItem({ "image/png": blob })]).catch(console.warn);
+  await navigator.clipboard?.write([new ClipboardItem({ "image/png": blob })]).catch((error) => {
+    status.textContent = `The picture was not copied: ${error.message}`;
+  });
 }
 
 document.addEventListener("copy", (event) => copy(event, "copy"));
