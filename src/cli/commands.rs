@@ -1,10 +1,13 @@
 //! The commands of the program, and its arguments without one.
 
+#[cfg(feature = "desktop")]
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
-use super::arguments::{Info, Render, choice};
+#[cfg(feature = "desktop")]
+use super::arguments::choice;
+use super::arguments::{Info, Render};
 #[cfg(not(target_family = "wasm"))]
 use super::batch::Batch;
 use super::compare::Compare;
@@ -24,6 +27,7 @@ use super::verify::Verify;
 use super::views::Views;
 #[cfg(feature = "desktop")]
 use marraztu::app::Shell;
+#[cfg(feature = "desktop")]
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset};
 
 /// Edits and draws 3D scenes of .obj models, on the CPU alone.

@@ -48,9 +48,9 @@ impl Fault {
             Failure::Save(_) | Failure::Write(..) | Failure::Output(_) => {
                 Self::Output(failure.to_string())
             }
-            Failure::Measure(_) | Failure::Plot(_) | Failure::Start(_) => {
-                Self::Program(failure.to_string())
-            }
+            Failure::Measure(_) | Failure::Plot(_) => Self::Program(failure.to_string()),
+            #[cfg(feature = "desktop")]
+            Failure::Start(_) => Self::Program(failure.to_string()),
             Failure::Usage(_)
             | Failure::Unparsed(_)
             | Failure::Told
