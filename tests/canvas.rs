@@ -5,7 +5,7 @@ use marraztu::app::{CanvasShell, Painted};
 
 const SIZE: [usize; 2] = [900, 600];
 
-/// A shell whose time runs as fast as it asks for.
+/// A shell with a simulated clock, which advances to the next frame that is due.
 struct Page {
     shell: CanvasShell,
     time: f64,
@@ -19,8 +19,8 @@ impl Page {
         page
     }
 
-    /// Runs frames until none is due. In every frame, all changes have to be within
-    /// the reported areas.
+    /// Runs frames until none is due. In every frame, all changes have to be within the reported
+    /// areas.
     fn rest(&mut self) -> Vec<Painted> {
         let mut frames = Vec::new();
         for _ in 0..2000 {

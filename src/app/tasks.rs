@@ -56,7 +56,7 @@ impl<T: Send + 'static> Task<T> {
         Ok(Self { label, progress, receiver })
     }
 
-    /// Returns a task whose result is sent by somebody else.
+    /// Returns a task, and the sender for its result.
     pub(crate) fn promised(label: String) -> (Self, Sender<T>) {
         let (sender, receiver) = mpsc::channel();
         (Self { label, progress: Progress::new(), receiver }, sender)

@@ -15,8 +15,8 @@ pub(crate) struct Frame {
     /// Text for the clipboard.
     #[serde(skip_serializing_if = "Option::is_none")]
     copied: Option<String>,
-    /// The width and height of a picture for the clipboard, whose bytes [`picture`](crate::picture)
-    /// returns.
+    /// The width and height of a picture for the clipboard. [`picture`](crate::picture) returns its
+    /// bytes.
     #[serde(skip_serializing_if = "Option::is_none")]
     picture: Option<[usize; 2]>,
     /// A link to open.

@@ -1,7 +1,7 @@
 //! The editor as a WebAssembly module for a page of a browser.
 //!
-//! The module is built for WASI, so files, clocks and random numbers are those of the standard
-//! library; the page provides a file system in memory. The page's code is in `web/page`.
+//! The module is built for WASI, so the standard library provides files, clocks and random numbers.
+//! The page provides a file system in memory. The page's code is in `web/page`.
 //!
 //! Exported functions pass numbers. Longer values pass through two byte buffers: the page fills
 //! [`input`] before a call, and reads [`output`] after it. Events and results are JSON; see

@@ -376,7 +376,7 @@ impl Here {
     }
 }
 
-/// Draws pictures, and remembers what it has drawn last.
+/// Draws pictures, and keeps the last snapshot.
 struct Painter {
     renderer: ViewportRenderer,
     last: Option<Snapshot>,

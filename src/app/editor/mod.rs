@@ -60,7 +60,7 @@ use measuring::Measuring;
 use reloading::Watch;
 use unseen::Search;
 
-/// The preferences with what is to be said about them, and the folders of the program's files.
+/// The preferences, a notice about reading them, and the folders of the program's files.
 pub(crate) type Kept = ((Preferences, Option<String>), OwnFolders);
 
 /// The editor.

@@ -164,7 +164,7 @@ impl CanvasShell {
     /// Runs the editor at a time in seconds, with the input since the last frame, and paints it.
     pub fn frame(&mut self, time: f64) -> Painted {
         self.due.store(u64::MAX, Ordering::Relaxed);
-        // Begun in the last frame, which has shown so.
+        // The last frame has shown that this work begins.
         do_waiting();
         let mut input = self.input.take();
         input.time = Some(time);
