@@ -1,22 +1,51 @@
 //! The editor in an array of pixels, as in a page of a browser.
 
 use egui::{Event, Key, Modifiers, PointerButton, pos2};
-use marraztu::app::{CanvasShell, Painted};
+use marraztu::app::{CanvasShell, DrawingServer, Painted};
 
 const SIZE: [usize; 2] = [900, 600];
 
 /// A shell with a simulated clock, which advances to the next frame that is due.
 struct Page {
     shell: CanvasShell,
+    /// What draws the viewport, if the shell itself does not.
+    server: Option<DrawingServer>,
     time: f64,
 }
 
 impl Page {
     fn open() -> Self {
         let shell = CanvasShell::new(SIZE, 1.0, Vec::new()).expect("there are threads");
-        let mut page = Self { shell, time: 0.0 };
+        let mut page = Self { shell, server: None, time: 0.0 };
         page.rest();
         page
+    }
+
+    /// Opens a page whose viewport a server draws.
+    fn open_with_server() -> Self {
+        let mut shell = CanvasShell::new(SIZE, 1.0, Vec::new()).expect("there are threads");
+        shell.draw_elsewhere();
+        let mut page = Self { shell, server: Some(DrawingServer::new(|| false)), time: 0.0 };
+        page.rest();
+        page
+    }
+
+    /// Passes messages until the server waits; returns whether it does.
+    fn exchange(&mut self) -> bool {
+        let Some(server) = &mut self.server else { return true };
+        loop {
+            if let Some(request) = self.shell.request() {
+                server.hear(&request);
+            }
+            match server.rest() {
+                None => return true,
+                Some(rest) if !rest.is_zero() => return false,
+                Some(_) => {}
+            }
+            if let Some(reply) = server.work() {
+                self.shell.reply(Some(&reply));
+            }
+        }
     }
 
     /// Runs frames until none is due. In every frame, all changes have to be within the reported
@@ -28,6 +57,7 @@ impl Page {
             let painted = self.shell.frame(self.time);
             self.assert_changes_are_reported(&before, &painted);
             frames.push(painted);
+            let waits = self.exchange();
             match self.shell.due() {
                 // Pictures are drawn on a thread here, which wakes the editor.
                 None => std::thread::sleep(std::time::Duration::from_millis(100)),
@@ -37,7 +67,7 @@ impl Page {
                     continue;
                 }
             }
-            if self.shell.due().is_none() {
+            if self.shell.due().is_none() && waits {
                 return frames;
             }
         }
@@ -97,4 +127,61 @@ fn the_first_scene_appears_and_keys_and_pointer_change_it() {
     assert_ne!(looked, before, "dragging looks around");
     page.press(Key::L, "l");
     assert_ne!(page.shell.pixels(), looked, "l switches the wireframe");
+}
+
+impl Page {
+    /// Returns the middle of the viewport, which no text covers.
+    fn middle(&self) -> Vec<u32> {
+        (150..400)
+            .flat_map(|y| (300..600).map(move |x| (x, y)))
+            .map(|(x, y)| self.pixel(x, y))
+            .collect()
+    }
+
+    /// Returns a place on an object: the middle of five pixels that are not of the background.
+    fn seen_object(&self) -> [f32; 2] {
+        let is_object = |x: usize, y: usize| self.pixel(x, y) != 0x00_00_b3;
+        let mut places = (150..400).flat_map(|y| (300..600).map(move |x| (x, y)));
+        let found = places.find(|(x, y)| (0..5).all(|i| is_object(x + i, *y)));
+        let (x, y) = found.expect("the first scene has objects");
+        [x + 2, y].map(|at| f32::from(u16::try_from(at).expect("the canvas is small")))
+    }
+
+    fn click(&mut self, x: f32, y: f32) {
+        let (pos, button, modifiers) = (pos2(x, y), PointerButton::Primary, Modifiers::NONE);
+        self.shell.hear(Event::PointerMoved(pos));
+        self.rest();
+        for pressed in [true, false] {
+            self.shell.hear(Event::PointerButton { pos, button, pressed, modifiers });
+            self.rest();
+        }
+    }
+}
+
+#[test]
+fn a_server_draws_the_pictures_that_the_shell_draws_itself() {
+    let mut pages = [Page::open(), Page::open_with_server()];
+    let mut seen = Vec::new();
+    let mut compare = |pages: &[Page; 2], what: &str| {
+        let [here, there] = pages.each_ref().map(Page::middle);
+        assert!(here == there, "{what}");
+        assert!(!seen.contains(&here), "{what} is not seen");
+        seen.push(here);
+    };
+    compare(&pages, "the first scene");
+    // A click asks which item the pixel shows, and selects it.
+    let [x, y] = pages[0].seen_object();
+    pages.each_mut().map(|page| page.click(x, y));
+    compare(&pages, "the outline of a selected object");
+    pages.each_mut().map(|page| drop(page.press(Key::X, "x")));
+    compare(&pages, "a moved object");
+    pages.each_mut().map(|page| drop(page.press(Key::L, "l")));
+    compare(&pages, "a wireframe");
+    // A server that stops costs nothing but a picture.
+    let [_, page] = &mut pages;
+    page.server = Some(DrawingServer::new(|| false));
+    page.shell.reply(None);
+    pages.each_mut().map(|page| drop(page.press(Key::L, "l")));
+    pages.each_mut().map(|page| drop(page.press(Key::X, "x")));
+    compare(&pages, "a picture by another server");
 }

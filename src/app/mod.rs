@@ -47,7 +47,9 @@ pub mod theme;
 mod viewport;
 pub mod widgets;
 
+pub use drawing::worker::server::DrawingServer;
 pub use editor::App;
+pub use editor::laboratory_messages::measure_job;
 pub use shell::{CanvasShell, Painted};
 #[cfg(feature = "desktop")]
 pub use shell::{Shell, StartError};

@@ -2,6 +2,7 @@
 //
 // It compares all listed pictures, and writes what the editor shows of the first scene, without
 // overlays and refined. That has to be the picture of `marraztu render --samples 16`, of its size.
+// As in the page, a second instance draws it.
 import { readFile, writeFile } from "node:fs/promises";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -10,25 +11,33 @@ const [folder, picture] = process.argv.slice(2);
 const shim = pathToFileURL(resolve(folder, "wasi/index.js")).href;
 const { ConsoleStdout, Directory, File, OpenFile, PreopenDirectory, WASI } = await import(shim);
 
-const say = ConsoleStdout.lineBuffered((line) => console.error(line));
-const root = new Map([["files", new Directory(new Map())], ["own", new Directory(new Map())]]);
-const fds = [new OpenFile(new File([])), say, say, new PreopenDirectory("/", root)];
-const wasi = new WASI(["marraztu"], [], fds, { debug: false });
 const module = await WebAssembly.compile(await readFile(resolve(folder, "marraztu.wasm")));
-const instance = await WebAssembly.instantiate(module, { wasi_snapshot_preview1: wasi.wasiImport });
-wasi.initialize(instance);
-const editor = instance.exports;
 
-function write(text) {
-  const bytes = new TextEncoder().encode(text);
+async function begin() {
+  const say = ConsoleStdout.lineBuffered((line) => console.error(line));
+  const root = new Map([["files", new Directory(new Map())], ["own", new Directory(new Map())]]);
+  const fds = [new OpenFile(new File([])), say, say, new PreopenDirectory("/", root)];
+  const wasi = new WASI(["marraztu"], [], fds, { debug: false });
+  const instance = await WebAssembly.instantiate(module, { wasi_snapshot_preview1: wasi.wasiImport });
+  wasi.initialize(instance);
+  return instance.exports;
+}
+
+const editor = await begin();
+const drawing = await begin();
+
+function put(bytes, instance) {
   // A call may move the memory, so the address comes first.
-  const address = editor.input(bytes.length);
-  new Uint8Array(editor.memory.buffer, address, bytes.length).set(bytes);
+  const address = instance.input(bytes.length);
+  new Uint8Array(instance.memory.buffer, address, bytes.length).set(bytes);
 }
 
-function read(length) {
-  return JSON.parse(Buffer.from(editor.memory.buffer, editor.output(), length).toString());
+function taken(length, instance) {
+  return Buffer.from(instance.memory.buffer, instance.output(), length);
 }
+
+const write = (text) => put(new TextEncoder().encode(text), editor);
+const read = (length) => JSON.parse(taken(length, editor).toString());
 
 function fail(reason) {
   console.error(`check-web: ${reason}`);
@@ -44,14 +53,37 @@ if (all === 0 || differing.length > 0) {
 const [width, height] = [1280, 800];
 let now = 0;
 
+// Passes messages until the second instance waits. Returns the milliseconds until it draws, or -1.
+let replies = 0;
+
+function exchange() {
+  for (;;) {
+    const length = editor.request();
+    if (length > 0) {
+      put(taken(length, editor), drawing);
+      drawing.ask();
+    }
+    if (drawing.rest() !== 0) {
+      return drawing.rest();
+    }
+    const reply = drawing.work();
+    if (reply > 0) {
+      put(taken(reply, drawing), editor);
+      editor.reply();
+      replies++;
+    }
+  }
+}
+
 // Runs frames until none is due, except for a text cursor that blinks.
 async function rest() {
   for (let count = 0; count < 3000; count++) {
     const { due } = read(editor.frame(now));
-    if (due === undefined || due >= 400) {
+    const isIdle = exchange() < 0;
+    if (isIdle && (due === undefined || due >= 400)) {
       return;
     }
-    now += Math.max(due, 5) / 1000;
+    now += Math.max(due ?? 5, 5) / 1000;
     await new Promise((done) => setTimeout(done, 5));
   }
   fail("the editor never rests");
@@ -74,6 +106,7 @@ write("");
 if (editor.start(width, height, 1) !== 0) {
   fail("the editor does not start");
 }
+editor.draw_elsewhere();
 await rest();
 await hear(...press("k", 2));
 await hear({ kind: "text", text: "overlays" });
@@ -99,4 +132,5 @@ for (let y = top; y < bottom; y++) {
   }
 }
 await writeFile(picture, Buffer.concat([Buffer.from(`P6\n${right - left} ${bottom - top}\n255\n`), ...rows]));
+console.log(`the second instance has drawn it, in ${replies} replies`);
 console.log(`${right - left}x${bottom - top}`);

@@ -17,6 +17,8 @@ export class Files {
     // The content of /own that the database has.
     this.kept = new Map();
     this.database = null;
+    // Called with the path and the bytes of each file that is new or has changed.
+    this.changed = () => {};
   }
 
   // The root folder, for WASI.
@@ -41,9 +43,15 @@ export class Files {
     folder.contents.set(last, file);
     const path = [...parts, last].join("/");
     this.known.set(path, file.data);
+    this.changed(path, bytes);
     // Without room the editor works; recovered work then lacks this file.
     this.database?.transaction(USER, "readwrite").objectStore(USER).put(bytes, path);
     return `/files/${path}`;
+  }
+
+  // Returns the user's files: paths and bytes.
+  all() {
+    return [...this.known];
   }
 
   // Returns whether there is a file.
@@ -61,6 +69,7 @@ export class Files {
           visit(entry, `${full}/`);
         } else if (this.known.get(full) !== entry.data && !name.startsWith(".") && !name.endsWith("~")) {
           this.known.set(full, entry.data);
+          this.changed(full, entry.data);
           found.push([name, entry.data]);
         }
       }

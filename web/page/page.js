@@ -10,6 +10,7 @@
 import { ConsoleStdout, OpenFile, PreopenDirectory, File, WASI } from "./wasi/index.js";
 import { Files } from "./files.js";
 import { Touches } from "./touches.js";
+import { Drawing, Measuring } from "./workers.js";
 
 const canvas = document.getElementById("canvas");
 const text = document.getElementById("text");
@@ -24,6 +25,9 @@ const decoder = new TextDecoder();
 // before.
 let module = null;
 let editor = null;
+// Workers that draw and measure; without them, the editor does so itself.
+let drawing = null;
+let measuring = null;
 
 function write(value) {
   const bytes = encoder.encode(value);
@@ -66,6 +70,8 @@ function run(time) {
   try {
     const length = editor.frame(time / 1000);
     obey(read(length));
+    drawing?.exchange();
+    measuring?.exchange();
   } catch (error) {
     fail(error);
   }
@@ -431,7 +437,10 @@ async function begin() {
   const fds = [new OpenFile(new File([])), console_, console_, new PreopenDirectory("/", files.root())];
   const wasi = new WASI(["marraztu"], [], fds, { debug: false });
   await files.restore();
-  const { instance } = await WebAssembly.instantiateStreaming(fetch("marraztu.wasm"), { wasi_snapshot_preview1: wasi.wasiImport });
+  const compiled = await WebAssembly.compileStreaming(fetch("marraztu.wasm"));
+  const source = { compiled, files };
+  const started = Drawing.start(source);
+  const instance = await WebAssembly.instantiate(compiled, { wasi_snapshot_preview1: wasi.wasiImport });
   wasi.initialize(instance);
   module = instance.exports;
   const query = new URLSearchParams(location.search);
@@ -459,6 +468,14 @@ async function begin() {
   write(path);
   if (module.start(...size) !== 0) {
     throw new Error("the editor cannot start");
+  }
+  drawing = await started.catch((error) => {
+    console.warn("No worker draws:", error);
+    return null;
+  });
+  if (drawing) {
+    drawing.connect(module, schedule);
+    measuring = new Measuring(source, module, schedule);
   }
   editor = module;
   status.textContent = unloaded;

@@ -12,18 +12,20 @@ mod frame;
 mod verify;
 
 use std::cell::RefCell;
+use std::io::Read as _;
 use std::path::PathBuf;
 
-use marraztu::app::CanvasShell;
+use marraztu::app::{CanvasShell, DrawingServer, measure_job};
 
 use events::PageEvent;
 use frame::Frame;
 use verify::Verified;
 
-/// The editor and the buffers.
+/// The editor or its drawing server, and the buffers.
 #[derive(Default)]
 struct Page {
     shell: Option<CanvasShell>,
+    server: Option<DrawingServer>,
     input: Vec<u8>,
     output: Vec<u8>,
     /// Red, green, blue and opacity of the pixels that the page copies.
@@ -79,6 +81,114 @@ pub extern "C" fn start(width: usize, height: usize, scale: f32) -> u32 {
         }
         Err(_no_threads) => 1,
     })
+}
+
+/// Lets another instance draw the viewport: its [`ask`] takes each [`request`], and [`reply`] takes
+/// what its [`work`] returns. To be called between [`start`] and the first frame.
+#[unsafe(no_mangle)]
+pub extern "C" fn draw_elsewhere() {
+    with(|page| {
+        if let Some(shell) = &mut page.shell {
+            shell.draw_elsewhere();
+        }
+    });
+}
+
+/// Returns the length of the next request to the other instance in the output, or 0. To be called
+/// after each frame and each reply.
+#[unsafe(no_mangle)]
+pub extern "C" fn request() -> usize {
+    with(|page| {
+        page.output = page.shell.as_mut().and_then(CanvasShell::request).unwrap_or_default();
+        page.output.len()
+    })
+}
+
+/// Takes the reply of the other instance in the input. An empty one means that the instance has
+/// stopped and was replaced.
+#[unsafe(no_mangle)]
+pub extern "C" fn reply() {
+    with(|page| {
+        let Page { shell: Some(shell), input, .. } = page else { return };
+        shell.reply((!input.is_empty()).then_some(input));
+    });
+}
+
+/// Takes the request in the input, in the instance that draws.
+#[unsafe(no_mangle)]
+pub extern "C" fn ask() {
+    with(|page| {
+        let server = page.server.get_or_insert_with(|| DrawingServer::new(is_awaited));
+        server.hear(&page.input);
+    });
+}
+
+/// Returns whether a request waits: the page then provides a byte of standard input.
+fn is_awaited() -> bool {
+    std::io::stdin().read(&mut [0]).is_ok_and(|count| count > 0)
+}
+
+/// Draws. Returns the length of a reply in the output, or 0.
+#[unsafe(no_mangle)]
+pub extern "C" fn work() -> usize {
+    with(|page| {
+        page.output = page.server.as_mut().and_then(DrawingServer::work).unwrap_or_default();
+        page.output.len()
+    })
+}
+
+/// Returns the milliseconds until there is work, or -1 if there is none before the next request.
+#[unsafe(no_mangle)]
+pub extern "C" fn rest() -> f64 {
+    with(|page| {
+        page.server
+            .as_ref()
+            .and_then(DrawingServer::rest)
+            .map_or(-1.0, |rest| rest.as_secs_f64() * 1000.0)
+    })
+}
+
+/// Tells the instance that draws that files have changed.
+#[unsafe(no_mangle)]
+pub extern "C" fn files_changed() {
+    with(|page| {
+        if let Some(server) = &mut page.server {
+            server.files_changed();
+        }
+    });
+}
+
+/// Returns the length of the next measurement in the output, for [`measure`] of another instance, or
+/// 0. To be called after each frame.
+#[unsafe(no_mangle)]
+pub extern "C" fn job() -> usize {
+    with(|page| {
+        page.output = page.shell.as_mut().and_then(CanvasShell::job).unwrap_or_default();
+        page.output.len()
+    })
+}
+
+/// Returns 1 if results of a measurement are awaited, or else 0: the other instance may be stopped.
+#[unsafe(no_mangle)]
+pub extern "C" fn awaits_measurement() -> u32 {
+    with(|page| u32::from(page.shell.as_ref().is_some_and(CanvasShell::awaits_measurement)))
+}
+
+/// Takes a line of the results of a measurement in the input. Any other line means that the instance
+/// has failed.
+#[unsafe(no_mangle)]
+pub extern "C" fn told() {
+    with(|page| {
+        let Page { shell: Some(shell), input, .. } = page else { return };
+        shell.told(&String::from_utf8_lossy(input));
+    });
+}
+
+/// Does the measurement in the input. The results are written to the standard output, a line each.
+#[unsafe(no_mangle)]
+pub extern "C" fn measure() {
+    let job = with(|page| std::mem::take(&mut page.input));
+    measure_job(&job, &mut |told| println!("{told}"));
 }
 
 /// Changes the size of the canvas.

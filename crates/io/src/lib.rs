@@ -76,7 +76,7 @@ pub use read::check_file;
 pub use replace::{NewFile, SaveError};
 pub use scene_file::{
     Fragment, Known, Opened, SCENE_ENDING, SceneFileError, items_of_text, items_to_text,
-    material_to_text, open, save, save_with_window, to_text,
+    material_to_text, open, save, save_with_window, scene_of_message, scene_to_message, to_text,
 };
 pub use sources::Sources;
 pub use stamp::{encode_stamped, read_stamp, stamped_at_end};

@@ -71,9 +71,13 @@ impl Progress {
     /// If the work was cancelled.
     #[expect(clippy::cast_precision_loss, reason = "for the eye")]
     pub fn reached(&self, done: usize, all: usize) -> Result<(), Cancelled> {
-        let fraction = (done as f64 / all.max(1) as f64).min(1.0);
+        self.set((done as f64 / all.max(1) as f64).min(1.0));
+        if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    }
+
+    /// Reports that a fraction from 0 to 1 is done.
+    pub fn set(&self, fraction: f64) {
         let whole = self.begin + self.share * fraction;
         self.state.fraction.store(whole.to_bits(), Ordering::Relaxed);
-        if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::pairs::Limits;
+use super::word::Word;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Samples, Settings};
 use marraztu_core::scene::{Scene, View};
 
@@ -47,6 +48,12 @@ impl Thoroughness {
         time: Duration::from_secs(200),
         presets: true,
     };
+
+    /// Finds one of them by its name.
+    #[must_use]
+    pub fn named(word: &str) -> Option<Self> {
+        [Self::QUICK, Self::AXIS, Self::WHOLE].into_iter().find(|one| one.word == word)
+    }
 }
 
 /// Settings to measure, with their name in the table.
@@ -61,13 +68,13 @@ pub struct Candidate {
 }
 
 /// The reason why settings are measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(tag = "group", content = "axis", rename_all = "lowercase")]
 pub enum Group {
     /// A preset.
     Preset,
     /// The default with another choice for the axis with this key.
-    Axis(&'static str),
+    Axis(#[serde(deserialize_with = "crate::word::read")] Word),
     /// The current settings.
     Current,
     /// Other choices of several axes.
@@ -75,7 +82,7 @@ pub enum Group {
 }
 
 /// Settings that are not measured, with the reason.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct LeftOut {
     /// Their description.
     pub what: String,

@@ -7,6 +7,8 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use serde::{Deserialize, Serialize};
+
 use super::statistics::Quartiles;
 use super::timing::time;
 use marraztu_core::accuracy::Shot;
@@ -22,7 +24,7 @@ const PAIRS: usize = 7;
 const MOST_PAIRS: usize = 31;
 
 /// The effects of a frame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Explained {
     /// The uses and omissions of effects, sorted by effect.
     pub uses: Vec<EffectUse>,

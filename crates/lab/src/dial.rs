@@ -12,6 +12,8 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
+use serde::{Deserialize, Serialize};
+
 use marraztu_core::accuracy::{AccuracyPreset, Samples, Settings, Shot};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
@@ -39,7 +41,7 @@ const ENOUGH: f64 = 0.03;
 const SHARED: f64 = 0.1;
 
 /// What a picture costs and what it gives.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     /// The settings of the picture.
     pub settings: Settings,

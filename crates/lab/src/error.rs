@@ -5,7 +5,7 @@
 //! measures shading without the errors along edges. With several samples, a pixel may show several
 //! primitives, so both sets are equal.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::flip::Perceived;
 use marraztu_core::base::image::Picture;
@@ -22,7 +22,7 @@ pub struct Rendering {
 }
 
 /// The error of a picture against its reference.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Error {
     /// The byte differences over all pixels.
     #[serde(flatten)]
@@ -36,7 +36,7 @@ pub struct Error {
 }
 
 /// Statistics of the byte differences of two pictures.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     /// The largest difference.
     pub largest: u8,
@@ -49,7 +49,7 @@ pub struct Figures {
 }
 
 /// The pixels that figures cover.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Region {
     /// All pixels.
@@ -82,7 +82,7 @@ impl Error {
 }
 
 /// An error metric: one number for an error.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Measure {
     /// The root mean square difference, in byte steps.

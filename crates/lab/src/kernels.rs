@@ -6,10 +6,11 @@
 //! supported processor; the compiler may vectorise it.
 
 use fearless_simd::{Level, Simd, SimdBase as _, dispatch, f32x4, f32x16};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::pairs::{Limits, Ratio, Unmeasured, Watch, abba};
 use super::timing::{Clock, Work};
+use super::word::Word;
 
 /// The number of vectors per kernel: 800 x 800 depths.
 const VECTORS: usize = 160_000;
@@ -18,10 +19,11 @@ const VECTORS: usize = 160_000;
 pub const COUNT: usize = KERNELS.len();
 
 /// The measurement of a kernel.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kernel {
     /// The name of the computation.
-    pub name: &'static str,
+    #[serde(deserialize_with = "crate::word::read")]
+    pub name: Word,
     /// The time of SIMD relative to the plain version.
     pub ratio: Ratio,
     /// Whether all bits of the results are equal.

@@ -31,3 +31,4 @@ pub mod statistics;
 pub mod suite;
 pub mod sweep;
 pub mod timing;
+pub mod word;

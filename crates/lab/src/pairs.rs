@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::picture_source::{PictureSource, hash};
 use super::statistics::{Quartiles, quantile_of};
@@ -119,7 +119,7 @@ impl Drop for Touch {
 }
 
 /// The time of a choice B relative to a choice A.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ratio {
     /// The ratio of B's time to A's as the median, with the quartiles of its bootstrap.
     pub quartiles: Quartiles,
@@ -193,7 +193,7 @@ impl Ratio {
 }
 
 /// The reason why a measurement failed.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 pub enum Unmeasured {
     /// It was cancelled.
     #[error("cancelled")]

@@ -3,10 +3,10 @@
 //! Quantiles are of type 7 in Hyndman and Fan, "Sample Quantiles in Statistical Packages", 1996:
 //! linear interpolation between the two neighbours of (n - 1) p.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The quartiles of a sample.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quartiles {
     /// A quarter of the numbers is smaller.
     pub lower: f64,

@@ -16,7 +16,7 @@
 //! later.
 
 use fearless_simd::Level;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::candidates::{Candidate, Candidates, Group, LeftOut, Thoroughness, candidates};
 use super::error::{Error, Figures, Rendering};
@@ -26,6 +26,7 @@ use super::pairs::{Ratio, Unmeasured, Watch, measure};
 use super::picture_source::{PictureSource, Reference, Studio, hash};
 use super::statistics::Quartiles;
 use super::timing::{Clock, Work};
+use super::word::Word;
 use marraztu_core::accuracy::Shot;
 use marraztu_core::accuracy::{Axis, Settings};
 use marraztu_core::base::image::Size;
@@ -42,7 +43,7 @@ pub struct Question {
 }
 
 /// The results of a sweep.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Findings {
     /// The picture's width and height.
     pub size: [usize; 2],
@@ -51,7 +52,8 @@ pub struct Findings {
     /// The SIMD instruction set.
     pub instructions: String,
     /// The name of the thoroughness.
-    pub thoroughness: &'static str,
+    #[serde(deserialize_with = "crate::word::read")]
+    pub thoroughness: Word,
     /// The default measured against itself.
     pub control: Ratio,
     /// The noise of the control: the largest distance of its quartiles from 1. It is the minimum
@@ -70,7 +72,7 @@ pub struct Findings {
 }
 
 /// Settings with their time and error.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// The first name under which the settings were measured.
     pub name: String,
@@ -92,7 +94,7 @@ pub struct Measured {
 }
 
 /// The reference of a row's picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Against {
     /// The ideal.
@@ -113,7 +115,7 @@ impl Against {
 }
 
 /// The significance of a ratio.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// Faster than the default, beyond the noise.
@@ -130,7 +132,7 @@ pub enum Verdict {
 pub const TOO_BUSY: f64 = 1.0;
 
 /// A row of the table.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The group of the row.
     #[serde(flatten)]

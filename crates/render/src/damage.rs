@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use glam::DVec4;
+use serde::{Deserialize, Serialize};
 
 use crate::frame::draw::{Draw, Lines};
 use crate::frame::{FramePlan, Viewport};
@@ -26,7 +27,7 @@ mod shadow_reach;
 use compared::Compared;
 
 /// The tiles to be painted again, and the cause.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Damage {
     pub(crate) tiles: Tiles,
     /// The tiles that may show another triangle, or the same one at another position.
@@ -37,7 +38,7 @@ pub struct Damage {
 }
 
 /// The reason why tiles are painted.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum DamageCause {
     /// No picture has been finished yet.
     First,
@@ -58,7 +59,7 @@ pub enum DamageCause {
 }
 
 /// The change in the drawing of an item.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Change {
     /// The item was not drawn before.
     Came,
@@ -265,7 +266,7 @@ fn around(plan: &FramePlan, points: &[DVec4], margin: f64) -> Option<PixelBox> {
 }
 
 /// A set of tiles of a picture, row by row.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Tiles {
     columns: i32,
     painted: Vec<bool>,

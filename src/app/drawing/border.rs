@@ -1,10 +1,12 @@
 //! The border around the visible part of an item in a picture.
 
+use serde::{Deserialize, Serialize};
+
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::ItemId;
 
 /// The border around the visible part of an item in a picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Border {
     pub(crate) item: ItemId,
     /// The pixels of the item along the border, in runs from left to right.
@@ -16,7 +18,7 @@ pub(crate) struct Border {
 }
 
 /// Adjacent pixels in a row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Run {
     pub(crate) x: usize,
     pub(crate) y: usize,

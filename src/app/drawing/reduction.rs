@@ -1,10 +1,12 @@
 //! Reductions of quality, which make a picture quicker to draw.
 
+use serde::{Deserialize, Serialize};
+
 use marraztu_core::accuracy::{Filter, LightAt, Samples, Settings};
 use marraztu_core::base::image::Size;
 
 /// The divisor of the sides of a picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Shrink {
     /// Full size.
     #[default]
@@ -31,7 +33,7 @@ impl Shrink {
 }
 
 /// A reduction of quality, which makes a picture quicker to draw.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reduction {
     /// One sample per pixel rather than several.
     pub one_sample: bool,

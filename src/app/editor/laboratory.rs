@@ -1,4 +1,6 @@
-//! Answers requests to the laboratory and runs its measurements on background threads.
+//! Answers requests to the laboratory and runs its measurements on background threads. Without
+//! threads, another instance of the program measures (see
+//! [`laboratory_messages`](super::laboratory_messages)).
 //!
 //! During a measurement, the window is drawn at most four times a second. Pairs of pictures that
 //! were timed while it was drawn are discarded.
@@ -9,6 +11,7 @@ use std::time::{Duration, Instant};
 use egui::Context;
 
 use super::App;
+use super::laboratory_messages::{Answers, Job};
 use crate::app::actions::LabRequest;
 use crate::app::state::State;
 use crate::app::state::laboratory::Compare;
@@ -42,6 +45,10 @@ pub(crate) struct Work {
     command: String,
     /// When the window was last drawn.
     drawn_at: Option<Instant>,
+    /// The next message to another instance that measures.
+    job: Option<Job>,
+    /// Receives what that instance measures.
+    answers: Option<Answers>,
 }
 
 /// The attributed error of a pixel, and the item at that pixel; `None` for the background.
@@ -83,11 +90,48 @@ impl Work {
     /// Waits until the window may be drawn again without disturbing a measurement.
     pub(crate) fn rest(&mut self) {
         if self.is_measuring()
+            && self.answers.is_none()
             && let Some(rest) = self.drawn_at.and_then(|at| REST.checked_sub(at.elapsed()))
         {
             std::thread::sleep(rest);
         }
         self.drawn_at = Some(Instant::now());
+    }
+
+    /// Returns the next message to another instance that measures.
+    pub(crate) fn take_job(&mut self) -> Option<Vec<u8>> {
+        self.job.take().map(|job| job.written())
+    }
+
+    /// Returns whether another instance measures.
+    pub(crate) const fn measures_elsewhere(&self) -> bool {
+        self.answers.is_some()
+    }
+
+    /// Takes results of another instance.
+    pub(crate) fn hear(&mut self, told: &str) {
+        let Some(answers) = &self.answers else { return };
+        let sweep = self.sweep.as_ref().map(|task| &task.progress);
+        let progress = sweep.or_else(|| self.suite.as_ref().map(|task| &task.progress));
+        let more = answers.take(told, |fraction, findings| {
+            if let Some(progress) = progress {
+                progress.set(fraction);
+            }
+            if findings.is_some() {
+                *self.so_far.lock().unwrap_or_else(PoisonError::into_inner) = findings;
+            }
+        });
+        if !more {
+            self.answers = None;
+        }
+    }
+
+    /// Ends the measurement of another instance as cancelled.
+    fn cancel_elsewhere(&mut self) {
+        self.job = None;
+        if let Some(answers) = self.answers.take() {
+            answers.cancel();
+        }
     }
 }
 
@@ -125,6 +169,7 @@ impl App {
             LabRequest::Suite(detail) => self.measure_suite(ctx, detail),
             LabRequest::ShowSuite(place) => lab.shown_suite = place,
             LabRequest::Cancel => {
+                self.lab.cancel_elsewhere();
                 if let Some(task) = &self.lab.sweep {
                     task.progress.cancel();
                 }
@@ -164,6 +209,7 @@ impl App {
         let measured = Some((scene.clone(), view.clone(), size));
         let only = (axes.len() == 1).then(|| axes[0].key);
         let question = Question { current: *settings, axes, thoroughness };
+        let job = self.draws_elsewhere.then(|| Job::sweep(&shot, &question)).flatten();
         // A cancelled sweep may still report findings, so each sweep has a separate cell.
         self.lab.so_far = Arc::default();
         let (watch, so_far) = (self.lab.watch(), Arc::clone(&self.lab.so_far));
@@ -176,7 +222,15 @@ impl App {
             };
             sweep(&mut studio, &question, &mut WallClock::default(), &watch, &mut tell)
         };
-        match Task::start(ctx, "Measuring".to_owned(), work) {
+        let label = "Measuring".to_owned();
+        let started = if job.is_some() {
+            let (task, sender) = Task::promised(label);
+            (self.lab.job, self.lab.answers) = (job, Some(Answers::Sweep(sender)));
+            Ok(task)
+        } else {
+            Task::start(ctx, label, work)
+        };
+        match started {
             Ok(task) => {
                 self.lab.sweep = Some(task);
                 self.lab.begun = Some(Instant::now());
@@ -206,7 +260,15 @@ impl App {
             let watch = watch.with(progress);
             suite::run(&scenes, &detail, &mut WallClock::default(), &watch, &mut |_| {})
         };
-        match Task::start(ctx, "Measuring the suite".to_owned(), work) {
+        let label = "Measuring the suite".to_owned();
+        let started = if self.draws_elsewhere {
+            let (task, sender) = Task::promised(label);
+            (self.lab.job, self.lab.answers) = (Some(Job::Suite), Some(Answers::Suite(sender)));
+            Ok(task)
+        } else {
+            Task::start(ctx, label, work)
+        };
+        match started {
             Ok(task) => {
                 self.lab.suite = Some(task);
                 self.lab.begun = Some(Instant::now());
@@ -245,6 +307,7 @@ impl App {
 
     /// Cancels all measurements of a scene that is gone.
     pub(crate) fn end_measuring(&mut self) {
+        self.lab.cancel_elsewhere();
         if let Some(task) = self.lab.sweep.take() {
             task.progress.cancel();
         }

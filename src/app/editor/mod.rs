@@ -12,6 +12,7 @@ mod files;
 mod first_models;
 mod keeping;
 mod laboratory;
+pub(crate) mod laboratory_messages;
 mod making;
 mod measuring;
 mod missing;
@@ -79,7 +80,10 @@ pub struct App {
     pub(crate) waiting_scene: Option<Box<State>>,
     pub(crate) lab: Work,
     pub(crate) comparison: Comparison,
-    worker: Option<Worker<Purpose>>,
+    /// Draws the viewport; started by the first frame.
+    pub(crate) worker: Option<Worker<Purpose>>,
+    /// Whether another instance of the program draws the viewport.
+    pub(crate) draws_elsewhere: bool,
     /// The running measurement of effects.
     pub(crate) measuring: Option<Measuring>,
     /// The pixel being explained.
@@ -121,6 +125,7 @@ impl App {
             lab: Work::default(),
             comparison: Comparison::default(),
             worker: None,
+            draws_elsewhere: false,
             measuring: None,
             explaining: None,
             leaving: false,
@@ -288,7 +293,12 @@ impl App {
                 drop(watch.touch());
                 waker.request_repaint();
             };
-            match Worker::start(wake) {
+            let started = if self.draws_elsewhere {
+                Ok(Worker::elsewhere(wake))
+            } else {
+                Worker::start(wake)
+            };
+            match started {
                 Ok(worker) => self.worker = Some(worker),
                 Err(error) => self.refuse(format!("cannot start a thread to draw: {error}")),
             }

@@ -105,6 +105,46 @@ impl CanvasShell {
         })
     }
 
+    /// Lets a [`DrawingServer`](crate::app::DrawingServer) of another instance draw the viewport.
+    /// The host passes it each [`Self::request`], and each of its replies to [`Self::reply`].
+    /// Without a call before the first frame, pictures are drawn here.
+    pub const fn draw_elsewhere(&mut self) {
+        self.app.draws_elsewhere = true;
+    }
+
+    /// Returns the next request to the drawing server, if there is one. To be called after each
+    /// frame and each reply.
+    pub fn request(&mut self) -> Option<Vec<u8>> {
+        self.app.worker.as_mut()?.request()
+    }
+
+    /// Takes a reply of the drawing server. `None` means that it has stopped and a new one takes its
+    /// place.
+    pub fn reply(&mut self, reply: Option<&[u8]>) {
+        if let Some(worker) = &mut self.app.worker {
+            worker.hear(reply);
+        }
+    }
+
+    /// Returns the next measurement for another instance, if there is one. The host passes it to
+    /// [`measure_job`](crate::app::measure_job) there, and all that it tells to [`Self::told`]. To be
+    /// called after each frame, if pictures are drawn elsewhere.
+    pub fn job(&mut self) -> Option<Vec<u8>> {
+        self.app.lab.take_job()
+    }
+
+    /// Returns whether results of a measurement are awaited. If not, the host may stop it.
+    #[must_use]
+    pub const fn awaits_measurement(&self) -> bool {
+        self.app.lab.measures_elsewhere()
+    }
+
+    /// Takes results of a measurement. Any other text means that it has failed.
+    pub fn told(&mut self, told: &str) {
+        self.app.lab.hear(told);
+        self.due.store(0, Ordering::Relaxed);
+    }
+
     /// Changes the size of the canvas.
     pub fn resize(&mut self, size: [usize; 2], scale: f32) {
         (self.size, self.scale, self.is_new) = (size, scale, true);

@@ -2,6 +2,8 @@
 
 use std::sync::OnceLock;
 
+use serde::{Deserialize, Serialize};
+
 use super::ByteBounds;
 use super::once::get_or_compute;
 
@@ -41,7 +43,7 @@ impl PartialEq for Derived {
 impl Eq for Derived {}
 
 /// The width and height of a picture in pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Size {
     /// The number of pixels in a row.
     pub width: usize,

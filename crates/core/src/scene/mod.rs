@@ -83,7 +83,7 @@ ids! {
 }
 
 /// Identifies an item of any of the three lists.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum ItemId {
     /// An object.
     Object(ObjectId),

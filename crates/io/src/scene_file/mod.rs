@@ -10,6 +10,7 @@ mod files;
 mod format;
 mod fragment;
 mod light;
+mod message;
 mod open;
 mod paths;
 mod save;
@@ -20,6 +21,7 @@ use std::path::{Path, PathBuf};
 
 pub use self::files::Known;
 pub use self::fragment::{Fragment, items_of_text, items_to_text, material_to_text};
+pub use self::message::{scene_of_message, scene_to_message};
 
 use self::files::{Files, StandIns};
 use self::format::{FileScene, Head, VERSION};

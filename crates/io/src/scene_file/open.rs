@@ -15,7 +15,7 @@ use crate::findings::{FindingKind, Findings};
 use marraztu_core::base::{Shared, color::Color};
 use marraztu_core::scene::{
     Camera, CameraId, CameraMode, Command, CommandError, Item, LightId, List, MaterialChoice,
-    Model, Object, ObjectId, Pose, Scene, Sides, SpotOwner, Texture, Tracked, View,
+    Model, Object, ObjectId, Objects, Pose, Scene, Sides, SpotOwner, Texture, Tracked, View,
 };
 
 /// The most items of a kind in a scene: each is looked up among all others.
@@ -60,15 +60,25 @@ pub(super) fn scene(
     needs: &dyn Needs,
     findings: &mut Findings,
 ) -> Result<(Scene, View), String> {
+    scene_with(Objects::default(), file, needs, findings)
+}
+
+/// Works like [`scene`], with the objects of the file after these.
+pub(super) fn scene_with(
+    objects: Objects,
+    file: &FileScene,
+    needs: &dyn Needs,
+    findings: &mut Findings,
+) -> Result<(Scene, View), String> {
+    let mut largest = objects.ids().map(|id| id.0).max().unwrap_or(0);
     let mut scene = Scene {
-        objects: List::default(),
+        objects,
         cameras: List::default(),
         lights: List::default(),
         background: Color(file.background),
         next_id: 0,
         locked: BTreeSet::new(),
     };
-    let mut largest = 0;
     // Errors name the item, since the user finds it by id and name in the file.
     let mut insert = |at: usize, item: Item, id: u32, what: String| {
         largest = largest.max(id);

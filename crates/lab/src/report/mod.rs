@@ -5,7 +5,7 @@ mod panels;
 mod table;
 mod verdict;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 pub use self::labels::{TextBox, place};
 pub use self::panels::{Panel, PanelMark, Panels, Scale};
@@ -17,7 +17,7 @@ use super::sweep::{Findings, Measured, Row, Verdict};
 use marraztu_core::accuracy::Axis;
 
 /// The results of a sweep, with the options of the report.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Report {
     /// The name of the scene, such as "teapot.obj".
     pub scene: String,
@@ -35,7 +35,7 @@ pub struct Report {
 }
 
 /// The user's limits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Budgets {
     /// The largest error, in the unit of the report's metric.
     pub error: Option<f64>,

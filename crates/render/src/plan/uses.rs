@@ -4,10 +4,12 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use marraztu_core::scene::{ItemId, LightId};
 
 /// An effect that the renderer can use in a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Effect {
     /// Filled polygons.
     Surfaces,
@@ -78,7 +80,7 @@ impl Effect {
 }
 
 /// An effect on an item, or on the whole frame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EffectUse {
     /// The effect.
     pub effect: Effect,
@@ -93,7 +95,7 @@ pub struct EffectUse {
 }
 
 /// An object, or a camera drawn as a helper.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Thing {
     /// The id.
     pub item: ItemId,
@@ -102,7 +104,7 @@ pub struct Thing {
 }
 
 /// Whether an effect is used.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum EffectState {
     /// It is computed; with a remark, or an empty text.
     On(Cow<'static, str>),

@@ -6,6 +6,8 @@
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
+use serde::{Deserialize, Serialize};
+
 use super::Renderer;
 use crate::cancellation::Cancellation;
 use crate::frame::FramePlan;
@@ -30,7 +32,7 @@ use marraztu_core::base::image::Size;
 use marraztu_core::scene::ItemId;
 
 /// The polygon that a pixel shows.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hit {
     /// The object, the camera if its mark is shown, or the light if its bulb is shown.
     pub item: ItemId,

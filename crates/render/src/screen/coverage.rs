@@ -11,6 +11,8 @@
 //! below 2^59 and never overflow.
 
 pub use crate::frame::variants::Grid;
+use serde::{Deserialize, Serialize};
+
 use marraztu_core::base::math::each;
 
 /// The number of subpixels per pixel, in each direction.
@@ -35,7 +37,7 @@ impl Snapped {
 }
 
 /// A rectangle of pixels: columns `left..right` of rows `top..bottom`. The default is empty.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PixelBox {
     /// The first column.
     pub left: i32,

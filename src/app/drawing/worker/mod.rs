@@ -6,6 +6,13 @@
 //!
 //! While there are no requests, the last picture is refined step by step. Every request and every
 //! event of the window interrupts the refinement. After the last step, the thread sleeps.
+//!
+//! WebAssembly has no threads. There, another instance of the program draws ([`server`]) and
+//! exchanges messages with the window ([`elsewhere`]), or the window's thread draws between frames.
+
+mod elsewhere;
+mod message;
+pub(crate) mod server;
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -15,6 +22,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use self::elsewhere::Elsewhere;
 use super::border::Border;
 use super::dial::DialFigures;
 use super::snapshot::Snapshot;
@@ -54,14 +62,23 @@ pub(crate) struct News<P> {
     pub(crate) failed: bool,
 }
 
-/// The handle of the drawing thread.
+/// The handle of the drawing thread, or of its substitute.
 #[derive(Debug)]
 pub(crate) struct Worker<P> {
     shared: Arc<Shared<P>>,
     last: Option<Snapshot>,
-    thread: Option<JoinHandle<()>>,
-    /// The work, if there are no threads: it is done when results are taken.
-    here: Option<RefCell<Here>>,
+    place: Place<P>,
+}
+
+/// Where pictures are drawn.
+#[derive(Debug)]
+enum Place<P> {
+    /// By a thread; `None` after its end.
+    Thread(Option<JoinHandle<()>>),
+    /// By the thread of the window, when it takes results.
+    Here(RefCell<Here>),
+    /// By another instance of the program.
+    Elsewhere(Elsewhere<P>),
 }
 
 /// The worker on the thread of the window.
@@ -86,6 +103,8 @@ struct Shared<P> {
     disturbed: AtomicBool,
     /// Whether the thread has to stop.
     over: AtomicBool,
+    /// Whether a request waits outside of this instance; asked between tiles of a refinement.
+    is_awaited: fn() -> bool,
 }
 
 #[derive(Debug)]
@@ -111,28 +130,40 @@ impl<P: Copy + Send + 'static> Worker<P> {
     /// Starts the thread; `wake` is called whenever there are results. In WebAssembly, which has no
     /// threads, the window's thread draws when it takes the results.
     pub(crate) fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let news = News::none();
-        let (wanted, picks, border, ideal) = (None, VecDeque::new(), None, None);
-        let (settled, quiet_at) = (true, Instant::now());
-        let (busy, begun, closed) = (false, None, false);
-        let desk =
-            Desk { wanted, picks, border, ideal, news, busy, begun, closed, settled, quiet_at };
-        let shared = Arc::new(Shared {
-            desk: Mutex::new(desk),
-            changed: Condvar::new(),
-            newer: AtomicBool::new(false),
-            disturbed: AtomicBool::new(false),
-            over: AtomicBool::new(false),
-        });
         if cfg!(target_family = "wasm") {
-            let here = RefCell::new(Here { painter: Painter::new(), wake: Box::new(wake) });
-            return Ok(Self { shared, last: None, thread: None, here: Some(here) });
+            return Ok(Self::here(wake, || false));
         }
+        let shared = Shared::new(|| false);
         let theirs = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
             .name("painter".to_owned())
             .spawn(move || work(&theirs, &wake))?;
-        Ok(Self { shared, last: None, thread: Some(thread), here: None })
+        Ok(Self { shared, last: None, place: Place::Thread(Some(thread)) })
+    }
+
+    /// Draws on this thread, when results are taken.
+    fn here(wake: impl Fn() + 'static, is_awaited: fn() -> bool) -> Self {
+        let here = Here { painter: Painter::new(), wake: Box::new(wake) };
+        Self { shared: Shared::new(is_awaited), last: None, place: Place::Here(RefCell::new(here)) }
+    }
+
+    /// Lets another instance of the program draw, which the shell exchanges messages with.
+    pub(crate) fn elsewhere(wake: impl Fn() + 'static) -> Self {
+        let elsewhere = Elsewhere::new(Box::new(wake));
+        Self { shared: Shared::new(|| false), last: None, place: Place::Elsewhere(elsewhere) }
+    }
+
+    /// Returns the message to the other instance that draws, if there is one and it is due.
+    pub(crate) fn request(&mut self) -> Option<Vec<u8>> {
+        let Self { shared, place: Place::Elsewhere(elsewhere), .. } = self else { return None };
+        elsewhere.request(shared)
+    }
+
+    /// Takes a message of the other instance. `None` means that it has failed and was replaced.
+    pub(crate) fn hear(&mut self, reply: Option<&[u8]>) {
+        if let Self { shared, place: Place::Elsewhere(elsewhere), .. } = self {
+            elsewhere.hear(shared, reply);
+        }
     }
 
     /// Requests this picture, unless it equals the last request.
@@ -201,7 +232,7 @@ impl<P: Copy + Send + 'static> Worker<P> {
 
     /// Takes the results since the last call.
     pub(crate) fn news(&self) -> News<P> {
-        if let Some(here) = &self.here {
+        if let Place::Here(here) = &self.place {
             here.borrow_mut().work(&self.shared);
         }
         let mut desk = self.shared.lock();
@@ -230,7 +261,9 @@ impl<P> Drop for Worker<P> {
         self.shared.lock().closed = true;
         self.shared.over.store(true, Ordering::Relaxed);
         self.shared.changed.notify_all();
-        if let Some(thread) = self.thread.take() {
+        if let Place::Thread(thread) = &mut self.place
+            && let Some(thread) = thread.take()
+        {
             // If the thread panicked, it has reported its failure already.
             let _ = thread.join();
         }
@@ -263,6 +296,22 @@ impl<P> Desk<P> {
 }
 
 impl<P> Shared<P> {
+    fn new(is_awaited: fn() -> bool) -> Arc<Self> {
+        let (wanted, picks, border, ideal) = (None, VecDeque::new(), None, None);
+        let (busy, begun, closed) = (false, None, false);
+        let (settled, quiet_at, news) = (true, Instant::now(), News::none());
+        let desk =
+            Desk { wanted, picks, border, ideal, news, busy, begun, closed, settled, quiet_at };
+        Arc::new(Self {
+            desk: Mutex::new(desk),
+            changed: Condvar::new(),
+            newer: AtomicBool::new(false),
+            disturbed: AtomicBool::new(false),
+            over: AtomicBool::new(false),
+            is_awaited,
+        })
+    }
+
     fn lock(&self) -> MutexGuard<'_, Desk<P>> {
         self.desk.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -271,6 +320,16 @@ impl<P> Shared<P> {
     fn disturb(&self, desk: &mut Desk<P>) {
         desk.quiet_at = Instant::now() + QUIET;
         self.disturbed.store(true, Ordering::Relaxed);
+    }
+
+    /// Returns the time until there is work, or `None` if there is none before a request.
+    fn rest(&self) -> Option<Duration> {
+        let desk = self.lock();
+        match (desk.has_work(), desk.settled) {
+            (true, _) => Some(Duration::ZERO),
+            (false, false) => Some(desk.quiet_at.saturating_duration_since(Instant::now())),
+            (false, true) => None,
+        }
     }
 
     /// Waits for work or for the time to refine; `None` if the desk is closed.
@@ -357,22 +416,18 @@ impl Here {
     /// Answers all requests, or refines the picture by a step.
     fn work<P: Copy + Send>(&mut self, shared: &Shared<P>) {
         let Self { painter, wake } = self;
-        loop {
-            let mut desk = shared.lock();
-            (desk.busy, desk.begun) = (false, None);
-            let due = shared.due(&mut desk);
-            drop(desk);
-            match due {
-                Due::Now(work @ Work::Asked(_)) => painter.work(shared, wake, work),
-                Due::Now(Work::Refine) => {
-                    painter.work(shared, wake, Work::Refine);
-                    return wake();
-                }
-                // The next frame looks again.
-                Due::In(_) => return wake(),
-                Due::Never => return,
-            }
+        let due = shared.due(&mut shared.lock());
+        match due {
+            // The picture is shown before it is refined.
+            Due::Now(work) => painter.work(shared, wake, work),
+            Due::In(_) => {}
+            Due::Never => return,
         }
+        let mut desk = shared.lock();
+        (desk.busy, desk.begun) = (false, None);
+        drop(desk);
+        // The next frame looks again.
+        wake();
     }
 }
 
@@ -405,8 +460,11 @@ impl Painter {
             wake();
         }
         if let (Some(window), Some(last), None) = (ideal, &*last, &wanted) {
-            let goes_on =
-                || !shared.newer.load(Ordering::Relaxed) && !shared.over.load(Ordering::Relaxed);
+            let goes_on = || {
+                !shared.newer.load(Ordering::Relaxed)
+                    && !shared.over.load(Ordering::Relaxed)
+                    && !(shared.is_awaited)()
+            };
             let drawn = catch_unwind(AssertUnwindSafe(|| painter.ideal(last, window, &goes_on)));
             if let Ok(Some(picture)) = drawn {
                 shared.lock().news.ideal = Some((window, picture));
@@ -477,8 +535,11 @@ fn refine<P: Copy + Send>(
     painter: &mut ViewportRenderer,
     last: Option<&Snapshot>,
 ) {
-    let go_on =
-        || !shared.disturbed.load(Ordering::Relaxed) && !shared.over.load(Ordering::Relaxed);
+    let go_on = || {
+        !shared.disturbed.load(Ordering::Relaxed)
+            && !shared.over.load(Ordering::Relaxed)
+            && !(shared.is_awaited)()
+    };
     let step = || last.map_or(Finer::Done, |last| painter.refine(last, &go_on));
     match catch_unwind(AssertUnwindSafe(step)) {
         Ok(Finer::Refined(drawn)) => {

@@ -1,0 +1,154 @@
+//! The window's side of a worker without common memory.
+//!
+//! One request is being answered at a time; newer ones replace each other meanwhile, so a slow
+//! picture never delays more than one other.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use egui::ColorImage;
+
+use super::message::{DrawnHead, Pictures, Reply, Request, Wanted, read, write};
+use super::{Asking, Due, Pick, Shared, Work};
+use crate::app::drawing::dial::{DialFigures, Dialled};
+use crate::app::drawing::snapshot::Snapshot;
+use crate::app::drawing::viewport_renderer::Drawn;
+use marraztu_core::base::image::Picture;
+use marraztu_io::scene_to_message;
+
+/// What the window knows about the worker.
+pub(super) struct Elsewhere<P> {
+    /// The picks that are being answered.
+    picks: VecDeque<Pick<P>>,
+    /// The last picture that was requested.
+    sent: Option<Snapshot>,
+    /// The last picture that was drawn.
+    drawn: Option<Snapshot>,
+    wake: Box<dyn Fn()>,
+}
+
+impl<P> std::fmt::Debug for Elsewhere<P> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Elsewhere").field("picks", &self.picks.len()).finish_non_exhaustive()
+    }
+}
+
+impl<P> Elsewhere<P> {
+    pub(super) const fn new(wake: Box<dyn Fn()>) -> Self {
+        Self { picks: VecDeque::new(), sent: None, drawn: None, wake }
+    }
+
+    /// Writes all requests, unless the last ones are still being answered.
+    pub(super) fn request(&mut self, shared: &Shared<P>) -> Option<Vec<u8>> {
+        let mut desk = shared.lock();
+        if desk.busy {
+            return None;
+        }
+        let Due::Now(Work::Asked(asking)) = shared.due(&mut desk) else { return None };
+        drop(desk);
+        let Asking { picks, border, ideal, wanted } = *asking;
+        let Ok(written) = wanted.as_ref().map(|wanted| self.written(wanted)).transpose() else {
+            self.fail(shared);
+            return None;
+        };
+        let at = picks.iter().map(|pick| pick.at).collect();
+        (self.picks, self.sent) = (picks, wanted.or(self.sent.take()));
+        Some(write(&Request { picks: at, border, ideal, wanted: written }, &[]))
+    }
+
+    fn written(&self, wanted: &Snapshot) -> Result<Wanted, String> {
+        let Snapshot {
+            scene,
+            view,
+            settings,
+            size,
+            moving,
+            coarse,
+            budget,
+            refined,
+            dial,
+            explain,
+            outlined,
+        } = wanted;
+        let before = self.sent.as_ref().map(|sent| &sent.scene);
+        Ok(Wanted {
+            scene: scene_to_message((scene, view, settings), before)?,
+            size: *size,
+            moving: *moving,
+            coarse: *coarse,
+            budget: *budget,
+            refined: *refined,
+            has_dial: dial.is_some(),
+            dial: dial.flatten(),
+            explain: *explain,
+            outlined: outlined.clone(),
+        })
+    }
+
+    /// Takes results; `None` if the worker has failed and was replaced.
+    pub(super) fn hear(&mut self, shared: &Shared<P>, reply: Option<&[u8]>) {
+        let Some((reply, mut pictures)) = reply.and_then(read::<Reply>) else {
+            return self.fail(shared);
+        };
+        let mut desk = shared.lock();
+        if reply.done {
+            if desk.begun.is_some() {
+                self.drawn.clone_from(&self.sent);
+            }
+            (desk.busy, desk.begun) = (false, None);
+        }
+        // These belong to the last picture, not to one that is requested meanwhile.
+        let is_stale = desk.begun.is_some() || desk.wanted.is_some();
+        let Reply { border, drawn, refined, outline, explained, dial, ideal, picked, .. } = reply;
+        if let Some(drawn) = drawn.and_then(|head| head.with_pixels(&mut pictures)) {
+            (desk.news.drawn, desk.news.refined) = (Some(drawn), None);
+        }
+        let refined = refined.and_then(|head| head.with_pixels(&mut pictures));
+        let ideal = ideal.and_then(|(window, size)| {
+            let (pixels, _) = pictures.take([size.width, size.height])?.as_chunks();
+            Some((window, Picture::from_pixels(size, pixels.to_vec())?))
+        });
+        if !is_stale {
+            desk.news.refined = refined.or(desk.news.refined.take());
+            desk.news.ideal = ideal.or(desk.news.ideal.take());
+            if let (Some(figures), Some(of)) = (dial, self.drawn.as_ref().and_then(dialled)) {
+                desk.news.dial = Some(Box::new(DialFigures { of, figures }));
+            }
+        }
+        desk.news.border = border.or(desk.news.border.take());
+        desk.news.outline = outline.or(desk.news.outline.take());
+        desk.news.explained = explained.map(Arc::new).or(desk.news.explained.take());
+        desk.news.picked.extend(self.picks.drain(..picked.len().min(self.picks.len())).zip(picked));
+        desk.news.failed |= reply.failed;
+        drop(desk);
+        (self.wake)();
+    }
+
+    /// Reports that the requested picture cannot be drawn. The next one is sent as a whole.
+    fn fail(&mut self, shared: &Shared<P>) {
+        (self.sent, self.drawn) = (None, None);
+        self.picks.clear();
+        let mut desk = shared.lock();
+        (desk.busy, desk.begun) = (false, None);
+        desk.news.failed = true;
+        drop(desk);
+        (self.wake)();
+    }
+}
+
+/// Returns what the figures of the dial depend on, as
+/// [`IdleDial`](crate::app::drawing::dial::IdleDial) does.
+fn dialled(snapshot: &Snapshot) -> Option<Dialled> {
+    let Snapshot { scene, view, settings, size, dial, .. } = snapshot;
+    dial.map(|refined| Dialled::of((scene, view), settings, *size, refined))
+}
+
+impl DrawnHead {
+    /// Returns the picture with its pixels.
+    fn with_pixels(self, pictures: &mut Pictures<'_>) -> Option<Drawn> {
+        let Self { size, time, triangles, reduction, lost, refined, changes } = self;
+        let pixels = bytemuck::pod_collect_to_vec(pictures.take(size)?);
+        let image = Arc::new(ColorImage::new(size, pixels));
+        Some(Drawn { image, time, triangles, reduction, lost, refined, changes })
+    }
+}

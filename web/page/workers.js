@@ -1,0 +1,106 @@
+// Workers: other instances of the module, with the same files. One draws the viewport; another one
+// measures for the laboratory while it is asked to. The editor and its workers exchange messages
+// that only they understand.
+
+// A worker, and the files that it gets. `heard` takes each message; `failed` a fault.
+function begin({ compiled, files }, heard, failed) {
+  const worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
+  worker.onmessage = ({ data }) => heard(data);
+  worker.onerror = (event) => failed(event.message || "a worker cannot start");
+  worker.postMessage({ compiled, files: files.all() });
+  return worker;
+}
+
+// Copies bytes into a module.
+function put(module, bytes) {
+  // A call may move the memory, so the address comes first.
+  const address = module.input(bytes.length);
+  new Uint8Array(module.memory.buffer, address, bytes.length).set(bytes);
+}
+
+// Copies the output of a module.
+function taken(module, length) {
+  return new Uint8Array(module.memory.buffer, module.output(), length).slice();
+}
+
+export class Drawing {
+  // Starts a worker. Fails if the browser does not allow one.
+  static async start(source) {
+    const drawing = new Drawing();
+    drawing.source = source;
+    await new Promise((resolve, reject) => {
+      drawing.worker = begin(source, resolve, reject);
+    });
+    source.files.changed = (path, bytes) => drawing.worker.postMessage({ path, bytes });
+    return drawing;
+  }
+
+  // Lets the worker draw for an editor. `heard` is called after each reply.
+  connect(editor, heard) {
+    this.editor = editor;
+    this.heard = heard;
+    this.worker.onmessage = ({ data }) => this.take(data);
+    this.worker.onerror = (event) => this.replace(event.message);
+    editor.draw_elsewhere();
+  }
+
+  // A fault costs a picture: another worker draws the next one.
+  replace(fault) {
+    console.error(fault);
+    this.worker.terminate();
+    let isReady = false;
+    const take = (reply) => (reply === "ready" ? (isReady = true) : this.take(reply));
+    this.worker = begin(this.source, take, (fault) => (isReady ? this.replace(fault) : console.error(fault)));
+    this.take(new Uint8Array(0));
+  }
+
+  take(reply) {
+    put(this.editor, reply);
+    this.editor.reply();
+    this.exchange();
+    this.heard();
+  }
+
+  // Passes the next request to the worker, if there is one.
+  exchange() {
+    const length = this.editor.request();
+    if (length > 0) {
+      const request = taken(this.editor, length);
+      // Interrupts the refinement of the last picture: see worker.js.
+      URL.revokeObjectURL(this.token);
+      this.token = URL.createObjectURL(new Blob(["."]));
+      this.worker.postMessage({ request, token: this.token }, [request.buffer]);
+    }
+  }
+}
+
+export class Measuring {
+  // `heard` is called after each result.
+  constructor(source, editor, heard) {
+    this.source = source;
+    this.editor = editor;
+    this.heard = heard;
+    this.worker = null;
+  }
+
+  // Starts the next measurement, and stops one whose results are not awaited any more.
+  exchange() {
+    if (this.worker && this.editor.awaits_measurement() === 0) {
+      this.worker.terminate();
+      this.worker = null;
+    }
+    const length = this.editor.job();
+    if (length > 0) {
+      const job = taken(this.editor, length);
+      const take = (data) => data.told && this.take(data.told);
+      this.worker = begin(this.source, take, (fault) => this.take(`failed: ${fault}`));
+      this.worker.postMessage({ job }, [job.buffer]);
+    }
+  }
+
+  take(told) {
+    put(this.editor, new TextEncoder().encode(told));
+    this.editor.told();
+    this.heard();
+  }
+}
