@@ -45,7 +45,8 @@ pub(super) fn color(text: &str) -> Result<Color, String> {
 }
 
 fn decimal(text: &str) -> Option<[u8; 3]> {
-    let channels: Option<Vec<u8>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    let channels: Option<Vec<u8>> =
+        text.split(',').map(|part| part.trim().parse::<u8>().ok()).collect();
     channels?.try_into().ok()
 }
 

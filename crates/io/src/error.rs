@@ -62,6 +62,10 @@ pub(super) fn reason(error: &std::io::Error) -> String {
     use std::io::ErrorKind;
     match error.kind() {
         ErrorKind::NotFound => "there is no such file".to_owned(),
+        // Windows has one error for both.
+        ErrorKind::PermissionDenied if cfg!(windows) => {
+            "permission denied, or another program has it open".to_owned()
+        }
         ErrorKind::PermissionDenied => "permission denied".to_owned(),
         ErrorKind::IsADirectory => "this is a folder, not a file".to_owned(),
         ErrorKind::NotADirectory => "a part of its path is not a folder".to_owned(),

@@ -4,7 +4,7 @@
 //! refer to files inside the program, so a scene that uses them can be saved anywhere and opened
 //! again without the files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::error::{LoadError, shown};
 use super::obj::{Loaded, parse};
@@ -122,6 +122,14 @@ const FILES: &[(&str, &[u8])] = files![
 #[must_use]
 pub fn is_example(path: &Path) -> bool {
     path.to_str().is_some_and(|path| path.starts_with(FOLDER))
+}
+
+/// Resolves a path in the scene file of an example, or one that names a file of the examples. The
+/// result has slashes on every system.
+pub(super) fn resolved(folder: &Path, path: &str) -> Option<PathBuf> {
+    let within = format!("{}/{path}", folder.to_str()?);
+    let names = [path, &within];
+    names.into_iter().find(|name| name.starts_with(FOLDER)).map(PathBuf::from)
 }
 
 /// Returns the text of an example's scene file.

@@ -125,6 +125,7 @@ pub(super) fn plain(name: &str) -> String {
     let name = name.trim();
     let unquoted = name.strip_prefix('"').and_then(|name| name.strip_suffix('"')).unwrap_or(name);
     let slashes = unquoted.replace('\\', "/");
+    // One slash at most: with two, a model could make Windows log in to another machine.
     let lead = if slashes.starts_with('/') { "/" } else { "" };
     let parts: Vec<&str> = slashes.split('/').filter(|part| !part.is_empty()).collect();
     format!("{lead}{}", parts.join("/"))
@@ -162,6 +163,7 @@ mod tests {
             ("MY%20Wood.PNG", "my wood.png"),
             ("file:///home/me/my%20wood.png", "my wood.png"),
             (r"C:\textures\my wood.png", "my wood.png"),
+            (r"\\server\textures\my wood.png", "my wood.png"),
             ("Cafe\u{301}.png", "Café.png"),
             ("caf%C3%A9.png", "Café.png"),
             ("50%.png", "50%.png"),

@@ -8,10 +8,11 @@
 
 use std::fs::{self, File};
 use std::io::{BufWriter, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
 use super::error::{reason, shown};
 use super::part::{create_part, sweep_once};
+use super::scene_file::paths::plain;
 
 /// The reason why a file could not be written. An existing file is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -71,7 +72,7 @@ fn target(path: &Path) -> Result<PathBuf, SaveError> {
         // A relative link is relative to the folder that contains it.
         target = folder(&target).join(next);
     }
-    let target = fs::canonicalize(&target).unwrap_or(target);
+    let target = fs::canonicalize(&target).map_or(target, |canonical| plain(&canonical));
     if target.is_symlink() {
         return Err(SaveError::new(path, "its symbolic links form a loop"));
     }
@@ -107,7 +108,7 @@ pub(super) fn folder(target: &Path) -> &Path {
 
 /// Formats the folder of a file for messages.
 fn folder_name(target: &Path) -> String {
-    format!("the folder {}/", folder(target).display())
+    format!("the folder {}{MAIN_SEPARATOR}", folder(target).display())
 }
 
 /// Replaces the content of the file at `path`.

@@ -92,10 +92,8 @@ impl Files {
 
     /// Resolves a path in the scene file.
     fn place(&self, path: &str) -> PathBuf {
-        if examples::is_example(Path::new(path)) {
-            return PathBuf::from(path);
-        }
-        paths::plain(&self.folder.join(path))
+        examples::resolved(&self.folder, path)
+            .unwrap_or_else(|| paths::plain(&self.folder.join(path)))
     }
 
     pub(super) fn load(

@@ -12,7 +12,7 @@ mod fragment;
 mod light;
 mod message;
 mod open;
-mod paths;
+pub(crate) mod paths;
 mod save;
 mod view;
 mod words;

@@ -1,13 +1,21 @@
 //! Paths in scene files: relative to the file's folder, with slashes.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::{Component, Path, PathBuf, Prefix};
 
-/// Removes `.` and resolves `..` in a path, without disk access.
-pub(super) fn plain(path: &Path) -> PathBuf {
+/// Removes `.` and resolves `..` in a path, without disk access. On Windows, the prefix `\\?\` of
+/// canonical paths is removed, since few programs understand it.
+pub(crate) fn plain(path: &Path) -> PathBuf {
     let mut plain = PathBuf::new();
     for part in path.components() {
         match part {
             Component::CurDir => {}
+            Component::Prefix(prefix) => match prefix.kind() {
+                Prefix::VerbatimDisk(letter) => plain.push(format!("{}:", char::from(letter))),
+                Prefix::VerbatimUNC(server, share) => {
+                    plain.push(Path::new(r"\\").join(server).join(share));
+                }
+                _ => plain.push(part),
+            },
             Component::ParentDir
                 if matches!(plain.components().next_back(), Some(Component::Normal(_))) =>
             {
@@ -50,6 +58,20 @@ mod tests {
             let relative = relative(Path::new(folder), Path::new(path)).unwrap();
             assert_eq!(relative, text);
             assert_eq!(plain(&Path::new(folder).join(relative)), Path::new(path));
+        }
+    }
+
+    #[cfg(windows)]
+    #[test]
+    fn paths_of_windows_have_slashes_in_scene_files_and_no_verbatim_prefix() {
+        for (folder, path, text) in [
+            (r"C:\a\b", r"c:\a\c\d e.obj", "../c/d e.obj"),
+            (r"C:\a", r"\\?\C:\a\c.obj", "c.obj"),
+            (r"C:\a", r"D:\c.obj", "D:/c.obj"),
+            (r"\\server\all\a", r"\\?\UNC\server\all\c.obj", "../c.obj"),
+            (r"C:\a", r"\\server\all\c.obj", "//server/all/c.obj"),
+        ] {
+            assert_eq!(relative(Path::new(folder), Path::new(path)).unwrap(), text);
         }
     }
 }
