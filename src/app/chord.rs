@@ -82,8 +82,8 @@ impl Chord {
             Self::Named(key) => key.name().to_owned(),
             Self::Shifted(key) => format!("Shift+{}", key.name()),
             Self::Text(sign) => sign.to_owned(),
-            Self::Command(key) => format!("{}+{}", command_key(), key.name()),
-            Self::CommandShift(key) => format!("{}+Shift+{}", command_key(), key.name()),
+            Self::Command(key) => format!("{}+{}", command_key!(), key.name()),
+            Self::CommandShift(key) => format!("{}+Shift+{}", command_key!(), key.name()),
         }
     }
 
@@ -104,9 +104,20 @@ impl std::fmt::Display for Chord {
     }
 }
 
-const fn command_key() -> &'static str {
-    if cfg!(target_os = "macos") { "Cmd" } else { "Ctrl" }
+/// The name of the key for commands, a literal for `concat!`.
+#[cfg(target_os = "macos")]
+macro_rules! command_key {
+    () => {
+        "Cmd"
+    };
 }
+#[cfg(not(target_os = "macos"))]
+macro_rules! command_key {
+    () => {
+        "Ctrl"
+    };
+}
+pub(crate) use command_key;
 
 const fn is_digit(key: Key) -> bool {
     use Key::{Num0, Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9};

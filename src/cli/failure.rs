@@ -18,6 +18,7 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Usage(String),
     /// Arguments that cannot be parsed.
+    #[cfg(feature = "desktop")]
     #[error(transparent)]
     Unparsed(Box<clap::Error>),
     /// The error has been printed already.

@@ -96,6 +96,7 @@ pub(crate) fn run() -> ExitCode {
             let own = name.and_then(|name| command.find_subcommand(name)).unwrap_or(&command);
             usage(&own.clone().error(ErrorKind::ArgumentConflict, reason))
         }
+        #[cfg(feature = "desktop")]
         Err(Failure::Unparsed(wrong)) => usage(&wrong),
         Err(Failure::Told) => ExitCode::FAILURE,
         Err(Failure::Status(status)) => ExitCode::from(status),

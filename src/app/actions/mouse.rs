@@ -1,6 +1,8 @@
 //! Descriptions of mouse input over the picture, for the cheat sheet, the status line and the list
 //! of keys. `app/viewport/mouse` implements it.
 
+use crate::app::chord::command_key;
+
 /// A description of one kind of mouse input over the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct MouseInfo {
@@ -72,7 +74,11 @@ impl MouseInfo {
         Self {
             inputs: &["Drag a handle"],
             label: "Use the gizmo",
-            hint: "Moves, rotates or scales the selection; hold Ctrl to snap, or type x 12 Enter.",
+            hint: concat!(
+                "Moves, rotates or scales the selection; hold ",
+                command_key!(),
+                " to snap, or type x 12 Enter."
+            ),
             words: "mouse move rotate scale handle",
         },
         Self {
@@ -82,7 +88,7 @@ impl MouseInfo {
             words: "mouse several multiple add left",
         },
         Self {
-            inputs: &["Ctrl+drag"],
+            inputs: &[concat!(command_key!(), "+drag")],
             label: "Box select",
             hint: "Selects everything in a box.",
             words: "mouse several multiple rectangle marquee left",

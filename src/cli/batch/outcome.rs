@@ -51,8 +51,9 @@ impl Fault {
             Failure::Measure(_) | Failure::Plot(_) => Self::Program(failure.to_string()),
             #[cfg(feature = "desktop")]
             Failure::Start(_) => Self::Program(failure.to_string()),
+            #[cfg(feature = "desktop")]
+            Failure::Unparsed(_) => Self::Input(failure.to_string()),
             Failure::Usage(_)
-            | Failure::Unparsed(_)
             | Failure::Told
             | Failure::Status(_)
             | Failure::Absent(_)

@@ -10,6 +10,7 @@ use glam::DVec3;
 use super::typed::Typed;
 use super::{Gizmo, Handle, others};
 use crate::app::actions::Request;
+use crate::app::chord::command_key;
 use crate::app::state::State;
 use crate::app::widgets::{expression, number::short};
 use marraztu_core::base::image::Size;
@@ -191,7 +192,8 @@ impl Grab {
                 self.typed.axis().map_or_else(String::new, |axis| format!("{} ", letter(axis)));
             said += &format!("   [{axis}{}]  Enter takes it", self.typed.text);
         } else {
-            said += "   type x, y, z and a number; Ctrl snaps; Esc cancels";
+            let snap = command_key!();
+            said += &format!("   type x, y, z and a number; {snap} snaps; Esc cancels");
         }
         self.said = said;
     }
