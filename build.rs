@@ -20,7 +20,7 @@ fn main() {
     if !Path::new(".git").exists() {
         return;
     }
-    let Some(commit) = git(&["rev-parse", "--short", "HEAD"]) else { return };
+    let Some(commit) = git(&["rev-parse", "--short=10", "HEAD"]) else { return };
     let changed = git(&[&["status", "--porcelain", "--"], &sources[..]].concat());
     let mark = if changed.is_some_and(|list| !list.is_empty()) { ", with changes" } else { "" };
     println!("cargo:rustc-env=MARRAZTU_COMMIT={commit}{mark}");
