@@ -1,8 +1,9 @@
 //! Tells the program which commit it is built from, if git knows.
 //!
-//! The script runs again only if the sources change. A commit by itself causes no build; sources
-//! that differ from it are marked as changed. Development builds name no commit: a script that runs
-//! again compiles the whole library, even if only the command line was edited.
+//! The script runs again only if the sources change. A commit by itself causes no build, except of a
+//! release: `tools/ports/common` sets its time. Sources that differ from the commit are marked as
+//! changed. Development builds name no commit: a script that runs again compiles the whole library,
+//! even if only the command line was edited.
 
 use std::path::Path;
 use std::process::Command;
@@ -16,6 +17,7 @@ fn main() {
     for source in sources {
         println!("cargo:rerun-if-changed={source}");
     }
+    println!("cargo:rerun-if-env-changed=SOURCE_DATE_EPOCH");
     // A copy of the sources within another repository is not of that repository's commit.
     if !Path::new(".git").exists() {
         return;
