@@ -1,0 +1,361 @@
+// Drives the page of `tools/ports/web` in Chromium, as a user would: node drive-page.mjs FOLDER [WORD]
+//
+// The checks see what a user sees or gets: pixels, messages (the page has them as text, for screen
+// readers) and downloaded scenes. WORD chooses the checks that have it in their names. KEEP=FOLDER
+// writes a picture of each page at its end.
+import { mkdir, mkdtemp, rm, writeFile } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { Browser, serve, sleep } from "./browser.mjs";
+
+const [folder, word = ""] = process.argv.slice(2);
+
+// A page with the editor.
+class Page {
+  constructor(tab) {
+    this.tab = tab;
+  }
+
+  // Opens an address, and waits until the editor has started.
+  async open(address) {
+    await this.tab.open(address);
+    await this.started();
+  }
+
+  async started() {
+    await this.until("the editor starts", async () => (await this.status()) === "");
+  }
+
+  status() {
+    return this.tab.run(() => document.getElementById("status").textContent);
+  }
+
+  said() {
+    return this.tab.run(() => document.getElementById("said").textContent);
+  }
+
+  // Waits until something holds, and returns it.
+  async until(what, holds, seconds = 30) {
+    const end = Date.now() + 1000 * seconds;
+    while (Date.now() < end) {
+      const found = await holds();
+      if (found) {
+        return found;
+      }
+      await sleep(50);
+    }
+    throw new Error(`in ${seconds} s, this never was so: ${what}; it says: ${await this.said()}`);
+  }
+
+  // Waits until the editor says something.
+  hears(text, seconds) {
+    return this.until(`it says "${text}"`, async () => (await this.said()).includes(text), seconds);
+  }
+
+  // Returns the place in the middle of all pixels with much of these colours and little of the others.
+  find(colors) {
+    return this.tab.run((colors) => {
+      const canvas = document.getElementById("canvas");
+      const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+      copy.drawImage(canvas, 0, 0);
+      const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+      const parts = ["red", "green", "blue"].map((name) => colors.includes(name));
+      const places = [];
+      for (let at = 0; at < data.length / 4; at++) {
+        if (parts.every((wanted, part) => (wanted ? data[4 * at + part] > 90 : data[4 * at + part] < 50))) {
+          places.push([at % canvas.width, Math.floor(at / canvas.width)]);
+        }
+      }
+      if (places.length < 50) {
+        return null;
+      }
+      // The middle of all may be beside them, so the nearest one is taken.
+      const middle = [0, 1].map((axis) => places.reduce((sum, place) => sum + place[axis], 0) / places.length);
+      const far = (place) => Math.hypot(place[0] - middle[0], place[1] - middle[1]);
+      const nearest = places.reduce((best, place) => (far(place) < far(best) ? place : best));
+      return nearest.map((length) => (length + 0.5) / window.devicePixelRatio);
+    }, colors);
+  }
+
+  sees(...colors) {
+    return this.until(`something ${colors.join(" and ")} is shown`, () => this.find(colors));
+  }
+
+  // Returns a number for the pixels of the canvas.
+  pixels() {
+    return this.tab.run(async () => {
+      const canvas = document.getElementById("canvas");
+      const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+      copy.drawImage(canvas, 0, 0);
+      const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+      return Array.from(new Uint8Array(await crypto.subtle.digest("SHA-256", data))).join(" ");
+    });
+  }
+
+  // Does something that changes the picture.
+  async changes(what, act) {
+    const before = await this.pixels();
+    await act();
+    await this.until(`${what} changes the picture`, async () => (await this.pixels()) !== before);
+  }
+
+  // Saves the scene, which is downloaded. Returns its text.
+  async scene() {
+    const [name, bytes] = await this.tab.download(() => this.tab.press("Control+s"));
+    equal(name, "scene.marraztu", "the name of the download");
+    await this.hears("Downloaded scene.marraztu");
+    return bytes.toString();
+  }
+
+  // Chooses the best match in the palette.
+  async palette(words) {
+    await this.tab.press("Control+k");
+    await this.tab.type(words);
+    await sleep(300);
+    await this.tab.press("Enter");
+  }
+}
+
+function equal(found, wanted, what) {
+  if (found !== wanted) {
+    throw new Error(`${what}: ${found}, not ${wanted}`);
+  }
+}
+
+function has(text, wanted, what) {
+  if (!text.includes(wanted)) {
+    throw new Error(`${what} lacks "${wanted}":\n${text}`);
+  }
+}
+
+// Returns the place of an object in a scene file along x.
+const x = (scene, name) => Number(scene.split(`name: "${name}"`)[1]?.match(/placement: .*\((\S+), \S+, \S+, 1.0\)\)/)?.[1]);
+
+// A PNG of 2 x 2 pixels in magenta.
+const PNG = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAIAAAD91JpzAAAAEElEQVR42mP4z/AfiBggFAA31gf5htMR8gAAAABJRU5ErkJggg==";
+
+// A square that glows in the colour of a texture. The texture is beside the MTL file, in a folder.
+async function writeModels(at) {
+  await mkdir(join(at, "looks"), { recursive: true });
+  await writeFile(join(at, "square.obj"), `mtllib looks/square.mtl
+v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1
+usemtl glow\nf 1/1/1 2/2/1 3/3/1 4/4/1\n`);
+  await writeFile(join(at, "looks/square.mtl"), "newmtl glow\nKa 0 0 0\nKd 0 0 0\nKs 0 0 0\nKe 1 1 1\nmap_Ke glow.png\n");
+  await writeFile(join(at, "looks/glow.png"), Buffer.from(PNG, "base64"));
+}
+
+const files = await mkdtemp(join(tmpdir(), "marraztu-models-"));
+await writeModels(join(files, "models"));
+const served = await serve({ "": folder, models: join(files, "models") });
+// Another origin, with a page of somebody else.
+await writeFile(join(files, "index.html"), `<!doctype html><body style="margin: 0; background: white">
+<iframe src="${served.address}view.html?model=/models/square.obj&view=front" width="400" height="300" style="border: 0"></iframe>`);
+const other = await serve({ "": files });
+const site = served.address;
+
+const checks = {
+  async "the first scene is shown; a click selects, a key moves, undo undoes, a save is downloaded, and then it rests"(visit) {
+    const page = await visit();
+    await page.open(site);
+    await page.sees("red");
+    await page.tab.click(...await page.sees("green"));
+    await page.changes("a step of an object", async () => {
+      await sleep(300);
+      await page.tab.press("x");
+    });
+    let scene = await page.scene();
+    equal(x(scene, "x_wing"), 110, "the clicked object after a step");
+    equal(x(scene, "r_falke"), -100, "the other object");
+    await page.tab.press("Control+z");
+    await page.hears("Undone");
+    equal(x(await page.scene(), "x_wing"), 100, "the object after undo");
+    const frames = () => page.tab.run(() => window.framesAsked);
+    // A notice goes after some seconds, and a picture is refined.
+    await page.until("no frame for 3 seconds", async () => {
+      const before = await frames();
+      await sleep(3000);
+      return (await frames()) === before;
+    }, 40);
+  },
+
+  async "another size and another scale of the screen are followed"(visit) {
+    const page = await visit();
+    await page.open(site);
+    const size = () => page.tab.run(() => [canvas.width, canvas.height].join("x"));
+    equal(await size(), "1000x640", "the canvas");
+    await page.tab.resize(390, 844);
+    await page.until("the canvas is narrow", async () => (await size()) === "390x844");
+    await page.tab.resize(390, 844, 2);
+    await page.tab.mouse("mouseMoved", 100, 300);
+    await page.until("the canvas is twice as fine", async () => (await size()) === "780x1688");
+    await page.sees("red");
+  },
+
+  async "unsaved work is offered after a reload and after a crash"(visit, visitor) {
+    let page = await visit();
+    await page.open(site);
+    await page.tab.click(...await page.sees("red"));
+    await sleep(300);
+    await page.changes("a step", () => page.tab.press("x"));
+    await sleep(1500);
+    await page.tab.reload();
+    await page.started();
+    await page.hears("The program ended with unsaved changes to a new scene");
+    await page.tab.press("Control+Shift+R");
+    await page.hears("Recovered unsaved changes");
+    await page.changes("another step", () => page.tab.press("x"));
+    await sleep(1500);
+    await page.tab.crash();
+    page = await visit(visitor);
+    await page.open(site);
+    await page.hears("The program ended with unsaved changes to a new scene");
+    await page.tab.press("Control+Shift+R");
+    await page.hears("Recovered unsaved changes");
+    equal(x(await page.scene(), "r_falke"), -80, "the recovered object after two steps");
+  },
+
+  async "a link opens a model with its MTL file and texture"(visit) {
+    const page = await visit();
+    await page.open(`${site}?model=/models/square.obj`);
+    await page.hears("Opened square");
+    await page.sees("red", "blue");
+    await page.open(`${site}?model=/models/none.obj`).catch(() => {});
+    has(await page.status(), "404", "the reason why a model is not shown");
+  },
+
+  async "a dropped folder opens its model with MTL file and texture"(visit) {
+    const page = await visit();
+    await page.open(site);
+    await page.sees("red");
+    await page.tab.drop(500, 200, [join(files, "models")]);
+    await page.hears("Opened square");
+    await page.sees("red", "blue");
+  },
+
+  async "the file dialog loads a model with MTL file and texture"(visit) {
+    const page = await visit();
+    await page.open(site);
+    await page.sees("red");
+    const chosen = ["square.obj", "looks/square.mtl", "looks/glow.png"].map((name) => join(files, "models", name));
+    await page.tab.choose(chosen, () => page.tab.press("f"));
+    await page.until("the material is asked for", async () => {
+      // The dialog says nothing, so its answer is tried.
+      await page.tab.press("Enter");
+      await sleep(300);
+      return (await page.said()).includes("Opened square");
+    });
+    has(await page.scene(), 'path: "square.obj"', "the scene");
+  },
+
+  async "an example is fetched, also for unsaved work"(visit) {
+    const page = await visit();
+    await page.open(site);
+    await page.sees("red");
+    await page.palette("example chess");
+    await page.hears("Opened chess");
+    await page.changes("a step", () => page.tab.press("x"));
+    await sleep(1500);
+    await page.tab.reload();
+    await page.started();
+    await page.hears("The program ended with unsaved changes");
+    await page.tab.press("Control+Shift+R");
+    await page.hears("Recovered unsaved changes");
+    has(await page.scene(), "example:/chess/king.obj", "the scene");
+    equal((await page.said()).includes("missing"), false, "a file is missing");
+  },
+
+  async "a lesson opens, and the laboratory measures and gives its verdict"(visit) {
+    const page = await visit(undefined, 700, 560);
+    await page.open(site);
+    await page.palette("why surfaces show through each other");
+    const cost = await page.until("the lesson quotes a figure", async () => {
+      const said = await page.said();
+      return /\d/.test(said) && said;
+    }, 100);
+    await page.tab.press("F5");
+    await page.until("a verdict", async () => (await page.said()).length > cost.length + 40);
+  },
+
+  async "all pictures are as listed"(visit) {
+    const page = await visit();
+    await page.tab.open(`${site}?verify`);
+    const [, right, all] = await page.until("a result", async () => (await page.status()).match(/(\d+) of (\d+) pictures/), 120);
+    equal(right, all, "pictures as listed");
+    if (all < 63) {
+      throw new Error(`only ${all} pictures were drawn`);
+    }
+  },
+
+  async "the viewer shows only the picture, and turns it by pointer, touch and wheel"(visit) {
+    const page = await visit(undefined, 400, 300);
+    await page.open(`${site}view.html?model=/models/square.obj&view=front`);
+    const [middle] = await page.sees("red", "blue");
+    equal(Math.round(middle / 4), 50, "a quarter of the middle of the square");
+    await page.changes("a drag", () => page.tab.drag([200, 150], [260, 170]));
+    await page.changes("the wheel", () => page.tab.mouse("mouseWheel", 200, 150, { deltaX: 0, deltaY: 120 }));
+    await page.changes("a finger", async () => {
+      await page.tab.touch("touchStart", [200, 150]);
+      for (let step = 1; step < 10; step++) {
+        await page.tab.touch("touchMove", [200 - 8 * step, 150]);
+      }
+      await page.tab.touch("touchEnd");
+    });
+    // Keys do nothing.
+    const before = await page.pixels();
+    await page.tab.press("x");
+    await page.tab.press("Delete");
+    await sleep(1000);
+    equal(await page.pixels(), before, "the picture after keys");
+    const link = await page.tab.run(() => document.getElementById("open").href);
+    await page.open(link);
+    await page.hears("Opened square");
+  },
+
+  async "the viewer works in a page of another origin"(visit) {
+    const page = await visit(undefined, 600, 400);
+    await page.tab.open(other.address);
+    await page.until("the square is in the frame", async () => {
+      const [r, g, b] = await page.tab.shown(200, 150);
+      return r > 200 && g < 60 && b > 200;
+    });
+    const active = await page.tab.run(() => document.activeElement.tagName);
+    equal(active, "BODY", "the focus of the page around it");
+  },
+};
+
+const browser = await Browser.start();
+let failed = 0;
+for (const [name, check] of Object.entries(checks).filter(([name]) => name.includes(word))) {
+  const begun = Date.now();
+  const visitor = await browser.visitor();
+  const pages = [];
+  const visit = async (as = visitor, width = 1000, height = 640) => {
+    pages.push(new Page(await browser.tab(as, width, height)));
+    return pages.at(-1);
+  };
+  let reason;
+  try {
+    const late = sleep(150_000).then(() => Promise.reject(new Error("it takes longer than 150 seconds")));
+    await Promise.race([check(visit, visitor), late]);
+    const faults = pages.flatMap((page) => page.tab.faults);
+    reason = faults.length > 0 ? faults.join("\n") : undefined;
+  } catch (error) {
+    reason = error.message;
+  }
+  if (process.env.KEEP) {
+    const file = `${name.replaceAll(/\W+/g, "-").slice(0, 40)}.png`;
+    await pages.at(-1).tab.picture().then((bytes) => writeFile(join(process.env.KEEP, file), bytes));
+  }
+  await browser.send("Target.disposeBrowserContext", { browserContextId: visitor });
+  const seconds = ((Date.now() - begun) / 1000).toFixed(1);
+  console.log(`${reason === undefined ? "ok" : "FAILED"}: ${name} (${seconds} s)`);
+  if (reason !== undefined) {
+    failed += 1;
+    console.error(reason);
+  }
+}
+await browser.close();
+served.close();
+other.close();
+await rm(files, { recursive: true });
+process.exit(failed > 0 ? 1 : 0);
