@@ -4,9 +4,12 @@
 //! focus. The light and the dark palette have the same entries. All text has a contrast of at least
 //! 4.5 to 1 on its background (WCAG 2.1, success criterion 1.4.3).
 
+use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
 use egui::style::{HandleShape, ScrollStyle, WidgetVisuals, Widgets};
-use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style};
-use egui::{TextStyle, Theme, Visuals, vec2};
+use egui::{
+    Color32, Context, CornerRadius, FontData, FontFamily, FontId, Margin, Shadow, Stroke, Style,
+    TextStyle, Theme, Visuals, vec2,
+};
 
 use marraztu_core::base::math::Axis;
 
@@ -91,9 +94,22 @@ const fn gray(level: u8) -> Color32 {
     Color32::from_gray(level)
 }
 
+/// Returns the name of the font of the icons.
+pub(crate) fn icon_family() -> FontFamily {
+    FontFamily::Name("icons".into())
+}
+
+fn icon_font() -> FontInsert {
+    let mut data = FontData::from_static(include_bytes!("../../assets/icons.ttf"));
+    // The symbols stand a little high in their lines.
+    data.tweak.y_offset_factor = 0.05;
+    let (family, priority) = (icon_family(), FontPriority::Highest);
+    FontInsert::new("icons", data, vec![InsertFontFamily { family, priority }])
+}
+
 /// Installs the styles of both themes and the font of the icons.
 pub fn install(ctx: &Context) {
-    egui_material_icons::initialize(ctx);
+    ctx.add_font(icon_font());
     ctx.set_style_of(Theme::Dark, style(Visuals::dark(), &DARK));
     ctx.set_style_of(Theme::Light, style(Visuals::light(), &LIGHT));
 }

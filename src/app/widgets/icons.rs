@@ -1,8 +1,8 @@
 //! The icons of the window: symbols of the Material Symbols font.
 
 use egui::{Align2, Color32, FontId, Painter, Rect};
-use egui_material_icons::{MaterialIcon, icons};
 
+use crate::app::theme;
 use marraztu_core::scene::{ItemId, Light, Scene};
 
 /// An icon.
@@ -83,42 +83,61 @@ impl Icon {
 
     /// Draws the icon in the middle of `rect`, `side` points wide.
     pub(crate) fn paint(self, painter: &Painter, rect: Rect, side: f32, color: Color32) {
-        let symbol = self.symbol();
         // Symbols fill about 3/4 of their em square.
-        let font = FontId::new((side * 4.0 / 3.0).round(), symbol.font_family());
-        painter.text(rect.center(), Align2::CENTER_CENTER, symbol.codepoint, font, color);
+        let font = FontId::new((side * 4.0 / 3.0).round(), theme::icon_family());
+        painter.text(rect.center(), Align2::CENTER_CENTER, self.symbol(), font, color);
     }
 
-    const fn symbol(self) -> MaterialIcon {
+    /// Returns the code point in the font, `assets/icons.ttf`, which `assets/icons.py` makes.
+    const fn symbol(self) -> &'static str {
         match self {
-            Self::Object => icons::ICON_DEPLOYED_CODE,
-            Self::Part => icons::ICON_CHANGE_HISTORY,
-            Self::Camera => icons::ICON_VIDEOCAM,
-            Self::Light(code_point) => MaterialIcon::new(code_point),
-            Self::Eye => icons::ICON_VISIBILITY,
-            Self::EyeClosed => icons::ICON_VISIBILITY_OFF,
-            Self::Lock => icons::ICON_LOCK,
-            Self::LockOpen => icons::ICON_LOCK_OPEN,
-            Self::On => icons::ICON_RADIO_BUTTON_CHECKED,
-            Self::Off => icons::ICON_RADIO_BUTTON_UNCHECKED,
-            Self::Plus => icons::ICON_ADD,
-            Self::Copy => icons::ICON_CONTENT_COPY,
-            Self::Pen => icons::ICON_EDIT,
-            Self::Bin => icons::ICON_DELETE,
-            Self::Undo => icons::ICON_UNDO,
-            Self::Redo => icons::ICON_REDO,
-            Self::Search => icons::ICON_SEARCH,
-            Self::Loupe => icons::ICON_ZOOM_IN,
-            Self::Up => icons::ICON_KEYBOARD_ARROW_UP,
-            Self::Down => icons::ICON_KEYBOARD_ARROW_DOWN,
-            Self::Left => icons::ICON_KEYBOARD_ARROW_LEFT,
-            Self::Right => icons::ICON_KEYBOARD_ARROW_RIGHT,
-            Self::Tick => icons::ICON_CHECK,
-            Self::Warning => icons::ICON_WARNING,
-            Self::Info => icons::ICON_INFO,
-            Self::List => icons::ICON_LIST,
-            Self::Switches => icons::ICON_TOGGLE_ON,
-            Self::Properties => icons::ICON_TUNE,
+            Self::Object => "\u{f720}",
+            Self::Part => "\u{e86b}",
+            Self::Camera => "\u{e04b}",
+            Self::Light(code_point) => code_point,
+            Self::Eye => "\u{e8f4}",
+            Self::EyeClosed => "\u{e8f5}",
+            Self::Lock => "\u{e899}",
+            Self::LockOpen => "\u{e898}",
+            Self::On => "\u{e837}",
+            Self::Off => "\u{e836}",
+            Self::Plus => "\u{e145}",
+            Self::Copy => "\u{e14d}",
+            Self::Pen => "\u{f097}",
+            Self::Bin => "\u{e92e}",
+            Self::Undo => "\u{e166}",
+            Self::Redo => "\u{e15a}",
+            Self::Search => "\u{ef7a}",
+            Self::Loupe => "\u{e8ff}",
+            Self::Up => "\u{e316}",
+            Self::Down => "\u{e313}",
+            Self::Left => "\u{e314}",
+            Self::Right => "\u{e315}",
+            Self::Tick => "\u{e668}",
+            Self::Warning => "\u{f083}",
+            Self::Info => "\u{e88e}",
+            Self::List => "\u{e896}",
+            Self::Switches => "\u{e9f6}",
+            Self::Properties => "\u{e429}",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ttf_parser::Face;
+
+    #[test]
+    fn the_font_has_every_icon() {
+        let font = Face::parse(include_bytes!("../../../assets/icons.ttf"), 0).unwrap();
+        let lights = include_str!("../../../crates/core/src/scene/light_kind.rs");
+        let written = include_str!("icons.rs").split("#[cfg(test)]").next().unwrap();
+        let parts = written.split("\\u{").skip(1).chain(lights.split("\\u{").skip(1));
+        let codes: Vec<&str> = parts.filter_map(|part| Some(part.split_once('}')?.0)).collect();
+        assert!(codes.len() > 30);
+        for code in codes {
+            let icon = char::from_u32(u32::from_str_radix(code, 16).unwrap()).unwrap();
+            assert!(font.glyph_index(icon).is_some(), "{code}: run assets/icons.py");
         }
     }
 }
