@@ -1,8 +1,8 @@
 //! An editor for 3D scenes of `.obj` models whose pictures are drawn by the CPU alone.
 //!
 //! This crate is the program: [`app`] is the window, [`plots`] draws the laboratory's plots as SVG
-//! and PNG, [`picture_file`] draws into files, and the binary adds the command line. The
-//! libraries under `crates` do the work, and know neither of windows nor of arguments:
+//! and PNG, [`picture_file`] draws into files, [`directions`] names views of models, and the binary
+//! adds the command line. The libraries under `crates` do the work, and know neither of windows nor of arguments:
 //!
 //! ```text
 //! marraztu_core  <  { marraztu_io, marraztu_render }  <  marraztu_lab  <  marraztu
@@ -15,6 +15,7 @@
 
 #[cfg(feature = "app")]
 pub mod app;
+pub mod directions;
 pub mod picture_file;
 #[cfg(all(feature = "cli", not(target_family = "wasm")))]
 pub mod plots;

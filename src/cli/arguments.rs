@@ -11,6 +11,7 @@ use super::layers::{Encoding, LayerOptions};
 use super::talk::Talk;
 use super::terminal::TerminalForm;
 use super::values::{color, is_standard, is_terminal, size, threads};
+use marraztu::directions::direction;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{
@@ -152,10 +153,10 @@ pub(crate) struct Seeing {
     /// The camera to look through, by its number in the scene's list, from 1
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) camera: Option<u32>,
-    /// The view of models without a scene: degrees to the right, and up (30,20*); "0,0" is the
-    /// front
+    /// The view of models without a scene: degrees to the right, and up (30,20*); or front, right,
+    /// back, left, top, bottom, iso
     #[arg(long, value_name = "RIGHT,UP", allow_hyphen_values = true)]
-    #[arg(conflicts_with = "camera", value_parser = side)]
+    #[arg(conflicts_with = "camera", value_parser = direction)]
     pub(crate) from: Option<[f64; 2]>,
     /// The projection: perspective*, orthographic
     #[arg(long, hide_possible_values = true, value_name = "HOW", value_parser = choice(&[
@@ -338,14 +339,6 @@ fn finite(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "this is not a finite number".to_owned())
 }
 
-fn side(text: &str) -> Result<[f64; 2], String> {
-    let sides = text.split_once(',').unwrap_or((text, "0"));
-    match (finite(sides.0.trim()), finite(sides.1.trim())) {
-        (Ok(right), Ok(up)) if up.abs() <= 90.0 => Ok([right, up]),
-        _ => Err("write degrees to the right and degrees up, -90 to 90, as 30,15".to_owned()),
-    }
-}
-
 fn slots(text: &str) -> Result<Slots, String> {
     if text == "none" {
         return Ok(Slots(BTreeSet::new()));
@@ -377,12 +370,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sides_slots_and_factors_are_read_or_refused() {
-        assert_eq!(side("145, -20"), Ok([145.0, -20.0]));
-        assert_eq!(side("-30"), Ok([-30.0, 0.0]));
-        for wrong in ["", "a,b", "1,2,3", "0,91", "0,NaN", "inf,0"] {
-            assert!(side(wrong).is_err(), "{wrong}");
-        }
+    fn slots_and_factors_are_read_or_refused() {
         assert_eq!(slots("0,2,12"), Ok(Slots([0, 2, 12].into())));
         assert_eq!(slots("none"), Ok(Slots([].into())));
         assert!(slots("").is_err() && slots("1;2").is_err());

@@ -7,6 +7,7 @@
 use std::path::Path;
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
+use marraztu::directions::DIRECTIONS;
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::framing::MODELS_FROM;
 use marraztu_core::scene::Pose;
@@ -25,18 +26,6 @@ pub(crate) struct CameraView {
     /// The size of the picture that the camera was calibrated for.
     pub(crate) size: Option<Size>,
 }
-
-/// The named directions, in degrees to the right of the front, and up. `iso` shows all three axes
-/// of the world equally long: its elevation is atan(1/sqrt(2)).
-const DIRECTIONS: [(&str, [f64; 2]); 7] = [
-    ("front", [0.0, 0.0]),
-    ("right", [90.0, 0.0]),
-    ("back", [180.0, 0.0]),
-    ("left", [-90.0, 0.0]),
-    ("top", [0.0, 90.0]),
-    ("bottom", [0.0, -90.0]),
-    ("iso", [45.0, 35.264_389_682_754_654]),
-];
 
 /// Returns the view that the options of the picture describe.
 pub(super) fn own_view() -> Vec<CameraView> {
