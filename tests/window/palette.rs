@@ -373,3 +373,13 @@ fn a_colour_that_is_typed_is_offered_for_the_selection_and_the_background() {
     type_text(&mut editor, "#0a");
     assert!(editor.shows("No match. Try another word"));
 }
+
+#[test]
+fn a_lesson_chosen_in_the_palette_closes_it() {
+    let mut editor = Editor::new();
+    editor.press(Command(Key::K));
+    type_text(&mut editor, "why points leave holes");
+    editor.press(Named(Key::Enter));
+    assert!(editor.state().lab.lesson.is_some());
+    assert!(!editor.state().palette, "the scene was replaced before the palette was closed");
+}

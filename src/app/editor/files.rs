@@ -395,6 +395,8 @@ impl App {
         // Preferences of the window and lists of files belong to the window, not to the scene.
         let State { panels, theme, drawing, layout, overlays, greeting, .. } = self.state;
         let State { gizmo, helpers, watches, up, zoom, narrow, .. } = self.state;
+        // The palette closes itself after the request that replaces the scene.
+        let palette = self.state.palette;
         let statistics = self.state.statistics.clone();
         let dial = DialState { shown: self.state.dial.shown, ..DialState::default() };
         let recent = std::mem::take(&mut self.state.recent);
@@ -411,6 +413,7 @@ impl App {
             drawing,
             layout,
             overlays,
+            palette,
             dial,
             gizmo,
             helpers,
