@@ -1,5 +1,6 @@
-// The files of the editor: a file system in memory, with the folder /files for the user's files and
-// /own for preferences and unsaved work. IndexedDB keeps /own for the next visit.
+// The files of the editor: a file system in memory, with the folder /files for the user's files,
+// /examples for those of the built-in examples, and /own for preferences and unsaved work. IndexedDB
+// keeps /own for the next visit.
 
 import { Directory, File } from "./wasi/index.js";
 
@@ -12,51 +13,51 @@ export class Files {
   constructor() {
     this.user = new Directory(new Map());
     this.own = new Directory(new Map());
+    this.examples = new Directory(new Map());
     // The content of each file of the user that the page knows.
     this.known = new Map();
     // The content of /own that the database has.
     this.kept = new Map();
     this.database = null;
-    // Called with the path and the bytes of each file that is new or has changed.
+    // The files that workers need, by path, and what is called with each one that is new or has changed.
+    this.shared = new Map();
     this.changed = () => {};
   }
 
-  // The root folder, for WASI.
-  root() {
-    return new Map([["files", this.user], ["own", this.own]]);
+  // The root folder, for WASI. Without /own, the editor keeps nothing.
+  root(keeps = true) {
+    const own = keeps ? [["own", this.own]] : [];
+    return new Map([["files", this.user], ["examples", this.examples], ...own]);
   }
 
   // Adds a file of the user, in folders like those of its name. Returns its path.
   add(name, bytes) {
     const parts = name.split("/").filter((part) => part && part !== "." && part !== "..");
-    const last = parts.pop() ?? "file";
-    let folder = this.user;
-    for (const part of parts) {
-      let next = folder.contents.get(part);
-      if (!(next instanceof Directory)) {
-        next = new Directory(new Map());
-        folder.contents.set(part, next);
-      }
-      folder = next;
-    }
-    const file = new File(bytes);
-    folder.contents.set(last, file);
-    const path = [...parts, last].join("/");
+    const path = parts.join("/") || "file";
+    const file = put(this.user, path, bytes);
     this.known.set(path, file.data);
-    this.changed(path, bytes);
+    this.share(`/files/${path}`, bytes);
     // Without room the editor works; recovered work then lacks this file.
     this.database?.transaction(USER, "readwrite").objectStore(USER).put(bytes, path);
     return `/files/${path}`;
   }
 
-  // Returns the user's files: paths and bytes.
-  all() {
-    return [...this.known];
+  // Adds a file of the built-in examples.
+  addExample(path, bytes) {
+    put(this.examples, path, bytes);
+    this.share(`/examples/${path}`, bytes);
   }
 
-  // Returns whether there is a file.
-  has(name) {
-    return this.known.has(name);
+  // Passes a file on to the workers.
+  share(path, bytes) {
+    this.shared.set(path, bytes);
+    this.changed(path, bytes);
+  }
+
+  // Takes a file that another instance shares.
+  take(path, bytes) {
+    const [, folder, rest] = path.match(/^\/(files|examples)\/(.*)$/);
+    put(folder === "examples" ? this.examples : this.user, rest, bytes);
   }
 
   // Returns the files that the editor has written since the last call, with their bytes.
@@ -69,7 +70,7 @@ export class Files {
           visit(entry, `${full}/`);
         } else if (this.known.get(full) !== entry.data && !name.startsWith(".") && !name.endsWith("~")) {
           this.known.set(full, entry.data);
-          this.changed(full, entry.data);
+          this.share(`/files/${full}`, entry.data);
           found.push([name, entry.data]);
         }
       }
@@ -104,7 +105,7 @@ export class Files {
         this.database = null;
       }
       for (const [path, bytes] of all.filter((file) => this.database || !isWork(file))) {
-        this.put(path, bytes);
+        put(this.own, path, bytes);
       }
       if (this.database) {
         await this.restoreUser(all.some(([path]) => /^state\/.*\.marraztu$/.test(path)));
@@ -127,19 +128,6 @@ export class Files {
     for (const [index, path] of paths.entries()) {
       this.add(path, contents[index]);
     }
-  }
-
-  put(path, bytes) {
-    const parts = path.split("/");
-    const last = parts.pop();
-    let folder = this.own;
-    for (const part of parts) {
-      if (!folder.contents.has(part)) {
-        folder.contents.set(part, new Directory(new Map()));
-      }
-      folder = folder.contents.get(part);
-    }
-    folder.contents.set(last, new File(bytes));
   }
 
   list() {
@@ -169,6 +157,23 @@ export class Files {
     // The files are copied: the editor goes on writing.
     store.put(Object.fromEntries(list.map(([path, bytes]) => [path, bytes.slice()])), STORE);
   }
+}
+
+// Puts a file into folders like those of its path. Returns it.
+function put(folder, path, bytes) {
+  const parts = path.split("/");
+  const last = parts.pop();
+  for (const part of parts) {
+    let next = folder.contents.get(part);
+    if (!(next instanceof Directory)) {
+      next = new Directory(new Map());
+      folder.contents.set(part, next);
+    }
+    folder = next;
+  }
+  const file = new File(bytes);
+  folder.contents.set(last, file);
+  return file;
 }
 
 // Returns whether no other tab has the editor open. The answer holds until this page is closed.

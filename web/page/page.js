@@ -5,9 +5,11 @@
 // processor time.
 //
 // ?model=URL opens a model or a scene, with the files that it refers to beside it. ?verify compares the
-// listed pictures with those of this processor.
+// listed pictures with those of this processor. In view.html, for other pages to embed, only the picture
+// is shown, from the direction in ?view=.
 
 import { ConsoleStdout, OpenFile, PreopenDirectory, File, WASI } from "./wasi/index.js";
+import { Fetching } from "./fetching.js";
 import { Files } from "./files.js";
 import { Touches } from "./touches.js";
 import { Drawing, Measuring } from "./workers.js";
@@ -17,7 +19,9 @@ const text = document.getElementById("text");
 const picker = document.getElementById("files");
 const status = document.getElementById("status");
 const pen = canvas.getContext("2d", { alpha: false });
+const said = document.getElementById("said");
 const files = new Files();
+const isView = "view" in document.documentElement.dataset;
 const encoder = new TextEncoder();
 const decoder = new TextDecoder();
 
@@ -38,6 +42,13 @@ function write(value) {
 function read(length) {
   return JSON.parse(decoder.decode(new Uint8Array(module.memory.buffer, module.output(), length)));
 }
+
+function missing(path) {
+  write(path);
+  return read(module.missing());
+}
+
+const fetching = new Fetching(files, missing);
 
 // Reports what stops the editor. The next visit offers the unsaved work.
 function fail(error) {
@@ -60,11 +71,8 @@ function schedule() {
 
 function run(time) {
   asked = false;
-  if (!editor) {
-    return;
-  }
-  // Another screen changes the scale without a resize; fitting runs a frame.
-  if (fit()) {
+  // The scale may change without an event. Fitting runs a frame.
+  if (!editor || providing || fit()) {
     return;
   }
   try {
@@ -86,6 +94,9 @@ function obey(frame) {
     }
   }
   canvas.style.cursor = frame.cursor;
+  if (said.textContent !== frame.said) {
+    said.textContent = frame.said;
+  }
   if (frame.copied !== undefined) {
     copied = frame.copied;
     if (!copying) {
@@ -113,6 +124,10 @@ function obey(frame) {
   }
   files.keep();
   clearTimeout(timer);
+  if (frame.opening) {
+    provide(frame.opening);
+    return;
+  }
   if (frame.due !== undefined) {
     if (frame.due < 5) {
       schedule();
@@ -120,6 +135,19 @@ function obey(frame) {
       timer = setTimeout(schedule, frame.due);
     }
   }
+}
+
+// Whether files are being fetched that the next frame reads.
+let providing = false;
+
+// Fetches the examples that scenes refer to. The next frame reads the scenes.
+async function provide(scenes) {
+  providing = true;
+  for (const scene of scenes) {
+    await fetching.examples(scene);
+  }
+  providing = false;
+  schedule();
 }
 
 function hear(event) {
@@ -151,7 +179,9 @@ canvas.addEventListener("pointerdown", (event) => {
     // What was said about the start has been read.
     status.textContent = "";
   }
-  text.focus({ preventScroll: true });
+  if (!isView) {
+    text.focus({ preventScroll: true });
+  }
   canvas.setPointerCapture(event.pointerId);
   if (event.pointerType === "touch") {
     touches.down(event);
@@ -247,7 +277,9 @@ text.addEventListener("compositionend", (event) => {
   text.value = "";
 });
 window.addEventListener("focus", () => {
-  text.focus({ preventScroll: true });
+  if (!isView) {
+    text.focus({ preventScroll: true });
+  }
   hear({ kind: "focus", focused: true });
 });
 window.addEventListener("blur", () => hear({ kind: "focus", focused: false }));
@@ -375,39 +407,6 @@ function download(name, bytes) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
-// Fetches a model or a scene, and the files that it refers to. Returns its path.
-async function fetched(url) {
-  const base = new URL(url, location.href);
-  const get = async (place) => {
-    const response = await fetch(place);
-    if (!response.ok) {
-      throw new Error(`${place}: ${response.status} ${response.statusText}`);
-    }
-    return new Uint8Array(await response.arrayBuffer());
-  };
-  // The files keep their folders, so that "../" between them works.
-  const name = (place) => decodeURIComponent(place.pathname);
-  const path = files.add(name(base).replace(/\/$/, "/model.obj"), await get(base));
-  // An MTL file names textures, so the list grows once.
-  const tried = new Set();
-  for (let round = 0; round < 3; round++) {
-    write(path);
-    const missing = read(module.missing()).filter((other) => !tried.has(other));
-    if (missing.length === 0) {
-      break;
-    }
-    for (const other of missing) {
-      tried.add(other);
-      // Names of files may hold "#", "?" and "%".
-      const plain = other.replaceAll("\\", "/").split("/").map(encodeURIComponent).join("/");
-      const place = new URL(plain, base);
-      // A missing file is reported by the editor.
-      await get(place).then((bytes) => files.add(name(place), bytes), () => {});
-    }
-  }
-  return path;
-}
-
 // The size of the canvas.
 
 let size = [0, 0];
@@ -432,11 +431,32 @@ function fit() {
   return true;
 }
 
+// Another screen may change the scale alone, which is no resize.
+function watchScale() {
+  const screen = matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`);
+  screen.addEventListener("change", () => {
+    fit();
+    watchScale();
+  }, { once: true });
+}
+
+// Leaves the keyboard to the page around the picture.
+function showPictureOnly(query, model) {
+  write(query.get("view") ?? "");
+  if (editor.show_picture_only() !== 0) {
+    status.textContent = `view=${query.get("view")}: write degrees to the right and up, as 30,20, or front, right, back, left, top, bottom, iso`;
+  }
+  const link = document.getElementById("open");
+  link.search = model ? new URLSearchParams({ model }) : "";
+}
+
 async function begin() {
   const console_ = ConsoleStdout.lineBuffered((line) => console.log(line));
-  const fds = [new OpenFile(new File([])), console_, console_, new PreopenDirectory("/", files.root())];
+  const fds = [new OpenFile(new File([])), console_, console_, new PreopenDirectory("/", files.root(!isView))];
   const wasi = new WASI(["marraztu"], [], fds, { debug: false });
-  await files.restore();
+  if (!isView) {
+    await files.restore();
+  }
   const compiled = await WebAssembly.compileStreaming(fetch("marraztu.wasm"));
   const source = { compiled, files };
   const started = Drawing.start(source);
@@ -457,7 +477,7 @@ async function begin() {
   if (model) {
     status.textContent = `Loading ${model} ...`;
     // The editor starts without the model, and says why.
-    path = await fetched(model).catch((error) => {
+    path = await fetching.model(model).catch((error) => {
       console.error(error);
       unloaded = String(error);
       return "";
@@ -479,14 +499,13 @@ async function begin() {
   }
   editor = module;
   status.textContent = unloaded;
-  text.focus({ preventScroll: true });
-  // Another screen may change the scale alone, which is a resize only in pixels of the device.
-  const observer = new ResizeObserver(fit);
-  try {
-    observer.observe(canvas, { box: "device-pixel-content-box" });
-  } catch {
-    observer.observe(canvas);
+  if (isView) {
+    showPictureOnly(query, model);
+  } else {
+    text.focus({ preventScroll: true });
   }
+  new ResizeObserver(fit).observe(canvas);
+  watchScale();
   run(performance.now());
   performance.mark("first picture");
 }

@@ -46,7 +46,7 @@ self.onmessage = ({ data }) => {
     put(data.job);
     module.measure();
   } else {
-    files.add(data.path, data.bytes);
+    files.take(data.path, data.bytes);
     // A picture does not depend on the scene's own file, which is saved often.
     if (!data.path.endsWith(".marraztu")) {
       module.files_changed();
@@ -93,10 +93,10 @@ function begin({ compiled, files: all }) {
   // The results of a measurement are lines of the standard output.
   const told = ConsoleStdout.lineBuffered((line) => postMessage({ told: line }));
   const faults = ConsoleStdout.lineBuffered((line) => console.error(line));
-  const fds = [new Requests(), told, faults, new PreopenDirectory("/", files.root())];
+  const fds = [new Requests(), told, faults, new PreopenDirectory("/", files.root(false))];
   const wasi = new WASI(["marraztu"], [], fds, { debug: false });
   for (const [path, bytes] of all) {
-    files.add(path, bytes);
+    files.take(path, bytes);
   }
   token = URL.createObjectURL(new Blob(["."]));
   canLook = !isRevoked();

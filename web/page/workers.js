@@ -7,7 +7,7 @@ function begin({ compiled, files }, heard, failed) {
   const worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
   worker.onmessage = ({ data }) => heard(data);
   worker.onerror = (event) => failed(event.message || "a worker cannot start");
-  worker.postMessage({ compiled, files: files.all() });
+  worker.postMessage({ compiled, files: [...files.shared] });
   return worker;
 }
 

@@ -1,5 +1,7 @@
 //! The result of a frame, for the page.
 
+use std::path::PathBuf;
+
 use egui::{ColorImage, CursorIcon, OutputCommand};
 use serde::Serialize;
 
@@ -28,6 +30,11 @@ pub(crate) struct Frame {
     /// The extensions of files that the user wants to open.
     #[serde(skip_serializing_if = "Option::is_none")]
     wants: Option<Vec<&'static str>>,
+    /// Scenes that the next frame reads; the page fetches the examples that they refer to.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    opening: Vec<PathBuf>,
+    /// The last message and everything reported over the picture, for screen readers.
+    said: String,
     /// The milliseconds until the next frame is due, if it is not only due after an event.
     #[serde(skip_serializing_if = "Option::is_none")]
     due: Option<f64>,
@@ -36,7 +43,7 @@ pub(crate) struct Frame {
 impl Frame {
     /// Also returns a picture for the clipboard.
     pub(crate) fn new(shell: &CanvasShell, painted: Painted) -> (Self, Option<ColorImage>) {
-        let Painted { changed, output, wants } = painted;
+        let Painted { changed, output, wants, opening, said } = painted;
         let changed = changed
             .into_iter()
             .map(|area| [area.left, area.top, area.width(), area.height()])
@@ -59,7 +66,9 @@ impl Frame {
         let due = shell.due().map(|due| due.as_secs_f64() * 1000.0);
         let cursor = css(output.cursor_icon);
         let picture = image.as_ref().map(|image| image.size);
-        (Self { changed, cursor, copied, picture, link, edited, wants, due }, image)
+        let frame =
+            Self { changed, cursor, copied, picture, link, edited, wants, opening, said, due };
+        (frame, image)
     }
 }
 

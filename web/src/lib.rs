@@ -9,6 +9,7 @@
 
 mod events;
 mod frame;
+mod missing;
 mod verify;
 
 use std::cell::RefCell;
@@ -16,9 +17,11 @@ use std::io::Read as _;
 use std::path::PathBuf;
 
 use marraztu::app::{CanvasShell, DrawingServer, measure_job};
+use marraztu::directions::direction;
 
 use events::PageEvent;
 use frame::Frame;
+use missing::missing as missing_files;
 use verify::Verified;
 
 /// The editor or its drawing server, and the buffers.
@@ -191,6 +194,26 @@ pub extern "C" fn measure() {
     measure_job(&job, &mut |told| println!("{told}"));
 }
 
+/// Shows only the picture, for other pages to embed. Models are seen from the direction in the
+/// input, if there is one. Returns 0, or 1 if it is not a direction.
+#[unsafe(no_mangle)]
+pub extern "C" fn show_picture_only() -> u32 {
+    with(|page| {
+        let text = String::from_utf8_lossy(&page.input);
+        let from = match text.trim() {
+            "" => None,
+            text => match direction(text) {
+                Ok(from) => Some(from),
+                Err(_the_page_lists_them) => return 1,
+            },
+        };
+        if let Some(shell) = &mut page.shell {
+            shell.show_picture_only(from);
+        }
+        0
+    })
+}
+
 /// Changes the size of the canvas.
 #[unsafe(no_mangle)]
 pub extern "C" fn resize(width: usize, height: usize, scale: f32) {
@@ -285,15 +308,13 @@ pub extern "C" fn verify() -> usize {
     with(|page| page.write(&Verified::now()))
 }
 
-/// Lists the files that the model at the path in the input refers to and that do not exist. Returns
-/// the length of a JSON list of names in the output.
+/// Lists the files that the model or scene at the path in the input refers to and that do not exist.
+/// Returns the length of a JSON list in the output: for each file, a list of the paths at which it
+/// may be.
 #[unsafe(no_mangle)]
 pub extern "C" fn missing() -> usize {
     with(|page| {
-        let paths = page.paths();
-        let found = paths.iter().filter_map(|path| marraztu_io::companions(path).ok());
-        let missing = found.flatten().filter(|companion| companion.path.is_none());
-        let names: Vec<String> = missing.map(|companion| companion.name).collect();
-        page.write(&names)
+        let found = page.paths().iter().flat_map(|path| missing_files(path)).collect::<Vec<_>>();
+        page.write(&found)
     })
 }

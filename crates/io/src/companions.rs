@@ -27,6 +27,8 @@ pub struct Companion {
     pub name: String,
     /// The file, if it was found.
     pub path: Option<PathBuf>,
+    /// The folders that were searched, in this order.
+    pub folders: Vec<PathBuf>,
 }
 
 /// Lists the MTL files and textures of the model at `path`, in the order of their names.
@@ -40,27 +42,30 @@ pub fn companions(path: &Path) -> Result<Vec<Companion>, LoadError> {
         Some(_) => unpacked(path, &file)?,
     };
     let folder = path.parent().unwrap_or(Path::new(""));
+    let folders = vec![folder.to_owned()];
     let mut locator = Locator::default();
     let mut found = BTreeMap::new();
     for names in libraries(&utf_8(text)) {
-        found.extend(locator.locate_all(folder, &names, ".mtl"));
+        let all = locator.locate_all(folder, &names, ".mtl").into_iter();
+        found.extend(all.map(|(name, path)| (name, (path, folders.clone()))));
     }
     // Loading falls back to the MTL file with the model's name.
     let stem = Path::new(unpacked_name(&file).unwrap_or(&file)).file_stem().unwrap_or_default();
     let own = format!("{}.mtl", stem.to_string_lossy());
     let own_path = locator.locate(folder, &own);
-    found.entry(own).or_insert(own_path);
-    let libraries: Vec<PathBuf> = found.values().flatten().cloned().collect();
+    found.entry(own).or_insert((own_path, folders));
+    let libraries: Vec<PathBuf> = found.values().filter_map(|(path, _)| path.clone()).collect();
     for library in libraries {
         // An unreadable MTL file is a finding of the model, which has no further files then.
         let Ok(text) = read(&library, MOST_WORDS, &Progress::new()) else { continue };
         let folders = [library.parent().unwrap_or(Path::new("")), folder];
         for name in map_names(&utf_8(text)) {
             let path = folders.into_iter().find_map(|folder| locator.locate(folder, &name));
-            found.insert(name, path);
+            found.insert(name, (path, folders.map(Path::to_owned).to_vec()));
         }
     }
-    Ok(found.into_iter().map(|(name, path)| Companion { name, path }).collect())
+    let companion = |(name, (path, folders))| Companion { name, path, folders };
+    Ok(found.into_iter().map(companion).collect())
 }
 
 /// Returns the names in `mtllib` statements, once each.
@@ -97,8 +102,9 @@ mod tests {
         std::fs::write(at("m.mtl"), "newmtl m\n").unwrap();
         std::fs::write(at("wood.png"), "").unwrap();
         let listed = companions(&at("m.obj")).unwrap();
-        let found = |name: &str| Companion { name: name.to_owned(), path: Some(at(name)) };
-        let missing = |name: &str| Companion { name: name.to_owned(), path: None };
+        let listed: Vec<_> = listed.into_iter().map(|it| (it.name, it.path)).collect();
+        let found = |name: &str| (name.to_owned(), Some(at(name)));
+        let missing = |name: &str| (name.to_owned(), None);
         let expected = [
             found("a.mtl"),
             missing("b.mtl"),
@@ -109,5 +115,17 @@ mod tests {
         ];
         assert_eq!(listed, expected);
         assert!(companions(&at("absent.obj")).is_err());
+    }
+
+    #[test]
+    fn a_texture_is_searched_in_the_folder_of_its_mtl_file_first() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::create_dir(at("looks")).unwrap();
+        std::fs::write(at("m.obj"), "mtllib looks/a.mtl\n").unwrap();
+        std::fs::write(at("looks/a.mtl"), "newmtl a\nmap_Kd gone.png\n").unwrap();
+        let listed = companions(&at("m.obj")).unwrap();
+        let texture = listed.into_iter().find(|it| it.name == "gone.png").unwrap();
+        assert_eq!(texture.folders, [at("looks"), folder.path().to_owned()]);
     }
 }

@@ -3,7 +3,11 @@
 //! They are ordinary scene files, `assets/examples/*.marraztu`. Paths that begin with [`FOLDER`]
 //! refer to files inside the program, so a scene that uses them can be saved anywhere and opened
 //! again without the files.
+//!
+//! WebAssembly has to be small, so there the models and textures are files of the host: see
+//! `HOSTED`.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use super::error::{LoadError, shown};
@@ -16,6 +20,10 @@ use marraztu_core::scene::{LoadOptions, Texture, Wrap};
 
 /// The prefix of paths to the built-in examples.
 const FOLDER: &str = "example:/";
+
+/// The folder in which the host of WebAssembly provides the models and textures.
+#[cfg(target_family = "wasm")]
+const HOSTED: &str = "/examples";
 
 /// A built-in scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +67,7 @@ pub const EXAMPLES: &[Example] = &[
     },
 ];
 
+#[cfg(not(target_family = "wasm"))]
 macro_rules! files {
     ($($name:literal,)*) => {
         &[$(($name, include_bytes!(concat!("../../../assets/examples/", $name)))),*]
@@ -66,6 +75,7 @@ macro_rules! files {
 }
 
 /// The models and textures, by their paths in [`FOLDER`].
+#[cfg(not(target_family = "wasm"))]
 const FILES: &[(&str, &[u8])] = files![
     "chess/bishop.obj",
     "chess/board.obj",
@@ -138,9 +148,19 @@ pub(super) fn scene_text(path: &Path) -> Option<&'static str> {
 }
 
 /// Returns the content of a file in [`FOLDER`].
-pub(super) fn content(path: &Path) -> Option<&'static [u8]> {
-    let name = path.to_str()?.strip_prefix(FOLDER)?;
-    FILES.iter().find(|(other, _)| *other == name).map(|(_, content)| *content)
+pub(super) fn content(path: &Path) -> Option<Cow<'static, [u8]>> {
+    content_of(path.to_str()?.strip_prefix(FOLDER)?)
+}
+
+#[cfg(not(target_family = "wasm"))]
+fn content_of(name: &str) -> Option<Cow<'static, [u8]>> {
+    let file = FILES.iter().find(|(other, _)| *other == name);
+    file.map(|(_, content)| Cow::Borrowed(*content))
+}
+
+#[cfg(target_family = "wasm")]
+fn content_of(name: &str) -> Option<Cow<'static, [u8]>> {
+    std::fs::read(Path::new(HOSTED).join(name)).ok().map(Cow::Owned)
 }
 
 /// Parses a model of the examples from its `content`.

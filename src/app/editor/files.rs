@@ -322,7 +322,7 @@ impl App {
         };
         let sources = self.state.sources();
         match sources.spare(&path).and_then(|()| io::save_picture(&path, &picture)) {
-            Ok(()) => self.state.tell(Some(format!("Saved {}", path.display()))),
+            Ok(()) => self.state.tell_saved(&path),
             Err(error) => self.dialogs.tell_fault(format!("{error}.")),
         }
     }
@@ -394,7 +394,7 @@ impl App {
     pub(crate) fn swap(&mut self, state: State) -> State {
         // Preferences of the window and lists of files belong to the window, not to the scene.
         let State { panels, theme, drawing, layout, overlays, greeting, .. } = self.state;
-        let State { gizmo, helpers, watches, up, zoom, narrow, .. } = self.state;
+        let State { gizmo, helpers, watches, up, zoom, narrow, picture_only, .. } = self.state;
         // The palette closes itself after the request that replaces the scene.
         let palette = self.state.palette;
         let statistics = self.state.statistics.clone();
@@ -421,6 +421,7 @@ impl App {
             up,
             zoom,
             narrow,
+            picture_only,
             greeting,
             statistics,
             recent,

@@ -16,8 +16,10 @@ use crate::app::documents::material_dialog::{details, opened, own_or_silver};
 use crate::app::state::{Notice, Offer, State};
 use crate::app::widgets::text::file_name;
 use marraztu_core::base::Shared;
-use marraztu_core::edit::{Gesture, Refusal, items, presenting};
-use marraztu_core::scene::{LoadOptions, MaterialChoice, Object, Scene, Steps, UpAxis};
+use marraztu_core::edit::{Gesture, Refusal, framing, items, lighting, presenting};
+use marraztu_core::scene::{
+    Command, Item, LoadOptions, MaterialChoice, Object, Pose, Scene, Steps, UpAxis, View,
+};
 use marraztu_io::{self as io, LoadError, Loaded, Progress};
 
 impl App {
@@ -152,6 +154,9 @@ impl App {
             Arrival::Start => {
                 let mut scene = self.state.scene.clone();
                 command.apply(&mut scene)?;
+                if self.models_from != framing::MODELS_FROM {
+                    turn(&mut scene, &view, self.models_from)?;
+                }
                 self.replace(State::new(scene, view));
             }
             Arrival::Dropped => {
@@ -171,6 +176,17 @@ impl App {
         (steps.translation, steps.by_size) =
             if is_first { (translation, by_size) } else { (steps.translation, true) };
     }
+}
+
+/// Frames and lights everything from another direction, and keeps what the camera orbits.
+fn turn(scene: &mut Scene, view: &View, from: [f64; 2]) -> Result<(), Refusal> {
+    let mode = scene.selected_camera(view).pose.now().mode;
+    framing::models(scene, view, from)?.apply(scene)?;
+    lighting::models(scene, view)?.apply(scene)?;
+    let mut camera = scene.selected_camera(view).clone();
+    camera.pose = camera.pose.replaced(Pose { mode, ..*camera.pose.now() });
+    Command::Replace(Item::Camera(view.camera, Box::new(camera))).apply(scene)?;
+    Ok(())
 }
 
 /// Reads models with their materials. A file that is named twice is read once.

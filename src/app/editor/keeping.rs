@@ -178,6 +178,7 @@ impl App {
     }
 
     fn read_work(&mut self, ctx: &Context, path: PathBuf) {
+        self.note_opening(&path);
         self.begin_loading(ctx, "Recovering unsaved work".to_owned(), false, move |progress| {
             let result = io::open(&path, progress);
             Fetched::Scene(Box::new(Opening { path, result }))

@@ -146,7 +146,7 @@ impl App {
         for outcome in made {
             match outcome {
                 Made::Done(path, notes) => {
-                    self.state.tell(Some(format!("Saved {}", path.display())));
+                    self.state.tell_saved(&path);
                     if !notes.is_empty() {
                         let text = format!("{} does not hold the whole scene", file_name(&path));
                         self.state.notices.push(Notice { text, details: notes, offer: None });
@@ -191,7 +191,7 @@ impl App {
             io::save_picture(path, &it)
         });
         match saved {
-            Some(Ok(())) => self.state.tell(Some(format!("Saved {}", path.display()))),
+            Some(Ok(())) => self.state.tell_saved(path),
             Some(Err(error)) => self.dialogs.tell_fault(format!("{error}.")),
             None => self.refuse("the window could not be captured".to_owned()),
         }

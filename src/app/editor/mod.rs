@@ -55,6 +55,7 @@ use keeping::Keeping;
 use laboratory::Work;
 use making::Making;
 use marraztu_core::accuracy::AccuracyPreset;
+use marraztu_core::edit::framing::MODELS_FROM;
 use marraztu_core::scene::{Scene, Steps, View};
 use marraztu_io::{OwnFolders, Preferences, default_scene};
 use measuring::Measuring;
@@ -75,6 +76,10 @@ pub struct App {
     pub(crate) making: Making,
     /// Files waiting to be read.
     pub(crate) queued: VecDeque<Queued>,
+    /// The scenes that are read after this frame, for a host that has to provide their files.
+    pub(crate) opening: Vec<PathBuf>,
+    /// The view of models that open alone: degrees to the right of the front, and up.
+    pub(crate) models_from: [f64; 2],
     pub(crate) viewport: Viewport,
     /// The user's scene, while the scene of a lesson is shown.
     pub(crate) waiting_scene: Option<Box<State>>,
@@ -120,6 +125,8 @@ impl App {
             searches: Vec::new(),
             making: Making::default(),
             queued: VecDeque::new(),
+            opening: Vec::new(),
+            models_from: MODELS_FROM,
             viewport: Viewport::default(),
             waiting_scene: None,
             lab: Work::default(),
@@ -146,7 +153,10 @@ impl App {
     pub(crate) fn start(ctx: &Context, own: Option<Kept>) -> Self {
         // The theme and the fonts are needed for the first frame.
         theme::install(ctx);
-        fonts::install(ctx);
+        // A page has no fonts of the system.
+        if !cfg!(target_family = "wasm") {
+            fonts::install(ctx);
+        }
         let (scene, view) = default_scene();
         let mut app = Self::new(scene, view);
         app.dialogs.native = true;
@@ -213,8 +223,11 @@ impl App {
             }
         }
         arrangement.over_picture_ui(ui, &self.state, &mut requests);
-        notices::show((&ctx, place), &self.state, &self.loading, &self.making.tasks, &mut requests);
-        pixel::show(&ctx, &self.state, place, &mut requests);
+        if !self.state.picture_only {
+            let (state, loading) = (&self.state, &self.loading);
+            notices::show((&ctx, place), state, loading, &self.making.tasks, &mut requests);
+            pixel::show(&ctx, state, place, &mut requests);
+        }
         // The dialogs come last, over everything else.
         let answer = self.dialogs.ui(&ctx);
         let pressed = Action::pressed(&ctx);

@@ -72,7 +72,7 @@ impl App {
             Err(error) => return self.dialogs.tell_fault(format!("{error}.")),
         }
         self.state.history.mark_saved();
-        self.state.tell(Some(format!("Saved {}", path.display())));
+        self.state.tell_saved(&path);
         self.note_recent(&path);
         self.state.path = Some(path);
         if let Some(after) = after {
@@ -83,10 +83,18 @@ impl App {
     /// Opens a scene in place of this one. The caller has asked about unsaved changes.
     pub(crate) fn open_scene(&mut self, ctx: &Context, path: PathBuf) {
         let label = format!("Opening {}", file_name(&path));
+        self.note_opening(&path);
         self.begin_loading(ctx, label, false, move |progress| {
             let result = io::open(&path, progress);
             Fetched::Scene(Box::new(Opening { path, result }))
         });
+    }
+
+    /// Notes a scene that will be read, for a host that has to provide its files first.
+    pub(crate) fn note_opening(&mut self, path: &Path) {
+        if cfg!(target_family = "wasm") {
+            self.opening.push(path.to_owned());
+        }
     }
 
     /// Shows an opened scene.

@@ -14,6 +14,9 @@ use marraztu_lab::instructions;
 /// One package per line: name, version and licence.
 const PACKAGES: &str = include_str!("../../../assets/licences.txt");
 
+/// The page that lists, among others, the things that do not work in a browser.
+const INSTALLATION: &str = include_str!("../../../docs/install.md");
+
 const SIZE: egui::Vec2 = vec2(460.0, 460.0);
 
 /// Shows the panel; its requests are added to `requests`.
@@ -42,6 +45,14 @@ fn facts() -> [String; 3] {
     ]
 }
 
+/// Returns the things that do not work in a browser, one sentence or two each.
+fn limits() -> Vec<String> {
+    let rest = INSTALLATION.split("What does not work there:\n").nth(1).unwrap_or_default();
+    let list = rest.trim_start().split("\n\n").next().unwrap_or_default();
+    let items = list.split("- ").skip(1);
+    items.map(|item| item.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
+}
+
 fn contents(ui: &mut Ui) {
     heading(ui, "Marraztu");
     ui.label(concat!(env!("CARGO_PKG_DESCRIPTION"), "."));
@@ -55,6 +66,13 @@ fn contents(ui: &mut Ui) {
         ui.ctx().copy_text(format!("Marraztu\n{}\n", facts().join("\n")));
     }
     ui.add_space(2.0 * theme::GAP);
+    if cfg!(target_family = "wasm") {
+        ui.label(RichText::new("What does not work in a browser").strong());
+        for limit in limits() {
+            ui.label(limit);
+        }
+        ui.add_space(2.0 * theme::GAP);
+    }
     let packages: Vec<&str> = PACKAGES.lines().collect();
     let count = packages.len();
     ui.label(
@@ -80,4 +98,18 @@ fn contents(ui: &mut Ui) {
             response.on_hover_text(*package);
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::limits;
+
+    #[test]
+    fn the_limits_of_browsers_are_those_of_the_page_about_installation() {
+        let limits = limits();
+        assert!(limits.len() >= 4);
+        for limit in limits {
+            assert!(limit.ends_with('.') && !limit.contains(['\n', '`', '#']), "{limit}");
+        }
+    }
 }

@@ -45,6 +45,9 @@ impl Arrangement {
     /// Shows everything over the picture: open panels, the palette and the greeting. The splitters
     /// come last, since the picture would take their presses.
     pub(crate) fn over_picture_ui(&self, ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+        if state.picture_only {
+            return;
+        }
         let builder = UiBuilder::new().id_salt("over the picture").max_rect(self.places.picture);
         let mut child = ui.new_child(builder);
         child.set_clip_rect(self.places.picture.intersect(ui.clip_rect()));
@@ -62,6 +65,10 @@ impl Arrangement {
 
 /// Shows the bars and all open docked panels.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> Arrangement {
+    if state.picture_only {
+        let area = ui.available_rect_before_wrap();
+        return Arrangement { area, places: Places::of_picture(area) };
+    }
     let fill = ui.visuals().panel_fill;
     let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
     egui::Panel::top("menu bar").frame(bar).show(ui, |ui| {

@@ -22,8 +22,10 @@ const LESSONS: [(&str, &str); 3] =
 /// The maximum number of recent files to offer.
 const RECENT: usize = 3;
 
-/// The greeting is hidden over a smaller picture.
-const LEAST: Vec2 = vec2(420.0, 260.0);
+/// The greeting is hidden over a picture with a shorter side, or with a smaller area. On a phone,
+/// the picture is narrow but high.
+const LEAST_SIDE: f32 = 260.0;
+const LEAST_AREA: f32 = 420.0 * 260.0;
 
 /// Over a smaller picture, examples are shown by name only.
 const LEAST_FOR_THUMBNAILS: Vec2 = vec2(640.0, 500.0);
@@ -33,7 +35,7 @@ const THUMBNAIL: Vec2 = vec2(144.0, 90.0);
 
 /// Shows the greeting; its requests are added to `requests`.
 pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Request>) {
-    let is_small = picture.width() < LEAST.x || picture.height() < LEAST.y;
+    let is_small = picture.size().min_elem() < LEAST_SIDE || picture.area() < LEAST_AREA;
     if !state.greeting || !state.overlays || is_small {
         return;
     }

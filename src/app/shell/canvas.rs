@@ -17,6 +17,7 @@ use rayon::ThreadPoolBuildError;
 use crate::app::editor::App;
 use crate::app::painter::{Canvas, WindowFrame, WindowPainter};
 use crate::app::tasks::do_waiting;
+use marraztu_core::edit::framing::MODELS_FROM;
 use marraztu_io::{OwnFolders, Preferences};
 use marraztu_render::screen::coverage::PixelBox;
 
@@ -57,6 +58,11 @@ pub struct Painted {
     /// The extensions of the files that the user wants to open; the host answers by
     /// [`CanvasShell::answer`].
     pub wants: Option<Vec<&'static str>>,
+    /// The scenes that the next frame reads. The host provides the files that they refer to, as far
+    /// as it has them.
+    pub opening: Vec<PathBuf>,
+    /// The last message and everything reported over the picture, for screen readers.
+    pub said: String,
 }
 
 impl CanvasShell {
@@ -145,6 +151,14 @@ impl CanvasShell {
         self.due.store(0, Ordering::Relaxed);
     }
 
+    /// Shows only the picture, to orbit it: a page in which it is embedded. Models are seen from
+    /// degrees to the right of the front, and up.
+    pub fn show_picture_only(&mut self, from: Option<[f64; 2]>) {
+        self.app.state.picture_only = true;
+        self.app.state.overlays = false;
+        self.app.models_from = from.unwrap_or(MODELS_FROM);
+    }
+
     /// Changes the size of the canvas.
     pub fn resize(&mut self, size: [usize; 2], scale: f32) {
         (self.size, self.scale, self.is_new) = (size, scale, true);
@@ -228,7 +242,13 @@ impl CanvasShell {
             let [right, bottom] = self.size.map(|count| i32::try_from(count).unwrap_or(i32::MAX));
             changed = vec![PixelBox { left: 0, top: 0, right, bottom }];
         }
-        Painted { changed, output: platform_output, wants: self.file_request() }
+        Painted {
+            changed,
+            output: platform_output,
+            wants: self.file_request(),
+            opening: std::mem::take(&mut self.app.opening),
+            said: self.app.state().said(),
+        }
     }
 
     /// Passes a request to open files to the host. A file to be saved needs no question: the host

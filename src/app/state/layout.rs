@@ -149,15 +149,7 @@ impl Layout {
             rest = above;
             place
         });
-        let mut places = Places {
-            strip: None,
-            outline: None,
-            switches: None,
-            properties: None,
-            laboratory,
-            plan: None,
-            picture: rest,
-        };
+        let mut places = Places { laboratory, ..Places::of_picture(rest) };
         if area.width() < NARROW {
             self.one_column(&mut rest, &mut places);
         } else {
@@ -261,6 +253,20 @@ fn cut(rect: Rect, y: f32) -> (Rect, Rect) {
 }
 
 impl Places {
+    /// Gives everything to the picture.
+    #[must_use]
+    pub const fn of_picture(picture: Rect) -> Self {
+        Self {
+            strip: None,
+            outline: None,
+            switches: None,
+            properties: None,
+            laboratory: None,
+            plan: None,
+            picture,
+        }
+    }
+
     fn strip_width(&self) -> f32 {
         self.strip.map_or(0.0, |strip| strip.width())
     }

@@ -13,7 +13,8 @@ use std::sync::Arc;
 use egui::ThemePreference;
 
 pub use crate::app::drawing::reduction::{Reduction, Shrink};
-use crate::app::panels::OpenPanels;
+use crate::app::panels::{OpenPanels, Panel};
+use crate::app::widgets::text::file_name;
 use dial::DialState;
 use laboratory::Laboratory;
 pub use last_picture::{ExplainedPixel, Measured, Plan, Statistics};
@@ -23,6 +24,7 @@ use marraztu_core::edit::several::Others;
 use marraztu_core::edit::{Gesture, GesturePhase, History, selection};
 use marraztu_core::scene::{ItemId, Light, LightId, Object, Scene, UpAxis, View};
 use marraztu_io::{Fingerprint, Helpers, Sources, WindowState, is_example};
+use marraztu_lab::report::Report;
 pub use notices::{Message, MissingFiles, Notice, Offer, Tone};
 
 /// The number of items from which the outline has a filter.
@@ -95,6 +97,8 @@ pub struct State {
     pub zoom: f32,
     /// Whether the window is so narrow that panels are folded.
     pub narrow: bool,
+    /// Whether only the picture is shown, to look at: a page in which it is embedded.
+    pub picture_only: bool,
     /// Whether the window is light or dark.
     pub theme: ThemePreference,
     /// The state of the laboratory.
@@ -175,6 +179,7 @@ impl State {
             explained: None,
             zoom: 1.0,
             narrow: false,
+            picture_only: false,
             theme: ThemePreference::System,
             lab: Laboratory::default(),
             recent: Vec::new(),
@@ -308,6 +313,25 @@ impl State {
     /// Shows a message in the status line.
     pub(crate) fn tell(&mut self, text: Option<String>) {
         self.message = text.map(|text| Message { text, tone: Tone::Done });
+    }
+
+    /// Reports that a file was saved. Pages of browsers download it, so their users know no folder.
+    pub(crate) fn tell_saved(&mut self, path: &Path) {
+        self.tell(Some(match cfg!(target_family = "wasm") {
+            true => format!("Downloaded {}", file_name(path)),
+            false => format!("Saved {}", path.display()),
+        }));
+    }
+
+    /// Returns the last message and everything reported over the picture, one per line.
+    pub(crate) fn said(&self) -> String {
+        let message = self.message.iter().map(|message| message.text.clone());
+        let notices = self.notices.iter().map(|notice| notice.text.clone());
+        let cost = self.lab.lesson.and_then(|lesson| self.lab.costs.get(lesson.axis.as_str()));
+        let report = self.lab.shown().filter(|_| self.panels.has(Panel::Laboratory));
+        let lab = cost.cloned().into_iter().chain(report.map(Report::verdict).unwrap_or_default());
+        let all = message.chain(self.recoverable.clone()).chain(notices).chain(lab);
+        all.collect::<Vec<_>>().join("\n")
     }
 
     /// Returns the files that the scene was read from.

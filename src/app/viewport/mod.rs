@@ -25,7 +25,7 @@ use egui::{
 };
 use glam::DMat4;
 
-use crate::app::actions::{LabRequest, Request};
+use crate::app::actions::{Action, LabRequest, Request};
 use crate::app::drawing::border::Border;
 use crate::app::drawing::worker::{News, Pick, Worker};
 use crate::app::input::keyboard::{Keyboard, Letters};
@@ -192,6 +192,12 @@ impl Viewport {
             (false, false) => Letters::Act,
         };
         Keyboard::set_viewport(ui.ctx(), id, letters);
+        if state.picture_only {
+            // A double click frames everything; nothing is selected.
+            let frames = picks.into_iter().filter(|(_, purpose)| *purpose == Purpose::Frame);
+            requests.extend(frames.map(|_| Request::Do(Action::FrameAll)));
+            return;
+        }
         let projection = Projection::new(state, rect, size);
         let over = Over { gizmo, ..Over::new(state, rect, &projection) };
         // Overlays take a click first. Only a click on the picture needs a pick by the worker.

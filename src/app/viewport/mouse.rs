@@ -215,6 +215,8 @@ impl Mouse {
         let pose = state.scene.selected_camera(&state.view).pose.now();
         let held = under.gizmo.and_then(|gizmo| Some((gizmo, gizmo.handle_at(from)?)));
         let motion = match button {
+            PointerButton::Primary if state.picture_only && !modifiers.shift => Motion::Orbit,
+            PointerButton::Secondary if state.picture_only => Motion::Pan,
             PointerButton::Secondary => Motion::Fly,
             PointerButton::Middle => Motion::Pan,
             PointerButton::Primary if !modifiers.alt && !modifiers.shift && held.is_some() => {

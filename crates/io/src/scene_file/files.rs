@@ -150,7 +150,7 @@ impl Files {
         let place = self.place(path);
         // Files of built-in examples come from the program, all others from disk.
         let loaded = match examples::content(&place) {
-            Some(content) => examples::texture(&place, content),
+            Some(content) => examples::texture(&place, &content),
             None => self.pictures.texture(&place, &mut self.findings),
         };
         match loaded {
@@ -199,7 +199,7 @@ impl Files {
         }
         let place = self.place(path);
         let loaded = match examples::content(&place) {
-            Some(content) => examples::model(&place, content, &options, progress),
+            Some(content) => examples::model(&place, &content, &options, progress),
             None => load_with(&place, &options, &mut self.pictures, progress),
         };
         match loaded {
