@@ -2,7 +2,8 @@
 //!
 //! This crate is the program: [`app`] is the window, [`plots`] draws the laboratory's plots as SVG
 //! and PNG, [`picture_file`] draws into files, [`directions`] names views of models, and the binary
-//! adds the command line. The libraries under `crates` do the work, and know neither of windows nor of arguments:
+//! adds the command line. The libraries under `crates` do the work, and know neither of windows nor
+//! of arguments:
 //!
 //! ```text
 //! marraztu_core  <  { marraztu_io, marraztu_render }  <  marraztu_lab  <  marraztu

@@ -101,7 +101,7 @@ pub(crate) fn icon_family() -> FontFamily {
 
 fn icon_font() -> FontInsert {
     let mut data = FontData::from_static(include_bytes!("../../assets/icons.ttf"));
-    // The symbols stand a little high in their lines.
+    // Without this, the symbols are a little too high.
     data.tweak.y_offset_factor = 0.05;
     let (family, priority) = (icon_family(), FontPriority::Highest);
     FontInsert::new("icons", data, vec![InsertFontFamily { family, priority }])

@@ -189,13 +189,13 @@ export class Tab {
     return result.value;
   }
 
-  // Returns a PNG of what is shown.
+  // Returns a PNG of the tab.
   async picture() {
     const { data } = await this.send("Page.captureScreenshot");
     return Buffer.from(data, "base64");
   }
 
-  // Returns red, green and blue of a pixel of what is shown, frames of other pages included.
+  // Returns red, green and blue of a pixel of the tab, frames of other pages included.
   async shown(x, y) {
     const picture = (await this.picture()).toString("base64");
     return this.run(async (picture, x, y) => {

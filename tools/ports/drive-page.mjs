@@ -69,7 +69,7 @@ class Page {
       if (places.length < 50) {
         return null;
       }
-      // The middle of all may be beside them, so the nearest one is taken.
+      // The middle of all may be none of them, so the nearest one is taken.
       const middle = [0, 1].map((axis) => places.reduce((sum, place) => sum + place[axis], 0) / places.length);
       const far = (place) => Math.hypot(place[0] - middle[0], place[1] - middle[1]);
       const nearest = places.reduce((best, place) => (far(place) < far(best) ? place : best));
@@ -134,7 +134,7 @@ const x = (scene, name) => Number(scene.split(`name: "${name}"`)[1]?.match(/plac
 // A PNG of 2 x 2 pixels in magenta.
 const PNG = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAIAAAD91JpzAAAAEElEQVR42mP4z/AfiBggFAA31gf5htMR8gAAAABJRU5ErkJggg==";
 
-// A square that glows in the colour of a texture. The texture is beside the MTL file, in a folder.
+// A square that glows in the colour of a texture. The texture and the MTL file are in a folder below.
 async function writeModels(at) {
   await mkdir(join(at, "looks"), { recursive: true });
   await writeFile(join(at, "square.obj"), `mtllib looks/square.mtl
@@ -300,7 +300,7 @@ const checks = {
       }
       await page.tab.touch("touchEnd");
     });
-    // Keys do nothing.
+    // Keys have no effect.
     const before = await page.pixels();
     await page.tab.press("x");
     await page.tab.press("Delete");

@@ -431,7 +431,7 @@ function fit() {
   return true;
 }
 
-// Another screen may change the scale alone, which is no resize.
+// Another screen may change the scale alone, without a resize.
 function watchScale() {
   const screen = matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`);
   screen.addEventListener("change", () => {

@@ -308,9 +308,9 @@ pub extern "C" fn verify() -> usize {
     with(|page| page.write(&Verified::now()))
 }
 
-/// Lists the files that the model or scene at the path in the input refers to and that do not exist.
-/// Returns the length of a JSON list in the output: for each file, a list of the paths at which it
-/// may be.
+/// Lists the files that the model or scene at the path in the input refers to and that do not
+/// exist. Returns the length of a JSON list in the output: for each file, a list of the paths at
+/// which it may be.
 #[unsafe(no_mangle)]
 pub extern "C" fn missing() -> usize {
     with(|page| {
