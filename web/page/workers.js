@@ -28,10 +28,11 @@ export class Drawing {
   static async start(source) {
     const drawing = new Drawing();
     drawing.source = source;
-    await new Promise((resolve, reject) => {
+    const ready = new Promise((resolve, reject) => {
       drawing.worker = begin(source, resolve, reject);
     });
     source.files.changed = (path, bytes) => drawing.worker.postMessage({ path, bytes });
+    await ready;
     return drawing;
   }
 
