@@ -454,10 +454,12 @@ async function begin() {
   const console_ = ConsoleStdout.lineBuffered((line) => console.log(line));
   const fds = [new OpenFile(new File([])), console_, console_, new PreopenDirectory("/", files.root(!isView))];
   const wasi = new WASI(["marraztu"], [], fds, { debug: false });
+  // The module is compiled while it arrives, and while files are restored.
+  const arriving = WebAssembly.compileStreaming(fetch("marraztu.wasm"));
   if (!isView) {
     await files.restore();
   }
-  const compiled = await WebAssembly.compileStreaming(fetch("marraztu.wasm"));
+  const compiled = await arriving;
   const source = { compiled, files };
   const started = Drawing.start(source);
   const instance = await WebAssembly.instantiate(compiled, { wasi_snapshot_preview1: wasi.wasiImport });
