@@ -182,10 +182,13 @@ function isOnlyTab() {
     return true;
   }
   return new Promise((resolve) => {
-    navigator.locks.request(DATABASE, { ifAvailable: true }, (lock) => {
-      resolve(lock !== null);
-      return lock && new Promise(() => {});
+    // After a reload, the page before keeps the lock for a moment.
+    const soon = AbortSignal.timeout(1000);
+    const held = navigator.locks.request(DATABASE, { signal: soon }, () => {
+      resolve(true);
+      return new Promise(() => {});
     });
+    held.catch(() => resolve(false));
   });
 }
 

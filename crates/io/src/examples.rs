@@ -197,7 +197,7 @@ mod tests {
     use crate::{Opened, open, save};
 
     /// Returns `assets/examples`.
-    fn folder() -> std::path::PathBuf {
+    fn folder() -> PathBuf {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/examples")
     }
 

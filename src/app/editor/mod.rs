@@ -41,7 +41,7 @@ use crate::app::drawing::motion::{Happening, Motion};
 use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::worker::Worker;
 use crate::app::fonts;
-use crate::app::input::keyboard::Keyboard;
+use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::panels::{Panel, arrange, notices, pixel};
 use crate::app::state::layout::NARROW;
 use crate::app::state::{Notice, State};
@@ -89,6 +89,8 @@ pub struct App {
     pub(crate) worker: Option<Worker<Purpose>>,
     /// Whether another instance of the program draws the viewport.
     pub(crate) draws_elsewhere: bool,
+    /// Key presses that wait for the answer to a click.
+    pub(crate) pressed: Vec<Press>,
     /// The running measurement of effects.
     pub(crate) measuring: Option<Measuring>,
     /// The pixel being explained.
@@ -133,6 +135,7 @@ impl App {
             comparison: Comparison::default(),
             worker: None,
             draws_elsewhere: false,
+            pressed: Vec::new(),
             measuring: None,
             explaining: None,
             leaving: false,
@@ -205,6 +208,7 @@ impl App {
         let ctx = ui.ctx().clone();
         let mut requests = Vec::new();
         self.note_dial();
+        let clicked = self.viewport.awaits_click();
         // Without threads, no measurement runs while the window is drawn.
         let _touch = (!cfg!(target_family = "wasm")).then(|| self.lab.touch());
         self.begin(&ctx, &mut requests);
@@ -247,11 +251,17 @@ impl App {
         {
             self.state.tell(Some("Press Esc again to quit".to_owned()));
         }
-        for press in pressed {
-            self.press(&ctx, press);
+        // Keys after a click wait until the click has selected something.
+        let waits = clicked || self.viewport.awaits_click();
+        self.pressed.extend(pressed);
+        if !waits {
+            self.press_all(&ctx);
         }
         for request in requests {
             self.answer(&ctx, request);
+        }
+        if !self.viewport.awaits_click() {
+            self.press_all(&ctx);
         }
         if let Some(answer) = answer {
             self.take_answer(&ctx, answer);

@@ -31,6 +31,16 @@ impl App {
         panels.has(panel)
     }
 
+    /// Performs the actions of all keys that were pressed.
+    pub(crate) fn press_all(&mut self, ctx: &Context) {
+        if !self.pressed.is_empty() {
+            ctx.request_repaint();
+        }
+        for press in std::mem::take(&mut self.pressed) {
+            self.press(ctx, press);
+        }
+    }
+
     /// Performs the action of a key. Esc first closes whatever is open.
     pub(crate) fn press(&mut self, ctx: &Context, press: Press) {
         if press.chord == Chord::Named(Key::Escape) && self.ends_something(ctx) {

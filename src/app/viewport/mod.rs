@@ -81,6 +81,8 @@ pub(crate) struct Viewport {
     loupe: Loupe,
     /// The pixel and the observer of the last click. A second click there selects the item behind.
     clicked: Option<([usize; 2], DMat4)>,
+    /// The number of picks of clicks that are not answered.
+    clicks: usize,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -119,6 +121,11 @@ impl Viewport {
         found
     }
 
+    /// Returns whether the worker is still looking up what was clicked.
+    pub(crate) const fn awaits_click(&self) -> bool {
+        self.clicks > 0
+    }
+
     /// Gives the keyboard focus to the picture.
     pub(crate) fn take_keyboard(&self, ctx: &Context) {
         ctx.memory_mut(|memory| memory.request_focus(Id::unique("viewport")));
@@ -141,7 +148,14 @@ impl Viewport {
             self.border = news.border;
         }
         for (pick, hit) in news.picked {
+            if pick.purpose != Purpose::Hover {
+                self.clicks = self.clicks.saturating_sub(1);
+            }
             self.answer(ctx, state, pick, hit, requests);
+        }
+        if news.failed {
+            // Picks may have been lost.
+            self.clicks = 0;
         }
         if let Some(outline) = news.outline {
             self.outline = outline;
@@ -216,6 +230,7 @@ impl Viewport {
             } else if state.lab.picking && purpose == Purpose::Select {
                 requests.push(Request::Lab(LabRequest::Attribute(at)));
             } else {
+                self.clicks += 1;
                 worker.pick(Pick { at, purpose });
             }
         }
