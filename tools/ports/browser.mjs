@@ -215,7 +215,7 @@ export class Tab {
         if (type === "keyUp" && key in MODIFIERS) modifiers &= ~MODIFIERS[key];
         if (type === "keyDown" && key in MODIFIERS) modifiers |= MODIFIERS[key];
         const isText = key.length === 1;
-        const code = isText ? key.toUpperCase().charCodeAt(0) : CODES[key];
+        const code = /^[a-z0-9]$/i.test(key) ? key.toUpperCase().charCodeAt(0) : CODES[key];
         const writes = isText && (modifiers & ~MODIFIERS.Shift) === 0;
         await this.send("Input.dispatchKeyEvent", {
           type: type === "keyDown" && !writes && key !== "Enter" ? "rawKeyDown" : type,

@@ -245,6 +245,9 @@ const checks = {
       return (await page.said()).includes("Opened square");
     });
     has(await page.scene(), 'path: "square.obj"', "the scene");
+    // The square is small and far away.
+    await page.tab.press(".");
+    await page.sees("red", "blue");
   },
 
   async "an example is fetched, also for unsaved work"(visit) {
