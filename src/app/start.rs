@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-use egui::{Ui, ViewportBuilder};
+use egui::{IconData, Ui, ViewportBuilder};
 
 use crate::app::editor::App;
 use crate::app::shell::{self, Editor, Parent, Shell, StartError};
@@ -72,6 +72,8 @@ fn window(preferences: Option<&Preferences>) -> ViewportBuilder {
     ViewportBuilder::default()
         .with_title("Marraztu")
         .with_app_id("marraztu")
+        // The system shows the icon of the program, and not egui's.
+        .with_icon(IconData::default())
         .with_inner_size(size.unwrap_or(Preferences::WINDOW))
         .with_maximized(preferences.is_some_and(|preferences| preferences.maximized))
         .with_min_inner_size([640.0, 400.0])
