@@ -56,6 +56,7 @@ mod tests {
         std::fs::write(&path, "two").unwrap();
         let file = std::fs::OpenOptions::new().write(true).open(&path).unwrap();
         file.set_modified(time).unwrap();
+        drop(file);
         assert!(one.differs_from(&path));
         std::fs::remove_file(&path).unwrap();
         assert!(!one.differs_from(&path));

@@ -202,11 +202,14 @@ fn put(file: File, part: &Path, target: &Path, worth: Worth) -> std::io::Result<
         // Keeps the permissions, if the file system supports them.
         let _ = file.set_permissions(old.permissions());
     }
+    if worth != Worth::Product {
+        file.sync_all()?;
+    }
+    // On Windows, an open file could not be replaced by another thread.
+    drop(file);
     if worth == Worth::Product {
         return fs::rename(part, target);
     }
-    file.sync_all()?;
-    drop(file);
     // A hard link keeps the old file at its name until the rename; copying is the fallback.
     if worth == Worth::Work && target.exists() {
         let kept = with_ending(target, "~");

@@ -204,6 +204,11 @@ fn set_aside(path: &Path) -> Result<PathBuf, String> {
 mod tests {
     use super::*;
 
+    /// Returns the absolute paths of files, on the present drive of Windows.
+    fn absolute<const N: usize>(names: [&str; N]) -> [PathBuf; N] {
+        names.map(|name| std::path::absolute(name).unwrap())
+    }
+
     #[test]
     fn preferences_come_back_and_a_broken_file_is_set_aside_and_said() {
         let folder = tempfile::tempdir().unwrap();
@@ -215,7 +220,7 @@ mod tests {
         first.note_recent(Path::new("/b.obj"));
         first.note_recent(Path::new("/a.obj"));
         first.save(&folders, &[]).unwrap();
-        assert_eq!(first.recent, [PathBuf::from("/a.obj"), PathBuf::from("/b.obj")]);
+        assert_eq!(first.recent, absolute(["/a.obj", "/b.obj"]));
         assert_eq!(Preferences::load(&folders), (first, None));
         for broken in [&b"(scale: "[..], b"\xff\xfe", b"(scale: 1.0) more"] {
             fs::write(file(&folders), broken).unwrap();
@@ -243,10 +248,10 @@ mod tests {
             own.note_recent(Path::new(name));
             own.save(&folders, &[]).unwrap();
         }
-        let both = [PathBuf::from("/b.obj"), PathBuf::from("/a.obj")];
+        let both = absolute(["/b.obj", "/a.obj"]);
         assert_eq!(Preferences::load(&folders).0.recent, both);
         // A program that clears its list of recent files removes only its own.
-        let known = [PathBuf::from("/a.obj")];
+        let known = absolute(["/a.obj"]);
         Preferences::default().save(&folders, &known).unwrap();
         assert_eq!(Preferences::load(&folders).0.recent, both[..1]);
     }
