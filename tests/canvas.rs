@@ -171,17 +171,36 @@ fn a_server_draws_the_pictures_that_the_shell_draws_itself() {
     compare(&pages, "the first scene");
     // A click asks which item the pixel shows, and selects it.
     let [x, y] = pages[0].seen_object();
-    pages.each_mut().map(|page| page.click(x, y));
+    pages.iter_mut().for_each(|page| page.click(x, y));
     compare(&pages, "the outline of a selected object");
-    pages.each_mut().map(|page| drop(page.press(Key::X, "x")));
+    pages.iter_mut().for_each(|page| drop(page.press(Key::X, "x")));
     compare(&pages, "a moved object");
-    pages.each_mut().map(|page| drop(page.press(Key::L, "l")));
+    pages.iter_mut().for_each(|page| drop(page.press(Key::L, "l")));
     compare(&pages, "a wireframe");
     // A server that stops costs nothing but a picture.
     let [_, page] = &mut pages;
     page.server = Some(DrawingServer::new(|| false));
     page.shell.reply(None);
-    pages.each_mut().map(|page| drop(page.press(Key::L, "l")));
-    pages.each_mut().map(|page| drop(page.press(Key::X, "x")));
+    pages.iter_mut().for_each(|page| drop(page.press(Key::L, "l")));
+    pages.iter_mut().for_each(|page| drop(page.press(Key::X, "x")));
     compare(&pages, "a picture by another server");
+}
+
+#[test]
+fn a_key_after_a_click_acts_on_what_was_clicked_however_late_that_is_known() {
+    let mut pages = [Page::open(), Page::open_with_server()];
+    let [x, y] = pages[0].seen_object();
+    let [patient, hasty] = &mut pages;
+    patient.click(x, y);
+    patient.press(Key::X, "x");
+    // The server answers only after the key.
+    let (pos, button, modifiers) = (pos2(x, y), PointerButton::Primary, Modifiers::NONE);
+    hasty.shell.hear(Event::PointerMoved(pos));
+    for pressed in [true, false] {
+        hasty.shell.hear(Event::PointerButton { pos, button, pressed, modifiers });
+        hasty.time += 0.02;
+        hasty.shell.frame(hasty.time);
+    }
+    hasty.press(Key::X, "x");
+    assert!(hasty.middle() == patient.middle());
 }
