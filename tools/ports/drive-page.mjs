@@ -309,8 +309,11 @@ const checks = {
     await page.open(`${site}view.html?model=/models/square.obj&view=front`);
     const [, , middle] = await page.sees("red", "blue");
     equal(Math.round(middle / 4), 50, "a quarter of the middle of the square");
+    await page.still();
     await page.changes("a drag", () => page.tab.drag([200, 150], [260, 170]));
+    await page.still();
     await page.changes("the wheel", () => page.tab.mouse("mouseWheel", 200, 150, { deltaX: 0, deltaY: 120 }));
+    await page.still();
     await page.changes("a finger", async () => {
       await page.tab.touch("touchStart", [200, 150]);
       for (let step = 1; step < 10; step++) {
