@@ -9,7 +9,7 @@ use egui::Color32;
 
 use super::blend::{all_opaque, is_opaque, lay, over, packed, product, tint};
 use super::items::{Corner, Item, Ramp, Shape};
-use super::textures::{Filter, Texture};
+use super::textures::{Between, Filter, Texture, mix};
 use marraztu_render::screen::coverage::{PixelBox, Triangle};
 
 /// Adjacent rows of pixels: blue in the lowest byte, then green, red and a zero.
@@ -215,14 +215,44 @@ fn paint_between_texels(
     texture: &Texture,
     (color, u, v): ([u8; 4], Ramp, Ramp),
 ) {
-    let [width, height] = texture.size().map(length);
+    let [width, height] = texture.size();
     let color = color.map(f32::from);
+    let across: Vec<Between> = (area.left..area.right)
+        .map(|x| texture.between(single(u.at(x) * length(width)), width))
+        .collect();
+    // An enlarged picture has several rows of pixels between two rows of texels, so those are
+    // interpolated across only once.
+    let mut above = MixedRow::default();
+    let mut below = MixedRow::default();
     for y in area.top..area.bottom {
-        let down = single(v.at(y) * height);
+        let down = texture.between(single(v.at(y) * length(height)), height);
+        if below.row == Some(down.first) {
+            std::mem::swap(&mut above, &mut below);
+        }
+        above.mix(texture, down.first, &across);
+        below.mix(texture, down.next, &across);
         let row = strip.row(y, area.left, area.right);
-        for (x, pixel) in (area.left..).zip(row) {
-            let texel = texture.at(Filter::Linear, single(u.at(x) * width), down);
+        for ((pixel, above), below) in row.iter_mut().zip(&above.texels).zip(&below.texels) {
+            let texel = mix(*above, *below, down.part);
             *pixel = over(*pixel, product(color, texel));
+        }
+    }
+}
+
+/// A row of texels, interpolated at each column of pixels.
+#[derive(Default)]
+struct MixedRow {
+    row: Option<usize>,
+    texels: Vec<[f32; 4]>,
+}
+
+impl MixedRow {
+    /// Interpolates a row, unless that was done before.
+    fn mix(&mut self, texture: &Texture, row: usize, across: &[Between]) {
+        if self.row.replace(row) != Some(row) {
+            let texels = texture.row(row);
+            self.texels.clear();
+            self.texels.extend(across.iter().map(|x| x.mixed(texels)));
         }
     }
 }

@@ -138,22 +138,41 @@ impl Texture {
                 self.row(y)[x].to_array().map(f32::from)
             }
             Filter::Linear => {
-                let (u, v) = (u - 0.5, v - 0.5);
-                let (right, down) = (u - u.floor(), v - v.floor());
-                let [x, y] = [floor(u), floor(v)];
-                let [left, next] = [x, x + 1].map(|x| self.wrapped(x, width));
-                let [upper, lower] = [y, y + 1].map(|y| self.row(self.wrapped(y, height)));
-                let above = mix(upper[left], upper[next], right);
-                let below = mix(lower[left], lower[next], right);
-                std::array::from_fn(|i| above[i] + (below[i] - above[i]) * down)
+                let (x, y) = (self.between(u, width), self.between(v, height));
+                let [above, below] = [y.first, y.next].map(|y| x.mixed(self.row(y)));
+                mix(above, below, y.part)
             }
         }
     }
+
+    /// Returns the texels next to a position in a row or column of `count`.
+    pub(super) fn between(&self, at: f32, count: usize) -> Between {
+        let at = at - 0.5;
+        let [first, next] = [floor(at), floor(at) + 1].map(|i| self.wrapped(i, count));
+        Between { first, next, part: at - at.floor() }
+    }
 }
 
-/// Interpolates between `a` and `b`, in floats.
-fn mix(a: Color32, b: Color32, part: f32) -> [f32; 4] {
-    let (a, b) = (a.to_array().map(f32::from), b.to_array().map(f32::from));
+/// A position between two texels of a row or column.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Between {
+    pub(super) first: usize,
+    pub(super) next: usize,
+    /// From 0 at the first to 1 at the next.
+    pub(super) part: f32,
+}
+
+impl Between {
+    /// Interpolates between two texels of a row.
+    pub(super) fn mixed(self, row: &[Color32]) -> [f32; 4] {
+        let [first, next] = [self.first, self.next].map(|i| row[i].to_array().map(f32::from));
+        mix(first, next, self.part)
+    }
+}
+
+/// Interpolates between `a` and `b`.
+#[inline(always)]
+pub(super) fn mix(a: [f32; 4], b: [f32; 4], part: f32) -> [f32; 4] {
     std::array::from_fn(|i| a[i] + (b[i] - a[i]) * part)
 }
 
