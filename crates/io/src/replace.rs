@@ -9,6 +9,7 @@
 use std::fs::{self, File};
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
+use std::time::Duration;
 
 use super::error::{reason, shown};
 use super::part::{create_part, sweep_once};
@@ -208,7 +209,7 @@ fn put(file: File, part: &Path, target: &Path, worth: Worth) -> std::io::Result<
     // On Windows, an open file could not be replaced by another thread.
     drop(file);
     if worth == Worth::Product {
-        return fs::rename(part, target);
+        return rename(part, target);
     }
     // A hard link keeps the old file at its name until the rename; copying is the fallback.
     if worth == Worth::Work && target.exists() {
@@ -218,10 +219,25 @@ fn put(file: File, part: &Path, target: &Path, worth: Worth) -> std::io::Result<
             fs::copy(target, &kept)?;
         }
     }
-    fs::rename(part, target)?;
+    rename(part, target)?;
     // Flushing the folder makes the new name survive a power failure; not every system supports it.
     let _ = File::open(folder(target)).and_then(|folder| folder.sync_all());
     Ok(())
+}
+
+/// Renames a file, which replaces another one. On Windows, another thread or a virus scanner may have
+/// either open for a moment, so it is tried again, as git does.
+fn rename(from: &Path, to: &Path) -> std::io::Result<()> {
+    let waits: &[u64] = if cfg!(windows) { &[1, 10, 20, 40] } else { &[] };
+    for wait in waits {
+        match fs::rename(from, to) {
+            Err(error) if error.kind() == ErrorKind::PermissionDenied => {
+                std::thread::sleep(Duration::from_millis(*wait));
+            }
+            done => return done,
+        }
+    }
+    fs::rename(from, to)
 }
 
 fn with_ending(path: &Path, ending: &str) -> PathBuf {
