@@ -1,7 +1,7 @@
 //! Tells the program which commit it is built from, if git knows.
 //!
-//! The script runs again only if the sources change. A commit by itself causes no build, except of a
-//! release: `tools/ports/common` sets its time. Sources that differ from the commit are marked as
+//! The script runs again only if the sources change. A commit by itself causes no build, except of
+//! a release: `tools/ports/common` sets its time. Sources that differ from the commit are marked as
 //! changed. Development builds name no commit: a script that runs again compiles the whole library,
 //! even if only the command line was edited.
 

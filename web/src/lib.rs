@@ -161,8 +161,8 @@ pub extern "C" fn files_changed() {
     });
 }
 
-/// Returns the length of the next measurement in the output, for [`measure`] of another instance, or
-/// 0. To be called after each frame.
+/// Returns the length of the next measurement in the output, for [`measure`] of another instance,
+/// or 0. To be called after each frame.
 #[unsafe(no_mangle)]
 pub extern "C" fn job() -> usize {
     with(|page| {
@@ -177,8 +177,8 @@ pub extern "C" fn awaits_measurement() -> u32 {
     with(|page| u32::from(page.shell.as_ref().is_some_and(CanvasShell::awaits_measurement)))
 }
 
-/// Takes a line of the results of a measurement in the input. Any other line means that the instance
-/// has failed.
+/// Takes a line of the results of a measurement in the input. Any other line means that the
+/// instance has failed.
 #[unsafe(no_mangle)]
 pub extern "C" fn told() {
     with(|page| {

@@ -225,8 +225,8 @@ fn put(file: File, part: &Path, target: &Path, worth: Worth) -> std::io::Result<
     Ok(())
 }
 
-/// Renames a file, which replaces another one. On Windows, another thread or a virus scanner may have
-/// either open for a moment, so it is tried again, as git does.
+/// Renames a file, which replaces another one. On Windows, another thread or a virus scanner may
+/// have either open for a moment, so it is tried again, as git does.
 fn rename(from: &Path, to: &Path) -> std::io::Result<()> {
     let waits: &[u64] = if cfg!(windows) { &[1, 10, 20, 40] } else { &[] };
     for wait in waits {

@@ -124,8 +124,8 @@ impl CanvasShell {
         self.app.worker.as_mut()?.request()
     }
 
-    /// Takes a reply of the drawing server. `None` means that it has stopped and a new one takes its
-    /// place.
+    /// Takes a reply of the drawing server. `None` means that it has stopped and a new one takes
+    /// its place.
     pub fn reply(&mut self, reply: Option<&[u8]>) {
         if let Some(worker) = &mut self.app.worker {
             worker.hear(reply);
@@ -133,8 +133,8 @@ impl CanvasShell {
     }
 
     /// Returns the next measurement for another instance, if there is one. The host passes it to
-    /// [`measure_job`](crate::app::measure_job) there, and all that it tells to [`Self::told`]. To be
-    /// called after each frame, if pictures are drawn elsewhere.
+    /// [`measure_job`](crate::app::measure_job) there, and all that it tells to [`Self::told`]. To
+    /// be called after each frame, if pictures are drawn elsewhere.
     pub fn job(&mut self) -> Option<Vec<u8>> {
         self.app.lab.take_job()
     }

@@ -27,7 +27,8 @@ pub(super) struct Request {
     pub(super) wanted: Option<Wanted>,
 }
 
-/// A [`Snapshot`](crate::app::drawing::snapshot::Snapshot), with its scene, view and settings as a text.
+/// A [`Snapshot`](crate::app::drawing::snapshot::Snapshot). Its scene, view and settings are a
+/// text.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Wanted {
     pub(super) scene: String,
