@@ -154,8 +154,8 @@ impl App {
             Arrival::Start => {
                 let mut scene = self.state.scene.clone();
                 command.apply(&mut scene)?;
-                if self.models_from != framing::MODELS_FROM {
-                    turn(&mut scene, &view, self.models_from)?;
+                if let Some(from) = self.models_from {
+                    turn(&mut scene, &view, from)?;
                 }
                 self.replace(State::new(scene, view));
             }

@@ -56,34 +56,43 @@ impl Job {
 /// Does the measurement of a message of [`CanvasShell::job`](crate::app::CanvasShell::job), and
 /// tells results for [`CanvasShell::told`](crate::app::CanvasShell::told).
 pub fn measure_job(job: &[u8], tell: &mut dyn FnMut(String)) {
-    let mut tell = |told: &Told| tell(serde_json::to_string(told).unwrap_or_default());
+    let written = |told: &Told| serde_json::to_string(told).unwrap_or_default();
     let progress = Progress::new();
     let watch = Watch::default().with(&progress);
     let clock = &mut WallClock::default();
-    match serde_json::from_slice(job) {
+    let end = match serde_json::from_slice(job) {
         Ok(Job::Sweep { scene, size, axes, thoroughness }) => {
-            let unknown = || Unmeasured::Unsteady("the scene".to_owned());
-            let found = scene_of_message(&scene, None, &Known::default()).map_err(|_| unknown());
-            let findings = found.and_then(|(scene, view, current)| {
-                let axes = axes.iter().filter_map(|key| Axis::named(key)).collect();
-                let thoroughness = Thoroughness::named(&thoroughness).ok_or_else(unknown)?;
-                let question = Question { current, axes, thoroughness };
-                let mut studio = Studio::new(Shot::new(&scene, &view, &current, size));
-                sweep(&mut studio, &question, clock, &watch, &mut |findings| {
-                    tell(&Told::SoFar(progress.fraction(), Some(Box::new(findings.clone()))));
-                })
-            });
-            tell(&Told::Sweep(findings.map(Box::new)));
+            prepared(&scene, size, &axes, &thoroughness).map(|(mut studio, question)| {
+                let tell = &mut |findings: &Findings| {
+                    let findings = Some(Box::new(findings.clone()));
+                    tell(written(&Told::SoFar(progress.fraction(), findings)));
+                };
+                Told::Sweep(sweep(&mut studio, &question, clock, &watch, tell).map(Box::new))
+            })
         }
         Ok(Job::Suite) => {
             let scenes: Vec<&SuiteScene> = SUITE.iter().collect();
-            let reports = suite::run(&scenes, &SuiteDetail::WHOLE, clock, &watch, &mut |_| {
-                tell(&Told::SoFar(progress.fraction(), None));
-            });
-            tell(&Told::Suite(reports));
+            let tell = &mut |_: &Report| tell(written(&Told::SoFar(progress.fraction(), None)));
+            Some(Told::Suite(suite::run(&scenes, &SuiteDetail::WHOLE, clock, &watch, tell)))
         }
-        Err(_) => tell(&Told::Sweep(Err(Unmeasured::Cancelled))),
-    }
+        Err(_) => None,
+    };
+    // Any other text loses the task.
+    tell(end.map_or_else(|| "the measurement is not understood".to_owned(), |end| written(&end)));
+}
+
+/// Prepares a sweep; `None` if it cannot be read.
+fn prepared(
+    scene: &str,
+    size: Size,
+    axes: &[String],
+    thoroughness: &str,
+) -> Option<(Studio, Question)> {
+    let (scene, view, current) = scene_of_message(scene, None, &Known::default()).ok()?;
+    let axes = axes.iter().filter_map(|key| Axis::named(key)).collect();
+    let thoroughness = Thoroughness::named(thoroughness)?;
+    let studio = Studio::new(Shot::new(&scene, &view, &current, size));
+    Some((studio, Question { current, axes, thoroughness }))
 }
 
 /// The receivers of the results of the other instance.

@@ -55,7 +55,6 @@ use keeping::Keeping;
 use laboratory::Work;
 use making::Making;
 use marraztu_core::accuracy::AccuracyPreset;
-use marraztu_core::edit::framing::MODELS_FROM;
 use marraztu_core::scene::{Scene, Steps, View};
 use marraztu_io::{OwnFolders, Preferences, default_scene};
 use measuring::Measuring;
@@ -79,7 +78,7 @@ pub struct App {
     /// The scenes that are read after this frame, for a host that has to provide their files.
     pub(crate) opening: Vec<PathBuf>,
     /// The view of models that open alone: degrees to the right of the front, and up.
-    pub(crate) models_from: [f64; 2],
+    pub(crate) models_from: Option<[f64; 2]>,
     pub(crate) viewport: Viewport,
     /// The user's scene, while the scene of a lesson is shown.
     pub(crate) waiting_scene: Option<Box<State>>,
@@ -128,7 +127,7 @@ impl App {
             making: Making::default(),
             queued: VecDeque::new(),
             opening: Vec::new(),
-            models_from: MODELS_FROM,
+            models_from: None,
             viewport: Viewport::default(),
             waiting_scene: None,
             lab: Work::default(),

@@ -17,7 +17,6 @@ use rayon::ThreadPoolBuildError;
 use crate::app::editor::App;
 use crate::app::painter::{Canvas, WindowFrame, WindowPainter};
 use crate::app::tasks::do_waiting;
-use marraztu_core::edit::framing::MODELS_FROM;
 use marraztu_io::{OwnFolders, Preferences};
 use marraztu_render::screen::coverage::PixelBox;
 
@@ -156,7 +155,7 @@ impl CanvasShell {
     pub fn show_picture_only(&mut self, from: Option<[f64; 2]>) {
         self.app.state.picture_only = true;
         self.app.state.overlays = false;
-        self.app.models_from = from.unwrap_or(MODELS_FROM);
+        self.app.models_from = from;
     }
 
     /// Changes the size of the canvas.

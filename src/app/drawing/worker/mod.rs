@@ -76,9 +76,9 @@ enum Place<P> {
     /// By a thread; `None` after its end.
     Thread(Option<JoinHandle<()>>),
     /// By the thread of the window, when it takes results.
-    Here(RefCell<Here>),
+    Here(Box<RefCell<Here>>),
     /// By another instance of the program.
-    Elsewhere(Elsewhere<P>),
+    Elsewhere(Box<Elsewhere<P>>),
 }
 
 /// The worker on the thread of the window.
@@ -144,13 +144,21 @@ impl<P: Copy + Send + 'static> Worker<P> {
     /// Draws on this thread, when results are taken.
     fn here(wake: impl Fn() + 'static, is_awaited: fn() -> bool) -> Self {
         let here = Here { painter: Painter::new(), wake: Box::new(wake) };
-        Self { shared: Shared::new(is_awaited), last: None, place: Place::Here(RefCell::new(here)) }
+        Self {
+            shared: Shared::new(is_awaited),
+            last: None,
+            place: Place::Here(Box::new(RefCell::new(here))),
+        }
     }
 
     /// Lets another instance of the program draw, which the shell exchanges messages with.
     pub(crate) fn elsewhere(wake: impl Fn() + 'static) -> Self {
         let elsewhere = Elsewhere::new(Box::new(wake));
-        Self { shared: Shared::new(|| false), last: None, place: Place::Elsewhere(elsewhere) }
+        Self {
+            shared: Shared::new(|| false),
+            last: None,
+            place: Place::Elsewhere(Box::new(elsewhere)),
+        }
     }
 
     /// Returns the message to the other instance that draws, if there is one and it is due.
