@@ -207,7 +207,8 @@ impl App {
         let ctx = ui.ctx().clone();
         let mut requests = Vec::new();
         self.note_dial();
-        let clicked = self.viewport.awaits_click();
+        let now = ctx.input(|input| input.time);
+        let clicked = self.viewport.click_wait(now).is_some();
         // Without threads, no measurement runs while the window is drawn.
         let _touch = (!cfg!(target_family = "wasm")).then(|| self.lab.touch());
         self.begin(&ctx, &mut requests);
@@ -251,7 +252,7 @@ impl App {
             self.state.tell(Some("Press Esc again to quit".to_owned()));
         }
         // Keys after a click wait until the click has selected something.
-        let waits = clicked || self.viewport.awaits_click();
+        let waits = clicked || self.viewport.click_wait(now).is_some();
         self.pressed.extend(pressed);
         if !waits {
             self.press_all(&ctx);
@@ -259,8 +260,9 @@ impl App {
         for request in requests {
             self.answer(&ctx, request);
         }
-        if !self.viewport.awaits_click() {
-            self.press_all(&ctx);
+        match self.viewport.click_wait(now) {
+            None => self.press_all(&ctx),
+            Some(rest) => ctx.request_repaint_after(Duration::from_secs_f64(rest)),
         }
         if let Some(answer) = answer {
             self.take_answer(&ctx, answer);

@@ -59,6 +59,9 @@ pub(crate) enum Purpose {
     Aim(Pos2),
 }
 
+/// The longest time, in seconds, that keys wait for a click to select something.
+const PATIENCE: f64 = 2.0;
+
 /// The picture, and the state of input over it.
 #[derive(Default)]
 pub(crate) struct Viewport {
@@ -83,6 +86,8 @@ pub(crate) struct Viewport {
     clicked: Option<([usize; 2], DMat4)>,
     /// The number of picks of clicks that are not answered.
     clicks: usize,
+    /// The time of the last of them, in seconds.
+    clicked_at: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -121,9 +126,11 @@ impl Viewport {
         found
     }
 
-    /// Returns whether the worker is still looking up what was clicked.
-    pub(crate) const fn awaits_click(&self) -> bool {
-        self.clicks > 0
+    /// Returns the seconds for which keys still wait for the worker to look up a click, if any. A
+    /// very slow picture must not keep the user from saving.
+    pub(crate) fn click_wait(&self, now: f64) -> Option<f64> {
+        let rest = self.clicked_at + PATIENCE - now;
+        (self.clicks > 0 && rest > 0.0).then_some(rest)
     }
 
     /// Gives the keyboard focus to the picture.
@@ -231,6 +238,7 @@ impl Viewport {
                 requests.push(Request::Lab(LabRequest::Attribute(at)));
             } else {
                 self.clicks += 1;
+                self.clicked_at = ui.input(|input| input.time);
                 worker.pick(Pick { at, purpose });
             }
         }

@@ -23,13 +23,13 @@ const NAME: &str = "the scene to draw";
 /// The text, with or without the objects.
 #[derive(Serialize, Deserialize)]
 struct Message {
-    /// Whether the objects are those of the message before.
+    /// Whether the objects are left out, because they equal those in the previous message.
     same_objects: bool,
     scene: FileScene,
 }
 
 /// Writes a scene with its view and settings for [`scene_of_message`]. Objects are left out if they
-/// equal those of `before`, the scene of the message before.
+/// equal the objects of `before`, the scene of the previous message.
 ///
 /// # Errors
 /// The reason, if a model or a texture comes from no file, or its path is not UTF-8.
@@ -47,7 +47,7 @@ pub fn scene_to_message(
     ron::to_string(&Message { same_objects, scene }).map_err(|error| error.to_string())
 }
 
-/// Reads a scene of [`scene_to_message`]. `before` is the scene of the message before. Models and
+/// Reads a scene of [`scene_to_message`]. `before` is the scene of the previous message. Models and
 /// textures that are not in `known` are loaded.
 ///
 /// # Errors

@@ -11,11 +11,11 @@ use marraztu_io::{Known, scene_of_message};
 
 /// Draws for a [`CanvasShell`](crate::app::CanvasShell) of another instance, in a worker of a page.
 ///
-/// Its files have to be those of the other instance: a message refers to models by their paths.
+/// Both instances need the same files, because a message refers to models by their paths.
 #[derive(Debug)]
 pub struct DrawingServer {
     worker: Worker<()>,
-    /// The scene of the last message.
+    /// The scene of the previous message.
     scene: Option<Scene>,
     /// Whether files have changed since its models were loaded.
     is_stale: bool,
