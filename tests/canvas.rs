@@ -21,7 +21,7 @@ impl Page {
         page
     }
 
-    /// Opens a page whose viewport a server draws.
+    /// Opens a page with a server that draws its viewport.
     fn open_with_server() -> Self {
         let mut shell = CanvasShell::new(SIZE, 1.0, Vec::new()).expect("there are threads");
         shell.draw_elsewhere();

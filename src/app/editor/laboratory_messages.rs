@@ -28,7 +28,7 @@ pub(super) enum Job {
 /// Results of a measurement.
 #[derive(Debug, Serialize, Deserialize)]
 enum Told {
-    /// The fraction that is done, and what was found so far.
+    /// The finished fraction, and the findings up to now.
     SoFar(f64, Option<Box<Findings>>),
     /// The end of a sweep.
     Sweep(Result<Box<Findings>, Unmeasured>),

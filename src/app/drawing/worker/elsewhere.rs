@@ -119,7 +119,11 @@ impl<P> Elsewhere<P> {
         desk.news.outline = outline.or(desk.news.outline.take());
         desk.news.explained = explained.map(Arc::new).or(desk.news.explained.take());
         desk.news.picked.extend(self.picks.drain(..picked.len().min(self.picks.len())).zip(picked));
-        desk.news.failed |= reply.failed;
+        if reply.failed {
+            // The worker may lack the last scene, so the next one is sent as a whole.
+            self.sent = None;
+            desk.news.failed = true;
+        }
         drop(desk);
         (self.wake)();
     }

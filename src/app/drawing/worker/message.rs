@@ -85,7 +85,9 @@ pub(super) fn write(head: &impl Serialize, pictures: &[&[u8]]) -> Vec<u8> {
     let _ = serde_json::to_writer(&mut bytes, head);
     let length = u32::try_from(bytes.len() - LENGTH).unwrap_or(u32::MAX);
     bytes[..LENGTH].copy_from_slice(&length.to_le_bytes());
-    bytes.extend(pictures.iter().copied().flatten());
+    for picture in pictures {
+        bytes.extend_from_slice(picture);
+    }
     bytes
 }
 

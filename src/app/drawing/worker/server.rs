@@ -94,13 +94,12 @@ impl DrawingServer {
         let News { border, drawn, refined, outline, explained, dial, ideal, picked, .. } = news;
         let has_results = done || refined.is_some() || dial.is_some() || news.failed;
         has_results.then(|| {
-            let pixels = |drawn: &Drawn| drawn.image.as_raw().to_vec();
             let pictures = [
-                drawn.as_ref().map(pixels),
-                refined.as_ref().map(pixels),
-                ideal.as_ref().map(|(_, picture)| picture.pixels().as_flattened().to_vec()),
+                drawn.as_ref().map(|drawn| drawn.image.as_raw()),
+                refined.as_ref().map(|refined| refined.image.as_raw()),
+                ideal.as_ref().map(|(_, picture)| picture.pixels().as_flattened()),
             ];
-            let pictures: Vec<&[u8]> = pictures.iter().flatten().map(Vec::as_slice).collect();
+            let pictures: Vec<&[u8]> = pictures.into_iter().flatten().collect();
             let reply = Reply {
                 done,
                 border,
