@@ -86,16 +86,18 @@ export class Measuring {
 
   // Starts the next measurement, and stops one whose results are not awaited any more.
   exchange() {
-    if (this.worker && this.editor.awaits_measurement() === 0) {
-      this.worker.terminate();
+    const length = this.editor.job();
+    if (length > 0 || this.editor.awaits_measurement() === 0) {
+      this.worker?.terminate();
       this.worker = null;
     }
-    const length = this.editor.job();
     if (length > 0) {
       const job = taken(this.editor, length);
-      const take = (data) => data.told && this.take(data.told);
-      this.worker = begin(this.source, take, (fault) => this.take(`failed: ${fault}`));
-      this.worker.postMessage({ job }, [job.buffer]);
+      // A worker that was stopped may have a result on its way.
+      const take = (told) => told && worker === this.worker && this.take(told);
+      const worker = begin(this.source, ({ told }) => take(told), (fault) => take(`failed: ${fault}`));
+      worker.postMessage({ job }, [job.buffer]);
+      this.worker = worker;
     }
   }
 
