@@ -1,4 +1,4 @@
-//! The window: the only floor that uses egui.
+//! The window. Besides `marraztu-painter`, only this floor uses egui.
 //!
 //! ```text
 //! keys, menus, buttons, mouse  ->  Request  ->  App::answer  ->  Command or View  ->  the scene
@@ -13,7 +13,6 @@
 //! theme      colours, sizes, spacing
 //! fonts      fonts of the system, for letters that the built-in fonts lack
 //! tasks      work on background threads
-//! painter    paints egui's output into memory, without a graphics card
 //! shell      the window of the editor, painted with OpenGL or without
 //! widgets    controls, independent of scenes: numbers, switches, colours, icons
 //! drawing    the thread that draws the viewport's pictures, with adaptive quality
@@ -36,7 +35,6 @@ mod drawing;
 mod editor;
 mod fonts;
 mod input;
-mod painter;
 pub mod panels;
 mod shell;
 #[cfg(feature = "desktop")]

@@ -15,7 +15,7 @@ use egui::{ViewportId, ViewportInfo, pos2, vec2};
 use rayon::ThreadPoolBuildError;
 
 use crate::app::editor::App;
-use crate::app::painter::{Canvas, WindowFrame, WindowPainter};
+use marraztu_painter::{Canvas, WindowFrame, WindowPainter};
 use crate::app::tasks::do_waiting;
 use marraztu_io::{OwnFolders, Preferences};
 use marraztu_render::screen::coverage::PixelBox;

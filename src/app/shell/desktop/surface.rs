@@ -8,7 +8,7 @@ use softbuffer::SoftBufferError;
 use winit::window::Window;
 
 use super::StartError;
-use crate::app::painter::{Canvas, WindowFrame, WindowPainter};
+use marraztu_painter::{Canvas, WindowFrame, WindowPainter};
 use marraztu_render::screen::coverage::PixelBox;
 
 type Shared = Arc<Window>;

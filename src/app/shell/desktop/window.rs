@@ -14,7 +14,7 @@ use winit::raw_window_handle::{HasDisplayHandle, RawDisplayHandle};
 
 use super::surface::Surface;
 use super::{Editor, Make, StartError, display_error};
-use crate::app::painter::WindowFrame;
+use marraztu_painter::WindowFrame;
 
 /// The minimum interval between frames.
 const FASTEST: Duration = Duration::from_micros(1_000_000 / 144);

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use egui::epaint::{ClippedPrimitive, ImageDelta, Mesh, Primitive, Vertex};
 use egui::{Color32, ColorImage, Pos2, Rect, TextureId, TextureOptions, TexturesDelta, pos2};
 
-use super::{Canvas, WindowFrame, WindowPainter};
+use crate::{Canvas, WindowFrame, WindowPainter};
 use marraztu_core::base::rng::Rng;
 use marraztu_render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle};
 

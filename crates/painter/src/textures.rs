@@ -12,23 +12,23 @@ use egui::{TextureOptions, TextureWrapMode, TexturesDelta};
 
 /// All textures by their ids.
 #[derive(Debug, Default)]
-pub(super) struct Textures {
+pub(crate) struct Textures {
     all: HashMap<TextureId, Texture>,
     changes: u64,
 }
 
 /// A picture that meshes show.
 #[derive(Debug)]
-pub(super) struct Texture {
+pub(crate) struct Texture {
     image: Arc<ColorImage>,
     options: TextureOptions,
     /// A number that changes with the texture. No two changes have the same number.
-    pub(super) version: u64,
+    pub(crate) version: u64,
 }
 
 /// The way to read a texture between its texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Filter {
+pub(crate) enum Filter {
     /// The nearest texel.
     Nearest,
     /// The mean of the nearest four, weighted by distance.
@@ -37,7 +37,7 @@ pub(super) enum Filter {
 
 impl Textures {
     /// Adds new textures and updates parts of known ones.
-    pub(super) fn set(&mut self, delta: &mut TexturesDelta) {
+    pub(crate) fn set(&mut self, delta: &mut TexturesDelta) {
         #[expect(clippy::iter_over_hash_type, reason = "each texture stands for itself")]
         for (id, deltas) in delta.set.drain() {
             for delta in deltas {
@@ -47,7 +47,7 @@ impl Textures {
     }
 
     /// Removes textures that are not shown any more.
-    pub(super) fn free(&mut self, delta: &mut TexturesDelta) {
+    pub(crate) fn free(&mut self, delta: &mut TexturesDelta) {
         #[expect(clippy::iter_over_hash_type, reason = "each texture stands for itself")]
         for id in delta.free.drain() {
             self.all.remove(&id);
@@ -55,7 +55,7 @@ impl Textures {
     }
 
     /// Returns the texture of this id, if it exists and has texels.
-    pub(super) fn get(&self, id: TextureId) -> Option<&Texture> {
+    pub(crate) fn get(&self, id: TextureId) -> Option<&Texture> {
         self.all.get(&id).filter(|texture| !texture.image.pixels.is_empty())
     }
 
@@ -90,18 +90,18 @@ fn copy(from: &ColorImage, to: &mut ColorImage, [x, y]: [usize; 2]) {
 
 impl Texture {
     /// Returns the width and height in texels.
-    pub(super) fn size(&self) -> [usize; 2] {
+    pub(crate) fn size(&self) -> [usize; 2] {
         self.image.size
     }
 
     /// Returns a row of texels.
-    pub(super) fn row(&self, y: usize) -> &[Color32] {
+    pub(crate) fn row(&self, y: usize) -> &[Color32] {
         let [width, _] = self.image.size;
         &self.image.pixels[y * width..(y + 1) * width]
     }
 
     /// Returns the filter for a step of this number of texels per pixel.
-    pub(super) fn filter(&self, texels: f64) -> Filter {
+    pub(crate) fn filter(&self, texels: f64) -> Filter {
         let chosen = match texels > 1.0 {
             true => self.options.minification,
             false => self.options.magnification,
@@ -114,7 +114,7 @@ impl Texture {
 
     /// Returns the texel of index `i` in a row or column of `count`, wrapped by the texture's
     /// options.
-    pub(super) fn wrapped(&self, i: i64, count: usize) -> usize {
+    pub(crate) fn wrapped(&self, i: i64, count: usize) -> usize {
         let last = i64::try_from(count).unwrap_or(i64::MAX) - 1;
         let index = match self.options.wrap_mode {
             TextureWrapMode::ClampToEdge => i.clamp(0, last),
@@ -129,7 +129,7 @@ impl Texture {
 
     /// Samples the texture at a position in texels from the upper left corner. Channels are from 0
     /// to 255, premultiplied.
-    pub(super) fn at(&self, filter: Filter, u: f32, v: f32) -> [f32; 4] {
+    pub(crate) fn at(&self, filter: Filter, u: f32, v: f32) -> [f32; 4] {
         let [width, height] = self.size();
         match filter {
             Filter::Nearest => {
@@ -146,7 +146,7 @@ impl Texture {
     }
 
     /// Returns the texels next to a position in a row or column of `count`.
-    pub(super) fn between(&self, at: f32, count: usize) -> Between {
+    pub(crate) fn between(&self, at: f32, count: usize) -> Between {
         let at = at - 0.5;
         let [first, next] = [floor(at), floor(at) + 1].map(|i| self.wrapped(i, count));
         Between { first, next, part: at - at.floor() }
@@ -155,16 +155,16 @@ impl Texture {
 
 /// A position between two texels of a row or column.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Between {
-    pub(super) first: usize,
-    pub(super) next: usize,
+pub(crate) struct Between {
+    pub(crate) first: usize,
+    pub(crate) next: usize,
     /// From 0 at the first to 1 at the next.
-    pub(super) part: f32,
+    pub(crate) part: f32,
 }
 
 impl Between {
     /// Interpolates between two texels of a row.
-    pub(super) fn mixed(self, row: &[Color32]) -> [f32; 4] {
+    pub(crate) fn mixed(self, row: &[Color32]) -> [f32; 4] {
         let [first, next] = [self.first, self.next].map(|i| row[i].to_array().map(f32::from));
         mix(first, next, self.part)
     }
@@ -172,7 +172,7 @@ impl Between {
 
 /// Interpolates between `a` and `b`.
 #[inline(always)]
-pub(super) fn mix(a: [f32; 4], b: [f32; 4], part: f32) -> [f32; 4] {
+pub(crate) fn mix(a: [f32; 4], b: [f32; 4], part: f32) -> [f32; 4] {
     std::array::from_fn(|i| a[i] + (b[i] - a[i]) * part)
 }
 

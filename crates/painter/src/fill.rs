@@ -7,18 +7,18 @@ use std::ops::Range;
 
 use egui::Color32;
 
-use super::blend::{all_opaque, is_opaque, lay, over, packed, product, tint};
-use super::items::{Corner, Item, Ramp, Shape};
-use super::textures::{Between, Filter, Texture, mix};
+use crate::blend::{all_opaque, is_opaque, lay, over, packed, product, tint};
+use crate::items::{Corner, Item, Ramp, Shape};
+use crate::textures::{Between, Filter, Texture, mix};
 use marraztu_render::screen::coverage::{PixelBox, Triangle};
 
 /// Adjacent rows of pixels: blue in the lowest byte, then green, red and a zero.
 #[derive(Debug)]
-pub(super) struct Strip<'a> {
-    pub(super) pixels: &'a mut [u32],
-    pub(super) width: usize,
+pub(crate) struct Strip<'a> {
+    pub(crate) pixels: &'a mut [u32],
+    pub(crate) width: usize,
     /// The first row.
-    pub(super) top: i32,
+    pub(crate) top: i32,
 }
 
 impl Strip<'_> {
@@ -34,7 +34,7 @@ impl Strip<'_> {
     }
 
     /// Fills an area with one colour.
-    pub(super) fn clear(&mut self, area: PixelBox, color: Color32) {
+    pub(crate) fn clear(&mut self, area: PixelBox, color: Color32) {
         for y in area.top..area.bottom {
             self.row(y, area.left, area.right).fill(packed(color));
         }
@@ -42,7 +42,7 @@ impl Strip<'_> {
 }
 
 /// Paints the part of an item in `within`, an area of the strip.
-pub(super) fn paint(strip: &mut Strip<'_>, item: &Item, texture: &Texture, within: PixelBox) {
+pub(crate) fn paint(strip: &mut Strip<'_>, item: &Item, texture: &Texture, within: PixelBox) {
     let area = item.area.intersection(within);
     if area.is_empty() {
         return;
@@ -68,7 +68,7 @@ pub(super) fn paint(strip: &mut Strip<'_>, item: &Item, texture: &Texture, withi
 }
 
 /// Returns whether an item hides everything painted before it in an area.
-pub(super) fn hides(item: &Item, texture: &Texture, area: PixelBox) -> bool {
+pub(crate) fn hides(item: &Item, texture: &Texture, area: PixelBox) -> bool {
     if item.area.intersection(area) != area {
         return false;
     }

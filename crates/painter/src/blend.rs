@@ -8,7 +8,7 @@
 use egui::Color32;
 
 /// Blends one colour over all pixels of a row.
-pub(super) fn lay(row: &mut [u32], source: [f32; 4]) {
+pub(crate) fn lay(row: &mut [u32], source: [f32; 4]) {
     // Whole, premultiplied values allow integer arithmetic with the same result.
     let whole = source.map(f32::round);
     if is_opaque(source) {
@@ -38,38 +38,38 @@ fn lay_premultiplied(row: &mut [u32], [r, g, b, a]: [u8; 4]) {
     }
 }
 
-pub(super) fn tint(pixel: &mut u32, color: [u8; 4], texel: Color32) {
+pub(crate) fn tint(pixel: &mut u32, color: [u8; 4], texel: Color32) {
     // Most texels of glyphs are transparent: they are skipped.
     if texel != Color32::TRANSPARENT {
         *pixel = over(*pixel, product(color.map(f32::from), texel.to_array().map(f32::from)));
     }
 }
 
-pub(super) fn product(color: [f32; 4], texel: [f32; 4]) -> [f32; 4] {
+pub(crate) fn product(color: [f32; 4], texel: [f32; 4]) -> [f32; 4] {
     std::array::from_fn(|i| color[i] * texel[i] / 255.0)
 }
 
-pub(super) fn is_opaque(source: [f32; 4]) -> bool {
+pub(crate) fn is_opaque(source: [f32; 4]) -> bool {
     source[3] >= 255.0
 }
 
 /// Blends a colour over a pixel.
 #[inline(always)]
-pub(super) fn over(below: u32, [r, g, b, a]: [f32; 4]) -> u32 {
+pub(crate) fn over(below: u32, [r, g, b, a]: [f32; 4]) -> u32 {
     let rest = 1.0 - a / 255.0;
     let [blue, green, red, _] = below.to_le_bytes().map(f32::from);
     let channel = |source: f32, below: f32| u32::from(byte(source + below * rest + 0.5));
     channel(r, red) << 16 | channel(g, green) << 8 | channel(b, blue)
 }
 
-pub(super) fn all_opaque(texels: &[Color32]) -> bool {
+pub(crate) fn all_opaque(texels: &[Color32]) -> bool {
     let all = texels.iter().fold(u32::MAX, |all, texel| all & u32::from_le_bytes(texel.to_array()));
     all >> 24 == 0xff
 }
 
 /// Packs a colour as it is stored: blue in the lowest byte, then green, red and a zero.
 #[inline(always)]
-pub(super) fn packed(color: Color32) -> u32 {
+pub(crate) fn packed(color: Color32) -> u32 {
     let color = u32::from_le_bytes(color.to_array());
     (color & 0xff) << 16 | (color & 0xff00) | (color >> 16 & 0xff)
 }

@@ -16,25 +16,25 @@ use marraztu_render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle};
 
 /// A corner of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Corner {
-    pub(super) at: Snapped,
+pub(crate) struct Corner {
+    pub(crate) at: Snapped,
     /// From 0 to 1 across the texture, to the right and down.
-    pub(super) uv: [f32; 2],
+    pub(crate) uv: [f32; 2],
     /// Red, green, blue, alpha; premultiplied.
-    pub(super) color: [u8; 4],
+    pub(crate) color: [u8; 4],
 }
 
 /// A texture coordinate as a function of the column or row of pixels: `start + step * i` at the
 /// centre of pixel i, from 0 to 1 across the texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ramp {
-    pub(super) start: f64,
-    pub(super) step: f64,
+pub(crate) struct Ramp {
+    pub(crate) start: f64,
+    pub(crate) step: f64,
 }
 
 /// One item to paint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Shape {
+pub(crate) enum Shape {
     /// An upright rectangle of one colour, which is multiplied by one texel.
     Plain { color: [u8; 4], uv: [f32; 2] },
     /// An upright rectangle of a texture, multiplied by a colour.
@@ -45,15 +45,15 @@ pub(super) enum Shape {
 
 /// One item to paint, and the pixels that it may touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Item {
-    pub(super) area: PixelBox,
-    pub(super) shape: Shape,
+pub(crate) struct Item {
+    pub(crate) area: PixelBox,
+    pub(crate) shape: Shape,
     /// A hash of the item: equal items have equal keys, and other items almost certainly do not.
-    pub(super) key: u64,
+    pub(crate) key: u64,
 }
 
 /// Converts a clip rectangle from points to pixels of a picture of this size.
-pub(super) fn clip_area(clip: Rect, scale: f32, [width, height]: [usize; 2]) -> PixelBox {
+pub(crate) fn clip_area(clip: Rect, scale: f32, [width, height]: [usize; 2]) -> PixelBox {
     let most = |count: usize| i32::try_from(count).unwrap_or(i32::MAX);
     let (width, height) = (most(width), most(height));
     let at =
@@ -63,7 +63,7 @@ pub(super) fn clip_area(clip: Rect, scale: f32, [width, height]: [usize; 2]) -> 
 }
 
 /// Adds the items of a mesh that lie in `clip`, in their order.
-pub(super) fn items_of(mesh: &Mesh, clip: PixelBox, scale: f32, items: &mut Vec<Item>) {
+pub(crate) fn items_of(mesh: &Mesh, clip: PixelBox, scale: f32, items: &mut Vec<Item>) {
     let corners: Vec<Corner> = mesh.vertices.iter().map(|vertex| corner(vertex, scale)).collect();
     let triangle = |first: usize| -> Option<[Corner; 3]> {
         let [a, b, c] = *mesh.indices.get(first..first + 3)?.first_chunk()?;
@@ -185,7 +185,7 @@ impl Ramp {
     }
 
     /// Returns the coordinate at the centre of pixel `i`.
-    pub(super) fn at(self, i: i32) -> f64 {
+    pub(crate) fn at(self, i: i32) -> f64 {
         self.start + self.step * f64::from(i)
     }
 }

@@ -6,6 +6,27 @@
 //!
 //! `textures` holds the atlas of glyphs and the pictures. `items` splits egui's meshes into items.
 //! `fill` paints them, with the arithmetic of `blend`.
+//!
+//! ```
+//! use egui::{Color32, Context, RawInput, Rect, pos2};
+//! use marraztu_painter::{Canvas, WindowFrame, WindowPainter};
+//!
+//! let ctx = Context::default();
+//! let window = Rect::from_min_max(pos2(0.0, 0.0), pos2(64.0, 48.0));
+//! let input = RawInput { screen_rect: Some(window), ..RawInput::default() };
+//! let mut output = ctx.run_ui(input, |ui| {
+//!     ui.painter().rect_filled(window.shrink(8.0), 0.0, Color32::RED);
+//! });
+//!
+//! let primitives = ctx.tessellate(output.shapes, 1.0);
+//! let frame = WindowFrame { primitives, scale: 1.0, ground: Color32::WHITE };
+//! let mut pixels = vec![0; 64 * 48];
+//! let mut canvas = Canvas { pixels: &mut pixels, size: [64, 48], age: 0 };
+//! WindowPainter::new()?.paint(&mut canvas, frame, &mut output.textures_delta);
+//! assert_eq!((pixels[0], pixels[24 * 64 + 32]), (0xff_ff_ff, 0xff_00_00));
+//! # output.textures_delta.clear();
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod blend;
 mod fill;
@@ -34,29 +55,29 @@ const REMEMBERED: usize = 4;
 
 /// The input of one frame.
 #[derive(Debug)]
-pub(crate) struct WindowFrame {
+pub struct WindowFrame {
     /// egui's meshes, from the lowest to the uppermost.
-    pub(crate) primitives: Vec<ClippedPrimitive>,
+    pub primitives: Vec<ClippedPrimitive>,
     /// Pixels per point.
-    pub(crate) scale: f32,
+    pub scale: f32,
     /// The background colour.
-    pub(crate) ground: Color32,
+    pub ground: Color32,
 }
 
 /// The buffer to paint into.
 #[derive(Debug)]
-pub(crate) struct Canvas<'a> {
+pub struct Canvas<'a> {
     /// Row by row: blue in the lowest byte, then green, red and a zero.
-    pub(crate) pixels: &'a mut [u32],
+    pub pixels: &'a mut [u32],
     /// The number of columns and of rows.
-    pub(crate) size: [usize; 2],
+    pub size: [usize; 2],
     /// The number of frames since these pixels were painted; 0 if they never were.
-    pub(crate) age: usize,
+    pub age: usize,
 }
 
 /// Paints a window, frame after frame.
 #[derive(Debug)]
-pub(crate) struct WindowPainter {
+pub struct WindowPainter {
     /// `None` without threads, in WebAssembly.
     pool: Option<rayon::ThreadPool>,
     textures: Textures,
@@ -97,7 +118,7 @@ impl WindowPainter {
     ///
     /// # Errors
     /// If no threads can be started.
-    pub(crate) fn new() -> Result<Self, rayon::ThreadPoolBuildError> {
+    pub fn new() -> Result<Self, rayon::ThreadPoolBuildError> {
         // A separate pool, because the threads that draw the viewport may be busy for long.
         let threads = std::thread::available_parallelism().map_or(1, usize::from).min(8);
         let name = |i| format!("window {i}");
@@ -109,7 +130,7 @@ impl WindowPainter {
 
     /// Paints a frame and returns the areas that changed since the frame before it. If none did,
     /// nothing is painted, unless the canvas is new.
-    pub(crate) fn paint(
+    pub fn paint(
         &mut self,
         canvas: &mut Canvas<'_>,
         frame: WindowFrame,
