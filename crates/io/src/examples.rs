@@ -32,13 +32,13 @@ pub struct Example {
     pub title: &'static str,
     /// The path that [`super::open`] takes.
     pub path: &'static str,
-    /// A PNG of 288 x 180 pixels, drawn by `marraztu render`.
+    /// A JPEG of 288 x 180 pixels, drawn by `marraztu render`.
     thumbnail: &'static [u8],
     text: &'static str,
 }
 
 impl Example {
-    /// Decodes its thumbnail: the picture that `marraztu render` draws, 288 x 180 pixels.
+    /// Decodes its thumbnail of 288 x 180 pixels.
     #[must_use]
     pub fn thumbnail(&self) -> Option<Picture> {
         own_picture(self.thumbnail)
@@ -50,19 +50,19 @@ pub const EXAMPLES: &[Example] = &[
     Example {
         title: "Still life",
         path: "example:/still-life.marraztu",
-        thumbnail: include_bytes!("../../../assets/examples/still-life.png"),
+        thumbnail: include_bytes!("../../../assets/examples/still-life.jpg"),
         text: include_str!("../../../assets/examples/still-life.marraztu"),
     },
     Example {
         title: "Chess",
         path: "example:/chess.marraztu",
-        thumbnail: include_bytes!("../../../assets/examples/chess.png"),
+        thumbnail: include_bytes!("../../../assets/examples/chess.jpg"),
         text: include_str!("../../../assets/examples/chess.marraztu"),
     },
     Example {
         title: "Harbour",
         path: "example:/harbour.marraztu",
-        thumbnail: include_bytes!("../../../assets/examples/harbour.png"),
+        thumbnail: include_bytes!("../../../assets/examples/harbour.jpg"),
         text: include_str!("../../../assets/examples/harbour.marraztu"),
     },
 ];
