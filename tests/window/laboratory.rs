@@ -188,7 +188,7 @@ fn a_pixel_is_explained_by_a_click_that_selects_nothing() {
 
 #[test]
 fn every_lesson_is_a_card_in_a_scene_in_which_it_can_be_seen() {
-    let mut editor = Editor::of_size(1300.0, 760.0);
+    let mut editor = Editor::of_size(1000.0, 640.0);
     editor.ask(Request::Lab(LabRequest::ShowLesson(AXES[0].key)));
     for (i, lesson) in lessons().iter().enumerate() {
         let axis = lesson.axis();
