@@ -64,7 +64,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let said = in_words(state.dial.figures()).filter(|_| state.dial.current);
     let mut said = said.unwrap_or_else(|| "Measured as soon as nothing moves".to_owned());
     if !presets.iter().any(is_on) {
-        said += " The picture has other settings.";
+        said += " The picture has settings of its own, not one of these.";
     }
     ui.add_space(2.0);
     ui.add(egui::Label::new(RichText::new(said).small()).wrap());

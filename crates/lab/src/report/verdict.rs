@@ -58,7 +58,8 @@ pub(super) fn verdict_on(report: &Report, axis: &Axis) -> String {
     sentences.extend(reasons(report, axis));
     let capital: Vec<String> = sentences.iter().map(|sentence| capitalized(sentence)).collect();
     let [width, height] = report.findings.size;
-    format!("{} (At {width}x{height} on {}; noise {noise}.)", capital.join(" "), report.scene)
+    let noise = noise.map_or_else(|| BUSY.to_owned(), |noise| format!("noise {noise}"));
+    format!("{} (At {width}x{height} on {}; {noise}.)", capital.join(" "), report.scene)
 }
 
 /// Explains why choices take longer than more exact ones, if this happens here.
@@ -94,7 +95,10 @@ pub(super) fn verdict(report: &Report) -> Vec<String> {
     let is_faster = |it: &Said<'_>| it.point.verdict == Verdict::Faster;
     let nothing = if said.iter().any(is_faster) { "nothing else" } else { "nothing" };
     let noise = noise(report, report.findings.rows.iter().map(|row| row.point));
-    sentences.push(format!("{nothing} saves more than the noise ({noise})."));
+    sentences.push(match noise {
+        Some(noise) => format!("{nothing} saves more than the noise ({noise})."),
+        None => format!("{BUSY}."),
+    });
     let [width, height] = report.findings.size;
     if let Some(first) = sentences.first_mut() {
         *first = format!("At {width}x{height} on {}: {first}", report.scene);
@@ -104,14 +108,18 @@ pub(super) fn verdict(report: &Report) -> Vec<String> {
     sentences
 }
 
-/// Formats the noise of some points in per cent: "1.2%", or "1.2 to 4.5%" if they differ.
-fn noise(report: &Report, points: impl Iterator<Item = usize>) -> String {
+/// Replaces the noise if it is too large.
+const BUSY: &str = "the machine was too busy to tell more";
+
+/// Formats the noise of some points in per cent: "1.2%", or "1.2 to 4.5%" if they differ. `None` if
+/// the machine was too busy.
+fn noise(report: &Report, points: impl Iterator<Item = usize>) -> Option<String> {
     let noises = report.findings.noises(points);
     if noises[1] > TOO_BUSY {
-        return "this machine is too busy to tell".to_owned();
+        return None;
     }
     let [least, most] = noises.map(|it| digits((it * 100.0).max(0.1)));
-    if least == most { format!("{most}%") } else { format!("{least} to {most}%") }
+    Some(if least == most { format!("{most}%") } else { format!("{least} to {most}%") })
 }
 
 /// Writes the sentences on some choices.
