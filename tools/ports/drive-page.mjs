@@ -154,9 +154,21 @@ usemtl glow\nf 1/1/1 2/2/1 3/3/1 4/4/1\n`);
   await writeFile(join(at, "looks/glow.png"), Buffer.from(PNG, "base64"));
 }
 
+// A scene of this square and of a green one, to the right of it.
+async function writeScene(at) {
+  await mkdir(join(at, "parts"), { recursive: true });
+  await writeFile(join(at, "parts/green.obj"), `mtllib green.mtl
+v 2 -1 0\nv 4 -1 0\nv 4 1 0\nv 2 1 0\nvn 0 0 1\nusemtl glow\nf 1//1 2//1 3//1 4//1\n`);
+  await writeFile(join(at, "parts/green.mtl"), "newmtl glow\nKa 0 0 0\nKd 0 0 0\nKs 0 0 0\nKe 0 1 0\n");
+  await writeFile(join(at, "both.marraztu"), `(version: 1, cameras: [(id: 3, name: "camera", eye: (0.0, 0.0, 9.0))], objects: [
+    (id: 1, name: "square", model: File(path: "../models/square.obj")),
+    (id: 2, name: "green", model: File(path: "parts/green.obj"))])`);
+}
+
 const files = await mkdtemp(join(tmpdir(), "marraztu-models-"));
 await writeModels(join(files, "models"));
-const served = await serve({ "": folder, models: join(files, "models") });
+await writeScene(join(files, "scenes"));
+const served = await serve({ "": folder, models: join(files, "models"), scenes: join(files, "scenes") });
 // Another origin, with the example of docs/web.md for a page that embeds a picture.
 const manual = await readFile(new URL("../../docs/web.md", import.meta.url), "utf8");
 const example = manual.match(/```html\n(.*?)```/s)[1].replaceAll("http://localhost:8000/", served.address);
@@ -233,6 +245,14 @@ const checks = {
     await page.sees("red", "blue");
     await page.tab.open(`${site}?model=/models/none.obj`);
     await page.until("the reason why a model is not shown", async () => (await page.status()).includes("404"));
+  },
+
+  async "a link opens a scene with the files of all its models"(visit) {
+    const page = await visit();
+    await page.open(`${site}?model=/scenes/both.marraztu`);
+    await page.hears("Opened both.marraztu");
+    await page.sees("red", "blue");
+    await page.sees("green");
   },
 
   async "a dropped folder opens its model with MTL file and texture"(visit) {
