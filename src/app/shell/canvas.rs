@@ -15,9 +15,9 @@ use egui::{ViewportId, ViewportInfo, pos2, vec2};
 use rayon::ThreadPoolBuildError;
 
 use crate::app::editor::App;
-use marraztu_painter::{Canvas, WindowFrame, WindowPainter};
 use crate::app::tasks::do_waiting;
 use marraztu_io::{OwnFolders, Preferences};
+use marraztu_painter::{Canvas, WindowFrame, WindowPainter};
 use marraztu_render::screen::coverage::PixelBox;
 
 /// The editor, its pixels, and the input since the last frame.
