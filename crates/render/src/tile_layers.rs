@@ -60,26 +60,32 @@ impl TileLayers {
         let Some(bounds) = self.bounds else { return };
         let [left, top] = self.visibility.corner(block);
         let is_layered = self.layers.touches(block);
+        let samples = frame.sample_positions().count();
         let mut tops = [[0; BLOCK_PIXELS]; FOUR];
-        // Without layers, a pixel has one word.
         if is_layered {
             self.find_layers(level, frame, block, &mut tops);
+        } else {
+            for (sample, top) in tops.iter_mut().enumerate().take(samples) {
+                *top = self.visibility.entries(level, block, sample);
+            }
         }
-        let samples = frame.sample_positions().count();
         for place in 0..BLOCK_PIXELS {
             let at = i32::try_from(place).expect("a block has few pixels");
             let [x, y] = [left + at % BLOCK, top + at / BLOCK];
             if x >= bounds.right || y >= bounds.bottom {
                 continue;
             }
-            if is_layered {
-                let own = tops.map(|sample| sample[place]);
-                take([x, y], most(&own[..samples]), &self.words[place]);
-            } else {
-                let word = self.visibility.word(level, x, y);
-                take([x, y], word, &[word]);
-            }
+            let own = tops.map(|sample| sample[place]);
+            let nearest = most(&own[..samples]);
+            // Without layers, a pixel has one word.
+            let words = if is_layered { &self.words[place][..] } else { &[nearest] };
+            take([x, y], nearest, words);
         }
+    }
+
+    /// Returns whether a block shows anything.
+    pub(crate) const fn shows(&self, block: usize) -> bool {
+        self.visibility.shows(block) || self.layers.touches(block)
     }
 
     /// Returns the nearest words of a block's pixels, row by row, with one sample per pixel. `None`
@@ -135,6 +141,30 @@ impl TileLayers {
 
 /// Returns the word with the primitive shown by most samples, the first one in a tie.
 fn most(samples: &[u64]) -> u64 {
+    if let [only] = samples {
+        return *only;
+    }
     let alike = |word: &u64| samples.iter().filter(|other| seen(**other) == seen(*word)).count();
     samples.iter().rev().max_by_key(|word| alike(word)).copied().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raster::entries::word;
+
+    #[test]
+    fn a_pixel_reports_the_triangle_of_most_of_its_samples() {
+        let [a, b, c] = [7, 8, 9].map(|number| word(0.5_f32.to_bits(), number));
+        let cases = [
+            ([a, a, a, a], a),
+            ([a, b, b, c], b),
+            ([b, a, a, b], b),
+            ([0, a, b, c], 0),
+            ([0, a, word(0.6_f32.to_bits(), 7), c], a),
+        ];
+        for (samples, want) in cases {
+            assert_eq!(most(&samples), want, "{samples:?}");
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! The border around the visible part of an item in a picture.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use marraztu_core::base::image::Size;
@@ -28,32 +30,43 @@ pub(crate) struct Run {
 impl Border {
     /// Finds the border of the pixels marked in `own`, a mask stored row by row.
     pub(crate) fn of(item: ItemId, size: Size, own: &[bool]) -> Self {
-        let is_own =
-            |x: usize, y: usize| x < size.width && y < size.height && own[y * size.width + x];
-        // At x = 0 and y = 0, x - 1 and y - 1 wrap to `usize::MAX`, which is outside of the picture
-        // too.
-        let beside = |x: usize, y: usize, own: bool| {
-            is_own(x.wrapping_sub(1), y) == own
-                || is_own(x + 1, y) == own
-                || is_own(x, y.wrapping_sub(1)) == own
-                || is_own(x, y + 1) == own
-        };
-        let inner = runs(size, |x, y| is_own(x, y) && beside(x, y, false));
-        let outer = runs(size, |x, y| !is_own(x, y) && beside(x, y, true));
-        Self { item, inner, outer, size }
+        let mut border = Self { item, inner: Vec::new(), outer: Vec::new(), size };
+        let none = vec![false; size.width];
+        let row = |y: usize| own.chunks_exact(size.width.max(1)).nth(y).unwrap_or(&none);
+        let columns: Vec<_> = (0..size.height).map(|y| marked(row(y))).collect();
+        for y in 0..size.height {
+            // Only pixels beside marked ones are looked at. Above the first row, y - 1 wraps to a
+            // row that does not exist.
+            let near = [y.wrapping_sub(1), y, y + 1];
+            let near_columns = near.iter().filter_map(|y| columns.get(*y)?.clone());
+            let joined = near_columns.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
+            let Some(joined) = joined else { continue };
+            let [above, middle, below] = near.map(row);
+            let is_own = |x: usize| middle.get(x).copied().unwrap_or(false);
+            for x in joined.start.saturating_sub(1)..(joined.end + 1).min(size.width) {
+                let beside = [is_own(x.wrapping_sub(1)), is_own(x + 1), above[x], below[x]];
+                if is_own(x) && beside.contains(&false) {
+                    put(&mut border.inner, x, y);
+                } else if !is_own(x) && beside.contains(&true) {
+                    put(&mut border.outer, x, y);
+                }
+            }
+        }
+        border
     }
 }
 
-/// Collects the pixels that satisfy `chosen` into runs.
-fn runs(size: Size, chosen: impl Fn(usize, usize) -> bool) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
-    for y in 0..size.height {
-        for x in (0..size.width).filter(|x| chosen(*x, y)) {
-            match runs.last_mut() {
-                Some(run) if run.y == y && run.x + run.length == x => run.length += 1,
-                _ => runs.push(Run { x, y, length: 1 }),
-            }
-        }
+/// Returns the columns from the first to the last marked pixel of a row.
+fn marked(row: &[bool]) -> Option<Range<usize>> {
+    let first = row.iter().position(|own| *own)?;
+    let last = row.iter().rposition(|own| *own)?;
+    Some(first..last + 1)
+}
+
+/// Adds a pixel to the last run, or as a run of its own.
+fn put(runs: &mut Vec<Run>, x: usize, y: usize) {
+    match runs.last_mut() {
+        Some(run) if run.y == y && run.x + run.length == x => run.length += 1,
+        _ => runs.push(Run { x, y, length: 1 }),
     }
-    runs
 }

@@ -35,7 +35,7 @@ use super::hit_colors::Conversion;
 use super::large::{Large, Solid};
 use super::lines;
 use super::paint::Paint;
-use super::visibility_buffer::{Planes, depths_of, seen};
+use super::visibility_buffer::{Planes, depths_of};
 use crate::frame::FramePlan;
 use crate::screen::coverage::{Grid, PixelBox};
 use crate::screen::sample_positions::{FOUR, SamplePositions};
@@ -238,21 +238,6 @@ impl Visibility {
     pub(crate) fn corner(&self, block: usize) -> [i32; 2] {
         let at = i32::try_from(block).expect("a tile has few blocks");
         [self.bounds.left + at % BLOCKS * BLOCK, self.bounds.top + at / BLOCKS * BLOCK]
-    }
-
-    /// Returns the entry of a pixel of the tile. With several samples, it is the entry with the
-    /// primitive shown by most samples, the first one in a tie.
-    pub(crate) fn word(&mut self, level: Level, x: i32, y: i32) -> u64 {
-        let (samples, count) = self.samples(level, x, y);
-        let alike =
-            |word: &u64| samples.iter().filter(|other| seen(**other) == seen(*word)).count();
-        let mut most = samples[0];
-        for word in &samples[1..count] {
-            if alike(word) > alike(&most) {
-                most = *word;
-            }
-        }
-        most
     }
 
     /// Returns the entries of the samples of a pixel of the tile, and their number.

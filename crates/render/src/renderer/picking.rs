@@ -50,6 +50,12 @@ fn drawn_pixel(plan: &FramePlan, [x, y]: [usize; 2]) -> Option<[i32; 2]> {
     (x < width && y < height).then_some(at)
 }
 
+/// Returns the number of the primitive that a word shows; 0 for the background.
+#[expect(clippy::cast_possible_truncation, reason = "the lower half of a word names what is seen")]
+const fn primitive(word: u64) -> u32 {
+    word as u32
+}
+
 impl Renderer {
     /// Rebuilds the geometry of the last finished picture if another frame has been started since.
     fn build_again(&mut self) {
@@ -142,10 +148,17 @@ impl Renderer {
     #[must_use]
     pub fn pixels_of_any(&mut self, items: &[ItemId]) -> Vec<bool> {
         let mut pixels = vec![false; self.seen_size().area()];
+        let mut last = (None, false);
         self.look(|renderer, plan, at, _, words| {
             pixels[at] = words.iter().any(|word| {
-                let seen = renderer.seen(plan, *word);
-                seen.is_some_and(|(draw, _)| items.contains(&plan.draws[draw as usize].item))
+                // Neighbouring pixels mostly show the same primitive.
+                let primitive = Some(primitive(*word));
+                if last.0 != primitive {
+                    let seen = renderer.seen(plan, *word);
+                    let item = seen.map(|(draw, _)| plan.draws[draw as usize].item);
+                    last = (primitive, item.is_some_and(|item| items.contains(&item)));
+                }
+                last.1
             });
             ControlFlow::Continue(())
         });
@@ -190,14 +203,10 @@ impl Renderer {
     /// Returns the primitive shown by each pixel, row by row from the top: 0 for the background,
     /// else a number that is unique to each triangle and line of the scene.
     #[must_use]
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "the lower half of a word names what is seen"
-    )]
     pub fn primitives(&mut self) -> Vec<u32> {
         let mut pixels = vec![0; self.seen_size().area()];
         self.look(|_, _, at, word, _| {
-            pixels[at] = word as u32;
+            pixels[at] = primitive(word);
             ControlFlow::Continue(())
         });
         self.spread(pixels)
@@ -219,7 +228,8 @@ impl Renderer {
     }
 
     /// Calls `each` with the index of each pixel of the last picture, its nearest word and all of
-    /// its words, tile by tile, until it breaks. See [`TileLayers::each`].
+    /// its words, tile by tile, until it breaks. See [`TileLayers::each`]. Blocks of background are
+    /// left out.
     fn look(
         &mut self,
         mut each: impl FnMut(&Self, &FramePlan, usize, u64, &[u64]) -> ControlFlow<()>,
@@ -228,10 +238,14 @@ impl Renderer {
         let Some(plan) = &self.plan else { return };
         let [columns, rows] = tiles_of(plan.size);
         let mut tile_seen = TileLayers::default();
-        for tile in 0..usize::try_from(columns * rows).expect("not negative") {
+        let tiles = 0..usize::try_from(columns * rows).expect("not negative");
+        for tile in tiles.filter(|tile| !self.frame.is_empty(*tile)) {
             tile_seen.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
             // Stops early once the caller has its answer.
             for block in 0..BLOCK_PIXELS {
+                if !tile_seen.shows(block) {
+                    continue;
+                }
                 let mut flow = ControlFlow::Continue(());
                 tile_seen.each(self.level, &self.frame, block, |at, nearest, words| {
                     let [x, y] = at.map(|i| usize::try_from(i).expect("inside the picture"));

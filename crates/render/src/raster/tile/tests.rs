@@ -10,7 +10,7 @@ use crate::raster::rule::{Fine, Rule, Unsnapped, Usual};
 use crate::raster::scan_lines::ScanLines;
 use crate::raster::small;
 use crate::raster::tile_queues::FIRST_SIZE;
-use crate::raster::visibility_buffer::Visible;
+use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::clip::ScreenVertex;
 use crate::screen::coverage::{Grid, Snapped, Triangle};
 use crate::screen::sample_positions::passes;
@@ -481,25 +481,4 @@ fn one_by_one(triangles: &[LargeTriangle], sample_positions: &SamplePositions) -
         }
     }
     words
-}
-
-#[test]
-fn a_pixel_reports_the_triangle_of_most_of_its_samples() {
-    let mut visibility = Visibility::default();
-    visibility.clear(TILE_BOX, passes(Samples::Four)[0]);
-    let [a, b, c] = [7, 8, 9].map(|number| word(0.5_f32.to_bits(), number));
-    let cases = [
-        ([a, a, a, a], a),
-        ([a, b, b, c], b),
-        ([b, a, a, b], b),
-        ([0, a, b, c], 0),
-        ([0, a, word(0.6_f32.to_bits(), 7), c], a),
-    ];
-    for (samples, want) in cases {
-        visibility.written = 1;
-        for (sample, word) in samples.into_iter().enumerate() {
-            visibility.plane::<FOUR>(0, sample)[0] = word;
-        }
-        assert_eq!(visibility.word(Level::new(), 0, 0), want, "{samples:?}");
-    }
 }
