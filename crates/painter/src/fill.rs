@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use egui::Color32;
 
-use crate::blend::{all_opaque, is_opaque, lay, over, packed, product, tint};
+use crate::blend::{is_opaque, lay, over, packed, product, tint};
 use crate::items::{Corner, Item, Ramp, Shape};
 use crate::textures::{Between, Filter, Texture, mix};
 use marraztu_render::screen::coverage::{PixelBox, Triangle};
@@ -76,7 +76,7 @@ pub(crate) fn hides(item: &Item, texture: &Texture, area: PixelBox) -> bool {
         Shape::Plain { color, uv } => is_opaque(plain_source(*color, *uv, texture)),
         Shape::Picture { color, u, v } => {
             let map = Map::new(item.area, area, texture, (*u, *v));
-            map.is_texel_for_pixel && *color == [255; 4] && map.is_opaque(texture)
+            map.is_texel_for_pixel && *color == [255; 4] && texture.is_opaque
         }
         Shape::Triangle(_) => false,
     }
@@ -125,24 +125,6 @@ impl Map {
             rows: (area.top..area.bottom).map(|y| texel(v, y, height)).collect(),
         }
     }
-
-    /// Returns whether all texels are opaque.
-    fn is_opaque(&self, texture: &Texture) -> bool {
-        let columns = match &self.columns {
-            Columns::Run(run) => run.clone(),
-            Columns::Table(table) => {
-                let (Some(least), Some(most)) = (table.iter().min(), table.iter().max()) else {
-                    return false;
-                };
-                *least..*most + 1
-            }
-        };
-        let mut last = None;
-        self.rows.iter().all(|y| {
-            // Enlarged pictures show a row of texels several times: it is tested once.
-            last.replace(*y) == Some(*y) || all_opaque(&texture.row(*y)[columns.clone()])
-        })
-    }
 }
 
 /// Returns the texels of these pixels, if each pixel shows the texel after that of the pixel
@@ -173,8 +155,9 @@ fn paint_texels(
     texture: &Texture,
     (color, map): ([u8; 4], &Map),
 ) {
-    let unchanged = color == [255; 4];
-    // The row of texels that the row of pixels above shows, if that row is opaque.
+    // Opaque texels are copied; all others are blended.
+    let is_copied = color == [255; 4] && texture.is_opaque;
+    // The row of texels that the row of pixels above shows, if it was copied.
     let mut above = None;
     for (y, row) in (area.top..area.bottom).zip(&map.rows) {
         let place = strip.place(y, area.left, area.right);
@@ -186,13 +169,12 @@ fn paint_texels(
         }
         let texels = texture.row(*row);
         let into = &mut strip.pixels[place];
-        // Opaque texels are stored; all others are blended.
         above = match &map.columns {
-            Columns::Run(run) if unchanged && all_opaque(&texels[run.clone()]) => {
+            Columns::Run(run) if is_copied => {
                 into.iter_mut().zip(&texels[run.clone()]).for_each(|(to, it)| *to = packed(*it));
                 Some(*row)
             }
-            Columns::Table(table) if unchanged && all_opaque(texels) => {
+            Columns::Table(table) if is_copied => {
                 into.iter_mut().zip(table).for_each(|(to, x)| *to = packed(texels[*x]));
                 Some(*row)
             }

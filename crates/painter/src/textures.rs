@@ -10,6 +10,8 @@ use egui::epaint::ImageDelta;
 use egui::{Color32, ColorImage, ImageData, TextureFilter, TextureId};
 use egui::{TextureOptions, TextureWrapMode, TexturesDelta};
 
+use crate::blend::all_opaque;
+
 /// All textures by their ids.
 #[derive(Debug, Default)]
 pub(crate) struct Textures {
@@ -22,6 +24,8 @@ pub(crate) struct Textures {
 pub(crate) struct Texture {
     image: Arc<ColorImage>,
     options: TextureOptions,
+    /// Whether all texels are opaque.
+    pub(crate) is_opaque: bool,
     /// A number that changes with the texture. No two changes have the same number.
     pub(crate) version: u64,
 }
@@ -63,13 +67,15 @@ impl Textures {
         self.changes += 1;
         let ImageData::Color(image) = delta.image;
         let (options, version) = (delta.options, self.changes);
+        let is_opaque = all_opaque(&image.pixels);
         match (delta.pos, self.all.get_mut(&id)) {
             (Some(at), Some(texture)) if at != [0, 0] || image.size != texture.image.size => {
                 copy(&image, Arc::make_mut(&mut texture.image), at);
                 (texture.options, texture.version) = (options, version);
+                texture.is_opaque &= is_opaque;
             }
             _ => {
-                self.all.insert(id, Texture { image, options, version });
+                self.all.insert(id, Texture { image, options, is_opaque, version });
             }
         }
     }
