@@ -78,7 +78,8 @@ function exchange() {
 // Runs frames until none is due, except for a text cursor that blinks.
 async function rest() {
   for (let count = 0; count < 3000; count++) {
-    const { due } = read(editor.frame(now));
+    editor.run(now);
+    const { due } = read(editor.paint());
     const isIdle = exchange() < 0;
     if (isIdle && (due === undefined || due >= 400)) {
       return;

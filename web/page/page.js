@@ -76,9 +76,10 @@ function run(time) {
     return;
   }
   try {
-    const length = editor.frame(time / 1000);
-    obey(read(length));
+    editor.run(time / 1000);
+    // The worker draws while the frame is painted.
     drawing?.exchange();
+    obey(read(editor.paint()));
     measuring?.exchange();
   } catch (error) {
     fail(error);

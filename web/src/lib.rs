@@ -98,7 +98,7 @@ pub extern "C" fn draw_elsewhere() {
 }
 
 /// Returns the length of the next request to the other instance in the output, or 0. To be called
-/// after each frame and each reply.
+/// after each [`run`] and each reply.
 #[unsafe(no_mangle)]
 pub extern "C" fn request() -> usize {
     with(|page| {
@@ -263,12 +263,22 @@ pub extern "C" fn answer() {
     });
 }
 
-/// Runs a frame at a time in seconds. Returns the length of a [`Frame`] in the output.
+/// Runs a frame at a time in seconds, and does not paint it.
 #[unsafe(no_mangle)]
-pub extern "C" fn frame(time: f64) -> usize {
+pub extern "C" fn run(time: f64) {
+    with(|page| {
+        if let Some(shell) = &mut page.shell {
+            shell.run(time);
+        }
+    });
+}
+
+/// Paints the frame. Returns the length of a [`Frame`] in the output.
+#[unsafe(no_mangle)]
+pub extern "C" fn paint() -> usize {
     with(|page| {
         let Some(shell) = &mut page.shell else { return 0 };
-        let painted = shell.frame(time);
+        let painted = shell.paint();
         let (frame, image) = Frame::new(shell, painted);
         if let Some(image) = image {
             page.picture = image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::Sender;
 use std::time::Duration;
 
-use egui::{Context, Event, FullOutput, PlatformOutput, RawInput, Rect, TexturesDelta, Vec2};
+use egui::{Context, Event, FullOutput, PlatformOutput, RawInput, Rect, Vec2};
 use egui::{ViewportId, ViewportInfo, pos2, vec2};
 use rayon::ThreadPoolBuildError;
 
@@ -25,8 +25,8 @@ pub struct CanvasShell {
     ctx: Context,
     app: App,
     painter: WindowPainter,
-    /// Textures that have not been painted yet.
-    textures: TexturesDelta,
+    /// The output of frames that have not been painted yet.
+    output: Option<FullOutput>,
     input: RawInput,
     pixels: Vec<u32>,
     size: [usize; 2],
@@ -99,7 +99,7 @@ impl CanvasShell {
             ctx,
             app,
             painter: WindowPainter::new()?,
-            textures: TexturesDelta::default(),
+            output: None,
             input: RawInput { focused: true, ..RawInput::default() },
             pixels: vec![0; size[0] * size[1]],
             size,
@@ -118,7 +118,7 @@ impl CanvasShell {
     }
 
     /// Returns the next request to the drawing server, if there is one. To be called after each
-    /// frame and each reply.
+    /// [`Self::run`], so that it draws while the frame is painted, and after each reply.
     pub fn request(&mut self) -> Option<Vec<u8>> {
         self.app.worker.as_mut()?.request()
     }
@@ -216,6 +216,12 @@ impl CanvasShell {
 
     /// Runs the editor at a time in seconds, with the input since the last frame, and paints it.
     pub fn frame(&mut self, time: f64) -> Painted {
+        self.run(time);
+        self.paint()
+    }
+
+    /// Runs the editor at a time in seconds, with the input since the last frame.
+    pub fn run(&mut self, time: f64) {
         self.due.store(u64::MAX, Ordering::Relaxed);
         // The last frame has shown that this work begins.
         do_waiting();
@@ -229,14 +235,23 @@ impl CanvasShell {
         input.viewports.insert(ViewportId::ROOT, info);
         let app = &mut self.app;
         let output = self.ctx.run_ui(input, |ui| app.frame(ui));
-        let FullOutput { platform_output, textures_delta, shapes, pixels_per_point, .. } = output;
-        self.textures.append(textures_delta);
+        match &mut self.output {
+            Some(before) => before.append(output),
+            None => self.output = Some(output),
+        }
+    }
+
+    /// Paints what the editor has shown since the last time.
+    pub fn paint(&mut self) -> Painted {
+        let output = self.output.take().unwrap_or_default();
+        let FullOutput { platform_output, mut textures_delta, shapes, pixels_per_point, .. } =
+            output;
         let primitives = self.ctx.tessellate(shapes, pixels_per_point);
         let ground = self.ctx.global_style().visuals.panel_fill;
         let frame = WindowFrame { primitives, scale: pixels_per_point, ground };
         let age = usize::from(!std::mem::take(&mut self.is_new));
         let mut canvas = Canvas { pixels: &mut self.pixels, size: self.size, age };
-        let mut changed = self.painter.paint(&mut canvas, frame, &mut self.textures);
+        let mut changed = self.painter.paint(&mut canvas, frame, &mut textures_delta);
         if age == 0 {
             let [right, bottom] = self.size.map(|count| i32::try_from(count).unwrap_or(i32::MAX));
             changed = vec![PixelBox { left: 0, top: 0, right, bottom }];
@@ -274,7 +289,9 @@ impl CanvasShell {
 impl Drop for CanvasShell {
     fn drop(&mut self) {
         // egui reports dropped textures as a fault.
-        self.textures.clear();
+        if let Some(output) = self.output.take() {
+            output.drop_without_applying_deltas();
+        }
     }
 }
 
