@@ -389,12 +389,12 @@ mod tests {
         };
         let (inner, outer) = (pixels(&border.inner), pixels(&border.outer));
         assert!(!inner.is_empty());
-        assert!(outer.iter().all(|(x, y)| !is_own(*x, *y)));
         // The item does not touch the edge of the picture.
         for (x, y) in (1..159).flat_map(|x| (1..119).map(move |y| (x, y))) {
             let others = [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)];
-            let beside = others.iter().any(|(x, y)| !is_own(*x, *y));
-            assert_eq!(inner.contains(&(x, y)), is_own(x, y) && beside, "{x} {y}");
+            let beside = |own: bool| others.iter().any(|(x, y)| is_own(*x, *y) == own);
+            assert_eq!(inner.contains(&(x, y)), is_own(x, y) && beside(false), "{x} {y}");
+            assert_eq!(outer.contains(&(x, y)), !is_own(x, y) && beside(true), "{x} {y}");
         }
     }
 

@@ -95,10 +95,8 @@ pub(super) fn verdict(report: &Report) -> Vec<String> {
     let is_faster = |it: &Said<'_>| it.point.verdict == Verdict::Faster;
     let nothing = if said.iter().any(is_faster) { "nothing else" } else { "nothing" };
     let noise = noise(report, report.findings.rows.iter().map(|row| row.point));
-    sentences.push(match noise {
-        Some(noise) => format!("{nothing} saves more than the noise ({noise})."),
-        None => format!("{BUSY}."),
-    });
+    let noise = noise.unwrap_or_else(|| BUSY.to_owned());
+    sentences.push(format!("{nothing} saves more than the noise ({noise})."));
     let [width, height] = report.findings.size;
     if let Some(first) = sentences.first_mut() {
         *first = format!("At {width}x{height} on {}: {first}", report.scene);
