@@ -132,10 +132,10 @@ fn look(search: &Weak<Search>, fonts: &Database) {
         if wanted.is_empty() {
             return;
         }
-        let mut found = BTreeMap::new();
+        let mut found = BTreeMap::<char, Option<Font>>::new();
         // A font found for one letter often has the others too.
         for letter in wanted {
-            let known = found.values().flatten().find(|font: &&Font| font.has(letter)).cloned();
+            let known = found.values().flatten().find(|font| font.has(letter)).cloned();
             found.insert(letter, known.or_else(|| font_with(fonts, letter)));
         }
         let is_any = found.values().any(Option::is_some);
