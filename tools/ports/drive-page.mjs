@@ -161,8 +161,8 @@ async function writeScene(at) {
 v 2 -1 0\nv 4 -1 0\nv 4 1 0\nv 2 1 0\nvn 0 0 1\nusemtl glow\nf 1//1 2//1 3//1 4//1\n`);
   await writeFile(join(at, "parts/green.mtl"), "newmtl glow\nKa 0 0 0\nKd 0 0 0\nKs 0 0 0\nKe 0 1 0\n");
   await writeFile(join(at, "both.marraztu"), `(version: 1, cameras: [(id: 3, name: "camera", eye: (0.0, 0.0, 9.0))], objects: [
-    (id: 1, name: "square", model: File(path: "../models/square.obj")),
-    (id: 2, name: "green", model: File(path: "parts/green.obj"))])`);
+    (id: 1, name: "square", model: File(path: "../models/square.obj"), material: File),
+    (id: 2, name: "green", model: File(path: "parts/green.obj"), material: File)])`);
 }
 
 const files = await mkdtemp(join(tmpdir(), "marraztu-models-"));
