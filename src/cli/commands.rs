@@ -10,6 +10,7 @@ use super::arguments::choice;
 use super::arguments::{Info, Render};
 #[cfg(not(target_family = "wasm"))]
 use super::batch::Batch;
+#[cfg(not(target_family = "wasm"))]
 use super::compare::Compare;
 use super::explain::Explain;
 use super::export::Export;
@@ -83,6 +84,7 @@ pub(crate) enum Headless {
     #[cfg(not(target_family = "wasm"))]
     Merge(Merge),
     /// Compare two pictures
+    #[cfg(not(target_family = "wasm"))]
     Compare(Compare),
     /// Draw standard views of a model into one picture, with its facts
     #[cfg(not(target_family = "wasm"))]

@@ -10,6 +10,7 @@ mod bar;
 mod batch;
 mod cameras;
 mod commands;
+#[cfg(not(target_family = "wasm"))]
 mod compare;
 mod explain;
 mod export;
@@ -24,6 +25,7 @@ mod layers;
 mod merge;
 #[cfg(feature = "desktop")]
 mod open;
+#[cfg(not(target_family = "wasm"))]
 mod page;
 mod plan;
 mod render;
@@ -71,6 +73,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Headless::Turntable(arguments)) => turntable::turntable(&arguments),
         #[cfg(not(target_family = "wasm"))]
         Some(Headless::Merge(arguments)) => merge::merge(&arguments),
+        #[cfg(not(target_family = "wasm"))]
         Some(Headless::Compare(arguments)) => compare::compare(&arguments),
         #[cfg(not(target_family = "wasm"))]
         Some(Headless::Views(arguments)) => views::views(&arguments),
