@@ -21,12 +21,23 @@ pub fn draw_into<T: Send>(
     let mut bands = Bands::new(shot, transparent);
     let size = bands.size();
     let wanted = || !progress.is_cancelled();
+    let tell = |done, all| {
+        // Drawing asks `wanted`.
+        let _ = progress.reached(done, all);
+    };
+    let cancelled = || std::io::Error::other("it was cancelled");
+    // WebAssembly has no threads: a band is drawn when it is needed.
+    if cfg!(target_family = "wasm") {
+        let mut next = || bands.draw_next(&wanted, &tell).map_err(|_cancelled| cancelled());
+        let saved = save(size, &mut next);
+        return if progress.is_cancelled() { Err(Cancelled) } else { Ok((saved, bands)) };
+    }
     let (sender, receiver) = sync_channel::<Picture>(0);
     let saved = std::thread::scope(|scope| {
         let saved = scope.spawn(move || {
             let mut missing = size.height;
             let mut next = || match receiver.recv() {
-                _ if progress.is_cancelled() => Err(std::io::Error::other("it was cancelled")),
+                _ if progress.is_cancelled() => Err(cancelled()),
                 Ok(band) => {
                     missing -= band.size().height;
                     Ok(Some(band))
@@ -36,10 +47,6 @@ pub fn draw_into<T: Send>(
             };
             save(size, &mut next)
         });
-        let tell = |done, all| {
-            // Drawing asks `wanted`.
-            let _ = progress.reached(done, all);
-        };
         while let Ok(Some(band)) = bands.draw_next(&wanted, &tell) {
             // Saving has failed, and its result says why.
             if sender.send(band).is_err() {

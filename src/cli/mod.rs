@@ -51,6 +51,13 @@ use self::failure::Failure;
 
 /// Runs the command given by the arguments of this process.
 pub(crate) fn run() -> ExitCode {
+    // WASI has no current folder, but programs are told the one of the shell.
+    if cfg!(target_family = "wasm")
+        && let Some(folder) = std::env::var_os("PWD")
+    {
+        // The runtime may not grant access to it; paths then begin at a folder that it grants.
+        let _ = std::env::set_current_dir(folder);
+    }
     let mut command = Arguments::command();
     let parsed = command.try_get_matches_from_mut(std::env::args_os()).and_then(|matches| {
         let name = matches.subcommand_name().map(str::to_owned);

@@ -54,11 +54,14 @@ pub(super) fn thumbnail(arguments: &Thumbnail) -> Result<(), Failure> {
     let end = Instant::now() + LIMIT;
     let (sender, pictures) = channel();
     let (file, side) = (arguments.file.clone(), usize::from(arguments.size));
-    Builder::new()
-        .name("thumbnail".to_owned())
-        .stack_size(STACK)
-        .spawn(move || draw(&file, Size::new(side, side), &sender))
-        .map_err(|error| Failure::Usage(format!("a thread cannot be started: {error}")))?;
+    let draw = move || draw(&file, Size::new(side, side), &sender);
+    // WebAssembly has no threads.
+    if cfg!(target_family = "wasm") {
+        draw();
+    } else {
+        let thread = Builder::new().name("thumbnail".to_owned()).stack_size(STACK).spawn(draw);
+        thread.map_err(|error| Failure::Usage(format!("a thread cannot be started: {error}")))?;
+    }
     // There is no limit for the coarse picture: late is better than none.
     let gone = || Failure::Absent("the picture could not be drawn".to_owned());
     let mut picture = pictures.recv().map_err(|_closed| gone())??;

@@ -6,9 +6,9 @@ const [program, ...args] = process.argv.slice(2);
 const wasi = new WASI({
   version: "preview1",
   args: ["marraztu", ...args],
-  env: process.env,
-  // Relative paths begin in the current folder.
-  preopens: { ".": process.cwd(), "/": "/" },
+  env: { ...process.env, PWD: process.cwd() },
+  // Paths of the whole system; the program learns its folder from PWD.
+  preopens: { "/": "/" },
   returnOnExit: true,
 });
 const module = await WebAssembly.compile(await readFile(program));
