@@ -260,9 +260,9 @@ const checks = {
     await page.open(site);
     await page.sees("red");
     const [name, bytes] = await page.tab.download(() => page.palette("save picture"));
-    equal(name, "scene.png", "the name of the picture");
+    equal(name, "picture.png", "the name of the picture");
     equal(bytes.subarray(1, 4).toString(), "PNG", "its format");
-    equal(`${bytes.readUInt32BE(16) > 500}`, "true", "its width is that of the viewport");
+    equal(bytes.readUInt32BE(16) > 500, true, "it is as wide as the viewport");
   },
 
   async "a dropped folder opens its model with MTL file and texture"(visit) {
