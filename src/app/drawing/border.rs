@@ -35,7 +35,7 @@ impl Border {
         let row = |y: usize| own.chunks_exact(size.width.max(1)).nth(y).unwrap_or(&none);
         let columns: Vec<_> = (0..size.height).map(|y| marked(row(y))).collect();
         for y in 0..size.height {
-            // Only pixels beside marked ones are looked at. Above the first row, y - 1 wraps to a
+            // Only neighbours of marked pixels are looked at. Above the first row, y - 1 wraps to a
             // row that does not exist.
             let near = [y.wrapping_sub(1), y, y + 1];
             let near_columns = near.iter().filter_map(|y| columns.get(*y)?.clone());
