@@ -241,7 +241,7 @@ impl CanvasShell {
         }
     }
 
-    /// Paints what the editor has shown since the last time.
+    /// Paints what the editor has shown. To be called after [`Self::run`].
     pub fn paint(&mut self) -> Painted {
         let output = self.output.take().unwrap_or_default();
         let FullOutput { platform_output, mut textures_delta, shapes, pixels_per_point, .. } =
