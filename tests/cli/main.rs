@@ -198,6 +198,16 @@ fn a_scene_is_drawn_as_it_was_saved_and_models_go_into_it() {
 }
 
 #[test]
+fn an_example_needs_no_file() {
+    let folder = folder();
+    let chess = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/examples/chess.marraztu");
+    let own = drawn(folder.path(), &["example:/chess.marraztu"]);
+    assert!(own == drawn(folder.path(), &[chess]));
+    let (_, err) = ends_with(1, folder.path(), &["render", "-oa.png", "example:/no.marraztu"]);
+    assert!(err.contains("there is no such file"), "{err}");
+}
+
+#[test]
 fn the_named_lights_shine_and_no_others_whatever_the_scene_says() {
     let folder = folder();
     let (mut scene, view) = io::default_scene();

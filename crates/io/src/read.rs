@@ -5,6 +5,7 @@ use std::io::{Chain, Cursor, Read};
 use std::path::Path;
 
 use super::error::{LoadError, NO_MEMORY, shown};
+use super::examples::scene_text;
 use super::progress::Progress;
 
 /// The most bytes of a text of materials or a scene.
@@ -16,11 +17,14 @@ const MOST_UTF_16: u64 = 1 << 30;
 /// The number of bytes between two progress checks.
 const PIECE: usize = 8 << 20;
 
-/// Checks whether `path` is a file that can be read, without reading it.
+/// Checks whether `path` is a file that can be read, or a built-in example, without reading it.
 ///
 /// # Errors
 /// If it does not exist, or is not a file: a folder, a device, or a pipe that was not inherited.
 pub fn check_file(path: &Path) -> Result<(), LoadError> {
+    if scene_text(path).is_some() {
+        return Ok(());
+    }
     readable(path).map(|_| ())
 }
 
