@@ -97,7 +97,7 @@ fn a_model_of_the_command_line_opens_alone_framed_and_with_steps_that_fit() {
     assert_eq!(steps::length(&scene, &view), 0.01, "a hundredth of the cube");
     assert!(editor.shows("step 0.01 by size"));
     assert!(editor.state().history.is_saved());
-    assert_eq!(editor.state().file_name(), "cube.obj", "as the title says");
+    assert_eq!(editor.state().file_name().as_deref(), Some("cube.obj"), "as the title says");
     assert_eq!(editor.steps(), 0);
     let place = |editor: &Editor| {
         let (scene, view) = (editor.scene(), editor.view());

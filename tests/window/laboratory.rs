@@ -130,19 +130,21 @@ fn a_measurement_is_chosen_from_by_its_marks_its_rows_and_its_budgets() {
 #[test]
 fn measuring_can_be_given_up_and_ends_with_its_scene() {
     let mut editor = editor();
-    for gives_up in [true, false] {
+    for way in ["Cancel", "Esc"] {
         click(&mut editor, Role::Button, "Thoroughly");
-        assert!(lab(&editor).running.is_some());
-        if gives_up {
-            click(&mut editor, Role::Button, "Cancel");
-            until(&mut editor, "the end of measuring", |e| lab(e).running.is_none());
-            let message = editor.state().message.clone().unwrap();
-            assert_eq!(message.text, "Measuring was cancelled");
-        } else {
-            editor.perform(Action::New);
-            assert!(lab(&editor).running.is_none() && lab(&editor).report.is_none());
+        assert!(lab(&editor).running.is_some() && !lab(&editor).is_rough);
+        match way {
+            "Esc" => assert!(!editor.leaves_by(Named(Key::Escape)), "the results would be lost"),
+            button => click(&mut editor, Role::Button, button),
         }
+        until(&mut editor, "the end of measuring", |e| lab(e).running.is_none());
+        let message = editor.state().message.clone().unwrap();
+        assert_eq!(message.text, "Measuring was cancelled", "{way}");
+        assert_eq!(lab(&editor).is_rough, lab(&editor).report.is_some());
     }
+    click(&mut editor, Role::Button, "Thoroughly");
+    editor.perform(Action::New);
+    assert!(lab(&editor).running.is_none() && lab(&editor).report.is_none());
 }
 
 #[test]

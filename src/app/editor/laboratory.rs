@@ -241,6 +241,7 @@ impl App {
                 }
                 let lab = &mut self.state.lab;
                 (lab.running, lab.failed, lab.report) = (Some(0.0), None, None);
+                lab.is_rough = false;
                 lab.shown_suite = None;
                 lab.measured = measured;
                 self.lab.command = command;
@@ -355,6 +356,7 @@ impl App {
             Outcome::Done(Ok(findings)) => self.show_findings(findings),
             Outcome::Done(Err(Unmeasured::Cancelled)) => {
                 self.state.tell(Some("Measuring was cancelled".to_owned()));
+                self.state.lab.is_rough = self.state.lab.report.is_some();
             }
             Outcome::Done(Err(why)) => self.state.lab.failed = Some(why.to_string()),
             Outcome::Lost => {
@@ -383,7 +385,8 @@ impl App {
     }
 
     fn show_findings(&mut self, findings: Findings) {
-        let scene = self.state.file_name();
+        let unnamed = if self.state.lab.away { "the scene of a lesson" } else { "a new scene" };
+        let scene = self.state.file_name().unwrap_or_else(|| unnamed.to_owned());
         let lab = &mut self.state.lab;
         let report = Report {
             scene,

@@ -249,7 +249,7 @@ impl App {
         if Keyboard::take_held_escape(&ctx)
             && !Panel::MOMENTARY.into_iter().any(|panel| self.closes(panel))
         {
-            self.state.tell(Some("Press Esc again to quit".to_owned()));
+            self.state.tell(Some(self.next_escape().to_owned()));
         }
         // Keys after a click wait until the click has selected something.
         let waits = clicked || self.viewport.click_wait(now).is_some();
@@ -420,7 +420,8 @@ impl App {
 
     fn name_window(&mut self, ctx: &Context) {
         let mark = if self.state.history.is_saved() { "" } else { "*" };
-        let title = format!("{}{mark} - Marraztu", self.state.file_name());
+        let name = self.state.file_name();
+        let title = format!("{}{mark} - Marraztu", name.as_deref().unwrap_or("new scene"));
         if title != self.title {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
             self.title = title;

@@ -9,7 +9,9 @@ use egui::{Context, Key};
 use glam::DVec3;
 
 use super::App;
-use crate::app::actions::{Action, Chord, FileIntent, Intent, KeyRequest, Request, resolve};
+use crate::app::actions::{
+    Action, Chord, FileIntent, Intent, KeyRequest, LabRequest, Request, resolve,
+};
 use crate::app::documents::material_dialog::MaterialDialog;
 use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
 use crate::app::documents::wanted::{After, Wanted};
@@ -78,7 +80,22 @@ impl App {
             self.back_to_scene();
             return true;
         }
+        if self.state.lab.running.is_some() {
+            self.answer_lab(ctx, LabRequest::Cancel);
+            return true;
+        }
         false
+    }
+
+    /// Describes what the next Esc does if nothing else is open.
+    pub(super) fn next_escape(&self) -> &'static str {
+        if self.state.lab.away {
+            "Press Esc again to go back to your scene"
+        } else if self.state.lab.running.is_some() {
+            "Press Esc again to cancel measuring"
+        } else {
+            "Press Esc again to quit"
+        }
     }
 
     /// Answers a request.

@@ -62,7 +62,10 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
     // What the figures mean, in a sentence.
     let said = in_words(state.dial.figures()).filter(|_| state.dial.current);
-    let mut said = said.unwrap_or_else(|| "Measured as soon as nothing moves".to_owned());
+    let mut said = said.unwrap_or_else(|| match state.dial_refined_to() {
+        None if state.lab.running.is_some() => "Paused while the laboratory measures.".to_owned(),
+        _ => "Measured as soon as nothing moves.".to_owned(),
+    });
     if !presets.iter().any(is_on) {
         said += " The picture has settings of its own, not one of these.";
     }
@@ -140,8 +143,7 @@ impl Row {
         let label = controls::text(ui, preset.label, TextStyle::Body, 80.0);
         put_text(ui, rect.with_min_x(rect.left() + 8.0), label, ink);
         // Figures of another picture are grey.
-        let faint = ui.visuals().weak_text_color().gamma_multiply(0.6);
-        let ink = if state.dial.current { ink } else { faint };
+        let ink = if state.dial.current { ink } else { ui.visuals().weak_text_color() };
         let texts = match figures {
             None => ["...".to_owned(), "...".to_owned()],
             Some(Figures { ms, error, .. }) => {
@@ -164,9 +166,10 @@ impl Row {
     }
 }
 
-/// Formats a time: "0.42 ms", "12 ms", "3.1 s".
+/// Formats a time: "0.42 ms", "12 ms", "3.1 s", "75 s".
 fn milliseconds(ms: f64) -> String {
     match ms {
+        9950.0.. => format!("{:.0} s", ms / 1e3),
         1000.0.. => format!("{:.1} s", ms / 1e3),
         9.95.. => format!("{ms:.0} ms"),
         1.0.. => format!("{ms:.1} ms"),

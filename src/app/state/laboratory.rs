@@ -17,6 +17,8 @@ use marraztu_lab::report::{Budgets, Report, brief};
 pub struct Laboratory {
     /// The last measurement, or the results so far of the running one.
     pub report: Option<Report>,
+    /// Whether the report is of a measurement that was cancelled.
+    pub is_rough: bool,
     /// The reports of the suite, if it was measured.
     pub suite: Vec<Report>,
     /// The index of the suite's report to show; `None` shows the report of the scene on screen.
@@ -59,6 +61,7 @@ impl Default for Laboratory {
     fn default() -> Self {
         Self {
             report: None,
+            is_rough: false,
             suite: Vec::new(),
             shown_suite: None,
             running: None,

@@ -279,11 +279,11 @@ impl State {
         self.scene.name(id)
     }
 
-    /// Returns the file name of the scene or of its only model, or a placeholder.
+    /// Returns the file name of the scene or of its only model; `None` if it has no file.
     #[must_use]
-    pub fn file_name(&self) -> String {
+    pub fn file_name(&self) -> Option<String> {
         let name = self.path.as_deref().or(self.only_model()).and_then(Path::file_name);
-        name.map_or_else(|| "new scene".to_owned(), |name| name.to_string_lossy().into_owned())
+        name.map(|name| name.to_string_lossy().into_owned())
     }
 
     /// Returns the file of the only model.

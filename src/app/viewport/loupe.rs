@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, ColorImage, Pos2, Rect, Stroke, StrokeKind, TextStyle, Ui, pos2, vec2};
+use egui::{
+    Color32, ColorImage, Id, LayerId, Order, Painter, Pos2, Rect, Stroke, StrokeKind, TextStyle,
+    Ui, pos2, vec2,
+};
 
 use crate::app::theme;
 use marraztu_core::base::image::{Picture, Size};
@@ -59,7 +62,9 @@ impl Loupe {
         }
         let ideal = self.ideal.as_ref().filter(|(of, _)| *of == window).map(|(_, picture)| picture);
         let plate = place(rect, pointer);
-        let painter = ui.painter();
+        // The dial and the start strip must not cover it.
+        let layer = LayerId::new(Order::Foreground, Id::unique("loupe"));
+        let painter = &ui.painter().clone().with_layer_id(layer);
         painter.rect_filled(plate, 6.0, ui.visuals().window_fill);
         painter.rect_stroke(plate, 6.0, ui.visuals().window_stroke, StrokeKind::Inside);
         let shown = |x: i32, y: i32| color_at(drawn, size, [window.left + x, window.top + y]);
@@ -83,9 +88,10 @@ impl Loupe {
             let left = plate.left() + GAP + f32::from(i) * (square() + GAP);
             let square =
                 Rect::from_min_size(pos2(left, plate.top() + GAP + LINE), vec2(square(), square()));
-            text(ui, square.left_top() - vec2(0.0, LINE), label);
-            square_ui(ui, square, window, colors);
-            mark_ui(ui, square, centre);
+            text(ui, painter, square.left_top() - vec2(0.0, LINE), label);
+            painter.rect_filled(square, 0.0, ui.visuals().extreme_bg_color);
+            square_ui(painter, square, window, colors);
+            mark_ui(painter, square, centre);
             let [x, y] = centre;
             let own = match (i, shown(x, y), exact(x, y)) {
                 (0, Some([r, g, b, _]), _) | (1, _, Some([r, g, b, _])) => {
@@ -97,7 +103,7 @@ impl Loupe {
                 }
                 _ => "drawing".to_owned(),
             };
-            text(ui, square.left_bottom() + vec2(0.0, 2.0), &own);
+            text(ui, painter, square.left_bottom() + vec2(0.0, 2.0), &own);
         }
     }
 }
@@ -138,9 +144,7 @@ fn color_at(image: &ColorImage, size: Size, at: [i32; 2]) -> Option<[u8; 4]> {
     image.pixels.get(y * width + x).map(Color32::to_array)
 }
 
-fn square_ui(ui: &Ui, square: Rect, window: PixelBox, colors: &PixelColor<'_>) {
-    let painter = ui.painter();
-    painter.rect_filled(square, 0.0, ui.visuals().extreme_bg_color);
+fn square_ui(painter: &Painter, square: Rect, window: PixelBox, colors: &PixelColor<'_>) {
     let (columns, rows) = (window.right - window.left, window.bottom - window.top);
     let mut from = square.min;
     for y in 0..rows {
@@ -156,10 +160,9 @@ fn square_ui(ui: &Ui, square: Rect, window: PixelBox, colors: &PixelColor<'_>) {
 }
 
 /// Marks the pixel under the pointer.
-fn mark_ui(ui: &Ui, square: Rect, [x, y]: [i32; 2]) {
+fn mark_ui(painter: &Painter, square: Rect, [x, y]: [i32; 2]) {
     let [x, y] = [x, y].map(|i| f32::from(i16::try_from(i).unwrap_or(0)) * PIXEL);
     let pixel = Rect::from_min_size(square.min + vec2(x, y), vec2(PIXEL, PIXEL));
-    let painter = ui.painter();
     painter.rect_stroke(
         pixel.expand(1.0),
         0.0,
@@ -170,9 +173,9 @@ fn mark_ui(ui: &Ui, square: Rect, [x, y]: [i32; 2]) {
     painter.rect_stroke(pixel, 0.0, light, StrokeKind::Outside);
 }
 
-fn text(ui: &Ui, at: Pos2, text: &str) {
+fn text(ui: &Ui, painter: &Painter, at: Pos2, text: &str) {
     let font = TextStyle::Small.resolve(ui.style());
-    ui.painter().text(at, egui::Align2::LEFT_TOP, text, font, ui.visuals().text_color());
+    painter.text(at, egui::Align2::LEFT_TOP, text, font, ui.visuals().text_color());
 }
 
 #[cfg(test)]

@@ -70,10 +70,16 @@ fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         }
     });
     if let Some(left) = lab.left.filter(|_| lab.running.is_some()) {
-        ui.weak(format!("About {left:.0} seconds left"));
+        ui.weak(match left {
+            100.0.. => format!("About {:.0} minutes left", left / 60.0),
+            _ => format!("About {left:.0} seconds left"),
+        });
     }
     if let Some(why) = &lab.failed {
         ui.colored_label(theme::error(ui.visuals()), format!("Not measured: {why}."));
+    }
+    if lab.is_rough {
+        ui.weak("Measuring was cancelled: these first results are rough.");
     }
     if lab.report.is_some() && lab.is_stale(state) {
         ui.weak("The scene has changed since this was measured: measure again.");
