@@ -290,8 +290,10 @@ impl Sheet {
             panel.marks.iter().map(|mark| size_of(&mark.label, 13)).collect();
         let [left, top, right, bottom] = frame.map(|edge| edge as f32);
         let frame = TextBox { min: [left, top], max: [right, bottom] };
-        // The ring around the current choice stays clear, too.
-        place(&marks, &sizes, &frame, MARK as f32 + 4.0)
+        let default = panel.marks.iter().position(|mark| mark.is_default).unwrap_or(0);
+        // The ring around the current choice stays clear, too. A picture has no tooltips: names may
+        // lie far from their marks rather than be left out.
+        place(&marks, &sizes, default, &frame, [MARK as f32 + 4.0, 240.0])
     }
 
     /// Converts a position on the scales to a pixel.

@@ -28,14 +28,16 @@ impl TextBox {
 }
 
 /// Places a label of each size near its mark, inside `frame`: next to the mark, or in the nearest
-/// free place. Labels never overlap each other. They avoid the marks and the line that joins the
-/// marks if possible. A label without room is left out.
+/// free place within `reach`. Labels never overlap each other. They avoid the marks and the line
+/// that joins the marks if possible. A label without room is left out. The label of the mark `first`
+/// is placed first.
 #[must_use]
 pub fn place(
     marks: &[[f32; 2]],
     sizes: &[[f32; 2]],
+    first: usize,
     frame: &TextBox,
-    radius: f32,
+    [radius, reach]: [f32; 2],
 ) -> Vec<Option<TextBox>> {
     let squares: Vec<TextBox> = marks
         .iter()
@@ -44,19 +46,22 @@ pub fn place(
     let line: Vec<TextBox> = marks.windows(2).flat_map(|ends| along(ends[0], ends[1])).collect();
     let both = [squares.as_slice(), line.as_slice()].concat();
     let mut taken: Vec<TextBox> = Vec::new();
-    let mut placed = Vec::new();
-    for (mark, size) in marks.iter().zip(sizes) {
+    let mut placed = vec![None; marks.len()];
+    let mut order: Vec<usize> = (0..marks.len()).collect();
+    order.sort_by_key(|i| *i != first);
+    for i in order {
+        let near = || around(marks[i], sizes[i], radius, reach);
         let free = |text: &TextBox, marks: &[TextBox]| {
             let clear = |others: &[TextBox]| others.iter().all(|other| !other.overlaps(text));
             text.is_inside(frame) && clear(&taken) && clear(marks)
         };
         // Avoid marks and line, then only marks, then only other labels.
-        let found = around(*mark, *size, radius)
+        let found = near()
             .find(|text| free(text, &both))
-            .or_else(|| around(*mark, *size, radius).find(|text| free(text, &squares)))
-            .or_else(|| around(*mark, *size, radius).find(|text| free(text, &[])));
+            .or_else(|| near().find(|text| free(text, &squares)))
+            .or_else(|| near().find(|text| free(text, &[])));
         taken.extend(found);
-        placed.push(found);
+        placed[i] = found;
     }
     placed
 }
@@ -72,10 +77,14 @@ fn along(from: [f32; 2], to: [f32; 2]) -> impl Iterator<Item = TextBox> {
 }
 
 /// Returns boxes around a mark, the nearest first.
-fn around([x, y]: [f32; 2], [w, h]: [f32; 2], radius: f32) -> impl Iterator<Item = TextBox> {
-    const STEPS: u16 = 60;
-    (0..STEPS).flat_map(move |step| {
-        let gap = radius + 2.0 + f32::from(step) * 4.0;
+fn around(
+    [x, y]: [f32; 2],
+    [w, h]: [f32; 2],
+    radius: f32,
+    reach: f32,
+) -> impl Iterator<Item = TextBox> {
+    let gaps = (0_u16..).map(move |step| radius + 2.0 + f32::from(step) * 4.0);
+    gaps.take_while(move |gap| *gap <= radius + reach).flat_map(move |gap| {
         let near = gap - radius;
         [
             [x + gap, y - h / 2.0],
@@ -96,15 +105,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ten_names_at_one_place_do_not_overlap_and_stay_inside() {
+    fn names_of_marks_at_one_place_do_not_overlap_and_stay_inside_and_near() {
         let frame = TextBox::new([0.0; 2], [600.0, 300.0]);
         let sizes: Vec<[f32; 2]> = (0..10u8).map(|i| [60.0 + 8.0 * f32::from(i), 16.0]).collect();
         for at in [[300.0, 150.0], [2.0, 2.0], [598.0, 298.0]] {
             let placed: Vec<TextBox> =
-                place(&[at; 10], &sizes, &frame, 5.0).into_iter().flatten().collect();
-            assert_eq!(placed.len(), 10, "{at:?}");
+                place(&[at; 10], &sizes, 9, &frame, [5.0, 22.0]).into_iter().flatten().collect();
+            assert!((3..10).contains(&placed.len()), "{at:?}");
+            let near = TextBox::new(at.map(|i| i - 27.0), [54.0; 2]);
             for (i, a) in placed.iter().enumerate() {
-                assert!(a.is_inside(&frame));
+                assert!(a.is_inside(&frame) && a.overlaps(&near));
                 assert!(placed[..i].iter().all(|b| !a.overlaps(b)), "{at:?} {i}");
             }
         }
@@ -114,10 +124,10 @@ mod tests {
     fn a_label_is_next_to_its_mark_and_covers_neither_another_nor_the_line() {
         let frame = TextBox::new([0.0; 2], [200.0, 100.0]);
         let marks = [[50.0, 50.0], [70.0, 50.0]];
-        let placed = place(&marks, &[[40.0, 12.0]; 2], &frame, 4.0);
+        let placed = place(&marks, &[[40.0, 12.0]; 2], 0, &frame, [4.0, 22.0]);
         let first = placed[0].unwrap();
         assert!(first.max[0] <= 46.0, "the right side is taken by the other mark: {first:?}");
         assert_eq!(placed[1].unwrap(), TextBox::new([76.0, 44.0], [40.0, 12.0]));
-        assert_eq!(place(&marks[..1], &[[400.0, 12.0]], &frame, 4.0), [None]);
+        assert_eq!(place(&marks[..1], &[[400.0, 12.0]], 0, &frame, [4.0, 22.0]), [None]);
     }
 }

@@ -40,17 +40,21 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         verdict_ui(ui, state, requests);
         rest = ui.available_rect_before_wrap();
     });
-    let middle = rest.with_max_x(rest.left() + (rest.width() * 0.47).round());
+    // Until something is measured, there is no table.
+    let share = if state.lab.shown().is_some() { 0.47 } else { 1.0 };
+    let middle = rest.with_max_x(rest.left() + (rest.width() * share).round());
     let right = rest.with_min_x(middle.right() + gap);
     within(ui, asked, |ui| controls_ui::show(ui, state, requests));
     within(ui, middle, |ui| {
         regions::begin(ui, "chart");
         plots::show(ui, state, requests);
     });
-    within(ui, right, |ui| {
-        regions::begin(ui, "table");
-        table::show(ui, state, requests);
-    });
+    if right.is_positive() {
+        within(ui, right, |ui| {
+            regions::begin(ui, "table");
+            table::show(ui, state, requests);
+        });
+    }
 }
 
 /// Shows one part at a time, with a choice of the part.

@@ -21,6 +21,9 @@ const USUAL: f32 = 444.0;
 /// The minimum height, in a panel that is lower.
 const LEAST: f32 = 180.0;
 
+/// Below this height, the label of the axis of errors is short.
+const LOW: f32 = 220.0;
+
 /// The height of the choice of a plot.
 const CHOICE: f32 = 44.0;
 
@@ -79,14 +82,15 @@ fn empty_ui(ui: &mut Ui, state: &State) {
     };
     ui.add_space(theme::GAP);
     ui.vertical_centered(|ui| ui.add(egui::Label::new(text).wrap()));
-    let size = vec2(ui.available_width(), (ui.available_height() - 8.0).clamp(60.0, 220.0));
+    let size = vec2(ui.available_width(), (ui.available_height() - 8.0).clamp(60.0, USUAL));
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     sketch_ui(ui, rect);
 }
 
 /// Sketches the plot that a measurement will show: a falling line of choices.
 fn sketch_ui(ui: &Ui, rect: Rect) {
-    let frame = Rect::from_center_size(rect.center(), vec2(rect.width().min(420.0), rect.height()));
+    let width = rect.width().min(2.0 * rect.height());
+    let frame = Rect::from_center_size(rect.center(), vec2(width, rect.height()));
     let frame = frame.shrink2(vec2(34.0, 16.0));
     let faint = ui.visuals().weak_text_color().gamma_multiply(0.6);
     let line = Stroke::new(1.0, faint);
@@ -155,7 +159,7 @@ fn panel_ui(
         ui.weak(RichText::new(panel.note).small());
     });
     // Marks are connected in order, each with a line for the noise of its time.
-    let transform = plot_ui(ui, panels);
+    let transform = plot_ui(ui, panels, panel);
     let at: Vec<Pos2> = panel.marks.iter().map(|mark| position(mark, &transform)).collect();
     let line = Stroke::new(1.5, theme::accent(ui.visuals()));
     let painter = ui.painter().with_clip_rect(*transform.frame());
@@ -186,7 +190,7 @@ fn position(mark: &PanelMark, transform: &PlotTransform) -> Pos2 {
 }
 
 /// Draws the scales, the line of exact choices, and the noise.
-fn plot_ui(ui: &mut Ui, panels: &Panels) -> PlotTransform {
+fn plot_ui(ui: &mut Ui, panels: &Panels, panel: &Panel) -> PlotTransform {
     let marks = |ticks: &[(f64, String)]| -> Vec<GridMark> {
         ticks.iter().map(|(value, _)| GridMark { value: *value, step_size: 1.0 }).collect()
     };
@@ -197,6 +201,7 @@ fn plot_ui(ui: &mut Ui, panels: &Panels) -> PlotTransform {
     let faint = ui.visuals().weak_text_color();
     let [left, right] = panels.x.range;
     let [low, high] = panels.y.range;
+    let is_low = ui.available_height() < LOW;
     let plot = Plot::new("time against error")
         .allow_drag(false)
         .allow_zoom(false)
@@ -212,7 +217,7 @@ fn plot_ui(ui: &mut Ui, panels: &Panels) -> PlotTransform {
         .auto_bounds(false)
         .set_margin_fraction(egui::Vec2::ZERO)
         .x_axis_label(panels.x.label.clone())
-        .y_axis_label(panels.y.label.clone())
+        .y_axis_label(if is_low { "error".to_owned() } else { panels.y.label.clone() })
         .label_formatter(|_| None)
         .x_grid_spacer(|_| marks(&panels.x.ticks))
         .y_grid_spacer(|_| marks(&panels.y.ticks))
@@ -230,10 +235,16 @@ fn plot_ui(ui: &mut Ui, panels: &Panels) -> PlotTransform {
     painter.hline(frame.x_range(), y, Stroke::new(1.0, faint.gamma_multiply(0.6)));
     let font = egui::TextStyle::Small.resolve(ui.style());
     let middle = shown.transform.position_from_point_x(panels.noise.iter().sum::<f64>() / 2.0);
-    let top = pos2(middle, frame.top() + 2.0);
-    painter.text(top, egui::Align2::CENTER_TOP, "noise", font.clone(), faint);
-    let exact = pos2(frame.right() - 3.0, y + 2.0);
-    painter.text(exact, egui::Align2::RIGHT_TOP, "no error", font, faint);
+    // The default lies in the band of the noise: its word goes to the other end.
+    let default = panel.marks.iter().find(|mark| mark.is_default);
+    let is_high = default.is_some_and(|mark| position(mark, &shown.transform).y < frame.center().y);
+    let (end, align) = match is_high {
+        true => (y - 1.0, egui::Align2::CENTER_BOTTOM),
+        false => (frame.top() + 2.0, egui::Align2::CENTER_TOP),
+    };
+    painter.text(pos2(middle, end), align, "noise", font.clone(), faint);
+    let exact = pos2(frame.center().x, y - 1.0);
+    painter.text(exact, egui::Align2::CENTER_BOTTOM, "no error", font, faint);
     shown.transform
 }
 
@@ -254,7 +265,10 @@ fn names_ui(ui: &Ui, panel: &Panel, at: &[Pos2], frame: &Rect) {
     let sizes: Vec<[f32; 2]> =
         galleys.iter().map(|galley| [galley.size().x + 2.0, galley.size().y]).collect();
     let frame = TextBox { min: [frame.left(), frame.top()], max: [frame.right(), frame.bottom()] };
-    for (text, galley) in place(&marks, &sizes, &frame, MARK + 4.0).into_iter().zip(galleys) {
+    let default = panel.marks.iter().position(|mark| mark.is_default).unwrap_or(0);
+    // A name farther away would seem to belong to another mark. The tooltips have all names.
+    let placed = place(&marks, &sizes, default, &frame, [MARK + 4.0, 22.0]);
+    for (text, galley) in placed.into_iter().zip(galleys) {
         if let Some(TextBox { min: [x, y], .. }) = text {
             ui.painter().galley(pos2(x + 1.0, y), galley, visuals.text_color());
         }
