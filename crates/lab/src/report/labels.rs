@@ -29,8 +29,8 @@ impl TextBox {
 
 /// Places a label of each size near its mark, inside `frame`: next to the mark, or in the nearest
 /// free place within `reach`. Labels never overlap each other. They avoid the marks and the line
-/// that joins the marks if possible. A label without room is left out. The label of the mark `first`
-/// is placed first.
+/// that joins the marks if possible. A label without room is left out. The label of the mark
+/// `first` is placed first.
 #[must_use]
 pub fn place(
     marks: &[[f32; 2]],
