@@ -62,10 +62,11 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
     // What the figures mean, in a sentence.
     let said = in_words(state.dial.figures()).filter(|_| state.dial.current);
-    let mut said = said.unwrap_or_else(|| match state.dial_refined_to() {
-        None if state.lab.running.is_some() => "Paused while the laboratory measures.".to_owned(),
-        _ => "Measured as soon as nothing moves.".to_owned(),
-    });
+    let waits_for = match state.lab.running {
+        Some(_) => "Paused while the laboratory measures.",
+        None => "Measured as soon as nothing moves.",
+    };
+    let mut said = said.unwrap_or_else(|| waits_for.to_owned());
     if !presets.iter().any(is_on) {
         said += " The picture has settings of its own, not one of these.";
     }

@@ -107,12 +107,16 @@ mod tests {
     #[test]
     fn names_of_marks_at_one_place_do_not_overlap_and_stay_inside_and_near() {
         let frame = TextBox::new([0.0; 2], [600.0, 300.0]);
-        let sizes: Vec<[f32; 2]> = (0..10u8).map(|i| [60.0 + 8.0 * f32::from(i), 16.0]).collect();
+        let sizes: Vec<[f32; 2]> = (0..20u8).map(|i| [60.0 + 8.0 * f32::from(i), 16.0]).collect();
         for at in [[300.0, 150.0], [2.0, 2.0], [598.0, 298.0]] {
-            let placed: Vec<TextBox> =
-                place(&[at; 10], &sizes, 9, &frame, [5.0, 22.0]).into_iter().flatten().collect();
-            assert!((3..10).contains(&placed.len()), "{at:?}");
-            let near = TextBox::new(at.map(|i| i - 27.0), [54.0; 2]);
+            let all = place(&[at; 20], &sizes, 19, &frame, [5.0, 22.0]);
+            assert!(all[19].is_some(), "it is placed first");
+            let placed: Vec<TextBox> = all.into_iter().flatten().collect();
+            assert!((2..20).contains(&placed.len()), "{at:?}: {}", placed.len());
+            let far = place(&[at; 20], &sizes, 19, &frame, [5.0, 600.0]);
+            assert!(far.into_iter().flatten().count() > placed.len());
+            // One more than the reach: a label at its end overlaps.
+            let near = TextBox::new(at.map(|i| i - 28.0), [56.0; 2]);
             for (i, a) in placed.iter().enumerate() {
                 assert!(a.is_inside(&frame) && a.overlaps(&near));
                 assert!(placed[..i].iter().all(|b| !a.overlaps(b)), "{at:?} {i}");

@@ -41,16 +41,16 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         rest = ui.available_rect_before_wrap();
     });
     // Until something is measured, there is no table.
-    let share = if state.lab.shown().is_some() { 0.47 } else { 1.0 };
-    let middle = rest.with_max_x(rest.left() + (rest.width() * share).round());
-    let right = rest.with_min_x(middle.right() + gap);
+    let left = rest.left() + (rest.width() * 0.47).round() + gap;
+    let table = state.lab.shown().map(|_| rest.with_min_x(left));
+    let chart = table.map_or(rest, |table| rest.with_max_x(table.left() - gap));
     within(ui, asked, |ui| controls_ui::show(ui, state, requests));
-    within(ui, middle, |ui| {
+    within(ui, chart, |ui| {
         regions::begin(ui, "chart");
         plots::show(ui, state, requests);
     });
-    if right.is_positive() {
-        within(ui, right, |ui| {
+    if let Some(table) = table {
+        within(ui, table, |ui| {
             regions::begin(ui, "table");
             table::show(ui, state, requests);
         });
