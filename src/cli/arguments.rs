@@ -34,6 +34,7 @@ picture never overwrites an input file, or a file that is not a picture.
 Examples:
   marraztu render teapot.obj
   marraztu render teapot.obj --out terminal
+  marraztu render example:/chess.marraztu --out chess.png
   xz -dc pot.obj.xz | marraztu render - --out - > pot.png
   marraztu render bunny.obj --out bunny.png --size 1920x1080 --material gold
   marraztu render room.obj --out room.png --up z --surface texture --filter nearest
