@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use crate::errors::Failure;
 use crate::pictures::{self, Pixels};
 use crate::threads::work;
-use crate::values::MaterialValue;
+use crate::values::{MaterialValue, item};
 
 /// A shape with its materials, which scenes share. It never changes.
 #[pyclass(frozen, module = "marraztu._marraztu")]
@@ -29,14 +29,26 @@ pub(crate) struct Mesh {
 }
 
 /// The options for reading a file.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
 struct Reading {
     up: Option<String>,
     scale: f64,
     flip_winding: bool,
     crease: f64,
     bump_maps: String,
+}
+
+impl<'py> FromPyObject<'_, 'py> for Reading {
+    type Error = PyErr;
+
+    fn extract(options: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        Ok(Self {
+            up: item(options, "up")?,
+            scale: item(options, "scale")?,
+            flip_winding: item(options, "flip_winding")?,
+            crease: item(options, "crease")?,
+            bump_maps: item(options, "bump_maps")?,
+        })
+    }
 }
 
 impl Reading {
@@ -71,8 +83,6 @@ fn crease(radians: f64) -> Result<Crease, Failure> {
 }
 
 /// Arrays that describe a mesh. The lists of vertices have one row per vertex.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
 struct Arrays<'py> {
     name: String,
     vertices: PyReadonlyArray2<'py, f64>,
@@ -86,6 +96,25 @@ struct Arrays<'py> {
     texture: Option<Pixels<'py>>,
     material: Option<MaterialValue>,
     crease: f64,
+}
+
+impl<'py> FromPyObject<'_, 'py> for Arrays<'py> {
+    type Error = PyErr;
+
+    fn extract(arrays: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        Ok(Self {
+            name: item(arrays, "name")?,
+            vertices: item(arrays, "vertices")?,
+            corners: item(arrays, "corners")?,
+            arities: item(arrays, "arities")?,
+            normals: item(arrays, "normals")?,
+            uvs: item(arrays, "uvs")?,
+            colors: item(arrays, "colors")?,
+            texture: item(arrays, "texture")?,
+            material: item(arrays, "material")?,
+            crease: item(arrays, "crease")?,
+        })
+    }
 }
 
 /// Copies the rows of an array.
@@ -238,6 +267,7 @@ impl Mesh {
 
     /// The position of each vertex, as an array of shape (n, 3).
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        pictures::load_numpy(py)?;
         let mesh = &self.model.mesh;
         let offset = mesh.offset();
         let place = |p: &[f32; 3]| (dvec3(*p) + offset).to_array();
@@ -246,6 +276,7 @@ impl Mesh {
 
     /// The vertices of each triangle, as an array of shape (n, 3).
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        pictures::load_numpy(py)?;
         let triangles = work(py, 0, |_| {
             let mesh = &self.model.mesh;
             let corners = mesh.corners();

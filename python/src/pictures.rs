@@ -16,6 +16,15 @@ use crate::threads::work;
 /// An array of pixels.
 pub(crate) type Pixels<'py> = PyReadonlyArray3<'py, u8>;
 
+/// Loads NumPy before work that ends in arrays. Ctrl+C during the work would interrupt loading it
+/// afterwards, and the conversion to an array panics then.
+pub(crate) fn load_numpy(py: Python<'_>) -> PyResult<()> {
+    py.import("numpy")?;
+    py.check_signals()?;
+    drop(PyArray1::from_vec(py, vec![0_u8]));
+    Ok(())
+}
+
 /// Returns the pixels of a picture as an array, without copying them.
 pub(crate) fn array(py: Python<'_>, picture: Picture) -> PyResult<Bound<'_, PyArray3<u8>>> {
     let Size { width, height } = picture.size();
@@ -35,6 +44,7 @@ pub(crate) fn picture(pixels: &Pixels<'_>) -> Result<Picture, Failure> {
 /// Loads a picture.
 #[pyfunction]
 pub(crate) fn load_picture(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyArray3<u8>>> {
+    load_numpy(py)?;
     let picture = work(py, 1, |_| Ok(io::load_picture(&path)?))?;
     array(py, picture)
 }

@@ -23,7 +23,7 @@ use crate::errors::Failure;
 use crate::mesh::Mesh;
 use crate::shot::Shot;
 use crate::threads::{check_fork, work};
-use crate::values::{self, LightValue, MaterialValue, Rows};
+use crate::values::{self, LightValue, MaterialValue, Rows, item};
 
 /// The longest side of a picture in pixels.
 const LONGEST_SIDE: usize = 16_384;
@@ -60,8 +60,6 @@ enum Aim {
 }
 
 /// The properties of an object to change.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
 struct Properties {
     name: Option<String>,
     visible: Option<bool>,
@@ -69,6 +67,21 @@ struct Properties {
     material: Option<MaterialValue>,
     opacity: Option<f64>,
     sides: Option<String>,
+}
+
+impl<'py> FromPyObject<'_, 'py> for Properties {
+    type Error = PyErr;
+
+    fn extract(properties: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        Ok(Self {
+            name: item(properties, "name")?,
+            visible: item(properties, "visible")?,
+            pose: item(properties, "pose")?,
+            material: item(properties, "material")?,
+            opacity: item(properties, "opacity")?,
+            sides: item(properties, "sides")?,
+        })
+    }
 }
 
 impl Properties {
@@ -389,21 +402,22 @@ impl Scene {
     fn shot(
         &self,
         py: Python<'_>,
-        width: usize,
-        height: usize,
+        width: i64,
+        height: i64,
         aim: Option<Aim>,
         preset: Option<&str>,
         choices: BTreeMap<String, String>,
     ) -> PyResult<Shot> {
-        if ![width, height].iter().all(|side| (1..=LONGEST_SIDE).contains(side)) {
+        let side = |side: i64| {
+            let side = usize::try_from(side).ok().filter(|side| (1..=LONGEST_SIDE).contains(side));
             let reason = format!("width and height are from 1 to {LONGEST_SIDE} pixels");
-            return Err(Failure::Value(reason).into());
-        }
+            side.ok_or(Failure::Value(reason))
+        };
+        let size = Size::new(side(width)?, side(height)?);
         work(py, 0, |_| {
             let mut state = self.lock()?;
             let scene = state.aimed(aim.as_ref())?;
             let settings = values::settings(&state.settings, preset, &choices)?;
-            let size = Size::new(width, height);
             let shot = accuracy::Shot::new(&scene, &state.view, &settings, size);
             Ok(Shot::new(shot, state.ids.clone()))
         })

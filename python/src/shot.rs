@@ -165,6 +165,7 @@ impl Shot {
             "world" => NormalSpace::World,
             _ => return Err(Failure::value("normals is camera or world").into()),
         };
+        pictures::load_numpy(py)?;
         let (picture, layers) = work(py, threads, |renderer| {
             let picture = with_color.then(|| self.draw(renderer, transparent));
             let layers = (!set.is_empty()).then(|| self.layers(renderer, set, normals));
@@ -195,12 +196,13 @@ impl Shot {
     }
 
     /// Explains a pixel: its surface and the terms of its colour, at the pixel's centre.
-    fn explain(&self, py: Python<'_>, x: usize, y: usize) -> PyResult<Explanation> {
+    fn explain(&self, py: Python<'_>, x: i64, y: i64) -> PyResult<Explanation> {
         let Size { width, height } = self.shot.size;
-        if x >= width || y >= height {
+        let inside = |at: i64, side: usize| usize::try_from(at).ok().filter(|at| *at < side);
+        let (Some(x), Some(y)) = (inside(x, width), inside(y, height)) else {
             let reason = format!("pixel {x},{y} is outside of {width} x {height}");
             return Err(pyo3::exceptions::PyIndexError::new_err(reason));
-        }
+        };
         work(py, 0, |renderer| {
             let shot = &self.shot;
             let shot = shot.with(Settings { samples: Samples::One, ..shot.settings });

@@ -10,9 +10,22 @@ use marraztu_core::scene::{
     Aim, Attenuation, Light, LightKind, LightOrigin, Material, MaterialChoice, Orbit, PRESETS,
     PresetId, Scene, SpotOwner, Tracked, View,
 };
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use crate::errors::Failure;
+
+/// Converts an item of a dictionary. Errors name it, as those of PyO3 name arguments.
+pub(crate) fn item<'a, 'py, T>(values: Borrowed<'a, 'py, PyAny>, name: &str) -> PyResult<T>
+where
+    T: for<'b> FromPyObject<'b, 'py>,
+{
+    let value = values.get_item(name)?;
+    value.extract::<T>().map_err(|error| {
+        let error: PyErr = error.into();
+        PyTypeError::new_err(format!("{name}: {}", error.value(values.py())))
+    })
+}
 
 /// A matrix, row by row.
 pub(crate) type Rows = [[f64; 4]; 4];

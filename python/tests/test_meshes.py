@@ -1,5 +1,6 @@
 """Meshes from files, arrays and trimesh."""
 
+import math
 import warnings
 
 import marraztu as mz
@@ -160,3 +161,46 @@ def test_meshes_of_trimesh_keep_shape_texture_and_colours(quad):
         quad.vertices, quad.triangles, vertex_colors=[[0, 255, 0, 255]] * 4, process=False
     )
     assert centre(colored) == (0, 255, 0)
+    faces = trimesh.creation.box()
+    faces.visual = trimesh.visual.ColorVisuals(faces, face_colors=[[0, 0, 255, 255]] * 12)
+    assert centre(faces) == (0, 0, 255)
+    faces.visual.face_colors[6:] = [255, 0, 0, 255]
+    mixed = mz.Mesh.from_trimesh(faces)
+    assert 8 < len(mixed.vertices) <= 16 and mixed.triangles.shape == (12, 3)
+    with pytest.raises(TypeError, match="not a Scene: use its method to_mesh"):
+        mz.Mesh.from_trimesh(trimesh.Scene([box]))
+
+
+def test_colours_are_integers_or_factors(quad):
+    def shown(colors):
+        mesh = mz.Mesh(quad.vertices, quad.triangles, colors=colors)
+        camera = mz.Camera.look_at((0, 0, 4), (0, 0, 0))
+        scene = mz.Scene([mesh], lights=[mz.Light.sun((0, 0, -1))])
+        return scene.render(32, 32, camera=camera, samples=1).color[16, 16].tolist()
+
+    expected = shown([[0.25, 0.5, 1.0]] * 4)
+    row = [64, 128, 255]
+    for integers in ([row] * 4, np.full((4, 3), row, np.uint8), np.full((4, 3), row, np.int64)):
+        assert np.abs(np.subtract(shown(integers), expected)).max() <= 1
+    for wrong in (300, -1, 1.5, -0.5, math.nan):
+        with pytest.raises(ValueError, match="colors are"):
+            shown([[wrong, wrong, wrong]] * 4)
+    with pytest.raises(ValueError, match="colors are numbers"):
+        shown("red")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"material": 5}, TypeError, "a material is a Material or a name, not int"),
+        ({"material": mz.Material(diffuse=0.5)}, ValueError, "diffuse: three numbers"),
+        ({"name": 5}, TypeError, "^name: "),
+        ({"crease": "x"}, TypeError, "^crease: "),
+        ({"faces": None}, ValueError, "faces are lists"),
+        ({"vertices": None}, ValueError, "vertices needs the shape"),
+    ],
+)
+def test_errors_name_the_argument(quad, arguments, error, words):
+    arrays = {"vertices": quad.vertices, "faces": quad.triangles}
+    with pytest.raises(error, match=words):
+        mz.Mesh(**{**arrays, **arguments})

@@ -15,9 +15,9 @@ scene = mz.Scene([mesh])
 """
 
 
-def run(code, *, limit=60):
+def run(code, *, head=HEAD, limit=60):
     """Runs a program in a new process. A hang fails by the time limit."""
-    code = textwrap.dedent(HEAD) + textwrap.dedent(code)
+    code = textwrap.dedent(head) + textwrap.dedent(code)
     done = subprocess.run(
         [sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, timeout=limit
     )
@@ -108,3 +108,28 @@ def test_the_import_loads_neither_numpy_nor_pools():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "set()\n"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="processes of Windows get no SIGINT")
+def test_ctrl_c_during_the_first_picture_raises_keyboard_interrupt(tmp_path):
+    model = tmp_path / "a.obj"
+    model.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    # Nothing loads NumPy before the picture.
+    head = f"""
+        import os, signal, threading, time
+        import marraztu as mz
+        scene = mz.Scene([mz.Mesh.load({str(model)!r})])
+        """
+    output = run(
+        """
+        # NumPy is loaded in less time, and the picture drawn in more.
+        threading.Timer(0.6, os.kill, (os.getpid(), signal.SIGINT)).start()
+        try:
+            scene.render(8000, 8000, samples=256, threads=1)
+            time.sleep(30)
+        except KeyboardInterrupt:
+            print("interrupted")
+        """,
+        head=head,
+    )
+    assert output == "interrupted\n"

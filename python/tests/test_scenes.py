@@ -212,3 +212,40 @@ def test_materials_have_names():
     assert gold.diffuse == (0.75164, 0.60648, 0.22648) and gold.exponent == 51.2
     with pytest.raises(ValueError, match="unobtainium"):
         mz.Material.named("unobtainium")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "words"),
+    [
+        ({"camera": 5}, TypeError, "camera is a Camera, not int"),
+        ({"width": -1}, ValueError, "from 1 to 16384"),
+        ({"threads": -1}, ValueError, "at least 0"),
+        ({"layers": ["dept"]}, ValueError, "no layer"),
+    ],
+)
+def test_wrong_arguments_of_render_are_named(quad, arguments, error, words):
+    with pytest.raises(error, match=words):
+        mz.Scene([quad]).render(**{"width": 8, "height": 8, **arguments})
+
+
+def test_one_layer_may_be_named_without_a_tuple(quad):
+    assert mz.Scene([quad]).render(8, 8, layers="depth").depth.shape == (8, 8)
+
+
+def test_wrong_lights_backgrounds_units_shots_and_pixels_are_rejected(quad):
+    scene = mz.Scene([quad])
+    with pytest.raises(TypeError, match="objects of Light"):
+        scene.lights = [5]
+    with pytest.raises(ValueError, match="from 0 to 255"):
+        scene.lights = [mz.Light("ambient", color=(300, 0, 0))]
+    for color in (5, (1, 2), (0.5, 0.5, 0.5), "#+1+2+3", "#zzzzzz", "red"):
+        with pytest.raises(ValueError, match="a colour is three bytes"):
+            scene.background = color
+    for unit in (0, -1, math.nan, math.inf, "cm"):
+        with pytest.raises(ValueError, match="a unit is"):
+            scene.unit = unit
+    assert scene.unit == 1
+    with pytest.raises(TypeError, match="render_many draws shots"):
+        next(mz.render_many([5]))
+    with pytest.raises(IndexError, match="pixel -1,0 is outside"):
+        scene.explain(-1, 0, 8, 8)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _marraztu
-from ._values import Material
+from ._values import Material, material_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,10 +35,10 @@ class Mesh:
     `vertices` has the shape (n, 3). `faces` has the shape (m, 3), or (m, 4) and so on, or is a list
     of polygons of any size; its numbers are vertices from 0, counter-clockwise seen from the front.
     The other arrays have a row per vertex: `normals` (n, 3), `uv` (n, 2) with (0, 0) at the lower
-    left of the texture, and `colors` (n, 3) or (n, 4) as bytes or as factors from 0 to 1; alpha is
-    ignored. `texture` is a picture file, an array of bytes (height, width, 3 or 4), or a picture of
-    PIL. `material` is a `Material` or the name of one. Without normals, edges between faces are
-    smooth up to the angle `crease` in radians; 0 gives flat faces.
+    left of the texture, and `colors` (n, 3) or (n, 4), which are integers from 0 to 255 or floats
+    from 0 to 1; alpha is ignored. `texture` is a picture file, an array of bytes (height, width, 3
+    or 4), or a picture of PIL. `material` is a `Material` or the name of one. Without normals,
+    edges between faces are smooth up to the angle `crease` in radians; 0 gives flat faces.
     """
 
     __slots__ = ("_mesh",)
@@ -58,15 +58,11 @@ class Mesh:
     ) -> None:
         import numpy as np
 
+        if vertices is None:
+            raise ValueError("vertices needs the shape (n, 3), not None")
         positions = _array(vertices, np.float64, None, 3, "vertices")
         count = len(positions)
         corners, arities = _polygons(faces, count)
-        if colors is not None:
-            colors = np.asarray(colors)
-            factor = 255 if colors.dtype == np.uint8 else 1
-            if colors.ndim == 2 and colors.shape[1] == 4:
-                colors = colors[:, :3]
-            colors = _array(colors / factor, np.float32, count, 3, "colors")
         arrays = {
             "name": name,
             "vertices": positions,
@@ -74,9 +70,9 @@ class Mesh:
             "arities": arities,
             "normals": _array(normals, np.float32, count, 3, "normals"),
             "uvs": _array(uv, np.float32, count, 2, "uv"),
-            "colors": colors,
+            "colors": None if colors is None else _factors(colors, count),
             "texture": None if texture is None else pixels_of(texture),
-            "material": material,
+            "material": material_of(material),
             "crease": crease,
         }
         self._mesh = _marraztu.Mesh.from_arrays(arrays)
@@ -119,8 +115,15 @@ class Mesh:
 
     @classmethod
     def from_trimesh(cls, mesh: Any, *, name: str | None = None, crease: float = CREASE) -> Mesh:
-        """Converts a `trimesh.Trimesh`, with its texture or vertex colours."""
-        visual = mesh.visual
+        """Converts a `trimesh.Trimesh`, with its texture, or the colours of its vertices or faces.
+
+        Vertices between faces of different colours are split, so these edges are sharp.
+        """
+        if not (hasattr(mesh, "faces") and hasattr(mesh, "visual")):
+            kind = type(mesh).__name__
+            hint = ": use its method to_mesh" if hasattr(mesh, "to_mesh") else ""
+            raise TypeError(f"from_trimesh converts a trimesh.Trimesh, not a {kind}{hint}")
+        visual, vertices, faces = mesh.visual, mesh.vertices, mesh.faces
         arrays: dict[str, Any] = {}
         uv = getattr(visual, "uv", None)
         if uv is not None:
@@ -132,8 +135,10 @@ class Mesh:
                 arrays["texture"] = image
         elif getattr(visual, "kind", None) == "vertex":
             arrays["colors"] = visual.vertex_colors
+        elif getattr(visual, "kind", None) == "face":
+            vertices, faces, arrays["colors"] = _split(vertices, faces, visual.face_colors)
         name = name or mesh.metadata.get("name") or "mesh"
-        return cls(mesh.vertices, mesh.faces, name=name, crease=crease, **arrays)
+        return cls(vertices, faces, name=name, crease=crease, **arrays)
 
     @property
     def name(self) -> str:
@@ -181,10 +186,37 @@ def _array(values: ArrayLike | None, dtype: type, rows: int | None, columns: int
     return array
 
 
+def _factors(colors: ArrayLike, count: int) -> Any:
+    """Converts the colours of vertices to factors."""
+    import numpy as np
+
+    array = np.asarray(colors)
+    if array.dtype.kind not in "biuf":
+        raise ValueError(f"colors are numbers, not {array.dtype}")
+    most = 255 if array.dtype.kind in "iu" else 1
+    if array.ndim == 2 and array.shape[1] == 4:
+        array = array[:, :3]
+    if array.size and not 0 <= array.min() <= array.max() <= most:
+        allowed = "integers from 0 to 255" if most == 255 else "floats from 0 to 1"
+        raise ValueError(f"colors are {allowed}, not from {array.min()} to {array.max()}")
+    return _array(array / most, np.float32, count, 3, "colors")
+
+
+def _split(vertices: Any, faces: Any, colors: Any) -> tuple[Any, Any, Any]:
+    """Splits vertices between faces of different colours. Returns a colour for each vertex."""
+    import numpy as np
+
+    rows = np.column_stack([np.ravel(faces), np.repeat(colors, 3, axis=0)])
+    unique, corners = np.unique(rows, axis=0, return_inverse=True)
+    return vertices[unique[:, 0]], corners.reshape(-1, 3), unique[:, 1:]
+
+
 def _polygons(faces: Any, count: int) -> tuple[Any, Any]:
     """Returns the corners of all polygons, and the number of corners of each."""
     import numpy as np
 
+    if faces is None or np.isscalar(faces):
+        raise ValueError(f"faces are lists of vertices, not {faces!r}")
     array: Any
     try:
         array = np.asarray(faces)

@@ -20,35 +20,37 @@ class Picture:
 
     Layers show the surface at the centre of each pixel, for any number of samples. A transparent
     surface counts like an opaque one. Lengths are in units of the models, times `Scene.unit`. The
-    arrays are memory of the renderer, not copies.
+    arrays are memory of the renderer, not copies. For a picture of h rows and w columns:
+
+        rgba      uint8    (h, w, 4)  red, green, blue, and alpha: 255 unless `transparent` is set
+        color     uint8    (h, w, 3)  a view of `rgba`; `numpy.ascontiguousarray` closes its gaps
+        depth     float32  (h, w)     the distance along the camera's axis; background: inf
+        distance  float32  (h, w)     the distance along the ray; background: inf
+        normal    float32  (h, w, 3)  the unit normal, in the space that `normals` names: the
+                                      camera's x points to the right, y up, z towards the camera
+        position  float32  (h, w, 3)  the position in the world
+        uv        float32  (h, w, 2)  the texture coordinates, (0, 0) at the lower left
+        object    int32    (h, w)     the id of the node: see `names`
+        part      int32    (h, w)     the part of a file, from 1: see `part_names`
+        material  int32    (h, w)     the material, from 1: see `material_names`
+        polygon   int32    (h, w)     the polygon of the node, from 1
+        mask      bool     (h, w)     whether the pixel shows a node
+
+    Where nothing is said, the background is 0. Arrays exist for the layers that were asked for.
     """
 
     rgba: NDArray[np.uint8]
-    """(height, width, 4): red, green, blue and alpha, which is 255 unless `transparent` is set."""
     color: NDArray[np.uint8]
-    """(height, width, 3): a view of `rgba`. For libraries that need it, `numpy.ascontiguousarray`
-    makes a copy without gaps."""
     depth: NDArray[np.float32]
-    """(height, width): the distance along the camera's axis; inf for the background."""
     distance: NDArray[np.float32]
-    """(height, width): the distance along the ray; inf for the background."""
     normal: NDArray[np.float32]
-    """(height, width, 3): the normal, of length 1, in the space that `normals` names. The camera's
-    x points to the right, y up, z towards the camera. 0 for the background."""
     position: NDArray[np.float32]
-    """(height, width, 3): the position in the world; 0 for the background."""
     uv: NDArray[np.float32]
-    """(height, width, 2): the texture coordinates, with (0, 0) at the lower left."""
     object: NDArray[np.int32]
-    """(height, width): the id of the node, see `names`; 0 for the background."""
     part: NDArray[np.int32]
-    """(height, width): the part of a file, from 1, see `part_names`; 0 for the background."""
     material: NDArray[np.int32]
-    """(height, width): the material, from 1, see `material_names`; 0 for the background."""
     polygon: NDArray[np.int32]
-    """(height, width): the polygon of the node, from 1; 0 for the background."""
     mask: NDArray[np.bool_]
-    """(height, width): whether the pixel shows a node."""
 
     def __init__(self, shot: Shot, arrays: dict[str, Any]) -> None:
         self.shot = shot
@@ -63,10 +65,12 @@ class Picture:
                 array *= shot.unit
             setattr(self, name, array.view("?") if name == "mask" else array)
 
-    def __getattr__(self, name: str) -> Any:
-        if name in Picture.__annotations__:
-            raise AttributeError(f"the picture has no {name}: name the layer in layers=")
-        raise AttributeError(f"a picture has no attribute {name!r}")
+    if not TYPE_CHECKING:
+        # Type checkers find misspelt layers without it.
+        def __getattr__(self, name):
+            if name in Picture.__annotations__:
+                raise AttributeError(f"the picture has no {name}: name the layer in layers=")
+            raise AttributeError(f"a picture has no attribute {name!r}")
 
     @property
     def width(self) -> int:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _marraztu
+from ._camera import Camera
 from ._mesh import Mesh, warn_of
 from ._shot import Effect, Explanation, Shot
-from ._values import Light, Material, bytes_of, tuples
+from ._values import Light, Material, bytes_of, material_of, tuples
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-    from ._camera import Camera
     from ._picture import Picture
 
 
@@ -94,7 +95,7 @@ class Node:
 
     def set_material(self, material: Material | str) -> None:
         """Replaces the material; "file" restores those of the mesh. Textures stay."""
-        self._change("material", material)
+        self._change("material", material_of(material))
 
     def set_sides(self, sides: str) -> None:
         """Draws "one" or "two" sides of faces, or two sides of open surfaces alone ("auto")."""
@@ -126,7 +127,7 @@ class Scene:
     the size of the models, and nothing but highlights reaches white. Pictures have the same bytes.
     """
 
-    __slots__ = ("_nodes", "_scene", "findings", "unit")
+    __slots__ = ("_nodes", "_scene", "_unit", "findings")
 
     def __init__(
         self,
@@ -140,8 +141,6 @@ class Scene:
         self._nodes: list[Node] = []
         self.findings: list[str] = []
         self.unit = unit
-        """The factor of the layers depth, distance and position: metres per unit of the models.
-        Poses stay in units of the models."""
         for mesh in meshes:
             self.add(mesh)
         if lights is not None:
@@ -160,6 +159,18 @@ class Scene:
         scene._nodes = [Node(scene._scene, row) for row in scene._scene.objects()]
         warn_of(scene.findings)
         return scene
+
+    @property
+    def unit(self) -> float:
+        """The factor of the layers depth, distance and position: metres per unit of the models.
+        Poses stay in units of the models."""
+        return self._unit
+
+    @unit.setter
+    def unit(self, unit: float) -> None:
+        if isinstance(unit, str) or not 0 < unit < math.inf:
+            raise ValueError(f"a unit is a finite number of metres above 0, not {unit!r}")
+        self._unit = float(unit)
 
     @property
     def nodes(self) -> tuple[Node, ...]:
@@ -184,7 +195,7 @@ class Scene:
             **UNCHANGED,
             "name": name,
             "pose": None if pose is None else _rows(pose),
-            "material": material,
+            "material": material_of(material),
             "opacity": opacity,
             "sides": sides,
         }
@@ -208,7 +219,15 @@ class Scene:
 
     @lights.setter
     def lights(self, lights: Iterable[Light] | None) -> None:
-        self._scene.set_lights(None if lights is None else list(lights))
+        if lights is None:
+            self._scene.set_lights(None)
+            return
+        checked = []
+        for light in lights:
+            if not isinstance(light, Light):
+                raise TypeError(f"lights are objects of Light, not {type(light).__name__}")
+            checked.append(light._replace(color=bytes_of(light.color)))
+        self._scene.set_lights(checked)
 
     def set_shadows(self, on: bool) -> None:
         """Switches the shadows of all lights, as far as they can cast any."""
@@ -257,10 +276,13 @@ class Scene:
 
         The arguments are those of `render`.
         """
+        if camera is not None and not isinstance(camera, Camera):
+            raise TypeError(f"camera is a Camera, not {type(camera).__name__}")
+        layers = (layers,) if isinstance(layers, str) else tuple(layers)
         aim = None if camera is None else camera._aim(width, height)
         choices = {key.replace("_", "-"): str(word) for key, word in accuracy.items()}
         kernel = self._scene.shot(width, height, aim, preset, choices)
-        return Shot(kernel, tuple(layers), normals, transparent, self.unit)
+        return Shot(kernel, layers, normals, transparent, self.unit)
 
     def render(
         self,

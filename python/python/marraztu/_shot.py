@@ -95,6 +95,8 @@ class Shot:
 
     def render(self, threads: int | None = None) -> Picture:
         """Draws the picture with this number of threads, by default one per core."""
+        if threads is not None and threads < 0:
+            raise ValueError("threads is at least 0")
         arrays = self._shot.render(threads or 0, list(self.layers), self.normals, self.transparent)
         return Picture(self, arrays)
 
@@ -133,6 +135,9 @@ def _drawn(shots: Iterable[Shot], threads: int, ahead: int) -> Iterator[Picture]
     with ThreadPoolExecutor(threads) as pool:
         try:
             for shot in shots:
+                if not isinstance(shot, Shot):
+                    kind = type(shot).__name__
+                    raise TypeError(f"render_many draws shots, as of Scene.shot, not {kind}")
                 # Room for this shot is made first.
                 if len(waiting) >= threads + ahead:
                     yield waiting.popleft().result()

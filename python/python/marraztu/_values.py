@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import operator
+import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -14,15 +16,42 @@ Triple = tuple[float, float, float]
 
 def bytes_of(color: Sequence[int] | str) -> tuple[int, int, int]:
     """Checks a colour: three bytes, or "#rrggbb"."""
-    if isinstance(color, str):
-        digits = color.removeprefix("#")
-        if len(digits) != 6 or color == digits:
-            raise ValueError(f'a colour is three bytes or "#rrggbb", not {color!r}')
-        color = [int(digits[i : i + 2], 16) for i in (0, 2, 4)]
-    red, green, blue = (int(channel) for channel in color)
+    try:
+        if isinstance(color, str):
+            if not re.fullmatch("#[0-9a-fA-F]{6}", color):
+                raise ValueError
+            color = bytes.fromhex(color[1:])
+        red, green, blue = (operator.index(channel) for channel in color)
+    except (TypeError, ValueError):
+        wrong = f'a colour is three bytes or "#rrggbb", not {color!r}'
+        raise ValueError(wrong) from None
     if not all(0 <= channel <= 255 for channel in (red, green, blue)):
         raise ValueError(f"the channels of a colour are from 0 to 255, not {color!r}")
     return red, green, blue
+
+
+def triple_of(values: Sequence[float], what: str) -> Triple:
+    """Checks a point, a direction or factors."""
+    try:
+        x, y, z = (float(value) for value in values)
+    except (TypeError, ValueError):
+        raise ValueError(f"{what}: three numbers are needed, not {values!r}") from None
+    return x, y, z
+
+
+def material_of(material: Any) -> Material | str | None:
+    """Checks a material, or the name of one."""
+    if material is None or isinstance(material, str):
+        return material
+    if not isinstance(material, Material):
+        raise TypeError(f"a material is a Material or a name, not {type(material).__name__}")
+    return Material(
+        diffuse=triple_of(material.diffuse, "diffuse"),
+        ambient=triple_of(material.ambient, "ambient"),
+        specular=triple_of(material.specular, "specular"),
+        exponent=float(material.exponent),
+        emission=triple_of(material.emission, "emission"),
+    )
 
 
 def tuples(values: dict[str, Any]) -> dict[str, Any]:
@@ -98,7 +127,9 @@ class Light(NamedTuple):
         shadows: bool = False,
     ) -> Light:
         """Light from infinitely far away. `direction` is the direction in which it travels."""
-        return cls("sun", "sun", bytes_of(color), shadows, direction=_point(direction))
+        return cls(
+            "sun", "sun", bytes_of(color), shadows, direction=triple_of(direction, "direction")
+        )
 
     @classmethod
     def bulb(
@@ -115,8 +146,8 @@ class Light(NamedTuple):
             "bulb",
             bytes_of(color),
             shadows,
-            position=_point(position),
-            attenuation=_point(attenuation),
+            position=triple_of(position, "position"),
+            attenuation=triple_of(attenuation, "attenuation"),
         )
 
     @classmethod
@@ -137,17 +168,12 @@ class Light(NamedTuple):
             "spot",
             bytes_of(color),
             shadows,
-            position=None if position is None else _point(position),
-            direction=None if direction is None else _point(direction),
+            position=None if position is None else triple_of(position, "position"),
+            direction=None if direction is None else triple_of(direction, "direction"),
             angle=angle,
             exponent=exponent,
-            attenuation=_point(attenuation),
+            attenuation=triple_of(attenuation, "attenuation"),
         )
-
-
-def _point(values: Sequence[float]) -> Triple:
-    x, y, z = (float(value) for value in values)
-    return x, y, z
 
 
 class Axis(NamedTuple):
