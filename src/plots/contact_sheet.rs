@@ -22,11 +22,17 @@ pub struct SheetCell {
     pub label: String,
 }
 
-/// Arranges pictures in rows of `columns`, each with its label below it, and notes below all.
+/// Arranges pictures in rows of `columns`, each with its label below it, and notes below all. The
+/// sheet is as wide as the longest note, at least.
 ///
 /// # Errors
 /// If there are no pictures, or the text cannot be drawn.
-#[expect(clippy::cast_precision_loss, reason = "pixels of a sheet")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "pixels of a sheet"
+)]
 pub fn contact_sheet(
     cells: &[SheetCell],
     columns: usize,
@@ -42,23 +48,27 @@ pub fn contact_sheet(
     let rows = cells.len().div_ceil(columns);
     let (step_x, step_y) = (width + GAP, height + LINE + GAP);
     let notes_height = if notes.is_empty() { 0 } else { notes.len() * LINE + GAP };
-    let size = Size::new(columns * step_x + GAP, rows * step_y + GAP + notes_height);
-    let paper = [LIGHT.paper.0, LIGHT.paper.1, LIGHT.paper.2];
-    let mut bytes = paper.repeat(size.area());
-    let mut labels = Vec::new();
     let label = |text: String, [x, y]: [usize; 2], size: u32| {
         let place = |side: usize| i32::try_from(side).unwrap_or(i32::MAX);
         Label::new(text, (place(x), place(y + 4)), size, LIGHT.ink)
     };
+    let mut labels = Vec::new();
+    let mut notes_width = 0.0_f32;
+    for (i, note) in notes.iter().enumerate() {
+        let at = [GAP, rows * step_y + GAP + i * LINE];
+        // The columns of notes are aligned with blanks.
+        let note = Label { face: Face::Mono, ..label(note.clone(), at, FONT - 2) };
+        notes_width = notes_width.max(note.width());
+        labels.push(note);
+    }
+    let sheet_width = (columns * step_x + GAP).max(notes_width.ceil() as usize + 2 * GAP);
+    let size = Size::new(sheet_width, rows * step_y + GAP + notes_height);
+    let paper = [LIGHT.paper.0, LIGHT.paper.1, LIGHT.paper.2];
+    let mut bytes = paper.repeat(size.area());
     for (i, cell) in cells.iter().enumerate() {
         let (x, y) = (GAP + i % columns * step_x, GAP + i / columns * step_y);
         paste(&mut bytes, size, [x, y], &cell.picture);
         labels.push(label(shortened(&cell.label, width as f32), [x, y + height], FONT));
-    }
-    for (i, note) in notes.iter().enumerate() {
-        let at = [GAP, rows * step_y + GAP + i * LINE];
-        // The columns of notes are aligned with blanks.
-        labels.push(Label { face: Face::Mono, ..label(note.clone(), at, FONT - 2) });
     }
     labels.iter().for_each(|label| label.write(&mut bytes, size));
     let pixels = bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2], 255]).collect();
@@ -116,6 +126,12 @@ mod tests {
         };
         assert!(is_inked(38..58) && is_inked(124..150), "labels and notes are written");
         assert!(contact_sheet(&[], 2, &[]).is_err());
+        let note = "a long note ends inside".to_owned();
+        let wide = contact_sheet(&cells[..1], 1, &[note]).unwrap();
+        let Size { width, height } = wide.size();
+        let is_ink = |x: usize| (height - 28..height).any(|y| wide.pixel(x, y)[0] < 128);
+        let last = (0..width).rfind(|x| is_ink(*x)).unwrap();
+        assert!(last > 100 && last < width - 8, "{last} of {width}");
     }
 
     #[test]

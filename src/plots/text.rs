@@ -4,7 +4,7 @@
 //! small texts touch or drift apart. Here, glyphs have positions at fractions of a pixel, and pairs
 //! are kerned.
 
-use ab_glyph::{Font as _, FontRef, PxScale, ScaleFont as _, point};
+use ab_glyph::{Font as _, FontRef, GlyphId, PxScale, PxScaleFont, ScaleFont as _, point};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, register_font};
@@ -62,21 +62,37 @@ impl Label {
         Text::new(self.text.clone(), self.at, style)
     }
 
-    /// Writes the label into a picture of three bytes per pixel. The border cuts it off.
+    /// Returns the width of the text in pixels.
+    pub(super) fn width(&self) -> f32 {
+        self.glyphs(&self.font()).1
+    }
+
     #[expect(clippy::cast_precision_loss, reason = "pixels of a plot")]
-    pub(super) fn write(&self, bytes: &mut [u8], picture: Size) {
+    fn font(&self) -> PxScaleFont<FontRef<'static>> {
         let font = FontRef::try_from_slice(self.face.font().1).expect("the fonts are valid");
-        let scale = PxScale::from(self.size as f32);
-        let scaled = font.as_scaled(scale);
-        // Places first: the alignment needs the width.
+        font.into_scaled(PxScale::from(self.size as f32))
+    }
+
+    /// Returns the glyphs with their places from the left, and the width of all.
+    fn glyphs(&self, font: &PxScaleFont<FontRef<'_>>) -> (Vec<(GlyphId, f32)>, f32) {
         let (mut glyphs, mut x, mut last) = (Vec::new(), 0.0, None);
         for sign in self.text.chars() {
             let id = font.glyph_id(sign);
-            x += last.map_or(0.0, |last| scaled.kern(last, id));
+            x += last.map_or(0.0, |last| font.kern(last, id));
             glyphs.push((id, x));
-            x += scaled.h_advance(id);
+            x += font.h_advance(id);
             last = Some(id);
         }
+        (glyphs, x)
+    }
+
+    /// Writes the label into a picture of three bytes per pixel. The border cuts it off.
+    #[expect(clippy::cast_precision_loss, reason = "pixels of a plot")]
+    pub(super) fn write(&self, bytes: &mut [u8], picture: Size) {
+        let scaled = self.font();
+        let (font, scale) = (&scaled.font, scaled.scale);
+        // Places first: the alignment needs the width.
+        let (glyphs, x) = self.glyphs(&scaled);
         let left = self.at.0 as f32
             - match self.aligned.0 {
                 HPos::Left => 0.0,
