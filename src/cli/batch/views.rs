@@ -143,9 +143,19 @@ struct Frame {
     own: Intrinsics,
 }
 
-/// Focal lengths, size and principal point in pixels, or the horizontal angle in radians.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+/// Focal lengths, size and principal point in pixels, or the horizontal angle in radians. Lenses
+/// that distort are rejected.
+#[derive(Clone, Debug, Default, Deserialize)]
 struct Intrinsics {
+    camera_model: Option<String>,
+    k1: Option<f64>,
+    k2: Option<f64>,
+    k3: Option<f64>,
+    k4: Option<f64>,
+    p1: Option<f64>,
+    p2: Option<f64>,
+    #[serde(default)]
+    is_fisheye: bool,
     fl_x: Option<f64>,
     fl_y: Option<f64>,
     cx: Option<f64>,
@@ -157,8 +167,16 @@ struct Intrinsics {
 
 impl Intrinsics {
     /// Returns these numbers, completed by shared ones.
-    fn or(self, shared: Self) -> Self {
+    fn or(self, shared: &Self) -> Self {
         Self {
+            camera_model: self.camera_model.or_else(|| shared.camera_model.clone()),
+            k1: self.k1.or(shared.k1),
+            k2: self.k2.or(shared.k2),
+            k3: self.k3.or(shared.k3),
+            k4: self.k4.or(shared.k4),
+            p1: self.p1.or(shared.p1),
+            p2: self.p2.or(shared.p2),
+            is_fisheye: self.is_fisheye || shared.is_fisheye,
             fl_x: self.fl_x.or(shared.fl_x),
             fl_y: self.fl_y.or(shared.fl_y),
             cx: self.cx.or(shared.cx),
@@ -167,6 +185,22 @@ impl Intrinsics {
             h: self.h.or(shared.h),
             camera_angle_x: self.camera_angle_x.or(shared.camera_angle_x),
         }
+    }
+
+    /// Returns an error for a lens other than that of a pinhole camera.
+    fn check_lens(&self) -> Result<(), String> {
+        // The names of nerfstudio. Its default is OPENCV, which is a pinhole without distortion.
+        let model = self.camera_model.as_deref().unwrap_or("OPENCV");
+        if self.is_fisheye || !["OPENCV", "PINHOLE", "SIMPLE_PINHOLE"].contains(&model) {
+            let model = if self.is_fisheye { "fisheye" } else { model };
+            return Err(format!("cameras of the model {model} are not supported"));
+        }
+        let Self { k1, k2, k3, k4, p1, p2, .. } = self;
+        let is_distorted = |term: &Option<f64>| term.is_some_and(|term| term != 0.0);
+        if [k1, k2, k3, k4, p1, p2].into_iter().any(is_distorted) {
+            return Err("lenses that distort (k1 to k4, p1, p2) are not supported".to_owned());
+        }
+        Ok(())
     }
 
     /// Returns the size of the picture, if the file states one.
@@ -219,7 +253,8 @@ fn from_json(json: &[u8]) -> Result<Vec<CameraView>, String> {
     checked(frames.len())?;
     let view = |(i, frame): (usize, Frame)| {
         let named = |reason: String| format!("frame {i}: {reason}");
-        let intrinsics = frame.own.or(shared);
+        let intrinsics = frame.own.or(&shared);
+        intrinsics.check_lens().map_err(named)?;
         let size = intrinsics.size().map_err(named)?;
         let half_angle = intrinsics.half_angle(size).map_err(named)?;
         let pose = pose(&frame.transform_matrix).map_err(named)?;
@@ -344,10 +379,18 @@ mod tests {
             (r#""fl_x": 100, "cx": 10, "w": 64, "h": 64,"#, whole, "centre"),
             (r#""fl_x": 100,"#, whole, "w and h are needed"),
             (r#""w": 0.5, "h": 64,"#, whole, "whole numbers"),
+            (r#""k1": 0.1, "p2": 0,"#, whole, "lenses that distort"),
+            (r#""p1": -0.01,"#, whole, "lenses that distort"),
+            (r#""camera_model": "OPENCV_FISHEYE","#, whole, "model OPENCV_FISHEYE"),
+            (r#""is_fisheye": true,"#, whole, "model fisheye"),
         ] {
             let error = frame(lens, matrix);
             assert!(error.starts_with("frame 0: ") && error.contains(reason), "{error}");
         }
         assert!(from_json(br#"{"frames": []}"#).is_err());
+        let plain = format!(
+            r#"{{"camera_model": "OPENCV", "k1": 0, "frames": [{{"transform_matrix": {whole}}}]}}"#
+        );
+        assert!(from_json(plain.as_bytes()).is_ok());
     }
 }
