@@ -30,9 +30,11 @@ def main():
         tasks = client.map(
             draw, range(parts), parts=parts, options=options, folder=folder, retries=2, pure=False
         )
-        client.gather(tasks)
-    reports = sorted(Path("reports").glob("*.jsonl"))
-    sys.exit(subprocess.run(["marraztu", "merge", *reports, "--out", "report.jsonl"]).returncode)
+        statuses = client.gather(tasks)
+    # The folder may also hold reports of an earlier run in more parts.
+    reports = [f"reports/{part}.jsonl" for part in range(parts)]
+    merged = subprocess.run(["marraztu", "merge", *reports, "--out", "report.jsonl"])
+    sys.exit(merged.returncode or max(statuses))
 
 
 if __name__ == "__main__":

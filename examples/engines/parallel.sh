@@ -1,14 +1,17 @@
 #!/usr/bin/env bash
 # Draws a list in parts with GNU parallel: parallel.sh PARTS OPTIONS OF BATCH ...
 #
-# After a crash, run it again. The file `joblog` remembers the finished parts, and --resume skips the finished
-# pictures of the others. Remove `joblog` if models or options have changed.
+# After a crash, run it again: --resume skips the finished pictures. A part that still fails is repeated once; then
+# the exit status is that of GNU parallel, and the report names the missing pictures.
 set -euo pipefail
 parts=$1
 shift
 mkdir -p reports
-# --quote passes the fields of --out unchanged. Parts that still fail are in the report.
-parallel --quote --joblog joblog --resume-failed --retries 2 \
+status=0
+# --quote passes the fields of --out unchanged.
+parallel --quote --retries 2 \
   marraztu batch "$@" --shard "{}/$parts" --resume --quiet --threads 1 --report "reports/{}.jsonl" \
-  ::: $(seq 0 $((parts - 1))) || true
-marraztu merge reports/*.jsonl --out report.jsonl
+  ::: $(seq 0 $((parts - 1))) || status=$?
+# A folder may also hold reports of an earlier run in more parts.
+marraztu merge $(seq -f 'reports/%.0f.jsonl' 0 $((parts - 1))) --out report.jsonl
+exit $status

@@ -31,15 +31,18 @@ def main():
     parts, options = int(sys.argv[1]), sys.argv[2:]
     Path("reports").mkdir(exist_ok=True)
     # The list is in memory: a task that reads it would wait for a core that the actors hold.
-    ray.data.from_items(list(range(parts)), override_num_blocks=parts).map_batches(
+    drawn = ray.data.from_items(list(range(parts)), override_num_blocks=parts).map_batches(
         Painter,
         fn_constructor_args=(parts, options, Path.cwd()),
         batch_size=1,
         num_cpus=1,
         compute=ray.data.ActorPoolStrategy(min_size=2, max_size=max(2, parts)),
-    ).materialize()
-    reports = sorted(Path("reports").glob("*.jsonl"))
-    sys.exit(subprocess.run(["marraztu", "merge", *reports, "--out", "report.jsonl"]).returncode)
+    )
+    statuses = [row["status"] for row in drawn.take_all()]
+    # The folder may also hold reports of an earlier run in more parts.
+    reports = [f"reports/{part}.jsonl" for part in range(parts)]
+    merged = subprocess.run(["marraztu", "merge", *reports, "--out", "report.jsonl"])
+    sys.exit(merged.returncode or max(statuses))
 
 
 if __name__ == "__main__":

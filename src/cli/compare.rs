@@ -98,7 +98,7 @@ pub(super) fn compare(arguments: &Compare) -> Result<(), Failure> {
     let amplified =
         (out.is_some() || html.is_some()).then(|| amplified(&first, &second, AMPLIFIED));
     if let (Some(out), Some(amplified)) = (out, &amplified) {
-        io::save_picture(out, amplified)?;
+        io::save_picture(out, amplified).map_err(|error| incomparable(&error.to_string()))?;
     }
     if let (Some(html), Some(amplified)) = (html, &amplified) {
         let part = |name: &str, picture: &Picture| -> Result<PagePicture, Failure> {
@@ -110,7 +110,8 @@ pub(super) fn compare(arguments: &Compare) -> Result<(), Failure> {
         let pictures = [part(&names[0], &first)?, part(&names[1], &second)?];
         let amplified = part(&format!("Difference, times {AMPLIFIED}"), amplified)?;
         let title = format!("{} and {}", names[0], names[1]);
-        write_page(html, &plots::compare_page(&title, &rows, &pictures, &amplified))?;
+        write_page(html, &plots::compare_page(&title, &rows, &pictures, &amplified))
+            .map_err(|error| incomparable(&error.to_string()))?;
     }
     let is_same = difference.largest <= *max && flip.is_none_or(|flip| difference.flip <= flip);
     if is_same { Ok(()) } else { Err(Failure::Told) }

@@ -50,6 +50,9 @@ pub(crate) struct Merge {
     talk: Talk,
 }
 
+/// The most pictures of a list. Their lines would take some 30 GB, so a larger number is a mistake.
+const MOST_JOBS: usize = 100_000_000;
+
 /// The lines of all reports.
 #[derive(Debug, Default)]
 struct Merged {
@@ -119,16 +122,26 @@ fn reports(arguments: &Merge) -> Result<Vec<PathBuf>, Failure> {
 }
 
 impl Merged {
-    /// Adds the lines of a report.
+    /// Adds the lines of a report, which ends with its summary.
     fn add(&mut self, path: &Path, text: &str) -> Result<(), String> {
         let place = |i: usize| format!("{}:{}", path.display(), i + 1);
+        let mut jobs = None;
         for (i, text) in text.lines().enumerate() {
+            if jobs.is_some() {
+                return Err(format!("{}: a report ends with its summary", place(i)));
+            }
             if let Ok(Summary { summary }) = serde_json::from_str(text) {
                 if self.jobs.is_some_and(|jobs| jobs != summary.jobs) {
-                    let place = place(i);
-                    return Err(format!("{place}: the reports are of lists of different lengths"));
+                    return Err(format!(
+                        "{}: the reports are of lists of different lengths; leave out reports of \
+                         earlier runs",
+                        place(i)
+                    ));
                 }
-                self.jobs = Some(summary.jobs);
+                if summary.jobs > MOST_JOBS {
+                    return Err(format!("{}: more than {MOST_JOBS} pictures", place(i)));
+                }
+                jobs = Some(summary.jobs);
                 continue;
             }
             let line: Line = serde_json::from_str(text).map_err(|error| {
@@ -155,12 +168,20 @@ impl Merged {
                 }
             }
         }
-        Ok(())
+        self.jobs = jobs;
+        let Some(jobs) = jobs else {
+            return Err(format!("{}: the report is cut off: it has no summary", path.display()));
+        };
+        match self.lines.last_key_value() {
+            Some((index, _)) if *index >= jobs => {
+                Err(format!("{}: there is no picture {index} of {jobs}", path.display()))
+            }
+            _ => Ok(()),
+        }
     }
 
     fn counts(&self) -> Counts {
-        let length = self.lines.last_key_value().map_or(0, |(index, _)| index + 1);
-        let mut counts = Counts { jobs: self.jobs.unwrap_or(length), ..Counts::default() };
+        let mut counts = Counts { jobs: self.jobs.unwrap_or(0), ..Counts::default() };
         for (line, ..) in self.lines.values() {
             counts.add(line.status);
         }
@@ -260,10 +281,26 @@ mod tests {
         );
         let other = line_of(0, "done").replace("0.obj", "x.obj");
         assert!(
-            merged(&[&[line_of(0, "done")], &[other]])
+            merged(&[&[line_of(0, "done"), summary_of(1)], &[other]])
                 .unwrap_err()
                 .contains("differs from the one in r")
         );
         assert!(merged(&[&["nonsense".to_owned()]]).unwrap_err().starts_with("r:1: "));
+    }
+
+    #[test]
+    fn reports_that_are_cut_off_or_impossible_are_rejected() {
+        let (done, huge) = (line_of(1, "done"), summary_of(usize::MAX));
+        for (report, reason) in [
+            (vec![], "r: the report is cut off"),
+            (vec![done.clone()], "r: the report is cut off"),
+            (vec![done.clone(), summary_of(2)[..20].to_owned()], "r:2: this is not a line"),
+            (vec![done.clone(), huge], "r:2: more than 100000000 pictures"),
+            (vec![done.clone(), summary_of(1)], "r: there is no picture 1 of 1"),
+            (vec![summary_of(2), done], "r:2: a report ends with its summary"),
+        ] {
+            let error = merged(&[&report]).unwrap_err();
+            assert!(error.starts_with(reason), "{error}");
+        }
     }
 }

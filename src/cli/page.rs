@@ -12,13 +12,17 @@ use super::failure::{Failure, usage};
 /// The first letters of a page.
 const BEGIN: &str = "<!doctype html";
 
-/// Checks that a page may be written to `path`: an existing file is a page, or empty, and not an
-/// input.
+/// Checks that a page may be written to `path`: the name is that of a page, and an existing file is
+/// a page, or empty, and not an input.
 ///
 /// # Errors
-/// If the existing file is another one.
+/// If the name is another one, or the existing file.
 pub(super) fn check_page(path: &Path, sources: &Sources) -> Result<(), Failure> {
     sources.spare(path)?;
+    let ending = path.extension().unwrap_or_default();
+    if !["html", "htm"].iter().any(|html| ending.eq_ignore_ascii_case(html)) {
+        return Err(usage(&format!("{}: the name of a page ends with .html", path.display())));
+    }
     let mut begin = Vec::new();
     let Ok(file) = std::fs::File::open(path) else { return Ok(()) };
     let read = file.take(BEGIN.len() as u64).read_to_end(&mut begin);
