@@ -287,14 +287,25 @@ fn a_lesson_measures_its_axis_by_itself_and_tells_the_cost() {
     editor.ask(Request::Lab(LabRequest::ShowLesson("rounding")));
     assert!(lab(&editor).running.is_some() && editor.shows("Measuring on this machine"));
     until_measured(&mut editor);
-    let cost = lab(&editor).costs.get("rounding").cloned().unwrap();
-    assert!(editor.shows(&cost), "{cost}");
+    let rounding = Axis::named("rounding").unwrap();
+    let cost = lab(&editor).costs["rounding"].clone();
+    let chosen =
+        |editor: &Editor| cost.choices[rounding.chosen(&editor.state().settings).word].clone();
+    let first = chosen(&editor);
+    assert!(editor.shows(&first), "{first}");
+    assert!(first.contains("of 255 instead of "), "{first}");
+    // Another choice has another line.
+    let default = rounding.default_choice();
+    let settings = default.of(&editor.state().settings);
+    editor.ask(Request::Settings(settings));
+    let second = chosen(&editor);
+    assert!(second.contains("the default: error ") && editor.shows(&second), "{second}");
     let report = lab(&editor).report.as_ref().unwrap();
     assert_eq!(report.findings.rows_of(Axis::named("rounding").unwrap()).count(), 3);
     // Shown again, it is not measured again.
     editor.ask(Request::Lab(LabRequest::Back));
     editor.ask(Request::Lab(LabRequest::ShowLesson("rounding")));
-    assert!(lab(&editor).running.is_none() && editor.shows(&cost));
+    assert!(lab(&editor).running.is_none() && editor.shows(&first));
 }
 
 #[test]

@@ -58,7 +58,6 @@ impl Arrangement {
         }
         dial::show(ui, self.places.picture, state, requests);
         greeting::show(ui, self.places.picture, state, requests);
-        lesson_card::show(ui, self.places.picture, state, requests);
         splitters::show(ui, state, self.area, &self.places, requests);
     }
 }
@@ -87,7 +86,8 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> A
     let renames = state.renaming.is_some();
     let panels = state.panels.with(Panel::Outline, state.panels.has(Panel::Outline) || renames);
     // Docked panels are laid out first, and the picture gets the rest.
-    let places = layout.divide(area, panels);
+    let mut places = layout.divide(area, panels);
+    places.picture = lesson_card::show(ui, places.picture, state, requests);
     if let Some(rect) = places.strip {
         ui.painter().rect_filled(rect, 0.0, fill);
         regions::begin(ui, "strip");

@@ -1,7 +1,7 @@
-//! The card of a lesson, over the lower edge of the picture: a title, two sentences, the cost and
-//! the benefit on this machine, and the choices to try.
+//! The card of a lesson, below the picture: a title, two sentences, the cost and the benefit on
+//! this machine, and the choices to try.
 
-use egui::{Align2, Area, Frame, Id, Order, Rect, RichText, Ui, vec2};
+use egui::{Frame, Rect, RichText, ScrollArea, TextStyle, Ui, UiBuilder, vec2};
 
 use super::view_switches::axis_ui;
 use crate::app::actions::{LabRequest, Request};
@@ -10,23 +10,37 @@ use crate::app::theme;
 use crate::app::widgets::regions;
 use marraztu_io::{Lesson, lessons};
 
-/// The greatest width of the card.
-const WIDTH: f32 = 560.0;
+/// The greatest width of the text.
+const WIDTH: f32 = 640.0;
 
-/// Shows the card of the lesson on show; its requests are added to `requests`.
-pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Request>) {
-    let Some(lesson) = state.lab.lesson else { return };
-    let area = Area::new(Id::unique("lesson")).order(Order::Middle).constrain_to(picture);
-    let at = picture.center_bottom() - vec2(0.0, 10.0);
-    let width = (picture.width() - 40.0).min(WIDTH);
-    area.pivot(Align2::CENTER_BOTTOM).fixed_pos(at).show(ui.ctx(), |ui| {
-        Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
-            regions::begin(ui, "lesson");
-            ui.set_width(width);
-            contents(ui, lesson, state, requests);
-            regions::follow_focus(ui);
+/// The greatest height, as a part of the area; a higher card scrolls.
+const MOST: f32 = 0.6;
+
+/// Shows the card of the lesson on show at the bottom of an area; its requests are added to
+/// `requests`. Returns the area left for the picture: the card hides nothing of its subject.
+pub(crate) fn show(ui: &mut Ui, area: Rect, state: &State, requests: &mut Vec<Request>) -> Rect {
+    let Some(lesson) = state.lab.lesson else { return area };
+    let mut child = ui.new_child(UiBuilder::new().id_salt("lesson").max_rect(area));
+    let frame = Frame::new().fill(ui.visuals().panel_fill).inner_margin(10.0);
+    egui::Panel::bottom("lesson").resizable(false).frame(frame).show(&mut child, |ui| {
+        regions::begin(ui, "lesson");
+        let most = MOST * area.height();
+        // Otherwise the height of the last frame would limit it, too.
+        let scroll = ScrollArea::vertical().max_height(most).min_scrolled_height(most);
+        scroll.show(ui, |ui| {
+            let width = ui.available_width().min(WIDTH);
+            let indent = (ui.available_width() - width) / 2.0;
+            ui.horizontal_top(|ui| {
+                ui.add_space(indent);
+                ui.vertical(|ui| {
+                    ui.set_max_width(width);
+                    contents(ui, lesson, state, requests);
+                });
+            });
         });
+        regions::follow_focus(ui);
     });
+    child.available_rect_before_wrap()
 }
 
 fn contents(ui: &mut Ui, lesson: &'static Lesson, state: &State, requests: &mut Vec<Request>) {
@@ -60,12 +74,23 @@ fn contents(ui: &mut Ui, lesson: &'static Lesson, state: &State, requests: &mut 
     });
 }
 
-/// Shows what the axis costs and gives, as measured on this computer.
+/// Shows what the chosen choice costs and gives, as measured on this computer.
 fn cost_ui(ui: &mut Ui, lesson: &Lesson, state: &State) {
-    let text = match (state.lab.costs.get(lesson.axis.as_str()), state.lab.running) {
-        (Some(cost), _) => cost.clone(),
+    let cost = state.lab.costs.get(lesson.axis.as_str());
+    let chosen = lesson.axis().chosen(&state.settings);
+    let line = cost.and_then(|cost| cost.choices.get(chosen.word));
+    let text = match (line, state.lab.running) {
+        (Some(line), _) => line.clone(),
         (None, Some(part)) => format!("Measuring on this machine: {:.0}%", part * 100.0),
         (None, None) => "Its cost on this machine is not known".to_owned(),
     };
-    ui.add(egui::Label::new(RichText::new(text).weak()).wrap());
+    // The picture keeps its size when the figures arrive.
+    let lines = 2.0 * ui.text_style_height(&TextStyle::Body);
+    ui.allocate_ui(vec2(ui.available_width(), lines), |ui| {
+        ui.set_min_height(lines);
+        let label = ui.add(egui::Label::new(RichText::new(text).weak()).wrap());
+        if let Some(cost) = cost {
+            label.on_hover_text(&cost.all);
+        }
+    });
 }

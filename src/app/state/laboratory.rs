@@ -51,8 +51,8 @@ pub struct Laboratory {
     pub lesson: Option<&'static Lesson>,
     /// Whether the scene is that of a lesson, with the user's scene to return to.
     pub away: bool,
-    /// The measured effect of each axis, as a sentence, by the axis's key.
-    pub costs: BTreeMap<&'static str, String>,
+    /// The measured effect of each axis, by the axis's key.
+    pub costs: BTreeMap<&'static str, AxisCost>,
     /// The scene, the view and the size that were measured.
     pub(crate) measured: Option<(Scene, View, Size)>,
 }
@@ -94,10 +94,14 @@ impl Laboratory {
         }
     }
 
-    /// Keeps the measured effect of each axis as a sentence.
+    /// Keeps the measured effect of each axis.
     pub(crate) fn note_costs(&mut self, report: &Report) {
         for axis in AXES.iter().filter(|axis| report.findings.rows_of(axis).count() > 1) {
-            self.costs.insert(axis.key, report.verdict_on(axis));
+            let choices = axis.choices.iter().filter_map(|choice| {
+                report.verdict_on_choice(axis, choice).map(|line| (choice.word, line))
+            });
+            let cost = AxisCost { all: report.verdict_on(axis), choices: choices.collect() };
+            self.costs.insert(axis.key, cost);
         }
     }
 
@@ -110,6 +114,15 @@ impl Laboratory {
             !same_view || !same_size || *scene != state.scene
         })
     }
+}
+
+/// The measured effect of an axis on time and error.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct AxisCost {
+    /// A paragraph on all choices.
+    pub all: String,
+    /// A line on each measured choice, by its word.
+    pub choices: BTreeMap<&'static str, String>,
 }
 
 /// The way to compare the picture with the exact one.

@@ -329,7 +329,8 @@ impl State {
         let notices = self.notices.iter().map(|notice| notice.text.clone());
         let cost = self.lab.lesson.and_then(|lesson| self.lab.costs.get(lesson.axis.as_str()));
         let report = self.lab.shown().filter(|_| self.panels.has(Panel::Laboratory));
-        let lab = cost.cloned().into_iter().chain(report.map(Report::verdict).unwrap_or_default());
+        let cost = cost.map(|cost| cost.all.clone());
+        let lab = cost.into_iter().chain(report.map(Report::verdict).unwrap_or_default());
         let all = message.chain(self.recoverable.clone()).chain(notices).chain(lab);
         all.collect::<Vec<_>>().join("\n")
     }

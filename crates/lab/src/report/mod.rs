@@ -14,7 +14,7 @@ use super::candidates::Group;
 use super::error::{Measure, Region};
 use super::front::{Point, fastest_within, front, most_exact_within};
 use super::sweep::{Findings, Measured, Row, Verdict};
-use marraztu_core::accuracy::Axis;
+use marraztu_core::accuracy::{Axis, Choice};
 
 /// The results of a sweep, with the options of the report.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -153,6 +153,13 @@ impl Report {
     #[must_use]
     pub fn verdict_on(&self, axis: &Axis) -> String {
         verdict::verdict_on(self, axis)
+    }
+
+    /// Describes a choice of an axis in a line: its time and error against the default's. `None` if
+    /// the choice was not measured.
+    #[must_use]
+    pub fn verdict_on_choice(&self, axis: &Axis, choice: &Choice) -> Option<String> {
+        verdict::verdict_on_choice(self, axis, choice)
     }
 
     /// Formats the report as JSON.

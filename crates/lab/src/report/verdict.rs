@@ -7,8 +7,8 @@
 //! none is omitted.
 
 use super::Report;
-use crate::sweep::{Measured, Row, TOO_BUSY, Verdict};
-use marraztu_core::accuracy::{AXES, Axis, AxisKind};
+use crate::sweep::{Findings, Measured, Row, TOO_BUSY, Verdict};
+use marraztu_core::accuracy::{AXES, Axis, AxisKind, Choice};
 
 /// Changes of the error below this fraction are ignored.
 const MARGIN: f64 = 0.05;
@@ -60,6 +60,31 @@ pub(super) fn verdict_on(report: &Report, axis: &Axis) -> String {
     let [width, height] = report.findings.size;
     let noise = noise.map_or_else(|| BUSY.to_owned(), |noise| format!("noise {noise}"));
     format!("{} (At {width}x{height} on {}; {noise}.)", capital.join(" "), report.scene)
+}
+
+/// Writes a line on a measured choice of an axis: its time and its error against the default's.
+pub(super) fn verdict_on_choice(report: &Report, axis: &Axis, choice: &Choice) -> Option<String> {
+    let Findings { points, .. } = &report.findings;
+    let rows = || report.findings.rows_of(axis);
+    let row = rows().find(|row| axis.chosen(&points[row.point].settings).word == choice.word)?;
+    let before = rows().find(|row| row.point == 0)?;
+    let [error, usual] = [row, before].map(|row| digits(row.error.whole.rmse));
+    let name = capitalized(&axis.in_words(choice));
+    if row.point == 0 {
+        return Some(format!("{name}, the default: error {error} of 255."));
+    }
+    let point = &points[row.point];
+    let default = axis.in_words(axis.default_choice());
+    let time = match point.verdict {
+        Verdict::Alike => "the same time as".to_owned(),
+        Verdict::Busy => "no faster or slower, as far as this busy machine tells, than".to_owned(),
+        Verdict::Faster | Verdict::Slower => {
+            format!("{} the time of", times(point.ratio.quartiles.median))
+        }
+    };
+    let noise = noise(report, [row.point].into_iter());
+    let noise = noise.map_or_else(String::new, |noise| format!(" (noise {noise})"));
+    Some(format!("{name}: {time} {default}{noise}, error {error} of 255 instead of {usual}."))
 }
 
 /// Explains why choices take longer than more exact ones, if this happens here.
