@@ -19,21 +19,22 @@ const BEGIN: &str = "<!doctype html";
 /// If the name is another one, or the existing file.
 pub(super) fn check_page(path: &Path, sources: &Sources) -> Result<(), Failure> {
     sources.spare(path)?;
+    let mut begin = Vec::new();
+    if let Ok(file) = std::fs::File::open(path) {
+        let read = file.take(BEGIN.len() as u64).read_to_end(&mut begin);
+        let is_page = begin.is_empty() || begin.eq_ignore_ascii_case(BEGIN.as_bytes());
+        if read.is_err() || !is_page {
+            return Err(usage(&format!(
+                "{}: a file with this name exists and is not a page; choose another name",
+                path.display()
+            )));
+        }
+    }
     let ending = path.extension().unwrap_or_default();
     if !["html", "htm"].iter().any(|html| ending.eq_ignore_ascii_case(html)) {
         return Err(usage(&format!("{}: the name of a page ends with .html", path.display())));
     }
-    let mut begin = Vec::new();
-    let Ok(file) = std::fs::File::open(path) else { return Ok(()) };
-    let read = file.take(BEGIN.len() as u64).read_to_end(&mut begin);
-    match read {
-        Ok(0) => Ok(()),
-        Ok(_) if begin.eq_ignore_ascii_case(BEGIN.as_bytes()) => Ok(()),
-        _ => Err(usage(&format!(
-            "{}: a file with this name exists and is not a page; choose another name",
-            path.display()
-        ))),
-    }
+    Ok(())
 }
 
 /// Writes a page.
