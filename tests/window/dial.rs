@@ -9,7 +9,7 @@ use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
 use marraztu::app::actions::Chord::Named;
 use marraztu::app::actions::{Action, LabRequest, Request};
 use marraztu::app::state::laboratory::Compare;
-use marraztu_core::accuracy::{AccuracyPreset, Settings};
+use marraztu_core::accuracy::{AccuracyPreset, Filter, Settings};
 use marraztu_lab::dial::in_words;
 
 use crate::editor::Editor;
@@ -85,6 +85,31 @@ fn a_preset_is_chosen_by_its_row_and_by_its_key() {
     }
     editor.perform(Action::ToggleDial);
     assert!(texts_of_rows(&editor).is_empty());
+}
+
+#[test]
+fn settings_of_the_users_own_have_a_row_and_a_way_back() {
+    let mut editor = measured();
+    let own = Settings { filter: Filter::Nearest, ..preset("default") };
+    editor.ask(Request::Settings(own));
+    rest(&mut editor);
+    let rows = texts_of_rows(&editor);
+    assert_eq!(rows.len(), 5, "{rows:?}");
+    assert!(rows[4].starts_with("Own: "), "{rows:?}");
+    let measured = editor.state().dial.figures().to_vec();
+    assert_eq!(measured.len(), 5);
+    assert_eq!((measured[3].settings, measured[4].error), (own, Some(0.0)));
+    editor.perform(Action::DialExact);
+    assert!(editor.state().dial.current, "nothing is measured again");
+    control(&editor, Role::RadioButton, &rows[4]).click();
+    editor.settle();
+    assert_eq!(editor.state().settings, own);
+    // They belong to the scene.
+    editor.perform(Action::DialExact);
+    editor.ask(Request::Lab(LabRequest::ShowLesson("depth")));
+    assert_ne!(editor.state().dial.own, Some(own));
+    editor.ask(Request::Lab(LabRequest::Back));
+    assert_eq!(editor.state().dial.own, Some(own));
 }
 
 /// The names of the rows, which contain their figures.

@@ -11,6 +11,16 @@ use marraztu_core::scene::{Scene, View};
 use marraztu_lab::dial::{Dial, Figures, Step, of_dial};
 use marraztu_render::screen::coverage::PixelBox;
 use marraztu_render::{Renderer, plan_frame};
+use serde::{Deserialize, Serialize};
+
+/// The pictures of the dial, besides the presets.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct DialWish {
+    /// The samples per pixel that pictures are refined to.
+    pub(crate) refined: Option<Samples>,
+    /// The settings of the user, if they are those of no preset.
+    pub(crate) own: Option<Settings>,
+}
 
 /// Everything that the figures of the dial depend on.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,15 +31,15 @@ pub(crate) struct Dialled {
     pub(crate) size: Size,
     /// The models; all other axes are at their defaults.
     pub(crate) models: Settings,
-    /// The samples per pixel that pictures are refined to.
-    pub(crate) refined: Option<Samples>,
+    pub(crate) wish: DialWish,
 }
 
 /// The figures of the dial.
 #[derive(Clone, Debug)]
 pub(crate) struct DialFigures {
     pub(crate) of: Dialled,
-    /// The time and the error of each preset, in their order; fewer before the ideal is known.
+    /// The time and the error of each preset, in their order, and of the user's settings before the
+    /// ideal; fewer before the ideal is known.
     pub(crate) figures: Vec<Figures>,
 }
 
@@ -38,10 +48,26 @@ impl Dialled {
         (scene, view): (&Scene, &View),
         settings: &Settings,
         size: Size,
-        refined: Option<Samples>,
+        wish: DialWish,
     ) -> Self {
         let models = Settings::default().modelled_as(settings);
-        Self { scene: scene.clone(), view: pictured(view), size, models, refined }
+        let own = wish.own.map(|own| own.modelled_as(settings));
+        let wish = DialWish { own, ..wish };
+        Self { scene: scene.clone(), view: pictured(view), size, models, wish }
+    }
+
+    /// Returns settings as the window shows them at rest.
+    pub(crate) fn at_rest(&self, settings: &Settings) -> Settings {
+        self.wish.refined.map_or(*settings, |samples| settings.refined_to(samples))
+    }
+
+    /// Returns the settings of all pictures.
+    fn all(&self) -> Vec<Settings> {
+        let presets = of_dial(&self.models, self.wish.refined).map(|(_, settings)| settings);
+        let mut all: Vec<Settings> = presets.collect();
+        let own = self.wish.own.map(|own| self.at_rest(&own));
+        all.extend(own.filter(|own| !all.contains(own)));
+        all
     }
 
     fn shot(&self) -> Shot {
@@ -66,13 +92,11 @@ impl IdleDial {
         snapshot: &Snapshot,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Finer {
-        let Some(refined) = snapshot.dial else { return Finer::Done };
+        let Some(wish) = snapshot.dial else { return Finer::Done };
         let Snapshot { scene, view, settings, size, .. } = snapshot;
-        let of = Dialled::of((scene, view), settings, *size, refined);
+        let of = Dialled::of((scene, view), settings, *size, wish);
         if self.of.as_ref() != Some(&of) {
-            let all: Vec<Settings> =
-                of_dial(&of.models, refined).map(|(_, settings)| settings).collect();
-            self.dial = Some(Dial::new(&of.shot(), &all));
+            self.dial = Some(Dial::new(&of.shot(), &of.all()));
             self.of = Some(of.clone());
         }
         let Some(dial) = &mut self.dial else { return Finer::Done };

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use super::dial::DialWish;
 use marraztu_core::accuracy::{Samples, Settings};
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{Frame, ItemId, Scene, Steps, Subject, Transformation, View};
@@ -21,8 +22,8 @@ pub(crate) struct Snapshot {
     pub(crate) budget: Duration,
     /// The samples per pixel that the picture is refined to while nothing happens.
     pub(crate) refined: Option<Samples>,
-    /// Whether the dial is measured, and the samples per pixel that its pictures are refined to.
-    pub(crate) dial: Option<Option<Samples>>,
+    /// The pictures of the dial, if it is measured.
+    pub(crate) dial: Option<DialWish>,
     /// Whether to explain the effects of the picture.
     pub(crate) explain: bool,
     /// The selected items to outline in the picture. The first has a separate border; the others

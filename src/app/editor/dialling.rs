@@ -8,8 +8,10 @@ use super::App;
 const HELD: f64 = 0.35;
 
 impl App {
-    /// Notes whether the figures of the dial belong to the picture on screen.
+    /// Notes whether the figures of the dial belong to the picture on screen, and keeps settings of
+    /// the user's own.
     pub(super) fn note_dial(&mut self) {
+        self.state.dial.keep_own(&self.state.settings);
         let Some(size) = self.viewport.size() else { return };
         let state = &self.state;
         let is_of = |last: &crate::app::drawing::dial::DialFigures| last.of == state.dialled(size);

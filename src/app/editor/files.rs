@@ -398,7 +398,8 @@ impl App {
         // The palette closes itself after the request that replaces the scene.
         let palette = self.state.palette;
         let statistics = self.state.statistics.clone();
-        let dial = DialState { shown: self.state.dial.shown, ..DialState::default() };
+        let dial =
+            DialState { shown: self.state.dial.shown, own: state.dial.own, ..DialState::default() };
         let recent = std::mem::take(&mut self.state.recent);
         let recoverable = std::mem::take(&mut self.state.recoverable);
         let discarded = std::mem::take(&mut self.state.discarded);

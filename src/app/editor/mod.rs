@@ -390,7 +390,7 @@ impl App {
             coarse,
             budget,
             refined,
-            dial: self.state.dial_refined_to(),
+            dial: self.state.wanted_dial(),
             explain,
             outlined,
         };

@@ -1,7 +1,8 @@
 //! The dial: what accuracy costs in this view, over the picture and always visible.
 //!
-//! Each row is a preset with the time and the error of its picture. The editor measures them while
-//! nothing happens; until then, the figures are grey. A click draws with a preset.
+//! Each row is a preset with the time and the error of its picture; a further row has the user's
+//! own settings, if there are any. The editor measures them while nothing happens; until then, the
+//! figures are grey. A click draws with the settings of a row.
 
 use egui::{Align2, Area, Color32, Frame, Id, Order, Rect, Role, Sense, TextStyle, Ui, WidgetInfo};
 use egui::{RichText, pos2, vec2};
@@ -14,7 +15,7 @@ use crate::app::theme;
 use crate::app::widgets::controls::{self, focus_ring, icon_at, put_text};
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::regions;
-use marraztu_core::accuracy::AccuracyPreset;
+use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset, Settings};
 use marraztu_lab::dial::{Figures, error_in_words, in_words};
 use marraztu_lab::report::brief;
 
@@ -49,15 +50,14 @@ pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Req
 
 fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     head_ui(ui, state, requests);
-    let presets = AccuracyPreset::dial();
-    let ids: Vec<Id> = presets.iter().map(|preset| ui.scope_id().with(preset.word)).collect();
-    let is_on = |preset: &AccuracyPreset| preset.of(&state.settings) == state.settings;
-    let stop = regions::stop(ui, &ids, presets.iter().position(is_on), 1);
-    for (i, preset) in presets.iter().enumerate() {
-        let (id, action) = (ids[i], Action::DIAL[i]);
-        let row = Row { preset, action, is_on: is_on(preset), is_stop: i == stop, id };
-        if row.ui(ui, state) && !row.is_on {
-            requests.push(Request::Do(action));
+    let rows = rows(state);
+    let ids: Vec<Id> = rows.iter().map(|row| ui.scope_id().with(row.label)).collect();
+    let on = rows.iter().position(|row| row.settings == state.settings);
+    let stop = regions::stop(ui, &ids, on, 1);
+    for (i, row) in rows.iter().enumerate() {
+        if row.ui(ui, state, (ids[i], i == stop)) && on != Some(i) {
+            let chosen = row.action.map_or(Request::Settings(row.settings), Request::Do);
+            requests.push(chosen);
         }
     }
     // What the figures mean, in a sentence.
@@ -66,10 +66,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         Some(_) => "Paused while the laboratory measures.",
         None => "Measured as soon as nothing moves.",
     };
-    let mut said = said.unwrap_or_else(|| waits_for.to_owned());
-    if !presets.iter().any(is_on) {
-        said += " The picture has settings of its own, not one of these.";
-    }
+    let said = said.unwrap_or_else(|| waits_for.to_owned());
     ui.add_space(2.0);
     ui.add(egui::Label::new(RichText::new(said).small()).wrap());
 }
@@ -108,25 +105,42 @@ fn head_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 
 /// A row of the dial.
 struct Row {
-    preset: &'static AccuracyPreset,
-    action: Action,
-    is_on: bool,
-    is_stop: bool,
-    id: Id,
+    label: &'static str,
+    hint: String,
+    settings: Settings,
+    /// The action that chooses the settings, if they are a preset.
+    action: Option<Action>,
+}
+
+/// Returns the presets, and the user's own settings.
+fn rows(state: &State) -> Vec<Row> {
+    let presets = AccuracyPreset::dial().iter().zip(Action::DIAL).map(|(preset, action)| Row {
+        label: preset.label,
+        hint: preset.what.to_owned(),
+        settings: preset.of(&state.settings),
+        action: Some(action),
+    });
+    let own = state.dial.own.map(|own| {
+        let settings = own.modelled_as(&state.settings);
+        let preset = ACCURACY_PRESETS.iter().find(|preset| preset.of(&settings) == settings);
+        let hint = format!("Your last settings in this scene: {}.", settings.in_words());
+        Row { label: preset.map_or("Own", |preset| preset.label), hint, settings, action: None }
+    });
+    presets.chain(own).collect()
 }
 
 impl Row {
     /// Shows the row. Returns whether it was clicked.
-    fn ui(&self, ui: &mut Ui, state: &State) -> bool {
-        let Self { preset, action, is_on, is_stop, id } = *self;
+    fn ui(&self, ui: &mut Ui, state: &State, (id, is_stop): (Id, bool)) -> bool {
+        let is_on = self.settings == state.settings;
         let (rect, _) = ui.allocate_exact_size(vec2(WIDTH, theme::ROW - 2.0), Sense::hover());
         let response = ui.interact(rect, id, regions::sense(Sense::click(), is_stop));
-        let figures = state.dial.of(preset);
+        let figures = state.dial.of(&self.settings);
         let name = match figures {
             Some(Figures { ms, error: Some(error), .. }) => {
-                format!("{}: {} ms, error {}", preset.label, brief(ms), error_in_words(error))
+                format!("{}: {} ms, error {}", self.label, brief(ms), error_in_words(error))
             }
-            _ => preset.label.to_owned(),
+            _ => self.label.to_owned(),
         };
         response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_on, &name));
         let visuals = ui.visuals();
@@ -141,7 +155,7 @@ impl Row {
                 Rect::from_min_size(rect.min + vec2(0.0, 3.0), vec2(2.0, rect.height() - 6.0));
             ui.painter().rect_filled(bar, 1.0, theme::accent(ui.visuals()));
         }
-        let label = controls::text(ui, preset.label, TextStyle::Body, 80.0);
+        let label = controls::text(ui, self.label, TextStyle::Body, 80.0);
         put_text(ui, rect.with_min_x(rect.left() + 8.0), label, ink);
         // Figures of another picture are grey.
         let ink = if state.dial.current { ink } else { ui.visuals().weak_text_color() };
@@ -155,10 +169,10 @@ impl Row {
             right_text(ui, column(rect, right), text, ink);
         }
         focus_ring(ui, rect, &response);
-        let key = first_key(ui, action);
+        let key = self.action.and_then(|action| first_key(ui, action));
         response
             .on_hover_ui(|ui| {
-                ui.label(preset.what);
+                ui.label(&self.hint);
                 if let Some(key) = key {
                     ui.weak(format!("Key: {key}"));
                 }

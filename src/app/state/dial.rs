@@ -1,10 +1,10 @@
 //! The state of the dial.
 
 use super::State;
-use crate::app::drawing::dial::{DialFigures, Dialled};
-use marraztu_core::accuracy::{AccuracyPreset, Samples};
+use crate::app::drawing::dial::{DialFigures, DialWish, Dialled};
+use marraztu_core::accuracy::{AccuracyPreset, Settings};
 use marraztu_core::base::image::Size;
-use marraztu_lab::dial::{Figures, of_dial};
+use marraztu_lab::dial::Figures;
 
 /// The figures of the dial, and whether it is shown.
 #[derive(Debug, Default)]
@@ -15,6 +15,8 @@ pub struct DialState {
     pub(crate) last: Option<Box<DialFigures>>,
     /// Whether the last figures belong to the picture on screen.
     pub current: bool,
+    /// The last settings of this scene that were those of no preset: a way back to them.
+    pub own: Option<Settings>,
 }
 
 impl DialState {
@@ -24,12 +26,18 @@ impl DialState {
         self.last.as_ref().map_or(&[], |last| &last.figures)
     }
 
-    /// Returns the last figures of a preset.
-    pub(crate) fn of(&self, preset: &AccuracyPreset) -> Option<Figures> {
+    /// Returns the last figures of settings, or those of the same settings with other models.
+    pub(crate) fn of(&self, settings: &Settings) -> Option<Figures> {
         let last = self.last.as_ref()?;
-        let mut all = of_dial(&last.of.models, last.of.refined);
-        let (_, settings) = all.find(|(other, _)| other.word == preset.word)?;
+        let settings = last.of.at_rest(&settings.modelled_as(&last.of.models));
         last.figures.iter().find(|figures| figures.settings == settings).copied()
+    }
+
+    /// Keeps settings that are those of no preset.
+    pub(crate) fn keep_own(&mut self, settings: &Settings) {
+        if !AccuracyPreset::dial().iter().any(|preset| preset.of(settings) == *settings) {
+            self.own = Some(*settings);
+        }
     }
 }
 
@@ -39,16 +47,20 @@ impl State {
         self.dial.shown && self.overlays
     }
 
-    /// Returns the samples per pixel that the pictures of the dial are refined to; `None` if the
-    /// dial is not measured now, because it is hidden or something else is measured.
-    pub(crate) fn dial_refined_to(&self) -> Option<Option<Samples>> {
+    fn wish(&self) -> DialWish {
+        let refined = self.drawing.refines.then_some(self.drawing.refined);
+        DialWish { refined, own: self.dial.own }
+    }
+
+    /// Returns the pictures of the dial; `None` if it is not measured now, because it is hidden or
+    /// something else is measured.
+    pub(crate) fn wanted_dial(&self) -> Option<DialWish> {
         let measures = self.shows_dial() && self.lab.running.is_none() && !self.is_animated();
-        measures.then(|| self.drawing.refines.then_some(self.drawing.refined))
+        measures.then(|| self.wish())
     }
 
     /// Returns what the figures of the dial depend on.
     pub(crate) fn dialled(&self, size: Size) -> Dialled {
-        let refined = self.drawing.refines.then_some(self.drawing.refined);
-        Dialled::of((&self.scene, &self.view), &self.settings, size, refined)
+        Dialled::of((&self.scene, &self.view), &self.settings, size, self.wish())
     }
 }

@@ -78,8 +78,7 @@ impl<P> Elsewhere<P> {
             coarse: *coarse,
             budget: *budget,
             refined: *refined,
-            has_dial: dial.is_some(),
-            dial: dial.flatten(),
+            dial: *dial,
             explain: *explain,
             outlined: outlined.clone(),
         })
@@ -144,7 +143,7 @@ impl<P> Elsewhere<P> {
 /// [`IdleDial`](crate::app::drawing::dial::IdleDial) does.
 fn dialled(snapshot: &Snapshot) -> Option<Dialled> {
     let Snapshot { scene, view, settings, size, dial, .. } = snapshot;
-    dial.map(|refined| Dialled::of((scene, view), settings, *size, refined))
+    dial.map(|wish| Dialled::of((scene, view), settings, *size, wish))
 }
 
 impl DrawnHead {

@@ -9,6 +9,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::app::drawing::border::Border;
+use crate::app::drawing::dial::DialWish;
 use crate::app::drawing::reduction::Reduction;
 use marraztu_core::accuracy::Samples;
 use marraztu_core::base::image::Size;
@@ -37,9 +38,7 @@ pub(super) struct Wanted {
     pub(super) coarse: bool,
     pub(super) budget: Duration,
     pub(super) refined: Option<Samples>,
-    pub(super) has_dial: bool,
-    /// The samples per pixel of the dial's pictures, if it is measured.
-    pub(super) dial: Option<Samples>,
+    pub(super) dial: Option<DialWish>,
     pub(super) explain: bool,
     pub(super) outlined: Vec<ItemId>,
 }

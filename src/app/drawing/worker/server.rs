@@ -74,7 +74,7 @@ impl DrawingServer {
             coarse: wanted.coarse,
             budget: wanted.budget,
             refined: wanted.refined,
-            dial: wanted.has_dial.then_some(wanted.dial),
+            dial: wanted.dial,
             explain: wanted.explain,
             outlined: wanted.outlined,
         })
