@@ -118,7 +118,10 @@ fn the_verdict_names_a_planted_slowdown_and_no_other_choice() {
         assert!(text.ends_with("Nothing saves more than the noise (0.1%)."), "{text}");
         assert_eq!(text.matches("3.0x").count(), 1, "{text}");
     }
-    assert_eq!(verdict(None, None), "At 8x8 on a scene: nothing saves more than the noise (0.1%).");
+    assert_eq!(
+        verdict(None, None),
+        "At 8x8, 1 sample per pixel, on a scene: nothing saves more than the noise (0.1%)."
+    );
 }
 
 #[test]
@@ -182,7 +185,7 @@ fn the_verdict_names_the_gain_of_samples_and_calls_64_bits_not_worth_it() {
     let text = report.verdict().join(" ");
     assert!(
         text.starts_with(
-            "At 8x8 on this scene: 4 samples per pixel cost 2.1x and cut the error from 2.3 to \
+            "At 8x8, 1 sample per pixel, on this scene: 4 samples per pixel cost 2.1x and cut the error from 2.3 to \
              0.78 of 255 (16: 7.5x, 0.42)."
         ),
         "{text}"

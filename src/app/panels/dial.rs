@@ -76,7 +76,11 @@ fn head_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let (rect, _) = ui.allocate_exact_size(vec2(WIDTH, theme::ROW - 2.0), Sense::hover());
     let weak = ui.visuals().weak_text_color();
     let heads = [
-        ("time", "Milliseconds of a picture of this view, as it is shown when nothing moves"),
+        (
+            "time",
+            "Milliseconds of a picture of this view, as it is shown when nothing moves: refined, \
+             while the laboratory measures with one sample per pixel",
+        ),
         (
             "error",
             "How far the picture is from the ideal, on average, in steps of colours from 0 to 255 \

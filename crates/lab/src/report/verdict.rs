@@ -57,9 +57,8 @@ pub(super) fn verdict_on(report: &Report, axis: &Axis) -> String {
     }
     sentences.extend(reasons(report, axis));
     let capital: Vec<String> = sentences.iter().map(|sentence| capitalized(sentence)).collect();
-    let [width, height] = report.findings.size;
     let noise = noise.map_or_else(|| BUSY.to_owned(), |noise| format!("noise {noise}"));
-    format!("{} (At {width}x{height} on {}; {noise}.)", capital.join(" "), report.scene)
+    format!("{} ({}; {noise}.)", capital.join(" "), place(report))
 }
 
 /// Writes a line on a measured choice of an axis: its time and its error against the default's.
@@ -122,13 +121,22 @@ pub(super) fn verdict(report: &Report) -> Vec<String> {
     let noise = noise(report, report.findings.rows.iter().map(|row| row.point));
     let noise = noise.unwrap_or_else(|| BUSY.to_owned());
     sentences.push(format!("{nothing} saves more than the noise ({noise})."));
-    let [width, height] = report.findings.size;
     if let Some(first) = sentences.first_mut() {
-        *first = format!("At {width}x{height} on {}: {first}", report.scene);
+        *first = format!("{}: {first}", place(report));
     }
     // The first sentence continues after a colon.
     sentences.iter_mut().skip(1).for_each(|sentence| *sentence = capitalized(sentence));
     sentences
+}
+
+/// Names the measured picture: its size, its samples and its scene.
+fn place(report: &Report) -> String {
+    let Findings { size: [width, height], points, .. } = &report.findings;
+    let samples = match points.first().map_or(1, |default| default.settings.samples.count()) {
+        1 => "1 sample".to_owned(),
+        count => format!("{count} samples"),
+    };
+    format!("At {width}x{height}, {samples} per pixel, on {}", report.scene)
 }
 
 /// Replaces the noise if it is too large.
