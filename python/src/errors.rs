@@ -1,7 +1,7 @@
 //! Errors as Python's exceptions.
 
 use marraztu_io as io;
-use pyo3::exceptions::{PyException, PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyException, PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 pyo3::create_exception!(
@@ -20,6 +20,8 @@ pub(crate) enum Failure {
     Load { file: String, line: Option<usize>, reason: String, text: String },
     /// A file cannot be written.
     Save(String),
+    /// There is not enough memory.
+    Memory(String),
     /// The process was forked while another thread was drawing.
     Forked,
     /// The library panicked.
@@ -71,6 +73,7 @@ impl From<Failure> for PyErr {
     fn from(failure: Failure) -> Self {
         match failure {
             Failure::Value(reason) => PyValueError::new_err(reason),
+            Failure::Memory(reason) => PyMemoryError::new_err(reason),
             Failure::Save(reason) => PyOSError::new_err(reason),
             Failure::Load { file, line, reason, text } => Python::attach(|py| {
                 let error = LoadError::new_err(text);

@@ -165,6 +165,9 @@ impl Shot {
             "world" => NormalSpace::World,
             _ => return Err(Failure::value("normals is camera or world").into()),
         };
+        let Size { width, height } = self.shot.size;
+        let reason = format!("there is not enough memory for {width} x {height} pixels");
+        set.check_memory(self.shot.size).map_err(|_full| Failure::Memory(reason))?;
         pictures::load_numpy(py)?;
         let (picture, layers) = work(py, threads, |renderer| {
             let picture = with_color.then(|| self.draw(renderer, transparent));
@@ -175,7 +178,6 @@ impl Shot {
         if let Some(picture) = picture {
             arrays.set_item(COLOR, pictures::array(py, picture)?)?;
         }
-        let Size { width, height } = self.shot.size;
         for (layer, values) in layers.into_iter().flat_map(|layers| layers.values) {
             let mut shape = vec![height, width];
             shape.extend((layer.channels() > 1).then_some(layer.channels()));

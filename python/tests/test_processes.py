@@ -133,3 +133,21 @@ def test_ctrl_c_during_the_first_picture_raises_keyboard_interrupt(tmp_path):
         head=head,
     )
     assert output == "interrupted\n"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the limit of memory is that of Linux")
+def test_layers_without_memory_raise_memory_error():
+    output = run(
+        """
+        import resource
+        scene.render(64, 64, layers=("color", "normal"), threads=1)
+        used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_AS, (used + (1 << 30),) * 2)
+        try:
+            scene.render(16384, 16384, layers=("normal", "position"), threads=1)
+        except MemoryError as error:
+            print(error)
+        print(scene.render(64, 64, layers=("depth",), threads=1).depth.shape)
+        """
+    )
+    assert output == "there is not enough memory for 16384 x 16384 pixels\n(64, 64)\n"

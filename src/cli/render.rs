@@ -53,7 +53,10 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     let options = &arguments.layers;
     let numbers = match options.set() {
         set if set.is_empty() => None,
-        set => Some(renderer.layers(&shot, set, options.normal_space())),
+        set => {
+            set.check_memory(shot.size).map_err(|_full| Failure::Absent(NO_MEMORY.to_owned()))?;
+            Some(renderer.layers(&shot, set, options.normal_space()))
+        }
     };
     let numbers = numbers.as_ref();
     if arguments.transparent || !options.has_color() {
@@ -119,6 +122,9 @@ fn render_file(
     std::mem::forget(renderer);
     Ok(())
 }
+
+/// The reason why layers cannot be drawn.
+pub(super) const NO_MEMORY: &str = "there is not enough memory for the layers";
 
 /// The longest side of the picture in which objects are looked for, if the whole picture was never
 /// in memory.

@@ -9,7 +9,7 @@
 //!   of the alpha test show the surface behind.
 //! * Values are computed in f64 and rounded once. They are the same for any number of threads.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, TryReserveError};
 
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Size;
@@ -159,6 +159,25 @@ impl LayerSet {
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
+    }
+
+    /// Checks that there is memory for a picture with these layers, which Rust cannot report while
+    /// it draws. Another thread may take the memory meanwhile.
+    ///
+    /// # Errors
+    /// If the memory cannot be reserved.
+    pub fn check_memory(self, size: Size) -> Result<(), TryReserveError> {
+        let bytes = |layer: Layer| match layer.number_type() {
+            LayerType::F32 | LayerType::I32 => 4 * layer.channels(),
+            LayerType::U8 => layer.channels(),
+        };
+        // A picture, and the one that it replaces.
+        let per_pixel = 8 + self.iter().map(bytes).sum::<usize>();
+        let mut memory = Vec::<u8>::new();
+        let reserved = memory.try_reserve_exact(size.area().saturating_mul(per_pixel));
+        // Otherwise the compiler may leave out memory that nothing uses.
+        std::hint::black_box(&memory);
+        reserved
     }
 
     /// Returns the layers in the order of [`Layer::ALL`].

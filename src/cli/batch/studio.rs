@@ -31,6 +31,7 @@ use super::report::shown;
 use crate::cli::cameras::CameraFrame;
 use crate::cli::failure::Failure;
 use crate::cli::layers::{LayerContent, LayerFile};
+use crate::cli::render::NO_MEMORY;
 use crate::cli::render::look;
 use crate::cli::stage::Stage;
 
@@ -378,6 +379,10 @@ impl Attempt<'_> {
         let begin = Instant::now();
         let shot = stage.shot(job.size());
         let options = &job.row.parsed.options;
+        let layers = options.layers.set();
+        if !layers.is_empty() {
+            layers.check_memory(shot.size).map_err(|_full| Fault::Program(NO_MEMORY.to_owned()))?;
+        }
         let stopped = &studio.stopped;
         let is_late = || until.is_some_and(|until| until < Instant::now());
         let wanted = || !stopped.load(Ordering::Relaxed) && !is_late();
