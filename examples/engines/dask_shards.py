@@ -34,7 +34,8 @@ def main():
     # The folder may also hold reports of an earlier run in more parts.
     reports = [f"reports/{part}.jsonl" for part in range(parts)]
     merged = subprocess.run(["marraztu", "merge", *reports, "--out", "report.jsonl"])
-    sys.exit(merged.returncode or max(statuses))
+    # A part that a signal has killed has a negative status.
+    sys.exit(merged.returncode or int(any(statuses)))
 
 
 if __name__ == "__main__":

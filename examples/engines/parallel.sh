@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Draws a list in parts with GNU parallel: parallel.sh PARTS OPTIONS OF BATCH ...
 #
-# After a crash, run it again: --resume skips the finished pictures. A part that still fails is repeated once; then
-# the exit status is that of GNU parallel, and the report names the missing pictures.
+# After a crash, run it again: --resume skips the finished pictures. A part that fails is tried once more. If it fails
+# again, the exit status says so, and the report names the missing pictures.
 set -euo pipefail
 parts=$1
 shift

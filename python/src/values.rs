@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 
 use crate::errors::Failure;
 
-/// Converts an item of a dictionary. Errors name it, as those of PyO3 name arguments.
+/// Converts an item of a dictionary. Errors name the item.
 pub(crate) fn item<'a, 'py, T>(values: Borrowed<'a, 'py, PyAny>, name: &str) -> PyResult<T>
 where
     T: for<'b> FromPyObject<'b, 'py>,

@@ -50,7 +50,7 @@ pub(crate) struct Merge {
     talk: Talk,
 }
 
-/// The most pictures of a list. Their lines would take some 30 GB, so a larger number is a mistake.
+/// The most pictures of a list. A larger number is a mistake in the file, and would fill memory.
 const MOST_JOBS: usize = 100_000_000;
 
 /// The lines of all reports.

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct DialWish {
     /// The samples per pixel that pictures are refined to.
     pub(crate) refined: Option<Samples>,
-    /// The settings of the user, if they are those of no preset.
+    /// The user's own settings, if no preset has them.
     pub(crate) own: Option<Settings>,
 }
 

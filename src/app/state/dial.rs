@@ -15,7 +15,7 @@ pub struct DialState {
     pub(crate) last: Option<Box<DialFigures>>,
     /// Whether the last figures belong to the picture on screen.
     pub current: bool,
-    /// The last settings of this scene that were those of no preset: a way back to them.
+    /// The last settings in this scene that no preset has, to return to.
     pub own: Option<Settings>,
 }
 
@@ -26,14 +26,14 @@ impl DialState {
         self.last.as_ref().map_or(&[], |last| &last.figures)
     }
 
-    /// Returns the last figures of settings, or those of the same settings with other models.
+    /// Returns the last figures of settings. Choices of models do not matter.
     pub(crate) fn of(&self, settings: &Settings) -> Option<Figures> {
         let last = self.last.as_ref()?;
         let settings = last.of.at_rest(&settings.modelled_as(&last.of.models));
         last.figures.iter().find(|figures| figures.settings == settings).copied()
     }
 
-    /// Keeps settings that are those of no preset.
+    /// Keeps settings that no preset has.
     pub(crate) fn keep_own(&mut self, settings: &Settings) {
         if !AccuracyPreset::dial().iter().any(|preset| preset.of(settings) == *settings) {
             self.own = Some(*settings);
