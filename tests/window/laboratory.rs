@@ -198,6 +198,9 @@ fn every_lesson_is_a_card_in_a_scene_in_which_it_can_be_seen() {
             assert!(editor.shows(sentence), "{sentence}");
         }
         assert!(editor.shows(&format!("{} of {}", i + 1, lessons().len())));
+        // The title is the first line of the card.
+        let card = editor.harness.get_by_label(&lesson.title).rect();
+        assert!(card.top() >= editor.picture().bottom(), "the card hides the picture: {card}");
         assert!(lesson.opens_with().is(&editor.state().settings), "{}", axis.key);
         assert_eq!((axis.sense)(&editor.scene(), &editor.view()), Ok(()));
         until(&mut editor, "the comparison", |e| lab(e).judged.is_some());
@@ -286,7 +289,9 @@ fn a_lesson_measures_its_axis_by_itself_and_tells_the_cost() {
     let mut editor = Editor::of_size(1300.0, 760.0);
     editor.ask(Request::Lab(LabRequest::ShowLesson("rounding")));
     assert!(lab(&editor).running.is_some() && editor.shows("Measuring on this machine"));
+    let picture = editor.picture();
     until_measured(&mut editor);
+    assert_eq!(editor.picture(), picture, "the figures have moved the picture");
     let rounding = Axis::named("rounding").unwrap();
     let cost = lab(&editor).costs["rounding"].clone();
     let chosen =
