@@ -8,6 +8,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
 use marraztu::app::actions::Chord::Named;
 use marraztu::app::actions::{Action, LabRequest, Request};
+use marraztu::app::panels::Panel;
 use marraztu::app::state::laboratory::Compare;
 use marraztu_core::accuracy::{AccuracyPreset, Filter, Settings};
 use marraztu_lab::dial::in_words;
@@ -112,11 +113,30 @@ fn settings_of_the_users_own_have_a_row_and_a_way_back() {
     assert_eq!(editor.state().dial.own, Some(own));
 }
 
+#[test]
+fn over_a_low_picture_the_dial_is_one_row_until_it_is_clicked() {
+    let mut editor = measured();
+    assert_eq!(texts_of_rows(&editor).len(), 4);
+    editor.perform(Action::Panel(Panel::Laboratory));
+    rest(&mut editor);
+    assert_eq!(texts_of_rows(&editor), [""; 0]);
+    let row = control(&editor, Role::ComboBox, "Accuracy").accesskit_node().value();
+    assert!(row.as_ref().is_some_and(|row| row.starts_with("Default: ")), "{row:?}");
+    control(&editor, Role::ComboBox, "Accuracy").click();
+    editor.settle();
+    let rows = texts_of_rows(&editor);
+    assert_eq!(rows.len(), 4, "{rows:?}");
+    let exact = rows.iter().find(|row| row.starts_with("Exact: ")).unwrap();
+    control(&editor, Role::RadioButton, exact).click();
+    editor.settle();
+    assert_eq!(editor.state().settings, preset("exact"));
+}
+
 /// The names of the rows, which contain their figures.
 fn texts_of_rows(editor: &Editor) -> Vec<String> {
     let all = editor.harness.query_all(By::new().role(Role::RadioButton));
     let names = all.filter_map(|node| node.accesskit_node().label());
-    names.filter(|name| name.contains(" ms, error ")).collect()
+    names.filter(|name| name.contains("s, error ")).collect()
 }
 
 #[test]

@@ -5,9 +5,9 @@
 
 use std::time::Duration;
 
-use egui::accesskit::Role;
+use egui::accesskit::{Role, Toggled};
 use egui::{Key, PointerButton};
-use egui_kittest::kittest::{By, Queryable as _};
+use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::Named;
 use marraztu::app::actions::{LabRequest, Request};
@@ -70,6 +70,35 @@ fn until_measured(editor: &mut Editor) {
     }
     assert_eq!((lab(editor).running, &lab(editor).failed), (None, &None));
     editor.settle();
+}
+
+#[test]
+fn in_a_small_window_results_are_shown_as_soon_as_something_is_measured() {
+    let mut editor = Editor::of_size(1024.0, 640.0);
+    editor.perform(Action::Panel(Panel::Laboratory));
+    let is_chosen = |editor: &Editor, part: &str| {
+        let name = format!("Laboratory: {part}");
+        control(editor, Role::RadioButton, &name).accesskit_node().toggled() == Some(Toggled::True)
+    };
+    assert!(is_chosen(&editor, "Measure") && editor.shows("Error metric"));
+    editor.ask(Request::Lab(LabRequest::MeasureAxis("rounding")));
+    until_measured(&mut editor);
+    let report = lab(&editor).report.clone().unwrap();
+    let plotted = |editor: &Editor| editor.shows("Draw with ");
+    let said = |editor: &Editor| report.verdict().iter().all(|sentence| editor.shows(sentence));
+    assert!(is_chosen(&editor, "Results") && said(&editor) && plotted(&editor));
+    // At twice the scale, there is room for one of both.
+    editor.harness.set_size(egui::vec2(640.0, 400.0));
+    editor.settle();
+    assert!(is_chosen(&editor, "Verdict") && said(&editor) && !plotted(&editor));
+    click(&mut editor, Role::RadioButton, "Laboratory: Plot");
+    assert!(!said(&editor) && plotted(&editor));
+    click(&mut editor, Role::RadioButton, "Laboratory: Table");
+    assert!(editor.shows("Rounding, --rounding") && !plotted(&editor));
+    editor.harness.set_size(egui::vec2(1024.0, 640.0));
+    editor.settle();
+    click(&mut editor, Role::RadioButton, "Laboratory: Results");
+    assert!(said(&editor) && plotted(&editor));
 }
 
 /// The text that a button copies to the clipboard.

@@ -3,7 +3,7 @@
 use super::error::Rendering;
 use super::hash::fnv1a;
 use marraztu_core::accuracy::Shot;
-use marraztu_core::accuracy::{Axis, Samples, Settings};
+use marraztu_core::accuracy::{Axis, AxisKind, Samples, Settings, uncapitalized};
 use marraztu_core::base::image::Picture;
 use marraztu_io::Progress;
 use marraztu_render::Renderer;
@@ -28,6 +28,19 @@ impl Reference {
         match self {
             Self::Ideal => settings.ideal(),
             Self::Alone(axis) => settings.exact_in(axis),
+        }
+    }
+
+    /// The name of the reference of a picture with these settings: "ideal", "exact texture filter".
+    /// No choice of a model is exact, so the name of the choice is given: "specular form R.V".
+    #[must_use]
+    pub fn name(self, settings: &Settings) -> String {
+        match self {
+            Self::Ideal => "ideal".to_owned(),
+            Self::Alone(axis) => match axis.kind {
+                AxisKind::Scored => format!("exact {}", uncapitalized(axis.label)),
+                AxisKind::Model => axis.in_words(axis.chosen(&self.of(settings))),
+            },
         }
     }
 }

@@ -2,8 +2,8 @@
 //! threads, another instance of the program measures (see
 //! [`laboratory_messages`](super::laboratory_messages)).
 //!
-//! During a measurement, the window is drawn at most four times a second. Pairs of pictures that
-//! were timed while it was drawn are discarded.
+//! During a measurement, the window is drawn at most four times a second, except right after keys
+//! and clicks. Pairs of pictures that were timed while it was drawn are discarded.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -36,8 +36,11 @@ pub(crate) struct Work {
     watch: Watch,
     sweep: Option<Task<Result<Findings, Unmeasured>>>,
     suite: Option<Task<Result<Vec<Report>, Unmeasured>>>,
-    /// When the running measurement began.
-    begun: Option<Instant>,
+    /// When the first choice of the running measurement was done, and the progress then. What comes
+    /// before takes another time.
+    paced: Option<(Instant, f64)>,
+    /// When the user last pressed something.
+    pressed_at: Option<Instant>,
     /// The latest intermediate findings.
     so_far: Arc<Mutex<Option<Findings>>>,
     blame: Option<Task<Option<Explained>>>,
@@ -58,6 +61,9 @@ type Explained = (Attribution, Option<String>);
 /// of pictures takes longer.
 const REST: Duration = Duration::from_millis(250);
 
+/// The time after a press in which the window is not made to wait.
+const USED: Duration = Duration::from_secs(1);
+
 /// The number of pairs between two drawings of the window.
 const PAIRS_BETWEEN: u32 = 3;
 
@@ -68,9 +74,14 @@ impl Work {
     }
 
     /// Returns the seconds that the running measurement will still take; `None` in the beginning.
-    fn left(&self, fraction: f64) -> Option<f64> {
-        let spent = self.begun?.elapsed().as_secs_f64();
-        (fraction > 0.05 && spent > 1.0).then(|| spent * (1.0 - fraction) / fraction)
+    fn left(&mut self, fraction: f64) -> Option<f64> {
+        if fraction <= 0.0 {
+            self.paced = None;
+            return None;
+        }
+        let (since, from) = *self.paced.get_or_insert_with(|| (Instant::now(), fraction));
+        let (spent, done) = (since.elapsed().as_secs_f64(), fraction - from);
+        (done > 0.0 && spent > 1.0).then(|| spent * (1.0 - fraction) / done)
     }
 
     const fn is_measuring(&self) -> bool {
@@ -87,10 +98,16 @@ impl Work {
         self.watch.clone()
     }
 
-    /// Waits until the window may be drawn again without disturbing a measurement.
-    pub(crate) fn rest(&mut self) {
+    /// Waits until the window may be drawn again without disturbing a measurement. A window that is
+    /// used answers at once, and the measurement takes longer.
+    pub(crate) fn rest(&mut self, is_pressed: bool) {
+        if is_pressed {
+            self.pressed_at = Some(Instant::now());
+        }
+        let is_used = self.pressed_at.is_some_and(|at| at.elapsed() < USED);
         if self.is_measuring()
             && self.answers.is_none()
+            && !is_used
             && let Some(rest) = self.drawn_at.and_then(|at| REST.checked_sub(at.elapsed()))
         {
             std::thread::sleep(rest);
@@ -233,7 +250,6 @@ impl App {
         match started {
             Ok(task) => {
                 self.lab.sweep = Some(task);
-                self.lab.begun = Some(Instant::now());
                 let mut command = command(&self.state, size, &thoroughness);
                 if let Some(key) = only {
                     command += &format!(" --axes {key}");
@@ -272,7 +288,6 @@ impl App {
         match started {
             Ok(task) => {
                 self.lab.suite = Some(task);
-                self.lab.begun = Some(Instant::now());
                 let lab = &mut self.state.lab;
                 (lab.running, lab.failed) = (Some(0.0), None);
             }
@@ -280,11 +295,19 @@ impl App {
         }
     }
 
+    /// Shows the progress of the running measurement.
+    fn tell_progress(&mut self) {
+        let suite = self.lab.suite.as_ref().map(|task| task.progress.fraction());
+        let sweep = self.lab.sweep.as_ref().map(|task| task.progress.fraction());
+        if let Some(fraction) = suite.or(sweep) {
+            let left = self.lab.left(fraction);
+            (self.state.lab.running, self.state.lab.left) = (Some(fraction), left);
+        }
+    }
+
     /// Shows the reports of the suite.
     fn hear_suite(&mut self, ctx: &Context) {
         let Some(task) = &self.lab.suite else { return };
-        let fraction = task.progress.fraction();
-        (self.state.lab.running, self.state.lab.left) = (Some(fraction), self.lab.left(fraction));
         match task.outcome() {
             Outcome::Running => return ctx.request_repaint_after(self.lab.rest_now()),
             Outcome::Done(Ok(reports)) => {
@@ -341,11 +364,10 @@ impl App {
 
     /// Handles the results of background work.
     pub(crate) fn hear_laboratory(&mut self, ctx: &Context) {
+        self.tell_progress();
         self.hear_blame();
         self.hear_suite(ctx);
         let Some(task) = &self.lab.sweep else { return };
-        let fraction = task.progress.fraction();
-        (self.state.lab.running, self.state.lab.left) = (Some(fraction), self.lab.left(fraction));
         let outcome = task.outcome();
         let so_far = self.lab.so_far.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let Some(findings) = so_far {

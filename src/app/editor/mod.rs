@@ -31,7 +31,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use egui::{Context, UiBuilder, ViewportCommand};
+use egui::{Context, Event, UiBuilder, ViewportCommand};
 
 use crate::app::actions::{Action, Request};
 use crate::app::documents::dialogs::Dialogs;
@@ -467,7 +467,9 @@ impl App {
 impl App {
     /// Shows a frame. A panic costs one frame, not the user's work, unless every frame panics.
     pub(crate) fn frame(&mut self, ui: &mut egui::Ui) {
-        self.lab.rest();
+        let is_press =
+            |event: &Event| matches!(event, Event::Key { .. } | Event::PointerButton { .. });
+        self.lab.rest(ui.input(|input| input.events.iter().any(is_press)));
         match catch_unwind(AssertUnwindSafe(|| self.editor_ui(ui))) {
             Ok(()) => self.faults = 0,
             Err(fault) if self.faults >= MOST_FAULTS => resume_unwind(fault),

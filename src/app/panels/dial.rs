@@ -4,8 +4,8 @@
 //! own settings, if there are any. The editor measures them while nothing happens; until then, the
 //! figures are grey. A click draws with the settings of a row.
 
-use egui::{Align2, Area, Color32, Frame, Id, Order, Rect, Role, Sense, TextStyle, Ui, WidgetInfo};
-use egui::{RichText, pos2, vec2};
+use egui::{Align2, Area, Color32, ComboBox, Frame, Id, Order, Rect, RichText, Role, Sense};
+use egui::{TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::app::actions::{Action, Request};
 use crate::app::input::buttons::first_key;
@@ -17,7 +17,6 @@ use crate::app::widgets::icons::Icon;
 use crate::app::widgets::regions;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset, Settings};
 use marraztu_lab::dial::{Figures, error_in_words, in_words};
-use marraztu_lab::report::brief;
 
 /// The width of the contents.
 const WIDTH: f32 = 216.0;
@@ -26,7 +25,13 @@ const WIDTH: f32 = 216.0;
 const COLUMNS: [f32; 2] = [152.0, WIDTH - 6.0];
 
 /// The dial is hidden over a smaller picture.
-const LEAST: egui::Vec2 = vec2(330.0, 240.0);
+const LEAST: egui::Vec2 = vec2(330.0, 100.0);
+
+/// The greatest height of the dial when it unfolds.
+const UNFOLDED: f32 = 300.0;
+
+/// Over a lower picture, the dial is one row until it is clicked.
+const LOW: f32 = 340.0;
 
 /// Shows the dial; its requests are added to `requests`.
 pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Request>) {
@@ -35,6 +40,7 @@ pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Req
     if !state.shows_dial() || is_small || state.lab.compare != Compare::Off {
         return;
     }
+    let is_low = picture.height() < LOW;
     let area = Area::new(Id::unique("dial")).order(Order::Middle).constrain_to(picture);
     let at = picture.left_top() + vec2(8.0, 8.0);
     area.pivot(Align2::LEFT_TOP).fixed_pos(at).show(ui.ctx(), |ui| {
@@ -42,10 +48,31 @@ pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Req
             regions::begin(ui, "dial");
             ui.set_width(WIDTH);
             ui.spacing_mut().item_spacing.y = 0.0;
-            contents(ui, state, requests);
+            if is_low {
+                folded_ui(ui, state, requests);
+            } else {
+                contents(ui, state, requests);
+            }
             regions::follow_focus(ui);
         });
     });
+}
+
+/// Shows the row of the current settings, which unfolds the others.
+fn folded_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let rows = rows(state);
+    let on = rows.iter().find(|row| row.settings == state.settings);
+    let mut text = RichText::new(on.map_or_else(|| "Accuracy".to_owned(), |row| row.name(state)));
+    if !state.dial.current {
+        text = text.weak();
+    }
+    let combo = ComboBox::from_id_salt("presets").selected_text(text).width(WIDTH);
+    let combo = combo.height(UNFOLDED).show_ui(ui, |ui| {
+        ui.set_width(WIDTH);
+        contents(ui, state, requests);
+    });
+    let hint = "Accuracy: what it costs in this view. Click to see every preset.";
+    combo.response.accessible_name("Accuracy").on_hover_text(hint);
 }
 
 fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
@@ -134,18 +161,22 @@ fn rows(state: &State) -> Vec<Row> {
 }
 
 impl Row {
+    /// Returns the label, with the figures if they are measured.
+    fn name(&self, state: &State) -> String {
+        match state.dial.of(&self.settings) {
+            Some(Figures { ms, error: Some(error), .. }) => {
+                format!("{}: {}, error {}", self.label, milliseconds(ms), error_in_words(error))
+            }
+            _ => self.label.to_owned(),
+        }
+    }
+
     /// Shows the row. Returns whether it was clicked.
     fn ui(&self, ui: &mut Ui, state: &State, (id, is_stop): (Id, bool)) -> bool {
         let is_on = self.settings == state.settings;
         let (rect, _) = ui.allocate_exact_size(vec2(WIDTH, theme::ROW - 2.0), Sense::hover());
         let response = ui.interact(rect, id, regions::sense(Sense::click(), is_stop));
-        let figures = state.dial.of(&self.settings);
-        let name = match figures {
-            Some(Figures { ms, error: Some(error), .. }) => {
-                format!("{}: {} ms, error {}", self.label, brief(ms), error_in_words(error))
-            }
-            _ => self.label.to_owned(),
-        };
+        let (figures, name) = (state.dial.of(&self.settings), self.name(state));
         response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_on, &name));
         let visuals = ui.visuals();
         let (fill, ink) = match (is_on, response.hovered()) {

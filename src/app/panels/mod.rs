@@ -116,7 +116,7 @@ macro_rules! each_panel {
             Laboratory lab "laboratory" [Dock::Bottom] false [Named(Key::F5)]
                 "Laboratory"
                 "Shows or hides the laboratory, which measures what accuracy costs in time."
-                "accuracy benchmark error compare experiment";
+                "accuracy measure benchmark time error compare experiment";
             Preferences preferences "preferences" [Dock::Floating] false [Command(Key::Comma)]
                 "Preferences" "Shows or hides the settings that the program remembers, with resets."
                 "settings options configuration defaults reset remembered theme recent";

@@ -14,7 +14,7 @@ use crate::app::state::laboratory::{Compare, in_words};
 use crate::app::tasks::Task;
 use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
-use marraztu_core::accuracy::{Settings, Shot, uncapitalized};
+use marraztu_core::accuracy::{Settings, Shot};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{Scene, View};
 use marraztu_io::Progress;
@@ -147,10 +147,7 @@ impl Comparison {
             let part = ((at.x - rect.left()) / rect.width()).clamp(0.02, 0.98);
             requests.push(Request::Lab(LabRequest::Compare(Compare::Split(part))));
         }
-        let name = match state.lab.reference {
-            Reference::Ideal => "ideal".to_owned(),
-            Reference::Alone(axis) => format!("exact {}", uncapitalized(axis.label)),
-        };
+        let name = state.lab.reference.name(&state.settings);
         let name = if self.current { name } else { format!("{name}: drawing") };
         plate_ui(ui, left.with_max_x(x - 4.0), Align2::RIGHT_TOP, name);
         plate_ui(ui, rect.with_min_x(x + 4.0), Align2::LEFT_TOP, "drawn".to_owned());

@@ -28,9 +28,9 @@ impl TextBox {
 }
 
 /// Places a label of each size near its mark, inside `frame`: next to the mark, or in the nearest
-/// free place within `reach`. Labels never overlap each other. They avoid the marks and the line
-/// that joins the marks if possible. A label without room is left out. The label of the mark
-/// `first` is placed first.
+/// free place within `reach`. Labels never overlap each other, a mark, or the line that joins the
+/// marks: one without room is left out. The label of the mark `first` is placed first, even over
+/// the line if there is no other room.
 #[must_use]
 pub fn place(
     marks: &[[f32; 2]],
@@ -55,11 +55,12 @@ pub fn place(
             let clear = |others: &[TextBox]| others.iter().all(|other| !other.overlaps(text));
             text.is_inside(frame) && clear(&taken) && clear(marks)
         };
-        // Avoid marks and line, then only marks, then only other labels.
-        let found = near()
-            .find(|text| free(text, &both))
-            .or_else(|| near().find(|text| free(text, &squares)))
-            .or_else(|| near().find(|text| free(text, &[])));
+        let mut found = near().find(|text| free(text, &both));
+        if i == first {
+            found = found
+                .or_else(|| near().find(|text| free(text, &squares)))
+                .or_else(|| near().find(|text| free(text, &[])));
+        }
         taken.extend(found);
         placed[i] = found;
     }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 pub use self::labels::{TextBox, place};
 pub use self::panels::{Panel, PanelMark, Panels, Scale};
 pub use self::table::{brief, csv, heading, left_out_in_words, markdown, tabs, text};
+pub use self::verdict::capitalized;
 use super::candidates::Group;
 use super::error::{Measure, Region};
 use super::front::{Point, fastest_within, front, most_exact_within};

@@ -33,7 +33,7 @@ pub struct Panel {
     pub axis: Option<&'static Axis>,
     /// The title.
     pub title: String,
-    /// The reference of the errors, if it differs from the usual one.
+    /// What it shows, in a line.
     pub note: &'static str,
     /// The choices from coarse to exact, or those of the overview from fast to slow.
     pub marks: Vec<PanelMark>,
@@ -109,8 +109,8 @@ impl Panels {
         Self {
             overview: Panel {
                 axis: None,
-                title: "Overview: nothing else is both faster and more exact".to_owned(),
-                note: "against the ideal",
+                title: "Overview".to_owned(),
+                note: "nothing measured is both faster and nearer to the ideal",
                 marks: overview.iter().map(named).collect(),
             },
             axes: AXES.iter().map(panel).filter(|panel| !panel.marks.is_empty()).collect(),

@@ -9,12 +9,12 @@ use crate::app::theme;
 use crate::app::widgets::controls::{Choice, Switch, choices, choices_in_rows, row};
 use crate::app::widgets::number::Number;
 use crate::app::widgets::regions;
-use marraztu_core::accuracy::{AXES, Axis, uncapitalized};
+use marraztu_core::accuracy::{AXES, Axis};
 use marraztu_io::Lesson;
 use marraztu_lab::candidates::Thoroughness;
 use marraztu_lab::error::{Measure, Region};
 use marraztu_lab::picture_source::Reference;
-use marraztu_lab::report::{Budgets, Report, brief, tabs};
+use marraztu_lab::report::{Budgets, Report, brief, capitalized, tabs};
 use marraztu_lab::suite::SuiteDetail;
 
 /// Shows the panel; its requests are added to `requests`.
@@ -35,8 +35,9 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
+/// Shows the buttons that measure, or the progress.
 #[expect(clippy::cast_possible_truncation, reason = "a fraction from 0 to 1")]
-fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(super) fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let lab = &state.lab;
     ui.horizontal(|ui| match lab.running {
         Some(fraction) => {
@@ -69,10 +70,12 @@ fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             }
         }
     });
-    if let Some(left) = lab.left.filter(|_| lab.running.is_some()) {
-        ui.weak(match left {
-            100.0.. => format!("About {:.0} minutes left", left / 60.0),
-            _ => format!("About {left:.0} seconds left"),
+    if let Some(fraction) = lab.running {
+        ui.weak(match lab.left {
+            None if fraction <= 0.0 => "Drawing the ideal first".to_owned(),
+            None => "Timing the first choices".to_owned(),
+            Some(left @ 100.0..) => format!("About {:.0} minutes left", left / 60.0),
+            Some(left) => format!("About {left:.0} seconds left"),
         });
     }
     if let Some(why) = &lab.failed {
@@ -226,7 +229,7 @@ fn with_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         }
     };
     let all = [Reference::Ideal, Reference::Alone(alone)];
-    let label = format!("Exact {}", uncapitalized(alone.label));
+    let label = capitalized(&Reference::Alone(alone).name(&state.settings));
     let hints = [
         "256 samples per pixel, each lit, with every choice at its most exact",
         "The same settings, except that this axis is at its most exact",

@@ -25,6 +25,12 @@ const VERDICT: f32 = 0.4;
 /// Narrower panels show one part at a time.
 const WIDE: f32 = 1100.0;
 
+/// Narrower panels show verdict and plot one at a time, too.
+const HALF_WIDE: f32 = 760.0;
+
+/// The share of the width for the verdict next to a plot.
+const BESIDE: f32 = 0.42;
+
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let whole = ui.available_rect_before_wrap();
@@ -57,38 +63,92 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
+/// A part of the laboratory in a narrow panel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Part {
+    #[default]
+    Measure,
+    /// The verdict next to the plot.
+    Results,
+    Verdict,
+    Plot,
+    Table,
+}
+
+impl Part {
+    /// Returns the parts of a panel of this width.
+    const fn all(width: f32) -> &'static [Self] {
+        if width < HALF_WIDE {
+            &[Self::Measure, Self::Verdict, Self::Plot, Self::Table]
+        } else {
+            &[Self::Measure, Self::Results, Self::Table]
+        }
+    }
+
+    /// Returns the label and the hint.
+    const fn texts(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Measure => ("Measure", "Measurement and comparison"),
+            Self::Results => ("Results", "The verdict, and time against error"),
+            Self::Verdict => ("Verdict", "What every choice costs and gives here"),
+            Self::Plot => ("Plot", "Time against error"),
+            Self::Table => ("Table", "Every choice with its figures"),
+        }
+    }
+
+    /// Returns the part of a panel with other parts that shows the same.
+    fn among(self, all: &[Self]) -> Self {
+        match self {
+            Self::Verdict | Self::Plot if !all.contains(&self) => Self::Results,
+            Self::Results if !all.contains(&self) => Self::Verdict,
+            part => part,
+        }
+    }
+}
+
 /// Shows one part at a time, with a choice of the part.
 fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let id = Id::unique("part of the laboratory");
-    let mut part: usize = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-    let all = [
-        ("Measure", "Measurement and comparison"),
-        ("Results", "The verdict, and time against error"),
-        ("Table", "Every choice with its figures"),
-    ];
+    let (part, was_running): (Part, bool) = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let all = Part::all(ui.available_width());
+    let is_running = state.lab.running.is_some();
+    // Whoever measures wants to see the results.
+    let wished = if is_running && !was_running { Part::Results } else { part };
+    let mut part = wished.among(all);
     let shown: Vec<Choice<'_>> = all
         .iter()
-        .enumerate()
-        .map(|(i, (label, hint))| Choice::new("Laboratory", label, i == part, hint))
+        .map(|other| {
+            let (label, hint) = other.texts();
+            Choice::new("Laboratory", label, *other == part, hint)
+        })
         .collect();
     ui.horizontal(|ui| {
         ui.set_width(ui.available_width() - f32::from(theme::MARGIN));
         if let Some(clicked) = choices(ui, &shown) {
-            part = clicked;
+            part = all[clicked];
         }
     });
-    ui.data_mut(|data| data.insert_temp(id, part));
+    ui.data_mut(|data| data.insert_temp(id, (part, is_running)));
+    let rest = ui.available_rect_before_wrap();
+    let rest = rest.with_max_x(rest.right() - f32::from(theme::MARGIN));
+    let width = if part == Part::Results { (BESIDE * rest.width()).round() } else { rest.width() };
+    let verdict = rest.with_max_x(rest.left() + width);
     match part {
-        0 => controls_ui::show(ui, state, requests),
-        1 => {
-            let rest = ui.available_rect_before_wrap();
-            let rest = rest.with_max_x(rest.right() - f32::from(theme::MARGIN));
-            within(ui, rest, |ui| {
-                verdict_ui(ui, state, requests);
-                plots::show(ui, state, requests);
-            });
-        }
-        _ => table::show(ui, state, requests),
+        Part::Measure => controls_ui::show(ui, state, requests),
+        Part::Results | Part::Verdict => within(ui, verdict, |ui| {
+            if is_running {
+                controls_ui::measure_ui(ui, state, requests);
+            }
+            let area = ScrollArea::vertical().id_salt("verdict").auto_shrink(false);
+            let area = area.content_margin(theme::SCROLL_MARGIN);
+            area.show(ui, |ui| plots::verdict_ui(ui, state, requests));
+        }),
+        Part::Plot => within(ui, rest, |ui| plots::show(ui, state, requests)),
+        Part::Table => table::show(ui, state, requests),
+    }
+    if part == Part::Results {
+        let plot = rest.with_min_x(verdict.right() + f32::from(theme::MARGIN));
+        within(ui, plot, |ui| plots::show(ui, state, requests));
     }
 }
 

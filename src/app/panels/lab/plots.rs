@@ -15,17 +15,17 @@ use crate::app::widgets::regions;
 use marraztu_lab::report::{Panel, PanelMark, Panels, Report, TextBox, brief, place};
 use marraztu_lab::sweep::{Against, Row};
 
-/// The largest height of a plot with its title: 420 points and a line.
-const USUAL: f32 = 444.0;
+/// The largest height of a plot.
+const USUAL: f32 = 420.0;
 
 /// The minimum height, in a panel that is lower.
-const LEAST: f32 = 180.0;
+const LEAST: f32 = 110.0;
 
 /// Below this height, the label of the axis of errors is short.
 const LOW: f32 = 220.0;
 
 /// The height of the choice of a plot.
-const CHOICE: f32 = 44.0;
+const CHOICE: f32 = 34.0;
 
 /// The radius of a mark.
 const MARK: f32 = 5.0;
@@ -135,17 +135,19 @@ fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 
 /// Shows the choice of a plot.
 fn panels_ui(ui: &mut Ui, panels: &Panels, shown: &Panel, requests: &mut Vec<Request>) {
-    let label = |panel: &Panel| panel.axis.map_or("Overview", |axis| axis.label);
-    let combo = ComboBox::from_id_salt("plot").selected_text(label(shown)).width(180.0);
-    let combo = combo.height(400.0).show_ui(ui, |ui| {
-        for panel in std::iter::once(&panels.overview).chain(&panels.axes) {
-            if ui.selectable_label(panel.title == shown.title, label(panel)).clicked() {
-                let key = panel.axis.map(|axis| axis.key);
-                requests.push(Request::Lab(LabRequest::Panel(key)));
+    ui.horizontal(|ui| {
+        let combo = ComboBox::from_id_salt("plot").selected_text(&shown.title).width(180.0);
+        let combo = combo.height(400.0).show_ui(ui, |ui| {
+            for panel in std::iter::once(&panels.overview).chain(&panels.axes) {
+                if ui.selectable_label(panel.title == shown.title, &panel.title).clicked() {
+                    let key = panel.axis.map(|axis| axis.key);
+                    requests.push(Request::Lab(LabRequest::Panel(key)));
+                }
             }
-        }
+        });
+        combo.response.accessible_name("Plot").on_hover_text("Time against error");
+        ui.add(egui::Label::new(RichText::new(shown.note).small().weak()).truncate());
     });
-    combo.response.accessible_name("Plot").on_hover_text("Time against error");
 }
 
 fn panel_ui(
@@ -154,10 +156,6 @@ fn panel_ui(
     (state, report): (&State, &Report),
     requests: &mut Vec<Request>,
 ) {
-    ui.horizontal(|ui| {
-        ui.strong(&panel.title);
-        ui.weak(RichText::new(panel.note).small());
-    });
     // Marks are connected in order, each with a line for the noise of its time.
     let transform = plot_ui(ui, panels, panel);
     let at: Vec<Pos2> = panel.marks.iter().map(|mark| position(mark, &transform)).collect();
@@ -242,9 +240,12 @@ fn plot_ui(ui: &mut Ui, panels: &Panels, panel: &Panel) -> PlotTransform {
         true => (y - 1.0, egui::Align2::CENTER_BOTTOM),
         false => (frame.top() + 2.0, egui::Align2::CENTER_TOP),
     };
-    painter.text(pos2(middle, end), align, "noise", font.clone(), faint);
-    let exact = pos2(frame.center().x, y - 1.0);
-    painter.text(exact, egui::Align2::CENTER_BOTTOM, "no error", font, faint);
+    // A low plot has no room for more than the names of the marks.
+    if !is_low {
+        painter.text(pos2(middle, end), align, "noise", font.clone(), faint);
+        let exact = pos2(frame.center().x, y - 1.0);
+        painter.text(exact, egui::Align2::CENTER_BOTTOM, "no error", font, faint);
+    }
     shown.transform
 }
 

@@ -7,7 +7,10 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{focus_ring, no_narrower, put_text, text};
 use crate::app::widgets::regions;
+use marraztu_core::accuracy::Axis;
+use marraztu_lab::candidates::Group;
 use marraztu_lab::error::{Error, Region};
+use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::{Report, brief, heading, left_out_in_words};
 use marraztu_lab::sweep::{Measured, Row, TOO_BUSY, Verdict};
 
@@ -98,7 +101,11 @@ fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Vec<Reque
             let heading = heading(row);
             if heading != last {
                 ui.add_space(theme::GAP);
-                ui.label(RichText::new(&heading).small().strong());
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(&heading).small().strong());
+                    let against = format!("errors against {}", reference(report, row));
+                    ui.weak(RichText::new(against).small());
+                });
                 last = heading;
             }
             let place = Place { id: ids[i], is_stop: i == stop };
@@ -107,6 +114,19 @@ fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Vec<Reque
         foot_ui(ui, report);
         regions::follow_focus(ui);
     });
+}
+
+/// Returns the name of the picture that a row is judged against.
+fn reference(report: &Report, row: &Row) -> String {
+    let axis = match row.group {
+        Group::Axis(key) => Axis::named(key),
+        Group::Preset | Group::Current | Group::Combination => None,
+    };
+    let settings = &report.findings.points[row.point].settings;
+    match axis.map(Reference::Alone) {
+        Some(reference) => reference.name(settings),
+        None => format!("the {}", Reference::Ideal.name(settings)),
+    }
 }
 
 /// The keyboard stop of a row.
