@@ -73,7 +73,13 @@ pub(crate) struct PictureArguments {
     pub(crate) files: Vec<PathBuf>,
 
     /// Width and height in pixels; one number for a square
-    #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
+    #[arg(
+        long,
+        value_name = "WxH",
+        default_value = "800x800",
+        allow_negative_numbers = true,
+        value_parser = size
+    )]
     pub(crate) size: Size,
     /// Number of threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads)]

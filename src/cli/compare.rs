@@ -1,6 +1,5 @@
 //! `marraztu compare`: compares two pictures.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -14,6 +13,7 @@ use marraztu_lab::flip::Perceived;
 use super::failure::Failure;
 use super::page::{check_page, write_page};
 use super::say;
+use super::talk::print;
 
 /// The exit status if the pictures cannot be compared.
 const INCOMPARABLE: u8 = 2;
@@ -90,11 +90,7 @@ pub(super) fn compare(arguments: &Compare) -> Result<(), Failure> {
     let difference = difference(&first, &second);
     let rows = difference.rows(sizes[0].area());
     let text: String = rows.iter().map(|[name, value]| format!("{name:<20}{value}\n")).collect();
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        // The reader has closed the pipe, like `head`.
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {}
-        written => written.map_err(Failure::Output)?,
-    }
+    print(&text)?;
     let amplified =
         (out.is_some() || html.is_some()).then(|| amplified(&first, &second, AMPLIFIED));
     if let (Some(out), Some(amplified)) = (out, &amplified) {

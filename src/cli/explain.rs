@@ -1,7 +1,5 @@
 //! `marraztu explain`: explains the surface at a pixel and the terms of its colour.
 
-use std::io::Write as _;
-
 use clap::Args;
 use marraztu_core::accuracy::{Samples, Settings};
 use marraztu_lab::pixel;
@@ -10,6 +8,7 @@ use marraztu_render::{Renderer, plan_frame};
 use super::arguments::PictureArguments;
 use super::failure::Failure;
 use super::render;
+use super::talk::print;
 use super::values::{Pixel, pixel as parse_pixel};
 
 /// A picture, and the pixel to explain.
@@ -43,5 +42,5 @@ pub(crate) fn explain(arguments: &Explain) -> Result<(), Failure> {
         return Err(Failure::Absent(format!("pixel {x},{y} is outside the picture")));
     };
     let text = pixel::lines(&shot.scene, &explained).join("\n") + "\n";
-    std::io::stdout().lock().write_all(text.as_bytes()).map_err(Failure::Output)
+    print(&text)
 }

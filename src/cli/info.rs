@@ -1,7 +1,6 @@
 //! `marraztu info`: describes files as plain text.
 
 use std::fmt::Write as _;
-use std::io::{self, Write};
 use std::path::Path;
 
 use marraztu_core::scene::{Model, Observer, Projection, Scene, View};
@@ -9,8 +8,8 @@ use marraztu_io::{Input, Progress, describe, shape};
 
 use super::arguments::{Info, Reading};
 use super::failure::Failure;
-use super::say;
 use super::stage::{Stage, Watch, input, is_scene, load};
+use super::talk::{print, say};
 use super::values::is_standard;
 
 /// Describes each file. An unreadable file is reported, and the rest are still described.
@@ -27,11 +26,7 @@ pub(crate) fn info(arguments: &Info) -> Result<(), Failure> {
             }
         };
         let blank = if i == 0 { "" } else { "\n" };
-        match write!(io::stdout().lock(), "{blank}{described}") {
-            // The reader has closed the pipe, like `head`.
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
-            written => written.map_err(Failure::Output)?,
-        }
+        print(&format!("{blank}{described}"))?;
     }
     if failed { Err(Failure::Told) } else { Ok(()) }
 }

@@ -1,12 +1,12 @@
 //! `marraztu keys`: lists all keys and mouse actions, from the same tables as the editor.
 
 use std::fmt::Write as _;
-use std::io::{self, Write};
 
 use clap::Args;
 use marraztu::app::actions::{ActionInfo, Group, MouseInfo};
 
 use super::failure::Failure;
+use super::talk::print;
 
 /// Lists every key of the editor, and what the mouse does.
 #[derive(Debug, Args)]
@@ -19,11 +19,7 @@ pub(crate) struct Keys {
 /// Prints the keys.
 pub(crate) fn keys(arguments: &Keys) -> Result<(), Failure> {
     let text = if arguments.markdown { markdown() } else { plain() };
-    match io::stdout().lock().write_all(text.as_bytes()) {
-        // The reader has closed the pipe, like `head`.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        written => written.map_err(Failure::Output),
-    }
+    print(&text)
 }
 
 /// Returns each group with the actions that have keys.

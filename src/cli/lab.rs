@@ -1,6 +1,5 @@
 //! `marraztu lab`: measures the cost of accuracy.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -26,7 +25,7 @@ use super::draw_along;
 use super::failure::Failure;
 use super::page::{self, check_page};
 use super::render::staged;
-use super::talk::Talk;
+use super::talk::{Talk, print};
 use super::values::{Pixel, pixel, size, threads};
 
 /// What to measure, and what to report.
@@ -55,7 +54,7 @@ pub(crate) struct Lab {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["suite", "pixel"])]
     html: Option<PathBuf>,
     /// Width and height in pixels; one number for a square [default: 800x800; suite: 1280x720]
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", allow_negative_numbers = true, value_parser = size)]
     size: Option<Size>,
     /// Measure the suite, with a scene for each axis, or one of its scenes: pixels, vertices,
     /// highlights, textures, edges, far, depth, first; at most 10 minutes at 1280x720
@@ -245,14 +244,6 @@ fn explain_pixel(studio: &mut Studio, settings: &Settings, at: [usize; 2]) -> Re
     let mut lines = attribution.lines();
     lines.insert(1, seen);
     print(&(lines.join("\n") + "\n"))
-}
-
-fn print(text: &str) -> Result<(), Failure> {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        // The reader has closed the pipe, like `head`.
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        written => written.map_err(Failure::Output),
-    }
 }
 
 /// The files written by a measurement.

@@ -5,7 +5,6 @@
 use std::collections::btree_map::Entry::{Occupied, Vacant};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
-use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -13,11 +12,11 @@ use marraztu::plots::{PageCell, sheet_page};
 use marraztu_io::Sources;
 
 use super::batch::Status;
-use super::batch::list::{Entry, expanded, read_list};
+use super::batch::list::{Entry, expanded, read_list, read_text};
 use super::batch::report::{Counts, Line, Summary, begin, line};
 use super::failure::{Failure, usage};
 use super::page::{check_page, relative_url, write_page};
-use super::talk::{Talk, note};
+use super::talk::{Talk, note, print};
 
 /// The reports to join.
 #[derive(Debug, Args)]
@@ -74,12 +73,11 @@ pub(super) fn merge(arguments: &Merge) -> Result<(), Failure> {
         check_page(sheet, &Sources::default().with(reports.iter().chain([&arguments.out])))?;
     }
     for path in &reports {
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| Failure::Usage(format!("{}: {error}", path.display())))?;
+        let text = read_text(path)?;
         merged.add(path, &text).map_err(Failure::Usage)?;
     }
     let expected = match &arguments.expect {
-        Some(list) => read_list(list)?.into_iter().map(|entry| entry.file).collect(),
+        Some(list) => read_list(list, &|_| true)?.into_iter().map(|entry| entry.file).collect(),
         None => BTreeSet::new(),
     };
     let counts = merged.counts();
@@ -95,11 +93,7 @@ pub(super) fn merge(arguments: &Merge) -> Result<(), Failure> {
         write_page(sheet, &sheet_page(&title, &merged.cells(sheet, &counts, &expected)))?;
     }
     let missing = merged.missing(&counts, &expected);
-    match std::io::stdout().lock().write_all(missing.as_bytes()) {
-        // The reader has closed the pipe, like `head`.
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => {}
-        written => written.map_err(Failure::Output)?,
-    }
+    print(&missing)?;
     note(&format_args!("{} of {} pictures are there", counts.done, counts.jobs));
     if missing.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }

@@ -40,7 +40,6 @@ mod verify;
 #[cfg(not(target_family = "wasm"))]
 mod views;
 
-use std::io::Write;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
@@ -48,6 +47,7 @@ use clap::{CommandFactory, FromArgMatches as _};
 
 use self::commands::{Arguments, Headless};
 use self::failure::Failure;
+use self::talk::say;
 
 /// Runs the command given by the arguments of this process.
 pub(crate) fn run() -> ExitCode {
@@ -142,9 +142,4 @@ fn usage(wrong: &clap::Error) -> ExitCode {
     // If standard error is closed, the message is lost.
     let _ = wrong.print();
     ExitCode::from(u8::try_from(wrong.exit_code()).unwrap_or(2))
-}
-
-/// Prints a line to standard error, in the style of clap's errors.
-fn say(kind: &str, what: &dyn std::fmt::Display) {
-    let _ = writeln!(std::io::stderr().lock(), "{kind}: {what}");
 }

@@ -1,7 +1,6 @@
 //! `marraztu plan`: explains the effects that a frame uses.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
@@ -13,6 +12,7 @@ use super::arguments::PictureArguments;
 use super::bar::Bar;
 use super::failure::Failure;
 use super::render;
+use super::talk::print;
 
 /// A picture whose effects are listed.
 #[derive(Debug, Args)]
@@ -67,7 +67,7 @@ pub(crate) fn plan(arguments: &Plan) -> Result<(), Failure> {
         Format::Csv => csv(&explained, costs.as_ref()),
         Format::Json => json(&explained, costs.as_ref()),
     };
-    std::io::stdout().lock().write_all(text.as_bytes()).map_err(Failure::Output)
+    print(&text)
 }
 
 fn table(explained: &Explained, costs: Option<&Costs>) -> String {

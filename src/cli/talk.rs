@@ -1,10 +1,12 @@
-//! Notes and progress on standard error.
+//! Results on standard output, notes and progress on standard error.
 
+use std::fmt::Display;
+use std::io::{ErrorKind, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
 
-use super::say;
+use super::failure::Failure;
 
 static QUIET: AtomicBool = AtomicBool::new(false);
 static PROGRESS: AtomicBool = AtomicBool::new(false);
@@ -29,8 +31,34 @@ impl Talk {
     }
 }
 
+/// Prints a text to standard output.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    write_out(without_controls(text).as_bytes())
+}
+
+/// Writes bytes to standard output.
+pub(crate) fn write_out(bytes: &[u8]) -> Result<(), Failure> {
+    match std::io::stdout().lock().write_all(bytes) {
+        // The reader has closed the pipe, like `head`.
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        written => written.map_err(Failure::Output),
+    }
+}
+
+/// Prints a line to standard error, in the style of clap's errors.
+pub(crate) fn say(kind: &str, what: &dyn Display) {
+    let text = without_controls(&what.to_string());
+    let _ = writeln!(std::io::stderr().lock(), "{kind}: {text}");
+}
+
+/// Replaces control characters: in the name of a file or an object, they could hide text, or make a
+/// terminal do something.
+fn without_controls(text: &str) -> String {
+    text.replace(|sign: char| sign.is_control() && sign != '\n' && sign != '\t', "\u{FFFD}")
+}
+
 /// Prints a note, unless only errors are wanted.
-pub(crate) fn note(what: &dyn std::fmt::Display) {
+pub(crate) fn note(what: &dyn Display) {
     if !is_quiet() {
         say("note", what);
     }

@@ -1,7 +1,7 @@
 //! The target of a picture: standard output or a file. The default file name derives from the input
 //! files.
 
-use std::io::{ErrorKind, IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use marraztu_core::base::image::Size;
@@ -11,6 +11,7 @@ use super::arguments::Render;
 use super::failure::{Failure, usage};
 use super::layers::{Encoding, FIELD, LayerContent, LayerFile, LayerOptions};
 use super::stage::is_scene;
+use super::talk::write_out;
 use super::terminal::{TerminalForm, cells};
 use super::values::{is_standard, is_terminal};
 
@@ -128,21 +129,12 @@ impl Target {
             }
             (Self::Output | Self::Terminal(_), None) => Ok(()),
             (Self::Terminal(form), Some(picture)) => {
-                print(form.encode(picture).map_err(Failure::Absent)?.as_bytes())
+                write_out(form.encode(picture).map_err(Failure::Absent)?.as_bytes())
             }
             (Self::Output, Some(picture)) => {
-                print(&PICTURE_FORMATS[0].encode(picture).map_err(Failure::Absent)?)
+                write_out(&PICTURE_FORMATS[0].encode(picture).map_err(Failure::Absent)?)
             }
         }
-    }
-}
-
-/// Writes to standard output.
-fn print(bytes: &[u8]) -> Result<(), Failure> {
-    match std::io::stdout().lock().write_all(bytes) {
-        // The reader has closed the pipe, like `head`.
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        written => written.map_err(Failure::Output),
     }
 }
 

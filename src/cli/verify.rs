@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -15,6 +14,7 @@ use marraztu_lab::pictures::{self, TestPicture};
 
 use super::bar::Bar;
 use super::failure::Failure;
+use super::talk::print;
 use super::values::threads;
 
 /// With which instructions and threads the pictures are drawn.
@@ -67,7 +67,7 @@ pub(crate) fn verify(arguments: &Verify) -> Result<(), Failure> {
     } else {
         comparison(&levels, threads, &pictures::listed(), out)?
     };
-    std::io::stdout().lock().write_all(text.as_bytes()).map_err(Failure::Output)?;
+    print(&text)?;
     if differing > 0 { Err(Failure::Told) } else { Ok(()) }
 }
 

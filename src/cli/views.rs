@@ -1,6 +1,5 @@
 //! `marraztu views`: a sheet of standard views of a model, with its facts.
 
-use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -17,7 +16,7 @@ use super::failure::{Failure, usage};
 use super::info::scene_text;
 use super::render::{cover, look};
 use super::stage::{Stage, Watch};
-use super::talk::{Talk, note};
+use super::talk::{Talk, note, print};
 use super::target::default_name;
 use super::values::size;
 
@@ -41,7 +40,13 @@ pub(crate) struct Views {
     #[arg(value_parser = PathBufValueParser::new().try_map(picture))]
     out: Option<PathBuf>,
     /// Width and height of each view in pixels; one number for a square
-    #[arg(long, value_name = "WxH", default_value = "400x400", value_parser = size)]
+    #[arg(
+        long,
+        value_name = "WxH",
+        default_value = "400x400",
+        allow_negative_numbers = true,
+        value_parser = size
+    )]
     size: Size,
     /// The views, as in `batch`
     #[arg(long, value_name = "VIEWS", default_value = "front,right,top,iso")]
@@ -96,11 +101,7 @@ pub(super) fn views(arguments: &Views) -> Result<(), Failure> {
     }
     let columns = usize::try_from(*columns).unwrap_or(usize::MAX);
     io::save_picture(&path, &contact_sheet(&cells, columns, &lines)?)?;
-    match std::io::stdout().lock().write_all(facts.as_bytes()) {
-        // The reader has closed the pipe, like `head`.
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => {}
-        written => written.map_err(Failure::Output)?,
-    }
+    print(&facts)?;
     if out.is_none() {
         note(&format_args!("the sheet is in {}", path.display()));
     }

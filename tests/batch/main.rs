@@ -278,7 +278,7 @@ fn a_folder_without_permission_is_an_error_of_each_picture() {
 fn mistakes_in_a_list_are_found_before_the_first_picture() {
     let folder = folder();
     for (csv, reason) in [
-        ("file,colour\nmodels/cam.obj,red\n", "list.csv:2: column colour: there is no such option"),
+        ("file,colour\nmodels/cam.obj,red\n", "list.csv:1: column colour: there is no such option"),
         ("file,size\nmodels/cam.obj,64\nmodels/cam.obj,0x5\n", "list.csv:3: column size: "),
         ("file,edges\nmodels/cam.obj,perhaps\n", "list.csv:2: column edges: "),
         ("file,views\nmodels/cam.obj,inside\n", "list.csv:2: column views: "),
@@ -304,6 +304,13 @@ fn mistakes_in_a_list_are_found_before_the_first_picture() {
         (&["batch", "a.obj", "--shard", "2/2"], "counted from 0"),
         (&["batch", "a.obj", "--shard", "auto"], "SLURM_ARRAY_TASK_ID"),
         (&["batch", "a.obj", "--memory", "much"], "500M"),
+        (&["batch", "a.obj", "--size", "-5"], "from 1 to 16384"),
+        (
+            &["batch", "models/cam.obj", "--report", "a.jsonl", "--times", "a.jsonl"],
+            "--report and --times name the same file",
+        ),
+        (&["batch", "--list", "models"], "models: this is a folder, not a file"),
+        (&["merge", "models", "--out", "a.jsonl"], "models: this is a folder, not a file"),
         (&["batch", "a.obj", "--views", "0"], "1 to 100000 views"),
         (&["batch", "a.obj", "--views", "4", "--from", "0,0"], "--camera and --from"),
         (&["batch", "a.obj", "--transparent", "--format", "jpg"], "no transparent pixels"),

@@ -252,6 +252,18 @@ fn info_describes_each_file_and_a_bad_one_does_not_keep_it_from_the_others() {
 }
 
 #[test]
+fn names_cannot_control_the_terminal() {
+    let folder = folder();
+    let square = std::fs::read_to_string(folder.path().join("square.obj")).unwrap();
+    let text = format!("o \u{1b}]0;title\u{7}\n{square}");
+    std::fs::write(folder.path().join("named.obj"), text).unwrap();
+    let (out, _) = ends_with(0, folder.path(), &["info", "named.obj"]);
+    assert!(out.contains("\u{fffd}]0;title\u{fffd}") && !out.contains('\u{1b}'), "{out:?}");
+    let (_, err) = ends_with(1, folder.path(), &["info", "\u{1b}[2J.obj"]);
+    assert!(err.contains("\u{fffd}[2J.obj") && !err.contains('\u{1b}'), "{err:?}");
+}
+
+#[test]
 fn a_reader_that_closes_the_pipe_causes_no_error() {
     let folder = folder();
     let mut child = Command::new(env!("CARGO_BIN_EXE_marraztu"))

@@ -66,12 +66,16 @@ def change(before, after, difference):
 
 def main():
     base, out, options = sys.argv[1], Path(sys.argv[2]).resolve(), sys.argv[3:]
+    if not shutil.which("marraztu"):
+        sys.exit("error: the program marraztu is not on the PATH")
     shutil.rmtree(out, ignore_errors=True)
     (out / "difference").mkdir(parents=True)
     with tempfile.TemporaryDirectory() as folder:
         git("worktree", "add", "--detach", folder, base)
-        before = draw(folder, out / "before", options)
-        git("worktree", "remove", "--force", folder)
+        try:
+            before = draw(folder, out / "before", options)
+        finally:
+            git("worktree", "remove", "--force", folder)
     if before:
         shutil.copytree(out / "before", out / "after")
     after = draw(".", out / "after", options)

@@ -72,7 +72,7 @@ pub use picture::{
     check_picture_target, check_replaced, save_bands, save_encoded, save_picture,
 };
 pub use progress::{Cancelled, Progress};
-pub use read::check_file;
+pub use read::{check_file, read_file};
 pub use replace::{NewFile, SaveError};
 pub use scene_file::{
     Fragment, Known, Opened, SCENE_ENDING, SceneFileError, items_of_text, items_to_text,

@@ -78,6 +78,14 @@ fn is_inherited(path: &Path) -> bool {
     ["/dev/fd", "/proc/self/fd", "/dev/stdin"].iter().any(|begin| path.starts_with(begin))
 }
 
+/// Reads a whole file.
+///
+/// # Errors
+/// If it cannot be read, or is not a file: a folder, a device, or a pipe that was not inherited.
+pub fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
+    read(path, usize::MAX - 1, &Progress::new())
+}
+
 /// Reads a file in pieces, reporting progress and checking for cancellation in between.
 ///
 /// # Errors

@@ -94,7 +94,7 @@ class Mesh:
         crease: float = CREASE,
         bump_maps: str = "auto",
     ) -> Mesh:
-        """Loads an .obj or .obj.gz file, with its MTL files and textures.
+        """Loads an .obj, .obj.gz or .stl file, with its MTL files and textures.
 
         `up` is the axis of the file that points up: x, y, z, -x, -y or -z; by default the axis
         stated in its comments, or y. `crease` is in radians, and used if the file has neither

@@ -113,11 +113,11 @@ pub(super) struct Jobs {
 impl Jobs {
     /// Collects the jobs that the arguments describe.
     pub(super) fn of(arguments: &Batch) -> Result<Self, Failure> {
+        let mut reader = RowReader::new(arguments)?;
         let mut entries = expanded(&arguments.files)?;
         if let Some(list) = &arguments.list {
-            entries.extend(read_list(list)?);
+            entries.extend(read_list(list, &|name| reader.has(name))?);
         }
-        let mut reader = RowReader::new(arguments)?;
         let rows = entries.into_iter().map(|entry| reader.row(entry).map(Arc::new));
         let rows: Vec<Arc<Row>> = rows.collect::<Result<_, _>>()?;
         if rows.is_empty() {
@@ -174,6 +174,11 @@ impl RowReader {
         Ok(reader)
     }
 
+    /// Returns whether there is such a column, in addition to the file.
+    fn has(&self, column: &str) -> bool {
+        matches!(column, "views" | "out") || self.parser.has(column)
+    }
+
     fn views(&mut self, text: &str) -> Result<Arc<Vec<CameraView>>, String> {
         if let Some(views) = self.views.get(text) {
             return Ok(Arc::clone(views));
@@ -211,12 +216,7 @@ impl RowReader {
                     let with = self.parser.with(&texts, name, value);
                     texts = with.map_err(|error| wrong(error.option.as_deref(), &error.reason))?;
                 }
-                (name, _) => {
-                    let file = list::FILE;
-                    let reason = "there is no such option of pictures; a list has the columns";
-                    let reason = format!("{reason} {file}, out, views and the options of render");
-                    return Err(wrong(Some(name), &reason));
-                }
+                (name, _) => return Err(wrong(Some(name), list::NO_COLUMN)),
             }
         }
         let parsed = self.parser.parse(&texts);

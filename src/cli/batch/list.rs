@@ -1,8 +1,9 @@
 //! Reads lists of files: CSV with a header, JSON lines, or plain lines.
 
-use std::io::Read;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
+use marraztu_io::read_file;
 use serde_json::Value as Json;
 
 use super::options::Value;
@@ -11,6 +12,10 @@ use crate::cli::values::is_standard;
 
 /// The column of the model or scene.
 pub(super) const FILE: &str = "file";
+
+/// Why a column is refused.
+pub(super) const NO_COLUMN: &str = "there is no such option of pictures; a list has the columns \
+    file, out, views and the options of render";
 
 /// A row of a list, or a file among the arguments.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,28 +36,46 @@ enum ListFormat {
     Plain,
 }
 
-/// Reads the list at `path`; "-" is standard input.
+/// Reads the list at `path`; "-" is standard input. The names of the columns in the header of a CSV
+/// file are checked with `is_column`.
 ///
 /// # Errors
 /// If it cannot be read, or a row is not valid.
-pub(crate) fn read_list(path: &Path) -> Result<Vec<Entry>, Failure> {
-    let mut bytes = Vec::new();
-    let (name, read) = if is_standard(path) {
-        ("standard input".to_owned(), std::io::stdin().lock().read_to_end(&mut bytes))
-    } else {
-        let read = std::fs::File::open(path).and_then(|mut file| file.read_to_end(&mut bytes));
-        (path.display().to_string(), read)
-    };
-    read.map_err(|error| Failure::Usage(format!("the list {name} cannot be read: {error}")))?;
-    let text = String::from_utf8(bytes)
-        .map_err(|_bytes| Failure::Usage(format!("the list {name} is not in UTF-8")))?;
+pub(crate) fn read_list(
+    path: &Path,
+    is_column: &dyn Fn(&str) -> bool,
+) -> Result<Vec<Entry>, Failure> {
+    let text = read_text(path)?;
+    let name = shown(path);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let entries = match format_of(path, text) {
-        ListFormat::Csv => from_csv(&name, text),
+        ListFormat::Csv => from_csv(&name, text, is_column),
         ListFormat::JsonLines => from_json_lines(&name, text),
         ListFormat::Plain => Ok(from_lines(&name, text)),
     };
     entries.map_err(Failure::Usage)
+}
+
+/// Reads a file of text, or standard input for "-".
+///
+/// # Errors
+/// If it cannot be read, is a device, or is not in UTF-8.
+pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
+    let wrong = |reason: String| Failure::Usage(reason);
+    let bytes = if is_standard(path) {
+        let mut bytes = Vec::new();
+        let read = std::io::stdin().lock().read_to_end(&mut bytes);
+        read.map_err(|error| wrong(format!("{}: {error}", shown(path))))?;
+        bytes
+    } else {
+        read_file(path).map_err(|error| wrong(error.to_string()))?
+    };
+    let text = String::from_utf8(bytes);
+    text.map_err(|_bytes| wrong(format!("{}: this is not text in UTF-8", shown(path))))
+}
+
+fn shown(path: &Path) -> String {
+    if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
 }
 
 /// Returns the format by the extension, or by the first line if there is none.
@@ -89,7 +112,11 @@ fn column_name(column: &str) -> String {
     column.trim().to_ascii_lowercase().replace('_', "-")
 }
 
-fn from_csv(name: &str, text: &str) -> Result<Vec<Entry>, String> {
+fn from_csv(
+    name: &str,
+    text: &str,
+    is_column: &dyn Fn(&str) -> bool,
+) -> Result<Vec<Entry>, String> {
     let mut reader = csv::ReaderBuilder::new().from_reader(text.as_bytes());
     // A row's position is before the empty lines that precede it.
     let line_of = |position: Option<&csv::Position>| {
@@ -112,6 +139,9 @@ fn from_csv(name: &str, text: &str) -> Result<Vec<Entry>, String> {
     if !header.iter().any(|column| column == FILE) {
         return Err(format!("{name}:1: the header has no column {FILE:?}"));
     }
+    if let Some(column) = header.iter().find(|column| *column != FILE && !is_column(column)) {
+        return Err(format!("{name}:1: column {column}: {NO_COLUMN}"));
+    }
     let mut entries = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| of_line(&error))?;
@@ -133,6 +163,9 @@ fn from_json_lines(name: &str, text: &str) -> Result<Vec<Entry>, String> {
         let mut values = Vec::new();
         for (column, json) in &object {
             let column = column_name(column);
+            if column == FILE && !json.is_string() {
+                return Err(format!("{place}: column {FILE:?}: {json} is not a path in quotes"));
+            }
             let value = json_value(json)
                 .map_err(|reason| format!("{place}: column {column:?}: {reason}"))?;
             values.extend(value.map(|value| (column, value)));
@@ -219,7 +252,7 @@ mod tests {
         };
         let csv = "file,size,flip_winding\n\"a, b.obj\",64x32,true\nc.obj,,\n";
         assert_eq!(
-            from_csv("list", csv).unwrap(),
+            from_csv("list", csv, &|_| true).unwrap(),
             [
                 entry(2, "a, b.obj", &[("size", text("64x32")), ("flip-winding", text("true"))]),
                 entry(3, "c.obj", &[]),
@@ -263,8 +296,12 @@ mod tests {
             ("file,size\na.obj,64\n\n\r\n,64\n", "list:5: the row names no file"),
             ("file,size\na.obj,64\n\nb.obj\n", "list:4: the row has 1 columns"),
         ] {
-            assert!(from_csv("list", csv).unwrap_err().starts_with(reason), "{csv}");
+            assert!(from_csv("list", csv, &|_| true).unwrap_err().starts_with(reason), "{csv}");
         }
+        let unknown = from_csv("list", "file,colour\n", &|name| name == "size").unwrap_err();
+        assert!(unknown.starts_with("list:1: column colour: there is no such option"), "{unknown}");
+        let unquoted = from_json_lines("list", "{\"file\": 3}").unwrap_err();
+        assert_eq!(unquoted, "list:1: column \"file\": 3 is not a path in quotes");
         for (json, reason) in [
             ("{\"size\":64}", "list:1: the row names no file"),
             ("{\"file\":\"a\"}\n[1]", "list:2: "),

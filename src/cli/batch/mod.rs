@@ -24,7 +24,6 @@ mod template;
 pub(super) mod views;
 
 use std::collections::BTreeSet;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -48,9 +47,9 @@ use self::sheets::{Grid, grid, write_sheets};
 use self::studio::{Manner, Studio, silence_panics};
 use super::arguments::choice;
 use super::cameras::{CAMERAS, check_cameras, write_cameras};
-use super::failure::Failure;
+use super::failure::{Failure, usage};
 use super::layers::NUMBER_ENDINGS;
-use super::talk::{Talk, note};
+use super::talk::{Talk, note, print};
 use super::values::threads;
 
 /// The exit status if every missing picture is caused by its input.
@@ -162,7 +161,7 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
     arguments.talk.apply();
     let Jobs { jobs, all } = Jobs::of(arguments)?;
     if arguments.dry_run {
-        return print(&jobs);
+        return print(&listed(&jobs));
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let manner = Manner {
@@ -174,6 +173,9 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
         dataset: arguments.dataset,
     };
     let (report, times) = (arguments.report.as_deref(), arguments.times.as_deref());
+    if report.is_some() && report == times {
+        return Err(usage("--report and --times name the same file"));
+    }
     let name = cameras_name(arguments);
     if !matches!(arguments.dataset, Some(Dataset::Bop | Dataset::Coco)) {
         check_all_cameras(&name, &jobs, arguments.dataset)?;
@@ -235,21 +237,13 @@ fn check_all_cameras(name: &str, jobs: &[Job], dataset: Option<Dataset>) -> Resu
     folders.into_iter().try_for_each(|folder| check_cameras(&folder.join(name)))
 }
 
-/// Prints the jobs.
-fn print(jobs: &[Job]) -> Result<(), Failure> {
-    let mut output = std::io::BufWriter::new(std::io::stdout().lock());
-    let mut print = || {
-        for job in jobs {
-            let (file, out) = (job.row.file.display(), job.out().display());
-            writeln!(output, "{}\t{file}\t{}\t{out}", job.index, job.camera().name)?;
-        }
-        output.flush()
+/// Returns a line for each job.
+fn listed(jobs: &[Job]) -> String {
+    let line = |job: &Job| {
+        let (file, out) = (job.row.file.display(), job.out().display());
+        format!("{}\t{file}\t{}\t{out}\n", job.index, job.camera().name)
     };
-    match print() {
-        // The reader has closed the pipe, like `head`.
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        printed => printed.map_err(Failure::Output),
-    }
+    jobs.iter().map(line).collect()
 }
 
 /// Returns a cell that holds the number of the last signal to end.

@@ -23,7 +23,7 @@ use crate::cli::values::size;
 #[command(next_help_heading = "Pictures")]
 pub(super) struct PictureOptions {
     /// Width and height in pixels; one number for a square [default: 800x800]
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", allow_negative_numbers = true, value_parser = size)]
     pub(super) size: Option<Size>,
     /// Omit the background: the pictures get an alpha channel
     #[arg(long)]

@@ -70,7 +70,9 @@ fn shard_in(text: &str, variable: &dyn Fn(&str) -> Option<String>) -> Result<Sha
         return checked(index, count);
     }
     for [index, count, first, last] in ENGINES {
-        let Some(task) = number(index) else { continue };
+        let Some(text) = variable(index) else { continue };
+        let task = text.trim().parse::<usize>();
+        let task = task.map_err(|error| format!("{index} is {text:?}: {error}"))?;
         let count = number(count).ok_or_else(|| {
             format!("{index} is {task}, but {count} does not say of how many; write {task}/COUNT")
         })?;
@@ -154,6 +156,10 @@ mod tests {
         assert_eq!(shard_in("auto", &kubernetes), Ok(Shard { index: 5, count: 6 }));
         let unknown = environment(&[("JOB_COMPLETION_INDEX", "5")]);
         assert!(shard_in("auto", &unknown).unwrap_err().contains("5/COUNT"));
+        let broken = environment(&[("JOB_COMPLETION_INDEX", "x"), ("JOB_COMPLETIONS", "6")]);
+        assert!(
+            shard_in("auto", &broken).unwrap_err().starts_with("JOB_COMPLETION_INDEX is \"x\"")
+        );
         let aws =
             environment(&[("AWS_BATCH_JOB_ARRAY_INDEX", "9"), ("AWS_BATCH_JOB_ARRAY_SIZE", "10")]);
         assert_eq!(shard_in("auto", &aws), Ok(Shard { index: 9, count: 10 }));

@@ -11,6 +11,7 @@ use marraztu::directions::DIRECTIONS;
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::framing::MODELS_FROM;
 use marraztu_core::scene::Pose;
+use marraztu_io::read_file;
 use serde::Deserialize;
 
 use crate::cli::render::Aim;
@@ -49,7 +50,7 @@ pub(crate) fn parse_views(text: &str) -> Result<Vec<CameraView>, String> {
     }
     let path = Path::new(text);
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
-        let json = std::fs::read(path).map_err(|error| format!("{text}: {error}"))?;
+        let json = read_file(path).map_err(|error| error.to_string())?;
         return from_json(&json).map_err(|reason| format!("{text}: {reason}"));
     }
     text.split(',').map(|name| named(name.trim())).collect()
@@ -250,7 +251,9 @@ impl Intrinsics {
 fn from_json(json: &[u8]) -> Result<Vec<CameraView>, String> {
     let Transforms { shared, frames } =
         serde_json::from_slice(json).map_err(|error| error.to_string())?;
-    checked(frames.len())?;
+    if !(1..=MOST_VIEWS).contains(&frames.len()) {
+        return Err(format!("it has {} frames; 1 to {MOST_VIEWS} are possible", frames.len()));
+    }
     let view = |(i, frame): (usize, Frame)| {
         let named = |reason: String| format!("frame {i}: {reason}");
         let intrinsics = frame.own.or(&shared);
@@ -387,7 +390,7 @@ mod tests {
             let error = frame(lens, matrix);
             assert!(error.starts_with("frame 0: ") && error.contains(reason), "{error}");
         }
-        assert!(from_json(br#"{"frames": []}"#).is_err());
+        assert!(from_json(br#"{"frames": []}"#).unwrap_err().starts_with("it has 0 frames"));
         let plain = format!(
             r#"{{"camera_model": "OPENCV", "k1": 0, "frames": [{{"transform_matrix": {whole}}}]}}"#
         );
