@@ -47,7 +47,7 @@ pub mod widgets;
 
 pub use drawing::worker::server::DrawingServer;
 pub use editor::App;
-pub use editor::laboratory_messages::measure_job;
+pub use editor::jobs::{JobKind, do_job};
 pub use shell::{CanvasShell, Painted};
 #[cfg(feature = "desktop")]
 pub use shell::{Shell, StartError};

@@ -265,6 +265,36 @@ const checks = {
     equal(bytes.readUInt32BE(16) > 500, true, "it is as wide as the viewport");
   },
 
+  async "a turntable is drawn while the page answers"(visit) {
+    const page = await visit();
+    await page.open(`${site}?model=/scenes/both.marraztu`);
+    await page.sees("green");
+    const turntable = async () => {
+      await page.palette("turntable");
+      await sleep(300);
+      await page.tab.press("Enter");
+    };
+    await page.tab.run(() => {
+      window.longest = 0;
+      let last = performance.now();
+      const watch = (now) => {
+        window.longest = Math.max(window.longest, now - last);
+        last = now;
+        requestAnimationFrame(watch);
+      };
+      requestAnimationFrame(watch);
+    });
+    const begun = Date.now();
+    const [name, bytes] = await page.tab.download(turntable);
+    const spent = Date.now() - begun;
+    equal(name, "turntable.gif", "the name of the turntable");
+    equal(bytes.subarray(0, 6).toString(), "GIF89a", "its format");
+    await page.hears("Downloaded turntable.gif");
+    const longest = await page.tab.run(() => window.longest);
+    console.log(`  the turntable took ${spent} ms, and the longest frame meanwhile ${Math.round(longest)} ms`);
+    equal(longest < spent / 2, true, `the page answers: ${longest} ms of ${spent} without a frame`);
+  },
+
   async "a dropped folder opens its model with MTL file and texture"(visit) {
     const page = await visit();
     await page.open(site);

@@ -57,10 +57,19 @@ export class Files {
   // Takes a file that another instance shares.
   take(path, bytes) {
     const [, folder, rest] = path.match(/^\/(files|examples)\/(.*)$/);
-    put(folder === "examples" ? this.examples : this.user, rest, bytes);
+    if (folder === "examples") {
+      put(this.examples, rest, bytes);
+    } else {
+      this.known.set(rest, put(this.user, rest, bytes).data);
+    }
   }
 
-  // Returns the files that the editor has written since the last call, with their bytes.
+  // Takes a file that another instance has written, as if the editor had.
+  takeWritten(path, bytes) {
+    put(this.user, path, bytes);
+  }
+
+  // Returns the files that the editor has written since the last call: their paths and bytes.
   written() {
     const found = [];
     const visit = (folder, path) => {
@@ -71,7 +80,7 @@ export class Files {
         } else if (this.known.get(full) !== entry.data && !name.startsWith(".") && !name.endsWith("~")) {
           this.known.set(full, entry.data);
           this.share(`/files/${full}`, entry.data);
-          found.push([name, entry.data]);
+          found.push([full, entry.data]);
         }
       }
     };

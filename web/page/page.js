@@ -12,7 +12,7 @@ import { ConsoleStdout, OpenFile, PreopenDirectory, File, WASI } from "./wasi/in
 import { Fetching } from "./fetching.js";
 import { Files } from "./files.js";
 import { Touches } from "./touches.js";
-import { Drawing, Measuring } from "./workers.js";
+import { Drawing, Jobs } from "./workers.js";
 
 const canvas = document.getElementById("canvas");
 const text = document.getElementById("text");
@@ -29,9 +29,9 @@ const decoder = new TextDecoder();
 // before.
 let module = null;
 let editor = null;
-// Workers that draw and measure; without them, the editor does so itself.
+// Workers that draw, and that do jobs; without them, the editor does so itself.
 let drawing = null;
-let measuring = null;
+let jobs = [];
 
 function write(value) {
   const bytes = encoder.encode(value);
@@ -80,7 +80,7 @@ function run(time) {
     // The worker draws while the frame is painted.
     drawing?.exchange();
     obey(read(editor.paint()));
-    measuring?.exchange();
+    jobs.forEach((job) => job.exchange());
   } catch (error) {
     fail(error);
   }
@@ -120,8 +120,8 @@ function obey(frame) {
   if (frame.wants) {
     choose(frame.wants);
   }
-  for (const [name, bytes] of files.written()) {
-    download(name, bytes);
+  for (const [path, bytes] of files.written()) {
+    download(path.split("/").pop(), bytes);
   }
   files.keep();
   clearTimeout(timer);
@@ -498,7 +498,7 @@ async function begin() {
   });
   if (drawing) {
     drawing.connect(module, schedule);
-    measuring = new Measuring(source, module, schedule);
+    jobs = [0, 1].map((kind) => new Jobs(source, module, kind, schedule));
   }
   editor = module;
   status.textContent = unloaded;

@@ -1,4 +1,4 @@
-// Draws the viewport for the editor in the page, or measures for its laboratory: see workers.js.
+// Draws the viewport for the editor in the page, or does jobs for it: see workers.js.
 
 import { ConsoleStdout, Fd, PreopenDirectory, WASI } from "./wasi/index.js";
 import { Files } from "./files.js";
@@ -46,7 +46,9 @@ self.onmessage = ({ data }) => {
     queue();
   } else if (data.job) {
     put(data.job);
-    module.measure();
+    const length = module.do_job();
+    const told = new TextDecoder().decode(new Uint8Array(module.memory.buffer, module.output(), length));
+    postMessage({ told, written: files.written() });
   } else {
     files.take(data.path, data.bytes);
     // A picture does not depend on the scene's own file, which is saved often.
@@ -92,7 +94,7 @@ function put(bytes) {
 }
 
 function begin({ compiled, files: all }) {
-  // The results of a measurement are lines of the standard output.
+  // What a job tells is a line of the standard output.
   const told = ConsoleStdout.lineBuffered((line) => postMessage({ told: line }));
   const faults = ConsoleStdout.lineBuffered((line) => console.error(line));
   const fds = [new Requests(), told, faults, new PreopenDirectory("/", files.root(false))];

@@ -1,6 +1,6 @@
-// Workers: other instances of the module, with the same files. One draws the viewport; another one
-// measures for the laboratory while it is asked to. The editor and its workers exchange messages
-// that only they understand.
+// Workers: other instances of the module, with the same files. One draws the viewport; others measure
+// for the laboratory, or make files, while they are asked to. The editor and its workers exchange
+// messages that only they understand.
 
 // A worker, and the files that it gets. `heard` takes each message; `failed` a fault.
 function begin({ compiled, files }, heard, failed) {
@@ -75,35 +75,41 @@ export class Drawing {
   }
 }
 
-export class Measuring {
-  // `heard` is called after each result.
-  constructor(source, editor, heard) {
+// The jobs of a kind, one at a time: 0 measures, 1 makes a file.
+export class Jobs {
+  // `heard` is called after each message.
+  constructor(source, editor, kind, heard) {
     this.source = source;
     this.editor = editor;
+    this.kind = kind;
     this.heard = heard;
     this.worker = null;
   }
 
-  // Starts the next measurement, and stops one whose results are not awaited any more.
+  // Starts the next job, and stops one whose result is not awaited any more.
   exchange() {
-    const length = this.editor.job();
-    if (length > 0 || this.editor.awaits_measurement() === 0) {
+    const length = this.editor.job(this.kind);
+    if (length > 0 || this.editor.awaits(this.kind) === 0) {
       this.worker?.terminate();
       this.worker = null;
     }
     if (length > 0) {
       const job = taken(this.editor, length);
       // A worker that was stopped may have a result on its way.
-      const take = (told) => told && worker === this.worker && this.take(told);
-      const worker = begin(this.source, ({ told }) => take(told), (fault) => take(`failed: ${fault}`));
+      const take = (message) => message.told && worker === this.worker && this.take(message);
+      const worker = begin(this.source, take, (fault) => take({ told: `failed: ${fault}` }));
       worker.postMessage({ job }, [job.buffer]);
       this.worker = worker;
     }
   }
 
-  take(told) {
+  take({ told, written = [] }) {
+    // The files come with the end of the job, which says that they are saved.
+    for (const [path, bytes] of written) {
+      this.source.files.takeWritten(path, bytes);
+    }
     put(this.editor, new TextEncoder().encode(told));
-    this.editor.told();
+    this.editor.told(this.kind);
     this.heard();
   }
 }

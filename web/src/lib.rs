@@ -15,8 +15,9 @@ mod verify;
 use std::cell::RefCell;
 use std::io::{Read as _, Write as _};
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use marraztu::app::{CanvasShell, DrawingServer, measure_job};
+use marraztu::app::{CanvasShell, DrawingServer, JobKind};
 use marraztu::directions::direction;
 
 use events::PageEvent;
@@ -161,40 +162,51 @@ pub extern "C" fn files_changed() {
     });
 }
 
-/// Returns the length of the next measurement in the output, for [`measure`] of another instance,
-/// or 0. To be called after each frame.
+/// The kinds of jobs, by the numbers that the page uses.
+const JOBS: [JobKind; 2] = [JobKind::Measure, JobKind::Make];
+
+/// Returns the length of the next job of a kind in the output, for [`do_job`] of another instance,
+/// or 0. To be called after each frame. Kind 0 measures, kind 1 makes a file.
 #[unsafe(no_mangle)]
-pub extern "C" fn job() -> usize {
+pub extern "C" fn job(kind: usize) -> usize {
     with(|page| {
-        page.output = page.shell.as_mut().and_then(CanvasShell::job).unwrap_or_default();
+        let job = page.shell.as_mut().and_then(|shell| shell.job(JOBS[kind]));
+        page.output = job.unwrap_or_default();
         page.output.len()
     })
 }
 
-/// Returns 1 if results of a measurement are awaited, or else 0: the other instance may be stopped.
+/// Returns 1 if the result of a job of a kind is awaited, or else 0: the other instance may be
+/// stopped.
 #[unsafe(no_mangle)]
-pub extern "C" fn awaits_measurement() -> u32 {
-    with(|page| u32::from(page.shell.as_ref().is_some_and(CanvasShell::awaits_measurement)))
+pub extern "C" fn awaits(kind: usize) -> u32 {
+    with(|page| u32::from(page.shell.as_ref().is_some_and(|shell| shell.awaits(JOBS[kind]))))
 }
 
-/// Takes a line of the results of a measurement in the input. Any other line means that the
-/// instance has failed.
+/// Takes what a job of a kind tells, in the input. Any other text means that the instance has
+/// failed.
 #[unsafe(no_mangle)]
-pub extern "C" fn told() {
+pub extern "C" fn told(kind: usize) {
     with(|page| {
         let Page { shell: Some(shell), input, .. } = page else { return };
-        shell.told(&String::from_utf8_lossy(input));
+        shell.told(JOBS[kind], &String::from_utf8_lossy(input));
     });
 }
 
-/// Does the measurement in the input. The results are written to the standard output, a line each.
+/// Does the job in the input. What it tells is written to the standard output, a line each. Returns
+/// the length of the end in the output; by then, the files of the job are written.
 #[unsafe(no_mangle)]
-pub extern "C" fn measure() {
+pub extern "C" fn do_job() -> usize {
     let job = with(|page| std::mem::take(&mut page.input));
-    measure_job(&job, &mut |told| {
+    let tell = |told: String| {
         // The page always takes it.
         let _ = writeln!(std::io::stdout(), "{told}");
-    });
+    };
+    let end = marraztu::app::do_job(&job, Arc::new(tell));
+    with(|page| {
+        page.output = end.into_bytes();
+        page.output.len()
+    })
 }
 
 /// Shows only the picture, for other pages to embed. Models are seen from the direction in the

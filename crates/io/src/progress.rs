@@ -14,11 +14,23 @@ pub struct Progress {
     share: f64,
 }
 
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct Status {
     /// The bits of an f64.
     fraction: AtomicU64,
     cancelled: AtomicBool,
+    /// Called with each fraction.
+    hear: Option<Box<dyn Fn(f64) + Send + Sync>>,
+}
+
+impl std::fmt::Debug for Status {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { fraction, cancelled, hear: _ } = self;
+        f.debug_struct("Status")
+            .field("fraction", fraction)
+            .field("cancelled", cancelled)
+            .finish_non_exhaustive()
+    }
 }
 
 /// The work was cancelled: its result is no longer wanted.
@@ -36,6 +48,13 @@ impl Progress {
     #[must_use]
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Starts at 0, and calls `hear` with the completed fraction of the whole work at each step.
+    #[must_use]
+    pub fn heard_by(hear: impl Fn(f64) + Send + Sync + 'static) -> Self {
+        let state = Status { hear: Some(Box::new(hear)), ..Status::default() };
+        Self { state: Arc::new(state), ..Self::default() }
     }
 
     /// Returns the completed fraction of the whole work, from 0 to 1.
@@ -79,5 +98,8 @@ impl Progress {
     pub fn set(&self, fraction: f64) {
         let whole = self.begin + self.share * fraction;
         self.state.fraction.store(whole.to_bits(), Ordering::Relaxed);
+        if let Some(hear) = &self.state.hear {
+            hear(whole);
+        }
     }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use egui::{DragValue, Key, Ui};
+use serde::{Deserialize, Serialize};
 
 use crate::app::widgets::controls::{Choice, Switch, choices as choices_ui, heading, take_focus};
 use marraztu_core::accuracy::Samples;
@@ -13,7 +14,7 @@ use marraztu_core::edit::turntable::Turn;
 const LONGEST_SIDE: usize = 16_384;
 
 /// The kind of file to save.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Purpose {
     Picture,
     Turntable,
@@ -30,7 +31,7 @@ impl Purpose {
 }
 
 /// The options.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PictureChoices {
     pub(crate) purpose: Purpose,
     /// The size before multiplication by `times`.

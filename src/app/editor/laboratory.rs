@@ -1,6 +1,6 @@
 //! Answers requests to the laboratory and runs its measurements on background threads. Without
 //! threads, another instance of the program measures (see
-//! [`laboratory_messages`](super::laboratory_messages)).
+//! [`jobs`](super::jobs)).
 //!
 //! During a measurement, the window is drawn at most four times a second, except right after keys
 //! and clicks. Pairs of pictures that were timed while it was drawn are discarded.
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use egui::Context;
 
 use super::App;
-use super::laboratory_messages::{Answers, Job};
+use super::jobs::{Answers, Job};
 use crate::app::actions::LabRequest;
 use crate::app::state::State;
 use crate::app::state::laboratory::Compare;

@@ -1,34 +1,23 @@
-//! Makes files that take time: pictures with options, turntables, exports. A background thread
-//! makes each file from a snapshot of the scene, with a progress bar and a way to cancel it.
+//! Makes files that take time: pictures with options, turntables, exports. A background thread, or
+//! another instance of the program where there are no threads, makes each file from a snapshot of
+//! the scene, with a progress bar and a way to cancel it.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use egui::{ColorImage, Context, Rect};
 
 use super::App;
+use super::jobs::{Answers, Job};
+use super::orders::{Content, Made, Order};
 use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
 use crate::app::documents::wanted::Wanted;
 use crate::app::drawing::images;
 use crate::app::state::{Notice, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
-use crate::picture_file::draw_into;
-use marraztu_core::accuracy::{Settings, Shot};
-use marraztu_core::edit::turntable::turned;
-use marraztu_core::scene::View;
-use marraztu_io::{self as io, Animation, AnimationWriter, Progress, Sources};
-use marraztu_render::{Renderer, plan_frame, without_ground_while};
-
-/// The outcome of making a file.
-#[derive(Debug)]
-pub(crate) enum Made {
-    /// The file was written; with notes about it.
-    Done(PathBuf, Vec<String>),
-    Cancelled,
-    /// The reason, as a sentence.
-    Failed(String),
-}
+use marraztu_io::{self as io, Progress};
 
 /// Files being made.
 #[derive(Debug, Default)]
@@ -38,6 +27,53 @@ pub(crate) struct Making {
     choices: Option<PictureChoices>,
     /// A requested picture of the window.
     screenshot: Option<Screenshot>,
+    /// The jobs for another instance, in order.
+    errands: VecDeque<Errand>,
+    /// Whether another instance does the first one.
+    is_doing: bool,
+}
+
+/// A job for another instance, and the way its result takes.
+#[derive(Debug)]
+struct Errand {
+    job: Job,
+    answers: Answers,
+    progress: Progress,
+}
+
+impl Making {
+    /// Returns the next job for another instance, unless one is being done.
+    pub(crate) fn take_job(&mut self) -> Option<Vec<u8>> {
+        let next = self.errands.front().filter(|_| !self.is_doing)?;
+        self.is_doing = true;
+        Some(next.job.written())
+    }
+
+    /// Returns whether another instance makes a file.
+    pub(crate) const fn is_elsewhere(&self) -> bool {
+        self.is_doing
+    }
+
+    /// Takes what another instance tells.
+    pub(crate) fn hear(&mut self, told: &str) {
+        let Some(errand) = self.errands.front() else { return };
+        if !errand.answers.take(told, |fraction, _| errand.progress.set(fraction)) {
+            self.errands.pop_front();
+            self.is_doing = false;
+        }
+    }
+
+    /// Ends the jobs that were cancelled.
+    fn drop_cancelled(&mut self) {
+        let is_cancelled = |errand: &Errand| errand.progress.is_cancelled();
+        self.is_doing &= !self.errands.front().is_some_and(is_cancelled);
+        self.errands.retain(|errand| {
+            if is_cancelled(errand) {
+                errand.answers.cancel();
+            }
+            !is_cancelled(errand)
+        });
+    }
 }
 
 /// A picture of the window, and the file to save it to.
@@ -93,35 +129,32 @@ impl App {
             ctx.request_repaint();
             return;
         }
-        let State { scene, view, settings, .. } = &self.state;
-        let settings = Settings { samples: choices.samples, ..*settings };
-        let shot = Shot::new(scene, view, &settings, choices.whole());
-        let label = format!("Drawing {}", file_name(&path));
-        self.make(ctx, label, move |progress| match choices.purpose {
-            Purpose::Picture => picture(&path, &shot, choices.transparent, progress),
-            Purpose::Turntable => turntable(&path, &shot, &choices, &sources, progress),
-        });
+        self.make(ctx, Order { path, content: Content::Drawn(choices) });
     }
 
     /// Begins to export the scene.
     pub(crate) fn export_scene(&mut self, ctx: &Context, path: PathBuf) {
-        let State { scene, view, .. } = &self.state;
-        let (scene, view) = (scene.clone(), view.clone());
-        let label = format!("Exporting {}", file_name(&path));
-        let sources = self.state.sources();
-        self.make(ctx, label, move |_| match io::export(&path, &scene, &view, &sources) {
-            Ok(exported) => Made::Done(path, exported.notes),
-            Err(error) => Made::Failed(error.to_string()),
-        });
+        self.make(ctx, Order { path, content: Content::Exported });
     }
 
-    fn make(
-        &mut self,
-        ctx: &Context,
-        label: String,
-        work: impl FnOnce(&Progress) -> Made + Send + 'static,
-    ) {
-        match Task::start(ctx, label, work) {
+    fn make(&mut self, ctx: &Context, order: Order) {
+        let State { scene, view, settings, .. } = &self.state;
+        if self.draws_elsewhere
+            && let Some(job) = Job::make((scene, view, settings), &order)
+        {
+            let (task, sender) = Task::promised(order.label());
+            let progress = task.progress.clone();
+            self.making.tasks.push(task);
+            self.making.errands.push_back(Errand { job, answers: Answers::Made(sender), progress });
+            ctx.request_repaint();
+            return;
+        }
+        let (of, sources) = ((scene.clone(), view.clone(), *settings), self.state.sources());
+        let work = {
+            let order = order.clone();
+            move |progress: &Progress| order.fulfil(of, &sources, progress)
+        };
+        match Task::start(ctx, order.label(), work) {
             Ok(task) => self.making.tasks.push(task),
             Err(error) => self.refuse(format!("cannot start a thread to write files: {error}")),
         }
@@ -130,6 +163,7 @@ impl App {
     /// Reports finished files.
     pub(crate) fn hear_making(&mut self, ctx: &Context) {
         self.hear_screenshot(ctx);
+        self.making.drop_cancelled();
         let mut made = Vec::new();
         self.making.tasks.retain(|task| match task.outcome() {
             Outcome::Running => true,
@@ -206,63 +240,46 @@ fn part_of(shown: &ColorImage, rect: Rect, scale: f32) -> Option<ColorImage> {
     (whole && fits).then(|| shown.region(&rect, Some(scale)))
 }
 
-/// Draws a picture into a file.
-fn picture(path: &Path, shot: &Shot, transparent: bool, progress: &Progress) -> Made {
-    let save = |size, next: &mut io::NextBand<'_>| io::save_bands(path, size, transparent, next);
-    match draw_into(shot, transparent, progress, save) {
-        Ok((Ok(()), _)) => Made::Done(path.to_owned(), Vec::new()),
-        Ok((Err(why), _)) => Made::Failed(why.to_string()),
-        Err(io::Cancelled) => Made::Cancelled,
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use marraztu_core::accuracy::Settings;
 
-/// Draws a turntable into a file.
-fn turntable(
-    path: &Path,
-    shot: &Shot,
-    choices: &PictureChoices,
-    sources: &Sources,
-    progress: &Progress,
-) -> Made {
-    match turn_into(path, shot, choices, sources, progress) {
-        Ok(Some(notes)) => Made::Done(path.to_owned(), notes),
-        Ok(None) => Made::Cancelled,
-        Err(why) => Made::Failed(why),
+    fn begin(making: &mut Making, name: &str) {
+        let order = Order { path: PathBuf::from(name), content: Content::Exported };
+        let (scene, view) = marraztu_io::default_scene();
+        let job = Job::make((&scene, &view, &Settings::default()), &order).unwrap();
+        let (task, sender) = Task::promised(order.label());
+        let progress = task.progress.clone();
+        making.tasks.push(task);
+        making.errands.push_back(Errand { job, answers: Answers::Made(sender), progress });
     }
-}
 
-/// Does the work of [`turntable`]. Returns the notes about the file, or `None` if it was cancelled.
-fn turn_into(
-    path: &Path,
-    shot: &Shot,
-    choices: &PictureChoices,
-    sources: &Sources,
-    progress: &Progress,
-) -> Result<Option<Vec<String>>, String> {
-    let PictureChoices { frames, seconds, transparent, turn, .. } = *choices;
-    let fail = |error: &dyn std::fmt::Display| error.to_string();
-    let animation = Animation { size: shot.size, frames, seconds, transparent };
-    let mut writer = AnimationWriter::begin(path, animation, sources).map_err(|it| fail(&it))?;
-    let notes = writer.notes().to_vec();
-    let mut renderer = Renderer::default();
-    // Frames are written one by one, so memory holds a single picture.
-    for i in 0..frames {
-        let part = f64::from(i) / f64::from(frames);
-        let scene = turned(&shot.scene, &shot.view, turn, part).map_err(|it| fail(&it))?;
-        let view = View { time: shot.view.time + seconds * part, ..shot.view.clone() };
-        let shot = Shot { scene, view, ..shot.clone() };
-        let wanted = || !progress.is_cancelled();
-        let drawn = if transparent {
-            without_ground_while(&mut renderer, &shot, &wanted)
-        } else {
-            renderer.redraw(&plan_frame(&shot), &wanted).map(|_| renderer.picture().clone())
-        };
-        let Ok(picture) = drawn else { return Ok(None) };
-        writer.push(&picture).map_err(|it| fail(&it))?;
-        if progress.reached(i as usize + 1, frames as usize).is_err() {
-            return Ok(None);
+    #[test]
+    fn files_are_made_elsewhere_one_after_the_other_and_cancelled_ones_not_at_all() {
+        let mut making = Making::default();
+        for name in ["a", "b", "c"] {
+            begin(&mut making, name);
         }
+        let is_of = |job: Option<Vec<u8>>, name: &str| {
+            let job = job.map(|job| String::from_utf8(job).unwrap()).unwrap_or_default();
+            job.contains(&format!("\"path\":\"{name}\""))
+        };
+        assert!(is_of(making.take_job(), "a") && making.is_elsewhere());
+        assert_eq!(making.take_job(), None);
+        // The next one waits, and is cancelled before its turn.
+        making.tasks[1].progress.cancel();
+        making.drop_cancelled();
+        assert!(making.is_elsewhere() && making.take_job().is_none());
+        assert!(matches!(making.tasks[1].outcome(), Outcome::Done(Made::Cancelled)));
+        // The first one is lost.
+        making.hear("failed");
+        assert!(matches!(making.tasks[0].outcome(), Outcome::Lost) && !making.is_elsewhere());
+        assert!(is_of(making.take_job(), "c"));
+        // The one that is being made is cancelled: the host stops it.
+        making.tasks[2].progress.cancel();
+        making.drop_cancelled();
+        assert!(!making.is_elsewhere() && making.take_job().is_none());
+        making.hear("too late");
     }
-    writer.finish().map_err(|it| fail(&it))?;
-    Ok(Some(notes))
 }

@@ -15,6 +15,7 @@ use egui::{ViewportId, ViewportInfo, pos2, vec2};
 use rayon::ThreadPoolBuildError;
 
 use crate::app::editor::App;
+use crate::app::editor::jobs::JobKind;
 use crate::app::tasks::do_waiting;
 use marraztu_io::{OwnFolders, Preferences};
 use marraztu_painter::{Canvas, WindowFrame, WindowPainter};
@@ -131,22 +132,32 @@ impl CanvasShell {
         }
     }
 
-    /// Returns the next measurement for another instance, if there is one. The host passes it to
-    /// [`measure_job`](crate::app::measure_job) there, and all that it tells to [`Self::told`]. To
-    /// be called after each frame, if pictures are drawn elsewhere.
-    pub fn job(&mut self) -> Option<Vec<u8>> {
-        self.app.lab.take_job()
+    /// Returns the next job of a kind for another instance, if there is one. The host passes it to
+    /// [`do_job`](crate::app::do_job) there, takes the files that it has written, and passes all
+    /// that it tells to [`Self::told`]. To be called after each frame, if pictures are drawn
+    /// elsewhere.
+    pub fn job(&mut self, kind: JobKind) -> Option<Vec<u8>> {
+        match kind {
+            JobKind::Measure => self.app.lab.take_job(),
+            JobKind::Make => self.app.making.take_job(),
+        }
     }
 
-    /// Returns whether results of a measurement are awaited. If not, the host may stop it.
+    /// Returns whether the result of a job of a kind is awaited. If not, the host may stop it.
     #[must_use]
-    pub const fn awaits_measurement(&self) -> bool {
-        self.app.lab.measures_elsewhere()
+    pub const fn awaits(&self, kind: JobKind) -> bool {
+        match kind {
+            JobKind::Measure => self.app.lab.measures_elsewhere(),
+            JobKind::Make => self.app.making.is_elsewhere(),
+        }
     }
 
-    /// Takes results of a measurement. Any other text means that it has failed.
-    pub fn told(&mut self, told: &str) {
-        self.app.lab.hear(told);
+    /// Takes what a job of a kind tells. Any other text means that it has failed.
+    pub fn told(&mut self, kind: JobKind, told: &str) {
+        match kind {
+            JobKind::Measure => self.app.lab.hear(told),
+            JobKind::Make => self.app.making.hear(told),
+        }
         self.due.store(0, Ordering::Relaxed);
     }
 

@@ -4,13 +4,14 @@
 //! around them. The axis goes through the centre of everything visible.
 
 use glam::{DMat4, DVec3};
+use serde::{Deserialize, Serialize};
 
 use super::{Refusal, framing, items};
 use crate::base::math;
 use crate::scene::{Command, Item, ObjectId, Pose, Scene, Tracked, View};
 
 /// The part of the scene that turns.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Turn {
     /// The objects.
     #[default]

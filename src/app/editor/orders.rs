@@ -1,0 +1,137 @@
+//! Orders for files that take time to make: pictures with options, turntables, exports.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
+use crate::app::widgets::text::file_name;
+use crate::picture_file::draw_into;
+use marraztu_core::accuracy::{Settings, Shot};
+use marraztu_core::edit::turntable::turned;
+use marraztu_core::scene::{Scene, View};
+use marraztu_io::{self as io, Animation, AnimationWriter, Progress, Sources};
+use marraztu_render::{Renderer, plan_frame, without_ground_while};
+
+/// A file to make from a scene.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Order {
+    pub(super) path: PathBuf,
+    pub(super) content: Content,
+}
+
+/// What a file shows.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) enum Content {
+    /// A picture, or a turntable.
+    Drawn(PictureChoices),
+    /// The scene in another format.
+    Exported,
+}
+
+/// The outcome of making a file.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) enum Made {
+    /// The file was written; with notes about it.
+    Done(PathBuf, Vec<String>),
+    Cancelled,
+    /// The reason, as a sentence.
+    Failed(String),
+}
+
+impl Order {
+    /// Describes the work: "Drawing cow.png".
+    pub(super) fn label(&self) -> String {
+        let name = file_name(&self.path);
+        match self.content {
+            Content::Drawn(_) => format!("Drawing {name}"),
+            Content::Exported => format!("Exporting {name}"),
+        }
+    }
+
+    /// Makes the file. No file of `sources` is overwritten.
+    pub(super) fn fulfil(
+        &self,
+        (scene, view, settings): (Scene, View, Settings),
+        sources: &Sources,
+        progress: &Progress,
+    ) -> Made {
+        let path = &self.path;
+        let choices = match self.content {
+            Content::Drawn(choices) => choices,
+            Content::Exported => {
+                return match io::export(path, &scene, &view, sources) {
+                    Ok(exported) => Made::Done(path.clone(), exported.notes),
+                    Err(error) => Made::Failed(error.to_string()),
+                };
+            }
+        };
+        let settings = Settings { samples: choices.samples, ..settings };
+        let shot = Shot::new(&scene, &view, &settings, choices.whole());
+        match choices.purpose {
+            Purpose::Picture => picture(path, &shot, choices.transparent, progress),
+            Purpose::Turntable => turntable(path, &shot, &choices, sources, progress),
+        }
+    }
+}
+
+/// Draws a picture into a file.
+fn picture(path: &Path, shot: &Shot, transparent: bool, progress: &Progress) -> Made {
+    let save = |size, next: &mut io::NextBand<'_>| io::save_bands(path, size, transparent, next);
+    match draw_into(shot, transparent, progress, save) {
+        Ok((Ok(()), _)) => Made::Done(path.to_owned(), Vec::new()),
+        Ok((Err(why), _)) => Made::Failed(why.to_string()),
+        Err(io::Cancelled) => Made::Cancelled,
+    }
+}
+
+/// Draws a turntable into a file.
+fn turntable(
+    path: &Path,
+    shot: &Shot,
+    choices: &PictureChoices,
+    sources: &Sources,
+    progress: &Progress,
+) -> Made {
+    match turn_into(path, shot, choices, sources, progress) {
+        Ok(Some(notes)) => Made::Done(path.to_owned(), notes),
+        Ok(None) => Made::Cancelled,
+        Err(why) => Made::Failed(why),
+    }
+}
+
+/// Does the work of [`turntable`]. Returns the notes about the file, or `None` if it was cancelled.
+fn turn_into(
+    path: &Path,
+    shot: &Shot,
+    choices: &PictureChoices,
+    sources: &Sources,
+    progress: &Progress,
+) -> Result<Option<Vec<String>>, String> {
+    let PictureChoices { frames, seconds, transparent, turn, .. } = *choices;
+    let fail = |error: &dyn std::fmt::Display| error.to_string();
+    let animation = Animation { size: shot.size, frames, seconds, transparent };
+    let mut writer = AnimationWriter::begin(path, animation, sources).map_err(|it| fail(&it))?;
+    let notes = writer.notes().to_vec();
+    let mut renderer = Renderer::default();
+    // Frames are written one by one, so memory holds a single picture.
+    for i in 0..frames {
+        let part = f64::from(i) / f64::from(frames);
+        let scene = turned(&shot.scene, &shot.view, turn, part).map_err(|it| fail(&it))?;
+        let view = View { time: shot.view.time + seconds * part, ..shot.view.clone() };
+        let shot = Shot { scene, view, ..shot.clone() };
+        let wanted = || !progress.is_cancelled();
+        let drawn = if transparent {
+            without_ground_while(&mut renderer, &shot, &wanted)
+        } else {
+            renderer.redraw(&plan_frame(&shot), &wanted).map(|_| renderer.picture().clone())
+        };
+        let Ok(picture) = drawn else { return Ok(None) };
+        writer.push(&picture).map_err(|it| fail(&it))?;
+        if progress.reached(i as usize + 1, frames as usize).is_err() {
+            return Ok(None);
+        }
+    }
+    writer.finish().map_err(|it| fail(&it))?;
+    Ok(Some(notes))
+}
