@@ -498,7 +498,7 @@ async function begin() {
   });
   if (drawing) {
     drawing.connect(module, schedule);
-    jobs = [0, 1].map((kind) => new Jobs(source, module, kind, schedule));
+    jobs = [0, 1, 2].map((kind) => new Jobs(source, module, kind, schedule));
   }
   editor = module;
   status.textContent = unloaded;

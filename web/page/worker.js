@@ -47,8 +47,8 @@ self.onmessage = ({ data }) => {
   } else if (data.job) {
     put(data.job);
     const length = module.do_job();
-    const told = new TextDecoder().decode(new Uint8Array(module.memory.buffer, module.output(), length));
-    postMessage({ told, written: files.written() });
+    const end = new Uint8Array(module.memory.buffer, module.output(), length).slice();
+    postMessage({ end, written: files.written() }, [end.buffer]);
   } else {
     files.take(data.path, data.bytes);
     // A picture does not depend on the scene's own file, which is saved often.

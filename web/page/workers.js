@@ -1,6 +1,6 @@
 // Workers: other instances of the module, with the same files. One draws the viewport; others measure
-// for the laboratory, or make files, while they are asked to. The editor and its workers exchange
-// messages that only they understand.
+// for the laboratory, make files or draw comparisons, while they are asked to. The editor and its
+// workers exchange messages that only they understand.
 
 // A worker, and the files that it gets. `heard` takes each message; `failed` a fault.
 function begin({ compiled, files }, heard, failed) {
@@ -75,7 +75,7 @@ export class Drawing {
   }
 }
 
-// The jobs of a kind, one at a time: 0 measures, 1 makes a file.
+// The jobs of a kind, one at a time: 0 measures, 1 makes a file, 2 compares.
 export class Jobs {
   // `heard` is called after each message.
   constructor(source, editor, kind, heard) {
@@ -96,20 +96,32 @@ export class Jobs {
     if (length > 0) {
       const job = taken(this.editor, length);
       // A worker that was stopped may have a result on its way.
-      const take = (message) => message.told && worker === this.worker && this.take(message);
-      const worker = begin(this.source, take, (fault) => take({ told: `failed: ${fault}` }));
+      const take = (message) => worker === this.worker && this.take(message);
+      const failed = (fault) => {
+        console.error(fault);
+        take({ end: new Uint8Array(0) });
+      };
+      const worker = begin(this.source, take, failed);
       worker.postMessage({ job }, [job.buffer]);
       this.worker = worker;
     }
   }
 
-  take({ told, written = [] }) {
-    // The files come with the end of the job, which says that they are saved.
-    for (const [path, bytes] of written) {
-      this.source.files.takeWritten(path, bytes);
+  take({ told, end, written = [] }) {
+    if (told) {
+      put(this.editor, new TextEncoder().encode(told));
+      this.editor.told(this.kind);
+    } else if (end) {
+      // The files come first, since the end says that they are saved.
+      for (const [path, bytes] of written) {
+        this.source.files.takeWritten(path, bytes);
+      }
+      put(this.editor, end);
+      this.editor.done(this.kind);
+    } else {
+      // The worker is ready.
+      return;
     }
-    put(this.editor, new TextEncoder().encode(told));
-    this.editor.told(this.kind);
     this.heard();
   }
 }

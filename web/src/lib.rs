@@ -162,15 +162,12 @@ pub extern "C" fn files_changed() {
     });
 }
 
-/// The kinds of jobs, by the numbers that the page uses.
-const JOBS: [JobKind; 2] = [JobKind::Measure, JobKind::Make];
-
 /// Returns the length of the next job of a kind in the output, for [`do_job`] of another instance,
-/// or 0. To be called after each frame. Kind 0 measures, kind 1 makes a file.
+/// or 0. To be called after each frame. A kind is an index in [`JobKind::ALL`].
 #[unsafe(no_mangle)]
 pub extern "C" fn job(kind: usize) -> usize {
     with(|page| {
-        let job = page.shell.as_mut().and_then(|shell| shell.job(JOBS[kind]));
+        let job = page.shell.as_mut().and_then(|shell| shell.job(JobKind::ALL[kind]));
         page.output = job.unwrap_or_default();
         page.output.len()
     })
@@ -180,16 +177,26 @@ pub extern "C" fn job(kind: usize) -> usize {
 /// stopped.
 #[unsafe(no_mangle)]
 pub extern "C" fn awaits(kind: usize) -> u32 {
-    with(|page| u32::from(page.shell.as_ref().is_some_and(|shell| shell.awaits(JOBS[kind]))))
+    with(|page| {
+        u32::from(page.shell.as_ref().is_some_and(|shell| shell.awaits(JobKind::ALL[kind])))
+    })
 }
 
-/// Takes what a job of a kind tells, in the input. Any other text means that the instance has
-/// failed.
+/// Takes what a job of a kind tells, in the input.
 #[unsafe(no_mangle)]
 pub extern "C" fn told(kind: usize) {
     with(|page| {
         let Page { shell: Some(shell), input, .. } = page else { return };
-        shell.told(JOBS[kind], &String::from_utf8_lossy(input));
+        shell.told(JobKind::ALL[kind], &String::from_utf8_lossy(input));
+    });
+}
+
+/// Takes the end of a job of a kind, in the input. An empty one means that the instance has failed.
+#[unsafe(no_mangle)]
+pub extern "C" fn done(kind: usize) {
+    with(|page| {
+        let Page { shell: Some(shell), input, .. } = page else { return };
+        shell.done(JobKind::ALL[kind], input);
     });
 }
 
@@ -204,7 +211,7 @@ pub extern "C" fn do_job() -> usize {
     };
     let end = marraztu::app::do_job(&job, Arc::new(tell));
     with(|page| {
-        page.output = end.into_bytes();
+        page.output = end;
         page.output.len()
     })
 }

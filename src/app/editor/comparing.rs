@@ -1,4 +1,5 @@
-//! Draws the picture and the exact one for comparison, on a background thread.
+//! Draws the picture and the exact one for comparison, on a background thread, or by another
+//! instance of the program where there are no threads.
 //!
 //! Pictures that are out of date are cancelled immediately, which takes effect between two tiles.
 //! The next ones begin only after that.
@@ -6,12 +7,49 @@
 use egui::Context;
 
 use super::App;
+use super::jobs::{Answers, Job};
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Judged};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::viewport::comparison::{Compared, Drawing, draw};
 use marraztu_core::scene::View;
 use marraztu_io as io;
+
+/// A comparison by another instance.
+#[derive(Debug, Default)]
+pub(crate) struct Comparing {
+    /// The job, until it is taken.
+    job: Option<Job>,
+    /// Receives the pictures.
+    answers: Option<Answers>,
+}
+
+impl Comparing {
+    /// Returns the next job for another instance.
+    pub(crate) fn take_job(&mut self) -> Option<Vec<u8>> {
+        self.job.take().map(|job| job.written())
+    }
+
+    /// Returns whether another instance draws a comparison.
+    pub(crate) const fn is_elsewhere(&self) -> bool {
+        self.answers.is_some()
+    }
+
+    /// Takes the end of the job of another instance.
+    pub(crate) fn end_elsewhere(&mut self, end: &[u8]) {
+        if let Some(answers) = self.answers.take() {
+            answers.end(end);
+        }
+    }
+
+    /// Ends the job as cancelled.
+    fn cancel(&mut self) {
+        self.job = None;
+        if let Some(answers) = self.answers.take() {
+            answers.cancel();
+        }
+    }
+}
 
 impl App {
     /// Shows finished pictures, and starts new ones if the comparison is out of date.
@@ -29,6 +67,7 @@ impl App {
             });
             if !is_wanted {
                 drawing.task.progress.cancel();
+                self.comparing.cancel();
             }
         }
         let is_drawn = wanted.as_ref() == comparison.drawn.as_deref().map(|pair| &pair.of);
@@ -44,9 +83,21 @@ impl App {
         }
         let Some(of) = wanted.filter(|_| !is_drawn && comparison.drawing.is_none()) else { return };
         let theirs = of.clone();
+        let label = "Comparing".to_owned();
+        if self.draws_elsewhere
+            && let Some(job) = Job::compare(&of)
+        {
+            let (task, sender) = Task::promised(label);
+            self.comparing = Comparing {
+                job: Some(job),
+                answers: Some(Answers::Compared(sender, Box::new(theirs))),
+            };
+            comparison.drawing = Some(Drawing { of, task });
+            return;
+        }
         let work = move |progress: &io::Progress| draw(theirs, progress).map(Box::new);
         // Without a thread, there is no comparison.
-        let task = Task::start(ctx, "Comparing".to_owned(), work).ok();
+        let task = Task::start(ctx, label, work).ok();
         comparison.drawing = task.map(|task| Drawing { of, task });
     }
 

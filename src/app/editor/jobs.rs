@@ -1,5 +1,5 @@
 //! Jobs for another instance of the program, where there are no threads: in a page, workers measure
-//! for the laboratory and make files, while the window stays responsive.
+//! for the laboratory, make files and draw comparisons, while the window stays responsive.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -8,13 +8,16 @@ use std::sync::mpsc::Sender;
 use serde::{Deserialize, Serialize};
 
 use super::orders::{Made, Order};
+use crate::app::drawing::worker::message::{read, write};
+use crate::app::viewport::comparison::{Compared, Pair, draw};
 use marraztu_core::accuracy::{Axis, Settings, Shot};
-use marraztu_core::base::image::Size;
+use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{Scene, View};
 use marraztu_io::{Known, Progress, Sources, scene_of_message, scene_to_message};
 use marraztu_lab::candidates::Thoroughness;
+use marraztu_lab::error::Error;
 use marraztu_lab::pairs::{Unmeasured, Watch};
-use marraztu_lab::picture_source::Studio;
+use marraztu_lab::picture_source::{Reference, Studio};
 use marraztu_lab::report::Report;
 use marraztu_lab::suite::{self, SUITE, SuiteDetail, SuiteScene};
 use marraztu_lab::sweep::{Findings, Question, sweep};
@@ -27,6 +30,13 @@ pub enum JobKind {
     Measure,
     /// Making a file.
     Make,
+    /// Drawing the picture and its reference.
+    Compare,
+}
+
+impl JobKind {
+    /// All kinds.
+    pub const ALL: [Self; 3] = [Self::Measure, Self::Make, Self::Compare];
 }
 
 /// A job, with the scene as a message.
@@ -38,22 +48,25 @@ pub(super) enum Job {
     Suite,
     /// Making a file.
     Make { scene: String, order: Order },
+    /// Comparing with the ideal, or with the picture that is exact in an axis.
+    Compare { scene: String, size: Size, axis: Option<String> },
 }
 
-/// What the other instance tells.
+/// What the other instance tells while it works: the finished fraction, and the findings up to now.
 #[derive(Debug, Serialize, Deserialize)]
-enum Told {
-    /// The finished fraction, and the findings up to now.
-    SoFar(f64, Option<Box<Findings>>),
-    /// The end of a sweep.
+struct SoFar(f64, Option<Box<Findings>>);
+
+/// The end of a job. Pictures follow.
+#[derive(Debug, Serialize, Deserialize)]
+enum End {
     Sweep(Result<Box<Findings>, Unmeasured>),
-    /// The end of the suite.
     Suite(Result<Vec<Report>, Unmeasured>),
-    /// The end of making a file.
     Made(Made),
+    /// The reference and the picture follow.
+    Compared(Size, Error),
 }
 
-impl Told {
+impl SoFar {
     fn written(&self) -> String {
         // Texts and numbers always have a JSON form.
         serde_json::to_string(self).unwrap_or_default()
@@ -76,6 +89,16 @@ impl Job {
         Some(Self::Make { scene, order: order.clone() })
     }
 
+    /// Describes a comparison; `None` if its scene cannot be sent.
+    pub(super) fn compare(of: &Compared) -> Option<Self> {
+        let scene = scene_to_message((&of.scene, &of.view, &of.settings), None).ok()?;
+        let axis = match of.against {
+            Reference::Ideal => None,
+            Reference::Alone(axis) => Some(axis.key.to_owned()),
+        };
+        Some(Self::Compare { scene, size: of.size, axis })
+    }
+
     /// Writes the message to the other instance.
     pub(super) fn written(&self) -> Vec<u8> {
         // Texts and numbers always have a JSON form.
@@ -83,10 +106,13 @@ impl Job {
     }
 }
 
-/// Does the job of a message of [`CanvasShell::job`](crate::app::CanvasShell::job). What it tells,
-/// and finally returns, is for [`CanvasShell::told`](crate::app::CanvasShell::told); by then, its
-/// files are written.
-pub fn do_job(job: &[u8], tell: Arc<dyn Fn(String) + Send + Sync>) -> String {
+/// Does the job of a message of [`CanvasShell::job`](crate::app::CanvasShell::job). What it tells
+/// is for [`CanvasShell::told`](crate::app::CanvasShell::told), and what it returns for
+/// [`CanvasShell::done`](crate::app::CanvasShell::done): nothing if the message is not understood.
+/// By then, the files of the job are written.
+pub fn do_job(job: &[u8], tell: Arc<dyn Fn(String) + Send + Sync>) -> Vec<u8> {
+    let opened = |scene: &str| scene_of_message(scene, None, &Known::default()).ok();
+    let clock = &mut WallClock::default();
     let end = match serde_json::from_slice(job) {
         Ok(Job::Sweep { scene, size, axes, thoroughness }) => {
             prepared(&scene, size, &axes, &thoroughness).map(|(mut studio, question)| {
@@ -94,29 +120,39 @@ pub fn do_job(job: &[u8], tell: Arc<dyn Fn(String) + Send + Sync>) -> String {
                 let watch = Watch::default().with(&progress);
                 let tell = &mut |findings: &Findings| {
                     let findings = Some(Box::new(findings.clone()));
-                    tell(Told::SoFar(progress.fraction(), findings).written());
+                    tell(SoFar(progress.fraction(), findings).written());
                 };
-                let clock = &mut WallClock::default();
-                Told::Sweep(sweep(&mut studio, &question, clock, &watch, tell).map(Box::new))
+                End::Sweep(sweep(&mut studio, &question, clock, &watch, tell).map(Box::new))
             })
         }
         Ok(Job::Suite) => {
             let scenes: Vec<&SuiteScene> = SUITE.iter().collect();
             let watch = Watch::default().with(&telling(tell));
-            let clock = &mut WallClock::default();
-            Some(Told::Suite(suite::run(&scenes, &SuiteDetail::WHOLE, clock, &watch, &mut |_| {})))
+            Some(End::Suite(suite::run(&scenes, &SuiteDetail::WHOLE, clock, &watch, &mut |_| {})))
         }
-        Ok(Job::Make { scene, order }) => {
-            let opened = scene_of_message(&scene, None, &Known::default()).ok();
-            opened.map(|opened| {
-                let sources = Sources::of(&opened.0);
-                Told::Made(order.fulfil(opened, &sources, &telling(tell)))
-            })
+        Ok(Job::Make { scene, order }) => opened(&scene).map(|opened| {
+            let sources = Sources::of(&opened.0);
+            End::Made(order.fulfil(opened, &sources, &telling(tell)))
+        }),
+        Ok(Job::Compare { scene, size, axis }) => {
+            let against = axis.as_deref().and_then(Axis::named);
+            let against = against.map_or(Reference::Ideal, Reference::Alone);
+            let of = opened(&scene).map(|(scene, view, settings)| Compared {
+                scene,
+                view,
+                settings,
+                size,
+                against,
+            });
+            let pair = of.and_then(|of| draw(of, &Progress::new()));
+            return pair.map_or_else(Vec::new, |Pair { of, exact, ours, error }| {
+                let pictures = [&exact, &ours].map(|picture| picture.pixels().as_flattened());
+                write(&End::Compared(of.size, error), &pictures)
+            });
         }
         Err(_) => None,
     };
-    // Any other text loses the task.
-    end.map_or_else(|| "the job is not understood".to_owned(), |end| end.written())
+    end.map_or_else(Vec::new, |end| write(&end, &[]))
 }
 
 /// Returns a progress that tells each per cent.
@@ -126,7 +162,7 @@ fn telling(tell: Arc<dyn Fn(String) + Send + Sync>) -> Progress {
     Progress::heard_by(move |fraction| {
         let percent = (fraction * 100.0) as u32;
         if last.swap(percent, Ordering::Relaxed) != percent {
-            tell(Told::SoFar(fraction, None).written());
+            tell(SoFar(fraction, None).written());
         }
     })
 }
@@ -151,39 +187,51 @@ pub(super) enum Answers {
     Sweep(Sender<Result<Findings, Unmeasured>>),
     Suite(Sender<Result<Vec<Report>, Unmeasured>>),
     Made(Sender<Made>),
+    Compared(Sender<Option<Box<Pair>>>, Box<Compared>),
+}
+
+/// Reads what the other instance tells: the fraction that is done, and the findings up to now.
+pub(super) fn so_far(told: &str) -> Option<(f64, Option<Findings>)> {
+    let SoFar(fraction, findings) = serde_json::from_str(told).ok()?;
+    Some((fraction, findings.map(|findings| *findings)))
 }
 
 impl Answers {
-    /// Passes results on: calls `so_far` with the fraction that is done and the first findings, or
-    /// ends the task. Returns whether more will come. A text that is not understood, as of an
-    /// instance that has failed, loses the task.
-    pub(super) fn take(&self, told: &str, so_far: impl FnOnce(f64, Option<Findings>)) -> bool {
+    /// Passes the end of the job on. An end that is not understood, as of an instance that has
+    /// failed, loses the task.
+    pub(super) fn end(self, end: &[u8]) {
+        let Some((end, mut pictures)) = read(end) else { return };
         // The tasks may have ended before.
-        match (serde_json::from_str(told), self) {
-            (Ok(Told::SoFar(fraction, findings)), _) => {
-                so_far(fraction, findings.map(|findings| *findings));
-                return true;
-            }
-            (Ok(Told::Sweep(findings)), Self::Sweep(sender)) => {
+        match (end, self) {
+            (End::Sweep(findings), Self::Sweep(sender)) => {
                 let _ = sender.send(findings.map(|findings| *findings));
             }
-            (Ok(Told::Suite(reports)), Self::Suite(sender)) => {
+            (End::Suite(reports), Self::Suite(sender)) => {
                 let _ = sender.send(reports);
             }
-            (Ok(Told::Made(made)), Self::Made(sender)) => {
+            (End::Made(made), Self::Made(sender)) => {
                 let _ = sender.send(made);
+            }
+            (End::Compared(size, error), Self::Compared(sender, of)) => {
+                let mut next = || {
+                    let (pixels, _) = pictures.take([size.width, size.height])?.as_chunks();
+                    Picture::from_pixels(size, pixels.to_vec())
+                };
+                if let (Some(exact), Some(ours)) = (next(), next()) {
+                    let _ = sender.send(Some(Box::new(Pair { of: *of, exact, ours, error })));
+                }
             }
             _ => {}
         }
-        false
     }
 
     /// Ends the task as cancelled.
-    pub(super) fn cancel(&self) {
+    pub(super) fn cancel(self) {
         let _ = match self {
             Self::Sweep(sender) => sender.send(Err(Unmeasured::Cancelled)).is_ok(),
             Self::Suite(sender) => sender.send(Err(Unmeasured::Cancelled)).is_ok(),
             Self::Made(sender) => sender.send(Made::Cancelled).is_ok(),
+            Self::Compared(sender, _) => sender.send(None).is_ok(),
         };
     }
 }
@@ -225,12 +273,10 @@ mod tests {
             let tell = move |told| heard.lock().unwrap_or_else(PoisonError::into_inner).push(told);
             let end = do_job(&job.written(), Arc::new(tell));
             let (sender, receiver) = std::sync::mpsc::channel();
-            let (answers, mut parts) = (Answers::Made(sender), Vec::new());
-            for told in told.lock().unwrap().iter() {
-                assert!(answers.take(told, |fraction, _| parts.push(fraction)));
-            }
+            let told = told.lock().unwrap();
+            let parts: Vec<f64> = told.iter().map(|told| so_far(told).unwrap().0).collect();
             assert!(parts.is_sorted() && parts.iter().all(|part| (0.0..=1.0).contains(part)));
-            assert!(!answers.take(&end, |_, _| {}));
+            Answers::Made(sender).end(&end);
             let made = receiver.try_recv().unwrap();
             assert!(matches!(&made, Made::Done(path, _) if *path == there.path), "{made:?}");
             let [a, b] = [here, there].map(|order| std::fs::read(&order.path).unwrap());
@@ -241,9 +287,24 @@ mod tests {
     #[test]
     fn a_message_that_is_not_understood_loses_the_task() {
         let (sender, receiver) = std::sync::mpsc::channel::<Made>();
-        let answers = Answers::Made(sender);
-        assert!(!answers.take(&do_job(b"nonsense", Arc::new(|_| {})), |_, _| {}));
-        drop(answers);
+        Answers::Made(sender).end(&do_job(b"nonsense", Arc::new(|_| {})));
         assert!(receiver.recv().is_err());
+    }
+
+    #[test]
+    fn a_comparison_by_another_instance_has_the_pixels_of_one_drawn_here() {
+        let (scene, view) = marraztu_io::default_scene();
+        let (settings, size) = (Settings::default(), Size::new(40, 30));
+        for against in [Reference::Ideal, Reference::Alone(Axis::named("depth").unwrap())] {
+            let (scene, view) = (scene.clone(), view.clone());
+            let of = Compared { scene, view, settings, size, against };
+            let (sender, receiver) = std::sync::mpsc::channel();
+            let job = Job::compare(&of).unwrap().written();
+            Answers::Compared(sender, Box::new(of.clone())).end(&do_job(&job, Arc::new(|_| {})));
+            let (there, here) = (receiver.recv().unwrap().unwrap(), draw(of, &Progress::new()));
+            let here = here.unwrap();
+            assert!(there.exact == here.exact && there.ours == here.ours && there.of == here.of);
+            assert_eq!(there.error, here.error);
+        }
     }
 }

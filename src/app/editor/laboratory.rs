@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use egui::Context;
 
 use super::App;
-use super::jobs::{Answers, Job};
+use super::jobs::{Answers, Job, so_far};
 use crate::app::actions::LabRequest;
 use crate::app::state::State;
 use crate::app::state::laboratory::Compare;
@@ -125,21 +125,22 @@ impl Work {
         self.answers.is_some()
     }
 
-    /// Takes results of another instance.
-    pub(crate) fn hear(&mut self, told: &str) {
-        let Some(answers) = &self.answers else { return };
+    /// Takes what another instance tells.
+    pub(crate) fn hear(&self, told: &str) {
+        let Some((fraction, findings)) = so_far(told) else { return };
         let sweep = self.sweep.as_ref().map(|task| &task.progress);
-        let progress = sweep.or_else(|| self.suite.as_ref().map(|task| &task.progress));
-        let more = answers.take(told, |fraction, findings| {
-            if let Some(progress) = progress {
-                progress.set(fraction);
-            }
-            if findings.is_some() {
-                *self.so_far.lock().unwrap_or_else(PoisonError::into_inner) = findings;
-            }
-        });
-        if !more {
-            self.answers = None;
+        if let Some(progress) = sweep.or_else(|| self.suite.as_ref().map(|task| &task.progress)) {
+            progress.set(fraction);
+        }
+        if findings.is_some() {
+            *self.so_far.lock().unwrap_or_else(PoisonError::into_inner) = findings;
+        }
+    }
+
+    /// Takes the end of the measurement of another instance.
+    pub(crate) fn end_elsewhere(&mut self, end: &[u8]) {
+        if let Some(answers) = self.answers.take() {
+            answers.end(end);
         }
     }
 

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use egui::{ColorImage, Context, Rect};
 
 use super::App;
-use super::jobs::{Answers, Job};
+use super::jobs::{Answers, Job, so_far};
 use super::orders::{Content, Made, Order};
 use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
 use crate::app::documents::wanted::Wanted;
@@ -55,24 +55,28 @@ impl Making {
     }
 
     /// Takes what another instance tells.
-    pub(crate) fn hear(&mut self, told: &str) {
-        let Some(errand) = self.errands.front() else { return };
-        if !errand.answers.take(told, |fraction, _| errand.progress.set(fraction)) {
-            self.errands.pop_front();
-            self.is_doing = false;
+    pub(crate) fn hear(&self, told: &str) {
+        if let (Some(errand), Some((fraction, _))) = (self.errands.front(), so_far(told)) {
+            errand.progress.set(fraction);
         }
+    }
+
+    /// Takes the end of the job of another instance.
+    pub(crate) fn end_elsewhere(&mut self, end: &[u8]) {
+        if let (Some(errand), true) = (self.errands.pop_front(), self.is_doing) {
+            errand.answers.end(end);
+        }
+        self.is_doing = false;
     }
 
     /// Ends the jobs that were cancelled.
     fn drop_cancelled(&mut self) {
         let is_cancelled = |errand: &Errand| errand.progress.is_cancelled();
         self.is_doing &= !self.errands.front().is_some_and(is_cancelled);
-        self.errands.retain(|errand| {
-            if is_cancelled(errand) {
-                errand.answers.cancel();
-            }
-            !is_cancelled(errand)
-        });
+        let all = std::mem::take(&mut self.errands).into_iter();
+        let (cancelled, rest) = all.partition::<Vec<_>, _>(is_cancelled);
+        self.errands = rest.into();
+        cancelled.into_iter().for_each(|errand| errand.answers.cancel());
     }
 }
 
@@ -150,11 +154,9 @@ impl App {
             return;
         }
         let (of, sources) = ((scene.clone(), view.clone(), *settings), self.state.sources());
-        let work = {
-            let order = order.clone();
-            move |progress: &Progress| order.fulfil(of, &sources, progress)
-        };
-        match Task::start(ctx, order.label(), work) {
+        let label = order.label();
+        let work = move |progress: &Progress| order.fulfil(of, &sources, progress);
+        match Task::start(ctx, label, work) {
             Ok(task) => self.making.tasks.push(task),
             Err(error) => self.refuse(format!("cannot start a thread to write files: {error}")),
         }
@@ -273,13 +275,13 @@ mod tests {
         assert!(making.is_elsewhere() && making.take_job().is_none());
         assert!(matches!(making.tasks[1].outcome(), Outcome::Done(Made::Cancelled)));
         // The first one is lost.
-        making.hear("failed");
+        making.end_elsewhere(b"");
         assert!(matches!(making.tasks[0].outcome(), Outcome::Lost) && !making.is_elsewhere());
         assert!(is_of(making.take_job(), "c"));
         // The one that is being made is cancelled: the host stops it.
         making.tasks[2].progress.cancel();
         making.drop_cancelled();
         assert!(!making.is_elsewhere() && making.take_job().is_none());
-        making.hear("too late");
+        making.end_elsewhere(b"");
     }
 }

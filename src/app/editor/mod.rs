@@ -51,6 +51,7 @@ use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
 use crate::app::widgets::number::take_bad_text;
 use crate::app::widgets::tooltips;
+use comparing::Comparing;
 use explaining::Explaining;
 use keeping::Keeping;
 use laboratory::Work;
@@ -74,6 +75,8 @@ pub struct App {
     pub(crate) searches: Vec<Search>,
     /// Files being made.
     pub(crate) making: Making,
+    /// The comparison by another instance.
+    pub(crate) comparing: Comparing,
     /// Files waiting to be read.
     pub(crate) queued: VecDeque<Queued>,
     /// The scenes that are read after this frame, for a host that has to provide their files.
@@ -126,6 +129,7 @@ impl App {
             loading: Vec::new(),
             searches: Vec::new(),
             making: Making::default(),
+            comparing: Comparing::default(),
             queued: VecDeque::new(),
             opening: Vec::new(),
             models_from: None,

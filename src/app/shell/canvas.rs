@@ -133,13 +133,14 @@ impl CanvasShell {
     }
 
     /// Returns the next job of a kind for another instance, if there is one. The host passes it to
-    /// [`do_job`](crate::app::do_job) there, takes the files that it has written, and passes all
-    /// that it tells to [`Self::told`]. To be called after each frame, if pictures are drawn
-    /// elsewhere.
+    /// [`do_job`](crate::app::do_job) there, all that it tells to [`Self::told`], and its end, after
+    /// the files that it has written, to [`Self::done`]. To be called after each frame, if pictures
+    /// are drawn elsewhere.
     pub fn job(&mut self, kind: JobKind) -> Option<Vec<u8>> {
         match kind {
             JobKind::Measure => self.app.lab.take_job(),
             JobKind::Make => self.app.making.take_job(),
+            JobKind::Compare => self.app.comparing.take_job(),
         }
     }
 
@@ -149,14 +150,26 @@ impl CanvasShell {
         match kind {
             JobKind::Measure => self.app.lab.measures_elsewhere(),
             JobKind::Make => self.app.making.is_elsewhere(),
+            JobKind::Compare => self.app.comparing.is_elsewhere(),
         }
     }
 
-    /// Takes what a job of a kind tells. Any other text means that it has failed.
+    /// Takes what a job of a kind tells while it is done.
     pub fn told(&mut self, kind: JobKind, told: &str) {
         match kind {
             JobKind::Measure => self.app.lab.hear(told),
             JobKind::Make => self.app.making.hear(told),
+            JobKind::Compare => {}
+        }
+        self.due.store(0, Ordering::Relaxed);
+    }
+
+    /// Takes the end of a job of a kind. Anything else means that the job has failed.
+    pub fn done(&mut self, kind: JobKind, end: &[u8]) {
+        match kind {
+            JobKind::Measure => self.app.lab.end_elsewhere(end),
+            JobKind::Make => self.app.making.end_elsewhere(end),
+            JobKind::Compare => self.app.comparing.end_elsewhere(end),
         }
         self.due.store(0, Ordering::Relaxed);
     }

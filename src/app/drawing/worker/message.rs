@@ -78,7 +78,7 @@ const LENGTH: usize = 4;
 const PIXEL: usize = 4;
 
 /// Writes a message with the bytes of its pictures.
-pub(super) fn write(head: &impl Serialize, pictures: &[&[u8]]) -> Vec<u8> {
+pub(crate) fn write(head: &impl Serialize, pictures: &[&[u8]]) -> Vec<u8> {
     let mut bytes = vec![0; LENGTH];
     // Numbers, texts and lists always have a JSON form.
     let _ = serde_json::to_writer(&mut bytes, head);
@@ -91,7 +91,7 @@ pub(super) fn write(head: &impl Serialize, pictures: &[&[u8]]) -> Vec<u8> {
 }
 
 /// Reads a message: its head and its pictures. `None` if it is incomplete.
-pub(super) fn read<T: DeserializeOwned>(bytes: &[u8]) -> Option<(T, Pictures<'_>)> {
+pub(crate) fn read<T: DeserializeOwned>(bytes: &[u8]) -> Option<(T, Pictures<'_>)> {
     let (length, rest) = bytes.split_first_chunk::<LENGTH>()?;
     let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;
     let (head, pictures) = rest.split_at_checked(length)?;
@@ -99,11 +99,11 @@ pub(super) fn read<T: DeserializeOwned>(bytes: &[u8]) -> Option<(T, Pictures<'_>
 }
 
 /// The bytes of pictures that have not been taken yet.
-pub(super) struct Pictures<'a>(&'a [u8]);
+pub(crate) struct Pictures<'a>(&'a [u8]);
 
 impl<'a> Pictures<'a> {
     /// Takes the next picture; `None` if there are not enough bytes.
-    pub(super) fn take(&mut self, [width, height]: [usize; 2]) -> Option<&'a [u8]> {
+    pub(crate) fn take(&mut self, [width, height]: [usize; 2]) -> Option<&'a [u8]> {
         let length = width.checked_mul(height)?.checked_mul(PIXEL)?;
         let (own, rest) = self.0.split_at_checked(length)?;
         self.0 = rest;

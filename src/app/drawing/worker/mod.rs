@@ -11,7 +11,7 @@
 //! exchanges messages with the window ([`elsewhere`]), or the window's thread draws between frames.
 
 mod elsewhere;
-mod message;
+pub(crate) mod message;
 pub(crate) mod server;
 
 use std::cell::RefCell;
