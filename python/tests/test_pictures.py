@@ -125,11 +125,14 @@ def test_render_many_stops_early_and_passes_errors_on(cam):
     many.close()
 
     def fails():
-        yield scene.shot(16, 16)
+        yield from (scene.shot(16 + i, 16) for i in range(5))
         raise KeyError("mine")
 
+    # The pictures before the error come first.
+    drawn = []
     with pytest.raises(KeyError, match="mine"):
-        list(mz.render_many(fails()))
+        drawn.extend(picture.width for picture in mz.render_many(fails(), ahead=20))
+    assert drawn == [16, 17, 18, 19, 20]
     with pytest.raises(ValueError):
         mz.render_many([], ahead=-1)
 

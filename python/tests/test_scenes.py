@@ -241,6 +241,12 @@ def test_wrong_lights_backgrounds_units_shots_and_pixels_are_rejected(quad):
     for color in (5, (1, 2), (0.5, 0.5, 0.5), "#+1+2+3", "#zzzzzz", "red"):
         with pytest.raises(ValueError, match="a colour is three bytes"):
             scene.background = color
+    scene.background = "#f08"
+    assert scene.background == (255, 0, 136)
+    with pytest.raises(ValueError, match=r"is a model: use Scene\(\[Mesh.load"):
+        mz.Scene.load("a.obj")
+    with pytest.raises(ValueError, match="is a scene"):
+        mz.Mesh.load("a.marraztu")
     for unit in (0, -1, math.nan, math.inf, "cm"):
         with pytest.raises(ValueError, match="a unit is"):
             scene.unit = unit

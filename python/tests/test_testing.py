@@ -39,6 +39,20 @@ def test_another_picture_fails_and_writes_what_differs(golden, tmp_path):
         assert_same(changed, path, max=step - 1, out=tmp_path / "failed")
 
 
+def test_what_cannot_be_compared_is_an_error_of_the_test(golden, cam, tmp_path):
+    picture, _ = golden
+    with pytest.raises(ValueError, match="JPEG changes the pixels"):
+        assert_same(picture, tmp_path / "logo.jpg")
+    with pytest.raises(ValueError, match="a number of steps from 0 on"):
+        assert_same(picture, tmp_path / "logo.png", max=-1)
+    with pytest.raises(ValueError, match="no colours to compare"):
+        assert_same(mz.Scene([cam]).render(8, 8, layers="depth"), tmp_path / "logo.png")
+    with pytest.raises(AssertionError, match="is not a file"):
+        assert_same(picture, tmp_path)
+    with pytest.raises(ValueError, match="for the arrays of all layers"):
+        picture.save(tmp_path / "logo.exr")
+
+
 def test_flip_limits_what_a_viewer_sees(golden, tmp_path):
     picture, path = golden
     slight = np.where(picture.rgba > 128, picture.rgba - 1, picture.rgba)

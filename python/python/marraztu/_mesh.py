@@ -102,6 +102,8 @@ class Mesh:
 
         Raises `LoadError` with `file`, `line` and `reason`.
         """
+        if os.fspath(path).lower().endswith(".marraztu"):
+            raise ValueError(f"{path} is a scene: use Scene.load")
         reading = {
             "up": up,
             "scale": scale,

@@ -115,6 +115,8 @@ class Picture:
         never overwritten by one.
         """
         path = os.fspath(path)
+        if path.lower().endswith((".exr", ".npy")):
+            raise ValueError(f"{path}: name a picture, or .npz for the arrays of all layers")
         if "color" not in self.layers and not path.lower().endswith(".npz"):
             raise ValueError("the picture has no colours to save: name color in layers=")
         if path.lower().endswith(".npz"):

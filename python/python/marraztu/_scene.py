@@ -154,6 +154,8 @@ class Scene:
 
         Missing models are boxes and a `FindingWarning`. Raises `LoadError`.
         """
+        if os.fspath(path).lower().endswith((".obj", ".obj.gz", ".stl")):
+            raise ValueError(f"{path} is a model: use Scene([Mesh.load({os.fspath(path)!r})])")
         scene = cls()
         scene._scene, scene.findings = _marraztu.Scene.load(os.fspath(path))
         scene._nodes = [Node(scene._scene, row) for row in scene._scene.objects()]
@@ -235,7 +237,7 @@ class Scene:
 
     @property
     def background(self) -> tuple[int, int, int]:
-        """The background: red, green and blue from 0 to 255; "#rrggbb" can be set, too."""
+        """The background: red, green and blue from 0 to 255; "#rrggbb" and "#rgb" can be set."""
         return self._scene.background
 
     @background.setter

@@ -134,16 +134,27 @@ def _drawn(shots: Iterable[Shot], threads: int, ahead: int) -> Iterator[Picture]
     waiting: deque[Future[Picture]] = deque()
     with ThreadPoolExecutor(threads) as pool:
         try:
-            for shot in shots:
-                if not isinstance(shot, Shot):
-                    kind = type(shot).__name__
-                    raise TypeError(f"render_many draws shots, as of Scene.shot, not {kind}")
+            source, error = iter(shots), None
+            while True:
+                try:
+                    shot = next(source)
+                    if not isinstance(shot, Shot):
+                        kind = type(shot).__name__
+                        raise TypeError(f"render_many draws shots, as of Scene.shot, not {kind}")
+                except StopIteration:
+                    break
+                except Exception as raised:
+                    # The pictures of the shots before it come first.
+                    error = raised
+                    break
                 # Room for this shot is made first.
                 if len(waiting) >= threads + ahead:
                     yield waiting.popleft().result()
                 waiting.append(pool.submit(shot.render, 1))
             while waiting:
                 yield waiting.popleft().result()
+            if error is not None:
+                raise error
         finally:
             # The caller may stop early.
             for future in waiting:

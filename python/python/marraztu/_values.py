@@ -15,15 +15,16 @@ Triple = tuple[float, float, float]
 
 
 def bytes_of(color: Sequence[int] | str) -> tuple[int, int, int]:
-    """Checks a colour: three bytes, or "#rrggbb"."""
+    """Checks a colour: three bytes, "#rrggbb" or "#rgb"."""
     try:
         if isinstance(color, str):
-            if not re.fullmatch("#[0-9a-fA-F]{6}", color):
+            if not re.fullmatch("#([0-9a-fA-F]{3}){1,2}", color):
                 raise ValueError
-            color = bytes.fromhex(color[1:])
+            digits = color[1:] if len(color) == 7 else "".join(2 * digit for digit in color[1:])
+            color = bytes.fromhex(digits)
         red, green, blue = (operator.index(channel) for channel in color)
     except (TypeError, ValueError):
-        wrong = f'a colour is three bytes or "#rrggbb", not {color!r}'
+        wrong = f'a colour is three bytes, "#rrggbb" or "#rgb", not {color!r}'
         raise ValueError(wrong) from None
     if not all(0 <= channel <= 255 for channel in (red, green, blue)):
         raise ValueError(f"the channels of a colour are from 0 to 255, not {color!r}")

@@ -71,13 +71,20 @@ def assert_same(
     from pathlib import Path
 
     expected = Path(expected)
+    if expected.suffix.lower() in (".jpg", ".jpeg"):
+        raise ValueError(f"{expected}: JPEG changes the pixels; name a .png")
+    if max < 0:
+        raise ValueError(f"max is a number of steps from 0 on, not {max}")
+    if isinstance(picture, Picture) and "color" not in picture.layers:
+        raise ValueError("the picture has no colours to compare: name color in layers=")
     actual = _pixels(picture)
-    if os.environ.get(WRITE) == "1":
+    if os.environ.get(WRITE, "0") not in ("", "0"):
         expected.parent.mkdir(parents=True, exist_ok=True)
         _marraztu.save_picture(os.fspath(expected), actual)
         return
     if not expected.is_file():
-        raise AssertionError(f"{expected} does not exist; {WRITE}=1 writes it")
+        kind = "is not a file" if expected.exists() else f"does not exist; {WRITE}=1 writes it"
+        raise AssertionError(f"{expected} {kind}")
     golden = _pixels(expected)
     folder = expected.parent if out is None else Path(out)
     stem = folder / expected.stem
