@@ -26,7 +26,8 @@ const AMPLIFIED: u16 = 16;
 #[command(after_help = "\
 Prints the largest difference of a channel in steps of 1/255 (with alpha), the number of pixels that
 differ, the root of the mean square error in steps, and FLIP: the difference that a viewer sees when
-flipping between the pictures, from 0 to 1 (Andersson and others, 2020).
+flipping between the pictures, from 0 to 1 (Andersson and others, 2020). If a picture has 16 bits
+per channel, as depths and ids have, steps are 1/65535.
 
 Examples:
   marraztu compare a.png b.png                  equal pixels
@@ -44,7 +45,7 @@ pub(crate) struct Compare {
     b: PathBuf,
     /// The largest difference of a channel that counts as the same, in steps
     #[arg(long, value_name = "STEPS", default_value_t = 0)]
-    max: u8,
+    max: u16,
     /// The largest FLIP that counts as the same, from 0 to 1
     #[arg(long, value_name = "LIMIT", value_parser = flip)]
     flip: Option<f64>,
@@ -60,7 +61,7 @@ pub(crate) struct Compare {
 /// The differences of two pictures of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Difference {
-    largest: u8,
+    largest: u16,
     pixels: usize,
     rmse: f64,
     flip: f64,
@@ -87,7 +88,16 @@ pub(super) fn compare(arguments: &Compare) -> Result<(), Failure> {
         let (a, b) = (a.display(), b.display());
         return Err(incomparable(&format!("{a} has {a_size} pixels, but {b} has {b_size}")));
     }
-    let difference = difference(&first, &second);
+    let deep = [a, b].map(|path| io::load_deep_picture(path).ok().flatten());
+    let difference = match deep {
+        [None, None] => difference(&first, &second),
+        [a, b] => {
+            let [a, b] = [(a, &first), (b, &second)]
+                .map(|(deep, picture)| deep.map_or_else(|| widened(picture), |(_, pixels)| pixels));
+            let perceived = difference(&first, &second);
+            Difference { flip: perceived.flip, ..differences(&a, &b) }
+        }
+    };
     let rows = difference.rows(sizes[0].area());
     let text: String = rows.iter().map(|[name, value]| format!("{name:<20}{value}\n")).collect();
     print(&text)?;
@@ -137,23 +147,51 @@ fn incomparable(reason: &str) -> Failure {
 }
 
 /// Measures the differences of two pictures of one size.
-#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 bytes")]
 fn difference(a: &Picture, b: &Picture) -> Difference {
-    let (mut largest, mut pixels, mut squares) = (0, 0, 0_u64);
-    for (a, b) in a.pixels().iter().zip(b.pixels()) {
-        let steps: [u8; 4] = std::array::from_fn(|i| a[i].abs_diff(b[i]));
+    let measured = differences(a.pixels(), b.pixels());
+    if measured.largest == 0 {
+        return measured;
+    }
+    Difference { flip: Perceived::new(a).difference(&Perceived::new(b)), ..measured }
+}
+
+/// Measures the differences of pixels, except for the perceived one.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 bytes")]
+fn differences<T: Copy + Into<u16> + Bounded>(a: &[[T; 4]], b: &[[T; 4]]) -> Difference {
+    let (mut largest, mut pixels, mut squares, mut has_alpha) = (0, 0, 0_u64, false);
+    for (a, b) in a.iter().zip(b) {
+        let [a, b] = [a, b].map(|pixel| pixel.map(Into::<u16>::into));
+        let steps: [u16; 4] = std::array::from_fn(|i| a[i].abs_diff(b[i]));
         pixels += usize::from(steps != [0; 4]);
+        has_alpha |= a[3].min(b[3]) < T::MOST;
         for step in steps {
             largest = largest.max(step);
             squares += u64::from(step) * u64::from(step);
         }
     }
     // Alpha counts only if a picture has it.
-    let has_alpha = [a, b].iter().any(|picture| picture.least_alpha() < 255);
-    let channels = if has_alpha { 4 } else { 3 } * a.pixels().len().max(1);
+    let channels = if has_alpha { 4 } else { 3 } * a.len().max(1);
     let rmse = libm::sqrt(squares as f64 / channels as f64);
-    let flip = if largest == 0 { 0.0 } else { Perceived::new(a).difference(&Perceived::new(b)) };
-    Difference { largest, pixels, rmse, flip }
+    Difference { largest, pixels, rmse, flip: 0.0 }
+}
+
+/// A channel of a pixel.
+trait Bounded {
+    /// The largest value.
+    const MOST: u16;
+}
+
+impl Bounded for u8 {
+    const MOST: u16 = 255;
+}
+
+impl Bounded for u16 {
+    const MOST: u16 = Self::MAX;
+}
+
+/// Returns the pixels with 16 bits per channel.
+fn widened(picture: &Picture) -> Vec<[u16; 4]> {
+    picture.pixels().iter().map(|pixel| pixel.map(|byte| u16::from(byte) * 257)).collect()
 }
 
 fn picture(path: PathBuf) -> Result<PathBuf, String> {

@@ -13,7 +13,7 @@ use marraztu_io::Sources;
 
 use super::batch::Status;
 use super::batch::list::{Entry, expanded, read_list, read_text};
-use super::batch::report::{Counts, Line, Summary, begin, line};
+use super::batch::report::{Counts, Line, Summary, begin, check_report, line};
 use super::failure::{Failure, usage};
 use super::page::{check_page, relative_url, write_page};
 use super::talk::{Talk, note, print};
@@ -66,11 +66,13 @@ pub(super) fn merge(arguments: &Merge) -> Result<(), Failure> {
     arguments.talk.apply();
     let mut merged = Merged::default();
     let reports = reports(arguments)?;
+    let inputs = Sources::default().with(reports.iter().chain(&arguments.expect));
+    check_report(&arguments.out, &inputs)?;
     if let Some(sheet) = &arguments.sheet {
         if *sheet == arguments.out {
             return Err(usage("--sheet and --out name the same file"));
         }
-        check_page(sheet, &Sources::default().with(reports.iter().chain([&arguments.out])))?;
+        check_page(sheet, &inputs.with([&arguments.out]))?;
     }
     for path in &reports {
         let text = read_text(path)?;

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use marraztu_core::accuracy::{AXES, Settings};
 use marraztu_core::base::image::{Picture, Size};
-use marraztu_io::{self as io, Input, PICTURE_FORMATS, Progress};
+use marraztu_io::{self as io, Input, PICTURE_FORMATS, Progress, Sources};
 use marraztu_render::accel::Accelerated as _;
 use marraztu_render::{Renderer, without_ground};
 
@@ -53,8 +53,13 @@ pub(crate) struct Thumbnail {
 pub(super) fn thumbnail(arguments: &Thumbnail) -> Result<(), Failure> {
     let end = Instant::now() + LIMIT;
     let (sender, pictures) = channel();
-    let (file, side) = (arguments.file.clone(), usize::from(arguments.size));
-    let draw = move || draw(&file, Size::new(side, side), &sender);
+    let Thumbnail { file, out, size } = arguments;
+    Sources::default().with([file]).spare(out)?;
+    if out.is_file() {
+        io::check_replaced(out)?;
+    }
+    let (files, side) = ([file.clone(), out.clone()], usize::from(*size));
+    let draw = move || draw(&files, Size::new(side, side), &sender);
     // WebAssembly has no threads.
     if cfg!(target_family = "wasm") {
         draw();
@@ -77,8 +82,13 @@ pub(super) fn thumbnail(arguments: &Thumbnail) -> Result<(), Failure> {
 }
 
 /// Draws a coarse picture, and then a fine one.
-fn draw(file: &Path, size: Size, pictures: &Sender<Result<Picture, Failure>>) {
-    let stage = match stage(file) {
+fn draw([file, out]: &[PathBuf; 2], size: Size, pictures: &Sender<Result<Picture, Failure>>) {
+    // A texture next to the model is an input, too.
+    let staged = stage(file).and_then(|stage| {
+        stage.sources(&[]).spare(out)?;
+        Ok(stage)
+    });
+    let stage = match staged {
         Ok(stage) => stage,
         Err(failure) => {
             // The receiver waits for the first picture.

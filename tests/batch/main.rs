@@ -128,7 +128,7 @@ fn the_shards_of_any_number_draw_the_same_files_and_merge_to_the_same_report() {
         std::fs::copy(parts.path().join(&name), parts.path().join(format!("r{shard:.1}.jsonl")))
             .unwrap();
     }
-    std::fs::write(parts.path().join("report.jsonl"), "an earlier file").unwrap();
+    std::fs::copy(parts.path().join("r0.jsonl"), parts.path().join("report.jsonl")).unwrap();
     std::fs::create_dir(parts.path().join("pages")).unwrap();
     let (_, err) = ends_with(0, parts.path(), &merge);
     assert!(err.contains("report.jsonl is the output, so it is not read"), "{err}");
@@ -419,4 +419,80 @@ fn a_signal_ends_a_batch_with_a_complete_report_and_no_half_files() {
                 .all(|name| io::load_picture(&folder.path().join("out").join(name)).is_ok())
         );
     }
+}
+
+#[test]
+fn no_output_replaces_a_file_that_was_read_or_that_is_something_else() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("list.csv"), "file\nmodels/cam.obj\n").unwrap();
+    std::fs::write(at("poem.txt"), "Roses are red").unwrap();
+    std::fs::create_dir(at("s")).unwrap();
+    let picture = ["render", "models/plate.obj", "--size", "16", "--out", "s/sheet-000.png"];
+    ends_with(0, folder.path(), &picture);
+    let frame = "[[1,0,0,0],[0,1,0,0],[0,0,1,400],[0,0,0,1]]";
+    let cameras = format!("{{\"frames\": [{{\"transform_matrix\": {frame}}}]}}");
+    std::fs::create_dir(at("v")).unwrap();
+    std::fs::write(at("v/cameras.json"), cameras).unwrap();
+    let draw = ["batch", "--list", "list.csv", "--size", "16", "--out", "a.png"];
+    ends_with(0, folder.path(), &[&draw[..], &["--report", "r.jsonl"]].concat());
+    let before = contents(folder.path());
+    for (arguments, reason) in [
+        (&["--report", "list.csv"][..], "list.csv could not be saved: this file is an input"),
+        (&["--times", "models/cam.obj"], "this file is an input"),
+        (&["--report", "poem.txt"], "poem.txt: a file with this name exists and is not a report"),
+        (&["--times", "poem.txt"], "is not a report"),
+        (&["--report", "a.png"], "a.png is the name of a picture"),
+        (&["--sheet", "1x1", "--sheets", "s"], "sheet-000.png: a file with this name exists"),
+        (&["--sheet", "1x1", "--sheets", "t", "--out", "t/sheet-000.png"], "the name of a picture"),
+        (&["--sheet", "1x1", "--out", "b.npy", "--layers", "depth"], "b.npy is none"),
+        (
+            &["--views", "v/cameras.json", "--layers", "depth", "--out", "v/{view}-{layer}.png"],
+            "v/cameras.json could not be saved: this file is an input",
+        ),
+    ] {
+        let whole: Vec<&str> = match arguments.contains(&"--out") {
+            true => [&draw[..5], arguments].concat(),
+            false => [&draw[..], arguments].concat(),
+        };
+        let output = run(folder.path(), &whole);
+        let err = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && err.contains(reason), "{whole:?}\n{err}");
+        assert!(contents(folder.path()) == before, "{whole:?}");
+    }
+    for (arguments, reason) in [
+        (&["merge", "r.jsonl", "--out", "list.csv", "--expect", "list.csv"][..], "is an input"),
+        (&["merge", "r.jsonl", "--out", "poem.txt"], "is not a report"),
+        (&["thumbnail", "models/cam.obj", "models/cam.obj"], "this file is an input"),
+        (&["thumbnail", "models/cam.obj", "poem.txt"], "is not a picture"),
+    ] {
+        let output = run(folder.path(), arguments);
+        let err = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && err.contains(reason), "{arguments:?}\n{err}");
+        assert!(contents(folder.path()) == before, "{arguments:?}");
+    }
+    // Reports, times and sheets of earlier runs are replaced.
+    for _ in 0..2 {
+        let more = ["--report", "r.jsonl", "--times", "t.jsonl", "--sheet", "1x1", "--sheets", "u"];
+        ends_with(0, folder.path(), &[&draw[..], &more].concat());
+    }
+}
+
+#[test]
+fn pictures_of_16_bits_are_compared_whole() {
+    let folder = folder();
+    let draw = ["render", "models/cam.obj", "--size", "32", "--layers", "depth", "--out"];
+    let near = |scale: &str, out: &str| {
+        ends_with(0, folder.path(), &[&draw[..], &[out, "--depth-scale", scale]].concat());
+    };
+    near("10", "a-{layer}.png");
+    near("10.02", "b-{layer}.png");
+    let (out, _) = ends_with(1, folder.path(), &["compare", "a-depth.png", "b-depth.png"]);
+    let largest: u32 =
+        out.lines().next().unwrap().split_whitespace().last().unwrap().parse().unwrap();
+    assert!((1..256).contains(&largest), "less than a step of 8 bits: {out}");
+    let most = largest.to_string();
+    let limit = ["compare", "a-depth.png", "b-depth.png", "--max", &most];
+    ends_with(0, folder.path(), &limit);
+    ends_with(0, folder.path(), &["compare", "a-depth.png", "a-depth.png"]);
 }

@@ -56,7 +56,7 @@ fn readable(path: &Path) -> Result<Metadata, LoadError> {
 }
 
 /// Describes a folder entry that is not a file.
-fn kind(kind: FileType) -> Option<&'static str> {
+pub(super) fn kind(kind: FileType) -> Option<&'static str> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::FileTypeExt;

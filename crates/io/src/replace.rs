@@ -13,6 +13,7 @@ use std::time::Duration;
 
 use super::error::{reason, shown};
 use super::part::{create_part, sweep_once};
+use super::read::kind;
 use super::scene_file::paths::plain;
 
 /// The reason why a file could not be written. An existing file is unchanged.
@@ -77,8 +78,9 @@ fn target(path: &Path) -> Result<PathBuf, SaveError> {
     if target.is_symlink() {
         return Err(SaveError::new(path, "its symbolic links form a loop"));
     }
-    if target.is_dir() {
-        return Err(SaveError::new(path, "this is a folder, not a file"));
+    // A device or a pipe would be replaced by a file.
+    if let Some(kind) = fs::metadata(&target).ok().and_then(|it| kind(it.file_type())) {
+        return Err(SaveError::new(path, format!("this is {kind}, not a file")));
     }
     if target.file_name().is_none() {
         return Err(SaveError::new(path, "this is not a valid file name"));

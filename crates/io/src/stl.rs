@@ -193,8 +193,8 @@ fn binary(bytes: &[u8], file: &str, progress: &Progress) -> Result<Solids, LoadE
 fn ascii(bytes: &[u8], file: &str, progress: &Progress) -> Result<Solids, LoadError> {
     let mut solids = Solids::default();
     let (mut read, mut number) = (0, 0);
-    // The corners before the current facet.
-    let mut facet = 0;
+    // The corners before the current facet, and whether it is open.
+    let (mut facet, mut is_open) = (0, false);
     for line in bytes.split(|byte| *byte == b'\n') {
         if u32::is_multiple_of(number, 1 << 18) {
             progress.reached(read, bytes.len())?;
@@ -210,7 +210,7 @@ fn ascii(bytes: &[u8], file: &str, progress: &Progress) -> Result<Solids, LoadEr
                 let name = words.collect::<Vec<_>>().join(" ");
                 solids.solids.push((name, solids.triangles()));
             }
-            "facet" => facet = solids.corners.len(),
+            "facet" => (facet, is_open) = (solids.corners.len(), true),
             "vertex" => {
                 let numbers = words.map(|word| word.parse::<f32>().ok());
                 let numbers: Option<Vec<f32>> = numbers.collect();
@@ -223,12 +223,13 @@ fn ascii(bytes: &[u8], file: &str, progress: &Progress) -> Result<Solids, LoadEr
                 if corners != 3 {
                     return Err(wrong(format!("the facet has {corners} corners instead of 3")));
                 }
+                is_open = false;
             }
             "outer" | "endloop" | "endsolid" => {}
             _ => return Err(wrong(format!("{word:?} is not a statement of STL"))),
         }
     }
-    if !solids.corners.len().is_multiple_of(3) {
+    if is_open || !solids.corners.len().is_multiple_of(3) {
         return Err(LoadError::line(file, number, "the file ends within a facet"));
     }
     Ok(solids)
@@ -397,6 +398,8 @@ mod tests {
             (text.replacen("vertex 0e0 0 0", "", 1).into(), "a.stl:8: the facet has 2 corners"),
             (text.replacen("outer", "inner", 1).into(), "a.stl:3: \"inner\" is not a statement"),
             (text[..90].to_owned().into(), "the file ends within a facet"),
+            // The last number of a facet is cut off.
+            (text[..text.find("endloop").unwrap() - 2].into(), "the file ends within a facet"),
         ] {
             let error = load(&file, &LoadOptions::default()).unwrap_err().to_string();
             assert!(error.contains(reason), "{error}");

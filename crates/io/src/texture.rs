@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
 use super::error::{LoadError, shown};
 use super::findings::{Finding, FindingKind, Findings};
@@ -81,6 +81,24 @@ pub fn load_picture(path: &Path) -> Result<Picture, LoadError> {
     Ok(picture)
 }
 
+/// Loads a picture of 16 bits per channel: its size, and red, green, blue and opacity of each
+/// pixel. `None` if it has fewer bits.
+///
+/// # Errors
+/// If the file cannot be read, is not a picture, or is too large.
+pub fn load_deep_picture(path: &Path) -> Result<Option<(Size, Vec<[u16; 4]>)>, LoadError> {
+    let (decoded, _) = decode_any(path, usize::MAX)?;
+    if !matches!(
+        decoded.color(),
+        ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16
+    ) {
+        return Ok(None);
+    }
+    let size = Size::new(decoded.width() as usize, decoded.height() as usize);
+    let pixels = decoded.into_rgba16().into_raw();
+    Ok(Some((size, pixels.as_chunks().0.to_vec())))
+}
+
 /// The pictures of one model or scene: each file is decoded once and shared.
 #[derive(Debug, Default)]
 pub(super) struct Pictures {
@@ -152,6 +170,17 @@ fn too_many_texels(path: &Path) -> LoadError {
 
 /// Decodes a file; returns the picture and whether the file is truncated.
 fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
+    let fail = |reason: &str| LoadError::file(&shown(path), reason);
+    let (decoded, cut_off) = decode_any(path, most)?;
+    let picture = picture(decoded).ok_or_else(|| fail("the picture is damaged"))?;
+    if picture.size().area() == 0 {
+        return Err(fail("the picture is empty"));
+    }
+    Ok((picture, cut_off))
+}
+
+/// Works like [`decode`], for any number of bits.
+fn decode_any(path: &Path, most: usize) -> Result<(DynamicImage, bool), LoadError> {
     let file = shown(path);
     let fail = |reason: String| LoadError::file(&file, reason);
     let bytes = read(path, MOST_BYTES, &Progress::new())?;
@@ -185,12 +214,7 @@ fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
         .map_err(|_panic| fail("the picture is damaged".to_owned()))?
         .map_err(|error| fail(reason(&error)))?
         .ok_or_else(|| too_many_texels(path))?;
-    drop(bytes);
-    let picture = picture(decoded).ok_or_else(|| fail("the picture is damaged".to_owned()))?;
-    if picture.size().area() == 0 {
-        return Err(fail("the picture is empty".to_owned()));
-    }
-    Ok((picture, cut_off))
+    Ok((decoded, cut_off))
 }
 
 fn picture(decoded: DynamicImage) -> Option<Picture> {

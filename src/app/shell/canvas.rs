@@ -133,9 +133,9 @@ impl CanvasShell {
     }
 
     /// Returns the next job of a kind for another instance, if there is one. The host passes it to
-    /// [`do_job`](crate::app::do_job) there, all that it tells to [`Self::told`], and its end, after
-    /// the files that it has written, to [`Self::done`]. To be called after each frame, if pictures
-    /// are drawn elsewhere.
+    /// [`do_job`](crate::app::do_job) there, all that it tells to [`Self::told`], and its end,
+    /// after the files that it has written, to [`Self::done`]. To be called after each frame, if
+    /// pictures are drawn elsewhere.
     pub fn job(&mut self, kind: JobKind) -> Option<Vec<u8>> {
         match kind {
             JobKind::Measure => self.app.lab.take_job(),

@@ -97,8 +97,8 @@ pub(super) struct DatasetImage {
 struct DatasetObject {
     /// The id in the layer of objects.
     id: i32,
-    /// The name of the model's file, or of the object.
-    model: String,
+    /// The model's file, or the name of the object.
+    model: PathBuf,
     /// From the model to the camera, with the axes of OpenCV.
     camera_from_model: DMat4,
     /// The visible pixels.
@@ -188,9 +188,8 @@ pub(super) fn image(
             1 => visible.clone(),
             _ => is_own(&ids_of(&alone(shot, *object))?),
         };
-        let file = own.model.source.as_deref().and_then(Path::file_name);
-        let model =
-            file.map_or_else(|| own.name.clone(), |name| name.to_string_lossy().into_owned());
+        let file = own.model.source.as_deref();
+        let model = file.map_or_else(|| PathBuf::from(&own.name), Path::to_owned);
         let camera_from_model = camera.camera_from_world(AxesConvention::OpenCv)
             * own.world_from_object(shot.view.time);
         if dataset == Dataset::Bop {
@@ -258,14 +257,57 @@ pub(super) fn write_tables(
     mut images: Vec<DatasetImage>,
 ) -> Result<(), Failure> {
     images.sort_by_key(|image| image.index);
-    let models: BTreeSet<&str> =
+    let models: BTreeSet<&Path> =
         images.iter().flat_map(|image| &image.objects).map(|object| &*object.model).collect();
-    let models: BTreeMap<&str, usize> = models.into_iter().zip(1..).collect();
+    let models = Models::of(&models);
     match dataset {
         // The cameras are the only table: see `write_cameras`.
         Dataset::Nerf => Ok(()),
         Dataset::Bop => write_bop(folder, &images, &models),
         Dataset::Coco => write_coco(folder, jobs, &images, &models),
+    }
+}
+
+/// The models of a data set, with their numbers from 1 on.
+struct Models<'a> {
+    names: Vec<String>,
+    numbers: BTreeMap<&'a Path, usize>,
+}
+
+impl<'a> Models<'a> {
+    /// Numbers the models in the order of their names: the names of their files, with as many
+    /// folders as tell them apart.
+    fn of(models: &BTreeSet<&'a Path>) -> Self {
+        let name = |path: &Path, parts: usize| {
+            let all: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
+            all[all.len().saturating_sub(parts)..].join("/")
+        };
+        let (mut named, mut rest) = (Vec::new(), models.iter().copied().collect::<Vec<_>>());
+        let longest = models.iter().map(|path| path.iter().count()).max().unwrap_or(0);
+        for parts in 1..=longest {
+            let mut by_name: BTreeMap<String, Vec<&Path>> = BTreeMap::new();
+            for path in std::mem::take(&mut rest) {
+                by_name.entry(name(path, parts)).or_default().push(path);
+            }
+            for (name, paths) in by_name {
+                match paths[..] {
+                    [path] => named.push((name, path)),
+                    // Names that are not UTF-8 may look the same in their whole length.
+                    _ if parts == longest => {
+                        named.extend(paths.into_iter().map(|path| (name.clone(), path)))
+                    }
+                    _ => rest.extend(paths),
+                }
+            }
+        }
+        named.sort();
+        let numbers = named.iter().zip(1..).map(|((_, path), number)| (*path, number)).collect();
+        Self { names: named.into_iter().map(|(name, _)| name).collect(), numbers }
+    }
+
+    /// Iterates over numbers and names.
+    fn iter(&self) -> impl Iterator<Item = (usize, &str)> {
+        (1..).zip(self.names.iter().map(String::as_str))
     }
 }
 
@@ -277,11 +319,7 @@ fn write(path: &Path, content: &Value) -> Result<(), Failure> {
     Ok(io::save_encoded(path, format!("{content}\n").as_bytes())?)
 }
 
-fn write_bop(
-    folder: &Path,
-    images: &[DatasetImage],
-    models: &BTreeMap<&str, usize>,
-) -> Result<(), Failure> {
+fn write_bop(folder: &Path, images: &[DatasetImage], models: &Models<'_>) -> Result<(), Failure> {
     let mut scenes: BTreeMap<usize, [BTreeMap<String, Value>; 3]> = BTreeMap::new();
     for image in images {
         let [cameras, poses, infos] = scenes.entry(image.row).or_default();
@@ -303,7 +341,7 @@ fn write_bop(
             json!({
                 "cam_R_m2c": nine(DMat3::from_mat4(object.camera_from_model)),
                 "cam_t_m2c": millimetres(object.camera_from_model),
-                "obj_id": models.get(&*object.model),
+                "obj_id": models.numbers.get(&*object.model),
             })
         };
         poses.insert(view.clone(), image.objects.iter().map(pose).collect());
@@ -328,7 +366,7 @@ fn write_bop(
         }
     }
     let names: BTreeMap<String, &str> =
-        models.iter().map(|(name, id)| (id.to_string(), *name)).collect();
+        models.iter().map(|(id, name)| (id.to_string(), name)).collect();
     write(&folder.join("models.json"), &json!(names))
 }
 
@@ -336,7 +374,7 @@ fn write_coco(
     folder: &Path,
     jobs: &[Job],
     images: &[DatasetImage],
-    models: &BTreeMap<&str, usize>,
+    models: &Models<'_>,
 ) -> Result<(), Failure> {
     let paths: BTreeMap<usize, String> = jobs
         .iter()
@@ -345,7 +383,7 @@ fn write_coco(
             Some((job.index, name))
         })
         .collect();
-    let category = |(name, id): (&&str, &usize)| {
+    let category = |(id, name): (usize, &str)| {
         let kind = "model";
         json!({"id": id, "name": name, "isthing": 1, "supercategory": kind})
     };
@@ -360,7 +398,7 @@ fn write_coco(
         let mut segments = Vec::new();
         for object in image.objects.iter().filter(|object| object.visible.count > 0) {
             let DatasetObject { visible, model, .. } = object;
-            let category = models.get(&**model);
+            let category = models.numbers.get(&**model);
             segments.push(json!({
                 "id": object.id, "category_id": category, "area": visible.count,
                 "bbox": visible.bounds, "iscrowd": 0,
@@ -384,6 +422,16 @@ fn write_coco(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn models_of_one_name_are_told_apart_by_their_folders() {
+        let paths = ["/x/a/model.obj", "/x/b/model.obj", "/x/cow.obj", "/y/b/model.obj", "tin"];
+        let models = Models::of(&paths.iter().map(Path::new).collect());
+        let names = ["a/model.obj", "cow.obj", "tin", "x/b/model.obj", "y/b/model.obj"];
+        assert_eq!(models.iter().map(|(_, name)| name).collect::<Vec<_>>(), names);
+        assert_eq!(models.iter().map(|(id, _)| id).collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
+        assert_eq!(models.numbers[Path::new("/y/b/model.obj")], 5);
+    }
 
     #[test]
     fn a_mask_has_a_box_and_runs_of_columns() {

@@ -3,12 +3,12 @@
 //! All rows, options, cameras and names are checked here, before the first picture is drawn. Jobs
 //! are numbered over the whole list, whatever part of it this process draws.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use marraztu_core::base::image::Size;
-use marraztu_io as io;
+use marraztu_io::{self as io, Sources};
 
 use super::Batch;
 use super::dataset::{Dataset, Place};
@@ -108,6 +108,8 @@ pub(super) struct Jobs {
     pub(super) jobs: Vec<Job>,
     /// The number of jobs in the whole list.
     pub(super) all: usize,
+    /// The files that are read: the list, models and scenes, and cameras.
+    pub(super) inputs: Sources,
 }
 
 impl Jobs {
@@ -124,10 +126,13 @@ impl Jobs {
             return Err(usage("the list has no rows"));
         }
         let jobs = jobs_of(&rows)?;
-        check_outputs(&jobs)?;
+        check_outputs(&jobs, arguments)?;
         let all = jobs.len();
+        let cameras = reader.views.keys().map(PathBuf::from);
+        let files: BTreeSet<&PathBuf> = rows.iter().map(|row| &row.file).collect();
+        let inputs = Sources::default().with(&arguments.list).with(files).with(cameras);
         let shard = arguments.shard.unwrap_or(Shard::WHOLE);
-        Ok(Self { jobs: ordered(&jobs, shard), all })
+        Ok(Self { jobs: ordered(&jobs, shard), all, inputs })
     }
 }
 
@@ -282,21 +287,32 @@ fn jobs_of(rows: &[Arc<Row>]) -> Result<Vec<Job>, Failure> {
 }
 
 /// Rejects pictures that would overwrite each other.
-fn check_outputs(jobs: &[Job]) -> Result<(), Failure> {
+fn check_outputs(jobs: &[Job], arguments: &Batch) -> Result<(), Failure> {
     let mut outputs: BTreeMap<&PathBuf, &Job> = BTreeMap::new();
     let all = jobs.iter().flat_map(|job| job.files.iter().map(move |file| (file, job)));
     for (file, job) in all {
         let Some(other) = outputs.insert(&file.path, job) else { continue };
         let of = |job: &Job| format!("{}, view {}", job.row.place, job.camera().name);
+        let way = match arguments.dataset {
+            Some(_) => "a data set tells models apart by the names of their files",
+            None => "tell them apart in --out by {dir}, {view} or {index}",
+        };
         return Err(Failure::Usage(format!(
-            "two pictures would be written to {}: {} and {}; tell them apart in --out by {{dir}}, \
-             {{view}} or {{index}}",
+            "two pictures would be written to {}: {} and {}; {way}",
             file.path.display(),
             of(other),
             of(job),
         )));
     }
-    Ok(())
+    let sheets = arguments.sheet.iter().flat_map(|grid| grid.files(&arguments.sheets, jobs.len()));
+    let others = arguments.report.iter().chain(&arguments.times).cloned().chain(sheets);
+    match others.into_iter().find(|other| outputs.contains_key(other)) {
+        Some(other) => Err(Failure::Usage(format!(
+            "{} is the name of a picture; choose another name",
+            other.display()
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// Returns the jobs of a shard. The jobs of a model follow each other, in the order in which models

@@ -32,7 +32,7 @@ use std::thread::Builder;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use marraztu_io::PICTURE_FORMATS;
+use marraztu_io::{PICTURE_FORMATS, Sources};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use self::dataset::{Dataset, write_tables};
@@ -41,9 +41,9 @@ use self::meter::Meter;
 use self::options::OptionTexts;
 use self::outcome::Outcome;
 pub(super) use self::outcome::Status;
-use self::report::{Counts, Reporter};
+use self::report::{Counts, Reporter, check_report};
 use self::shard::{Shard, shard};
-use self::sheets::{Grid, grid, write_sheets};
+use self::sheets::{Grid, check_sheets, grid, write_sheets};
 use self::studio::{Manner, Studio, silence_panics};
 use super::arguments::choice;
 use super::cameras::{CAMERAS, check_cameras, write_cameras};
@@ -159,7 +159,7 @@ pub(crate) struct Batch {
 /// Draws the pictures that the arguments describe.
 pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
     arguments.talk.apply();
-    let Jobs { jobs, all } = Jobs::of(arguments)?;
+    let Jobs { jobs, all, inputs } = Jobs::of(arguments)?;
     if arguments.dry_run {
         return print(&listed(&jobs));
     }
@@ -176,14 +176,19 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
     if report.is_some() && report == times {
         return Err(usage("--report and --times name the same file"));
     }
+    report.iter().chain(&times).try_for_each(|path| check_report(path, &inputs))?;
+    if let Some(grid) = arguments.sheet {
+        check_sheets(grid, &arguments.sheets, &jobs)?;
+    }
     let name = cameras_name(arguments);
     if !matches!(arguments.dataset, Some(Dataset::Bop | Dataset::Coco)) {
-        check_all_cameras(&name, &jobs, arguments.dataset)?;
+        check_all_cameras(&name, &jobs, arguments.dataset, &inputs)?;
     }
     let studio = Arc::new(Studio::new(jobs, manner));
     let mut reporter = Reporter::begin(studio.jobs(), all, report, times)?;
     let mut meter = Meter::of(studio.jobs().len());
     let (mut done, mut cameras, mut images) = (Vec::new(), Vec::new(), Vec::new());
+    let mut repaired = 0;
     let signal = watched_signals();
     silence_panics();
     let results = start(&studio)?;
@@ -194,6 +199,7 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
         reporter.add(&outcome)?;
         if let Ok(drawn) = &mut outcome.result {
             done.push(outcome.job);
+            repaired += usize::from(!drawn.findings.is_empty());
             cameras.extend(drawn.camera.take().map(|camera| *camera));
             images.extend(drawn.image.take().map(|image| *image));
         }
@@ -216,6 +222,10 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
         write_sheets(grid, &arguments.sheets, &jobs)?;
     }
     tell(&counts, unchanged, meter.rate());
+    if repaired > 0 {
+        let list = if arguments.report.is_some() { "the report" } else { "--report" };
+        note(&format_args!("{repaired} of the pictures have findings: {list} lists them"));
+    }
     status(&counts, signal.load(Ordering::Relaxed), arguments.strict_exit)
 }
 
@@ -231,10 +241,18 @@ fn cameras_name(arguments: &Batch) -> String {
 }
 
 /// Checks that no file of cameras would replace a file of another program.
-fn check_all_cameras(name: &str, jobs: &[Job], dataset: Option<Dataset>) -> Result<(), Failure> {
+fn check_all_cameras(
+    name: &str,
+    jobs: &[Job],
+    dataset: Option<Dataset>,
+    inputs: &Sources,
+) -> Result<(), Failure> {
     let with_layers = jobs.iter().filter(|job| job.row.parsed.options.layers.are_given());
     let folders: BTreeSet<&Path> = with_layers.map(|job| job.cameras_folder(dataset)).collect();
-    folders.into_iter().try_for_each(|folder| check_cameras(&folder.join(name)))
+    folders.into_iter().map(|folder| folder.join(name)).try_for_each(|path| {
+        inputs.spare(&path)?;
+        check_cameras(&path)
+    })
 }
 
 /// Returns a line for each job.

@@ -4,13 +4,16 @@
 //! report of a single run, byte for byte. Times go to a separate file.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::{BufRead as _, BufReader, Read as _};
 use std::path::Path;
 
-use marraztu_io::{NewFile, SaveError};
+use marraztu_io::{NewFile, SaveError, Sources};
 use serde::{Deserialize, Serialize};
 
 use super::jobs::Job;
 use super::outcome::{Drawn, Fault, FileSum, Outcome, Spent, Status};
+use crate::cli::failure::{Failure, usage};
 
 /// The line of a picture.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -125,13 +128,43 @@ pub(crate) fn line(value: &impl Serialize) -> Vec<u8> {
 }
 
 /// The times of a picture in milliseconds.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Times {
     index: usize,
     unchanged: bool,
     load: f64,
     draw: f64,
     encode: f64,
+}
+
+/// The longest line of a report.
+const LONGEST: u64 = 1 << 24;
+
+/// Checks that a report, or a file of times, may be written to `path`: an existing file is one, or
+/// empty, and not an input.
+///
+/// # Errors
+/// If it is another file.
+pub(crate) fn check_report(path: &Path, sources: &Sources) -> Result<(), Failure> {
+    sources.spare(path)?;
+    // Writing refuses what is not a file.
+    if !path.is_file() {
+        return Ok(());
+    }
+    let mut first = String::new();
+    let read =
+        File::open(path).and_then(|file| BufReader::new(file.take(LONGEST)).read_line(&mut first));
+    let is_line = serde_json::from_str::<Line>(&first).is_ok()
+        || serde_json::from_str::<Summary>(&first).is_ok()
+        || serde_json::from_str::<Times>(&first).is_ok();
+    if read.is_ok() && (first.is_empty() || is_line) {
+        return Ok(());
+    }
+    Err(usage(&format!(
+        "{}: a file with this name exists and is not a report; choose another name",
+        path.display()
+    )))
 }
 
 /// Begins a file, and creates its folder.

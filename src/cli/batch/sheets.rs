@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use marraztu::plots::{SheetCell, contact_sheet};
-use marraztu_io as io;
+use marraztu_io::{self as io, PICTURE_FORMATS, PictureFormat};
 
 use super::jobs::Job;
 use super::template::stem;
@@ -17,6 +17,40 @@ use crate::cli::failure::Failure;
 pub(super) struct Grid {
     columns: usize,
     rows: usize,
+}
+
+/// The stamp of a sheet.
+const STAMP: &str = "contact sheet";
+
+impl Grid {
+    /// Returns the files of the sheets of this number of pictures.
+    pub(super) fn files(self, folder: &Path, pictures: usize) -> impl Iterator<Item = PathBuf> {
+        let count = pictures.div_ceil(self.columns * self.rows);
+        (0..count).map(move |i| folder.join(format!("sheet-{i:03}.png")))
+    }
+}
+
+/// Checks that sheets replace no other file, and that they can show the files of the jobs.
+///
+/// # Errors
+/// If a file with the name of a sheet is none, or a job writes no picture.
+pub(super) fn check_sheets(grid: Grid, folder: &Path, jobs: &[Job]) -> Result<(), Failure> {
+    if let Some(job) = jobs.iter().find(|job| PictureFormat::of(job.out()).is_err()) {
+        let out = job.out().display();
+        return Err(Failure::Usage(format!("--sheet shows pictures, and {out} is none")));
+    }
+    grid.files(folder, jobs.len()).try_for_each(|path| check_sheet(&path))
+}
+
+fn check_sheet(path: &Path) -> Result<(), Failure> {
+    if path.exists() && io::read_stamp(path).as_deref() != Some(STAMP) {
+        return Err(Failure::Usage(format!(
+            "{}: a file with this name exists and is not a contact sheet; choose another folder \
+             by --sheets",
+            path.display()
+        )));
+    }
+    Ok(())
 }
 
 /// Parses columns and rows, such as "4x2".
@@ -36,11 +70,13 @@ pub(super) fn grid(text: &str) -> Result<Grid, String> {
 pub(super) fn write_sheets(grid: Grid, folder: &Path, jobs: &[&Job]) -> Result<(), Failure> {
     let failed = |error| Failure::Write(folder.to_owned(), error);
     std::fs::create_dir_all(folder).map_err(failed)?;
-    for (i, jobs) in jobs.chunks(grid.columns * grid.rows).enumerate() {
+    let pages = jobs.chunks(grid.columns * grid.rows);
+    for (path, jobs) in grid.files(folder, jobs.len()).zip(pages) {
         let cells = jobs.iter().map(|job| cell(job)).collect::<Result<Vec<_>, _>>()?;
-        let path: PathBuf = folder.join(format!("sheet-{i:03}.png"));
-        io::check_replaced(&path)?;
-        io::save_picture(&path, &contact_sheet(&cells, grid.columns, &[])?)?;
+        check_sheet(&path)?;
+        let sheet = contact_sheet(&cells, grid.columns, &[])?;
+        let png = io::encode_stamped(&PICTURE_FORMATS[0], &sheet, STAMP);
+        io::save_encoded(&path, &png.map_err(Failure::Absent)?)?;
     }
     Ok(())
 }
