@@ -32,7 +32,7 @@ pub(crate) struct LayerOptions {
     ]))]
     normal_space: Option<NormalSpace>,
     /// The steps of depth per unit in a PNG: 1000*; the largest depth is 65535 steps
-    #[arg(long, value_name = "STEPS", value_parser = steps)]
+    #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = steps)]
     depth_scale: Option<f64>,
     /// The ids in a PNG: grey* (16 bits), rgb (id = R + 256 G + 65536 B, as in COCO)
     #[arg(long, value_name = "FORM", hide_possible_values = true, value_parser = choice(&[

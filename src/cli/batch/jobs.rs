@@ -19,6 +19,7 @@ use super::template::{Fields, Template};
 use super::views::{CameraView, own_view, parse_views};
 use crate::cli::failure::{Failure, usage};
 use crate::cli::layers::{Encoding, LayerFile};
+use crate::cli::stage::is_scene;
 use crate::cli::values::is_standard;
 
 /// The size of pictures without `--size`.
@@ -229,6 +230,17 @@ impl RowReader {
             // An option of the command line that conflicts is not a column, but named as well.
             wrong(option.as_deref(), &reason)
         })?;
+        if let Some(texture) = &parsed.options.surfaces.texture {
+            let found = io::check_file(texture);
+            found.map_err(|error| wrong(Some("texture"), &error.to_string()))?;
+        }
+        if is_scene(&file) && parsed.options.reading.is_given() {
+            return Err(wrong(
+                None,
+                "--up, --scale, --flip-winding, --crease and --bump-maps apply to models, and this \
+                 is a scene",
+            ));
+        }
         let has_camera =
             parsed.options.seeing.camera.is_some() || parsed.options.seeing.from.is_some();
         let views = match views {

@@ -95,7 +95,7 @@ pub(crate) struct Batch {
     /// The views of each model: a number of views around it, names (front, right, back, left, top,
     /// bottom, iso), fibonacci:COUNT[:SEED] for directions on a sphere, or a file of cameras as of
     /// NeRF (.json) [default: the view of the other options]
-    #[arg(long, value_name = "VIEWS")]
+    #[arg(long, value_name = "VIEWS", allow_negative_numbers = true)]
     views: Option<String>,
     /// The names of the pictures, or the folder of a data set [default: {stem}.{ext}, or
     /// {stem}-{view:03}.{ext} for several views, in the current folder]

@@ -51,7 +51,8 @@ pub(crate) fn parse_views(text: &str) -> Result<Vec<CameraView>, String> {
     let path = Path::new(text);
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
         let json = read_file(path).map_err(|error| error.to_string())?;
-        return from_json(&json).map_err(|reason| format!("{text}: {reason}"));
+        let json = json.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&json);
+        return from_json(json).map_err(|reason| format!("{text}: {reason}"));
     }
     text.split(',').map(|name| named(name.trim())).collect()
 }
