@@ -88,12 +88,12 @@ pub(super) fn compare(arguments: &Compare) -> Result<(), Failure> {
         let (a, b) = (a.display(), b.display());
         return Err(incomparable(&format!("{a} has {a_size} pixels, but {b} has {b_size}")));
     }
-    let deep = [a, b].map(|path| io::load_deep_picture(path).ok().flatten());
+    let deep = [a, b].map(|path| io::load_deep_pixels(path).ok().flatten());
     let difference = match deep {
         [None, None] => difference(&first, &second),
         [a, b] => {
             let [a, b] = [(a, &first), (b, &second)]
-                .map(|(deep, picture)| deep.map_or_else(|| widened(picture), |(_, pixels)| pixels));
+                .map(|(deep, picture)| deep.unwrap_or_else(|| widened(picture)));
             let perceived = difference(&first, &second);
             Difference { flip: perceived.flip, ..differences(&a, &b) }
         }

@@ -81,12 +81,12 @@ pub fn load_picture(path: &Path) -> Result<Picture, LoadError> {
     Ok(picture)
 }
 
-/// Loads a picture of 16 bits per channel: its size, and red, green, blue and opacity of each
-/// pixel. `None` if it has fewer bits.
+/// Loads the pixels of a picture of 16 bits per channel, row by row: red, green, blue and opacity.
+/// `None` if it has fewer bits.
 ///
 /// # Errors
 /// If the file cannot be read, is not a picture, or is too large.
-pub fn load_deep_picture(path: &Path) -> Result<Option<(Size, Vec<[u16; 4]>)>, LoadError> {
+pub fn load_deep_pixels(path: &Path) -> Result<Option<Vec<[u16; 4]>>, LoadError> {
     let (decoded, _) = decode_any(path, usize::MAX)?;
     if !matches!(
         decoded.color(),
@@ -94,9 +94,7 @@ pub fn load_deep_picture(path: &Path) -> Result<Option<(Size, Vec<[u16; 4]>)>, L
     ) {
         return Ok(None);
     }
-    let size = Size::new(decoded.width() as usize, decoded.height() as usize);
-    let pixels = decoded.into_rgba16().into_raw();
-    Ok(Some((size, pixels.as_chunks().0.to_vec())))
+    Ok(Some(decoded.into_rgba16().into_raw().as_chunks().0.to_vec()))
 }
 
 /// The pictures of one model or scene: each file is decoded once and shared.

@@ -31,7 +31,7 @@ const LEAST: egui::Vec2 = vec2(330.0, 100.0);
 const UNFOLDED: f32 = 300.0;
 
 /// Over a lower picture, the dial is one row until it is clicked.
-const LOW: f32 = 340.0;
+const LOW: f32 = 400.0;
 
 /// Shows the dial; its requests are added to `requests`.
 pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Request>) {
