@@ -186,7 +186,7 @@ impl Bounded for u8 {
 }
 
 impl Bounded for u16 {
-    const MOST: u16 = Self::MAX;
+    const MOST: Self = Self::MAX;
 }
 
 /// Returns the pixels with 16 bits per channel.

@@ -39,7 +39,7 @@ fn a_sweep_prints_its_table_and_leaves_everything_in_its_folder() {
     for part in [
         "the first scene: 48 x 36 pixels",
         "presets",
-        "At 48x36, 1 sample per pixel, on the first scene: ",
+        "At 48x36, 1 sample per pixel, on the first scene, ",
         "saves more than the noise",
         "are noise",
         "combinations",
@@ -138,7 +138,7 @@ fn one_scene_of_the_suite_is_measured_by_its_word() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["lab", "--suite=depth", "--size", "48x27", "--out", "found"];
     let (out, _) = lab(0, folder.path(), &arguments);
-    assert!(out.contains("At 48x27, 1 sample per pixel, on suite scene depth: "), "{out}");
+    assert!(out.contains("At 48x27, 1 sample per pixel, on suite scene depth, "), "{out}");
     assert!(out.contains("again: marraztu lab --suite=depth"), "{out}");
     let found = folder.path().join("found");
     for name in ["page.md", "page.html", "table.csv", "report.json", "depth-depth-light.svg"] {

@@ -91,7 +91,7 @@ pub fn in_words(figures: &[Figures]) -> Option<String> {
     // Smaller changes are invisible, or within the error of the estimate.
     let gain = match after / before {
         _ if before < SEEN => "and shows nothing more".to_owned(),
-        left if left < 1.0 - GAIN => {
+        left if left < 1.0 - GAIN && before >= HARDLY => {
             format!(
                 "and cuts the error from {} to {} of 255",
                 error_in_words(before),
@@ -105,6 +105,9 @@ pub fn in_words(figures: &[Figures]) -> Option<String> {
 
 /// An error below this, in byte steps, cannot be seen.
 const SEEN: f64 = 0.05;
+
+/// An error below this, in byte steps, is hard to see.
+const HARDLY: f64 = 1.0;
 
 /// A gain below this fraction is not worth mentioning.
 const GAIN: f64 = 0.1;
@@ -397,6 +400,8 @@ mod tests {
         assert_eq!(said(figures(1.0, 2.3), figures(5.6, 0.8)), cut);
         let hardly = "Here, Exact takes about 12x as long as Default and looks almost the same.";
         assert_eq!(said(figures(1.0, 2.3), figures(12.0, 2.2)), hardly);
+        // From 0.5 to 0.4: both are hard to tell from the ideal.
+        assert_eq!(said(figures(1.0, 0.5), figures(12.0, 0.4)), hardly);
         let nothing = "Here, Exact takes as long as Default and shows nothing more.";
         assert_eq!(said(figures(1.0, 0.0), figures(1.1, 0.0)), nothing);
         assert_eq!(in_words(&[]), None);

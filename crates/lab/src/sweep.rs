@@ -69,6 +69,8 @@ pub struct Findings {
     pub left_out: Vec<LeftOut>,
     /// Small kernels, plain and with SIMD.
     pub kernels: Vec<Kernel>,
+    /// Whether everything was measured: not while the sweep runs, or if it was cancelled.
+    pub complete: bool,
 }
 
 /// Settings with their time and error.
@@ -311,6 +313,7 @@ impl Bench<'_> {
             let limits = &thoroughness.limits;
             findings.kernels.push(kernels::measure(i, self.clock, limits, self.watch)?);
         }
+        findings.complete = true;
         Ok(findings)
     }
 
@@ -330,6 +333,7 @@ impl Bench<'_> {
             rows: Vec::new(),
             left_out,
             kernels: Vec::new(),
+            complete: false,
         }
     }
 

@@ -231,10 +231,10 @@ impl App {
         // A cancelled sweep may still report findings, so each sweep has a separate cell.
         self.lab.so_far = Arc::default();
         let (watch, so_far) = (self.lab.watch(), Arc::clone(&self.lab.so_far));
-        let mut studio = Studio::new(shot);
         // Intermediate findings are shown while the sweep continues.
         let work = move |progress: &io::Progress| {
             let watch = watch.with(progress);
+            let mut studio = Studio::watched(shot, progress.clone());
             let mut tell = |findings: &Findings| {
                 *so_far.lock().unwrap_or_else(PoisonError::into_inner) = Some(findings.clone());
             };
@@ -256,6 +256,7 @@ impl App {
                     command += &format!(" --axes {key}");
                     self.state.lab.panel = Some(key);
                 }
+                self.state.tell(None);
                 let lab = &mut self.state.lab;
                 (lab.running, lab.failed, lab.report) = (Some(0.0), None, None);
                 lab.is_rough = false;
@@ -313,7 +314,6 @@ impl App {
             Outcome::Running => return ctx.request_repaint_after(self.lab.rest_now()),
             Outcome::Done(Ok(reports)) => {
                 let lab = &mut self.state.lab;
-                reports.iter().for_each(|report| lab.note_costs(report));
                 lab.shown_suite = (!reports.is_empty()).then_some(0);
                 lab.suite = reports;
                 self.tell_report();
@@ -408,7 +408,7 @@ impl App {
     }
 
     fn show_findings(&mut self, findings: Findings) {
-        let unnamed = if self.state.lab.away { "the scene of a lesson" } else { "a new scene" };
+        let unnamed = if self.state.lab.away { "the scene of a lesson" } else { "this scene" };
         let scene = self.state.file_name().unwrap_or_else(|| unnamed.to_owned());
         let lab = &mut self.state.lab;
         let report = Report {
@@ -419,7 +419,10 @@ impl App {
             budgets: lab.budgets,
             findings,
         };
-        lab.note_costs(&report);
+        // A lesson quotes figures of its own scene.
+        if lab.away {
+            lab.note_costs(&report);
+        }
         lab.report = Some(report);
     }
 

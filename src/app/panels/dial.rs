@@ -154,7 +154,7 @@ fn rows(state: &State) -> Vec<Row> {
     let own = state.dial.own.map(|own| {
         let settings = own.modelled_as(&state.settings);
         let preset = ACCURACY_PRESETS.iter().find(|preset| preset.of(&settings) == settings);
-        let hint = format!("Your last settings in this scene: {}.", settings.in_words());
+        let hint = format!("The settings of this scene: {}.", settings.in_words());
         Row { label: preset.map_or("Own", |preset| preset.label), hint, settings, action: None }
     });
     presets.chain(own).collect()

@@ -82,7 +82,12 @@ fn cost_ui(ui: &mut Ui, lesson: &Lesson, state: &State) {
     let text = match (line, state.lab.running) {
         (Some(line), _) => line.clone(),
         (None, Some(part)) => format!("Measuring on this machine: {:.0}%", part * 100.0),
-        (None, None) => "Its cost on this machine is not known".to_owned(),
+        (None, None) => match (chosen.among)(&state.settings)
+            .and_then(|()| (chosen.sense)(&state.scene, &state.view))
+        {
+            Err(reason) => format!("Not measured here: {reason}."),
+            Ok(()) => "Its cost on this machine is not known.".to_owned(),
+        },
     };
     // The picture keeps its size when the figures arrive.
     let lines = 2.0 * ui.text_style_height(&TextStyle::Body);

@@ -185,7 +185,14 @@ fn parts(state: &State) -> Vec<String> {
     }
     parts.extend(refined(state));
     if statistics.pictures > 0 {
-        parts.push(format!("{:.1} ms", statistics.time.as_secs_f64() * 1000.0));
+        let time = format!("{:.1} ms", statistics.time.as_secs_f64() * 1000.0);
+        // Refining takes longer, and is not timed.
+        let is_refined = statistics.refined.is_some_and(|now| now != state.settings.samples);
+        parts.push(match state.settings.samples.count() {
+            _ if !is_refined => time,
+            1 => format!("1 sample took {time}"),
+            count => format!("{count} samples took {time}"),
+        });
     }
     parts
 }

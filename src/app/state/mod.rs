@@ -353,7 +353,8 @@ impl State {
     pub(crate) fn set_window(&mut self, window: &WindowState) {
         let WindowState { coarse_while_moving, panels } = window;
         self.coarse_while_moving = *coarse_while_moving;
-        self.panels = OpenPanels::of_kept(panels);
+        let is_open = self.panels.has(Panel::Laboratory);
+        self.panels = OpenPanels::of_kept(panels).with(Panel::Laboratory, is_open);
     }
 
     /// Returns whether anything in the scene moves by itself.

@@ -294,7 +294,7 @@ impl<'a> Models<'a> {
                     [path] => named.push((name, path)),
                     // Names that are not UTF-8 may look the same in their whole length.
                     _ if parts == longest => {
-                        named.extend(paths.into_iter().map(|path| (name.clone(), path)))
+                        named.extend(paths.into_iter().map(|path| (name.clone(), path)));
                     }
                     _ => rest.extend(paths),
                 }

@@ -69,11 +69,16 @@ pub(super) fn verdict_on_choice(report: &Report, axis: &Axis, choice: &Choice) -
     let before = rows().find(|row| row.point == 0)?;
     let [error, usual] = [row, before].map(|row| digits(row.error.whole.rmse));
     let name = capitalized(&axis.in_words(choice));
+    // A model is measured against the chosen one, which may not be the default.
+    let is_model = axis.kind == AxisKind::Model;
     if row.point == 0 {
-        return Some(format!("{name}, the default: error {error} of 255."));
+        return Some(match is_model {
+            true => format!("{name}: no choice of a model is an error of another."),
+            false => format!("{name}, the default: error {error} of 255."),
+        });
     }
     let point = &points[row.point];
-    let default = axis.in_words(axis.default_choice());
+    let default = axis.in_words(axis.chosen(&points[0].settings));
     let time = match point.verdict {
         Verdict::Alike => "the same time as".to_owned(),
         Verdict::Busy => "no faster or slower, as far as this busy machine tells, than".to_owned(),
@@ -83,7 +88,16 @@ pub(super) fn verdict_on_choice(report: &Report, axis: &Axis, choice: &Choice) -
     };
     let noise = noise(report, [row.point].into_iter());
     let noise = noise.map_or_else(String::new, |noise| format!(" (noise {noise})"));
-    Some(format!("{name}: {time} {default}{noise}, error {error} of 255 instead of {usual}."))
+    Some(match is_model {
+        // One of both is the reference.
+        true => {
+            let error = digits(row.error.whole.rmse.max(before.error.whole.rmse));
+            format!("{name}: {time} {default}{noise}, and differs from it by {error} of 255.")
+        }
+        false => {
+            format!("{name}: {time} {default}{noise}, error {error} of 255 instead of {usual}.")
+        }
+    })
 }
 
 /// Explains why choices take longer than more exact ones, if this happens here.
@@ -120,9 +134,13 @@ pub(super) fn verdict(report: &Report) -> Vec<String> {
     let nothing = if said.iter().any(is_faster) { "nothing else" } else { "nothing" };
     let noise = noise(report, report.findings.rows.iter().map(|row| row.point));
     let noise = noise.unwrap_or_else(|| BUSY.to_owned());
-    sentences.push(format!("{nothing} saves more than the noise ({noise})."));
+    sentences.push(match report.findings.complete {
+        true => format!("{nothing} saves more than the noise ({noise})."),
+        false => "other choices are not measured yet.".to_owned(),
+    });
     if let Some(first) = sentences.first_mut() {
-        *first = format!("{}: {first}", place(report));
+        // Each error is against the picture that is exact in this choice.
+        *first = format!("{}, each choice alone: {first}", place(report));
     }
     // The first sentence continues after a colon.
     sentences.iter_mut().skip(1).for_each(|sentence| *sentence = capitalized(sentence));

@@ -81,11 +81,19 @@ pub(super) fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>
     if let Some(why) = &lab.failed {
         ui.colored_label(theme::error(ui.visuals()), format!("Not measured: {why}."));
     }
+    age_ui(ui, state);
+}
+
+/// Says if the results are not those of the picture.
+pub(super) fn age_ui(ui: &mut Ui, state: &State) {
+    let lab = &state.lab;
     if lab.is_rough {
         ui.weak("Measuring was cancelled: these first results are rough.");
     }
     if lab.report.is_some() && lab.is_stale(state) {
-        ui.weak("The scene has changed since this was measured: measure again.");
+        let warn = ui.visuals().warn_fg_color;
+        let what = "The scene, its view or its size has changed since this was measured.";
+        ui.colored_label(warn, what);
     }
 }
 

@@ -88,7 +88,7 @@ impl Part {
     /// Returns the label and the hint.
     const fn texts(self) -> (&'static str, &'static str) {
         match self {
-            Self::Measure => ("Measure", "Measurement and comparison"),
+            Self::Measure => ("Options", "Measurement, metrics and comparison"),
             Self::Results => ("Results", "The verdict, and time against error"),
             Self::Verdict => ("Verdict", "What every choice costs and gives here"),
             Self::Plot => ("Plot", "Time against error"),
@@ -141,7 +141,10 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             }
             let area = ScrollArea::vertical().id_salt("verdict").auto_shrink(false);
             let area = area.content_margin(theme::SCROLL_MARGIN);
-            area.show(ui, |ui| plots::verdict_ui(ui, state, requests));
+            area.show(ui, |ui| {
+                controls_ui::age_ui(ui, state);
+                plots::verdict_ui(ui, state, requests);
+            });
         }),
         Part::Plot => within(ui, rest, |ui| plots::show(ui, state, requests)),
         Part::Table => table::show(ui, state, requests),

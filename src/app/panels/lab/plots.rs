@@ -103,13 +103,12 @@ fn sketch_ui(ui: &Ui, rect: Rect) {
     };
     label(frame.right_bottom() + vec2(0.0, 2.0), egui::Align2::RIGHT_TOP, "time");
     label(frame.left_top() - vec2(4.0, 0.0), egui::Align2::RIGHT_TOP, "error");
-    let marks =
-        [("Draft", 0.06, 0.1), ("Default", 0.3, 0.55), ("Exact", 0.66, 0.8), ("Ideal", 0.95, 0.97)];
-    let at = |(_, x, y): &(&str, f32, f32)| frame.min + vec2(*x, *y) * frame.size();
+    label(frame.center_top(), egui::Align2::CENTER_TOP, "a sketch: each mark will be a choice");
+    let marks = [(0.06, 0.1), (0.3, 0.55), (0.66, 0.8), (0.95, 0.97)];
+    let at = |(x, y): &(f32, f32)| frame.min + vec2(*x, *y) * frame.size();
     let _ = painter.line(marks.iter().map(at).collect(), Stroke::new(1.5, faint));
     for mark in &marks {
         painter.circle_filled(at(mark), MARK, faint);
-        label(at(mark) + vec2(8.0, -8.0), egui::Align2::LEFT_BOTTOM, mark.0);
     }
 }
 

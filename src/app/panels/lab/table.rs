@@ -33,7 +33,7 @@ const COLUMNS: [Column; 7] = [
         heading: "time",
         hint: "Time relative to the default, each without the disturbances of other programs",
         share: 0.09,
-        value: |point, _, _| format!("{:.2}", point.ratio.quartiles.median),
+        value: |point, _, _| format!("{}x", ratio(point.ratio.quartiles.median)),
     },
     Column {
         heading: "spread",
@@ -41,7 +41,7 @@ const COLUMNS: [Column; 7] = [
         share: 0.15,
         value: |point, _, _| {
             let quartiles = &point.ratio.quartiles;
-            format!("{:.2} - {:.2}", quartiles.lower, quartiles.upper)
+            format!("{} - {}", ratio(quartiles.lower), ratio(quartiles.upper))
         },
     },
     Column {
@@ -75,6 +75,15 @@ const COLUMNS: [Column; 7] = [
         value: |_, error, _| brief(error.flip),
     },
 ];
+
+/// Formats a ratio: "0.97", "12.4", "764".
+fn ratio(ratio: f64) -> String {
+    match ratio {
+        100.0.. => format!("{ratio:.0}"),
+        10.0.. => format!("{ratio:.1}"),
+        _ => format!("{ratio:.2}"),
+    }
+}
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {

@@ -34,7 +34,9 @@ fn pose_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId
         let command = placement::camera_eye(scene, view, id, to, state.phase(gesture));
         change(requests, format!("Move {}", camera.name), gesture, command);
     }
-    let canonical = placement::camera_degrees(pose);
+    // The angles come from a matrix: the least of them are its rounding.
+    let canonical = placement::camera_degrees(pose)
+        .map(|degrees| if degrees.abs() < 1e-6 { 0.0 } else { degrees });
     let given = shown_angles(ui, "angles", canonical, camera_turn);
     let rows = [
         ("Yaw", "Degrees about the world's Y: to the left"),
