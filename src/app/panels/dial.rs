@@ -2,7 +2,8 @@
 //!
 //! Each row is a preset with the time and the error of its picture; a further row has the user's
 //! own settings, if there are any. The editor measures them while nothing happens; until then, the
-//! figures are grey. A click draws with the settings of a row.
+//! figures are grey. A click draws with the settings of a row. Over a low picture, the dial is one
+//! row, which unfolds the others.
 
 use egui::{Align2, Area, Color32, ComboBox, Frame, Id, Order, Rect, RichText, Role, Sense};
 use egui::{TextStyle, Ui, WidgetInfo, pos2, vec2};

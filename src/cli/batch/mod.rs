@@ -219,7 +219,8 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
     if let Some(grid) = arguments.sheet {
         let mut jobs: Vec<&Job> = done.iter().map(|job| &studio.jobs()[*job]).collect();
         jobs.sort_by_key(|job| job.index);
-        write_sheets(grid, &arguments.sheets, &jobs)?;
+        let wanted = || signal.load(Ordering::Relaxed) == 0;
+        write_sheets(grid, &arguments.sheets, &jobs, &wanted)?;
     }
     tell(&counts, unchanged, meter.rate());
     if repaired > 0 {

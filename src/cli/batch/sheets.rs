@@ -63,15 +63,21 @@ pub(super) fn grid(text: &str) -> Result<Grid, String> {
     }
 }
 
-/// Writes the sheets of these jobs, in their order, to numbered files in a folder.
+/// Writes the sheets of these jobs, in their order, to numbered files in a folder, as long as
+/// `wanted` returns true.
 ///
 /// # Errors
 /// If a picture cannot be read, or a sheet cannot be written.
-pub(super) fn write_sheets(grid: Grid, folder: &Path, jobs: &[&Job]) -> Result<(), Failure> {
+pub(super) fn write_sheets(
+    grid: Grid,
+    folder: &Path,
+    jobs: &[&Job],
+    wanted: &dyn Fn() -> bool,
+) -> Result<(), Failure> {
     let failed = |error| Failure::Write(folder.to_owned(), error);
     std::fs::create_dir_all(folder).map_err(failed)?;
     let pages = jobs.chunks(grid.columns * grid.rows);
-    for (path, jobs) in grid.files(folder, jobs.len()).zip(pages) {
+    for (path, jobs) in grid.files(folder, jobs.len()).zip(pages).take_while(|_| wanted()) {
         let cells = jobs.iter().map(|job| cell(job)).collect::<Result<Vec<_>, _>>()?;
         check_sheet(&path)?;
         let sheet = contact_sheet(&cells, grid.columns, &[])?;

@@ -22,8 +22,12 @@ pub(super) fn enlarge(level: Level, drawn: &Picture, size: Size, into: &mut Pict
             let nearest = y / 2;
             let is_upper = y.is_multiple_of(2);
             let other = if is_upper { nearest.saturating_sub(1) } else { nearest + 1 };
-            let other = other.min(height - 1);
-            dispatch!(level, _ => means.enlarge_row(row(nearest), row(other), out));
+            let (nearest, other) = (row(nearest), row(other.min(height - 1)));
+            // Rows of one colour, as of the background, are their own means.
+            if nearest[1..] == nearest[..width - 1] && nearest == other {
+                return out.fill(nearest[0]);
+            }
+            dispatch!(level, _ => means.enlarge_row(nearest, other, out));
         },
     );
 }
@@ -82,7 +86,13 @@ mod tests {
         for [width, height] in [[1, 1], [2, 1], [3, 2], [5, 7], [8, 3]] {
             let pixel = |i: usize| [i * 37 % 256, i * 91 % 256, i * 13 % 256, 255];
             let pixels = (0..width * height).map(|i| pixel(i).map(|x| x.to_le_bytes()[0]));
-            let drawn = Picture::from_pixels(Size::new(width, height), pixels.collect()).unwrap();
+            let mut pixels: Vec<[u8; 4]> = pixels.collect();
+            // The last rows have one colour.
+            let plain = pixels.len() / width / 2 * width;
+            let first = pixels[0];
+            let from = pixels.len() - plain;
+            pixels[from..].fill(first);
+            let drawn = Picture::from_pixels(Size::new(width, height), pixels).unwrap();
             for size in [
                 Size::new(2 * width, 2 * height),
                 Size::new(2 * width - 1, 2 * height),

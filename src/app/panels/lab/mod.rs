@@ -66,8 +66,9 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 /// A part of the laboratory in a narrow panel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Part {
+    /// What is measured and compared.
     #[default]
-    Measure,
+    Options,
     /// The verdict next to the plot.
     Results,
     Verdict,
@@ -79,16 +80,16 @@ impl Part {
     /// Returns the parts of a panel of this width.
     const fn all(width: f32) -> &'static [Self] {
         if width < HALF_WIDE {
-            &[Self::Measure, Self::Verdict, Self::Plot, Self::Table]
+            &[Self::Options, Self::Verdict, Self::Plot, Self::Table]
         } else {
-            &[Self::Measure, Self::Results, Self::Table]
+            &[Self::Options, Self::Results, Self::Table]
         }
     }
 
     /// Returns the label and the hint.
     const fn texts(self) -> (&'static str, &'static str) {
         match self {
-            Self::Measure => ("Options", "Measurement, metrics and comparison"),
+            Self::Options => ("Options", "Measurement, metrics and comparison"),
             Self::Results => ("Results", "The verdict, and time against error"),
             Self::Verdict => ("Verdict", "What every choice costs and gives here"),
             Self::Plot => ("Plot", "Time against error"),
@@ -134,7 +135,7 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let width = if part == Part::Results { (BESIDE * rest.width()).round() } else { rest.width() };
     let verdict = rest.with_max_x(rest.left() + width);
     match part {
-        Part::Measure => controls_ui::show(ui, state, requests),
+        Part::Options => controls_ui::show(ui, state, requests),
         Part::Results | Part::Verdict => within(ui, verdict, |ui| {
             if is_running {
                 controls_ui::measure_ui(ui, state, requests);
@@ -142,7 +143,9 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             let area = ScrollArea::vertical().id_salt("verdict").auto_shrink(false);
             let area = area.content_margin(theme::SCROLL_MARGIN);
             area.show(ui, |ui| {
-                controls_ui::age_ui(ui, state);
+                if !is_running {
+                    controls_ui::age_ui(ui, state);
+                }
                 plots::verdict_ui(ui, state, requests);
             });
         }),
