@@ -116,14 +116,24 @@ def test_ctrl_c_during_the_first_picture_raises_keyboard_interrupt(tmp_path):
     model.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     # Nothing loads NumPy before the picture.
     head = f"""
-        import os, signal, threading, time
+        import os, signal, sys, threading, time
         import marraztu as mz
         scene = mz.Scene([mz.Mesh.load({str(model)!r})])
         """
     output = run(
         """
-        # NumPy is loaded in less time, and the picture drawn in more.
-        threading.Timer(0.6, os.kill, (os.getpid(), signal.SIGINT)).start()
+        def interrupt():
+            # Python itself may lose an interrupt while it imports.
+            loads = True
+            while loads:
+                time.sleep(0.01)
+                spec = getattr(sys.modules.get("numpy"), "__spec__", None)
+                loads = getattr(spec, "_initializing", True)
+            # The picture takes longer.
+            time.sleep(0.3)
+            os.kill(os.getpid(), signal.SIGINT)
+
+        threading.Thread(target=interrupt).start()
         try:
             scene.render(8000, 8000, samples=256, threads=1)
             time.sleep(30)
