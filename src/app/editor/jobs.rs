@@ -52,7 +52,7 @@ pub(super) enum Job {
     Compare { scene: String, size: Size, axis: Option<String> },
 }
 
-/// What the other instance tells while it works: the finished fraction, and the findings up to now.
+/// The progress of a job: the finished fraction, and the findings up to now.
 #[derive(Debug, Serialize, Deserialize)]
 struct SoFar(f64, Option<Box<Findings>>);
 
@@ -106,10 +106,10 @@ impl Job {
     }
 }
 
-/// Does the job of a message of [`CanvasShell::job`](crate::app::CanvasShell::job). What it tells
-/// is for [`CanvasShell::told`](crate::app::CanvasShell::told), and what it returns for
-/// [`CanvasShell::done`](crate::app::CanvasShell::done): nothing if the message is not understood.
-/// By then, the files of the job are written.
+/// Does the job of a message of [`CanvasShell::job`](crate::app::CanvasShell::job). Its progress is
+/// for [`CanvasShell::told`](crate::app::CanvasShell::told). The result is for
+/// [`CanvasShell::done`](crate::app::CanvasShell::done), and is empty if the message is not
+/// understood. By then, the files of the job are written.
 pub fn do_job(job: &[u8], tell: Arc<dyn Fn(String) + Send + Sync>) -> Vec<u8> {
     let opened = |scene: &str| scene_of_message(scene, None, &Known::default()).ok();
     let clock = &mut WallClock::default();
@@ -190,7 +190,7 @@ pub(super) enum Answers {
     Compared(Sender<Option<Box<Pair>>>, Box<Compared>),
 }
 
-/// Reads what the other instance tells: the fraction that is done, and the findings up to now.
+/// Reads the progress of a job: the finished fraction, and the findings up to now.
 pub(super) fn so_far(told: &str) -> Option<(f64, Option<Findings>)> {
     let SoFar(fraction, findings) = serde_json::from_str(told).ok()?;
     Some((fraction, findings.map(|findings| *findings)))

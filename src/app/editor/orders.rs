@@ -20,7 +20,7 @@ pub(super) struct Order {
     pub(super) content: Content,
 }
 
-/// What a file shows.
+/// The content of a file.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) enum Content {
     /// A picture, or a turntable.

@@ -33,7 +33,7 @@ pub struct Panel {
     pub axis: Option<&'static Axis>,
     /// The title.
     pub title: String,
-    /// What it shows, in a line.
+    /// A line on its contents.
     pub note: &'static str,
     /// The choices from coarse to exact, or those of the overview from fast to slow.
     pub marks: Vec<PanelMark>,

@@ -84,7 +84,7 @@ pub(super) fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>
     age_ui(ui, state);
 }
 
-/// Says if the results are not those of the picture.
+/// Warns if the results belong to another picture.
 pub(super) fn age_ui(ui: &mut Ui, state: &State) {
     let lab = &state.lab;
     if lab.is_rough {

@@ -66,7 +66,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 /// A part of the laboratory in a narrow panel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Part {
-    /// What is measured and compared.
+    /// Measurement, metrics and comparison.
     #[default]
     Options,
     /// The verdict next to the plot.
