@@ -3,10 +3,11 @@
 
     tests/breakages/run.py [SHARD/SHARDS]     tries its part of table.toml, all without an argument
     tests/breakages/run.py case NAME...       tries those that these cases claim: 57, plan
+    tests/breakages/run.py untried            tries those that the page calls "not tried"
     tests/breakages/run.py page               makes docs/breakages.md of what was tried
 
 Each breakage is made in a copy of the sources under target/breakages, never in the sources. The copy
-has no window and no command line, one level of instructions, and few optimisations, so that a
+is compiled without the window and the command line, for one level of instructions, so that a
 breakage takes a minute. What came of it is kept there, one line a breakage, so that shards may run one
 after the other or on several machines. A breakage that no longer fits the sources, or that is not
 compiled, is an error, and so is a case that fails in the sound copy.
@@ -23,30 +24,11 @@ import tomllib
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WORK = ROOT / "target" / "breakages"
 TABLE = tomllib.loads((ROOT / "tests/breakages/table.toml").read_text())["breakage"]
+UNTRIED = "not tried"
 
 
 def output(*command, **options):
     return subprocess.run(command, capture_output=True, text=True, **options)
-
-
-# What the window and the command line are made of, and what only their tests and benchmarks use.
-UPPER_FLOORS = ("src/app/", "src/cli/", "src/main.rs", "benches/", "examples/", "fuzz/", "docs/")
-THEIR_CRATES = (
-    "criterion", "eframe", "egui", "egui-winit", "egui_kittest", "egui_material_icons", "egui_plot", "fontdb",
-    "indicatif", "nucleo-matcher", "rfd", "softbuffer", "ttf-parser", "winit",
-)
-
-
-def lower_floors(name, text):
-    """A source file as the copy has it."""
-    if name == "src/lib.rs":
-        return text.replace("pub mod app;\n", "")
-    if name == "Cargo.toml":
-        text = re.sub(rf"^({'|'.join(THEIR_CRATES)})(?:\.workspace)? = .*\n", "", text, flags=re.MULTILINE)
-        text = re.sub(r"\[\[(?:bench|example)\]\]\n(?:.+\n)+\n", "", text)
-        text = text.replace('default-run = "marraztu"\n', "")
-        return text.replace("[profile.dev]\nopt-level = 2", "[profile.dev]\nopt-level = 1")
-    return text
 
 
 def copy(to):
@@ -54,20 +36,16 @@ def copy(to):
     listed = output("git", "ls-files", "-co", "--exclude-standard", cwd=ROOT).stdout.split("\n")
     for name in filter(None, listed):
         source, target = ROOT / name, to / name
-        if name.startswith(UPPER_FLOORS) or not source.is_file():
+        if not source.is_file():
             continue
         data = source.read_bytes()
-        if name.endswith((".rs", "Cargo.toml")):
-            data = lower_floors(name, data.decode()).encode()
+        if name == ".cargo/config.toml":
+            data = data.replace(b"rustflags = [", b'rustflags = ["--cfg=one_level", ')
         put(target, data)
-    put(to / ".cargo/config.toml", b'[build]\nrustflags = ["--cfg=one_level"]\n')
 
 
 def put(target, data):
     target.parent.mkdir(parents=True, exist_ok=True)
-    # The list of versions has been shortened by cargo there.
-    if target.name == "Cargo.lock" and target.is_file():
-        return
     if not target.is_file() or target.read_bytes() != data:
         target.write_bytes(data)
 
@@ -75,8 +53,8 @@ def put(target, data):
 def run(where, target, *names):
     """Compiles and runs a test target."""
     run = output(
-        "cargo", "test", "--offline", "--target-dir", WORK / "build", "--test", target, "--", *names,
-        cwd=where,
+        "cargo", "test", "--locked", "--no-default-features", "--target-dir", WORK / "build",
+        "--test", target, "--", *names, cwd=where,
     )
     if f"Running tests/{target}" not in run.stderr:
         sys.exit(f"run.py: not compiled:\n{run.stderr}")
@@ -146,20 +124,25 @@ def told():
     return {(row[0], row[1]): row[3:] for row in rows if len(row) == 6}
 
 
-def page():
-    rows, missing, untried, before = [], 0, 0, told()
+def results():
+    """What came of each breakage: here, or where the page as it is was made."""
+    before = told()
     for breakage in TABLE:
         kept = WORK / f"{key(breakage)}.tsv"
         if kept.is_file():
             day, commit, came, by = kept.read_text().strip("\n").split("\t")
             more = by.count(",")
             named = by.split(", ")[0].replace("_", " ") + (f" and {more} more" if more else "")
-            result = [came, named, f"{day} {commit}"]
+            yield [came, named, f"{day} {commit}"]
         else:
-            # What was tried elsewhere stays.
-            result = before.get((str(breakage["case"]), breakage["what"]), ["not tried", "", ""])
+            yield before.get((str(breakage["case"]), breakage["what"]), [UNTRIED, "", ""])
+
+
+def page():
+    rows, missing, untried = [], 0, 0
+    for breakage, result in zip(TABLE, results()):
         missing += result[0] != "caught"
-        untried += result[0] == "not tried"
+        untried += result[0] == UNTRIED
         file = breakage["file"].removeprefix("crates/")
         rows.append(f"| {breakage['case']} | {breakage['what']} | `{file}` | {' | '.join(result)} |")
     text = f"""# Mutation tests
@@ -185,6 +168,9 @@ def main():
         return page()
     if argument == "case":
         mine = [i for i, breakage in enumerate(TABLE) if str(breakage["case"]) in numbers]
+        return attempt(mine, WORK / "shard-1")
+    if argument == "untried":
+        mine = [i for i, result in enumerate(results()) if result[0] == UNTRIED]
         return attempt(mine, WORK / "shard-1")
     shard, shards = map(int, argument.split("/"))
     attempt(range(shard - 1, len(TABLE), shards), WORK / f"shard-{shard}")
