@@ -7,7 +7,7 @@
     tests/breakages/run.py page               makes docs/breakages.md of what was tried
 
 Each breakage is made in a copy of the sources under target/breakages, never in the sources. The copy
-is compiled without the window and the command line, for one level of instructions, so that a
+is compiled without the window, for one level of instructions, so that a
 breakage takes a minute. What came of it is kept there, one line a breakage, so that shards may run one
 after the other or on several machines. A breakage that no longer fits the sources, or that is not
 compiled, is an error, and so is a case that fails in the sound copy.
@@ -53,7 +53,7 @@ def put(target, data):
 def run(where, target, *names):
     """Compiles and runs a test target."""
     run = output(
-        "cargo", "test", "--locked", "--no-default-features", "--target-dir", WORK / "build",
+        "cargo", "test", "--locked", "--no-default-features", "--features", "cli", "--target-dir", WORK / "build",
         "--test", target, "--", *names, cwd=where,
     )
     if f"Running tests/{target}" not in run.stderr:
