@@ -109,16 +109,17 @@ fn ways() -> impl Iterator<Item = Settings> {
 
 #[test]
 fn case_90_a_bump_on_the_mirrored_half_is_still_a_bump() {
-    // Grey rises by 16 from column to column: a slope of 16 / 255 per texel.
+    // Grey rises by 8 from column to column and from row to row: slopes of 8 / 255 per texel.
     let gain = 8.0;
-    let slope = gain * 16.0 / 255.0;
-    let ramp = greys(16, 16, |column, _| 16 * column as u8);
+    let slope = gain * 8.0 / 255.0;
+    let ramp = greys(16, 16, |column, row| 8 * (column + row) as u8);
     let model = sheet([across(0.0, 1.0), across(1.0, 0.0)], bump(ramp, gain), dull());
     let sun = DVec3::new(-0.48, -0.36, -0.8);
     let (scene, view) = lit(model, Some(sun));
-    // Heights rise to the right on the left half, and to the left on the mirrored half.
-    let light = |slope: f64| {
-        let normal = DVec3::new(-slope, 0.0, 1.0) / (1.0 + slope * slope).sqrt();
+    // Heights rise downwards everywhere, to the right on the left half, and to the left on the
+    // mirrored half.
+    let light = |across: f64| {
+        let normal = DVec3::new(-across, slope, 1.0).normalize_or_zero();
         255.0 * DIFFUSE * normal.dot(-sun)
     };
     let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
@@ -277,11 +278,16 @@ fn case_95_emission_is_as_bright_in_the_dark() {
             ours = ours.max((f64::from(got) - f64::from(want)).abs());
         }
     }
-    // Emission is added to reflected light: 255 x (0.2 + 0.8 x 0.5).
-    let model = sheet(uvs, SurfaceMaps::new(), Material { emission: [0.2; 3], ..dull() });
-    let (scene, view) = lit(model, Some(DVec3::new(0.0, -0.75_f64.sqrt(), -0.5)));
-    let [got, ..] = draw(&scene, &view, &Settings::default(), SIDE).pixel(16, 16);
-    ours = ours.max((f64::from(got) - 153.0).abs());
+    // Emission, also from a map, is added to reflected light: 255 x (0.2 + 0.8 x 0.5).
+    let white = SurfaceMap { texture: greys(2, 2, |_, _| 255), gain: 1.0 };
+    for maps in [SurfaceMaps::new(), SurfaceMaps::from([(MapKind::Emission, white)])] {
+        let model = sheet(uvs, maps, Material { emission: [0.2; 3], ..dull() });
+        let (scene, view) = lit(model, Some(DVec3::new(0.0, -0.75_f64.sqrt(), -0.5)));
+        for settings in ways() {
+            let [got, ..] = draw(&scene, &view, &settings, SIDE).pixel(16, 16);
+            ours = ours.max((f64::from(got) - 153.0).abs());
+        }
+    }
     Figure {
         case: 95,
         what: "Ke without any light, and with some",
