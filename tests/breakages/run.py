@@ -7,10 +7,10 @@
     tests/breakages/run.py page               makes docs/breakages.md of what was tried
 
 Each breakage is made in a copy of the sources under target/breakages, never in the sources. The copy
-is compiled without the window, for one level of instructions, so that a
-breakage takes a minute. What came of it is kept there, one line a breakage, so that shards may run one
-after the other or on several machines. A breakage that no longer fits the sources, or that is not
-compiled, is an error, and so is a case that fails in the sound copy.
+is compiled without the window and for one level of instructions, so a breakage takes a minute. What
+came of it is kept there, one line a breakage, so that shards may run one after the other or on several
+machines. A breakage that no longer fits the sources, or that is not compiled, is an error, and so is a
+case that fails in the sound copy.
 
 A case is the number of a hard case, or the name of a proof.
 """
