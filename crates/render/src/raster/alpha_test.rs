@@ -15,6 +15,7 @@ use crate::frame::FramePlan;
 use crate::frame::draw::Pipeline;
 use crate::screen::tiles::BLOCK;
 use crate::screen::weights::Weights;
+use crate::simd::bits;
 use crate::texture::exact_placement::ExactPlacement;
 use crate::texture::lanes::Sampler;
 use crate::texture::opacity::{Channel, Holes, Opacity, between};
@@ -123,10 +124,8 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
     ) -> u64 {
         // f32 decides most pixels; the rest are sampled one by one in f64.
         let [solid, open] = self.decide(simd, first, edges).unwrap_or([0, u64::MAX]);
-        let (mut solid, mut open) = (solid & !open & pixels, open & pixels);
-        while open != 0 {
-            let lane = open.trailing_zeros() as usize;
-            open &= open - 1;
+        let (mut solid, open) = (solid & !open & pixels, open & pixels);
+        for lane in bits(open) {
             solid |= u64::from(self.is_opaque(pixel(lane))) << lane;
         }
         solid

@@ -5,7 +5,7 @@
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use crate::simd::dispatch;
+use crate::simd::{bits, dispatch};
 use fearless_simd::{Bytes as _, Level, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16};
 use glam::{DMat3, DVec3};
 
@@ -104,16 +104,11 @@ impl EdgeSetup<'_> {
             lines::draw_short::<S, N>(seen[0], seen[1], &short, &mut bins.hits);
         }
         // Long edges go to the tiles they cross, odd ones through clipping first.
-        let mut long = shown & !some.to_bitmask();
-        while long != 0 {
-            let lane = long.trailing_zeros() as usize;
-            long &= long - 1;
+        for lane in bits(shown & !some.to_bitmask()) {
             let ends = edges[lane].vertices.map(|vertex| self.vertices[vertex as usize]);
             self.add(ends, numbers[lane].cast_unsigned(), self.nearer(), bins);
         }
-        while odd != 0 {
-            let lane = odd.trailing_zeros() as usize;
-            odd &= odd - 1;
+        for lane in bits(odd) {
             self.add_odd(&edges[lane], numbers[lane].cast_unsigned(), bins);
         }
     }

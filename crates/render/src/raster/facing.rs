@@ -7,7 +7,7 @@
 use crate::accel::Accelerated as _;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use crate::simd::dispatch;
+use crate::simd::{bits, dispatch};
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x16};
 
 use super::hits::PACK;
@@ -98,7 +98,6 @@ impl<'a> Facing<'a> {
         let outlines = area.simd_lt(0).select(negative, positive);
         let outlines = area.simd_eq(0).select(i32x16::splat(simd, Outline::Not as i32), outlines);
         let outlines: [i32; PACK] = *outlines;
-        let mut odd = (beyond | wide).to_bitmask();
         let choosy = self.draw.polygons.is_some() || self.draw.uniform.is_none();
         for (lane, triangle) in triangles.iter().enumerate() {
             let shown = !choosy || self.draw.shows(triangle.number);
@@ -106,9 +105,8 @@ impl<'a> Facing<'a> {
             let outline = if shown { outline } else { Outline::Not as u8 };
             all[triangle.number as usize].store(outline, Ordering::Relaxed);
         }
-        while odd != 0 {
-            self.one(triangles[odd.trailing_zeros() as usize].number, all);
-            odd &= odd - 1;
+        for lane in bits((beyond | wide).to_bitmask()) {
+            self.one(triangles[lane].number, all);
         }
     }
 

@@ -6,7 +6,7 @@
 //! are set up one by one.
 
 use crate::accel::Accelerated as _;
-use crate::simd::dispatch;
+use crate::simd::{bits, dispatch};
 use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16};
 
 use super::beyond;
@@ -221,10 +221,7 @@ impl<'a> Setup<'a> {
             }
         }
         // Triangles that need clipping or 64 bits are set up one by one.
-        let mut odd = odd.to_bitmask();
-        while odd != 0 {
-            let lane = odd.trailing_zeros() as usize;
-            odd &= odd - 1;
+        for lane in bits(odd.to_bitmask()) {
             self.add_odd::<R, N>(&triangles[lane], pipelines, (bins, brush));
         }
     }
@@ -302,10 +299,8 @@ impl<'a> Setup<'a> {
             }
         }
         // The remaining triangles are large or alpha-tested.
-        let mut large = (plain & side.simd_gt(above)).to_bitmask() | cutout;
-        while large != 0 {
-            let lane = large.trailing_zeros() as usize;
-            large &= large - 1;
+        let large = (plain & side.simd_gt(above)).to_bitmask() | cutout;
+        for lane in bits(large) {
             let corners = each(triangles[lane].vertices, |i| self.vertices[i as usize]);
             let number = self.base + triangles[lane].number;
             let cutout = cutout >> lane & 1 != 0;
@@ -374,10 +369,7 @@ impl<'a> Setup<'a> {
         pipelines: &[Pipeline],
     ) -> [u64; 3] {
         let mut kinds = [0; 3];
-        let mut left = some;
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize;
-            left &= left - 1;
+        for lane in bits(some) {
             match self.kind(triangles[lane].number, pipelines) {
                 Kind::Not => {}
                 Kind::Plain => kinds[0] |= 1 << lane,

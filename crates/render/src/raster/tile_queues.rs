@@ -10,6 +10,7 @@ use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, i32x16, mas
 use super::hits::PACK;
 use super::queue::{Pack, ROWS, SMALL};
 use crate::screen::coverage::PixelBox;
+use crate::simd::bits;
 
 /// The first size of bounding boxes in [`SMALL`] that waits for tiles. With the next smaller size,
 /// a model of a million triangles takes 1.1 times as long, and no model gets faster.
@@ -162,15 +163,13 @@ impl TileQueues {
         &mut self,
         size: usize,
         (pack, boxes): (&Pack<S>, &TileBoxes<S>),
-        mut some: u64,
+        some: u64,
     ) {
         let pack = pack.map(<[i32; PACK]>::from);
         let [left, top, right, bottom] =
             [boxes.left, boxes.top, boxes.right, boxes.bottom].map(<[i32; PACK]>::from);
         // Widely scattered triangles: one at a time, into every tile of its box.
-        while some != 0 {
-            let lane = some.trailing_zeros() as usize;
-            some &= some - 1;
+        for lane in bits(some) {
             for row in top[lane]..=bottom[lane] {
                 for column in left[lane]..=right[lane] {
                     let page = self.page((row * self.tiles[0] + column) as usize, size);

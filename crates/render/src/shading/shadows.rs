@@ -21,10 +21,9 @@ use crate::lights::{Batch, LightTerm, Rows};
 use crate::shadow::known::{BatchPixels, KnownPixels};
 use crate::shadow::map_face::TAPS;
 use crate::shadow::packet::POINTS;
-use crate::shadow::patches::bits;
 use crate::shadow::rays::{Origins, RayScratch};
 use crate::shadow::tracer::Tracer;
-use crate::simd::{BATCH, Number};
+use crate::simd::{BATCH, Number, bits};
 use marraztu_core::scene::dvec3;
 
 /// The shadows on a batch.

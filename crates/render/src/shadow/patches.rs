@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::packet::POINTS;
 use super::shaft::Around;
+use crate::simd::bits;
 use marraztu_core::base::math::each;
 
 /// Points that lie close together.
@@ -102,17 +103,6 @@ fn divided(at: &[[f64; POINTS]; 3], points: u64, around: &Around) -> Option<[u64
     let near = bits(points).filter(|i| places[*i] < gap.trailing_zeros());
     let near = near.fold(0, |near, i| near | 1 << i);
     Some([near, points & !near])
-}
-
-/// Iterates over the indices of the set bits of a mask.
-pub(crate) fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        (mask != 0).then(|| {
-            let i = mask.trailing_zeros() as usize;
-            mask &= mask - 1;
-            i
-        })
-    })
 }
 
 /// Returns the index of the n-th set bit of a mask, which must have enough.

@@ -1,14 +1,13 @@
 //! Traces packets of shadow rays through all casters of a frame.
 
 use crate::accel::Accelerated as _;
-use crate::simd::dispatch;
 use fearless_simd::{Level, Simd};
 use glam::{DMat4, DVec3};
 
 use super::known::{KnownLight, KnownShadows};
 use super::map_face::LightMap;
 use super::maps::ShadowMaps;
-use super::patches::{Patch, bits};
+use super::patches::Patch;
 use super::prepared_block::PreparedBlock;
 use super::rays::{Origins, RayCount, RayScratch};
 use super::shaft::Around;
@@ -16,7 +15,7 @@ use super::triangle::{Corners, Prepared, is_between, reaches_behind};
 use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
 use crate::frame::FramePlan;
 use crate::frame::shadows::{Caster, CasterPart, Holes, ShadowSource, Shadows};
-use crate::simd::Vec3;
+use crate::simd::{Vec3, bits, dispatch};
 use crate::texture::sample::{brightness, sample};
 use crate::texture::uv::uv;
 use marraztu_core::accuracy::{Filter, ShadowMethod};

@@ -14,7 +14,7 @@ use crate::raster::entries::word;
 use crate::raster::large;
 use crate::screen::sample_positions::FOUR;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS};
-use crate::simd::UP_TO_SIXTEEN;
+use crate::simd::{UP_TO_SIXTEEN, bits};
 
 /// The largest bounding box, in pixels, of a triangle drawn by a list of fragments.
 pub(super) const MOST: i32 = 64;
@@ -118,15 +118,14 @@ impl Fragments {
                 let [x, y] = pixel_of::<N>(self.place(at + lane));
                 [left + x, top + y]
             };
-            let mut opaque = match test {
+            let opaque = match test {
                 Some(test) => test.opaque(simd, [0; 2], edges, pixels, pixel),
                 None => pixels,
             };
             let depth = f32x16::from_slice(simd, &self.depths[at..at + 16]);
             let keys = <[u32; 16]>::from(format.keys(depth));
-            while opaque != 0 {
-                let lane = opaque.trailing_zeros() as usize % 16;
-                opaque &= opaque - 1;
+            for lane in bits(opaque) {
+                let lane = lane % 16;
                 let entry = &mut buffer[self.place(at + lane)];
                 *entry = word(keys[lane], number).max(*entry);
             }

@@ -11,6 +11,7 @@ use crate::raster::depth_format::Any;
 use crate::raster::geometry::ScreenGeometry;
 use crate::raster::large::{Large, Solid, Touched};
 use crate::screen::tiles::BLOCK_PIXELS;
+use crate::simd::bits;
 use crate::texture::opacity::Holes;
 
 /// The data reused from one alpha-tested triangle of a tile to the next.
@@ -46,11 +47,9 @@ impl Visibility {
         let Some((large, area)) = self.set_up::<N>(triangle) else { return };
         let Touched { mut some, whole } = large.blocks::<S, N>(simd, area, &self.sample_positions);
         // Blocks with nearer depths everywhere hide the triangle (hierarchical Z).
-        let (mut blocks, high) = (some, self.key(large.high));
-        while blocks != 0 {
-            let block = blocks.trailing_zeros();
-            blocks &= blocks - 1;
-            if high < self.farthest[block as usize] {
+        let high = self.key(large.high);
+        for block in bits(some) {
+            if high < self.farthest[block] {
                 some &= !(1 << block);
             }
         }
@@ -73,9 +72,7 @@ impl Visibility {
         }
         let tests: [Option<AlphaTest<'_, '_>>; N] = std::array::from_fn(test);
         some &= !self.draw_even_blocks::<N>(simd.level(), &large, some & whole, &tests);
-        while some != 0 {
-            let block = some.trailing_zeros() as usize;
-            some &= some - 1;
+        for block in bits(some) {
             self.write::<N>(simd.level(), block);
             let (first, whole) = (self.corner(block), whole >> block & 1 != 0);
             let format = Any(self.depth_format);
@@ -110,15 +107,16 @@ impl Visibility {
         &mut self,
         level: Level,
         large: &Large,
-        mut blocks: u64,
+        blocks: u64,
         tests: &[Option<AlphaTest<'_, '_>>; N],
     ) -> u64 {
         let (mut done, mut place) = (0, None);
         // Classifying costs a tenth of sampling. If it hardly ever succeeds, it stops.
         let mut credit = 4;
-        while blocks != 0 && credit > 0 {
-            let block = blocks.trailing_zeros() as usize;
-            blocks &= blocks - 1;
+        for block in bits(blocks) {
+            if credit == 0 {
+                break;
+            }
             let holes = holes_in_block(tests, self.corner(block));
             if holes == Holes::Somewhere {
                 credit -= 1;
@@ -151,12 +149,9 @@ impl Visibility {
         let format = Any(self.depth_format);
         for sample in 0..N {
             let shift = self.sample_positions.shift::<N>(sample);
-            let mut blocks = some;
             // First pass: list the pixels in front, block by block.
             fragments.forget();
-            while blocks != 0 {
-                let block = blocks.trailing_zeros() as usize;
-                blocks &= blocks - 1;
+            for block in bits(some) {
                 self.write::<N>(simd.level(), block);
                 let first = (block * N + sample) * BLOCK_PIXELS;
                 let whole = whole >> block & 1 != 0;

@@ -1,6 +1,6 @@
 //! Draws the medium and large triangles of a tile that have no holes.
 
-use crate::simd::dispatch;
+use crate::simd::{bits, dispatch};
 use fearless_simd::{Level, Simd};
 
 use super::{Shown, Visibility};
@@ -33,13 +33,10 @@ impl Visibility {
         }
         let Some((large, area)) = self.set_up::<N>(triangle) else { return };
         let touched = large.blocks::<S, N>(simd, area, &self.sample_positions);
-        let (mut some, high) = (touched.some, self.key(large.high));
-        let mut place = None;
+        let (high, mut place) = (self.key(large.high), None);
         // Block by block: skip hidden blocks (hierarchical Z), note fully covered ones, draw the
         // rest.
-        while some != 0 {
-            let block = some.trailing_zeros() as usize;
-            some &= some - 1;
+        for block in bits(touched.some) {
             if high < self.farthest[block] {
                 continue;
             }
@@ -68,12 +65,11 @@ impl Visibility {
         let Some(area) = self.reached::<N>(corners) else { return };
         let first = [self.bounds.left, self.bounds.top];
         let Some(medium) = Medium::new(simd, triangle, first) else { return };
-        let Touched { mut some, whole } = medium.blocks::<N>(simd, area, &self.sample_positions);
+        let Touched { some, whole } = medium.blocks::<N>(simd, area, &self.sample_positions);
         let high = self.key(medium.high);
         let (mut large, mut place) = (None, None);
-        with_format!(self.depth_format, D => while some != 0 {
-            let block = some.trailing_zeros() as usize % BLOCK_PIXELS;
-            some &= some - 1;
+        with_format!(self.depth_format, D => for block in bits(some) {
+            let block = block % BLOCK_PIXELS;
             if high < self.farthest[block] {
                 continue;
             }

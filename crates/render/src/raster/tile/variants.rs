@@ -98,9 +98,7 @@ impl Visibility {
         let touched = triangle.blocks::<S, N>(simd, area, &self.sample_positions);
         let (mut some, high) = (touched.some, self.key(triangle.high));
         let mut place = None;
-        while some != 0 {
-            let block = some.trailing_zeros() as usize;
-            some &= some - 1;
+        for block in bits(some) {
             if high < self.farthest[block] {
                 continue;
             }
