@@ -10,7 +10,7 @@ use fearless_simd::{
 };
 
 use super::geometry::ScreenGeometry;
-use super::large;
+use super::large::InFront;
 use crate::frame::FramePlan;
 use crate::frame::draw::Pipeline;
 use crate::screen::tiles::BLOCK;
@@ -176,13 +176,29 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
 }
 
 /// The alpha test of a triangle in one block.
+#[derive(Clone, Copy)]
 pub(crate) struct BlockHoles<'a, 'b, 'c> {
     pub(crate) test: &'c AlphaTest<'a, 'b>,
     /// The first pixel of the block.
     pub(crate) first: [i32; 2],
 }
 
-impl<S: Simd> large::InFront<S> for BlockHoles<'_, '_, '_> {
+impl BlockHoles<'_, '_, '_> {
+    /// Tests the pixels of a mask in two rows of the block one by one, and returns the opaque ones.
+    pub(crate) fn opaque_pixels(&self, pair: usize, pixels: u64) -> u64 {
+        let opaque = bits(pixels).filter(|lane| self.test.is_opaque(self.pixel(pair, *lane)));
+        opaque.fold(0, |opaque, lane| opaque | 1 << lane)
+    }
+
+    /// Returns the pixel of a lane in two rows of the block.
+    fn pixel(&self, pair: usize, lane: usize) -> [i32; 2] {
+        let [x, y] = self.first;
+        let at = i32::try_from(16 * pair + lane).unwrap_or(0);
+        [x + at % BLOCK, y + at / BLOCK]
+    }
+}
+
+impl<S: Simd> InFront<S> for BlockHoles<'_, '_, '_> {
     #[inline(always)]
     fn matters(&self) -> bool {
         true
@@ -197,11 +213,7 @@ impl<S: Simd> large::InFront<S> for BlockHoles<'_, '_, '_> {
         edges: [[f64x8<S>; 2]; 2],
         _: f32x16<S>,
     ) -> u64 {
-        let [x, y] = self.first;
-        let y = y + 2 * i32::try_from(pair).unwrap_or(0);
-        self.test.opaque(simd, [x, y], edges, pixels, |lane| {
-            let at = i32::try_from(lane).unwrap_or(0);
-            [x + at % BLOCK, y + at / BLOCK]
-        })
+        let pixel = |lane: usize| self.pixel(pair, lane);
+        self.test.opaque(simd, pixel(0), edges, pixels, pixel)
     }
 }

@@ -7,6 +7,7 @@
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, f32x16, mask32x16};
 
+use super::alpha_test::BlockHoles;
 use super::depth_format::Format;
 use super::large::Touched;
 use super::visibility_buffer::{in_front, put_rows};
@@ -41,25 +42,6 @@ pub(crate) struct FloatTriangle {
     pub(crate) number: u32,
     /// The first pixel of the tile.
     first: [f32; 2],
-}
-
-/// Decides which pixels in two rows of a block are opaque, as a bit mask.
-pub(crate) trait Opaque {
-    /// Whether all pixels are opaque.
-    const ALL: bool;
-    /// Returns the opaque pixels of a mask, in this pair of rows of the block.
-    fn of(&self, pair: usize, pixels: u64) -> u64;
-}
-
-/// A surface without holes.
-pub(crate) struct Everywhere;
-
-impl Opaque for Everywhere {
-    const ALL: bool = true;
-
-    fn of(&self, _: usize, pixels: u64) -> u64 {
-        pixels
-    }
 }
 
 impl FloatTriangle {
@@ -179,13 +161,13 @@ impl FloatTriangle {
     /// Draws the triangle into a block of the visibility buffer, for the sample with this offset.
     /// `whole` tells that it covers the block fully.
     #[inline(always)]
-    pub(crate) fn draw<S: Simd, O: Opaque>(
+    pub(crate) fn draw<S: Simd>(
         &self,
         format: impl Format,
         simd: S,
         (block, shift): (usize, [i32; 2]),
         whole: bool,
-        opaque: &O,
+        holes: Option<&BlockHoles<'_, '_, '_>>,
         visibility: &mut [u64; BLOCK_PIXELS],
     ) {
         let [left, top] = self.place(block, in_pixels(shift));
@@ -213,12 +195,12 @@ impl FloatTriangle {
             let depth = depth.simd_gt(low).select(depth, low);
             let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
             // The alpha test only runs for pixels that pass the depth test.
-            if !O::ALL {
+            if let Some(holes) = holes {
                 let front = in_front(format, simd, covered, depth, self.number, visibility);
                 if front == 0 {
                     continue;
                 }
-                covered = mask32x16::from_bitmask(simd, opaque.of(pair, front));
+                covered = mask32x16::from_bitmask(simd, holes.opaque_pixels(pair, front));
             }
             put_rows(format, simd, covered, depth, self.number, visibility);
         }

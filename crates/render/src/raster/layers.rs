@@ -19,10 +19,10 @@ use fearless_simd::{Level, Simd};
 use super::beyond;
 use super::bins::LargeTriangle;
 use super::depth_format::{Any, Format as _, depths_between};
-use super::edges_in_floats::{Everywhere, FloatTriangle, in_pixels};
+use super::edges_in_floats::{FloatTriangle, in_pixels};
 use super::entries::word;
 use super::geometry::ScreenGeometry;
-use super::large::{Large, Solid, Touched};
+use super::large::{BlockTriangle, Large, Touched};
 use super::scan_lines::ScanLines;
 use crate::ancestors::points;
 use crate::frame::FramePlan;
@@ -38,8 +38,9 @@ const MOST: usize = 1024;
 const KEPT: usize = MOST / 2;
 
 /// The layers of one tile, and of the last gathered block.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Layers {
+    /// The samples of the pass. A single one counts as four at the centre.
     sample_positions: SamplePositions,
     bounds: PixelBox,
     /// The blocks that any triangle touches, a bit for each.
@@ -58,8 +59,7 @@ pub(crate) struct Layers {
 /// A triangle that is not small.
 #[derive(Debug)]
 enum Layer {
-    Large(Large),
-    Floats(FloatTriangle),
+    Blocks(BlockTriangle),
     /// Scan lines of one sample.
     Rows(Box<ScanLines>, usize),
 }
@@ -68,8 +68,7 @@ impl Layer {
     /// Returns the largest depth of the corners.
     const fn high(&self) -> f32 {
         match self {
-            Self::Large(large) => large.high,
-            Self::Floats(triangle) => triangle.high,
+            Self::Blocks(triangle) => triangle.high(),
             Self::Rows(rows, _) => rows.high,
         }
     }
@@ -100,22 +99,6 @@ impl Default for Held {
     }
 }
 
-impl Default for Layers {
-    fn default() -> Self {
-        Self {
-            sample_positions: SamplePositions::default(),
-            bounds: PixelBox { left: 0, top: 0, right: 0, bottom: 0 },
-            touched: 0,
-            hits: vec![Vec::new(); FOUR * BLOCK_PIXELS],
-            large: Vec::new(),
-            depth_format: DepthFormat::default(),
-            grid: Grid::default(),
-            depths: [f32::INFINITY, 0.0],
-            block: Held::default(),
-        }
-    }
-}
-
 impl Layers {
     /// Begins a tile without layers.
     pub(crate) fn begin_none(&mut self) {
@@ -134,6 +117,7 @@ impl Layers {
         (self.depth_format, self.grid) = (plan.variants.depth, plan.variants.grid());
         (self.touched, self.depths) = (0, [f32::INFINITY, 0.0]);
         self.hits.iter_mut().for_each(Vec::clear);
+        self.hits.resize_with(FOUR * BLOCK_PIXELS, Vec::new);
         self.large.clear();
         // Hits are sorted into lists per sample; larger triangles are only classified by block.
         for bins in frame.transparent_bins() {
@@ -167,20 +151,13 @@ impl Layers {
 
     fn add_large(&mut self, level: Level, triangle: &LargeTriangle) {
         let corners = each(triangle.corners, |corner| corner.at());
-        let reached = PixelBox::reached_on(self.grid, corners, self.reach());
-        let Some(area) = self.in_tile(reached) else { return };
+        let reach = self.sample_positions.reach::<FOUR>();
+        let reached = PixelBox::reached_on(self.grid, corners, reach);
+        let Some(area) = reached.in_tile(self.bounds) else { return };
         let Some(edges) = Triangle::on(self.grid, corners) else { return };
+        self.add_depths(triangle);
         let large = Large::new(triangle, &edges, [self.bounds.left, self.bounds.top]);
-        let samples = &self.sample_positions;
-        let touched = match samples.are_many() {
-            true => dispatch!(level, simd => large.blocks::<_, FOUR>(simd, area, samples)),
-            false => dispatch!(level, simd => large.blocks::<_, 1>(simd, area, samples)),
-        };
-        self.touched |= touched.some;
-        for depth in triangle.corners.map(|corner| corner.depth) {
-            self.depths = [self.depths[0].min(depth), self.depths[1].max(depth)];
-        }
-        self.large.push((Layer::Large(large), touched));
+        self.add_blocks(level, BlockTriangle::Large(large), area);
     }
 
     /// Adds a triangle by the selected variant of coverage.
@@ -190,42 +167,47 @@ impl Layers {
         (plan, frame): (&FramePlan, &ScreenGeometry),
         (triangle, corners): (&LargeTriangle, [[f32; 2]; 3]),
     ) {
+        self.add_depths(triangle);
         let depths = each(triangle.corners, |corner| corner.depth);
-        for depth in depths {
-            self.depths = [self.depths[0].min(depth), self.depths[1].max(depth)];
-        }
         match plan.variants.coverage {
             Coverage::Points => self.add_points(plan, frame, triangle.number),
             // Scan lines round corners, so each sample has separate rows.
             Coverage::ScanLines => {
                 for sample in 0..self.sample_positions.count() {
-                    let [dx, dy] = in_pixels(self.shift(sample));
+                    let [dx, dy] = in_pixels(self.sample_positions.shift::<FOUR>(sample));
                     let seen = each(corners, |[x, y]| [x - dx, y - dy]);
                     let rows = ScanLines::new(seen, depths, triangle.number, self.bounds);
                     let Some(rows) = rows else { continue };
-                    let mut touched = Touched::default();
-                    for block in rows.blocks() {
-                        touched.some |= 1 << block;
-                    }
-                    self.touched |= touched.some;
+                    let some = rows.blocks().fold(0, |some, block| some | 1 << block);
+                    let touched = Touched { some, whole: 0 };
+                    self.touched |= some;
                     self.large.push((Layer::Rows(Box::new(rows), sample), touched));
                 }
             }
             Coverage::Exact | Coverage::F32Edges => {
-                let reach = self.reach();
+                let reach = self.sample_positions.reach::<FOUR>();
                 let reach = beyond::reach(reach, beyond::beyond(plan.variants.coverage));
                 let at = each(triangle.corners, |corner| corner.at());
-                let Some(area) = self.in_tile(PixelBox::reached(at, reach)) else { return };
+                let reached = PixelBox::reached(at, reach);
+                let Some(area) = reached.in_tile(self.bounds) else { return };
                 let PixelBox { left, top, .. } = self.bounds;
                 let own = FloatTriangle::new(corners, depths, triangle.number, [left, top]);
-                let samples = &self.sample_positions;
-                let touched = match samples.are_many() {
-                    true => dispatch!(level, simd => own.blocks::<_, FOUR>(simd, area, samples)),
-                    false => dispatch!(level, simd => own.blocks::<_, 1>(simd, area, samples)),
-                };
-                self.touched |= touched.some;
-                self.large.push((Layer::Floats(own), touched));
+                self.add_blocks(level, BlockTriangle::Floats(own), area);
             }
+        }
+    }
+
+    /// Adds a triangle that may cover pixels of this area of the tile.
+    fn add_blocks(&mut self, level: Level, triangle: BlockTriangle, area: PixelBox) {
+        let samples = &self.sample_positions;
+        let touched = dispatch!(level, simd => triangle.blocks::<_, FOUR>(simd, area, samples));
+        self.touched |= touched.some;
+        self.large.push((Layer::Blocks(triangle), touched));
+    }
+
+    fn add_depths(&mut self, triangle: &LargeTriangle) {
+        for depth in triangle.corners.map(|corner| corner.depth) {
+            self.depths = [self.depths[0].min(depth), self.depths[1].max(depth)];
         }
     }
 
@@ -237,7 +219,7 @@ impl Layers {
         // A map keeps the nearest point of each sample.
         let mut all = BTreeMap::new();
         for sample in 0..count {
-            let shift = self.shift(sample);
+            let shift = self.sample_positions.shift::<FOUR>(sample);
             let shift = [shift[0] + plan.shift[0], shift[1] + plan.shift[1]];
             let own = number - start.number;
             points::cover(plan, draw, own, (self.bounds, shift), &mut |x, y, depth| {
@@ -251,35 +233,6 @@ impl Layers {
         for (place, key) in all {
             self.add_hit(place, count, word(key, number));
         }
-    }
-
-    /// Returns the offset of a sample.
-    fn shift(&self, sample: usize) -> [i32; 2] {
-        if self.sample_positions.are_many() {
-            self.sample_positions.shift::<FOUR>(sample)
-        } else {
-            [0; 2]
-        }
-    }
-
-    /// Returns the range of sample offsets from pixel centres.
-    fn reach(&self) -> [[i32; 2]; 2] {
-        match self.sample_positions.are_many() {
-            true => self.sample_positions.reach::<FOUR>(),
-            false => self.sample_positions.reach::<1>(),
-        }
-    }
-
-    /// Intersects a box with the tile, relative to the tile's first pixel. `None` if it is empty.
-    fn in_tile(&self, pixels: PixelBox) -> Option<PixelBox> {
-        let area = pixels.intersection(self.bounds);
-        let PixelBox { left, top, .. } = self.bounds;
-        (!area.is_empty()).then_some(PixelBox {
-            left: area.left - left,
-            top: area.top - top,
-            right: area.right - left,
-            bottom: area.bottom - top,
-        })
     }
 
     /// Returns whether a triangle touches a block.
@@ -331,7 +284,7 @@ impl Layers {
                 self.block.add(pixel, key.of(*word));
             }
         }
-        let shift = if samples.are_many() { samples.shift::<FOUR>(sample) } else { [0; 2] };
+        let shift = samples.shift::<FOUR>(sample);
         dispatch!(level, simd => self.take_large(simd, &mut key, (block, sample, shift), opaque));
         self.block.end()
     }
@@ -357,10 +310,9 @@ impl Layers {
             plane.fill(0);
             let (at, whole) = ((block, shift), touched.whole >> block & 1 != 0);
             match large {
-                Layer::Large(large) => large.draw(format, simd, at, whole, &mut Solid, &mut plane),
-                Layer::Floats(own) => own.draw(format, simd, at, whole, &Everywhere, &mut plane),
+                Layer::Blocks(own) => own.draw(format, simd, at, whole, None, &mut plane),
                 Layer::Rows(rows, own) if *own == sample => {
-                    rows.draw(format, simd, block, &Everywhere, &mut plane);
+                    rows.draw(format, simd, block, None, &mut plane);
                 }
                 Layer::Rows(..) => {}
             }

@@ -9,8 +9,8 @@ use fearless_simd::{
     Select as _, Simd, SimdBase as _, SimdCombine as _, SimdMask as _, f32x8, f32x16, mask32x16,
 };
 
+use super::alpha_test::BlockHoles;
 use super::depth_format::Format;
-use super::edges_in_floats::Opaque;
 use super::visibility_buffer::{in_front, put_rows};
 use crate::screen::coverage::PixelBox;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE_SIDE};
@@ -69,13 +69,10 @@ impl ScanLines {
             right: most(columns) + 1,
             bottom: most(lines) + 1,
         };
-        let area = own.intersection(tile);
-        if area.is_empty() {
-            return None;
-        }
+        let area = own.in_tile(tile)?;
         let mut rows = [EMPTY; TILE_SIDE];
         for y in area.top..area.bottom {
-            rows[(y - tile.top) as usize % TILE_SIDE] = scan_line(corners, depths, y);
+            rows[y as usize % TILE_SIDE] = scan_line(corners, depths, tile.top + y);
         }
         let [a, b, c] = depths;
         Some(Self {
@@ -84,23 +81,18 @@ impl ScanLines {
             low: a.min(b).min(c),
             high: a.max(b).max(c),
             number,
-            area: PixelBox {
-                left: area.left - tile.left,
-                top: area.top - tile.top,
-                right: area.right - tile.left,
-                bottom: area.bottom - tile.top,
-            },
+            area,
         })
     }
 
     /// Draws the rows into a block of the visibility buffer.
     #[inline(always)]
-    pub(crate) fn draw<S: Simd, O: Opaque>(
+    pub(crate) fn draw<S: Simd>(
         &self,
         format: impl Format,
         simd: S,
         block: usize,
-        opaque: &O,
+        holes: Option<&BlockHoles<'_, '_, '_>>,
         visibility: &mut [u64; BLOCK_PIXELS],
     ) {
         let (column, row) = (block % 8 * 8, block / 8 % 8 * 8);
@@ -121,9 +113,9 @@ impl ScanLines {
             let (low, high) = (f32x16::splat(simd, self.low), f32x16::splat(simd, self.high));
             let depth = depth.simd_gt(low).select(depth, low);
             let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
-            if !O::ALL {
+            if let Some(holes) = holes {
                 let front = in_front(format, simd, covered, depth, self.number, visibility);
-                covered = mask32x16::from_bitmask(simd, opaque.of(pair, front));
+                covered = mask32x16::from_bitmask(simd, holes.opaque_pixels(pair, front));
             }
             put_rows(format, simd, covered, depth, self.number, visibility);
         }

@@ -28,11 +28,10 @@ use self::hits::HitColors;
 use self::small::SmallTriangles;
 use super::bins::Bins;
 use super::depth_format::{Any, Format as _, depths_between, with_format};
-use super::edges_in_floats::FloatTriangle;
 use super::entries::word;
 use super::geometry::ScreenGeometry;
 use super::hit_colors::Conversion;
-use super::large::{Large, Solid};
+use super::large::BlockTriangle;
 use super::lines;
 use super::paint::Paint;
 use super::visibility_buffer::{Planes, depths_of};
@@ -58,7 +57,7 @@ pub(crate) struct Visibility {
     /// The triangles of those blocks, as indices into `large`.
     shown: [u32; BLOCK_PIXELS],
     /// Triangles that cover a block fully.
-    large: Vec<Shown>,
+    large: Vec<BlockTriangle>,
     /// The colours of pixels in the blocks of `colored`.
     colors: Box<HitColors>,
     /// The blocks in which the last drawn primitives have colours, a bit for each.
@@ -81,13 +80,6 @@ pub(crate) struct Visibility {
 #[derive(Debug)]
 #[repr(align(64))]
 struct Buffer([u64; FOUR * PIXELS]);
-
-/// A triangle that covers a block fully.
-#[derive(Clone, Copy, Debug)]
-enum Shown {
-    Large(Large),
-    Floats(FloatTriangle),
-}
 
 impl Default for Visibility {
     fn default() -> Self {
@@ -192,10 +184,8 @@ impl Visibility {
     /// Returns the triangle that covers a block fully, if there is one. The block's entries are
     /// meaningless then.
     pub(crate) fn whole(&self, block: usize) -> Option<u32> {
-        (self.whole >> block & 1 != 0).then(|| match &self.large[self.shown[block] as usize] {
-            Shown::Large(large) => large.number,
-            Shown::Floats(triangle) => triangle.number,
-        })
+        let is_whole = self.whole >> block & 1 != 0;
+        is_whole.then(|| self.large[self.shown[block] as usize].number())
     }
 
     /// Returns the blocks that one triangle covers fully, a bit for each.
@@ -299,10 +289,8 @@ impl Visibility {
     #[inline(never)]
     fn expand<const N: usize>(&mut self, level: Level, block: usize) {
         self.whole &= !(1 << block);
-        match self.large[self.shown[block] as usize] {
-            Shown::Large(large) => self.draw_planes::<N>(level, &large, block, true),
-            Shown::Floats(triangle) => self.draw_float_planes::<N>(level, &triangle, block, true),
-        }
+        let triangle = self.large[self.shown[block] as usize];
+        self.draw_planes::<N>(level, &triangle, block, true);
     }
 
     /// Returns the entries of a block for one of `N` samples.
@@ -316,7 +304,7 @@ impl Visibility {
     fn draw_planes<const N: usize>(
         &mut self,
         level: Level,
-        large: &Large,
+        triangle: &BlockTriangle,
         block: usize,
         whole: bool,
     ) {
@@ -325,7 +313,7 @@ impl Visibility {
             let shift = sample_positions.shift::<N>(sample);
             let plane = self.plane::<N>(block, sample);
             with_format!(format, D => {
-                large.draw(D::of(format), simd, (block, shift), whole, &mut Solid, plane);
+                triangle.draw(D::of(format), simd, (block, shift), whole, None, plane);
             });
         });
     }

@@ -98,6 +98,17 @@ impl PixelBox {
         }
     }
 
+    /// Intersects the box with a tile, relative to the tile's first pixel. `None` if that is empty.
+    pub(crate) fn in_tile(self, tile: Self) -> Option<Self> {
+        let area = self.intersection(tile);
+        (!area.is_empty()).then_some(Self {
+            left: area.left - tile.left,
+            top: area.top - tile.top,
+            right: area.right - tile.left,
+            bottom: area.bottom - tile.top,
+        })
+    }
+
     /// Returns the number of columns, if the box is not empty.
     #[must_use]
     pub const fn width(self) -> i32 {

@@ -9,7 +9,7 @@ use crate::raster::alpha_test::{AlphaSurface, AlphaTest, BlockHoles};
 use crate::raster::bins::LargeTriangle;
 use crate::raster::depth_format::Any;
 use crate::raster::geometry::ScreenGeometry;
-use crate::raster::large::{Large, Solid, Touched};
+use crate::raster::large::{BlockTriangle, Large, Touched};
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::bits;
 use crate::texture::opacity::Holes;
@@ -71,32 +71,34 @@ impl Visibility {
             return;
         }
         let tests: [Option<AlphaTest<'_, '_>>; N] = std::array::from_fn(test);
+        let large = BlockTriangle::Large(large);
         some &= !self.draw_even_blocks::<N>(simd.level(), &large, some & whole, &tests);
         for block in bits(some) {
-            self.write::<N>(simd.level(), block);
-            let (first, whole) = (self.corner(block), whole >> block & 1 != 0);
-            let format = Any(self.depth_format);
-            for (sample, test) in tests.iter().enumerate() {
-                let at = (block, self.sample_positions.shift::<N>(sample));
-                let plane = self.plane::<N>(block, sample);
-                // Compiled only once, for any `N`.
-                simd.vectorize(
-                    #[inline(always)]
-                    || match test {
-                        Some(test) => {
-                            large.draw(
-                                format,
-                                simd,
-                                at,
-                                whole,
-                                &mut BlockHoles { test, first },
-                                plane,
-                            );
-                        }
-                        None => large.draw(format, simd, at, whole, &mut Solid, plane),
-                    },
-                );
-            }
+            self.draw_tested::<S, N>(simd, &large, block, whole >> block & 1 != 0, &tests);
+        }
+    }
+
+    /// Draws a triangle with the alpha test into a block that it covers fully or partly.
+    #[inline(always)]
+    pub(super) fn draw_tested<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        triangle: &BlockTriangle,
+        block: usize,
+        whole: bool,
+        tests: &[Option<AlphaTest<'_, '_>>; N],
+    ) {
+        self.write::<N>(simd.level(), block);
+        let (first, format) = (self.corner(block), Any(self.depth_format));
+        for (sample, test) in tests.iter().enumerate() {
+            let at = (block, self.sample_positions.shift::<N>(sample));
+            let plane = self.plane::<N>(block, sample);
+            let holes = test.as_ref().map(|test| BlockHoles { test, first });
+            // Compiled only once, for any `N`.
+            simd.vectorize(
+                #[inline(always)]
+                || triangle.draw(format, simd, at, whole, holes, plane),
+            );
         }
     }
 
@@ -106,7 +108,7 @@ impl Visibility {
     fn draw_even_blocks<const N: usize>(
         &mut self,
         level: Level,
-        large: &Large,
+        triangle: &BlockTriangle,
         blocks: u64,
         tests: &[Option<AlphaTest<'_, '_>>; N],
     ) -> u64 {
@@ -125,7 +127,7 @@ impl Visibility {
             credit += 1;
             done |= 1 << block;
             if holes == Holes::Nowhere {
-                self.draw_full_block::<N>(level, large, block, &mut place);
+                self.draw_full_block::<N>(level, triangle, block, &mut place);
             }
         }
         done

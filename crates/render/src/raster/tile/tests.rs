@@ -3,7 +3,7 @@ use fearless_simd::{SimdBase as _, SimdMask as _, i32x16, mask32x16};
 use super::*;
 use crate::raster::bins::LargeTriangle;
 use crate::raster::depth_format::Reversed;
-use crate::raster::edges_in_floats::{Everywhere, FloatTriangle};
+use crate::raster::edges_in_floats::FloatTriangle;
 use crate::raster::hit_colors::Brush;
 use crate::raster::queue::{ROWS, SMALL};
 use crate::raster::rule::{Fine, Rule, Unsnapped, Usual};
@@ -371,7 +371,7 @@ fn edges_in_floats_decide_by_their_formula_alone_however_large_a_triangle_is() {
                 (some, whole) = (touched.some, touched.whole);
                 drawn(|block, plane| {
                     let at = (block, [0; 2]);
-                    triangle.draw(Reversed, simd, at, false, &Everywhere, plane);
+                    triangle.draw(Reversed, simd, at, false, None, plane);
                 })
             });
             assert_eq!(got, want, "{corners:?}");
@@ -410,7 +410,7 @@ fn a_square_of_two_halves_is_covered_twice_on_an_edge_and_at_every_seam() {
     let scan_lines = |corners: [[f32; 2]; 3]| {
         let rows = ScanLines::new(corners, [0.5; 3], 0, TILE_BOX).unwrap();
         dispatch!(Level::new(), simd => drawn(|block, plane| {
-            rows.draw(Reversed, simd, block, &Everywhere, plane);
+            rows.draw(Reversed, simd, block, None, plane);
         }))
     };
     assert_eq!(count([5.2, 5.2], &scan_lines), (441, 441 + 21));

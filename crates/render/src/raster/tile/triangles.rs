@@ -3,11 +3,11 @@
 use crate::simd::{bits, dispatch};
 use fearless_simd::{Level, Simd};
 
-use super::{Shown, Visibility};
+use super::Visibility;
 use crate::raster::bins::LargeTriangle;
 use crate::raster::depth_format::{Format as _, with_format};
 use crate::raster::entries::word;
-use crate::raster::large::{Large, Touched};
+use crate::raster::large::{BlockTriangle, Large, Touched};
 use crate::raster::medium::{self, Medium};
 use crate::raster::paint::{Paint, Painted};
 use crate::screen::coverage::{Grid, PixelBox, Snapped, Triangle};
@@ -32,23 +32,35 @@ impl Visibility {
             return self.draw_medium::<S, N>(simd, triangle, paint);
         }
         let Some((large, area)) = self.set_up::<N>(triangle) else { return };
-        let touched = large.blocks::<S, N>(simd, area, &self.sample_positions);
-        let (high, mut place) = (self.key(large.high), None);
-        // Block by block: skip hidden blocks (hierarchical Z), note fully covered ones, draw the
-        // rest.
+        self.draw_blocks::<S, N>(simd, &BlockTriangle::Large(large), area, paint);
+    }
+
+    /// Draws a triangle without holes block by block. `area` bounds its pixels, relative to the
+    /// tile's first.
+    #[inline(always)]
+    pub(super) fn draw_blocks<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        triangle: &BlockTriangle,
+        area: PixelBox,
+        paint: Option<&Paint<'_>>,
+    ) {
+        let touched = triangle.blocks::<S, N>(simd, area, &self.sample_positions);
+        let (high, mut place) = (self.key(triangle.high()), None);
+        // Skip hidden blocks (hierarchical Z), note fully covered ones, draw the rest.
         for block in bits(touched.some) {
             if high < self.farthest[block] {
                 continue;
             }
             let whole = touched.whole >> block & 1 != 0;
-            if !(whole && self.note_full_block::<N>(&large, block, &mut place)) {
-                match paint {
-                    Some(paint) => self.paint_block(simd.level(), &large, block, whole, paint),
-                    None => {
-                        self.write::<N>(simd.level(), block);
-                        self.draw_planes::<N>(simd.level(), &large, block, whole);
-                    }
-                }
+            if whole && self.note_full_block::<N>(triangle, block, &mut place) {
+                continue;
+            }
+            if let (Some(paint), BlockTriangle::Large(large)) = (paint, triangle) {
+                self.paint_block(simd.level(), large, block, whole, paint);
+            } else {
+                self.write::<N>(simd.level(), block);
+                self.draw_planes::<N>(simd.level(), triangle, block, whole);
             }
         }
     }
@@ -76,8 +88,10 @@ impl Visibility {
             // A fully covered block may need no entries at all; `Large` is built for the first such
             // block.
             if whole >> block & 1 != 0 {
-                large = large
-                    .or_else(|| Some(Large::new(triangle, &Triangle::new(corners)?, first)));
+                large = large.or_else(|| {
+                    let edges = Triangle::new(corners)?;
+                    Some(BlockTriangle::Large(Large::new(triangle, &edges, first)))
+                });
                 if large.is_some_and(|it| self.note_full_block::<N>(&it, block, &mut place)) {
                     continue;
                 }
@@ -125,13 +139,13 @@ impl Visibility {
     pub(super) fn draw_full_block<const N: usize>(
         &mut self,
         level: Level,
-        large: &Large,
+        triangle: &BlockTriangle,
         block: usize,
         place: &mut Option<u32>,
     ) {
-        if !self.note_full_block::<N>(large, block, place) {
+        if !self.note_full_block::<N>(triangle, block, place) {
             self.write::<N>(level, block);
-            self.draw_planes::<N>(level, large, block, true);
+            self.draw_planes::<N>(level, triangle, block, true);
         }
     }
 
@@ -140,52 +154,31 @@ impl Visibility {
     #[inline(never)]
     fn note_full_block<const N: usize>(
         &mut self,
-        large: &Large,
+        triangle: &BlockTriangle,
         block: usize,
         place: &mut Option<u32>,
     ) -> bool {
-        let [low, high] = large.depths::<N>(block).map(|depth| self.key(depth));
-        let own = ([low, high], large.number);
-        let is_done = self.hides(block, high, large.number)
-            || self.show_whole(block, own, place, || Shown::Large(*large));
-        self.farthest[block] = self.farthest[block].max(low);
-        is_done
-    }
-
-    /// Returns whether a block hides a triangle with keys of at most `high` in it. At equal depths
-    /// the lower number is in front, which happens often with coarse formats.
-    #[inline(always)]
-    pub(super) fn hides(&self, block: usize, high: u32, number: u32) -> bool {
-        match self.whole(block) {
+        let [low, high] = triangle.depths::<N>(block).map(|depth| self.key(depth));
+        let number = triangle.number();
+        // At equal depths the lower number is in front, which happens often with coarse formats.
+        let other = self.whole(block);
+        let is_hidden = match other {
             Some(other) => word(high, number) < word(self.farthest[block], other),
             None => high < self.farthest[block],
-        }
-    }
-
-    /// Notes that a triangle covers a block fully with depths between these keys, if no entries
-    /// need to be written for it. Returns whether this was so.
-    #[inline(always)]
-    pub(super) fn show_whole(
-        &mut self,
-        block: usize,
-        ([low, high], number): ([u32; 2], u32),
-        place: &mut Option<u32>,
-        triangle: impl FnOnce() -> Shown,
-    ) -> bool {
-        let bit = 1 << block;
+        };
         // The triangle replaces an empty block, or a noted triangle that is behind it everywhere.
-        let alone = (self.written | self.whole) & bit == 0;
-        let is_behind = |other| word(low, number) > word(self.nearest[block], other);
-        let noted = alone || self.whole(block).is_some_and(is_behind);
-        if noted {
+        let is_alone = !self.shows(block)
+            || other.is_some_and(|other| word(low, number) > word(self.nearest[block], other));
+        if !is_hidden && is_alone {
             self.shown[block] = *place.get_or_insert_with(|| {
-                self.large.push(triangle());
+                self.large.push(*triangle);
                 u32::try_from(self.large.len() - 1).expect("fewer than 2^32 triangles")
             });
-            self.whole |= bit;
+            self.whole |= 1 << block;
             self.nearest[block] = high;
         }
-        noted
+        self.farthest[block] = self.farthest[block].max(low);
+        is_hidden || is_alone
     }
 
     /// Sets up a triangle relative to the tile, and finds the pixels of its bounding box in the
@@ -205,19 +198,6 @@ impl Visibility {
     #[inline(always)]
     fn reached<const N: usize>(&self, corners: [Snapped; 3]) -> Option<PixelBox> {
         let reach = self.sample_positions.reach::<N>();
-        self.in_tile(PixelBox::reached_on(self.grid, corners, reach))
-    }
-
-    /// Intersects a box with the tile, relative to the tile's first pixel.
-    #[inline(always)]
-    pub(super) fn in_tile(&self, pixels: PixelBox) -> Option<PixelBox> {
-        let area = pixels.intersection(self.bounds);
-        let PixelBox { left, top, .. } = self.bounds;
-        (!area.is_empty()).then_some(PixelBox {
-            left: area.left - left,
-            top: area.top - top,
-            right: area.right - left,
-            bottom: area.bottom - top,
-        })
+        PixelBox::reached_on(self.grid, corners, reach).in_tile(self.bounds)
     }
 }
