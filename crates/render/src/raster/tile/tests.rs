@@ -5,6 +5,7 @@ use crate::raster::bins::LargeTriangle;
 use crate::raster::depth_format::Reversed;
 use crate::raster::edges_in_floats::FloatTriangle;
 use crate::raster::hit_colors::Brush;
+use crate::raster::large::Large;
 use crate::raster::queue::{ROWS, SMALL};
 use crate::raster::rule::{Fine, Rule, Unsnapped, Usual};
 use crate::raster::scan_lines::ScanLines;
@@ -27,11 +28,6 @@ fn middle_and_others() -> [SamplePositions; 3] {
     [passes(Samples::One)[0], passes(Samples::Four)[0], passes(Samples::Sixteen)[3]]
 }
 
-/// Returns the offset of sample `i`.
-fn shift(sample_positions: &SamplePositions, i: usize) -> [i32; 2] {
-    if sample_positions.are_many() { sample_positions.shift::<FOUR>(i) } else { [0; 2] }
-}
-
 /// Pseudo-random numbers.
 fn numbers(mut state: u64) -> impl FnMut(i32) -> i32 {
     move |below| {
@@ -48,17 +44,18 @@ fn bins(sample_positions: SamplePositions) -> Bins {
 
 /// Returns the pixels that a triangle may cover in some of their samples.
 fn reached(corners: [Snapped; 3], sample_positions: &SamplePositions) -> PixelBox {
-    match sample_positions.are_many() {
-        true => PixelBox::reached(corners, sample_positions.reach::<FOUR>()),
-        false => PixelBox::of(corners),
-    }
+    PixelBox::reached(corners, sample_positions.reach::<FOUR>())
 }
 
 /// Returns the bins with some triangles of a queue, at most sixteen.
 fn small(queue: usize, triangles: &[[ScreenVertex; 3]], sample_positions: SamplePositions) -> Bins {
+    small_by::<Usual>(queue, &numbers_of(triangles), sample_positions)
+}
+
+/// Returns the positions and depths of the corners of triangles.
+fn numbers_of(triangles: &[[ScreenVertex; 3]]) -> Vec<[([i32; 2], f32); 3]> {
     let number = |corner: ScreenVertex| ([corner.at().x, corner.at().y], corner.depth);
-    let rows: Vec<_> = triangles.iter().map(|corners| corners.map(number)).collect();
-    small_by::<Usual>(queue, &rows, sample_positions)
+    triangles.iter().map(|corners| corners.map(number)).collect()
 }
 
 /// The same by a rule of coverage, from the numbers that it reads, and depths.
@@ -102,9 +99,7 @@ fn waiting(
     triangles: &[[ScreenVertex; 3]],
     sample_positions: SamplePositions,
 ) -> Bins {
-    let number = |corner: ScreenVertex| ([corner.at().x, corner.at().y], corner.depth);
-    let corners: Vec<_> = triangles.iter().map(|corners| corners.map(number)).collect();
-    let rows = rows_of(&corners);
+    let rows = rows_of(&numbers_of(triangles));
     let mut boxes = [[0; 16]; 4];
     for (lane, corners) in triangles.iter().enumerate() {
         let PixelBox { left, top, right, bottom } =
@@ -123,6 +118,35 @@ fn waiting(
     bins
 }
 
+/// Draws one tile of some bins.
+fn draw_bins(visibility: &mut Visibility, bins: &Bins, (tile, bounds): (usize, PixelBox)) {
+    visibility.clear(bounds, bins.sample_positions);
+    dispatch!(Level::new(), simd => match bins.sample_positions.are_many() {
+        true => {
+            visibility.draw_plain::<_, FOUR>(simd, bins, (tile, None));
+            visibility.draw_hits::<_, FOUR>(simd, bins, tile);
+            visibility.draw_small(simd, std::slice::from_ref(bins), tile);
+        }
+        false => {
+            visibility.draw_plain::<_, 1>(simd, bins, (tile, None));
+            visibility.draw_hits::<_, 1>(simd, bins, tile);
+        }
+    });
+}
+
+/// Draws a large triangle.
+fn draw_large(visibility: &mut Visibility, large: &LargeTriangle) {
+    dispatch!(Level::new(), simd => match visibility.sample_positions.are_many() {
+        true => visibility.draw_large::<_, FOUR>(simd, large, None),
+        false => visibility.draw_large::<_, 1>(simd, large, None),
+    });
+}
+
+/// The columns and rows of a tile's pixels.
+fn pixels() -> impl Iterator<Item = (i32, i32)> {
+    (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y)))
+}
+
 /// Returns the samples that show primitive 0: pixels row by row, then the samples of each pixel.
 fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
     let mut visibility = Visibility::default();
@@ -131,18 +155,7 @@ fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
         let (left, top) = (tile % 3 * TILE, tile / 3 * TILE);
         let own = PixelBox { left, top, right: left + TILE, bottom: top + TILE };
         let own = own.intersection(PICTURE);
-        visibility.clear(own, bins.sample_positions);
-        dispatch!(Level::new(), simd => match bins.sample_positions.are_many() {
-            true => {
-                visibility.draw_plain::<_, FOUR>(simd, bins, (tile as usize, None));
-                visibility.draw_hits::<_, FOUR>(simd, bins, tile as usize);
-                visibility.draw_small(simd, std::slice::from_ref(bins), tile as usize);
-            }
-            false => {
-                visibility.draw_plain::<_, 1>(simd, bins, (tile as usize, None));
-                visibility.draw_hits::<_, 1>(simd, bins, tile as usize);
-            }
-        });
+        draw_bins(&mut visibility, bins, (tile as usize, own));
         for (x, y) in (top..own.bottom).flat_map(|y| (left..own.right).map(move |x| (x, y))) {
             let (words, count) = visibility.samples(Level::new(), x, y);
             let samples = (0..count).filter(|i| seen(words[*i]) == Visible::Triangle(0));
@@ -165,7 +178,7 @@ fn covered_on(
 ) -> Vec<(i32, i32, usize)> {
     let mut samples = Vec::new();
     for sample in 0..sample_positions.count() {
-        let shift = grid.offset(shift(sample_positions, sample));
+        let shift = grid.offset(sample_positions.shift::<FOUR>(sample));
         let seen_from = corners.map(|corner| corner.seen_from(shift));
         if let Some(triangle) = Triangle::on(grid, seen_from) {
             triangle.covered(PICTURE, |pixel| samples.push((pixel.y, pixel.x, sample)));
@@ -231,20 +244,8 @@ fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
 /// Returns the entries of the first tile.
 fn entries(bins: &Bins) -> Vec<u64> {
     let mut visibility = Visibility::default();
-    visibility.clear(TILE_BOX, bins.sample_positions);
-    dispatch!(Level::new(), simd => match bins.sample_positions.are_many() {
-        true => {
-            visibility.draw_plain::<_, FOUR>(simd, bins, (0, None));
-            visibility.draw_hits::<_, FOUR>(simd, bins, 0);
-            visibility.draw_small(simd, std::slice::from_ref(bins), 0);
-        }
-        false => {
-            visibility.draw_plain::<_, 1>(simd, bins, (0, None));
-            visibility.draw_hits::<_, 1>(simd, bins, 0);
-        }
-    });
-    let pixels = (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y)));
-    pixels
+    draw_bins(&mut visibility, bins, (0, TILE_BOX));
+    pixels()
         .flat_map(|(x, y)| {
             let (samples, count) = visibility.samples(Level::new(), x, y);
             samples.into_iter().take(count)
@@ -300,11 +301,8 @@ fn on_the_fine_grid_small_and_large_triangles_follow_the_fill_rule() {
                 visibility.grid = Grid::Fine;
                 let corners = corners.map(|corner| ScreenVertex::new(corner, 0.5));
                 let large = LargeTriangle { corners, number: 0, cutout: false };
-                dispatch!(Level::new(), simd => match sample_positions.are_many() {
-                    true => visibility.draw_large::<_, FOUR>(simd, &large, None),
-                    false => visibility.draw_large::<_, 1>(simd, &large, None),
-                });
-                for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
+                draw_large(&mut visibility, &large);
+                for (x, y) in pixels() {
                     let (words, count) = visibility.samples(Level::new(), x, y);
                     for (sample, word) in words[..count].iter().enumerate() {
                         let got = seen(*word) == Visible::Triangle(0);
@@ -324,12 +322,11 @@ fn by_floats([p, q, r]: [[f32; 2]; 3]) -> Vec<(i32, i32)> {
         let e = (p[1] - q[1]) * x + (q[0] - p[0]) * y + (p[0] * q[1] - p[1] * q[0]);
         e * area.signum() >= 0.0
     };
-    let all = (0..TILE).flat_map(|y| (0..TILE).map(move |x| (y, x)));
-    all.filter(|(y, x)| {
+    let covered = pixels().filter(|(x, y)| {
         let (x, y) = (*x as f32 + 0.5, *y as f32 + 0.5);
         inside(q, r, x, y) && inside(r, p, x, y) && inside(p, q, x, y)
-    })
-    .collect()
+    });
+    covered.map(|(x, y)| (y, x)).collect()
 }
 
 /// Returns the pixels drawn block by block.
@@ -437,13 +434,9 @@ fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
         let mut visibility = Visibility::default();
         visibility.clear(TILE_BOX, sample_positions);
         for large in &triangles {
-            dispatch!(Level::new(), simd => match sample_positions.are_many() {
-                true => visibility.draw_large::<_, FOUR>(simd, large, None),
-                false => visibility.draw_large::<_, 1>(simd, large, None),
-            });
+            draw_large(&mut visibility, large);
         }
         let want = one_by_one(&triangles, &sample_positions);
-        let pixels = || (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y)));
         for (x, y) in pixels() {
             if let Some(number) = visibility.whole(block_at(x, y)) {
                 let want = want[(y * TILE + x) as usize];
@@ -468,8 +461,8 @@ fn one_by_one(triangles: &[LargeTriangle], sample_positions: &SamplePositions) -
     let mut words = vec![[0; FOUR]; PIXELS];
     for large in triangles {
         for sample in 0..sample_positions.count() {
-            let ends =
-                large.corners.map(|corner| corner.seen_from(shift(sample_positions, sample)));
+            let shift = sample_positions.shift::<FOUR>(sample);
+            let ends = large.corners.map(|corner| corner.seen_from(shift));
             let moved = LargeTriangle { corners: ends, ..*large };
             let Some(triangle) = Triangle::new(ends.map(|corner| corner.at())) else { continue };
             let seen = Large::new(&moved, &triangle, [0, 0]);
