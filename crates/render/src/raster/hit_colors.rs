@@ -17,7 +17,7 @@ use super::hits::PACK;
 use super::starts::DrawCorners;
 use crate::screen::perspective::{between, weighed};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
-use crate::simd::gather::{permute, pick};
+use crate::simd::gather::{of_lanes, pick};
 use crate::simd::{Encoding, Lanes as _, Sixteen, Vec3};
 use marraztu_core::accuracy::Interpolation;
 
@@ -209,10 +209,4 @@ fn row<S: Simd>(simd: S, numbers: &[f32; PACK]) -> f32x16<S> {
 #[inline(always)]
 fn colors<S: Simd>([r, g, b]: &[f32x16<S>; 3], lanes: i32x16<S>) -> Vec3<f32x16<S>> {
     Vec3([of_lanes(*r, lanes), of_lanes(*g, lanes), of_lanes(*b, lanes)])
-}
-
-/// Picks the numbers of some lanes.
-#[inline(always)]
-pub(super) fn of_lanes<S: Simd>(of: f32x16<S>, lanes: i32x16<S>) -> f32x16<S> {
-    permute(of.bitcast(), lanes).bitcast()
 }

@@ -115,9 +115,13 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
             #[inline(always)]
             |own, count| {
                 let CoveredPixels { x, y, number, depth: [depth], .. } = *own;
-                let color = match (&mix, lanes.edges.functions(own.lanes, own.by)) {
+                let color = match &mix {
                     _ if !COLORED => None,
-                    (Some(mix), Some(functions)) => Some(mix.colors(own.lanes, functions, [x, y])),
+                    Some(mix) if E::COLORED => {
+                        let at = (own.lanes, own.by, None);
+                        let edges = [lanes.edges.function(1, at), lanes.edges.function(2, at)];
+                        Some(mix.colors(own.lanes, edges, [x, y]))
+                    }
                     _ => Some(u32x16::splat(simd, 0)),
                 };
                 let pixels = Pixels { x, y, depth: depth.bitcast(), number, color };
@@ -222,10 +226,10 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
                 // A compressing store appends only the lanes that cover the pixel.
                 listed.compress(some).store_slice(&mut covered.pixels[to..to + PACK]);
                 count = to + some.to_bitmask().count_ones() as usize;
-                at = self.edges.right(at);
+                at = self.edges.step(at, 0);
                 pixels += 1 << 4;
             }
-            row = self.edges.below(row);
+            row = self.edges.step(row, 1);
             row_pixels += 1 << 8;
         }
         covered.count = count;
@@ -292,7 +296,7 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
             let mut depth = [low; N];
             for (sample, depth) in depth.iter_mut().enumerate() {
                 let shift = shifts.map(|shifts| &shifts[sample]);
-                let linear = self.edges.depths(lanes, by, shift);
+                let linear = self.edges.depths((lanes, by, shift));
                 // Clamped to the depths of the corners.
                 let linear = linear.simd_gt(low).select(linear, low);
                 *depth = linear.simd_lt(high).select(linear, high);

@@ -4,7 +4,7 @@
 //! number per triangle, and pixels gather from them. Some processors have an instruction that
 //! permutes the lanes of a register; without it, numbers are gathered one by one.
 
-use fearless_simd::{Level, Simd, SimdBase as _, i32x16};
+use fearless_simd::{Bytes as _, Level, Simd, SimdBase as _, f32x16, i32x16};
 
 use super::level::is_avx512;
 
@@ -84,6 +84,12 @@ pub(crate) fn permute<S: Simd>(of: i32x16<S>, lanes: i32x16<S>) -> i32x16<S> {
             i32x16::from_slice(simd, &picked)
         }
     }
+}
+
+/// Gathers the numbers in some lanes, like [`permute`].
+#[inline(always)]
+pub(crate) fn of_lanes<S: Simd>(of: f32x16<S>, lanes: i32x16<S>) -> f32x16<S> {
+    permute(of.bitcast(), lanes).bitcast()
 }
 
 /// Returns the number of slots up to which gathering takes no longer than from a few.

@@ -6,10 +6,11 @@ use fearless_simd::{
     mask32x16,
 };
 
-use super::{Boxes, Corners, Edges, of_lanes, snapped_bounds};
+use super::{Boxes, Corners, Edges, Places, UsualEdges, linear_depths};
 use crate::raster::beyond::{beyond, reach};
-use crate::screen::coverage::{Grid, SUBPIXELS};
+use crate::screen::coverage::SUBPIXELS;
 use crate::screen::sample_positions::SamplePositions;
+use crate::simd::gather::of_lanes;
 use marraztu_core::accuracy::Coverage;
 use marraztu_core::base::math::each;
 
@@ -21,9 +22,7 @@ pub(crate) struct FloatEdges<S: Simd> {
     /// The right and bottom ends of the boxes.
     end: [f32x16<S>; 2],
     area: f32x16<S>,
-    depth: f32x16<S>,
-    second: f32x16<S>,
-    third: f32x16<S>,
+    gradients: [f32x16<S>; 3],
 }
 
 impl<S: Simd> FloatEdges<S> {
@@ -34,29 +33,16 @@ impl<S: Simd> FloatEdges<S> {
     }
 }
 
-impl<S: Simd> FloatEdges<S> {
-    /// Computes an edge function of the triangles in these lanes.
-    #[inline(always)]
-    fn edge_of(&self, i: usize, lanes: i32x16<S>, [x, y]: [f32x16<S>; 2]) -> f32x16<S> {
-        let [a, b, c] = self.lines[i];
-        of_lanes(a, lanes) * x + of_lanes(b, lanes) * y + of_lanes(c, lanes)
-    }
-}
-
 impl<S: Simd> Edges<S> for FloatEdges<S> {
-    /// The position of the sample, and the centre of its pixel.
-    type At = ([f32x16<S>; 2], [f32x16<S>; 2]);
+    /// The position of the sample.
+    type At = [f32x16<S>; 2];
     type Shift = [f32; 2];
+    const COLORED: bool = false;
 
     #[inline(always)]
     fn bounds(corners: Corners<S>, samples: [[i32; 2]; 2]) -> Boxes<S> {
-        let [p, q, r] = corners;
-        let corners = [
-            [snapped(p[0]), snapped(p[1])],
-            [snapped(q[0]), snapped(q[1])],
-            [snapped(r[0]), snapped(r[1])],
-        ];
-        snapped_bounds(Grid::Usual, corners, reach(samples, beyond(Coverage::F32Edges)))
+        let corners = each(corners, |[x, y]| [snapped(x), snapped(y)]);
+        UsualEdges::bounds(corners, reach(samples, beyond(Coverage::F32Edges)))
     }
 
     #[inline(always)]
@@ -75,27 +61,19 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
             start: [left.to_float::<f32x16<S>>() + 0.5, top.to_float::<f32x16<S>>() + 0.5],
             end: [right.to_float(), bottom.to_float()],
             area: area * sign,
-            depth: d0,
-            second: d1 - d0,
-            third: d2 - d0,
+            gradients: [d0, d1 - d0, d2 - d0],
         }
     }
 
     #[inline(always)]
     fn first(&self) -> Self::At {
-        (self.start, self.start)
+        self.start
     }
 
     #[inline(always)]
-    fn right(&self, ([x, y], _): Self::At) -> Self::At {
-        let at = [x + 1.0, y];
-        (at, at)
-    }
-
-    #[inline(always)]
-    fn below(&self, ([x, y], _): Self::At) -> Self::At {
-        let at = [x, y + 1.0];
-        (at, at)
+    fn step(&self, mut at: Self::At, axis: usize) -> Self::At {
+        at[axis] += 1.0;
+        at
     }
 
     #[inline(always)]
@@ -108,40 +86,38 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
     }
 
     #[inline(always)]
-    fn moved(&self, (_, centre): Self::At, [dx, dy]: Self::Shift) -> Self::At {
-        ([centre[0] + dx, centre[1] + dy], centre)
+    fn moved(&self, [x, y]: Self::At, [dx, dy]: Self::Shift) -> Self::At {
+        [x + dx, y + dy]
     }
 
     #[inline(always)]
-    fn covered(&self, (at, centre): Self::At) -> mask32x16<S> {
+    fn covered(&self, at: Self::At) -> mask32x16<S> {
         // All lanes step over the largest box. Outside its own box, rounding must not cover pixels.
-        let inside = centre[0].simd_lt(self.end[0]) & centre[1].simd_lt(self.end[1]);
+        let inside = at[0].simd_lt(self.end[0]) & at[1].simd_lt(self.end[1]);
         inside
             & self.edge(0, at).simd_ge(0.0)
             & self.edge(1, at).simd_ge(0.0)
             & self.edge(2, at).simd_ge(0.0)
     }
 
+    /// Returns the edge function divided by the area.
     #[inline(always)]
-    fn depths(
+    fn function(
         &self,
-        lanes: i32x16<S>,
-        [dx, dy]: [i32x16<S>; 2],
-        shift: Option<&Self::Shift>,
+        i: usize,
+        (lanes, [dx, dy], shift): Places<'_, S, Self::Shift>,
     ) -> f32x16<S> {
-        let [x, y] = self.start;
         let [more_x, more_y] = shift.copied().unwrap_or_default();
-        let x = of_lanes(x, lanes) + dx.to_float::<f32x16<S>>() + more_x;
-        let y = of_lanes(y, lanes) + dy.to_float::<f32x16<S>>() + more_y;
-        let area = of_lanes(self.area, lanes);
-        let weights =
-            [self.edge_of(1, lanes, [x, y]) / area, self.edge_of(2, lanes, [x, y]) / area];
-        let [depth, second, third] = [
-            of_lanes(self.depth, lanes),
-            of_lanes(self.second, lanes),
-            of_lanes(self.third, lanes),
-        ];
-        depth + weights[0] * second + weights[1] * third
+        let x = of_lanes(self.start[0], lanes) + dx.to_float::<f32x16<S>>() + more_x;
+        let y = of_lanes(self.start[1], lanes) + dy.to_float::<f32x16<S>>() + more_y;
+        let [a, b, c] = self.lines[i];
+        let edge = of_lanes(a, lanes) * x + of_lanes(b, lanes) * y + of_lanes(c, lanes);
+        edge / of_lanes(self.area, lanes)
+    }
+
+    #[inline(always)]
+    fn depths(&self, at: Places<'_, S, Self::Shift>) -> f32x16<S> {
+        linear_depths(self, self.gradients, at)
     }
 }
 

@@ -1,11 +1,12 @@
 //! Edge functions on the usual grid, in f32: integers below 2^24 are exact, and no edge function in
 //! a box of 8 x 8 pixels is larger.
 
-use fearless_simd::{Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, i32x16, mask32x16};
+use fearless_simd::{Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, mask32x16};
 
-use super::{Boxes, Corners, Edges, of_lanes, snapped_bounds};
-use crate::screen::coverage::{Grid, SUBPIXELS};
+use super::{Boxes, Corners, Edges, Places, linear_depths};
+use crate::screen::coverage::SUBPIXELS;
 use crate::screen::sample_positions::SamplePositions;
+use crate::simd::gather::of_lanes;
 use marraztu_core::base::math::each;
 
 /// Edge functions on the usual grid.
@@ -15,41 +16,13 @@ pub(crate) struct UsualEdges<S: Simd> {
     /// The smallest covered values: 0, or 1 if the top-left rule excludes centres on the edge.
     least: [f32x16<S>; 3],
     /// The steps of the edge functions for one pixel to the right and one pixel down.
-    a: [f32x16<S>; 3],
-    b: [f32x16<S>; 3],
-    depth: f32x16<S>,
-    to_second: f32x16<S>,
-    to_third: f32x16<S>,
-}
-
-impl<S: Simd> UsualEdges<S> {
-    /// Computes an edge function of the triangles in these lanes, at this distance from their first
-    /// pixels. The result is exact, like stepping.
-    #[inline(always)]
-    fn edge(
-        &self,
-        i: usize,
-        lanes: i32x16<S>,
-        [dx, dy]: [f32x16<S>; 2],
-        shift: Option<&[f32x16<S>; 3]>,
-    ) -> f32x16<S> {
-        let first = of_lanes(self.first[i], lanes);
-        let at = first + of_lanes(self.a[i], lanes) * dx + of_lanes(self.b[i], lanes) * dy;
-        match shift {
-            Some(shift) => at + of_lanes(shift[i], lanes),
-            None => at,
-        }
-    }
+    steps: [[f32x16<S>; 3]; 2],
+    gradients: [f32x16<S>; 3],
 }
 
 impl<S: Simd> Edges<S> for UsualEdges<S> {
     type At = [f32x16<S>; 3];
     type Shift = [f32x16<S>; 3];
-
-    #[inline(always)]
-    fn bounds(corners: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S> {
-        snapped_bounds(Grid::Usual, corners, reach)
-    }
 
     #[inline(always)]
     fn new(
@@ -66,20 +39,19 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
         let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
         let one = f32x16::splat(simd, 1.0);
         let sign = area.simd_lt(0.0).select(f32x16::splat(simd, -1.0), one);
-        let e0 = edge([x1, y1], [x2, y2], sign);
-        let e1 = edge([x2, y2], [x0, y0], sign);
-        let e2 = edge([x0, y0], [x1, y1], sign);
+        let edges = [
+            edge([x1, y1], [x2, y2], sign),
+            edge([x2, y2], [x0, y0], sign),
+            edge([x0, y0], [x1, y1], sign),
+        ];
         // Triangles without area cover no pixel; 1 keeps the quotients finite.
         let area = area * sign;
         let per_area = one / area.simd_gt(0.0).select(area, one);
         Self {
-            first: [e0.value, e1.value, e2.value],
-            least: [e0.least, e1.least, e2.least],
-            a: [e0.a, e1.a, e2.a],
-            b: [e0.b, e1.b, e2.b],
-            depth: d0,
-            to_second: (d1 - d0) * per_area,
-            to_third: (d2 - d0) * per_area,
+            first: each(edges, |edge| edge.value),
+            least: each(edges, |edge| edge.least),
+            steps: [each(edges, |edge| edge.a), each(edges, |edge| edge.b)],
+            gradients: [d0, (d1 - d0) * per_area, (d2 - d0) * per_area],
         }
     }
 
@@ -89,32 +61,23 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
     }
 
     #[inline(always)]
-    fn right(&self, at: Self::At) -> Self::At {
-        step(at, self.a)
-    }
-
-    #[inline(always)]
-    fn below(&self, at: Self::At) -> Self::At {
-        step(at, self.b)
+    fn step(&self, at: Self::At, axis: usize) -> Self::At {
+        self.moved(at, self.steps[axis])
     }
 
     #[inline(always)]
     fn shifts<const N: usize>(&self, sample_positions: &SamplePositions) -> [Self::Shift; N] {
-        let mut shifts = [[f32x16::splat(self.depth.simd, 0.0); 3]; N];
+        let (mut shifts, [a, b]) = ([self.first; N], self.steps);
         for (sample, shift) in shifts.iter_mut().enumerate() {
             let [x, y] = sample_positions.shift::<N>(sample).map(|by| by as f32 / SUBPIXELS as f32);
-            *shift = [
-                self.a[0] * x + self.b[0] * y,
-                self.a[1] * x + self.b[1] * y,
-                self.a[2] * x + self.b[2] * y,
-            ];
+            *shift = [a[0] * x + b[0] * y, a[1] * x + b[1] * y, a[2] * x + b[2] * y];
         }
         shifts
     }
 
     #[inline(always)]
-    fn moved(&self, at: Self::At, shift: Self::Shift) -> Self::At {
-        step(at, shift)
+    fn moved(&self, [x, y, z]: Self::At, by: Self::Shift) -> Self::At {
+        [x + by[0], y + by[1], z + by[2]]
     }
 
     #[inline(always)]
@@ -122,37 +85,30 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
         at[0].simd_ge(self.least[0]) & at[1].simd_ge(self.least[1]) & at[2].simd_ge(self.least[2])
     }
 
+    /// The result is exact, like stepping.
     #[inline(always)]
-    fn functions(&self, lanes: i32x16<S>, by: [i32x16<S>; 2]) -> Option<[f32x16<S>; 2]> {
-        let by = [by[0].to_float(), by[1].to_float()];
-        Some([self.edge(1, lanes, by, None), self.edge(2, lanes, by, None)])
-    }
-
-    #[inline(always)]
-    fn depths(
+    fn function(
         &self,
-        lanes: i32x16<S>,
-        by: [i32x16<S>; 2],
-        shift: Option<&Self::Shift>,
+        i: usize,
+        (lanes, [dx, dy], shift): Places<'_, S, Self::Shift>,
     ) -> f32x16<S> {
-        let by = [by[0].to_float(), by[1].to_float()];
-        let second = self.edge(1, lanes, by, shift);
-        let third = self.edge(2, lanes, by, shift);
-        let [depth, to_second, to_third] = [
-            of_lanes(self.depth, lanes),
-            of_lanes(self.to_second, lanes),
-            of_lanes(self.to_third, lanes),
-        ];
-        depth + second * to_second + third * to_third
+        let (dx, dy) = (dx.to_float::<f32x16<S>>(), dy.to_float::<f32x16<S>>());
+        let [a, b] = [of_lanes(self.steps[0][i], lanes), of_lanes(self.steps[1][i], lanes)];
+        let at = of_lanes(self.first[i], lanes) + a * dx + b * dy;
+        match shift {
+            Some(shift) => at + of_lanes(shift[i], lanes),
+            None => at,
+        }
     }
-}
 
-#[inline(always)]
-fn step<S: Simd>([x, y, z]: [f32x16<S>; 3], by: [f32x16<S>; 3]) -> [f32x16<S>; 3] {
-    [x + by[0], y + by[1], z + by[2]]
+    #[inline(always)]
+    fn depths(&self, at: Places<'_, S, Self::Shift>) -> f32x16<S> {
+        linear_depths(self, self.gradients, at)
+    }
 }
 
 /// An edge function of sixteen triangles.
+#[derive(Clone, Copy)]
 struct LanesEdge<S: Simd> {
     value: f32x16<S>,
     least: f32x16<S>,
@@ -170,8 +126,7 @@ fn edge<S: Simd>(
 ) -> LanesEdge<S> {
     let (a, b) = ((py - qy) * sign, (qx - px) * sign);
     let on_edge = a.simd_gt(0.0) | (a.simd_eq(0.0) & b.simd_gt(0.0));
-    let simd = px.simd;
-    let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+    let (zero, one) = (f32x16::splat(px.simd, 0.0), f32x16::splat(px.simd, 1.0));
     LanesEdge {
         value: zero - (a * px + b * py),
         least: on_edge.select(zero, one),

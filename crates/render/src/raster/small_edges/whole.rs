@@ -1,28 +1,27 @@
-//! Edge functions on the usual grid, in 32-bit integers, for boxes of up to 16 x 16 pixels. Depths
-//! have the same bits as in `medium`.
+//! Edge functions in 32-bit integers: on the usual grid for boxes of up to 16 x 16 pixels, and on
+//! the fine grid.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, SimdWiden as _,
     f32x16, f64x8, i32x16, mask32x16, u32x16,
 };
 
-use super::{Boxes, Corners, Edges, of_lanes, snapped_bounds, whole_edge};
+use super::{Boxes, Corners, Edges, Places, linear_depths};
 use crate::screen::coverage::{Grid, SUBPIXELS};
 use crate::screen::sample_positions::SamplePositions;
-use crate::simd::gather::permute;
+use crate::simd::gather::{of_lanes, permute};
 use crate::simd::in_f64;
 use marraztu_core::base::math::each;
 
-/// Integer edge functions on the usual grid.
+/// Integer edge functions on the usual grid. Depths have the same bits as in `medium`.
 #[derive(Clone, Copy)]
 pub(crate) struct WholeEdges<S: Simd> {
     /// The edge functions at the first pixel, minus their smallest covered values.
     first: [i32x16<S>; 3],
     /// The steps of the edge functions for one pixel to the right and one pixel down.
-    a: [i32x16<S>; 3],
-    b: [i32x16<S>; 3],
-    /// The smallest covered values of the second and third edge function, needed for depth.
-    least: [i32x16<S>; 2],
+    steps: [[i32x16<S>; 3]; 2],
+    /// The smallest covered values, needed for depth.
+    least: [i32x16<S>; 3],
     depth: f32x16<S>,
     to_second: Doubles<S>,
     to_third: Doubles<S>,
@@ -32,28 +31,16 @@ pub(crate) struct WholeEdges<S: Simd> {
 type Doubles<S> = [i32x16<S>; 2];
 
 impl<S: Simd> WholeEdges<S> {
-    /// Computes an edge function of the triangles in these lanes, at this distance from their first
-    /// pixels.
+    /// Computes an edge function as in [`Edges::function`].
     #[inline(always)]
-    fn edge(&self, i: usize, lanes: i32x16<S>, [dx, dy]: [i32x16<S>; 2]) -> i32x16<S> {
-        let first = permute(self.first[i] + self.least[i - 1], lanes);
-        first + permute(self.a[i], lanes) * dx + permute(self.b[i], lanes) * dy
-    }
-
-    /// Computes the same in f64, in the sample with this offset.
-    #[inline(always)]
-    fn edge_in_f64(
-        &self,
-        i: usize,
-        lanes: i32x16<S>,
-        by: [i32x16<S>; 2],
-        shift: Option<&[i32x16<S>; 3]>,
-    ) -> [f64x8<S>; 2] {
-        let at = self.edge(i, lanes, by);
-        in_f64(match shift {
+    fn edge(&self, i: usize, (lanes, [dx, dy], shift): Places<'_, S, [i32x16<S>; 3]>) -> i32x16<S> {
+        let first = permute(self.first[i] + self.least[i], lanes);
+        let [a, b] = [permute(self.steps[0][i], lanes), permute(self.steps[1][i], lanes)];
+        let at = first + a * dx + b * dy;
+        match shift {
             Some(shift) => at + permute(shift[i], lanes),
             None => at,
-        })
+        }
     }
 }
 
@@ -62,41 +49,17 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
     type Shift = [i32x16<S>; 3];
 
     #[inline(always)]
-    fn bounds(corners: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S> {
-        snapped_bounds(Grid::Usual, corners, reach)
-    }
-
-    #[inline(always)]
-    fn new(
-        simd: S,
-        [p, q, r]: Corners<S>,
-        [left, top, ..]: Boxes<S>,
-        [d0, d1, d2]: [f32x16<S>; 3],
-    ) -> Self {
-        // Corners relative to the centre of the box's first pixel.
-        let half = SUBPIXELS / 2;
-        let (cx, cy) = ((left << 8) + half, (top << 8) + half);
-        let [x0, x1, x2] = each([p[0], q[0], r[0]], |x| x - cx);
-        let [y0, y1, y2] = each([p[1], q[1], r[1]], |y| y - cy);
-        let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
-        let (zero, one) = (i32x16::splat(simd, 0), i32x16::splat(simd, 1));
-        let sign = area.simd_lt(0).select(zero - one, one);
-        let [first, second, third] = [
-            whole_edge([x1, y1], [x2, y2], sign),
-            whole_edge([x2, y2], [x0, y0], sign),
-            whole_edge([x0, y0], [x1, y1], sign),
-        ];
-        // The reciprocal of the area is shared by both depth gradients. 1 keeps it finite.
-        let area = in_f64((area * sign).max(1));
-        let [d1, d2] = [per_area(d0, d1, area), per_area(d0, d2, area)];
+    fn new(_: S, corners: Corners<S>, boxes: Boxes<S>, [d0, d1, d2]: [f32x16<S>; 3]) -> Self {
+        let (edges, area) = whole_edges(Self::GRID, corners, boxes);
+        // The reciprocal of the area is shared by both depth gradients.
+        let area = in_f64(area);
         Self {
-            first: [first.value, second.value, third.value],
-            a: [first.a * SUBPIXELS, second.a * SUBPIXELS, third.a * SUBPIXELS],
-            b: [first.b * SUBPIXELS, second.b * SUBPIXELS, third.b * SUBPIXELS],
-            least: [second.least, third.least],
+            first: each(edges, |edge| edge.value),
+            steps: [each(edges, |edge| edge.a * SUBPIXELS), each(edges, |edge| edge.b * SUBPIXELS)],
+            least: each(edges, |edge| edge.least),
             depth: d0,
-            to_second: d1,
-            to_third: d2,
+            to_second: per_area(d0, d1, area),
+            to_third: per_area(d0, d2, area),
         }
     }
 
@@ -106,30 +69,25 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
     }
 
     #[inline(always)]
-    fn right(&self, [a, b, c]: Self::At) -> Self::At {
-        [a + self.a[0], b + self.a[1], c + self.a[2]]
-    }
-
-    #[inline(always)]
-    fn below(&self, [a, b, c]: Self::At) -> Self::At {
-        [a + self.b[0], b + self.b[1], c + self.b[2]]
+    fn step(&self, at: Self::At, axis: usize) -> Self::At {
+        sum(at, self.steps[axis])
     }
 
     #[inline(always)]
     fn shifts<const N: usize>(&self, sample_positions: &SamplePositions) -> [Self::Shift; N] {
-        let mut shifts = [self.first; N];
+        let (mut shifts, [a, b]) = ([self.first; N], self.steps);
         for (sample, shift) in shifts.iter_mut().enumerate() {
             let [x, y] = sample_positions.shift::<N>(sample);
             for (i, shift) in shift.iter_mut().enumerate() {
-                *shift = (self.a[i] >> 8) * x + (self.b[i] >> 8) * y;
+                *shift = (a[i] >> 8) * x + (b[i] >> 8) * y;
             }
         }
         shifts
     }
 
     #[inline(always)]
-    fn moved(&self, [a, b, c]: Self::At, shift: Self::Shift) -> Self::At {
-        [a + shift[0], b + shift[1], c + shift[2]]
+    fn moved(&self, at: Self::At, shift: Self::Shift) -> Self::At {
+        sum(at, shift)
     }
 
     #[inline(always)]
@@ -138,19 +96,14 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
     }
 
     #[inline(always)]
-    fn functions(&self, lanes: i32x16<S>, by: [i32x16<S>; 2]) -> Option<[f32x16<S>; 2]> {
-        Some([self.edge(1, lanes, by).to_float(), self.edge(2, lanes, by).to_float()])
+    fn function(&self, i: usize, at: Places<'_, S, Self::Shift>) -> f32x16<S> {
+        self.edge(i, at).to_float()
     }
 
     #[inline(always)]
-    fn depths(
-        &self,
-        lanes: i32x16<S>,
-        by: [i32x16<S>; 2],
-        shift: Option<&Self::Shift>,
-    ) -> f32x16<S> {
-        let second = self.edge_in_f64(1, lanes, by, shift);
-        let third = self.edge_in_f64(2, lanes, by, shift);
+    fn depths(&self, at: Places<'_, S, Self::Shift>) -> f32x16<S> {
+        let (second, third) = (in_f64(self.edge(1, at)), in_f64(self.edge(2, at)));
+        let (lanes, ..) = at;
         let (low, high) = of_lanes(self.depth, lanes).widen();
         let to_second = doubles(self.to_second, lanes);
         let to_third = doubles(self.to_third, lanes);
@@ -177,4 +130,142 @@ fn per_area<S: Simd>(from: f32x16<S>, to: f32x16<S>, area: [f64x8<S>; 2]) -> Dou
 fn doubles<S: Simd>([low, high]: Doubles<S>, lanes: i32x16<S>) -> [f64x8<S>; 2] {
     let (first, second) = permute(low, lanes).interleave(permute(high, lanes));
     [first.bitcast(), second.bitcast()]
+}
+
+/// Integer edge functions on the fine grid. A step by one pixel adds a multiple of 4096 to an edge
+/// function, so its integer quotient by 4096 is enough to decide the sign.
+#[derive(Clone, Copy)]
+pub(crate) struct FineEdges<S: Simd> {
+    /// The edge functions at the first pixel, minus their smallest covered values.
+    first: [i32x16<S>; 3],
+    /// The steps of the quotients for one pixel to the right and one pixel down.
+    steps: [[i32x16<S>; 3]; 2],
+    gradients: [f32x16<S>; 3],
+}
+
+/// log2 of the grid steps per pixel on the fine grid.
+const FINE: u32 = Grid::Fine.parts().trailing_zeros();
+
+impl<S: Simd> Edges<S> for FineEdges<S> {
+    /// The quotients.
+    type At = [i32x16<S>; 3];
+    /// The changes of the quotients and of the edge functions.
+    type Shift = ([i32x16<S>; 3], [f32x16<S>; 3]);
+    const GRID: Grid = Grid::Fine;
+
+    #[inline(always)]
+    fn new(_: S, corners: Corners<S>, boxes: Boxes<S>, [d0, d1, d2]: [f32x16<S>; 3]) -> Self {
+        let (edges, area) = whole_edges(Self::GRID, corners, boxes);
+        let area = area.to_float::<f32x16<S>>();
+        Self {
+            first: each(edges, |edge| edge.value),
+            steps: [each(edges, |edge| edge.a), each(edges, |edge| edge.b)],
+            gradients: [d0, (d1 - d0) / area, (d2 - d0) / area],
+        }
+    }
+
+    #[inline(always)]
+    fn first(&self) -> Self::At {
+        each(self.first, |edge| edge >> FINE)
+    }
+
+    #[inline(always)]
+    fn step(&self, at: Self::At, axis: usize) -> Self::At {
+        sum(at, self.steps[axis])
+    }
+
+    #[inline(always)]
+    fn shifts<const N: usize>(&self, sample_positions: &SamplePositions) -> [Self::Shift; N] {
+        let (mut shifts, [a, b]) = ([(self.first, self.gradients); N], self.steps);
+        for (sample, (quotients, edges)) in shifts.iter_mut().enumerate() {
+            let [x, y] = Grid::Fine.offset(sample_positions.shift::<N>(sample));
+            for i in 0..3 {
+                // The quotient of the sum can differ by one from the sum of the quotients, so it is
+                // computed here.
+                let gain = a[i] * x + b[i] * y;
+                quotients[i] = ((self.first[i] + gain) >> FINE) - (self.first[i] >> FINE);
+                edges[i] = gain.to_float();
+            }
+        }
+        shifts
+    }
+
+    #[inline(always)]
+    fn moved(&self, at: Self::At, (more, _): Self::Shift) -> Self::At {
+        sum(at, more)
+    }
+
+    #[inline(always)]
+    fn covered(&self, [a, b, c]: Self::At) -> mask32x16<S> {
+        (a | b | c).simd_ge(0)
+    }
+
+    #[inline(always)]
+    fn function(
+        &self,
+        i: usize,
+        (lanes, [dx, dy], shift): Places<'_, S, Self::Shift>,
+    ) -> f32x16<S> {
+        let [a, b] = [permute(self.steps[0][i], lanes), permute(self.steps[1][i], lanes)];
+        let at = permute(self.first[i], lanes) + ((a * dx + b * dy) << FINE);
+        let at = at.to_float::<f32x16<S>>();
+        match shift {
+            Some((_, gain)) => at + of_lanes(gain[i], lanes),
+            None => at,
+        }
+    }
+
+    #[inline(always)]
+    fn depths(&self, at: Places<'_, S, Self::Shift>) -> f32x16<S> {
+        linear_depths(self, self.gradients, at)
+    }
+}
+
+#[inline(always)]
+fn sum<S: Simd>([a, b, c]: [i32x16<S>; 3], by: [i32x16<S>; 3]) -> [i32x16<S>; 3] {
+    [a + by[0], b + by[1], c + by[2]]
+}
+
+/// An integer edge function of sixteen triangles.
+#[derive(Clone, Copy)]
+struct WholeEdge<S: Simd> {
+    /// The value minus the smallest covered value.
+    value: i32x16<S>,
+    least: i32x16<S>,
+    /// The steps for one grid step to the right and one down.
+    a: i32x16<S>,
+    b: i32x16<S>,
+}
+
+/// Sets up the edge functions of triangles, relative to the centres of the first pixels of their
+/// boxes, and their areas. An area of 0 counts as 1, which keeps quotients finite.
+#[inline(always)]
+fn whole_edges<S: Simd>(
+    grid: Grid,
+    [p, q, r]: Corners<S>,
+    [left, top, ..]: Boxes<S>,
+) -> ([WholeEdge<S>; 3], i32x16<S>) {
+    let (half, log2) = (grid.parts() / 2, grid.parts().trailing_zeros());
+    let (cx, cy) = ((left << log2) + half, (top << log2) + half);
+    let [p, q, r] = each([p, q, r], |[x, y]| [x - cx, y - cy]);
+    let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    let (zero, one) = (i32x16::splat(left.simd, 0), i32x16::splat(left.simd, 1));
+    let sign = area.simd_lt(0).select(zero - one, one);
+    let edges = [whole_edge(q, r, sign), whole_edge(r, p, sign), whole_edge(p, q, sign)];
+    (edges, (area * sign).max(1))
+}
+
+/// Computes an edge function as in `coverage`, multiplied by the sign of the area: a = p.y - q.y,
+/// b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0.
+#[inline(always)]
+fn whole_edge<S: Simd>(
+    [px, py]: [i32x16<S>; 2],
+    [qx, qy]: [i32x16<S>; 2],
+    sign: i32x16<S>,
+) -> WholeEdge<S> {
+    let (a, b) = ((py - qy) * sign, (qx - px) * sign);
+    let on_edge = a.simd_gt(0) | (a.simd_eq(0) & b.simd_gt(0));
+    let (zero, one) = (i32x16::splat(px.simd, 0), i32x16::splat(px.simd, 1));
+    let least = on_edge.select(zero, one);
+    WholeEdge { value: zero - (a * px + b * py) - least, least, a, b }
 }
