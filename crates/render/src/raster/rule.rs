@@ -8,9 +8,7 @@ use fearless_simd::Simd;
 
 use super::queue::SMALL;
 use super::small_edges::{Edges, FineEdges, FloatEdges, UsualEdges, WholeEdges};
-use crate::frame::variants::Variants;
 use crate::screen::coverage::Grid;
-use marraztu_core::accuracy::Coverage;
 
 /// A rule of coverage.
 pub(crate) trait Rule: Copy {
@@ -64,16 +62,16 @@ impl Rule for Unsnapped {
 /// Evaluates an expression with the rule of coverage of a frame.
 macro_rules! with_rule {
     ($variants:expr, $rule:ident => $what:expr) => {
-        match $crate::raster::rule::kind($variants) {
-            $crate::raster::rule::Kind::Usual => {
+        match ($variants.coverage, $variants.grid()) {
+            (marraztu_core::accuracy::Coverage::Exact, $crate::screen::coverage::Grid::Usual) => {
                 type $rule = $crate::raster::rule::Usual;
                 $what
             }
-            $crate::raster::rule::Kind::Fine => {
+            (marraztu_core::accuracy::Coverage::Exact, $crate::screen::coverage::Grid::Fine) => {
                 type $rule = $crate::raster::rule::Fine;
                 $what
             }
-            $crate::raster::rule::Kind::Unsnapped => {
+            _ => {
                 type $rule = $crate::raster::rule::Unsnapped;
                 $what
             }
@@ -81,19 +79,3 @@ macro_rules! with_rule {
     };
 }
 pub(crate) use with_rule;
-
-/// The rules of coverage as values.
-pub(crate) enum Kind {
-    Usual,
-    Fine,
-    Unsnapped,
-}
-
-/// Returns the rule of a frame.
-pub(crate) fn kind(variants: Variants) -> Kind {
-    match (variants.coverage, variants.grid()) {
-        (Coverage::Exact, Grid::Usual) => Kind::Usual,
-        (Coverage::Exact, Grid::Fine) => Kind::Fine,
-        _ => Kind::Unsnapped,
-    }
-}
