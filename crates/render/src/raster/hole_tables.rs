@@ -14,13 +14,9 @@ use marraztu_core::accuracy::Filter;
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{Model, Texture};
 
-/// The tables of the draws of a frame.
+/// The table of each draw of a frame, if the draw has holes. Draws may share one.
 #[derive(Debug, Default)]
-pub(crate) struct HoleTables {
-    tables: Vec<HoleTable>,
-    /// The index of each draw's table, if the draw has holes.
-    of_draws: Vec<Option<usize>>,
-}
+pub(crate) struct HoleTables(Vec<Option<Shared<HoleTable>>>);
 
 /// The classification of a mesh's triangles with its surfaces.
 #[derive(Debug)]
@@ -30,8 +26,6 @@ struct HoleTable {
     surfaces: Vec<Option<Surface>>,
     filter: Filter,
     holes: Vec<Holes>,
-    /// Whether the current frame uses the table.
-    is_used: bool,
 }
 
 /// The inputs that determine the holes of a surface.
@@ -84,15 +78,13 @@ impl HoleTable {
             surfaces: with_holes(draw, plan).map(|it| it.and_then(Surface::of)).collect(),
             filter: plan.filter,
             holes: (0..mesh.triangle_count()).into_par_iter().with_min_len(4096).map(of).collect(),
-            is_used: true,
         }
     }
 
     fn is_of(&self, draw: &Draw, plan: &FramePlan) -> bool {
-        let same = |(own, shaded): (&Option<Surface>, Option<&Shaded>)| match (own, shaded) {
-            (Some(own), Some(shaded)) => own.is_of(shaded),
-            (None, None) => true,
-            (Some(_), None) | (None, Some(_)) => false,
+        let same = |(own, shaded): (&Option<Surface>, Option<&Shaded>)| match own {
+            Some(own) => shaded.is_some_and(|shaded| own.is_of(shaded)),
+            None => shaded.is_none(),
         };
         Shared::same(&self.model, &draw.model)
             && self.filter == plan.filter
@@ -104,48 +96,22 @@ impl HoleTable {
 impl HoleTables {
     /// Creates the tables that a frame needs, and drops all others.
     pub(crate) fn update(&mut self, plan: &FramePlan) {
-        let last = std::mem::take(&mut self.of_draws);
-        self.tables.iter_mut().for_each(|table| table.is_used = false);
+        let last = std::mem::take(&mut self.0);
         for (i, draw) in plan.draws.iter().enumerate() {
-            if !draw.filled || with_holes(draw, plan).all(|surface| surface.is_none()) {
-                self.of_draws.push(None);
-                continue;
-            }
-            // Usually the table of the last frame still fits.
-            let last = last.get(i).copied().flatten();
-            let found = last.filter(|table| self.tables[*table].is_of(draw, plan));
-            let found = found.or_else(|| self.tables.iter().position(|it| it.is_of(draw, plan)));
-            let table = found.unwrap_or_else(|| {
-                self.tables.push(HoleTable::new(draw, plan));
-                self.tables.len() - 1
-            });
-            self.tables[table].is_used = true;
-            self.of_draws.push(Some(table));
-        }
-        if self.tables.iter().any(|table| !table.is_used) {
-            self.forget_unused();
-        }
-    }
-
-    fn forget_unused(&mut self) {
-        let mut left = 0;
-        let places: Vec<usize> = self
-            .tables
-            .iter()
-            .map(|table| {
-                left += usize::from(table.is_used);
-                left.saturating_sub(1)
-            })
-            .collect();
-        self.tables.retain(|table| table.is_used);
-        for table in self.of_draws.iter_mut().flatten() {
-            *table = places[*table];
+            let table = if !draw.filled || with_holes(draw, plan).all(|it| it.is_none()) {
+                None
+            } else {
+                // Usually the table of the last frame still fits.
+                let mut known = last.get(i).into_iter().chain(&self.0).chain(&last).flatten();
+                let found = known.find(|table| table.is_of(draw, plan)).cloned();
+                Some(found.unwrap_or_else(|| Shared::new(HoleTable::new(draw, plan))))
+            };
+            self.0.push(table);
         }
     }
 
     /// Returns the classification of each triangle of a draw; empty if the draw has no holes.
     pub(crate) fn of_draw(&self, draw: usize) -> &[Holes] {
-        let table = self.of_draws.get(draw).copied().flatten();
-        table.map_or(&[], |table| &self.tables[table].holes)
+        self.0.get(draw).and_then(Option::as_ref).map_or(&[], |table| &table.holes)
     }
 }
