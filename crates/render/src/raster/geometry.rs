@@ -10,13 +10,12 @@ use glam::DMat4;
 use rayon::prelude::*;
 
 use super::bins::Bins;
-use super::edges::{self, DrawnNormal};
+use super::edges;
 use super::hit_colors::CornerLight;
-use super::hole_tables::HoleTables;
 use super::lines::LineNumber;
-use super::parts::{Parts, share_out};
+use super::parts::{Inputs, Parts, share_out};
 use super::rule::{Rule as _, with_rule};
-use super::starts::{DrawCorners, Start, number};
+use super::starts::{Start, number};
 use super::vertex_variants;
 use super::vertices::Vertices;
 use super::work::{FEW, FEW_VERTICES, What, WorkList, piece_of};
@@ -38,18 +37,10 @@ use marraztu_core::scene::Model;
 /// The geometry of a frame on the screen.
 #[derive(Debug, Default)]
 pub(crate) struct ScreenGeometry {
-    /// The vertices of all draws, in the draw order of their meshes.
-    vertices: Vertices,
+    inputs: Inputs,
     /// The inputs that the vertices of each draw were made from; `None` if they must be
     /// transformed.
     held: Vec<Option<Held>>,
-    starts: Vec<Start>,
-    /// The number of an [`Outline`](super::facing::Outline) for each polygon of draws with edges.
-    outlines: Vec<AtomicU8>,
-    /// The drawn normals.
-    normals: Vec<DrawnNormal>,
-    /// The classification of triangles by their holes.
-    holes: HoleTables,
     /// The vertices to transform.
     placing: WorkList<()>,
     /// The triangles to set up, and the polygons to find outlines of.
@@ -121,7 +112,7 @@ impl ScreenGeometry {
 
     /// Assigns the first numbers of each draw.
     fn number(&mut self, plan: &FramePlan) {
-        self.starts.clear();
+        self.inputs.starts.clear();
         let mut start = Start::default();
         let (mut vertex, mut outline) = (0, 0);
         for draw in &plan.draws {
@@ -132,7 +123,7 @@ impl ScreenGeometry {
             vertex += mesh.draw_order().x.len();
             start.vertex_end = vertex;
             outline += if draw.lines.edges { mesh.polygon_count() } else { 0 };
-            self.starts.push(start);
+            self.inputs.starts.push(start);
         }
         // Only object-wise blending needs an order of draws.
         self.far_to_near.clear();
@@ -141,11 +132,12 @@ impl ScreenGeometry {
         }
         // From here on, vertices that are not reused are overwritten.
         self.held.resize_with(plan.draws.len(), || None);
-        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
+        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.inputs.starts)
+        {
             *held = held.take().filter(|held| held.is_of(draw, plan, start.vertex));
         }
-        self.vertices.usual.resize(vertex, ScreenVertex::default());
-        self.outlines.resize_with(outline, AtomicU8::default);
+        self.inputs.vertices.usual.resize(vertex, ScreenVertex::default());
+        self.inputs.outlines.resize_with(outline, AtomicU8::default);
     }
 
     /// Transforms the vertices of all draws in one parallel section.
@@ -157,9 +149,9 @@ impl ScreenGeometry {
             self.placing.add((i, draw), ((), order.x.len()), plan, position);
         }
         // The output slices of all pieces, in the order of adding.
-        let (mut rest, mut pieces) = (&mut self.vertices.usual[..], Vec::new());
+        let (mut rest, mut pieces) = (&mut self.inputs.vertices.usual[..], Vec::new());
         pieces.reserve_exact(self.placing.len());
-        for (start, held) in self.starts.iter().zip(&self.held) {
+        for (start, held) in self.inputs.starts.iter().zip(&self.held) {
             let (own, others) = rest.split_at_mut(start.vertex_end - start.vertex);
             rest = others;
             if held.is_none() {
@@ -185,14 +177,15 @@ impl ScreenGeometry {
         if watch.is_given_up() {
             return;
         }
-        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
+        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.inputs.starts)
+        {
             held.get_or_insert_with(|| Held::new(draw, plan, start.vertex));
         }
     }
 
     /// Transforms vertices to a finer grid, or to unsnapped pixels, if the settings need them.
     fn place_otherwise(&mut self, level: Level, plan: &FramePlan) {
-        let Vertices { usual, fine, unsnapped } = &mut self.vertices;
+        let Vertices { usual, fine, unsnapped } = &mut self.inputs.vertices;
         fine.clear();
         unsnapped.clear();
         let grid = plan.variants.grid();
@@ -203,7 +196,7 @@ impl ScreenGeometry {
         fine.resize(if is_fine { usual.len() } else { 0 }, ScreenVertex::default());
         unsnapped.resize(if is_fine { 0 } else { usual.len() }, [0.0; 2]);
         // Draws are transformed one after the other here, each in parallel pieces.
-        for (draw, start) in plan.draws.iter().zip(&self.starts) {
+        for (draw, start) in plan.draws.iter().zip(&self.inputs.starts) {
             let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
             let screen = screen.seen_from(grid.offset(plan.shift));
             let (order, own) = (draw.model.mesh.draw_order(), start.vertex..start.vertex_end);
@@ -263,16 +256,15 @@ impl ScreenGeometry {
                 bins.clear_transparent(transparent, plan.size);
             }
         }
-        self.holes.update(plan);
-        let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
-        let parts = parts.with_holes(&self.holes).with_light(light);
+        self.inputs.holes.update(plan);
+        let parts = Parts { plan, inputs: &self.inputs, light };
         share_out(level, self.set_up.sorted(), &parts, &mut self.bins, watch);
     }
 
     /// Sets up lines into bins.
     fn add_lines(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
         self.lines.clear();
-        self.normals.clear();
+        self.inputs.normals.clear();
         let mut next = 0;
         for (i, draw) in plan.draws.iter().enumerate() {
             if !watch.goes_on() {
@@ -280,11 +272,11 @@ impl ScreenGeometry {
             }
             let edges = if draw.lines.edges { draw.model.mesh.edge_order().edges.len() } else { 0 };
             // Edges come first, then normals: the number of a line tells its kind.
-            let start = &mut self.starts[i];
+            let start = &mut self.inputs.starts[i];
             (start.line, start.normal) = (next, next + number(edges));
-            start.normal_place = self.normals.len();
-            edges::list_normals(draw, &mut self.normals);
-            let normals = &self.normals[start.normal_place..];
+            start.normal_place = self.inputs.normals.len();
+            edges::list_normals(draw, &mut self.inputs.normals);
+            let normals = &self.inputs.normals[start.normal_place..];
             next = start.normal + number(normals.len());
             start.line_end = next;
             let position = |edge| What::Edges.position(draw, edge);
@@ -293,8 +285,7 @@ impl ScreenGeometry {
             self.lines.add((i, draw), (What::Normals, normals.len()), plan, position);
         }
         if self.lines.len() > 0 {
-            let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
-            let parts = parts.with_normals(&self.normals);
+            let parts = Parts { plan, inputs: &self.inputs, light: None };
             share_out(level, self.lines.sorted(), &parts, &mut self.bins, watch);
         }
     }
@@ -337,12 +328,12 @@ impl ScreenGeometry {
     /// Returns the draw of a triangle, and the draw's first numbers.
     #[inline(always)]
     pub(crate) fn draw_of(&self, triangle: u32) -> (u32, Start) {
-        self.corners().draw_of(triangle)
+        self.inputs.corners().draw_of(triangle)
     }
 
     /// Returns the number after the last triangle's.
     pub(crate) fn triangle_numbers(&self) -> usize {
-        self.starts.last().map_or(0, |start| start.end as usize)
+        self.inputs.starts.last().map_or(0, |start| start.end as usize)
     }
 
     /// Returns the triangles of a triangle's draw, and the draw's position in the order from far to
@@ -355,11 +346,7 @@ impl ScreenGeometry {
 
     /// Returns the corners of a draw's triangles, on the finer grid if there is one.
     pub(crate) fn corners_of(&self, draw: u32) -> &[ScreenVertex] {
-        self.corners().of(draw as usize)
-    }
-
-    fn corners(&self) -> DrawCorners<'_> {
-        DrawCorners { corners: self.vertices.corners(), starts: &self.starts }
+        self.inputs.corners().of(draw as usize)
     }
 
     /// Returns the colour of a line.
@@ -372,29 +359,25 @@ impl ScreenGeometry {
 
     /// Returns whether a line is an edge and not a normal.
     pub(crate) fn is_edge(&self, line: LineNumber) -> bool {
-        line.line() < self.starts[self.draw_of_line(line)].normal
+        line.line() < self.inputs.starts[self.draw_of_line(line)].normal
     }
 
     /// Returns the draw of a line, and the polygon it is drawn for.
     pub(crate) fn line_seen(&self, plan: &FramePlan, line: LineNumber) -> Option<(u32, u32)> {
         let draw = self.draw_of_line(line);
-        let start = self.starts[draw];
+        let start = self.inputs.starts[draw];
         let polygon = match line.line().checked_sub(start.normal) {
-            Some(normal) => self.normals[start.normal_place + normal as usize].polygon,
+            Some(normal) => self.inputs.normals[start.normal_place + normal as usize].polygon,
             None => {
-                let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
-                edges::polygon_of(
-                    &plan.draws[draw],
-                    line.line() - start.line,
-                    parts.outlines_of(draw),
-                )?
+                let outlines = self.inputs.outlines_of(plan, draw);
+                edges::polygon_of(&plan.draws[draw], line.line() - start.line, outlines)?
             }
         };
         Some((number(draw), polygon))
     }
 
     fn draw_of_line(&self, line: LineNumber) -> usize {
-        self.starts.partition_point(|start| start.line_end <= line.line())
+        self.inputs.starts.partition_point(|start| start.line_end <= line.line())
     }
 
     /// Returns the number of triangles that face the observer and may cover a pixel.

@@ -21,7 +21,7 @@ use crate::accel::CLUSTER;
 use crate::cancellation::Cancellation;
 use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
-use crate::screen::clip::{Screen, ScreenVertex};
+use crate::screen::clip::Screen;
 use crate::work_stealing::{WorkStealing, own, together};
 
 /// Runs the work on all threads, each with separate bins, unless cancelled.
@@ -36,7 +36,7 @@ pub(crate) fn share_out(
     let all: Vec<Mutex<&mut Bins>> = bins.iter_mut().map(Mutex::new).collect();
     together(all.len(), || {
         let bins = &mut own(&all);
-        let brush = &mut Brush::new(parts.light, parts.corners());
+        let brush = &mut Brush::new(parts.light, parts.inputs.corners());
         while let Some(work) = shares.next().map(|i| &work[i]) {
             if !watch.goes_on() {
                 return;
@@ -48,89 +48,83 @@ pub(crate) fn share_out(
     });
 }
 
-/// The inputs of all threads that fill bins.
-#[derive(Debug)]
-pub(crate) struct Parts<'a> {
-    plan: &'a FramePlan,
-    vertices: &'a Vertices,
-    starts: &'a [Start],
-    outlines: &'a [AtomicU8],
-    holes: Option<&'a HoleTables>,
-    normals: &'a [DrawnNormal],
-    /// The light at corners, if hits have colours.
-    light: Option<&'a dyn CornerLight>,
+/// What all threads read while they fill bins.
+#[derive(Debug, Default)]
+pub(crate) struct Inputs {
+    /// The vertices of all draws, in the draw order of their meshes.
+    pub(crate) vertices: Vertices,
+    pub(crate) starts: Vec<Start>,
+    /// The number of an [`Outline`](super::facing::Outline) for each polygon of draws with edges.
+    pub(crate) outlines: Vec<AtomicU8>,
+    /// The drawn normals.
+    pub(crate) normals: Vec<DrawnNormal>,
+    /// The classification of triangles by their holes.
+    pub(crate) holes: HoleTables,
 }
 
-impl<'a> Parts<'a> {
-    pub(crate) fn new(
-        plan: &'a FramePlan,
-        vertices: &'a Vertices,
-        starts: &'a [Start],
-        outlines: &'a [AtomicU8],
-    ) -> Self {
-        Self { plan, vertices, starts, outlines, holes: None, normals: &[], light: None }
+impl Inputs {
+    /// Returns the corners of all triangles.
+    pub(crate) fn corners(&self) -> DrawCorners<'_> {
+        DrawCorners { corners: self.vertices.corners(), starts: &self.starts }
     }
 
-    /// Adds the classification of holes.
-    pub(crate) fn with_holes(self, holes: &'a HoleTables) -> Self {
-        Self { holes: Some(holes), ..self }
+    /// Returns the outlines of a draw; empty if its edges are not drawn.
+    pub(crate) fn outlines_of(&self, plan: &FramePlan, draw: usize) -> &[AtomicU8] {
+        let Draw { model, lines, .. } = &plan.draws[draw];
+        let count = if lines.edges { model.mesh.polygon_count() } else { 0 };
+        &self.outlines[self.starts[draw].outline..][..count]
     }
+}
 
-    /// Adds the drawn normals.
-    pub(crate) fn with_normals(self, normals: &'a [DrawnNormal]) -> Self {
-        Self { normals, ..self }
-    }
+/// Sets up the draws of a plan into bins.
+#[derive(Debug)]
+pub(crate) struct Parts<'a> {
+    pub(crate) plan: &'a FramePlan,
+    pub(crate) inputs: &'a Inputs,
+    /// The light at corners, if hits have colours.
+    pub(crate) light: Option<&'a dyn CornerLight>,
+}
 
-    /// Adds the light for colouring hits.
-    pub(crate) fn with_light(self, light: Option<&'a dyn CornerLight>) -> Self {
-        Self { light, ..self }
-    }
-
+impl Parts<'_> {
     fn run(&self, level: Level, work: &Work<What>, bins: &mut Bins, brush: &mut Brush<'_>) {
         let Work { draw: i, what, from, to, .. } = *work;
-        let draw = &self.plan.draws[i];
+        let Self { plan, inputs, .. } = *self;
+        let (draw, start) = (&plan.draws[i], inputs.starts[i]);
         let mesh = &draw.model.mesh;
-        let (vertices, viewport) = (self.vertices_of(i), self.plan.viewport);
+        let vertices = &inputs.vertices.usual[start.vertex..start.vertex_end];
+        let outlines = inputs.outlines_of(plan, i);
         match what {
             What::Triangles => {
                 // The screen corners of this draw, on the grid and with the variants of the frame.
-                let pipelines = &self.plan.pipelines;
-                let corners = self.corners().of(i);
-                let setup = Setup::new(draw, pipelines, corners, viewport, self.starts[i].number);
-                let mut setup = setup.seen_from(self.plan.shift, self.plan.variants.grid());
-                setup.coverage = self.plan.variants.coverage;
-                setup.holes = self.holes.map_or(&[], |holes| holes.of_draw(i));
-                if !self.vertices.unsnapped.is_empty() {
-                    setup.unsnapped = &self.vertices.unsnapped[self.starts[i].vertex..];
-                }
+                let mut setup = Setup::new(plan, draw, inputs.corners().of(i), start.number);
+                setup.unsnapped = inputs.vertices.unsnapped.get(start.vertex..).unwrap_or_default();
+                setup.holes = inputs.holes.of_draw(i);
                 // Cluster culling removes whole ranges before any triangle is set up.
                 let order = mesh.draw_order();
                 let triangles = &order.triangles[from..to];
-                with_rule!(self.plan.variants, R => if order.clusters.is_empty() {
-                    setup.run::<R>(level, triangles, pipelines, (bins, brush));
+                with_rule!(plan.variants, R => if order.clusters.is_empty() {
+                    setup.run::<R>(level, triangles, (bins, brush));
                 } else {
                     let clusters = &order.clusters[from / CLUSTER..];
-                    let culling = Culling::new(draw, setup.screen, self.plan.size);
+                    let culling = Culling::new(draw, setup.screen, plan.size);
                     culling.each_left(clusters, triangles, |some| {
-                        setup.run::<R>(level, some, pipelines, (bins, brush));
+                        setup.run::<R>(level, some, (bins, brush));
                     });
                 });
             }
             What::Facing => {
                 let triangles = &mesh.draw_order().triangles[from..to];
-                let facing = Facing::new(draw, vertices, viewport);
-                facing.of_triangles(level, triangles, self.outlines_of(i));
+                let facing = Facing::new(draw, vertices, plan.viewport);
+                facing.of_triangles(level, triangles, outlines);
             }
             What::FacingOneByOne => {
-                let facing = Facing::new(draw, vertices, viewport);
-                for polygon in from..to {
-                    facing.one(number(polygon), self.outlines_of(i));
-                }
+                let facing = Facing::new(draw, vertices, plan.viewport);
+                (from..to).for_each(|polygon| facing.one(number(polygon), outlines));
             }
             What::Normals => {
-                let Start { normal, normal_place, .. } = self.starts[i];
-                let own = &self.normals[normal_place..][from..to];
-                self.edge_setup(i).add_normals(level, (normal + number(from), own), bins);
+                let normals = &inputs.normals[start.normal_place..][from..to];
+                let first = start.normal + number(from);
+                self.edge_setup(i).add_normals(level, (first, normals), bins);
             }
             What::Edges => {
                 self.edge_setup(i).run(level, &mesh.edge_order().edges[from..to], bins);
@@ -138,30 +132,13 @@ impl<'a> Parts<'a> {
         }
     }
 
-    pub(crate) fn edge_setup(&self, i: usize) -> EdgeSetup<'a> {
-        let plan = self.plan;
-        let (draw, first) = (&plan.draws[i], self.starts[i].line);
+    fn edge_setup(&self, i: usize) -> EdgeSetup<'_> {
+        let Self { plan, inputs, .. } = *self;
+        let (draw, first) = (&plan.draws[i], inputs.starts[i].line);
         let grid = plan.variants.grid();
         let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
         let screen = screen.seen_from(grid.offset(plan.shift));
-        let (vertices, outlines) = (self.corners().of(i), self.outlines_of(i));
+        let (vertices, outlines) = (inputs.corners().of(i), inputs.outlines_of(plan, i));
         EdgeSetup { draw, vertices, screen, grid, outlines, first, width: plan.line_width }
-    }
-
-    fn vertices_of(&self, draw: usize) -> &'a [ScreenVertex] {
-        let Start { vertex, vertex_end, .. } = self.starts[draw];
-        &self.vertices.usual[vertex..vertex_end]
-    }
-
-    /// Returns the corners of all triangles.
-    fn corners(&self) -> DrawCorners<'a> {
-        DrawCorners { corners: self.vertices.corners(), starts: self.starts }
-    }
-
-    /// Returns the outlines of a draw; empty if its edges are not drawn.
-    pub(crate) fn outlines_of(&self, draw: usize) -> &'a [AtomicU8] {
-        let Draw { model, lines, .. } = &self.plan.draws[draw];
-        let count = if lines.edges { model.mesh.polygon_count() } else { 0 };
-        &self.outlines[self.starts[draw].outline..][..count]
     }
 }

@@ -19,10 +19,10 @@ use super::small;
 use super::tile_queues::FIRST_SIZE;
 use super::vertices::{fetch, fetch_vertices};
 use crate::accel::{DrawOrder, DrawTriangle};
-use crate::frame::Viewport;
+use crate::frame::FramePlan;
 use crate::frame::draw::{Back, Draw, Pipeline, Shaded};
 use crate::screen::clip::{Screen, ScreenVertex};
-use crate::screen::coverage::{Grid, PixelBox, doubled_area};
+use crate::screen::coverage::{PixelBox, doubled_area};
 use crate::screen::sample_positions::FOUR;
 use crate::texture::opacity::Holes;
 use marraztu_core::accuracy::Coverage;
@@ -34,22 +34,23 @@ pub(crate) const NARROW: i32 = 1 << 14;
 /// The inputs of triangle setup for one draw.
 #[derive(Debug)]
 pub(crate) struct Setup<'a> {
-    pub(crate) draw: &'a Draw,
-    pub(crate) order: &'a DrawOrder,
-    pub(crate) vertices: &'a [ScreenVertex],
+    draw: &'a Draw,
+    pipelines: &'a [Pipeline],
+    order: &'a DrawOrder,
+    vertices: &'a [ScreenVertex],
     pub(crate) screen: Screen,
     /// The number of the draw's first triangle in the frame.
-    pub(crate) base: u32,
+    base: u32,
     /// Whether triangles must be checked one by one, because some are not drawn, need the alpha
     /// test or are transparent.
-    pub(crate) choosy: bool,
+    choosy: bool,
     /// The vertices in pixels before snapping, if the rule of coverage needs them.
     pub(crate) unsnapped: &'a [[f32; 2]],
-    pub(crate) coverage: Coverage,
+    coverage: Coverage,
     /// The classification of triangles by their holes, if any has holes.
     pub(crate) holes: &'a [Holes],
     /// Whether all drawn triangles are transparent.
-    pub(crate) transparent: bool,
+    transparent: bool,
 }
 
 /// The possibly visible ones of sixteen triangles.
@@ -66,7 +67,7 @@ struct Visible<S: Simd> {
 
 /// The kind of drawing of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+enum Kind {
     Not,
     Plain,
     Cutout,
@@ -74,13 +75,14 @@ pub(crate) enum Kind {
 }
 
 impl<'a> Setup<'a> {
+    /// Prepares a draw of a plan, given its vertices and the number of its first triangle.
     pub(crate) fn new(
+        plan: &'a FramePlan,
         draw: &'a Draw,
-        pipelines: &[Pipeline],
         vertices: &'a [ScreenVertex],
-        viewport: Viewport,
         base: u32,
     ) -> Self {
+        let (pipelines, grid) = (&plan.pipelines, plan.variants.grid());
         let transparent =
             draw.uniform.is_some_and(|pipeline| pipelines[pipeline as usize].opacity().is_some());
         // If no triangle differs from the others, none has to be looked at separately.
@@ -91,26 +93,20 @@ impl<'a> Setup<'a> {
                     pipeline.is_cutout() || (!transparent && pipeline.opacity().is_some())
                 })
             });
-        let screen = Screen::new(draw.clip_from_object, viewport);
-        let order = draw.model.mesh.draw_order();
+        let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
         Self {
             draw,
-            order,
+            pipelines,
+            order: draw.model.mesh.draw_order(),
             vertices,
-            screen,
+            screen: screen.seen_from(grid.offset(plan.shift)),
             base,
             choosy,
             transparent,
             unsnapped: &[],
-            coverage: Coverage::Exact,
+            coverage: plan.variants.coverage,
             holes: &[],
         }
-    }
-
-    /// Returns the same setup for vertices on a grid, relative to a sample with this offset in
-    /// 1/256 pixel.
-    pub(crate) fn seen_from(self, shift: [i32; 2], grid: Grid) -> Self {
-        Self { screen: self.screen.on(grid).seen_from(grid.offset(shift)), ..self }
     }
 
     /// Sets up some of the draw's triangles into bins.
@@ -118,13 +114,12 @@ impl<'a> Setup<'a> {
         &self,
         level: Level,
         triangles: &[DrawTriangle],
-        pipelines: &[Pipeline],
         into: (&mut Bins, &mut Brush<'_>),
     ) {
         if into.0.sample_positions.are_many() {
-            dispatch!(level, simd => self.all::<_, R, FOUR>(simd, triangles, pipelines, into));
+            dispatch!(level, simd => self.all::<_, R, FOUR>(simd, triangles, into));
         } else {
-            dispatch!(level, simd => self.all::<_, R, 1>(simd, triangles, pipelines, into));
+            dispatch!(level, simd => self.all::<_, R, 1>(simd, triangles, into));
         }
     }
 
@@ -133,7 +128,6 @@ impl<'a> Setup<'a> {
         &self,
         simd: S,
         triangles: &[DrawTriangle],
-        pipelines: &[Pipeline],
         (bins, brush): (&mut Bins, &mut Brush<'_>),
     ) {
         for some in triangles.chunks(PACK) {
@@ -142,7 +136,7 @@ impl<'a> Setup<'a> {
                 last[..some.len()].copy_from_slice(some);
                 &last
             });
-            self.sixteen::<S, R, N>(simd, (sixteen, some.len()), pipelines, bins, brush);
+            self.sixteen::<S, R, N>(simd, (sixteen, some.len()), bins, brush);
         }
     }
 
@@ -152,7 +146,6 @@ impl<'a> Setup<'a> {
         &self,
         simd: S,
         (triangles, count): (&[DrawTriangle; PACK], usize),
-        pipelines: &[Pipeline],
         bins: &mut Bins,
         brush: &mut Brush<'_>,
     ) {
@@ -210,7 +203,7 @@ impl<'a> Setup<'a> {
             let front = if self.draw.mirrored { area.simd_gt(0) } else { area.simd_lt(0) };
             let (plain, front) = (plain.to_bitmask(), front.to_bitmask());
             let clockwise = area.simd_gt(0).to_bitmask();
-            for (some, cutout, transparent) in self.kinds(triangles, plain, front, pipelines) {
+            for (some, cutout, transparent) in self.kinds(triangles, plain, front) {
                 if some | cutout != 0 {
                     let plain = mask32x16::from_bitmask(simd, some);
                     let visible = Visible { plain, cutout, clockwise, boxes };
@@ -222,7 +215,7 @@ impl<'a> Setup<'a> {
         }
         // Triangles that need clipping or 64 bits are set up one by one.
         for lane in bits(odd.to_bitmask()) {
-            self.add_odd::<R, N>(&triangles[lane], pipelines, (bins, brush));
+            self.add_odd::<R, N>(&triangles[lane], (bins, brush));
         }
     }
 
@@ -347,14 +340,12 @@ impl<'a> Setup<'a> {
         triangles: &[DrawTriangle; PACK],
         some: u64,
         front: u64,
-        pipelines: &[Pipeline],
     ) -> [(u64, u64, bool); 2] {
         if !self.choosy {
             let (opaque, transparent) = if self.transparent { (0, some) } else { (some, 0) };
             return [(opaque, 0, false), (transparent, 0, true)];
         }
-        let [mut plain, mut cutout, transparent] =
-            self.kinds_one_by_one(triangles, some, pipelines);
+        let [mut plain, mut cutout, transparent] = self.kinds_one_by_one(triangles, some);
         if self.draw.culls_opaque {
             (plain, cutout) = (plain & front, cutout & front);
         }
@@ -362,15 +353,10 @@ impl<'a> Setup<'a> {
     }
 
     /// Returns the masks of triangles drawn without the alpha test, with it, and as transparent.
-    fn kinds_one_by_one(
-        &self,
-        triangles: &[DrawTriangle; PACK],
-        some: u64,
-        pipelines: &[Pipeline],
-    ) -> [u64; 3] {
+    fn kinds_one_by_one(&self, triangles: &[DrawTriangle; PACK], some: u64) -> [u64; 3] {
         let mut kinds = [0; 3];
         for lane in bits(some) {
-            match self.kind(triangles[lane].number, pipelines) {
+            match self.kind(triangles[lane].number) {
                 Kind::Not => {}
                 Kind::Plain => kinds[0] |= 1 << lane,
                 Kind::Cutout => kinds[1] |= 1 << lane,
@@ -384,10 +370,9 @@ impl<'a> Setup<'a> {
     fn add_odd<R: Rule, const N: usize>(
         &self,
         triangle: &DrawTriangle,
-        pipelines: &[Pipeline],
         (bins, brush): (&mut Bins, &mut Brush<'_>),
     ) {
-        let kind = self.kind(triangle.number, pipelines);
+        let kind = self.kind(triangle.number);
         if kind == Kind::Not {
             return;
         }
@@ -401,7 +386,8 @@ impl<'a> Setup<'a> {
                 unsnapped.extend(triangle.vertices.map(|i| self.unsnapped[i as usize]));
             }
         } else {
-            for clip in self.screen.cut(self.clip_corners(triangle.vertices)) {
+            let clip = |vertex: u32| self.screen.clip(self.order.position(vertex));
+            for clip in self.screen.cut(triangle.vertices.map(clip)) {
                 pieces.push(self.screen.piece(clip));
                 if R::UNSNAPPED {
                     unsnapped.push(self.screen.pixels_seen(clip));
@@ -429,12 +415,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// Returns the corners of a triangle in clip space.
-    fn clip_corners(&self, vertices: [u32; 3]) -> [crate::screen::clip::Clip; 3] {
-        vertices.map(|vertex| self.screen.clip(self.order.position(vertex)))
-    }
-
-    pub(crate) fn kind(&self, number: u32, pipelines: &[Pipeline]) -> Kind {
+    fn kind(&self, number: u32) -> Kind {
         let mesh = &self.draw.model.mesh;
         // Excluded polygons first, then the pipeline of the part decides.
         let polygon = mesh.polygon_of(number);
@@ -443,7 +424,7 @@ impl<'a> Setup<'a> {
         }
         match self.draw.part_pipelines[mesh.polygon_parts()[polygon as usize] as usize] {
             None => Kind::Not,
-            Some(pipeline) => match &pipelines[pipeline as usize] {
+            Some(pipeline) => match &self.pipelines[pipeline as usize] {
                 Pipeline::Shaded(Shaded { cutout: Some(_), .. }) => {
                     match self.holes.get(number as usize) {
                         Some(Holes::Nowhere) => Kind::Plain,
@@ -458,7 +439,7 @@ impl<'a> Setup<'a> {
     }
 
     /// Returns whether the back faces of a kind are culled.
-    pub(crate) fn culls_back(&self, kind: Kind) -> bool {
+    fn culls_back(&self, kind: Kind) -> bool {
         self.draw.back == Back::Culled || (kind != Kind::Transparent && self.draw.culls_opaque)
     }
 }
