@@ -124,11 +124,6 @@ impl<S: Simd> Lanes for Eight<S> {
     }
 
     #[inline(always)]
-    fn store_pixels(self, color: Vec3<f64x8<S>>, row: &mut [u32], at: usize) {
-        self.store_pixels_by(color, self.lift(0.5), row, at);
-    }
-
-    #[inline(always)]
     fn store_pixels_by(
         self,
         Vec3([r, g, b]): Vec3<f64x8<S>>,
@@ -157,11 +152,6 @@ impl<S: Simd> Lanes for Eight<S> {
             let parts = (before_rounding(number, threshold) * PARTS).floor();
             store_whole(parts, &mut row[at..at + 8]);
         }
-    }
-
-    #[inline(always)]
-    fn lift(self, constant: f64) -> f64x8<S> {
-        constant.simd_into(self.0)
     }
 
     #[inline(always)]

@@ -63,10 +63,6 @@ impl Lanes for Exact {
         }
     }
 
-    fn lift(self, constant: f64) -> f64 {
-        constant
-    }
-
     fn set(self, number: f64) -> f64 {
         number
     }

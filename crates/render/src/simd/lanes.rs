@@ -1,6 +1,7 @@
 //! Lanes: load several numbers at a time from rows in memory, and store them.
 
 use super::gather::SLOTS;
+use super::number::Number;
 use super::real::Real;
 use super::vec3::Vec3;
 
@@ -15,7 +16,7 @@ pub const BATCH: usize = 240;
 /// Generic code is compiled for each kind of lanes: see [`Kernel`].
 pub trait Lanes: Copy {
     /// The number type in memory.
-    type Number: Copy;
+    type Number: Number;
     /// The vector of [`Self::LANES`] numbers that equations compute with.
     type R: Real;
     /// A vector of [`Self::LANES`] slots.
@@ -33,8 +34,11 @@ pub trait Lanes: Copy {
     /// Loads integers of a row, starting at `at`.
     fn whole(self, row: &[i32], at: usize) -> Self::R;
     /// Stores colours in a row of pixels: red, green, blue and 255, as bytes in this order, each
-    /// rounded like [`Number::byte`](super::Number::byte).
-    fn store_pixels(self, color: Vec3<Self::R>, row: &mut [u32], at: usize);
+    /// rounded like [`Number::byte`].
+    #[inline(always)]
+    fn store_pixels(self, color: Vec3<Self::R>, row: &mut [u32], at: usize) {
+        self.store_pixels_by(color, self.lift(0.5), row, at);
+    }
     /// Stores colours like [`Self::store_pixels`], but each byte is the integer part of 255 times
     /// the number plus a threshold from 0 to 1.
     fn store_pixels_by(self, color: Vec3<Self::R>, threshold: Self::R, row: &mut [u32], at: usize);
@@ -48,7 +52,10 @@ pub trait Lanes: Copy {
         at: usize,
     );
     /// Repeats a constant in all lanes.
-    fn lift(self, constant: f64) -> Self::R;
+    #[inline(always)]
+    fn lift(self, constant: f64) -> Self::R {
+        self.set(Self::Number::from_f64(constant))
+    }
     /// Repeats one number in all lanes.
     fn set(self, number: Self::Number) -> Self::R;
     /// Loads slots for [`Self::pick`].

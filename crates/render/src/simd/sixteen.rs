@@ -9,6 +9,7 @@ use super::gather::{SLOTS, pick};
 use super::lanes::{BATCH, Lanes, PARTS};
 use super::real::Real;
 use super::vec3::Vec3;
+use marraztu_core::base::math::each;
 
 /// Computes in f32, sixteen numbers at a time, with the instruction set `S`.
 #[derive(Clone, Copy, Debug)]
@@ -64,11 +65,6 @@ impl<S: Simd> Lanes for Sixteen<S> {
     }
 
     #[inline(always)]
-    fn store_pixels(self, color: Vec3<f32x16<S>>, row: &mut [u32], at: usize) {
-        self.store_pixels_by(color, Lanes::lift(self, 0.5), row, at);
-    }
-
-    #[inline(always)]
     fn store_pixels_by(
         self,
         color: Vec3<f32x16<S>>,
@@ -76,9 +72,11 @@ impl<S: Simd> Lanes for Sixteen<S> {
         row: &mut [u32],
         at: usize,
     ) {
-        let Vec3([r, g, b]) = color;
-        let byte = |number| lanes_byte(number, threshold);
-        let (r, g, b) = (byte(r), byte(g), byte(b));
+        let [r, g, b] = each(
+            color.0,
+            #[inline(always)]
+            |number| before_rounding(number, threshold).to_int::<i32x16<S>>(),
+        );
         let pixels = r | (g << 8) | (b << 16) | (255 << 24_i32);
         pixels.bitcast::<u32x16<S>>().store_slice(&mut row[at..at + 16]);
     }
@@ -96,12 +94,6 @@ impl<S: Simd> Lanes for Sixteen<S> {
             let parts: i32x16<S> = (before_rounding(number, threshold) * PARTS as f32).to_int();
             parts.bitcast::<u32x16<S>>().store_slice(&mut row[at..at + 16]);
         }
-    }
-
-    #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is meant")]
-    fn lift(self, constant: f64) -> f32x16<S> {
-        (constant as f32).simd_into(self.0)
     }
 
     #[inline(always)]
@@ -123,13 +115,6 @@ impl<S: Simd> Lanes for Sixteen<S> {
     fn any_more(self, a: f32x16<S>, b: f32x16<S>) -> bool {
         a.simd_gt(b).any_true()
     }
-}
-
-/// Computes [`Number::byte`](super::number::Number::byte) in lanes; there, the threshold is one
-/// half.
-#[inline(always)]
-fn lanes_byte<S: Simd>(number: f32x16<S>, threshold: f32x16<S>) -> i32x16<S> {
-    before_rounding(number, threshold).to_int()
 }
 
 /// Computes 255 times a number plus the threshold, which is rounded down to a byte later.
