@@ -250,7 +250,7 @@ impl ScreenGeometry {
             bins.clear(plan.size, self.sample_positions);
             if light.is_some() {
                 // For every thread: one that takes no triangles may still take lines.
-                bins.hits.begin_colors();
+                bins.hits.colored = true;
             }
             if let Some(transparent) = transparent {
                 bins.clear_transparent(transparent, plan.size);
@@ -292,7 +292,7 @@ impl ScreenGeometry {
 
     /// Drops the colours of hits, which belong to the frame that the geometry was built for.
     pub(crate) fn forget_colors(&mut self) {
-        self.bins.iter_mut().for_each(|bins| bins.hits.forget_colors());
+        self.bins.iter_mut().for_each(|bins| bins.hits.colored = false);
     }
 
     /// Distributes the tiles of the picture. Each thread mostly draws triangles it has set up.

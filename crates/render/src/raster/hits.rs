@@ -112,7 +112,7 @@ pub(crate) enum Reach {
 #[derive(Debug)]
 pub(crate) struct Hits {
     /// The columns and rows of the picture.
-    extent: [i32; 2],
+    pub(crate) extent: [i32; 2],
     /// The columns and rows of tiles.
     tiles: [i32; 2],
     /// The last page of each tile.
@@ -122,8 +122,8 @@ pub(crate) struct Hits {
     colors: Vec<ColorRow>,
     /// The number of pages in use.
     used: usize,
-    /// Whether hits have colours.
-    colored: bool,
+    /// Whether hits have colours. If set before hits are added, colours are stored with them.
+    pub(crate) colored: bool,
 }
 
 impl Default for Hits {
@@ -149,28 +149,6 @@ impl Hits {
         self.last.resize(usize::try_from(tiles[0] * tiles[1]).expect("not negative"), FULL);
         self.used = 1;
         self.colored = false;
-    }
-
-    /// Starts to store colours with the added hits.
-    pub(crate) const fn begin_colors(&mut self) {
-        self.colored = true;
-    }
-
-    /// Drops the colours of all hits.
-    pub(crate) const fn forget_colors(&mut self) {
-        self.colored = false;
-    }
-
-    /// Returns whether hits have colours.
-    #[inline(always)]
-    pub(crate) const fn are_colored(&self) -> bool {
-        self.colored
-    }
-
-    /// Returns the columns and rows of the picture.
-    #[inline(always)]
-    pub(crate) const fn extent(&self) -> [i32; 2] {
-        self.extent
     }
 
     /// Returns whether a tile has no hits.

@@ -11,13 +11,14 @@
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _,
-    SimdNarrow as _, SimdWiden as _, f32x16, f64x8, i32x16, i64x8, mask32x16, u32x16,
+    SimdNarrow as _, SimdWiden as _, f32x16, f64x8, i32x16, mask32x16, u32x16,
 };
 
 use super::hits::{Hits, Pixels};
 use crate::screen::clip::ScreenVertex;
 use crate::screen::coverage::{Grid, PixelBox, SUBPIXELS, Snapped};
 use crate::screen::tiles::TILE;
+use crate::simd::in_f64;
 
 /// Half of a pixel on the usual grid.
 const HALF: i32 = SUBPIXELS / 2;
@@ -312,7 +313,7 @@ pub(crate) fn draw_short<S: Simd, const N: usize>(
         for side in 0..lines.width {
             let v = v + side;
             let (x, y) = (steep.select(v, u), steep.select(u, v));
-            let color = hits.are_colored().then(
+            let color = hits.colored.then(
                 #[inline(always)]
                 || u32x16::splat(x.simd, 0),
             );
@@ -338,13 +339,13 @@ impl<S: Simd> Depths<S> {
         let (a_low, a_high) = a.bitcast::<f32x16<S>>().widen();
         let (b_low, b_high) = b.bitcast::<f32x16<S>>().widen();
         let gain = [b_low - a_low, b_high - a_high];
-        Self { from: [a_low, a_high], gain, length: wide(du) }
+        Self { from: [a_low, a_high], gain, length: in_f64(du) }
     }
 
     /// Returns the bits of the depths.
     #[inline(always)]
     fn at(&self, along: i32x16<S>) -> i32x16<S> {
-        let [low, high] = wide(along);
+        let [low, high] = in_f64(along);
         self.half(0, low).narrow(self.half(1, high)).bitcast()
     }
 
@@ -356,12 +357,6 @@ impl<S: Simd> Depths<S> {
         let t = t.simd_gt(1.0).select(one, t);
         self.from[i] + t * self.gain[i]
     }
-}
-
-#[inline(always)]
-fn wide<S: Simd>(x: i32x16<S>) -> [f64x8<S>; 2] {
-    let (low, high): (i64x8<S>, i64x8<S>) = x.widen();
-    [low.to_float(), high.to_float()]
 }
 
 /// Returns the bounding box of the pixels that some of sixteen lines may cover.

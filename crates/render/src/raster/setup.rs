@@ -163,7 +163,7 @@ impl<'a> Setup<'a> {
         let right = ((high_x - (half + least[0])) >> log2) + 1;
         let top = (low_y + (half - 1 - most[1])) >> log2;
         let bottom = ((high_y - (half + least[1])) >> log2) + 1;
-        let [width, height] = bins.hits.extent();
+        let [width, height] = bins.hits.extent;
         let seen = left.simd_lt(right)
             & top.simd_lt(bottom)
             & right.simd_gt(0)
@@ -269,7 +269,7 @@ impl<'a> Setup<'a> {
     ) {
         let [left, top, right, bottom] = boxes;
         let side = (right - left).max(bottom - top);
-        let in_tiles = N > 1 && R::IN_TILES && bins.tile_queues.are_used();
+        let in_tiles = N > 1 && R::IN_TILES && bins.tile_queues.used;
         let tiles = bins.tile_queues.boxes(boxes);
         let mut above = 0;
         let queues = if self.has_small::<R>() { R::QUEUES } else { 0 };
@@ -286,7 +286,7 @@ impl<'a> Setup<'a> {
                 bins.tile_queues.add(queue - FIRST_SIZE, (pack, &tiles), some);
                 continue;
             }
-            let vertices = bins.hits.are_colored().then_some(vertices);
+            let vertices = bins.hits.colored.then_some(vertices);
             if bins.queues[queue].add((pack, vertices), some, count) {
                 small::draw_queue::<S, R, N>(side.simd, queue, bins, brush);
             }
@@ -301,7 +301,7 @@ impl<'a> Setup<'a> {
                 let own = each(triangles[lane].vertices, |i| self.unsnapped[i as usize]);
                 bins.unsnapped.push(own);
             }
-            if N == 1 && bins.hits.are_colored() {
+            if N == 1 && bins.hits.colored {
                 let clockwise = clockwise >> lane & 1 == 1;
                 let colors = brush.corners(number, triangles[lane].vertices, clockwise);
                 bins.color_next(colors);
@@ -405,7 +405,7 @@ impl<'a> Setup<'a> {
             let bins = bins.of(kind == Kind::Transparent);
             let number = self.base + triangle.number;
             let cutout = kind == Kind::Cutout;
-            if N == 1 && is_whole && bins.hits.are_colored() {
+            if N == 1 && is_whole && bins.hits.colored {
                 bins.color_next(brush.corners(number, triangle.vertices, area > 0));
             }
             if R::UNSNAPPED {

@@ -37,7 +37,7 @@ pub(crate) fn draw_queue<S: Simd, R: Rule, const N: usize>(
     bins: &mut Bins,
     brush: &mut Brush<'_>,
 ) {
-    if N == 1 && bins.hits.are_colored() {
+    if N == 1 && bins.hits.colored {
         simd.vectorize(
             #[inline(always)]
             || draw_packs::<S, R, 1, true>(simd, queue, bins, brush),

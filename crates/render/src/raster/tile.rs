@@ -370,7 +370,7 @@ impl Visibility {
         bins: &Bins,
         (tile, conversion): (usize, Option<Conversion<'_>>),
     ) {
-        if let Some(conversion) = conversion.filter(|_| N == 1 && bins.hits.are_colored()) {
+        if let Some(conversion) = conversion.filter(|_| N == 1 && bins.hits.colored) {
             return simd.vectorize(
                 #[inline(always)]
                 || self.paint_plain(simd, bins, (tile, conversion)),

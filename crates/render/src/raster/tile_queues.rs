@@ -58,7 +58,7 @@ pub(crate) struct TileBoxes<S: Simd> {
 #[derive(Debug)]
 pub(crate) struct TileQueues {
     /// Whether triangles wait for tiles.
-    used: bool,
+    pub(crate) used: bool,
     /// The columns and rows of tiles.
     tiles: [i32; 2],
     /// The last page of each tile and size.
@@ -83,12 +83,6 @@ impl TileQueues {
         let count = if used { tiles[0] * tiles[1] } else { 0 };
         self.last.clear();
         self.last.resize(usize::try_from(count).expect("not negative"), [FULL; SIZES]);
-    }
-
-    /// Returns whether triangles wait for tiles.
-    #[inline(always)]
-    pub(crate) const fn are_used(&self) -> bool {
-        self.used
     }
 
     /// Returns whether a tile has no waiting triangles.

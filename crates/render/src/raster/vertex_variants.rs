@@ -108,9 +108,9 @@ impl Screen32 {
     #[expect(clippy::cast_possible_truncation, reason = "32 bits are meant")]
     fn new(screen: &Screen) -> Self {
         let rows = screen.rows.map(|row| row.map(|x| x as f32));
-        let [half, guard] = [screen.half, screen.guard()].map(|two| two.map(|x| x as f32));
+        let [half, guard] = [screen.half, screen.guard].map(|two| two.map(|x| x as f32));
         let shift = screen.shift_in_pixels().map(|x| x as f32);
-        Self { rows, half, guard, parts: screen.parts() as f32, shift }
+        Self { rows, half, guard, parts: screen.parts as f32, shift }
     }
 
     #[inline(always)]

@@ -86,11 +86,12 @@ pub(crate) struct Screen {
     pub(crate) rows: [[f64; 4]; 4],
     /// Half of the picture's width and height.
     pub(crate) half: [f64; 2],
-    guard: [f64; 2],
+    /// The guard band's half width and half height as factors of w.
+    pub(crate) guard: [f64; 2],
     /// The sample's offset in subpixels, subtracted from clipped corners after snapping.
     shift: [i32; 2],
     /// The number of grid steps per pixel.
-    parts: f64,
+    pub(crate) parts: f64,
 }
 
 /// The guard band of the fine grid, in pixels: edge functions stay below 2^62.
@@ -133,16 +134,6 @@ impl Screen {
     /// Returns the sample's offset, in pixels.
     pub(crate) fn shift_in_pixels(&self) -> [f64; 2] {
         self.shift.map(|by| f64::from(by) / self.parts)
-    }
-
-    /// Returns the number of grid steps per pixel.
-    pub(crate) const fn parts(&self) -> f64 {
-        self.parts
-    }
-
-    /// Returns the guard band's half width and half height as factors of w.
-    pub(crate) const fn guard(&self) -> [f64; 2] {
-        self.guard
     }
 
     /// Returns the same transform with a guard band of this many pixels around the centre.

@@ -24,7 +24,7 @@ const ROOM: usize = MOST as usize + 16;
 /// The pixels of a small triangle that pass the depth test, before the alpha test.
 #[derive(Debug)]
 pub(super) struct Fragments {
-    count: usize,
+    pub(super) count: usize,
     /// The indices in the visibility buffer.
     places: [i32; ROOM],
     depths: [f32; ROOM],
@@ -81,14 +81,6 @@ impl<S: Simd> large::InFront<S> for List<'_> {
 }
 
 impl Fragments {
-    pub(super) fn forget(&mut self) {
-        self.count = 0;
-    }
-
-    pub(super) fn are_none(&self) -> bool {
-        self.count == 0
-    }
-
     /// Draws the fragments that pass the alpha test of a triangle, into a tile with this first
     /// pixel.
     #[inline(always)]

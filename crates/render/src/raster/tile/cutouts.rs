@@ -152,7 +152,7 @@ impl Visibility {
         for sample in 0..N {
             let shift = self.sample_positions.shift::<N>(sample);
             // First pass: list the pixels in front, block by block.
-            fragments.forget();
+            fragments.count = 0;
             for block in bits(some) {
                 self.write::<N>(simd.level(), block);
                 let first = (block * N + sample) * BLOCK_PIXELS;
@@ -164,7 +164,7 @@ impl Visibility {
                     || large.draw(format, simd, (block, shift), whole, &mut list, plane),
                 );
             }
-            if fragments.are_none() {
+            if fragments.count == 0 {
                 continue;
             }
             // Second pass: the alpha test, for listed pixels only.

@@ -38,7 +38,7 @@ impl Visibility {
     /// Draws the hits of a tile from the bins of one thread.
     #[inline(always)]
     pub(super) fn draw_hits<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
-        if N == 1 && bins.hits.are_colored() {
+        if N == 1 && bins.hits.colored {
             return simd.vectorize(
                 #[inline(always)]
                 || self.draw_colored_hits(simd, bins, tile),
