@@ -115,35 +115,22 @@ impl Extras {
         bump.as_ref().map(|bump| (&bump.map.source, bump.gain.map(bits))).hash(hasher);
     }
 
-    /// Returns whether both are drawn with the same bits; maps must be the same object.
-    pub(crate) fn are_alike(&self, other: &Self) -> bool {
+    /// Returns a key that is equal if both are drawn with the same bits. Maps are compared by
+    /// identity: comparing pixels would cost more than drawing.
+    pub(crate) fn identity(&self) -> impl PartialEq + use<> {
         let Self { emission, ambient, specular, exponent, bump } = self;
-        // Maps are compared by identity: comparing pixels would cost more than drawing.
-        let maps = |a: &Option<Shared<Texture>>, b: &Option<Shared<Texture>>| match (a, b) {
-            (Some(a), Some(b)) => Shared::same(a, b),
-            (None, None) => true,
-            _ => false,
+        let glow = |glow: &Option<Glow>| {
+            glow.as_ref().map(|glow| (glow.color.map(f64::to_bits), address(&glow.map)))
         };
-        let glows = |a: &Option<Glow>, b: &Option<Glow>| match (a, b) {
-            (Some(a), Some(b)) => {
-                a.color.map(f64::to_bits) == b.color.map(f64::to_bits) && maps(&a.map, &b.map)
-            }
-            (None, None) => true,
-            _ => false,
-        };
-        let bumps = match (bump, &other.bump) {
-            (Some(a), Some(b)) => {
-                Shared::same(&a.map, &b.map) && a.gain.map(f64::to_bits) == b.gain.map(f64::to_bits)
-            }
-            (None, None) => true,
-            _ => false,
-        };
-        glows(emission, &other.emission)
-            && glows(ambient, &other.ambient)
-            && maps(specular, &other.specular)
-            && maps(exponent, &other.exponent)
-            && bumps
+        let bump = bump.as_ref();
+        let bump = bump.map(|it| (Shared::address(&it.map), it.gain.map(f64::to_bits)));
+        (glow(emission), glow(ambient), address(specular), address(exponent), bump)
     }
+}
+
+/// Returns the address of a shared value, which tells it from others that are alive.
+pub(crate) fn address<T>(shared: &Option<Shared<T>>) -> Option<usize> {
+    shared.as_ref().map(Shared::address)
 }
 
 /// Returns the bits of a number, equal for 0 and -0.

@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use glam::{DMat4, DVec3};
 
 use super::draw::Stage;
+use super::extras::address;
 use marraztu_core::accuracy::ShadowMethod;
 use marraztu_core::base::Shared;
 use marraztu_core::base::math::same_bits;
@@ -79,20 +80,6 @@ pub(crate) struct Holes {
     pub(crate) opacity: f64,
 }
 
-impl Holes {
-    fn is_same(&self, other: &Self) -> bool {
-        let same = |a: &Option<Shared<Texture>>, b: &Option<Shared<Texture>>| match (a, b) {
-            (Some(a), Some(b)) => Shared::same(a, b),
-            (None, None) => true,
-            (Some(_), None) | (None, Some(_)) => false,
-        };
-        let Self { texture, map, opacity } = self;
-        same(texture, &other.texture)
-            && same(map, &other.map)
-            && opacity.to_bits() == other.opacity.to_bits()
-    }
-}
-
 impl Caster {
     /// Returns the part of a triangle, if it is drawn.
     #[inline(always)]
@@ -115,21 +102,16 @@ impl Caster {
     /// Returns whether both cast the same shadows.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         let Self { item, model, world_from_object, parts, polygons } = self;
-        let holes = |a: &Option<CasterPart>, b: &Option<CasterPart>| match (a, b) {
-            (Some(a), Some(b)) => match (&a.holes, &b.holes) {
-                (Some(a), Some(b)) => a.is_same(b),
-                (None, None) => true,
-                (Some(_), None) | (None, Some(_)) => false,
-            },
-            (None, None) => true,
-            (Some(_), None) | (None, Some(_)) => false,
+        let key = |Holes { texture, map, opacity }: &Holes| {
+            (address(texture), address(map), opacity.to_bits())
         };
+        let holes =
+            |part: &Option<CasterPart>| part.as_ref().map(|part| part.holes.as_ref().map(key));
         *item == other.item
             && Shared::same(model, &other.model)
             && same_bits(world_from_object, &other.world_from_object)
             && *polygons == other.polygons
-            && parts.len() == other.parts.len()
-            && parts.iter().zip(&other.parts).all(|(a, b)| holes(a, b))
+            && parts.iter().map(holes).eq(other.parts.iter().map(holes))
     }
 }
 
