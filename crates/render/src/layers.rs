@@ -71,49 +71,38 @@ impl Layer {
         Self::Mask,
     ];
 
+    /// Returns the name, the number of numbers per pixel, and their type.
+    const fn row(self) -> (&'static str, usize, LayerType) {
+        match self {
+            Self::Depth => ("depth", 1, LayerType::F32),
+            Self::Distance => ("distance", 1, LayerType::F32),
+            Self::Normal => ("normal", 3, LayerType::F32),
+            Self::Position => ("position", 3, LayerType::F32),
+            Self::Uv => ("uv", 2, LayerType::F32),
+            Self::Object => ("object", 1, LayerType::I32),
+            Self::Part => ("part", 1, LayerType::I32),
+            Self::Material => ("material", 1, LayerType::I32),
+            Self::Polygon => ("polygon", 1, LayerType::I32),
+            Self::Mask => ("mask", 1, LayerType::U8),
+        }
+    }
+
     /// Returns the name: `depth`.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Depth => "depth",
-            Self::Distance => "distance",
-            Self::Normal => "normal",
-            Self::Position => "position",
-            Self::Uv => "uv",
-            Self::Object => "object",
-            Self::Part => "part",
-            Self::Material => "material",
-            Self::Polygon => "polygon",
-            Self::Mask => "mask",
-        }
+        self.row().0
     }
 
     /// Returns the number of numbers per pixel.
     #[must_use]
     pub const fn channels(self) -> usize {
-        match self {
-            Self::Normal | Self::Position => 3,
-            Self::Uv => 2,
-            Self::Depth
-            | Self::Distance
-            | Self::Object
-            | Self::Part
-            | Self::Material
-            | Self::Polygon
-            | Self::Mask => 1,
-        }
+        self.row().1
     }
 
     /// Returns the type of the numbers.
     #[must_use]
     pub const fn number_type(self) -> LayerType {
-        match self {
-            Self::Depth | Self::Distance | Self::Normal | Self::Position | Self::Uv => {
-                LayerType::F32
-            }
-            Self::Object | Self::Part | Self::Material | Self::Polygon => LayerType::I32,
-            Self::Mask => LayerType::U8,
-        }
+        self.row().2
     }
 
     /// Returns the number that background pixels have in each channel.

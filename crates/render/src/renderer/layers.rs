@@ -354,66 +354,32 @@ impl<'a> Source<'a> {
         for (layer, rows) in band {
             match (layer, rows, shape) {
                 (Layer::Depth, Rows::F32(rows), Some(shape)) => {
-                    for (place, weights) in points {
-                        rows[*place] = -point(shape.corners, *weights).z as f32;
-                    }
+                    fill(rows, points, |weights| [-point(shape.corners, weights).z as f32]);
                 }
-                (Layer::Distance, Rows::F32(rows), Some(shape)) => {
-                    for (place, weights) in points {
-                        let position = point(shape.corners, *weights);
-                        rows[*place] = match self.projection {
-                            Projection::Perspective => position.length() as f32,
-                            Projection::Orthographic => -position.z as f32,
-                        };
+                (Layer::Distance, Rows::F32(rows), Some(shape)) => fill(rows, points, |weights| {
+                    let position = point(shape.corners, weights);
+                    match self.projection {
+                        Projection::Perspective => [position.length() as f32],
+                        Projection::Orthographic => [-position.z as f32],
                     }
-                }
+                }),
                 (Layer::Normal, Rows::F32(rows), Some(shape)) => {
-                    for (place, weights) in points {
-                        let normal = self.normal(shape, *weights).as_vec3();
-                        rows[3 * place..][..3].copy_from_slice(&normal.to_array());
-                    }
+                    fill(rows, points, |weights| self.normal(shape, weights).as_vec3().to_array());
                 }
-                (Layer::Position, Rows::F32(rows), Some(shape)) => {
-                    for (place, weights) in points {
-                        let position = point(shape.in_world, *weights).as_vec3();
-                        rows[3 * place..][..3].copy_from_slice(&position.to_array());
+                (Layer::Position, Rows::F32(rows), Some(shape)) => fill(rows, points, |weights| {
+                    point(shape.in_world, weights).as_vec3().to_array()
+                }),
+                (Layer::Uv, Rows::F32(rows), Some(shape)) => match shape.uvs {
+                    Some(uvs) => {
+                        fill(rows, points, |weights| uv(uvs, weights).map(|x| x as f32));
                     }
-                }
-                (Layer::Uv, Rows::F32(rows), Some(shape)) => {
-                    let Some(uvs) = shape.uvs else {
-                        points.iter().for_each(|(at, _)| rows[2 * at..][..2].fill(0.0));
-                        continue;
-                    };
-                    for (place, weights) in points {
-                        rows[2 * place..][..2]
-                            .copy_from_slice(&uv(uvs, *weights).map(|x| x as f32));
-                    }
-                }
-                (Layer::Object, Rows::I32(rows), _) => {
-                    for (place, _) in points {
-                        rows[*place] = object;
-                    }
-                }
-                (Layer::Part, Rows::I32(rows), _) => {
-                    for (place, _) in points {
-                        rows[*place] = part;
-                    }
-                }
-                (Layer::Material, Rows::I32(rows), _) => {
-                    for (place, _) in points {
-                        rows[*place] = material;
-                    }
-                }
-                (Layer::Polygon, Rows::I32(rows), _) => {
-                    for (place, _) in points {
-                        rows[*place] = polygon;
-                    }
-                }
-                (Layer::Mask, Rows::U8(rows), _) => {
-                    for (place, _) in points {
-                        rows[*place] = 1;
-                    }
-                }
+                    None => fill(rows, points, |_| [0.0; 2]),
+                },
+                (Layer::Object, Rows::I32(rows), _) => fill(rows, points, |_| [object]),
+                (Layer::Part, Rows::I32(rows), _) => fill(rows, points, |_| [part]),
+                (Layer::Material, Rows::I32(rows), _) => fill(rows, points, |_| [material]),
+                (Layer::Polygon, Rows::I32(rows), _) => fill(rows, points, |_| [polygon]),
+                (Layer::Mask, Rows::U8(rows), _) => fill(rows, points, |_| [1]),
                 (_, Rows::F32(_) | Rows::I32(_) | Rows::U8(_), _) => {
                     unreachable!("each layer has numbers of its type")
                 }
@@ -437,6 +403,18 @@ impl<'a> Source<'a> {
 
 /// The side of a block of pixels.
 const SIDE: usize = BLOCK.cast_unsigned() as usize;
+
+/// Writes the numbers of a layer at points of a triangle.
+#[inline(always)]
+fn fill<T: Copy, const N: usize>(
+    rows: &mut [T],
+    points: &[(usize, DVec3)],
+    numbers: impl Fn(DVec3) -> [T; N],
+) {
+    for (place, weights) in points {
+        rows[N * place..][..N].copy_from_slice(&numbers(*weights));
+    }
+}
 
 /// Returns the point with these weights, from a corner and the vectors to the others.
 #[inline(always)]
