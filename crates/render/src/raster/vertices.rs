@@ -1,13 +1,8 @@
-//! Transforms the vertices of a mesh to the screen, and fetches them sixteen at a time.
-//!
-//! The loop is plain arithmetic over rows of coordinates, compiled for each instruction set. It
-//! handles eight vertices at once with the same bits as [`Screen::vertex`].
+//! The vertices of a frame on the screen, fetched sixteen at a time.
 
-use crate::simd::dispatch;
-use fearless_simd::{Level, Simd, SimdBase as _, SimdCombine as _, i32x4, i32x16};
+use fearless_simd::{Simd, SimdBase as _, SimdCombine as _, i32x4, i32x16};
 
-use crate::accel::DrawOrder;
-use crate::screen::clip::{Screen, ScreenVertex};
+use crate::screen::clip::ScreenVertex;
 
 /// The vertices of a frame on the screen.
 #[derive(Debug, Default)]
@@ -24,26 +19,6 @@ impl Vertices {
     /// Returns the corners of triangles, on the finer grid if there is one.
     pub(crate) fn corners(&self) -> &[ScreenVertex] {
         if self.fine.is_empty() { &self.usual } else { &self.fine }
-    }
-}
-
-/// Transforms vertices of a mesh to the screen, starting at number `first`.
-pub(crate) fn transform(
-    level: Level,
-    screen: &Screen,
-    order: &DrawOrder,
-    first: usize,
-    out: &mut [ScreenVertex],
-) {
-    let rows = first..first + out.len();
-    let [x, y, z] = [&order.x, &order.y, &order.z].map(|row| &row[rows.clone()]);
-    dispatch!(level, simd => chunk(simd, screen, [x, y, z], out));
-}
-
-#[inline(always)]
-fn chunk<S: Simd>(_: S, screen: &Screen, [x, y, z]: [&[f32]; 3], out: &mut [ScreenVertex]) {
-    for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
-        *out = screen.vertex(screen.clip([f64::from(*x), f64::from(*y), f64::from(*z)]));
     }
 }
 
