@@ -16,13 +16,7 @@ use marraztu_core::base::math::each;
 /// Perspective-correct weights of a triangle's corners at pixels, in f64, `shift` subpixels from
 /// pixel centres.
 #[derive(Debug)]
-pub(crate) struct Weights {
-    method: Method,
-}
-
-/// The method that computes the weights.
-#[derive(Debug)]
-enum Method {
+pub(crate) enum Weights {
     /// Homogeneous coordinates, for a clipped triangle.
     Cut(HomogeneousWeights),
     /// Spans of sixteen pixels, from the corners and their 1/w.
@@ -45,52 +39,42 @@ impl Weights {
         let screen = Screen::new(draw.clip_from_object, plan.viewport);
         let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
         // Clipped triangles have corners without a screen position.
-        let method = if !own.iter().all(ScreenVertex::is_inside) {
-            Method::Cut(HomogeneousWeights::new(plan, draw, number, shift))
-        } else {
-            let grid = plan.variants.grid();
-            let corners = own.map(|vertex| vertex.at().seen_from(grid.offset(shift)));
-            match plan.variants.interpolation {
-                Interpolation::EverySixteen => Method::Spans(corners, w.map(|w| 1.0 / w), grid),
-                Interpolation::Affine => Method::Edges(Triangle::on(grid, corners), DVec3::ONE),
-                Interpolation::Perspective => {
-                    Method::Edges(Triangle::on(grid, corners), DVec3::from_array(w))
-                }
+        if !own.iter().all(ScreenVertex::is_inside) {
+            return Self::Cut(HomogeneousWeights::new(plan, draw, number, shift));
+        }
+        let grid = plan.variants.grid();
+        let corners = own.map(|vertex| vertex.at().seen_from(grid.offset(shift)));
+        match plan.variants.interpolation {
+            Interpolation::EverySixteen => Self::Spans(corners, w.map(|w| 1.0 / w), grid),
+            Interpolation::Affine => Self::Edges(Triangle::on(grid, corners), DVec3::ONE),
+            Interpolation::Perspective => {
+                Self::Edges(Triangle::on(grid, corners), DVec3::from_array(w))
             }
-        };
-        Self { method }
+        }
     }
 
     /// Returns whether the weights follow from edge functions alone.
     pub(crate) const fn follow_from_edges(&self) -> bool {
-        matches!(self.method, Method::Edges(Some(_), _))
+        matches!(self, Self::Edges(Some(_), _))
     }
 
     /// Computes the weights at a pixel.
     #[inline(always)]
     pub(crate) fn at(&self, pixel: [i32; 2]) -> DVec3 {
-        match &self.method {
-            Method::Cut(weights) => {
-                let ([second, third], _) = weights.at(pixel);
-                DVec3::new(1.0 - second - third, second, third)
-            }
-            Method::Spans(corners, by_w, grid) => {
+        match self {
+            Self::Cut(weights) => with_first(weights.at(pixel).0),
+            Self::Spans(corners, by_w, grid) => {
                 let [x, y] = pixel;
-                let row = Row::new(*corners, *by_w, y, *grid);
-                let [second, third] = row.at(x);
-                DVec3::new(1.0 - second - third, second, third)
+                with_first(Row::new(*corners, *by_w, y, *grid).at(x))
             }
-            Method::Edges(triangle, w) => {
+            Self::Edges(triangle, w) => {
                 let parts = triangle.as_ref().map(|triangle| barycentric(triangle, pixel));
-                let [second, third] = parts.unwrap_or_default();
-                let by_w = DVec3::new(1.0 - second - third, second, third) / *w;
+                let by_w = with_first(parts.unwrap_or_default()) / *w;
                 by_w / by_w.element_sum()
             }
         }
     }
-}
 
-impl Weights {
     /// Computes the weights at a pixel that need not be in the triangle, for the point of the
     /// triangle's plane seen through it. `None` if that point is behind the observer or very far
     /// away.
@@ -99,12 +83,11 @@ impl Weights {
     /// because a projection maps lines to lines and keeps the order of points on them.
     #[inline(always)]
     pub(crate) fn projected(&self, pixel: [i32; 2]) -> Option<DVec3> {
-        match &self.method {
-            Method::Cut(weights) => weights.inside(pixel),
-            Method::Spans(..) => None,
-            Method::Edges(triangle, w) => {
-                let [second, third] = barycentric(triangle.as_ref()?, pixel);
-                let by_w = DVec3::new(1.0 - second - third, second, third) / *w;
+        match self {
+            Self::Cut(weights) => weights.inside(pixel),
+            Self::Spans(..) => None,
+            Self::Edges(triangle, w) => {
+                let by_w = with_first(barycentric(triangle.as_ref()?, pixel)) / *w;
                 let sum = by_w.element_sum();
                 (sum >= FAR / w.max_element()).then(|| by_w / sum)
             }
@@ -122,10 +105,10 @@ impl Weights {
         first: [i32; 2],
         [second, third]: [f64x8<S>; 2],
     ) -> Option<[f64x8<S>; 2]> {
-        match &self.method {
-            Method::Cut(weights) => Some(weights.of_row(simd, first).0),
-            Method::Spans(..) => None,
-            Method::Edges(triangle, w) => {
+        match self {
+            Self::Cut(weights) => Some(weights.of_row(simd, first).0),
+            Self::Spans(..) => None,
+            Self::Edges(triangle, w) => {
                 let area = triangle.as_ref()?.doubled_area() as f64;
                 let by_w = [1.0 / w.x, 1.0 / w.y, 1.0 / w.z];
                 // The three edge functions add up to the doubled area.
@@ -150,9 +133,9 @@ pub(crate) struct QuickWeights {
 impl QuickWeights {
     #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
     pub(crate) fn new(weights: Weights) -> Self {
-        let per_edge = match &weights.method {
-            Method::Edges(Some(triangle), w) => 1.0 / (*w * triangle.doubled_area() as f64),
-            Method::Edges(None, _) | Method::Cut(_) | Method::Spans(..) => DVec3::ZERO,
+        let per_edge = match &weights {
+            Weights::Edges(Some(triangle), w) => 1.0 / (*w * triangle.doubled_area() as f64),
+            _ => DVec3::ZERO,
         };
         Self { weights, per_edge }
     }
@@ -162,7 +145,7 @@ impl QuickWeights {
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
     pub(crate) fn of_row(&self, [x, y]: [i32; 2]) -> [[f64; 8]; 3] {
-        let Method::Edges(Some(triangle), _) = &self.weights.method else {
+        let Weights::Edges(Some(triangle), _) = &self.weights else {
             let all: [DVec3; 8] = std::array::from_fn(|i| {
                 self.weights.at([x + i32::try_from(i).expect("below eight"), y])
             });
@@ -188,6 +171,12 @@ impl QuickWeights {
 
 /// The limit for very distant points: the farthest corner's distance over the point's.
 const FAR: f64 = 1e-3;
+
+/// Returns all three weights, which add up to 1, from the second and third.
+#[inline(always)]
+fn with_first([second, third]: [f64; 2]) -> DVec3 {
+    DVec3::new(1.0 - second - third, second, third)
+}
 
 /// Computes the second and third barycentric coordinate of a pixel, linear on the screen.
 #[inline(always)]
