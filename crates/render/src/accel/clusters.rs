@@ -101,26 +101,17 @@ pub(crate) fn clusters(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Returns a random number from -1 to 1, by Marsaglia's xorshift.
-    fn real(state: &mut u64) -> f64 {
-        *state ^= *state << 13;
-        *state ^= *state >> 7;
-        *state ^= *state << 17;
-        f64::from(u32::try_from(*state >> 33).unwrap()) / f64::from(1_u32 << 30) - 1.0
-    }
+    use marraztu_core::base::rng::Rng;
 
     #[test]
     fn every_corner_lies_in_the_sphere_and_every_normal_in_the_cone() {
-        let mut state = 1;
+        let mut rng = Rng::new(1);
         for round in 0..200 {
             // From nearly flat patches far from the origin to triangles in all directions.
             let rough = [1e-3, 0.1, 1.0][round % 3];
             let away = DVec3::splat([0.0, 5e3][round % 2]);
-            let mut place = || {
-                let [x, y, z] = [0, 1, 2].map(|_| real(&mut state));
-                (away + DVec3::new(x, y, z * rough)).as_vec3().as_dvec3()
-            };
+            let mut place =
+                || (away + rng.vector(1.0) * DVec3::new(1.0, 1.0, rough)).as_vec3().as_dvec3();
             let places: Vec<DVec3> = (0..3 * CLUSTER).map(|_| place()).collect();
             let triangle = |number: usize| {
                 let at = |i: usize| u32::try_from(3 * number + i).unwrap();

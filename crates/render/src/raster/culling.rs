@@ -157,7 +157,6 @@ impl Culling {
 }
 
 #[cfg(test)]
-#[expect(clippy::cast_precision_loss, reason = "small numbers")]
 mod tests {
     use glam::{DMat4, DQuat};
 
@@ -165,21 +164,8 @@ mod tests {
     use crate::accel::Accelerated as _;
     use crate::screen::clip::ScreenVertex;
     use crate::screen::coverage::doubled_area;
+    use marraztu_core::base::rng::Rng;
     use marraztu_core::scene::{Lens, Mesh, MeshSource, NONE, Part, Projection, SourceCorner};
-
-    /// Random numbers from -1 to 1.
-    struct Rng(u64);
-
-    impl Rng {
-        fn real(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (self.0 >> 33) as f64 / (1_u64 << 30) as f64 - 1.0
-        }
-
-        fn place(&mut self) -> DVec3 {
-            DVec3::new(self.real(), self.real(), self.real())
-        }
-    }
 
     /// Returns a ball with corners displaced by at most `off`, so some triangles are slivers.
     fn ball(rows: u32, off: f64, rng: &mut Rng) -> Mesh {
@@ -190,7 +176,7 @@ mod tests {
             let round = std::f64::consts::TAU * f64::from(column) / f64::from(columns);
             let (sine, cosine) = (libm::sin(up), libm::cos(up));
             let place = DVec3::new(sine * libm::sin(round), cosine, sine * libm::cos(round));
-            positions.push((place + rng.place() * off).as_vec3().to_array());
+            positions.push((place + rng.vector(1.0) * off).as_vec3().to_array());
         }
         let mut corners = Vec::new();
         for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |c| (row, c))) {
@@ -211,7 +197,7 @@ mod tests {
 
     #[test]
     fn every_culled_triangle_faces_away_or_is_out_of_view() {
-        let mut rng = Rng(1);
+        let mut rng = Rng::new(1);
         let size = Size::new(640, 400);
         let (mut looked_at, mut left_out, mut turned_away) = (0, 0, 0);
         for round in 0..300 {
@@ -219,14 +205,14 @@ mod tests {
             let mesh = ball([12, 24, 60][round % 3], rough, &mut rng);
             let order = mesh.draw_order();
             // From far away, where triangles are smaller than a subpixel, to inside the ball.
-            let far = libm::exp(4.0 + 5.0 * rng.real());
-            let stretch = DVec3::ONE + rng.place() * 0.9;
+            let far = libm::exp(4.0 + 5.0 * rng.real(-1.0, 1.0));
+            let stretch = DVec3::ONE + rng.vector(1.0) * 0.9;
             let mirror = if round % 5 == 0 { -1.0 } else { 1.0 };
-            let turn = DQuat::from_scaled_axis(rng.place() * 3.0);
+            let turn = DQuat::from_scaled_axis(rng.vector(1.0) * 3.0);
             let object = DMat4::from_scale_rotation_translation(
                 stretch * DVec3::new(mirror, 1.0, 1.0),
                 turn,
-                DVec3::new(rng.real() * 0.5 * far, rng.real() * 0.5 * far, -far),
+                DVec3::new(rng.real(-1.0, 1.0) * 0.5 * far, rng.real(-1.0, 1.0) * 0.5 * far, -far),
             );
             let lens = Lens {
                 near: 0.01,

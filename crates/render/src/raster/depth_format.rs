@@ -188,6 +188,7 @@ mod tests {
     use fearless_simd::{Level, SimdBase as _};
 
     use super::*;
+    use marraztu_core::base::rng::Rng;
 
     fn key(format: DepthFormat, depth: f32) -> u32 {
         Any(format).key(depth)
@@ -224,11 +225,10 @@ mod tests {
 
     #[test]
     fn sixteen_depths_have_the_keys_of_one() {
-        let mut state = 1_u64;
+        let mut rng = Rng::new(1);
         for round in 0..20_000_u32 {
             let depths: [f32; 16] = std::array::from_fn(|_| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                let random = (state >> 40) as u32;
+                let random = (rng.bits() >> 40) as u32;
                 match round % 4 {
                     0 => random as f32 / 16_777_216.0,
                     // Next to a step between two integers.

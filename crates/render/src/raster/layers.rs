@@ -444,6 +444,7 @@ impl Held {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use marraztu_core::base::rng::Rng;
 
     /// Returns the layers taken of one pixel, and the number of turns.
     fn taken(keys: &[u64]) -> (Vec<u64>, usize) {
@@ -461,14 +462,9 @@ mod tests {
 
     #[test]
     fn every_layer_is_taken_once_from_far_to_near_however_many_there_are() {
-        let mut state = 1_u64;
+        let mut rng = Rng::new(1);
         for count in [1, 2, 7, KEPT, MOST, MOST + 1, 5 * MOST + 3] {
-            let keys: Vec<u64> = (0..count)
-                .map(|_| {
-                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                    state | 1
-                })
-                .collect();
+            let keys: Vec<u64> = (0..count).map(|_| rng.bits() | 1).collect();
             let mut want = keys.clone();
             want.sort_unstable();
             let (got, turns) = taken(&keys);

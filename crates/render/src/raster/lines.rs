@@ -391,6 +391,7 @@ mod tests {
 
     use super::super::depth_format::Reversed;
     use super::*;
+    use marraztu_core::base::rng::Rng;
 
     const EVERYWHERE: PixelBox = PixelBox { left: -99, top: -99, right: 199, bottom: 199 };
 
@@ -450,11 +451,8 @@ mod tests {
 
     #[test]
     fn a_line_in_a_lane_takes_the_same_pixels_at_the_same_depths() {
-        let mut state = 3_u64;
-        let mut random = move |below: i32| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            ((state >> 33) % below.cast_unsigned() as u64) as i32
-        };
+        let mut rng = Rng::new(3);
+        let mut random = move |below: i32| rng.between(0, below - 1);
         let picture = |&(x, y): &(i32, i32)| (0..99).contains(&x) && (0..99).contains(&y);
         for _ in 0..20_000 {
             let (x, y) = (random(100 * 256), random(100 * 256));
@@ -532,11 +530,8 @@ mod tests {
 
     #[test]
     fn every_pixel_of_a_long_line_lies_in_one_of_its_stretches() {
-        let mut state = 9_u64;
-        let mut random = move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            ((state >> 33) % (500 * 256)) as i32 - 100 * 256
-        };
+        let mut rng = Rng::new(9);
+        let mut random = move || rng.between(-100 * 256, 400 * 256);
         let picture = PixelBox { left: 0, top: 0, right: 320, bottom: 256 };
         for i in 0..2000 {
             let ends = [0, 0].map(|_| ScreenVertex::new(Snapped { x: random(), y: random() }, 0.5));

@@ -249,14 +249,12 @@ mod tests {
     use fearless_simd::Level;
 
     use super::*;
+    use marraztu_core::base::rng::Rng;
 
     #[test]
     fn every_triangle_waits_in_each_tile_that_its_box_reaches_into_and_nowhere_else() {
-        let mut state = 11_u64;
-        let mut random = |below: i32| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            i32::try_from((state >> 33) % u64::from(below.cast_unsigned())).unwrap()
-        };
+        let mut rng = Rng::new(11);
+        let mut random = |below: i32| rng.between(0, below - 1);
         let mut queues = TileQueues::default();
         for round in 0..30 {
             let [columns, rows] = [1 + random(5), 1 + random(5)];

@@ -304,6 +304,7 @@ pub(crate) fn is_wide([p, q, r]: [Snapped; 3]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use marraztu_core::base::rng::Rng;
 
     const EVERYWHERE: PixelBox = PixelBox { left: -50, top: -50, right: 50, bottom: 50 };
 
@@ -339,15 +340,11 @@ mod tests {
     #[test]
     fn a_closed_fan_covers_every_pixel_of_its_square_once() {
         const SIDE: i32 = 12;
-        let mut state = 1_u64;
-        let mut random = move |below: i32| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            i32::try_from((state >> 33) % u64::from(below.unsigned_abs())).expect("is below")
-        };
+        let mut rng = Rng::new(1);
         let square = PixelBox { left: 0, top: 0, right: SIDE, bottom: SIDE };
         let mut place = move || {
-            let at = random(SIDE * SUBPIXELS + 1);
-            if random(2) == 0 { at } else { at / 128 * 128 }
+            let at = rng.between(0, SIDE * SUBPIXELS);
+            if rng.one_in(2) { at } else { at / 128 * 128 }
         };
         for _ in 0..5000 {
             let centre = Snapped { x: place(), y: place() };

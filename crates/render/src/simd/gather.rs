@@ -189,6 +189,7 @@ mod tests {
     use fearless_simd::Level;
 
     use super::*;
+    use marraztu_core::base::rng::Rng;
 
     fn picked<const PAGES: usize>(
         level: Level,
@@ -206,12 +207,9 @@ mod tests {
     #[test]
     fn every_level_gathers_the_values_at_the_slots() {
         let row: [i32; SLOTS] = std::array::from_fn(|i| 1000 - 7 * i32::try_from(i).unwrap());
-        let mut state = 1_u64;
+        let mut rng = Rng::new(1);
         for _ in 0..200 {
-            let slots: [u32; 16] = std::array::from_fn(|_| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                u32::try_from(state >> 58).unwrap()
-            });
+            let slots = [0; 16].map(|_| u32::try_from(rng.below(64)).unwrap());
             for level in crate::simd::levels() {
                 let want = |below: u32| slots.map(|slot| row[(slot % below) as usize]);
                 let of = |below: u32| slots.map(|slot| (slot % below).cast_signed());

@@ -18,6 +18,7 @@ use crate::screen::sample_positions::passes;
 use crate::screen::tiles::TILE;
 use marraztu_core::accuracy::Samples;
 use marraztu_core::base::image::Size;
+use marraztu_core::base::rng::Rng;
 
 const SIZE: Size = Size { width: 150, height: 140 };
 const PICTURE: PixelBox = PixelBox { left: 0, top: 0, right: 150, bottom: 140 };
@@ -29,11 +30,9 @@ fn middle_and_others() -> [SamplePositions; 3] {
 }
 
 /// Pseudo-random numbers.
-fn numbers(mut state: u64) -> impl FnMut(i32) -> i32 {
-    move |below| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        ((state >> 33) % below.cast_unsigned() as u64) as i32
-    }
+fn numbers(seed: u64) -> impl FnMut(i32) -> i32 {
+    let mut rng = Rng::new(seed);
+    move |below| rng.between(0, below - 1)
 }
 
 fn bins(sample_positions: SamplePositions) -> Bins {
