@@ -162,7 +162,9 @@ impl EdgeSetup<'_> {
         (first, normals): (u32, &[DrawnNormal]),
         bins: &mut Bins,
     ) {
-        let placed = NormalsInObject::new(self.draw);
+        let view_from_object = DMat3::from_mat4(self.draw.view_from_object);
+        let object_from_view = view_from_object.inverse();
+        let placed = NormalsInObject { draw: self.draw, view_from_object, object_from_view };
         // Dispatched so rounding uses the processor's instruction, if it has one.
         dispatch!(level, _ => for (number, normal) in (first..).zip(normals) {
             let number = LineNumber::new(number, false);
@@ -241,12 +243,7 @@ struct NormalsInObject<'a> {
     object_from_view: DMat3,
 }
 
-impl<'a> NormalsInObject<'a> {
-    fn new(draw: &'a Draw) -> Self {
-        let view_from_object = DMat3::from_mat4(draw.view_from_object);
-        Self { draw, view_from_object, object_from_view: view_from_object.inverse() }
-    }
-
+impl NormalsInObject<'_> {
     /// Returns the two ends of a normal.
     #[inline(always)]
     fn ends(&self, normal: &DrawnNormal) -> [DVec3; 2] {

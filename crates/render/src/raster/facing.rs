@@ -12,7 +12,7 @@ use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x
 
 use super::hits::PACK;
 use super::setup::NARROW;
-use super::vertices::fetch_vertices;
+use super::vertices::fetch_corners;
 use crate::accel::DrawTriangle;
 use crate::frame::Viewport;
 use crate::frame::draw::{Back, Draw};
@@ -84,9 +84,9 @@ impl<'a> Facing<'a> {
 
     #[inline(always)]
     fn sixteen<S: Simd>(&self, simd: S, triangles: &[DrawTriangle; PACK], all: &[AtomicU8]) {
-        let [x0, y0] = self.corners(simd, triangles, 0);
-        let [x1, y1] = self.corners(simd, triangles, 1);
-        let [x2, y2] = self.corners(simd, triangles, 2);
+        let [x0, y0, ..] = fetch_corners(simd, self.vertices, triangles, 0);
+        let [x1, y1, ..] = fetch_corners(simd, self.vertices, triangles, 1);
+        let [x2, y2, ..] = fetch_corners(simd, self.vertices, triangles, 2);
         // A triangle beyond the clipping planes, or with an area of more than 32 bits, is done
         // singly.
         let (low_x, high_x) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
@@ -108,22 +108,6 @@ impl<'a> Facing<'a> {
         for lane in bits((beyond | wide).to_bitmask()) {
             self.one(triangles[lane].number, all);
         }
-    }
-
-    #[inline(always)]
-    fn corners<S: Simd>(
-        &self,
-        simd: S,
-        triangles: &[DrawTriangle; PACK],
-        corner: usize,
-    ) -> [i32x16<S>; 2] {
-        let [x, y, _, _] = fetch_vertices(
-            simd,
-            self.vertices,
-            #[inline(always)]
-            |lane| triangles[lane].vertices[corner],
-        );
-        [x, y]
     }
 
     /// Finds the outline of a polygon.

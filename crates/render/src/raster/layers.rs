@@ -186,7 +186,7 @@ impl Layers {
             }
             Coverage::Exact | Coverage::F32Edges => {
                 let reach = self.sample_positions.reach::<FOUR>();
-                let reach = beyond::reach(reach, beyond::beyond(plan.variants.coverage));
+                let reach = beyond::reach(plan.variants.coverage, reach);
                 let at = each(triangle.corners, |corner| corner.at());
                 let reached = PixelBox::reached(at, reach);
                 let Some(area) = reached.in_tile(self.bounds) else { return };

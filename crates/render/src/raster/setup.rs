@@ -17,7 +17,7 @@ use super::queue::{Pack, SMALL};
 use super::rule::Rule;
 use super::small;
 use super::tile_queues::FIRST_SIZE;
-use super::vertices::{fetch, fetch_vertices};
+use super::vertices::{fetch, fetch_corners};
 use crate::accel::{DrawOrder, DrawTriangle};
 use crate::frame::FramePlan;
 use crate::frame::draw::{Back, Draw, Pipeline, Shaded};
@@ -149,9 +149,9 @@ impl<'a> Setup<'a> {
         bins: &mut Bins,
         brush: &mut Brush<'_>,
     ) {
-        let [x0, y0, d0, _] = self.corners(simd, triangles, 0);
-        let [x1, y1, d1, _] = self.corners(simd, triangles, 1);
-        let [x2, y2, d2, _] = self.corners(simd, triangles, 2);
+        let [x0, y0, d0, _] = fetch_corners(simd, self.vertices, triangles, 0);
+        let [x1, y1, d1, _] = fetch_corners(simd, self.vertices, triangles, 1);
+        let [x2, y2, d2, _] = fetch_corners(simd, self.vertices, triangles, 2);
         // Bounding boxes in pixels. A triangle without a centre (or sample) in its box is culled.
         let (low_x, high_x) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
         let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
@@ -217,22 +217,6 @@ impl<'a> Setup<'a> {
         for lane in bits(odd.to_bitmask()) {
             self.add_odd::<R, N>(&triangles[lane], (bins, brush));
         }
-    }
-
-    /// Fetches x, y, depth and 1/w of one corner of sixteen triangles.
-    #[inline(always)]
-    fn corners<S: Simd>(
-        &self,
-        simd: S,
-        triangles: &[DrawTriangle; PACK],
-        corner: usize,
-    ) -> [i32x16<S>; 4] {
-        fetch_vertices(
-            simd,
-            self.vertices,
-            #[inline(always)]
-            |lane| triangles[lane].vertices[corner],
-        )
     }
 
     /// Fetches unsnapped x and y in pixels of one corner of sixteen triangles, as bits.
@@ -322,7 +306,7 @@ impl<'a> Setup<'a> {
     #[inline(always)]
     fn reach<R: Rule, const N: usize>(&self, bins: &Bins) -> [[i32; 2]; 2] {
         let reach = bins.sample_positions.reach::<N>();
-        if R::UNSNAPPED { beyond::reach(reach, beyond::beyond(self.coverage)) } else { reach }
+        if R::UNSNAPPED { beyond::reach(self.coverage, reach) } else { reach }
     }
 
     /// Returns whether small triangles are drawn sixteen at a time.

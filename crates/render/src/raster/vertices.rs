@@ -2,6 +2,8 @@
 
 use fearless_simd::{Simd, SimdBase as _, SimdCombine as _, i32x4, i32x16};
 
+use super::hits::PACK;
+use crate::accel::DrawTriangle;
 use crate::screen::clip::ScreenVertex;
 
 /// The vertices of a frame on the screen.
@@ -38,6 +40,22 @@ pub(crate) fn fetch_vertices<S: Simd>(
         simd,
         #[inline(always)]
         |lane| vertices[(number(lane) as usize).min(last)].row(),
+    )
+}
+
+/// Fetches x, y, depth and 1/w of one corner of sixteen triangles.
+#[inline(always)]
+pub(crate) fn fetch_corners<S: Simd>(
+    simd: S,
+    vertices: &[ScreenVertex],
+    triangles: &[DrawTriangle; PACK],
+    corner: usize,
+) -> [i32x16<S>; 4] {
+    fetch_vertices(
+        simd,
+        vertices,
+        #[inline(always)]
+        |lane| triangles[lane].vertices[corner],
     )
 }
 

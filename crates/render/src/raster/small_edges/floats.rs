@@ -7,7 +7,7 @@ use fearless_simd::{
 };
 
 use super::{Boxes, Corners, Edges, Places, UsualEdges, linear_depths};
-use crate::raster::beyond::{beyond, reach};
+use crate::raster::beyond::reach;
 use crate::screen::coverage::SUBPIXELS;
 use crate::screen::sample_positions::SamplePositions;
 use crate::simd::gather::of_lanes;
@@ -42,7 +42,7 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
     #[inline(always)]
     fn bounds(corners: Corners<S>, samples: [[i32; 2]; 2]) -> Boxes<S> {
         let corners = each(corners, |[x, y]| [snapped(x), snapped(y)]);
-        UsualEdges::bounds(corners, reach(samples, beyond(Coverage::F32Edges)))
+        UsualEdges::bounds(corners, reach(Coverage::F32Edges, samples))
     }
 
     #[inline(always)]

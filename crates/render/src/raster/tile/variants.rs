@@ -6,7 +6,7 @@ use super::Visibility;
 use crate::ancestors::points;
 use crate::frame::FramePlan;
 use crate::raster::alpha_test::{AlphaSurface, AlphaTest, BlockHoles};
-use crate::raster::beyond::{beyond, reach};
+use crate::raster::beyond::reach;
 use crate::raster::bins::Bins;
 use crate::raster::depth_format::Any;
 use crate::raster::edges_in_floats::{FloatTriangle, in_pixels};
@@ -55,8 +55,7 @@ impl Visibility {
             let own = FloatTriangle::new(corners, depths, number, first);
             let at = each(triangle.corners, |corner| corner.at());
             // Rounding may cover centres beyond the box, so the box is enlarged.
-            let beyond = beyond(Coverage::F32Edges);
-            let reach = reach(self.sample_positions.reach::<N>(), beyond);
+            let reach = reach(Coverage::F32Edges, self.sample_positions.reach::<N>());
             if let Some(area) = PixelBox::reached(at, reach).in_tile(self.bounds) {
                 let own = BlockTriangle::Floats(own);
                 self.draw_floats::<S, N>(simd, (&own, area), &tests);
