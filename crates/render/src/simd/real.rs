@@ -11,8 +11,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::power::Power;
-use super::power_variants;
+use super::power::{self, Power};
 
 /// A real number, or several of them in lanes.
 pub trait Real:
@@ -74,7 +73,7 @@ impl Real for f64 {
 
     #[inline(always)]
     fn power(self, power: &Power) -> Self {
-        power_variants::power(power, self)
+        power::power(power, self)
     }
 
     #[inline(always)]

@@ -9,8 +9,7 @@ use fearless_simd::{
     i32x16,
 };
 
-use super::power::Power;
-use super::power_variants;
+use super::power::{self, Power};
 use super::real::Real;
 
 /// An f32 number, or sixteen, that can be split into exponent and mantissa.
@@ -263,7 +262,7 @@ impl<S: Simd> Real for f32x16<S> {
             return single_power(self, power);
         }
         let mut lanes: [f32; 16] = *self;
-        power_variants::power_of_sixteen(power, &mut lanes);
+        power::power_of_sixteen(power, &mut lanes);
         Self::from_slice(self.simd, &lanes)
     }
 
