@@ -316,10 +316,12 @@ impl Renderer {
         pass: &Pass<'_>,
         watch: &Cancellation<'_>,
     ) {
+        let mut caches = std::mem::take(&mut self.caches);
         match plan.arithmetic {
-            Arithmetic::F32 => self.draw::<f32>(plan, damage, pass, watch),
-            Arithmetic::F64 => self.draw::<f64>(plan, damage, pass, watch),
+            Arithmetic::F32 => self.draw(&mut caches.fast, plan, damage, pass, watch),
+            Arithmetic::F64 => self.draw(&mut caches.exact, plan, damage, pass, watch),
         }
+        self.caches = caches;
     }
 
     /// Returns the damage that [`Self::redraw`] would repair.
@@ -383,8 +385,9 @@ impl Renderer {
     }
 
     /// Draws tiles in parallel, with a painter per thread.
-    fn draw<T: Painted>(
+    fn draw<T: ShadingNumber + Tiny>(
         &mut self,
+        cache: &mut ShadingCache<T>,
         plan: &FramePlan,
         damage: &Damage,
         pass: &Pass<'_>,
@@ -393,7 +396,7 @@ impl Renderer {
         // Shadow maps and the cache of face colours come first: all threads read them.
         let mut laps = Laps::start();
         self.maps.update(self.level, plan, watch);
-        let ShadingCache { terms, lit, faces, paths, painters } = T::cache(&mut self.caches);
+        let ShadingCache { terms, lit, faces, paths, painters } = cache;
         choose(plan, paths);
         let looks_up = paths.looks_up_faces && !self.frame.sample_positions().are_many();
         if looks_up {
@@ -479,21 +482,4 @@ impl<T: ShadingNumber> ShadingCache<T> {
 struct ShadingCaches {
     fast: ShadingCache<f32>,
     exact: ShadingCache<f64>,
-}
-
-/// A number type that pictures are painted in.
-trait Painted: ShadingNumber + Tiny {
-    fn cache(caches: &mut ShadingCaches) -> &mut ShadingCache<Self>;
-}
-
-impl Painted for f32 {
-    fn cache(caches: &mut ShadingCaches) -> &mut ShadingCache<Self> {
-        &mut caches.fast
-    }
-}
-
-impl Painted for f64 {
-    fn cache(caches: &mut ShadingCaches) -> &mut ShadingCache<Self> {
-        &mut caches.exact
-    }
 }
