@@ -312,7 +312,7 @@ impl Hits {
             (format, simd),
             tile,
             #[inline(always)]
-            |_, places, words| {
+            |places, words, _| {
                 places.iter().zip(words).for_each(
                     #[inline(always)]
                     |(place, word)| take(*place, *word),
@@ -321,42 +321,23 @@ impl Hits {
         );
     }
 
-    /// Calls `take` with the index, entry and colour of each hit in a tile, if hits have colours.
+    /// Calls `take` with each page of a tile: the indices and entries of its hits, and their colours
+    /// if hits have colours.
     #[inline(always)]
-    pub(crate) fn each_colored<S: Simd, D: Format>(
+    pub(crate) fn each_page<S: Simd, D: Format>(
         &self,
         (format, simd): (D, S),
         tile: usize,
-        mut take: impl FnMut(u32, u64, u32),
-    ) {
-        self.each_page(
-            (format, simd),
-            tile,
-            #[inline(always)]
-            |page, places, words| {
-                places.iter().zip(words).zip(&self.colors[page].0).for_each(
-                    #[inline(always)]
-                    |((place, word), color)| take(*place, *word, *color),
-                );
-            },
-        );
-    }
-
-    /// Calls `take` with each page of a tile: its number, and the indices and entries of its hits.
-    #[inline(always)]
-    fn each_page<S: Simd, D: Format>(
-        &self,
-        (format, simd): (D, S),
-        tile: usize,
-        mut take: impl FnMut(usize, &[u32], &[u64; PAGE]),
+        mut take: impl FnMut(&[u32], &[u64; PAGE], &[u32]),
     ) {
         let mut page = self.last[tile];
         while page != FULL {
             let Page { place, word, count, previous } = &self.pages[page as usize];
+            let colors = self.colors.get(page as usize).map_or(&[][..], |row| &row.0);
             // Fetched while this page is read.
             self.pages[*previous as usize].prefetch();
             if D::KEEPS_BITS {
-                take(page as usize, &place[..*count], word);
+                take(&place[..*count], word, colors);
             } else {
                 // Hits store the bits of depths. Other formats convert them here, where each is
                 // read once.
@@ -367,7 +348,7 @@ impl Hits {
                     let keys = format.keys(depth.bitcast()) + lines;
                     put_words(keys, number, &mut words[at..at + PACK]);
                 }
-                take(page as usize, &place[..*count], &words);
+                take(&place[..*count], &words, colors);
             }
             page = *previous;
         }

@@ -64,20 +64,21 @@ impl Visibility {
     /// Draws hits that have colours, with one sample per pixel.
     #[inline(always)]
     fn draw_colored_hits<S: Simd>(&mut self, simd: S, bins: &Bins, tile: usize) {
-        with_format!(self.depth_format, D => bins.hits.each_colored(
+        with_format!(self.depth_format, D => bins.hits.each_page(
             (D::of(self.depth_format), simd),
             tile,
             #[inline(always)]
-            |place, word, color| {
-                let place = place as usize % PIXELS;
-                let block = place / BLOCK_PIXELS;
-                self.color(simd.level(), block);
-                let old = &mut self.buffer.0[place];
-                // A hidden hit stores its colour in the dummy entry, which avoids an unpredictable
-                // branch.
-                let to = select_unpredictable(word > *old, place, PIXELS);
-                self.colors.0[to] = color;
-                *old = word.max(*old);
+            |places, words, colors| {
+                for ((place, word), color) in places.iter().zip(words).zip(colors) {
+                    let place = *place as usize % PIXELS;
+                    self.color(simd.level(), place / BLOCK_PIXELS);
+                    let old = &mut self.buffer.0[place];
+                    // A hidden hit stores its colour in the dummy entry, which avoids an
+                    // unpredictable branch.
+                    let to = select_unpredictable(*word > *old, place, PIXELS);
+                    self.colors.0[to] = *color;
+                    *old = (*word).max(*old);
+                }
             },
         ));
     }
