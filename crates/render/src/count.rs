@@ -19,10 +19,10 @@ use crate::plan::uses::{Effect, EffectUse};
 use crate::raster::geometry::ScreenGeometry;
 use crate::raster::lines::LineNumber;
 use crate::raster::visibility_buffer::{Visible, seen};
-use crate::screen::clip::{Screen, ScreenVertex, faces_observer};
-use crate::screen::coverage::{PixelBox, doubled_area};
+use crate::screen::coverage::PixelBox;
 use crate::screen::tiles::{BLOCK_PIXELS, tiles_of};
 use crate::shading::painter::bounds_of;
+use crate::shading::triangle_attributes::is_front;
 use crate::tile_layers::TileLayers;
 use marraztu_core::accuracy::LightAt;
 use marraztu_core::scene::ItemId;
@@ -152,17 +152,8 @@ impl FramePlan {
     /// Returns whether the observer sees the back of a triangle.
     fn is_back(&self, frame: &ScreenGeometry, draw: u32, number: u32) -> bool {
         let own = &self.draws[draw as usize];
-        let vertices = frame.corners_of(draw);
-        let order = own.model.mesh.draw_order();
-        let ids = order.vertices_of(number);
-        let corners = ids.map(|vertex| vertices[vertex as usize]);
-        let front = if corners.iter().all(ScreenVertex::is_inside) {
-            doubled_area(corners.map(|corner| corner.at())) < 0
-        } else {
-            let screen = Screen::new(own.clip_from_object, self.viewport);
-            faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
-        };
-        front == own.mirrored
+        let ids = own.model.mesh.draw_order().vertices_of(number);
+        is_front(ids, own, self, frame.corners_of(draw)) == own.mirrored
     }
 
     /// Counts a pixel of a line. Face normals and vertex normals are not distinguished: a pixel

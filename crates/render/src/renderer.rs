@@ -28,7 +28,7 @@ use crate::plan::color_path::choose;
 use crate::raster::geometry::ScreenGeometry;
 use crate::raster::hit_colors::CornerLight;
 use crate::screen::sample_positions::{SamplePositions, passes, shifts};
-use crate::screen::tiles::{TILE_SIDE, tiles_of};
+use crate::screen::tiles::TILE_SIDE;
 use crate::shading::interpolated::ShadingNumber;
 use crate::shading::light_terms::LightTerms;
 use crate::shading::tiny_blocks::Tiny;
@@ -254,9 +254,7 @@ impl Renderer {
         if passes.len() > 1 || plan.lit_by_sample {
             // If this frame is cancelled, the geometry belongs to no finished picture.
             self.built = false;
-            let [columns, rows] = tiles_of(plan.size);
-            let tiles = usize::try_from(columns * rows).expect("not negative");
-            sums.resize_with(tiles, TileSums::default);
+            sums.resize_with(damage.tiles_in_all(), TileSums::default);
         }
         if plan.lit_by_sample {
             return self.draw_each_sample(plan, damage, &sums, watch);
@@ -271,9 +269,7 @@ impl Renderer {
                 let one = passes.len() == 1 && !sample_positions.are_many();
                 // Hits are coloured even in tiles that are not painted, so this only pays if most
                 // tiles are.
-                let [columns, rows] = tiles_of(plan.size);
-                let all = usize::try_from(columns * rows).expect("not negative");
-                let pays = one && 2 * damage.tiles() >= all;
+                let pays = one && 2 * damage.tiles() >= damage.tiles_in_all();
                 let light = pays.then(|| VertexLight::new(self.level, plan, lit, terms)).flatten();
                 let light = light.as_ref().map(|light| light as &dyn CornerLight);
                 self.timings +=

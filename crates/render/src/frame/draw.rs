@@ -58,16 +58,11 @@ impl Draw {
                 Pipeline::Flat(_) => None,
             })
             .collect();
-        for shaded in shaded.iter().filter(|shaded| shaded.opacity.is_some()) {
-            // Fragments ask for the smallest alpha of the textures.
-            let pictures = shaded.texture.iter().chain(&shaded.opacity_map);
-            pictures.for_each(|texture| _ = texture.picture.least_alpha());
-        }
         let lit = shaded.iter().any(|shaded| shaded.light.is_some());
         let flat = lit && plan.light_at == LightAt::Face;
         let by_face = lit && self.normals == Normals::Face;
-        // An opacity map counts by its alpha or its brightness, and the alpha of a texture may not
-        // count at all: both depend on the smallest alpha.
+        // An opacity map counts by its alpha or its brightness, and the alpha of a transparent
+        // texture may not count at all: both depend on the smallest alpha.
         for shaded in &shaded {
             let texture = shaded.texture.as_ref().filter(|_| shaded.opacity.is_some());
             for map in shaded.opacity_map.iter().chain(texture) {

@@ -86,19 +86,16 @@ impl Bins {
             queue.clear();
         }
         self.drawn = 0;
-        self.transparent = None;
     }
 
-    /// Empties or creates the bins of transparent triangles.
-    pub(crate) fn clear_transparent(&mut self, mut bins: Box<Self>, size: Size) {
-        bins.clear(size, self.sample_positions);
-        bins.tile_queues.clear([0; 2], false);
-        self.transparent = Some(bins);
-    }
-
-    /// Takes the memory of the transparent bins, for the next frame.
-    pub(crate) fn take_transparent(&mut self) -> Box<Self> {
-        self.transparent.take().unwrap_or_default()
+    /// Empties the bins of transparent triangles, or drops them if the frame has none.
+    pub(crate) fn clear_transparent(&mut self, size: Size, is_transparent: bool) {
+        self.transparent = is_transparent.then(|| {
+            let mut bins = self.transparent.take().unwrap_or_default();
+            bins.clear(size, self.sample_positions);
+            bins.tile_queues.clear([0; 2], false);
+            bins
+        });
     }
 
     /// Returns the bins of transparent triangles, if the frame has any.

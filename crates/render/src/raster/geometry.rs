@@ -246,15 +246,10 @@ impl ScreenGeometry {
         // Empties one set of bins per thread.
         self.bins.resize_with(self.set_up.threads(FEW), Bins::default);
         for bins in &mut self.bins {
-            let transparent = plan.is_transparent().then(|| bins.take_transparent());
             bins.clear(plan.size, self.sample_positions);
-            if light.is_some() {
-                // For every thread: one that takes no triangles may still take lines.
-                bins.hits.colored = true;
-            }
-            if let Some(transparent) = transparent {
-                bins.clear_transparent(transparent, plan.size);
-            }
+            bins.clear_transparent(plan.size, plan.is_transparent());
+            // For every thread: one that takes no triangles may still take lines.
+            bins.hits.colored = light.is_some();
         }
         self.inputs.holes.update(plan);
         let parts = Parts { plan, inputs: &self.inputs, light };

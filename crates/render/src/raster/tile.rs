@@ -237,10 +237,7 @@ impl Visibility {
         let block = block_at(x, y);
         let mut samples = [0; FOUR];
         if self.shows(block) {
-            match count {
-                1 => self.write::<1>(level, block),
-                _ => self.write::<FOUR>(level, block),
-            }
+            self.write_samples(level, block);
             for (sample, word) in samples[..count].iter_mut().enumerate() {
                 *word = self.block_samples(block)[sample * BLOCK_PIXELS + within(x, y)];
             }
@@ -259,12 +256,15 @@ impl Visibility {
         if !self.shows(block) {
             return [0; BLOCK_PIXELS];
         }
-        if self.sample_positions.are_many() {
-            self.write::<FOUR>(level, block);
-            *self.plane::<FOUR>(block, sample)
-        } else {
-            self.write::<1>(level, block);
-            *self.plane::<1>(block, sample)
+        self.write_samples(level, block);
+        self.block_samples(block).as_chunks().0[sample]
+    }
+
+    /// Makes the entries of a block valid for the samples of the pass.
+    fn write_samples(&mut self, level: Level, block: usize) {
+        match self.sample_positions.are_many() {
+            true => self.write::<FOUR>(level, block),
+            false => self.write::<1>(level, block),
         }
     }
 

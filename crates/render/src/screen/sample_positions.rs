@@ -31,13 +31,8 @@ impl SamplePositions {
     /// A single sample at the centre.
     const MIDDLE: Self = Self { shifts: [[0; 2]; FOUR], least: [0; 2], most: [0; 2], many: false };
 
-    /// Creates four samples, given in sixteenths of a pixel from the upper left corner.
-    const fn new(sixteenths: [[i32; 2]; FOUR]) -> Self {
-        Self::of_parts(sixteenths, 16)
-    }
-
     /// Creates four samples, given in `parts` of a pixel from the upper left corner.
-    const fn of_parts(places: [[i32; 2]; FOUR], parts: i32) -> Self {
+    const fn new(parts: i32, places: [[i32; 2]; FOUR]) -> Self {
         let mut positions = Self { least: [128; 2], most: [-128; 2], many: true, ..Self::MIDDLE };
         let mut i = 0;
         while i < 2 * FOUR {
@@ -96,14 +91,15 @@ pub(crate) fn shifts(samples: Samples) -> impl ExactSizeIterator<Item = [i32; 2]
     (0..passes.len() * count).map(move |i| passes[i / count].shifts[i % count])
 }
 
-const QUARTERS: [SamplePositions; 1] = [SamplePositions::new([[6, 2], [14, 6], [2, 10], [10, 14]])];
+const QUARTERS: [SamplePositions; 1] =
+    [SamplePositions::new(16, [[6, 2], [14, 6], [2, 10], [10, 14]])];
 
 /// Vulkan's sixteen positions, in groups of four around the centre, the nearest first.
 const SIXTEEN: [SamplePositions; 4] = [
-    SamplePositions::new([[9, 9], [7, 5], [5, 10], [12, 7]]),
-    SamplePositions::new([[3, 6], [10, 13], [2, 12], [11, 3]]),
-    SamplePositions::new([[6, 14], [8, 1], [4, 2], [13, 11]]),
-    SamplePositions::new([[0, 8], [15, 4], [14, 15], [1, 0]]),
+    SamplePositions::new(16, [[9, 9], [7, 5], [5, 10], [12, 7]]),
+    SamplePositions::new(16, [[3, 6], [10, 13], [2, 12], [11, 3]]),
+    SamplePositions::new(16, [[6, 14], [8, 1], [4, 2], [13, 11]]),
+    SamplePositions::new(16, [[0, 8], [15, 4], [14, 15], [1, 0]]),
 ];
 
 /// Grids of 8 x 8 and 16 x 16.
@@ -118,7 +114,7 @@ const fn grid<const PASSES: usize>(side: i32) -> [SamplePositions; PASSES] {
     while i < half * half {
         let (x, y) = (side - 1 - 2 * (i % half), side - 1 - 2 * (i / half));
         let turned = [[x, y], [parts - y, x], [parts - x, parts - y], [y, parts - x]];
-        passes[i as usize] = SamplePositions::of_parts(turned, parts);
+        passes[i as usize] = SamplePositions::new(parts, turned);
         i += 1;
     }
     passes
