@@ -12,10 +12,10 @@ use rayon::prelude::*;
 use super::bins::Bins;
 use super::edges;
 use super::hit_colors::CornerLight;
+use super::inputs::{Inputs, Start, number};
 use super::lines::LineNumber;
-use super::parts::{Inputs, Parts, share_out};
+use super::parts::{Parts, share_out};
 use super::rule::{Rule as _, with_rule};
-use super::starts::{Start, number};
 use super::vertex_variants;
 use super::vertices::Vertices;
 use super::work::{FEW, FEW_VERTICES, What, WorkList, piece_of};
@@ -323,7 +323,7 @@ impl ScreenGeometry {
     /// Returns the draw of a triangle, and the draw's first numbers.
     #[inline(always)]
     pub(crate) fn draw_of(&self, triangle: u32) -> (u32, Start) {
-        self.inputs.corners().draw_of(triangle)
+        self.inputs.draw_of(triangle)
     }
 
     /// Returns the number after the last triangle's.
@@ -341,7 +341,7 @@ impl ScreenGeometry {
 
     /// Returns the corners of a draw's triangles, on the finer grid if there is one.
     pub(crate) fn corners_of(&self, draw: u32) -> &[ScreenVertex] {
-        self.inputs.corners().of(draw as usize)
+        self.inputs.corners_of(draw as usize)
     }
 
     /// Returns the colour of a line.

@@ -14,7 +14,7 @@ use std::fmt::Debug;
 use fearless_simd::{Bytes as _, Simd, SimdBase as _, f32x16, i32x16, u32x16};
 
 use super::hits::PACK;
-use super::starts::DrawCorners;
+use super::inputs::Inputs;
 use crate::screen::perspective::{between, weighed};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::simd::gather::{of_lanes, pick};
@@ -26,7 +26,7 @@ pub(crate) trait CornerLight: Debug + Sync {
     /// Returns the conversion of colours to bytes.
     fn conversion(&self) -> Conversion<'_>;
     /// Creates the look-up of one thread.
-    fn begin<'a>(&'a self, corners: DrawCorners<'a>) -> Box<dyn LookUp + 'a>;
+    fn begin<'a>(&'a self, inputs: &'a Inputs) -> Box<dyn LookUp + 'a>;
 }
 
 /// Looks up the light at corners of triangles.
@@ -86,8 +86,8 @@ pub(crate) struct Brush<'a> {
 }
 
 impl<'a> Brush<'a> {
-    pub(crate) fn new(light: Option<&'a dyn CornerLight>, corners: DrawCorners<'a>) -> Self {
-        let own = light.map(|light| (light.begin(corners), light.conversion()));
+    pub(crate) fn new(light: Option<&'a dyn CornerLight>, inputs: &'a Inputs) -> Self {
+        let own = light.map(|light| (light.begin(inputs), light.conversion()));
         Self { own, corners: Corners::default() }
     }
 

@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::starts::number;
+use super::inputs::number;
 use crate::frame::FramePlan;
 use crate::frame::draw::{Draw, Pipeline, Shaded};
 use crate::texture::opacity::{Holes, Opacity, between};

@@ -2,25 +2,21 @@
 
 use crate::accel::Accelerated as _;
 use std::sync::Mutex;
-use std::sync::atomic::AtomicU8;
 
 use fearless_simd::Level;
 
 use super::bins::Bins;
 use super::culling::Culling;
-use super::edges::{DrawnNormal, EdgeSetup};
+use super::edges::EdgeSetup;
 use super::facing::Facing;
 use super::hit_colors::{Brush, CornerLight};
-use super::hole_tables::HoleTables;
+use super::inputs::{Inputs, number};
 use super::rule::with_rule;
 use super::setup::{self, Setup};
-use super::starts::{DrawCorners, Start, number};
-use super::vertices::Vertices;
 use super::work::{What, Work};
 use crate::accel::CLUSTER;
 use crate::cancellation::Cancellation;
 use crate::frame::FramePlan;
-use crate::frame::draw::Draw;
 use crate::screen::clip::Screen;
 use crate::work_stealing::{WorkStealing, own, together};
 
@@ -36,7 +32,7 @@ pub(crate) fn share_out(
     let all: Vec<Mutex<&mut Bins>> = bins.iter_mut().map(Mutex::new).collect();
     together(all.len(), || {
         let bins = &mut own(&all);
-        let brush = &mut Brush::new(parts.light, parts.inputs.corners());
+        let brush = &mut Brush::new(parts.light, parts.inputs);
         while let Some(work) = shares.next().map(|i| &work[i]) {
             if !watch.goes_on() {
                 return;
@@ -46,34 +42,6 @@ pub(crate) fn share_out(
         // The queues hold fewer than a full batch at the end.
         with_rule!(parts.plan.variants, R => setup::finish::<R>(level, bins, brush));
     });
-}
-
-/// What all threads read while they fill bins.
-#[derive(Debug, Default)]
-pub(crate) struct Inputs {
-    /// The vertices of all draws, in the draw order of their meshes.
-    pub(crate) vertices: Vertices,
-    pub(crate) starts: Vec<Start>,
-    /// The number of an [`Outline`](super::facing::Outline) for each polygon of draws with edges.
-    pub(crate) outlines: Vec<AtomicU8>,
-    /// The drawn normals.
-    pub(crate) normals: Vec<DrawnNormal>,
-    /// The classification of triangles by their holes.
-    pub(crate) holes: HoleTables,
-}
-
-impl Inputs {
-    /// Returns the corners of all triangles.
-    pub(crate) fn corners(&self) -> DrawCorners<'_> {
-        DrawCorners { corners: self.vertices.corners(), starts: &self.starts }
-    }
-
-    /// Returns the outlines of a draw; empty if its edges are not drawn.
-    pub(crate) fn outlines_of(&self, plan: &FramePlan, draw: usize) -> &[AtomicU8] {
-        let Draw { model, lines, .. } = &plan.draws[draw];
-        let count = if lines.edges { model.mesh.polygon_count() } else { 0 };
-        &self.outlines[self.starts[draw].outline..][..count]
-    }
 }
 
 /// Sets up the draws of a plan into bins.
@@ -96,7 +64,7 @@ impl Parts<'_> {
         match what {
             What::Triangles => {
                 // The screen corners of this draw, on the grid and with the variants of the frame.
-                let mut setup = Setup::new(plan, draw, inputs.corners().of(i), start.number);
+                let mut setup = Setup::new(plan, draw, inputs.corners_of(i), start.number);
                 setup.unsnapped = inputs.vertices.unsnapped.get(start.vertex..).unwrap_or_default();
                 setup.holes = inputs.holes.of_draw(i);
                 // Cluster culling removes whole ranges before any triangle is set up.
@@ -138,7 +106,7 @@ impl Parts<'_> {
         let grid = plan.variants.grid();
         let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
         let screen = screen.seen_from(grid.offset(plan.shift));
-        let (vertices, outlines) = (inputs.corners().of(i), inputs.outlines_of(plan, i));
+        let (vertices, outlines) = (inputs.corners_of(i), inputs.outlines_of(plan, i));
         EdgeSetup { draw, vertices, screen, grid, outlines, first, width: plan.line_width }
     }
 }

@@ -17,13 +17,6 @@ pub(crate) struct Vertices {
     pub(crate) unsnapped: Vec<[f32; 2]>,
 }
 
-impl Vertices {
-    /// Returns the corners of triangles, on the finer grid if there is one.
-    pub(crate) fn corners(&self) -> &[ScreenVertex] {
-        if self.fine.is_empty() { &self.usual } else { &self.fine }
-    }
-}
-
 /// Fetches x, y, depth and 1/w of sixteen vertices by their numbers. A number beyond the last one
 /// counts as the last one, which saves a bounds check per lane.
 #[inline(always)]

@@ -122,7 +122,10 @@ impl Screen {
     pub(crate) fn on(self, grid: Grid) -> Self {
         match grid {
             Grid::Usual => self,
-            Grid::Fine => Self { parts: f64::from(grid.parts()), ..self.guarded(FINE_GUARD) },
+            Grid::Fine => {
+                let guard = self.half.map(|half| FINE_GUARD / half - 1.0);
+                Self { parts: f64::from(grid.parts()), guard, ..self }
+            }
         }
     }
 
@@ -134,11 +137,6 @@ impl Screen {
     /// Returns the sample's offset, in pixels.
     pub(crate) fn shift_in_pixels(&self) -> [f64; 2] {
         self.shift.map(|by| f64::from(by) / self.parts)
-    }
-
-    /// Returns the same transform with a guard band of this many pixels around the centre.
-    fn guarded(self, pixels: f64) -> Self {
-        Self { guard: self.half.map(|half| pixels / half - 1.0), ..self }
     }
 
     /// Returns the transform to a part of the picture that is centred at `middle` and reaches

@@ -17,7 +17,7 @@ use crate::raster::hit_colors::{
     Conversion, CornerColors, CornerLight, Corners, LookUp, Triangles,
 };
 use crate::raster::hits::PACK;
-use crate::raster::starts::DrawCorners;
+use crate::raster::inputs::Inputs;
 use crate::screen::clip::ScreenVertex;
 use crate::shadow::rays::RayScratch;
 use crate::simd::{Lanes as _, Sixteen};
@@ -49,9 +49,9 @@ impl CornerLight for VertexLight<'_> {
         self.terms.conversion(self.plan)
     }
 
-    fn begin<'a>(&'a self, corners: DrawCorners<'a>) -> Box<dyn LookUp + 'a> {
+    fn begin<'a>(&'a self, inputs: &'a Inputs) -> Box<dyn LookUp + 'a> {
         let (batch, rays) = (Batch::default(), RayScratch::default());
-        Box::new(Worker { frame: self, corners, batch, rays, numbers: 0..0, draw: None })
+        Box::new(Worker { frame: self, inputs, batch, rays, numbers: 0..0, draw: None })
     }
 }
 
@@ -59,7 +59,7 @@ impl CornerLight for VertexLight<'_> {
 #[derive(Debug)]
 struct Worker<'a> {
     frame: &'a VertexLight<'a>,
-    corners: DrawCorners<'a>,
+    inputs: &'a Inputs,
     /// The batch for lighting vertices.
     batch: Batch<f32>,
     rays: RayScratch,
@@ -82,7 +82,7 @@ struct LitDraw<'a> {
 
 impl<'a> LitDraw<'a> {
     /// Returns `None` if a pixel of the draw shows more than interpolated light.
-    fn new(frame: &'a VertexLight<'a>, corners: DrawCorners<'a>, index: u32) -> Option<Self> {
+    fn new(frame: &'a VertexLight<'a>, inputs: &'a Inputs, index: u32) -> Option<Self> {
         let VertexLight { level, plan, lit, terms } = *frame;
         let draw = &plan.draws[index as usize];
         let pipeline = draw.uniform.filter(|_| draw.back != Back::Red)?;
@@ -94,7 +94,7 @@ impl<'a> LitDraw<'a> {
             draw,
             order,
             points: order.points(draw.normal_source),
-            vertices: corners.of(index as usize),
+            vertices: inputs.corners_of(index as usize),
             tables,
             lighting: Lighting { level, draw, stages, terms: terms.of(pipeline), tracer: None },
         })
@@ -112,9 +112,9 @@ impl<'a> Worker<'a> {
     ) -> Option<(&LitDraw<'a>, CornerColors)> {
         // Consecutive triangles mostly belong to one draw.
         if !self.numbers.contains(&number) {
-            let (draw, start) = self.corners.draw_of(number);
+            let (draw, start) = self.inputs.draw_of(number);
             self.numbers = start.number..start.end;
-            self.draw = LitDraw::new(self.frame, self.corners, draw);
+            self.draw = LitDraw::new(self.frame, self.inputs, draw);
         }
         let own = self.draw.as_ref()?;
         let number = number - self.numbers.start;
