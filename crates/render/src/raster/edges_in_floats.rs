@@ -21,7 +21,7 @@ const ERROR: f32 = 1.0 / 2_097_152.0;
 
 /// The columns and rows of the pixels in two rows of a block, or of the blocks in two rows of a
 /// tile.
-const ACROSS: [f32; 16] =
+pub(super) const ACROSS: [f32; 16] =
     [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 const DOWN: [f32; 16] =
     [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];

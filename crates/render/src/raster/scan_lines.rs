@@ -11,13 +11,10 @@ use fearless_simd::{
 
 use super::alpha_test::BlockHoles;
 use super::depth_format::Format;
+use super::edges_in_floats::ACROSS;
 use super::visibility_buffer::{in_front, put_rows};
 use crate::screen::coverage::PixelBox;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE_SIDE};
-
-/// The columns of the pixels in two rows of a block.
-const ACROSS: [f32; 16] =
-    [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// A row of a triangle.
 #[derive(Clone, Copy, Debug)]

@@ -53,18 +53,6 @@ pub(crate) struct Setup<'a> {
     transparent: bool,
 }
 
-/// The possibly visible ones of sixteen triangles.
-#[derive(Clone, Copy, Debug)]
-struct Visible<S: Simd> {
-    /// The triangles without and with the alpha test.
-    plain: mask32x16<S>,
-    cutout: u64,
-    /// The triangles that run clockwise on the screen.
-    clockwise: u64,
-    /// The bounding boxes: left, top, right and bottom.
-    boxes: [i32x16<S>; 4],
-}
-
 /// The kind of drawing of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -205,11 +193,9 @@ impl<'a> Setup<'a> {
             let clockwise = area.simd_gt(0).to_bitmask();
             for (some, cutout, transparent) in self.kinds(triangles, plain, front) {
                 if some | cutout != 0 {
-                    let plain = mask32x16::from_bitmask(simd, some);
-                    let visible = Visible { plain, cutout, clockwise, boxes };
-                    let bins = bins.of(transparent);
-                    let rows = (&pack, &[v0, v1, v2]);
-                    self.sort::<S, R, N>(triangles, rows, visible, bins, brush);
+                    let visible = (mask32x16::from_bitmask(simd, some), cutout, clockwise);
+                    let rows = (&pack, &[v0, v1, v2], boxes);
+                    self.sort::<S, R, N>(triangles, rows, visible, bins.of(transparent), brush);
                 }
             }
         }
@@ -241,13 +227,14 @@ impl<'a> Setup<'a> {
 
     /// Sorts visible triangles by the larger side of their bounding boxes: into this thread's
     /// queues of small triangles, into the queues of the tiles they reach into, or to the large
-    /// triangles.
+    /// triangles. The masks are of triangles without the alpha test, with it, and of those that run
+    /// clockwise on the screen.
     #[inline(always)]
     fn sort<S: Simd, R: Rule, const N: usize>(
         &self,
         triangles: &[DrawTriangle; PACK],
-        (pack, vertices): (&Pack<S>, &[i32x16<S>; 3]),
-        Visible { plain, cutout, clockwise, boxes }: Visible<S>,
+        (pack, vertices, boxes): (&Pack<S>, &[i32x16<S>; 3], [i32x16<S>; 4]),
+        (plain, cutout, clockwise): (mask32x16<S>, u64, u64),
         bins: &mut Bins,
         brush: &mut Brush<'_>,
     ) {

@@ -24,6 +24,17 @@ type Corners<S> = [[i32x16<S>; 2]; 3];
 /// boxes and, with several samples, the offset of the sample.
 pub(crate) type Places<'a, S, T> = (i32x16<S>, [i32x16<S>; 2], Option<&'a T>);
 
+/// An edge function of sixteen triangles at the first pixels of their boxes.
+#[derive(Clone, Copy)]
+struct Edge<V> {
+    value: V,
+    /// The smallest covered value: 0, or 1 if the top-left rule excludes centres on the edge.
+    least: V,
+    /// The steps to the right and down.
+    a: V,
+    b: V,
+}
+
 /// The edge functions of sixteen triangles, positive inside for either winding.
 pub(crate) trait Edges<S: Simd>: Copy {
     /// The values of the edge functions at a pixel.

@@ -3,7 +3,7 @@
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, mask32x16};
 
-use super::{Boxes, Corners, Edges, Places, linear_depths};
+use super::{Boxes, Corners, Edge, Edges, Places, linear_depths};
 use crate::screen::coverage::SUBPIXELS;
 use crate::screen::sample_positions::SamplePositions;
 use crate::simd::gather::of_lanes;
@@ -13,7 +13,7 @@ use marraztu_core::base::math::each;
 #[derive(Clone, Copy)]
 pub(crate) struct UsualEdges<S: Simd> {
     first: [f32x16<S>; 3],
-    /// The smallest covered values: 0, or 1 if the top-left rule excludes centres on the edge.
+    /// The smallest covered values.
     least: [f32x16<S>; 3],
     /// The steps of the edge functions for one pixel to the right and one pixel down.
     steps: [[f32x16<S>; 3]; 2],
@@ -107,15 +107,6 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
     }
 }
 
-/// An edge function of sixteen triangles.
-#[derive(Clone, Copy)]
-struct LanesEdge<S: Simd> {
-    value: f32x16<S>,
-    least: f32x16<S>,
-    a: f32x16<S>,
-    b: f32x16<S>,
-}
-
 /// Computes an edge function as in `coverage`, multiplied by the sign of the area, with steps by
 /// whole pixels: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0.
 #[inline(always)]
@@ -123,11 +114,11 @@ fn edge<S: Simd>(
     [px, py]: [f32x16<S>; 2],
     [qx, qy]: [f32x16<S>; 2],
     sign: f32x16<S>,
-) -> LanesEdge<S> {
+) -> Edge<f32x16<S>> {
     let (a, b) = ((py - qy) * sign, (qx - px) * sign);
     let on_edge = a.simd_gt(0.0) | (a.simd_eq(0.0) & b.simd_gt(0.0));
     let (zero, one) = (f32x16::splat(px.simd, 0.0), f32x16::splat(px.simd, 1.0));
-    LanesEdge {
+    Edge {
         value: zero - (a * px + b * py),
         least: on_edge.select(zero, one),
         a: a * (SUBPIXELS as f32),

@@ -6,7 +6,7 @@ use fearless_simd::{
     f32x16, f64x8, i32x16, mask32x16, u32x16,
 };
 
-use super::{Boxes, Corners, Edges, Places, linear_depths};
+use super::{Boxes, Corners, Edge, Edges, Places, linear_depths};
 use crate::screen::coverage::{Grid, SUBPIXELS};
 use crate::screen::sample_positions::SamplePositions;
 use crate::simd::gather::{of_lanes, permute};
@@ -226,17 +226,6 @@ fn sum<S: Simd>([a, b, c]: [i32x16<S>; 3], by: [i32x16<S>; 3]) -> [i32x16<S>; 3]
     [a + by[0], b + by[1], c + by[2]]
 }
 
-/// An integer edge function of sixteen triangles.
-#[derive(Clone, Copy)]
-struct WholeEdge<S: Simd> {
-    /// The value minus the smallest covered value.
-    value: i32x16<S>,
-    least: i32x16<S>,
-    /// The steps for one grid step to the right and one down.
-    a: i32x16<S>,
-    b: i32x16<S>,
-}
-
 /// Sets up the edge functions of triangles, relative to the centres of the first pixels of their
 /// boxes, and their areas. An area of 0 counts as 1, which keeps quotients finite.
 #[inline(always)]
@@ -244,7 +233,7 @@ fn whole_edges<S: Simd>(
     grid: Grid,
     [p, q, r]: Corners<S>,
     [left, top, ..]: Boxes<S>,
-) -> ([WholeEdge<S>; 3], i32x16<S>) {
+) -> ([Edge<i32x16<S>>; 3], i32x16<S>) {
     let (half, log2) = (grid.parts() / 2, grid.parts().trailing_zeros());
     let (cx, cy) = ((left << log2) + half, (top << log2) + half);
     let [p, q, r] = each([p, q, r], |[x, y]| [x - cx, y - cy]);
@@ -255,17 +244,18 @@ fn whole_edges<S: Simd>(
     (edges, (area * sign).max(1))
 }
 
-/// Computes an edge function as in `coverage`, multiplied by the sign of the area: a = p.y - q.y,
-/// b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0.
+/// Computes an edge function as in `coverage`, minus its smallest covered value and multiplied by
+/// the sign of the area, with steps by one grid step: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x)
+/// + b (y - p.y) at x = y = 0.
 #[inline(always)]
 fn whole_edge<S: Simd>(
     [px, py]: [i32x16<S>; 2],
     [qx, qy]: [i32x16<S>; 2],
     sign: i32x16<S>,
-) -> WholeEdge<S> {
+) -> Edge<i32x16<S>> {
     let (a, b) = ((py - qy) * sign, (qx - px) * sign);
     let on_edge = a.simd_gt(0) | (a.simd_eq(0) & b.simd_gt(0));
     let (zero, one) = (i32x16::splat(px.simd, 0), i32x16::splat(px.simd, 1));
     let least = on_edge.select(zero, one);
-    WholeEdge { value: zero - (a * px + b * py) - least, least, a, b }
+    Edge { value: zero - (a * px + b * py) - least, least, a, b }
 }
