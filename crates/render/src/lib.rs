@@ -40,26 +40,8 @@
 //! # Ok::<(), marraztu_core::scene::CommandError>(())
 //! ```
 //!
-//! Modules use those before them in this list (`tests/rooms.rs`):
-//!
-//! * `cancellation`, `work_stealing`: parallel work that can be given up.
-//! * [`accel`]: structures built once for each mesh: draw order, clusters, BVH, edge order.
-//! * [`simd`]: the numbers that light is computed in, eight or sixteen at a time.
-//! * `texture`: colours of textures at a position, and their mip maps.
-//! * [`lights`]: one file and one table row for each kind of light; the Phong terms.
-//! * `frame`: what a frame draws, as plain data.
-//! * [`screen`]: clipping, snapping, coverage, sample positions and tiles.
-//! * [`plan`]: decides what a frame draws before any pixel is touched, and says why.
-//! * `ancestors`: the fill algorithm of ancestor A, as a whole.
-//! * `raster`: vertices to the screen, triangles and lines into the bins of tiles, and from there
-//!   to the visibility buffer.
-//! * `shadow`: rays from lit points to lights, and what stands between.
-//! * `shading`: the colours of what is visible, and their bytes in the picture.
-//! * `tile_layers`: what the pixels of a tile show.
-//! * `picture_camera`, `layers`: the camera of a picture, and its depths, normals and ids, for
-//!   other programs.
-//! * `renderer`, `damage`, `count`, `unseen`, `exposure`, `without_ground`, `bands`: draw plans,
-//!   and answer questions about what was drawn.
+//! Modules use those before them in the table of `ARCHITECTURE.md`, which tells what each is for;
+//! `tests/rooms.rs` enforces that.
 
 pub mod accel;
 mod ancestors;
