@@ -72,14 +72,8 @@ impl Points {
 impl Accelerator for DrawOrder {
     const PLACE: AcceleratorPlace = AcceleratorPlace::DrawOrder;
 
-    fn build(mesh: &Mesh) -> Self {
-        Self::along_curve(mesh)
-    }
-}
-
-impl DrawOrder {
     /// Sorts the triangles along a Morton curve.
-    fn along_curve(mesh: &Mesh) -> Self {
+    fn build(mesh: &Mesh) -> Self {
         let Some(bounds) = mesh.bounds() else { return Self::default() };
         let count = mesh.triangle_count();
         let key = |number: usize| morton(mesh, bounds, vertices(mesh, number));
@@ -96,7 +90,9 @@ impl DrawOrder {
         let place = |vertex| DVec3::from_array(order.position(vertex));
         Self { clusters: clusters(&order.triangles, place), ..order }
     }
+}
 
+impl DrawOrder {
     /// Keeps the order of the file.
     pub(super) fn as_filed(mesh: &Mesh) -> Self {
         let triangle = |number| DrawTriangle { vertices: vertices(mesh, number as usize), number };

@@ -200,11 +200,6 @@ impl BlockHoles<'_, '_, '_> {
 
 impl<S: Simd> InFront<S> for BlockHoles<'_, '_, '_> {
     #[inline(always)]
-    fn matters(&self) -> bool {
-        true
-    }
-
-    #[inline(always)]
     fn opaque(
         &mut self,
         simd: S,

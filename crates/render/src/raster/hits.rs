@@ -321,8 +321,8 @@ impl Hits {
         );
     }
 
-    /// Calls `take` with each page of a tile: the indices and entries of its hits, and their colours
-    /// if hits have colours.
+    /// Calls `take` with each page of a tile: the indices and entries of its hits, and their
+    /// colours if hits have any.
     #[inline(always)]
     pub(crate) fn each_page<S: Simd, D: Format>(
         &self,

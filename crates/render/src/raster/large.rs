@@ -47,8 +47,8 @@ pub(crate) struct Large {
 /// The treatment of pixels that pass the depth test: holes let the surface behind show through, and
 /// pixels with known light are coloured.
 pub(crate) trait InFront<S: Simd> {
-    /// Returns whether the treatment does anything.
-    fn matters(&self) -> bool;
+    /// Whether the treatment does anything.
+    const MATTERS: bool = true;
     /// Treats the pixels of two rows of a block that pass the depth test, and returns a bit mask of
     /// the opaque ones. The arguments are the mask of pixels, the edge functions of the second and
     /// third corner in each row, and the depths.
@@ -66,10 +66,7 @@ pub(crate) trait InFront<S: Simd> {
 pub(crate) struct Solid;
 
 impl<S: Simd> InFront<S> for Solid {
-    #[inline(always)]
-    fn matters(&self) -> bool {
-        false
-    }
+    const MATTERS: bool = false;
 
     #[inline(always)]
     fn opaque(&mut self, _: S, _: usize, pixels: u64, _: [[f64x8<S>; 2]; 2], _: f32x16<S>) -> u64 {
@@ -193,13 +190,13 @@ impl Large {
     /// Draws the triangle into a block of the visibility buffer, for the sample with this offset.
     /// `whole` tells that it covers the block fully.
     #[inline(always)]
-    pub(crate) fn draw<S: Simd>(
+    pub(crate) fn draw<S: Simd, I: InFront<S>>(
         &self,
         format: impl Format,
         simd: S,
         (block, shift): (usize, [i32; 2]),
         whole: bool,
-        in_front_of: &mut impl InFront<S>,
+        in_front_of: &mut I,
         visibility: &mut [u64; BLOCK_PIXELS],
     ) {
         let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
@@ -226,7 +223,7 @@ impl Large {
             let covered = (covered[0] & 0xff) | (covered[1] & 0xff) << 8;
             let mut covered = mask32x16::from_bitmask(simd, covered);
             // Holes and colours only matter in pixels that pass the depth test.
-            if in_front_of.matters() {
+            if I::MATTERS {
                 let front = in_front(format, simd, covered, depth, self.number, visibility);
                 if front == 0 {
                     continue;

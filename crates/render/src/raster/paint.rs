@@ -89,11 +89,6 @@ impl Painted<'_> {
 
 impl<S: Simd> InFront<S> for Painted<'_> {
     #[inline(always)]
-    fn matters(&self) -> bool {
-        true
-    }
-
-    #[inline(always)]
     fn opaque(
         &mut self,
         _: S,

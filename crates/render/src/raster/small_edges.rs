@@ -78,8 +78,8 @@ pub(crate) trait Edges<S: Simd>: Copy {
     fn depths(&self, at: Places<'_, S, Self::Shift>) -> f32x16<S>;
 }
 
-/// Computes depths in f32, from the depth of the first corner and its growth with the edge functions
-/// of the others.
+/// Computes depths in f32, from the depth of the first corner and its growth with the edge
+/// functions of the others.
 #[inline(always)]
 fn linear_depths<S: Simd, E: Edges<S>>(
     edges: &E,

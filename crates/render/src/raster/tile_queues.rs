@@ -44,15 +44,8 @@ impl Page {
     }
 }
 
-/// The tiles that each of sixteen triangles reaches into.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TileBoxes<S: Simd> {
-    left: i32x16<S>,
-    top: i32x16<S>,
-    /// The last column and row.
-    right: i32x16<S>,
-    bottom: i32x16<S>,
-}
+/// The tiles that each of sixteen triangles reaches into: the first column and row, and the last.
+pub(crate) type TileBoxes<S> = [i32x16<S>; 4];
 
 /// The waiting triangles set up by one thread.
 #[derive(Debug)]
@@ -98,12 +91,12 @@ impl TileQueues {
         [left, top, right, bottom]: [i32x16<S>; 4],
     ) -> TileBoxes<S> {
         let [columns, rows] = self.tiles;
-        TileBoxes {
-            left: (left >> 6).max(0),
-            top: (top >> 6).max(0),
-            right: ((right - 1) >> 6).min(columns - 1),
-            bottom: ((bottom - 1) >> 6).min(rows - 1),
-        }
+        [
+            (left >> 6).max(0),
+            (top >> 6).max(0),
+            ((right - 1) >> 6).min(columns - 1),
+            ((bottom - 1) >> 6).min(rows - 1),
+        ]
     }
 
     /// Adds the triangles of a mask, out of sixteen, to every tile they reach into.
@@ -125,11 +118,9 @@ impl TileQueues {
         }
         for row in all.top..all.bottom {
             for column in all.left..all.right {
-                let own = some
-                    & boxes.left.simd_le(column)
-                    & boxes.right.simd_ge(column)
-                    & boxes.top.simd_le(row)
-                    & boxes.bottom.simd_ge(row);
+                let [left, top, right, bottom] = *boxes;
+                let in_column = left.simd_le(column) & right.simd_ge(column);
+                let own = some & in_column & top.simd_le(row) & bottom.simd_ge(row);
                 if own.any_true() {
                     self.add_to((row * columns + column) as usize, size, pack, own);
                 }
@@ -139,16 +130,20 @@ impl TileQueues {
 
     /// Returns the tiles that some of sixteen triangles reach into.
     #[inline(always)]
-    fn reach<S: Simd>(&self, boxes: &TileBoxes<S>, some: mask32x16<S>) -> PixelBox {
+    fn reach<S: Simd>(
+        &self,
+        [left, top, right, bottom]: &TileBoxes<S>,
+        some: mask32x16<S>,
+    ) -> PixelBox {
         let [columns, rows] = self.tiles;
-        let simd = boxes.left.simd;
+        let simd = left.simd;
         let (none, columns, rows) =
             (i32x16::splat(simd, -1), i32x16::splat(simd, columns), i32x16::splat(simd, rows));
         PixelBox {
-            left: some.select(boxes.left, columns).reduce_min(),
-            top: some.select(boxes.top, rows).reduce_min(),
-            right: some.select(boxes.right, none).reduce_max() + 1,
-            bottom: some.select(boxes.bottom, none).reduce_max() + 1,
+            left: some.select(*left, columns).reduce_min(),
+            top: some.select(*top, rows).reduce_min(),
+            right: some.select(*right, none).reduce_max() + 1,
+            bottom: some.select(*bottom, none).reduce_max() + 1,
         }
     }
 
@@ -160,8 +155,7 @@ impl TileQueues {
         some: u64,
     ) {
         let pack = pack.map(<[i32; PACK]>::from);
-        let [left, top, right, bottom] =
-            [boxes.left, boxes.top, boxes.right, boxes.bottom].map(<[i32; PACK]>::from);
+        let [left, top, right, bottom] = boxes.map(<[i32; PACK]>::from);
         // Widely scattered triangles: one at a time, into every tile of its box.
         for lane in bits(some) {
             for row in top[lane]..=bottom[lane] {

@@ -47,11 +47,6 @@ pub(super) struct List<'a> {
 
 impl<S: Simd> large::InFront<S> for List<'_> {
     #[inline(always)]
-    fn matters(&self) -> bool {
-        true
-    }
-
-    #[inline(always)]
     fn opaque(
         &mut self,
         simd: S,
