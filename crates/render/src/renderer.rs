@@ -31,7 +31,6 @@ use crate::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::screen::tiles::{TILE_SIDE, tiles_of};
 use crate::shading::interpolated::ShadingNumber;
 use crate::shading::light_terms::LightTerms;
-use crate::shading::tiny_blocks::Tiny;
 use crate::shadow::maps::ShadowMaps;
 use crate::shadow::rays::RayCount;
 use crate::shadow::tracer::Tracer;
@@ -482,7 +481,7 @@ struct ShadingCaches {
 }
 
 /// A number type that pictures are painted in.
-trait Painted: ShadingNumber + Tiny {
+trait Painted: ShadingNumber {
     fn cache(caches: &mut ShadingCaches) -> &mut ShadingCache<Self>;
 }
 

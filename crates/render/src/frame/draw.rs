@@ -235,6 +235,14 @@ impl Shaded {
         }
     }
 
+    /// Returns whether the surface itself has a colour or an opacity for each pixel.
+    pub(crate) fn varies(&self) -> bool {
+        self.texture.is_some()
+            || self.vertex_colors
+            || self.extras.reads_texels()
+            || (self.opacity.is_some() && self.opacity_map.is_some())
+    }
+
     /// Hashes the properties that equal surfaces share; of a texture, only its source.
     fn hash_into(&self, hasher: &mut DefaultHasher) {
         let Self {

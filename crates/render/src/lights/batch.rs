@@ -1,5 +1,7 @@
 //! Batches of positions that light shaders read and write: an array for each quantity.
 
+use glam::DMat3;
+
 use crate::simd::{BATCH, Lanes, Number, Vec3};
 
 /// Positions on surfaces with their normals and their light: an array for each quantity.
@@ -83,6 +85,21 @@ pub struct Reflected<R> {
 #[inline(always)]
 pub(crate) fn set<M: Lanes>(lanes: M, numbers: [M::Number; 3]) -> Vec3<M::R> {
     Vec3([lanes.set(numbers[0]), lanes.set(numbers[1]), lanes.set(numbers[2])])
+}
+
+/// Returns the columns of a matrix.
+pub(crate) fn columns<T: Number>(m: DMat3) -> [[T; 3]; 3] {
+    m.to_cols_array_2d().map(|column| column.map(T::from_f64))
+}
+
+/// Multiplies a vector by a matrix given by its columns.
+#[inline(always)]
+pub(crate) fn turned<M: Lanes>(
+    lanes: M,
+    [a, b, c]: [[M::Number; 3]; 3],
+    Vec3([x, y, z]): Vec3<M::R>,
+) -> Vec3<M::R> {
+    set(lanes, a).times(x).plus(set(lanes, b).times(y)).plus(set(lanes, c).times(z))
 }
 
 /// Three rows of numbers.

@@ -20,7 +20,7 @@ mod together;
 pub(crate) mod turning;
 
 pub use batch::{Batch, Reflected, Sample};
-pub(crate) use batch::{Rows, load, set, store};
+pub(crate) use batch::{Rows, columns, load, set, store, turned};
 pub use phong::{
     Form, HalfVector, Highlight, LightTerm, Nothing, PhongMaterial, Reflection, ViewLight,
 };

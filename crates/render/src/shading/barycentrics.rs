@@ -38,6 +38,12 @@ impl<T: Number> Barycentrics<T> {
         let (b, c): (f64, f64) = (self.weights[0][i].into(), self.weights[1][i].into());
         DVec3::new(1.0 - b - c, b, c)
     }
+
+    /// Loads the weights of the second and third corner in some fragments.
+    #[inline(always)]
+    pub(crate) fn weights_at<M: Lanes<Number = T>>(&self, lanes: M, at: usize) -> [M::R; 2] {
+        [lanes.load(&self.weights[0], at), lanes.load(&self.weights[1], at)]
+    }
 }
 
 /// Clamps linear coordinates of pixels with centres outside of their triangles: negative

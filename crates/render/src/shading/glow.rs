@@ -1,78 +1,68 @@
 //! The light that surfaces emit, and the maps of their highlights.
 
-use super::context::ShadingContext;
 use super::groups::Group;
-use super::interpolate::multiply;
+use super::interpolate::{Mixed, Points, mix};
 use super::interpolated::ShadingNumber;
 use super::map_rows::{Map, MapRows};
-use super::map_texels::{Points, TexelSource, Texels};
+use super::map_texels::{TexelSource, Texels};
 use super::surface::Shader;
 use crate::frame::draw::Shaded;
-use crate::frame::extras::Extras;
+use crate::frame::extras::{Extras, Glow};
 use crate::simd::{BATCH, Vec3};
 use crate::texture::sample::brightness;
+use marraztu_core::base::Shared;
+use marraztu_core::scene::Texture;
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Calls [`MapRows::read`] for the fragments of the list.
+    /// Reads a map of colours or numbers at the fragments of the list, times `base`.
     fn read_map(
         &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        of: (Map, TexelSource<'_>, Texels, bool),
+        group: &Group<'_, T>,
+        (map, source): (Map, TexelSource<'_>),
         base: [f64; 3],
     ) {
         let Self { fragments, attributes, barycentrics, maps, .. } = self;
-        maps.read(context, group, &Points { fragments, attributes, barycentrics }, of, base);
+        let points = Points { fragments, attributes, barycentrics };
+        maps.read(group, points, (map, source, Texels::Colors), base);
     }
 
     /// Computes the light added to the colour of each pixel: Ke times its map, and mapped ambient
     /// light times tint and vertex colours.
-    pub(super) fn find_glow(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        shaded: &Shaded,
-        new: bool,
-    ) {
+    pub(super) fn find_glow(&mut self, group: &Group<'_, T>, shaded: &Shaded) {
         self.maps.glow = [[T::default(); BATCH]; 3];
         let Extras { emission, ambient, .. } = &shaded.extras;
         // Emission is independent of the lights.
-        if let Some(emission) = emission {
-            match &emission.map {
-                Some(map) => {
-                    let source = TexelSource::of_colors(context, map);
-                    let of = (Map::Emission, source, Texels::Colors, new);
-                    self.read_map(context, group, of, emission.color);
-                    self.add_glow();
-                }
-                None => {
-                    for (row, part) in self.maps.glow.iter_mut().zip(emission.color) {
-                        row.fill(T::from_f64(part));
-                    }
-                }
-            }
+        if let Some(Glow { color, map }) = emission {
+            self.read_glow(group, (Map::Emission, map.as_ref()), *color);
+            self.add_glow();
         }
         // Mapped ambient light replaces the ambient stages of the surface.
-        if let Some(ambient) = ambient {
-            let tinted = std::array::from_fn(|i| ambient.color[i] * shaded.tint[i]);
-            match &ambient.map {
-                Some(map) => {
-                    let source = TexelSource::of_colors(context, map);
-                    let of = (Map::Ambient, source, Texels::Colors, new);
-                    self.read_map(context, group, of, tinted);
-                }
-                None => {
-                    for (row, part) in self.maps.texels.iter_mut().zip(tinted) {
-                        row.fill(T::from_f64(part));
-                    }
-                }
-            }
+        if let Some(Glow { color, map }) = ambient {
+            let tinted = std::array::from_fn(|i| color[i] * shaded.tint[i]);
+            self.read_glow(group, (Map::Ambient, map.as_ref()), tinted);
             if shaded.vertex_colors {
                 let Self { fragments, attributes, barycentrics, vertex_colors, maps, .. } = self;
-                let at = (context.level, attributes.count);
-                multiply(at, fragments, vertex_colors, barycentrics, &mut maps.texels);
+                let points = Points { fragments, attributes, barycentrics };
+                let to = Mixed::Product(&mut maps.texels);
+                mix(group.context.level, points, vertex_colors, to);
             }
             self.add_glow();
+        }
+    }
+
+    /// Reads light that a map multiplies, if there is one.
+    fn read_glow(
+        &mut self,
+        group: &Group<'_, T>,
+        (map, texture): (Map, Option<&Shared<Texture>>),
+        color: [f64; 3],
+    ) {
+        if let Some(texture) = texture {
+            self.read_map(group, (map, TexelSource::of_colors(group.context, texture)), color);
+        } else {
+            for (row, part) in self.maps.texels.iter_mut().zip(color) {
+                row.fill(T::from_f64(part));
+            }
         }
     }
 
@@ -87,17 +77,9 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Multiplies highlights by the map of Ks.
-    pub(super) fn map_highlights(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        shaded: &Shaded,
-        new: bool,
-    ) {
-        let Some(map) = &shaded.extras.specular else { return };
-        let source = TexelSource::of_colors(context, map);
-        let of = (Map::Specular, source, Texels::Colors, new);
-        self.read_map(context, group, of, [1.0; 3]);
+    pub(super) fn map_highlights(&mut self, group: &Group<'_, T>, map: &Shared<Texture>) {
+        let source = TexelSource::of_colors(group.context, map);
+        self.read_map(group, (Map::Specular, source), [1.0; 3]);
         for (row, texels) in self.batch.specular.iter_mut().zip(&self.maps.texels) {
             for (light, texel) in row.iter_mut().zip(texels) {
                 *light = *light * *texel;
@@ -106,17 +88,9 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Sets the factors of exponents to the brightness of the map of Ns.
-    pub(super) fn map_exponents(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        shaded: &Shaded,
-        new: bool,
-    ) {
-        let Some(map) = &shaded.extras.exponent else { return };
-        let source = TexelSource::of_numbers(context, map);
-        let of = (Map::Exponent, source, Texels::Colors, new);
-        self.read_map(context, group, of, [1.0; 3]);
+    pub(super) fn map_exponents(&mut self, group: &Group<'_, T>, map: &Shared<Texture>) {
+        let source = TexelSource::of_numbers(group.context, map);
+        self.read_map(group, (Map::Exponent, source), [1.0; 3]);
         let [r, g, b] = &self.maps.texels;
         for (i, factor) in self.batch.exponent.iter_mut().enumerate() {
             *factor = brightness(Vec3([r[i], g[i], b[i]]));

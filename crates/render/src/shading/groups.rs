@@ -3,11 +3,12 @@
 use super::context::ShadingContext;
 use super::fragments::Fragments;
 use crate::frame::color_path::ColorPath;
-use crate::frame::draw::Draw;
+use crate::frame::draw::{Draw, Pipeline, Shaded, Stage};
 
 /// Fragments that are coloured together.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Group<'a> {
+pub(crate) struct Group<'a, T> {
+    pub(crate) context: &'a ShadingContext<'a, T>,
     pub(crate) draw: &'a Draw,
     pub(crate) draw_index: u32,
     /// The number of the draw's first triangle.
@@ -15,34 +16,45 @@ pub(crate) struct Group<'a> {
     /// The number after the draw's last triangle.
     pub(crate) end: u32,
     pub(crate) pipeline: u32,
+    /// The surface, if it is more than one colour.
+    pub(crate) shaded: Option<&'a Shaded>,
     pub(crate) path: ColorPath,
 }
 
+impl<'a, T> Group<'a, T> {
+    /// Returns the surface and its lights, if it is lit.
+    pub(crate) fn lit(&self) -> Option<(&'a Shaded, &'a [Stage])> {
+        let shaded = self.shaded?;
+        Some((shaded, shaded.light.as_deref()?))
+    }
+}
+
 /// Returns the group of a triangle.
-pub(crate) fn group_of<'a, T>(context: &ShadingContext<'a, T>, number: u32) -> Group<'a> {
+pub(crate) fn group_of<'a, T>(context: &'a ShadingContext<'_, T>, number: u32) -> Group<'a, T> {
     let (draw_index, start) = context.frame.draw_of(number);
     let draw = &context.plan.draws[draw_index as usize];
     let pipeline = draw.pipeline_of(number - start.number);
+    let shaded = match &context.plan.pipelines[pipeline as usize] {
+        Pipeline::Shaded(shaded) => Some(shaded),
+        Pipeline::Flat(_) => None,
+    };
     let path = context.paths.of(draw_index, pipeline);
-    Group { draw, draw_index, base: start.number, end: start.end, pipeline, path }
+    let (base, end) = (start.number, start.end);
+    Group { context, draw, draw_index, base, end, pipeline, shaded, path }
 }
 
 /// Returns the group of all fragments of a list, if they belong to one.
 pub(crate) fn one_group<'a, T>(
-    context: &ShadingContext<'a, T>,
+    context: &'a ShadingContext<'_, T>,
     fragments: &Fragments,
-) -> Option<Group<'a>> {
+) -> Option<Group<'a, T>> {
     let group = group_of(context, fragments.numbers[0]);
-    are_of(context, &group, &fragments.numbers[..fragments.count]).then_some(group)
+    are_of(&group, &fragments.numbers[..fragments.count]).then_some(group)
 }
 
 /// Returns whether all of some triangles belong to a group.
-pub(crate) fn are_of<T>(
-    context: &ShadingContext<'_, T>,
-    group: &Group<'_>,
-    numbers: &[u32],
-) -> bool {
-    let Group { draw, base, end, pipeline, .. } = *group;
+pub(crate) fn are_of<T>(group: &Group<'_, T>, numbers: &[u32]) -> bool {
+    let Group { context, draw, base, end, pipeline, .. } = *group;
     let is_uniform = draw.uniform.is_some();
     if is_uniform && context.plan.draws.len() == 1 {
         return true;

@@ -1,4 +1,5 @@
-//! Computes barycentric coordinates of fragments, in each of the two precisions.
+//! The two precisions of shading: the barycentric coordinates of fragments in each, and the fast
+//! paths of f32.
 
 use crate::simd::dispatch;
 use fearless_simd::{
@@ -9,14 +10,16 @@ use glam::DVec3;
 
 use super::barycentrics::{Barycentrics, Clamp, Weigh};
 use super::fragments::Fragments;
-use super::full_blocks::{self, BlockLight, Blocks, Canvas, Corners, Linear as _, Wide};
+use super::full_blocks::{Linear as _, Wide};
+use super::groups::Group;
 use super::spans::interpolate_spans;
+use super::surface::Shader;
 use super::texels::{TexelScratch, TextureSamples, lane_steps};
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
 use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
 use crate::frame::variants::Decoding;
-use crate::lights::{Batch, Light, Rows, set};
+use crate::lights::{Light, Rows, set};
 use crate::screen::coverage::Triangle;
 use crate::screen::weights::{HomogeneousWeights, barycentric, cut_place};
 use crate::simd::gather::{SLOTS, paged, pick};
@@ -26,8 +29,17 @@ use crate::texture::placement::{Placement, UvRows};
 use marraztu_core::accuracy::{Coverage, Interpolation, Settings};
 use marraztu_core::scene::Texture;
 
-/// A number type in which attributes are interpolated.
-pub(crate) trait Interpolated: AttributeNumber {
+/// A number type in which fragments are shaded. The defaults are those of f64, which has no fast
+/// paths: they handle nothing.
+#[expect(unused_variables, reason = "the defaults read nothing")]
+pub(crate) trait ShadingNumber: Light + AttributeNumber {
+    /// Returns the same shader and group, if their number type is f32.
+    fn single<'s, 'g, 'a>(
+        shader: &'s mut Shader<Self>,
+        group: &'g Group<'a, Self>,
+    ) -> Option<(&'s mut Shader<f32>, &'g Group<'a, f32>)> {
+        None
+    }
     /// Computes all barycentric coordinates sixteen pixels at a time, if the triangles allow it.
     /// Returns whether they do.
     fn find(
@@ -36,32 +48,17 @@ pub(crate) trait Interpolated: AttributeNumber {
         fragments: &Fragments,
         attributes: &TriangleAttributes<Self>,
         to: &mut Barycentrics<Self>,
-    ) -> bool;
+    ) -> bool {
+        false
+    }
     /// Computes the linear barycentric coordinates, except in wide triangles.
     fn find_linear(
         level: Level,
         fragments: &Fragments,
         attributes: &TriangleAttributes<Self>,
         to: &mut Barycentrics<Self>,
-    );
-    /// Interpolates the colours of one triangle in blocks that it covers fully, if one pass is
-    /// enough. Returns whether it did.
-    fn mix_blocks(
-        level: Level,
-        attributes: &TriangleAttributes<Self>,
-        blocks: Blocks,
-        by: Corners<'_>,
-        to: &mut Canvas<'_>,
-    ) -> bool;
-    /// Lights blocks that one triangle covers fully, if one pass per block is enough. Returns
-    /// whether it did.
-    fn light_blocks(
-        level: Level,
-        attributes: &TriangleAttributes<Self>,
-        blocks: Blocks,
-        light: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
-        to: &mut Canvas<'_>,
-    ) -> bool;
+    ) {
+    }
     /// Places a texture on triangles with these texture coordinates, sixteen at a time. Steps are
     /// only needed for mipmaps. Returns a bit mask of the slots that were handled.
     fn place_texture(
@@ -69,26 +66,30 @@ pub(crate) trait Interpolated: AttributeNumber {
         attributes: &TriangleAttributes<Self>,
         texture: (&Texture, (&UvRows, bool)),
         to: &mut Placement,
-    ) -> u64;
+    ) -> u64 {
+        0
+    }
     /// Multiplies the colours of fragments by texels, if this works sixteen pixels at a time.
     /// Returns a bit mask of the slots that were handled.
     fn multiply_texels(
         level: Level,
-        count: usize,
         samples: &TextureSamples<'_, Self>,
         to: (&mut TexelScratch, &mut Rows<Self>),
-    ) -> u64;
+    ) -> u64 {
+        0
+    }
     /// Computes the slopes of heights at fragments, like [`TextureSamples::slopes`]. Returns a bit
     /// mask of the slots that were handled.
     fn find_slopes(
         level: Level,
-        count: usize,
         samples: &TextureSamples<'_, Self>,
         to: (&mut TexelScratch, &mut Rows<Self>),
-    ) -> u64;
+    ) -> u64 {
+        0
+    }
 }
 
-impl<T: Interpolated> Barycentrics<T> {
+impl<T: ShadingNumber> Barycentrics<T> {
     /// Computes the barycentric coordinates of every fragment.
     pub(crate) fn find(
         &mut self,
@@ -187,74 +188,16 @@ impl<T: Interpolated> Barycentrics<T> {
     }
 }
 
-impl Interpolated for f64 {
-    fn find(
-        _: Interpolation,
-        _: Level,
-        _: &Fragments,
-        _: &TriangleAttributes<Self>,
-        _: &mut Barycentrics<Self>,
-    ) -> bool {
-        false
+impl ShadingNumber for f64 {}
+
+impl ShadingNumber for f32 {
+    fn single<'s, 'g, 'a>(
+        shader: &'s mut Shader<Self>,
+        group: &'g Group<'a, Self>,
+    ) -> Option<(&'s mut Shader<Self>, &'g Group<'a, Self>)> {
+        Some((shader, group))
     }
 
-    fn find_linear(
-        _: Level,
-        _: &Fragments,
-        _: &TriangleAttributes<Self>,
-        _: &mut Barycentrics<Self>,
-    ) {
-    }
-
-    fn mix_blocks(
-        _: Level,
-        _: &TriangleAttributes<Self>,
-        _: Blocks,
-        _: Corners<'_>,
-        _: &mut Canvas<'_>,
-    ) -> bool {
-        false
-    }
-
-    fn light_blocks(
-        _: Level,
-        _: &TriangleAttributes<Self>,
-        _: Blocks,
-        _: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
-        _: &mut Canvas<'_>,
-    ) -> bool {
-        false
-    }
-
-    fn place_texture(
-        _: Level,
-        _: &TriangleAttributes<Self>,
-        _: (&Texture, (&UvRows, bool)),
-        _: &mut Placement,
-    ) -> u64 {
-        0
-    }
-
-    fn multiply_texels(
-        _: Level,
-        _: usize,
-        _: &TextureSamples<'_, Self>,
-        _: (&mut TexelScratch, &mut Rows<Self>),
-    ) -> u64 {
-        0
-    }
-
-    fn find_slopes(
-        _: Level,
-        _: usize,
-        _: &TextureSamples<'_, Self>,
-        _: (&mut TexelScratch, &mut Rows<Self>),
-    ) -> u64 {
-        0
-    }
-}
-
-impl Interpolated for f32 {
     fn find(
         interpolation: Interpolation,
         level: Level,
@@ -309,26 +252,6 @@ impl Interpolated for f32 {
         });
     }
 
-    fn mix_blocks(
-        level: Level,
-        attributes: &TriangleAttributes<Self>,
-        blocks: Blocks,
-        by: Corners<'_>,
-        to: &mut Canvas<'_>,
-    ) -> bool {
-        full_blocks::mix(level, attributes, blocks, by, to)
-    }
-
-    fn light_blocks(
-        level: Level,
-        attributes: &TriangleAttributes<Self>,
-        blocks: Blocks,
-        light: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
-        to: &mut Canvas<'_>,
-    ) -> bool {
-        full_blocks::light(level, attributes, blocks, light, to)
-    }
-
     fn place_texture(
         level: Level,
         attributes: &TriangleAttributes<Self>,
@@ -346,10 +269,10 @@ impl Interpolated for f32 {
 
     fn multiply_texels(
         level: Level,
-        count: usize,
         samples: &TextureSamples<'_, Self>,
         (scratch, to): (&mut TexelScratch, &mut Rows<Self>),
     ) -> u64 {
+        let count = samples.points.attributes.count;
         match samples.decoding {
             Decoding::Stored => paged!(count, PAGES => {
                 dispatch!(level, simd => samples.multiply::<_, Stored, PAGES>(simd, scratch, to));
@@ -363,11 +286,10 @@ impl Interpolated for f32 {
 
     fn find_slopes(
         level: Level,
-        count: usize,
         samples: &TextureSamples<'_, Self>,
         (scratch, to): (&mut TexelScratch, &mut Rows<Self>),
     ) -> u64 {
-        paged!(count, PAGES => {
+        paged!(samples.points.attributes.count, PAGES => {
             dispatch!(level, simd => samples.slopes::<_, PAGES>(simd, scratch, to));
         });
         samples.texture.placement.known
@@ -485,11 +407,6 @@ fn find_in_one<S: Simd>(
         to.put(interpolation, lanes, at, linear, by_w);
     }
 }
-
-/// A number type that fragments are shaded in.
-pub(crate) trait ShadingNumber: Light + Interpolated {}
-
-impl<T: Light + Interpolated> ShadingNumber for T {}
 
 #[cfg(test)]
 #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]

@@ -1,9 +1,9 @@
 //! Working memory for the additional maps of surfaces, and for surfaces with emission.
 
-use super::context::ShadingContext;
 use super::groups::Group;
+use super::interpolate::{CornerValues, Points};
 use super::interpolated::ShadingNumber;
-use super::map_texels::{Points, TexelSource, Texels, TexturePlacement};
+use super::map_texels::{TexelSource, Texels, TexturePlacement};
 use crate::lights::Rows;
 use crate::simd::gather::SLOTS;
 use crate::simd::{BATCH, Number};
@@ -51,10 +51,9 @@ impl<T: ShadingNumber> MapRows<T> {
     /// Reads a map into the rows of texels, which start as `base`.
     pub(super) fn read(
         &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        points: &Points<'_, T>,
-        (map, source, what, new): (Map, TexelSource<'_>, Texels, bool),
+        group: &Group<'_, T>,
+        points: Points<'_, T>,
+        (map, source, what): (Map, TexelSource<'_>, Texels),
         base: [f64; 3],
     ) {
         let Self { texels, placements, .. } = self;
@@ -62,7 +61,7 @@ impl<T: ShadingNumber> MapRows<T> {
             row.fill(T::from_f64(base));
         }
         let placement = &mut placements[map as usize];
-        points.read(context, group, (source, what, new), placement, (base, texels));
+        points.read(group, (source, what), placement, (base, texels));
     }
 }
 
@@ -71,7 +70,7 @@ impl<T: ShadingNumber> MapRows<T> {
 pub(super) struct TangentRows<T> {
     /// At vertices: T of the first corner, and the differences of the others from it. At pixels:
     /// the vectors that give T and B in a cross product with N; the third is unused.
-    pub(super) vectors: [[[T; SLOTS]; 3]; 3],
+    pub(super) vectors: CornerValues<T>,
     /// At vertices: the sign s.
     pub(super) signs: [T; SLOTS],
 }

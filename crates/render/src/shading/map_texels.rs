@@ -2,11 +2,10 @@
 
 use crate::simd::dispatch;
 
-use super::barycentrics::Barycentrics;
 use super::context::ShadingContext;
 use super::far_texture::FarTexture;
-use super::fragments::Fragments;
 use super::groups::Group;
+use super::interpolate::Points;
 use super::interpolated::ShadingNumber;
 use super::texels::{PlacedTexture, TexelScratch, TextureSamples, footprint, steps};
 use super::triangle_attributes::{TriangleAttributes, asks_ahead};
@@ -103,57 +102,49 @@ pub(super) enum Texels {
     Slopes,
 }
 
-/// The fragments to read texels for.
-pub(super) struct Points<'a, T> {
-    pub(super) fragments: &'a Fragments,
-    pub(super) attributes: &'a TriangleAttributes<T>,
-    pub(super) barycentrics: &'a Barycentrics<T>,
-}
-
 impl<T: ShadingNumber> Points<'_, T> {
     /// Reads a map at all fragments: sixteen pixels at a time, and one by one for the rest. `base`
     /// is the previous content of rows of colours.
     pub(super) fn read(
-        &self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        (source, what, new): (TexelSource<'_>, Texels, bool),
+        self,
+        group: &Group<'_, T>,
+        (source, what): (TexelSource<'_>, Texels),
         placed: &mut TexturePlacement,
         (base, to): ([f64; 3], &mut Rows<T>),
     ) {
-        let Self { fragments, attributes, barycentrics } = *self;
+        let Self { attributes, .. } = self;
         let mut done = 0;
         if let Some(sampler) = source.sampler() {
-            if new {
-                place(context, group, attributes, (source.texture, &sampler), placed);
+            if attributes.are_new {
+                place(group, attributes, (source.texture, &sampler), placed);
             }
             let TexturePlacement { placement, far, scratch } = placed;
             let texture = PlacedTexture { placement, far, sampler: &sampler };
             let to = (scratch, &mut *to);
             let decoding = source.decoding;
-            let samples = TextureSamples { fragments, barycentrics, texture, decoding };
+            let samples = TextureSamples { points: self, texture, decoding };
+            let level = group.context.level;
             done = match what {
-                Texels::Colors => T::multiply_texels(context.level, attributes.count, &samples, to),
-                Texels::Slopes => T::find_slopes(context.level, attributes.count, &samples, to),
+                Texels::Colors => T::multiply_texels(level, &samples, to),
+                Texels::Slopes => T::find_slopes(level, &samples, to),
             };
         }
         // The slots that lanes could not handle are read one by one.
         let slots = u64::MAX >> (SLOTS - attributes.count);
         if done & slots != slots {
-            self.read_one_by_one(context, group, (source, what, done), (base, to));
+            self.read_one_by_one(group, (source, what, done), (base, to));
         }
     }
 
     /// Reads a map pixel by pixel, except for the triangles in the slots `done`.
     fn read_one_by_one(
-        &self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
+        self,
+        group: &Group<'_, T>,
         (source, what, done): (TexelSource<'_>, Texels, u64),
         (base, to): ([f64; 3], &mut Rows<T>),
     ) {
-        let plan = context.plan;
-        let Self { fragments, attributes, barycentrics } = *self;
+        let ShadingContext { level, plan, .. } = *group.context;
+        let Self { fragments, attributes, barycentrics } = self;
         let (mut corners, mut all_steps) = ([None; SLOTS], [None; SLOTS]);
         for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
             corners[slot] = uvs(group.draw, *number);
@@ -162,7 +153,7 @@ impl<T: ShadingNumber> Points<'_, T> {
             }
         }
         // Dispatched so rounding down uses the processor's instruction, if it has one.
-        dispatch!(context.level, _ => for i in 0..fragments.len {
+        dispatch!(level, _ => for i in 0..fragments.len {
             let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
             if done >> slot & 1 == 1 {
                 continue;
@@ -203,12 +194,12 @@ impl<T: ShadingNumber> Points<'_, T> {
 
 /// Computes the placement of a texture on the triangles of a list.
 pub(super) fn place<T: ShadingNumber>(
-    context: &ShadingContext<'_, T>,
-    group: &Group<'_>,
+    group: &Group<'_, T>,
     attributes: &TriangleAttributes<T>,
     (texture, sampler): (&Texture, &Sampler<'_>),
     TexturePlacement { placement, far, .. }: &mut TexturePlacement,
 ) {
+    let ShadingContext { level, plan, .. } = *group.context;
     placement.clear();
     far.clear();
     let mesh = &group.draw.model.mesh;
@@ -232,11 +223,11 @@ pub(super) fn place<T: ShadingNumber>(
     }
     let reads_mips = sampler.reads_mips();
     let uvs = (&rows, reads_mips);
-    let done = T::place_texture(context.level, attributes, (texture, uvs), placement);
+    let done = T::place_texture(level, attributes, (texture, uvs), placement);
     // Triangles that sixteen lanes could not place exactly.
     let mut others = placement.known & !done;
     // Dispatched so rounding down uses the processor's instruction, if it has one.
-    dispatch!(context.level, _ => while others != 0 {
+    dispatch!(level, _ => while others != 0 {
         let slot = others.trailing_zeros() as usize;
         others &= others - 1;
         let uvs = each([0, 1, 2], |corner| rows[corner].map(|row| f64::from(row[slot])));
@@ -244,7 +235,7 @@ pub(super) fn place<T: ShadingNumber>(
         if !fits_f32(&texels) {
             let Some(own) = FarTexture::new(slot, uvs, texture, || {
                 let number = attributes.numbers[slot];
-                HomogeneousWeights::new(context.plan, group.draw, number, [0; 2])
+                HomogeneousWeights::new(plan, group.draw, number, [0; 2])
             }) else {
                 placement.known &= !(1 << slot);
                 continue;
@@ -252,7 +243,7 @@ pub(super) fn place<T: ShadingNumber>(
             far.push(own);
         }
         let steps = match reads_mips {
-            true => steps((context.plan, group.draw), attributes, slot),
+            true => steps((plan, group.draw), attributes, slot),
             false => None,
         };
         placement.set(slot, texels, steps);

@@ -6,7 +6,7 @@ use super::context::ShadingContext;
 use super::groups::Group;
 use super::interpolated::ShadingNumber;
 use super::surface::Shader;
-use crate::frame::draw::{Pipeline, Shaded};
+use crate::frame::draw::Shaded;
 use crate::simd::gather::SLOTS;
 use crate::simd::{BATCH, Vec3};
 use crate::texture::sample::{brightness, sample};
@@ -17,14 +17,9 @@ use marraztu_core::scene::Texture;
 impl<T: ShadingNumber> Shader<T> {
     /// Returns the opacity of each fragment of a coloured group; 1 for opaque surfaces.
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
-    pub(super) fn opacities(
-        &self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-    ) -> [f32; BATCH] {
-        let Pipeline::Shaded(Shaded { opacity: Some(opacity), texture, opacity_map, .. }) =
-            &context.plan.pipelines[group.pipeline as usize]
-        else {
+    pub(super) fn opacities(&self, group: &Group<'_, T>) -> [f32; BATCH] {
+        let ShadingContext { level, plan, .. } = *group.context;
+        let Some(Shaded { opacity: Some(opacity), texture, opacity_map, .. }) = group.shaded else {
             return [1.0; BATCH];
         };
         let mut opacities = [*opacity as f32; BATCH];
@@ -38,10 +33,10 @@ impl<T: ShadingNumber> Shader<T> {
         for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count]) {
             *corners = uvs(group.draw, *number);
         }
-        let filter = context.plan.filter;
+        let filter = plan.filter;
         let own = &mut opacities[..fragments.len];
         // Dispatched so rounding down uses the processor's instruction, if it has one.
-        dispatch!(context.level, _ => for (i, own) in own.iter_mut().enumerate() {
+        dispatch!(level, _ => for (i, own) in own.iter_mut().enumerate() {
             let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
             if let Some(corners) = corners[slot] {
                 let uv = uv(corners, barycentrics.weights(i));

@@ -19,7 +19,6 @@ use super::kept::Kept;
 use super::layers::Layered;
 use super::resolve::Samples;
 use super::surface::{Out, Shader};
-use super::tiny_blocks::Tiny;
 use crate::frame::FramePlan;
 use crate::frame::color_path::PathPixels;
 use crate::raster::tile::Visibility;
@@ -141,7 +140,7 @@ impl<T: ShadingNumber> Default for Painter<T> {
     }
 }
 
-impl<T: ShadingNumber + Tiny> Painter<T> {
+impl<T: ShadingNumber> Painter<T> {
     /// Begins a frame.
     pub(crate) fn begin(&mut self) {
         self.shader.begin();
@@ -282,7 +281,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
                 };
             } else {
                 if !is_filled {
-                    canvas.fill(at, context.plan.background);
+                    canvas.fill(at, context.plan.background.opaque());
                 }
                 shows = false;
             }

@@ -21,32 +21,10 @@ impl<T: Number> SurfaceColor<'_, T> {
     }
 }
 
-/// Converts colours to bytes: t D + S if the surface is lit, with diffuse light D and specular
-/// light S, else t.
-pub(crate) struct Quantize<'a, T> {
-    pub(crate) batch: &'a Batch<T>,
-    pub(crate) lit: bool,
-    pub(crate) own: SurfaceColor<'a, T>,
-    pub(crate) colors: &'a mut Colors,
-}
-
-impl<T: Number> Kernel<T> for Quantize<'_, T> {
-    #[inline(always)]
-    fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { batch, lit, own, colors } = self;
-        for at in (0..batch.len).step_by(M::LANES) {
-            let mut color = own.at(lanes, at);
-            if lit {
-                color = reflected(lanes, color, batch, at);
-            }
-            colors.store(lanes, color, at);
-        }
-    }
-}
-
-/// Converts colours to bytes, like [`Quantize`], for surfaces with emission and for light in linear
-/// sRGB: t D + S + e, encoded.
-pub(crate) struct Finish<'a, T> {
+/// Converts colours to bytes: t D + S + e if the surface is lit, else t + e, with diffuse light D,
+/// specular light S and emitted light e; encoded if they are linear. Only `FINISHES` adds e and
+/// encodes: most surfaces need a smaller kernel.
+pub(crate) struct Quantize<'a, T, const FINISHES: bool> {
     pub(crate) batch: &'a Batch<T>,
     pub(crate) lit: bool,
     pub(crate) own: SurfaceColor<'a, T>,
@@ -59,27 +37,30 @@ pub(crate) struct Finish<'a, T> {
     pub(crate) colors: &'a mut Colors,
 }
 
-impl<T: Number> Kernel<T> for Finish<'_, T> {
+impl<T: Number, const FINISHES: bool> Kernel<T> for Quantize<'_, T, FINISHES> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { batch, lit, own, glow, thresholds, encoding, colors } = self;
+        let Self { batch, lit, own, glow, mut thresholds, encoding, colors } = self;
+        // Linear values are rounded later, when they are summed and encoded.
+        if FINISHES && encoding.is_some() && colors.form == Form::Parts {
+            thresholds = None;
+        }
         for at in (0..batch.len).step_by(M::LANES) {
             let mut color = own.at(lanes, at);
             if lit {
                 color = reflected(lanes, color, batch, at);
             }
-            if let Some(glow) = glow {
+            if FINISHES && let Some(glow) = glow {
                 color = color.plus(load(lanes, glow, at));
             }
-            if let Some(encoding) = encoding
+            if FINISHES
+                && let Some(encoding) = encoding
                 && colors.form == Form::Pixels
             {
                 let Vec3([r, g, b]) = color;
                 color = Vec3([encoding.of(r), encoding.of(g), encoding.of(b)]);
             }
-            // Linear values are rounded later, when they are summed and encoded.
-            let added_up = encoding.is_some() && colors.form == Form::Parts;
-            match thresholds.filter(|_| !added_up) {
+            match thresholds {
                 None => colors.store(lanes, color, at),
                 Some(thresholds) => {
                     colors.store_by(lanes, color, lanes.load(thresholds, at), at);

@@ -230,7 +230,7 @@ impl<T: ShadingNumber> Shader<T> {
         let mut most = 0;
         if self.fragments.len > 0 {
             if let Some(group) = one_group(context, &self.fragments) {
-                self.color_group(context, &group, out);
+                self.color_group(&group, out);
                 most = self.most_slots(context);
             } else {
                 self.color_groups(context, corner, out);

@@ -7,12 +7,9 @@
 //! The pattern: Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC
 //! 1973, of order 8.
 
-use super::colors::Colors;
 use super::fragments::Fragments;
-use super::quantize::SurfaceColor;
-use crate::lights::{Batch, load};
 use crate::screen::tiles::BLOCK_PIXELS;
-use crate::simd::{BATCH, Kernel, Lanes, Number, Vec3};
+use crate::simd::{BATCH, Number};
 use marraztu_core::accuracy::Rounding;
 
 /// Returns the threshold added to 255 c at a pixel before truncating.
@@ -74,33 +71,6 @@ pub(crate) fn block_thresholds(rounding: Rounding) -> [f32; BLOCK_PIXELS] {
     let mut thresholds = Thresholds::default();
     let all = thresholds.of(rounding, &fragments);
     std::array::from_fn(|i| all[i])
-}
-
-/// Converts colours to bytes, like [`Quantize`](super::quantize::Quantize), with a threshold per
-/// pixel.
-pub(crate) struct QuantizeWithThresholds<'a, T> {
-    pub(crate) batch: &'a Batch<T>,
-    pub(crate) lit: bool,
-    pub(crate) own: SurfaceColor<'a, T>,
-    pub(crate) thresholds: &'a [T; BATCH],
-    pub(crate) colors: &'a mut Colors,
-}
-
-impl<T: Number> Kernel<T> for QuantizeWithThresholds<'_, T> {
-    #[inline(always)]
-    fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { batch, lit, own, thresholds, colors } = self;
-        for at in (0..batch.len).step_by(M::LANES) {
-            let mut color = own.at(lanes, at);
-            if lit {
-                let (Vec3([r, g, b]), Vec3([tr, tg, tb])) =
-                    (load(lanes, &batch.diffuse, at), color);
-                let specular = load(lanes, &batch.specular, at);
-                color = Vec3([tr * r, tg * g, tb * b]).plus(specular);
-            }
-            colors.store_by(lanes, color, lanes.load(thresholds, at), at);
-        }
-    }
 }
 
 #[cfg(test)]

@@ -12,7 +12,6 @@ use super::interpolated::ShadingNumber;
 use super::runs::Runs;
 use super::surface::Shader;
 use crate::frame::color_path::FullPath;
-use crate::frame::draw::Pipeline;
 use crate::raster::tile::Visibility;
 use crate::screen::tiles::{BLOCK_PIXELS, PIXELS};
 use crate::simd::gather::SLOTS;
@@ -44,12 +43,12 @@ impl<T: ShadingNumber> Shader<T> {
                 continue;
             }
             // The next group is prefetched while this one is lit.
-            if is_lit(&context.plan.pipelines[group.pipeline as usize]) {
+            if group.lit().is_some() {
                 prefetch_facets(&group, &left[..left.len().min(SLOTS)]);
             }
             self.fragments.list_faces(own);
             self.colors.form = Form::Pixels;
-            self.group(context, &group);
+            self.group(&group);
             for (number, color) in own.iter().zip(&self.colors.pixels) {
                 faces.put(*number, *color);
             }
@@ -58,13 +57,8 @@ impl<T: ShadingNumber> Shader<T> {
     }
 }
 
-/// Returns whether a surface with one colour per triangle is lit.
-fn is_lit(pipeline: &Pipeline) -> bool {
-    matches!(pipeline, Pipeline::Shaded(shaded) if shaded.light.is_some())
-}
-
 /// Prefetches the inputs for lighting some faces, if they belong to a group.
-fn prefetch_facets(group: &Group<'_>, numbers: &[u32]) {
+fn prefetch_facets<T>(group: &Group<'_, T>, numbers: &[u32]) {
     let mesh = &group.draw.model.mesh;
     let facets = mesh.facets();
     let own = numbers.iter().filter(|number| (group.base..group.end).contains(number));

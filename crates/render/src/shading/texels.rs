@@ -5,9 +5,9 @@ use fearless_simd::{
 };
 use glam::DVec3;
 
-use super::barycentrics::Barycentrics;
 use super::far_texture::FarTexture;
 use super::fragments::Fragments;
+use super::interpolate::Points;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
 use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
@@ -34,8 +34,7 @@ pub(crate) struct PlacedTexture<'a> {
 /// The inputs for sampling the texels of some fragments.
 #[derive(Debug)]
 pub(crate) struct TextureSamples<'a, T> {
-    pub(crate) fragments: &'a Fragments,
-    pub(crate) barycentrics: &'a Barycentrics<T>,
+    pub(crate) points: Points<'a, T>,
     pub(crate) texture: PlacedTexture<'a>,
     pub(crate) decoding: Decoding,
 }
@@ -66,7 +65,7 @@ impl TextureSamples<'_, f32> {
         TexelScratch { places, texels, .. }: &mut TexelScratch,
         to: &mut Rows<f32>,
     ) {
-        let Self { fragments, texture, .. } = *self;
+        let Self { points: Points { fragments, .. }, texture, .. } = *self;
         let lanes = Sixteen(simd);
         self.place::<S, PAGES>(simd, places);
         texture.sampler.sample::<S, D>(simd, places, fragments.len, texels);
@@ -79,14 +78,12 @@ impl TextureSamples<'_, f32> {
     /// Computes the places of all fragments.
     #[inline(always)]
     fn place<S: Simd, const PAGES: usize>(&self, simd: S, to: &mut TexelPlaces) {
-        let Self { fragments, barycentrics, texture, .. } = *self;
+        let Self { points: Points { fragments, barycentrics, .. }, texture, .. } = *self;
         let lanes = Sixteen(simd);
         for at in (0..fragments.len).step_by(16) {
             let slots = OfSlots::<S, PAGES>(lanes.slots(&fragments.slots, at));
-            let second = lanes.load(&barycentrics.weights[0], at);
-            let third = lanes.load(&barycentrics.weights[1], at);
             let w = lanes.load(&barycentrics.w, at);
-            let way = texture.way(simd, &slots, [second, third]);
+            let way = texture.way(simd, &slots, barycentrics.weights_at(lanes, at));
             let mut position = texture.position(simd, &slots, way);
             if !texture.far.is_empty() {
                 position = self.far_positions(simd, at, position);
@@ -104,7 +101,7 @@ impl TextureSamples<'_, f32> {
         TexelScratch { places, texels, .. }: &mut TexelScratch,
         to: &mut Rows<f32>,
     ) {
-        let Self { fragments, texture, .. } = *self;
+        let Self { points: Points { fragments, .. }, texture, .. } = *self;
         let lanes = Sixteen(simd);
         self.place::<S, PAGES>(simd, places);
         let own = places.position;
@@ -144,8 +141,8 @@ impl<T> TextureSamples<'_, T> {
         positions: [f32x16<S>; 2],
     ) -> [f32x16<S>; 2] {
         let mut rows = [<[f32; 16]>::from(positions[0]), <[f32; 16]>::from(positions[1])];
-        for lane in 0..16.min(self.fragments.len - at) {
-            let Fragments { x, y, slots, .. } = self.fragments;
+        let Fragments { len, x, y, slots, .. } = self.points.fragments;
+        for lane in 0..16.min(len - at) {
             let slot = slots[at + lane].cast_unsigned() as usize;
             if let Some(far) = self.texture.far.iter().find(|far| far.slot == slot) {
                 let [u, v] = far.at([x[at + lane], y[at + lane]]);

@@ -9,83 +9,43 @@ use prefetch_index::prefetch_index;
 use super::colors::Form;
 use super::context::ShadingContext;
 use super::full_blocks::Canvas;
-use super::groups::{Group, are_of, group_of};
+use super::groups::{Group, are_of};
 use super::light::Lighting;
 use super::runs::Runs;
 use super::surface::{Out, Shader, Waiting};
 use super::tiny::{self, Weighing};
-use crate::frame::FramePlan;
 use crate::frame::color_path::ListPath;
-use crate::frame::draw::{Back, Pipeline, Shaded};
+use crate::frame::draw::{Back, Shaded, Stage};
 use crate::raster::entries::word;
 use crate::screen::tiles::BLOCK_PIXELS;
 use marraztu_core::accuracy::LightAt;
 use marraztu_core::scene::Normals;
 
 /// The approximate number of distinct triangles in a block from which they are drawn as tiny ones.
-const MANY: u32 = 32;
-
-/// Returns the shading of a group's surface, if it is lit.
-fn lit<'a>(plan: &'a FramePlan, group: &Group<'_>) -> Option<&'a Shaded> {
-    match &plan.pipelines[group.pipeline as usize] {
-        Pipeline::Shaded(shaded) => shaded.light.is_some().then_some(shaded),
-        Pipeline::Flat(_) => None,
-    }
-}
-
-/// A number type that triangles are shaded in. Tiny ones are shaded in f32.
-pub(crate) trait Tiny: Sized {
-    /// Returns the same shader and context, if their number type is f32.
-    fn single<'s, 'c, 'a>(
-        shader: &'s mut Shader<Self>,
-        context: &'c ShadingContext<'a, Self>,
-    ) -> Option<(&'s mut Shader<f32>, &'c ShadingContext<'a, f32>)>;
-}
-
-impl Tiny for f32 {
-    fn single<'s, 'c, 'a>(
-        shader: &'s mut Shader<Self>,
-        context: &'c ShadingContext<'a, Self>,
-    ) -> Option<(&'s mut Shader<Self>, &'c ShadingContext<'a, Self>)> {
-        Some((shader, context))
-    }
-}
-
-impl Tiny for f64 {
-    fn single<'s, 'c, 'a>(
-        _: &'s mut Shader<Self>,
-        _: &'c ShadingContext<'a, Self>,
-    ) -> Option<(&'s mut Shader<f32>, &'c ShadingContext<'a, f32>)> {
-        None
-    }
-}
+pub(super) const MANY: u32 = 32;
 
 impl Shader<f32> {
     /// Lists a block of tiny triangles, to be coloured by [`Shader::finish_waiting`]. Returns
     /// whether it did; blocks of larger triangles or of several groups are not listed.
     pub(super) fn wait_tiny(
         &mut self,
-        context: &ShadingContext<'_, f32>,
+        group: &Group<'_, f32>,
         runs: &Runs,
         corner: [i32; 2],
         (canvas, at): (&mut Canvas<'_>, usize),
     ) -> bool {
-        if runs.new_starts().count_ones() < MANY {
-            return false;
-        }
         if !self.fragments.have_room_for_tiny(runs) || self.waiting.is_empty() {
-            self.finish_waiting(context, canvas);
-            if group_of(context, runs.first_triangle()).path.list != ListPath::Tiny {
+            self.finish_waiting(group.context, canvas);
+            if group.path.list != ListPath::Tiny {
                 return false;
             }
             self.fragments.begin_tiny();
         }
         let from = self.fragments.len;
-        self.fragments.list_tiny(context.level, runs, corner);
+        self.fragments.list_tiny(group.context.level, runs, corner);
         let each = self.fragments.each();
-        let group = group_of(context, each[0]);
         // Another draw or pipeline: the block is removed from the list again.
-        if !are_of(context, &group, &each[from..]) {
+        if !are_of(group, &each[..1]) || !are_of(group, &each[from..]) {
             self.fragments.shorten(from);
             return false;
         }
@@ -96,26 +56,19 @@ impl Shader<f32> {
     }
 
     /// Colours the waiting blocks of tiny triangles.
-    pub(super) fn finish_tiny(
-        &mut self,
-        context: &ShadingContext<'_, f32>,
-        canvas: &mut Canvas<'_>,
-    ) {
-        let group = group_of(context, self.fragments.each()[0]);
+    pub(super) fn finish_tiny(&mut self, group: &Group<'_, f32>, canvas: &mut Canvas<'_>) {
         self.colors.form = Form::Pixels;
-        self.colors.linear = context.plan.variants.are_linear();
-        let Some(shaded) = lit(context.plan, &group) else { return };
-        let is_done = match context.plan.light_at {
-            LightAt::Vertex => self.mix_tiny(context, &group, shaded),
-            LightAt::Pixel | LightAt::Sample | LightAt::Face => {
-                self.light_tiny(context, &group, shaded)
-            }
+        self.colors.linear = group.context.plan.variants.are_linear();
+        let Some((shaded, stages)) = group.lit() else { return };
+        let is_done = match group.context.plan.light_at {
+            LightAt::Vertex => self.mix_tiny(group, stages),
+            LightAt::Pixel | LightAt::Sample | LightAt::Face => self.light_tiny(group, shaded),
         };
         if is_done {
             self.path_pixels.tiny += self.fragments.len as u64;
             self.copy_waiting(canvas);
         } else {
-            self.color_one_by_one(context, canvas);
+            self.color_one_by_one(group.context, canvas);
         }
     }
 
@@ -137,8 +90,8 @@ impl Shader<f32> {
     }
 
     /// Computes the barycentric coordinates of the list. Returns whether all triangles are tiny.
-    fn weigh_tiny(&mut self, context: &ShadingContext<'_, f32>, group: &Group<'_>) -> bool {
-        let ShadingContext { level, plan, frame, .. } = *context;
+    fn weigh_tiny(&mut self, group: &Group<'_, f32>) -> bool {
+        let ShadingContext { level, plan, frame, .. } = *group.context;
         let by = Weighing {
             interpolation: plan.variants.interpolation,
             grid: plan.variants.grid(),
@@ -149,16 +102,11 @@ impl Shader<f32> {
     }
 
     /// Phong shading, like [`Shader::light_pixels`].
-    fn light_tiny(
-        &mut self,
-        context: &ShadingContext<'_, f32>,
-        group: &Group<'_>,
-        shaded: &Shaded,
-    ) -> bool {
-        let ShadingContext { level, plan, frame, terms, .. } = *context;
+    fn light_tiny(&mut self, group: &Group<'_, f32>, shaded: &Shaded) -> bool {
+        let ShadingContext { level, plan, frame, terms, .. } = *group.context;
         self.batch.len = self.fragments.len;
         if self.tile.light(plan, group.pipeline, shaded).needs_positions {
-            let look = self.look_of(plan, group);
+            let look = self.look_of(group);
             let mesh = &group.draw.model.mesh;
             let order = mesh.draw_order();
             let points = order.points(group.draw.normal_source);
@@ -174,7 +122,7 @@ impl Shader<f32> {
             } else {
                 self.tiny.take(from, list, |number, _| [mesh.polygon_of(number); 3], prefetch);
             }
-            if !self.weigh_tiny(context, group) {
+            if !self.weigh_tiny(group) {
                 return false;
             }
             let Self { fragments, tiny, barycentrics, batch, .. } = self;
@@ -183,18 +131,13 @@ impl Shader<f32> {
         }
         let light = self.tile.light(plan, group.pipeline, shaded);
         light.light_batch(terms.of(group.pipeline), level, &mut self.batch, None);
-        self.quantize(context, Some(shaded.tint), (true, false));
+        self.quantize(group.context, Some(shaded.tint), (true, false));
         true
     }
 
     /// Gouraud shading, like [`Shader::mix_light`].
-    fn mix_tiny(
-        &mut self,
-        context: &ShadingContext<'_, f32>,
-        group: &Group<'_>,
-        shaded: &Shaded,
-    ) -> bool {
-        let ShadingContext { level, plan, frame, lit, terms, .. } = *context;
+    fn mix_tiny(&mut self, group: &Group<'_, f32>, stages: &[Stage]) -> bool {
+        let ShadingContext { level, plan, frame, lit, terms, .. } = *group.context;
         let mesh = &group.draw.model.mesh;
         let order = mesh.draw_order();
         let points = order.points(group.draw.normal_source);
@@ -213,10 +156,9 @@ impl Shader<f32> {
                 self.tiny.take(from, list, corners, |_| {});
             }
         }
-        if !self.weigh_tiny(context, group) {
+        if !self.weigh_tiny(group) {
             return false;
         }
-        let stages = shaded.light.as_deref().unwrap_or_default();
         let terms = terms.of(group.pipeline);
         let lighting = Lighting { level, draw: group.draw, stages, terms, tracer: None };
         let Self {

@@ -12,7 +12,7 @@ use super::groups::{are_of, group_of, one_group};
 use super::interpolated::ShadingNumber;
 use super::runs::{Runs, Shown};
 use super::surface::{Out, Shader, Waiting, in_block};
-use super::tiny_blocks::Tiny;
+use super::tiny_blocks::MANY;
 use crate::frame::color_path::ListPath;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::tiles::BLOCK_PIXELS;
@@ -22,7 +22,7 @@ use marraztu_core::base::color::Color;
 /// The number of triangles above which a block is coloured separately.
 const MANY_TRIANGLES: usize = 24;
 
-impl<T: ShadingNumber + Tiny> Shader<T> {
+impl<T: ShadingNumber> Shader<T> {
     /// Colours a block with the upper left pixel `corner` into a tile, starting at index `at`: at
     /// the latest when [`Shader::finish_waiting`] is called. Background pixels get the colour
     /// `fill`; without one, they are left unchanged. Returns whether any pixel shows more than the
@@ -38,8 +38,10 @@ impl<T: ShadingNumber + Tiny> Shader<T> {
         let runs = Runs::of(context.level, visibility);
         // Three ways to wait: with tiny triangles, with the blocks already waiting, or as the first
         // one.
-        if let Some((shader, context)) = T::single(self, context)
-            && shader.wait_tiny(context, &runs, corner, (canvas, at))
+        if runs.new_starts().count_ones() >= MANY
+            && let Some((shader, group)) =
+                T::single(self, &group_of(context, runs.first_triangle()))
+            && shader.wait_tiny(group, &runs, corner, (canvas, at))
         {
             put_others(context, visibility, runs.shown(), (canvas, at), fill);
             return true;
@@ -61,7 +63,7 @@ impl<T: ShadingNumber + Tiny> Shader<T> {
             Some(group) if self.has_room() && group.path.list != ListPath::Alone => {
                 self.waiting.push(Waiting { from: 0, at });
             }
-            Some(group) => self.color_group(context, &group, &mut Out::Tile(canvas, at)),
+            Some(group) => self.color_group(&group, &mut Out::Tile(canvas, at)),
             None => {
                 if most > 0 {
                     // Some slots belong to a draw that the block may not show.
@@ -80,20 +82,19 @@ impl<T: ShadingNumber + Tiny> Shader<T> {
         canvas: &mut Canvas<'_>,
     ) {
         if !self.waiting.is_empty() {
-            if self.fragments.are_tiny()
-                && let Some((shader, context)) = T::single(self, context)
-            {
-                shader.finish_tiny(context, canvas);
+            let are_tiny = self.fragments.are_tiny();
+            let first =
+                if are_tiny { &self.fragments.each()[0] } else { &self.fragments.numbers[0] };
+            let group = group_of(context, *first);
+            if are_tiny && let Some((shader, group)) = T::single(self, &group) {
+                shader.finish_tiny(group, canvas);
             } else {
-                let group = group_of(context, self.fragments.numbers[0]);
-                self.color_group(context, &group, &mut Out::Waiting(canvas));
+                self.color_group(&group, &mut Out::Waiting(canvas));
             }
             self.waiting.clear();
         }
     }
-}
 
-impl<T: ShadingNumber> Shader<T> {
     /// Adds a block to the waiting ones, if it shows the same surface and fits.
     fn join(
         &mut self,
@@ -108,7 +109,7 @@ impl<T: ShadingNumber> Shader<T> {
         let (len, count) = (self.fragments.len, self.fragments.count);
         let shown = self.fragments.list_more(context.level, runs, corner);
         let group = group_of(context, self.fragments.numbers[0]);
-        if !are_of(context, &group, &self.fragments.numbers[count..self.fragments.count]) {
+        if !are_of(&group, &self.fragments.numbers[count..self.fragments.count]) {
             // The block shows another surface: its fragments are removed again.
             self.fragments.take_back(len, count);
             return None;
@@ -154,7 +155,7 @@ fn put_others<T>(
     if let Some(color) = fill
         && (shown.triangles | shown.lines) != u64::MAX
     {
-        canvas.fill(at, color);
+        canvas.fill(at, color.opaque());
     }
     let mut lines = shown.lines;
     while lines != 0 {
