@@ -1,9 +1,7 @@
 //! Point lights.
 
 use super::batch::{Reflected, Sample, set};
-use super::phong::{
-    Highlight, LightTerm, PhongMaterial, ViewLight, light_is_noop, max_attenuation, phong,
-};
+use super::phong::{Highlight, LightTerm, ViewLight, max_attenuation, phong};
 use super::region::Region;
 use super::shader::{LightShader, Which};
 use super::turning::Turning;
@@ -15,10 +13,6 @@ pub(crate) struct Bulb;
 impl LightShader for Bulb {
     const NAME: &'static str = "Bulb";
     const WHICH: Which = Which::Bulb;
-
-    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
-        light_is_noop(light, material)
-    }
 
     fn is_behind(light: &ViewLight, region: &Region, turning: &Turning) -> bool {
         turning.all(|normal| region.faces_away(normal, light.position.into()))

@@ -87,9 +87,9 @@ pub struct LightTerm<T> {
 }
 
 impl<T: Number> LightTerm<T> {
-    /// Multiplies a light and a material.
+    /// Multiplies a light and a material, with the prepared power of the material's highlight.
     #[must_use]
-    pub fn new(light: &ViewLight, material: &PhongMaterial) -> Self {
+    pub fn new(light: &ViewLight, material: &PhongMaterial, highlight: Power) -> Self {
         let all = |numbers: [f64; 3]| numbers.map(T::from_f64);
         // Each product is formed in f64 and rounded once.
         let times = |k: [f64; 3]| all([0, 1, 2].map(|i| light.color[i] * k[i]));
@@ -103,19 +103,9 @@ impl<T: Number> LightTerm<T> {
             fades: light.attenuation != [1.0, 0.0, 0.0],
             cos_half_aperture: T::from_f64(light.cos_half_aperture),
             gathered: Power::new(light.exponent, GATHERED_FLOOR),
-            highlight: Power::new(material.exponent, material.floor),
+            highlight,
             least_cosine: T::from_f64(material.least_cosine),
         }
-    }
-
-    /// The same, with a prepared power of the material's highlight.
-    #[must_use]
-    pub(crate) fn with_highlight(
-        light: &ViewLight,
-        material: &PhongMaterial,
-        highlight: Power,
-    ) -> Self {
-        Self { highlight, ..Self::new(light, material) }
     }
 }
 
@@ -249,16 +239,4 @@ pub(super) fn max_attenuation(light: &ViewLight, region: Option<&Region>) -> f64
     let d = region.map_or(0.0, |region| region.least_distance(light.position.into()));
     let [a0, a1, a2] = light.attenuation;
     1.0 / (a0 + (a1 + a2 * d) * d)
-}
-
-/// Returns why a light adds nothing to a material, if so.
-pub(super) fn light_is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
-    let zero = |color: [f64; 3]| color == [0.0; 3];
-    if zero(light.color) {
-        Some("its colour is black")
-    } else if zero(material.diffuse) && zero(material.specular) {
-        Some("Kd and Ks of the material are 0")
-    } else {
-        None
-    }
 }

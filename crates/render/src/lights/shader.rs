@@ -6,7 +6,7 @@ use fearless_simd::Level;
 
 use super::batch::{Batch, Reflected, Sample, add, load};
 use super::phong::{
-    HalfVector, Highlight, LightTerm, Mapped, Nothing, PhongMaterial, Reflection, ViewLight,
+    Form, HalfVector, Highlight, LightTerm, Mapped, Nothing, PhongMaterial, Reflection, ViewLight,
 };
 use super::region::Region;
 use super::turning::Turning;
@@ -25,7 +25,16 @@ pub trait LightShader {
     /// Whether the light's reach is limited; only then can `is_culled` cull it.
     const HAS_REACH: bool = false;
     /// Returns why the light adds nothing to a material, if so. Leaving it out then changes no bit.
-    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str>;
+    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
+        let zero = |color: [f64; 3]| color == [0.0; 3];
+        if zero(light.color) {
+            Some("its colour is black")
+        } else if zero(material.diffuse) && zero(material.specular) {
+            Some("Kd and Ks of the material are 0")
+        } else {
+            None
+        }
+    }
     /// Returns why no light arrives in a region, if so. Leaving it out there then changes no bit.
     fn is_culled(_: &ViewLight, _: &Region) -> Option<&'static str> {
         None
@@ -96,16 +105,8 @@ pub struct LightRow {
     pub max_falloff: fn(&ViewLight, Option<&Region>) -> f64,
     /// See [`LightShader::fraction_at`].
     pub fraction_at: fn(&ViewLight, f64) -> f64,
-    /// Without a highlight.
-    pub plain: Variant,
-    /// With [`Reflection`].
-    pub reflection: Variant,
-    /// With [`HalfVector`].
-    pub half_vector: Variant,
-    /// With [`Reflection`] and a map of its exponent.
-    pub mapped_reflection: Variant,
-    /// With [`HalfVector`] and a map of its exponent.
-    pub mapped_half_vector: Variant,
+    /// Returns the variant with a form of highlight, and whether a map multiplies its exponent.
+    pub variant: fn(Form, bool) -> Variant,
 }
 
 impl LightRow {
@@ -122,11 +123,13 @@ impl LightRow {
             is_behind: E::is_behind,
             max_falloff: E::max_falloff,
             fraction_at: E::fraction_at,
-            plain: variant::<E, Nothing>(),
-            reflection: variant::<E, Reflection>(),
-            half_vector: variant::<E, HalfVector>(),
-            mapped_reflection: variant::<E, Mapped<Reflection>>(),
-            mapped_half_vector: variant::<E, Mapped<HalfVector>>(),
+            variant: |form, is_mapped| match (form, is_mapped) {
+                (Form::Plain, _) => variant::<E, Nothing>(),
+                (Form::Reflection, false) => variant::<E, Reflection>(),
+                (Form::HalfVector, false) => variant::<E, HalfVector>(),
+                (Form::Reflection, true) => variant::<E, Mapped<Reflection>>(),
+                (Form::HalfVector, true) => variant::<E, Mapped<HalfVector>>(),
+            },
         }
     }
 }
@@ -179,17 +182,17 @@ impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
 /// A number type that light shaders are compiled for.
 pub trait Light: Number {
     /// Adds the light of a shader at every position of a batch.
-    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>);
+    fn add_light(variant: Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>);
 }
 
 impl Light for f64 {
-    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
+    fn add_light(variant: Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
         (variant.reference)(level, batch, term);
     }
 }
 
 impl Light for f32 {
-    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
+    fn add_light(variant: Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
         (variant.fast)(level, batch, term);
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::batch::{Reflected, Sample, set};
-use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight, light_is_noop, phong};
+use super::phong::{Highlight, LightTerm, ViewLight, phong};
 use super::region::{EDGE_ON, Region};
 use super::shader::{LightShader, Which};
 use super::turning::Turning;
@@ -16,10 +16,6 @@ impl LightShader for Sun {
     const NAME: &'static str = "Sun";
     const WHICH: Which = Which::Sun;
     const HAS_POSITION: bool = false;
-
-    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
-        light_is_noop(light, material)
-    }
 
     fn is_behind(light: &ViewLight, _: &Region, turning: &Turning) -> bool {
         let direction = DVec3::from_array(light.direction);

@@ -71,13 +71,8 @@ impl Planner<'_> {
             });
             Facts { settings: &self.shot.settings, object, draw, shaded: shaded.collect() }
         };
-        let note = |effect: Effect, state: EffectState| EffectUse {
-            effect,
-            name: effect.label().to_owned(),
-            on: Some(Thing { item: draw.item, name: object.name.clone() }),
-            state,
-            pixels: None,
-        };
+        let thing = || Some(Thing { item: draw.item, name: object.name.clone() });
+        let note = |effect, state| EffectUse::new(effect, thing(), state);
         // Marks have no surface settings, so they get a single row.
         let presence = presence(draw.item);
         if presence == Effect::Marks {

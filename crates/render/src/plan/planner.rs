@@ -14,7 +14,7 @@ use super::rules::Thing;
 use super::turning::{shows_fronts_only, turning_of};
 use super::uses::{self, EffectState, EffectUse};
 use crate::frame::Rules;
-use crate::frame::draw::{Back, Draw, Lines, Pipeline};
+use crate::frame::draw::{Back, Draw, Lines, Pipeline, uniform};
 use crate::frame::variants::Variants;
 use crate::lights::region::Region;
 use marraztu_core::accuracy::{LightAt, NormalMatrix, VertexArithmetic};
@@ -42,7 +42,7 @@ impl Planner<'_> {
             let (id, object) = scene.objects.at(*place as usize).expect("a sphere for each object");
             match self.not_asked_for(id, object) {
                 Some(reason) => left_out(into, ItemId::Object(id), &object.name, reason),
-                None => self.add_object(into, ItemId::Object(id), object),
+                None => self.add_object(into, id, object),
             }
         }
     }
@@ -75,15 +75,17 @@ impl Planner<'_> {
         self.not_asked_for(id, object).is_none()
     }
 
-    fn add_object(&self, into: &mut Planning, item: ItemId, object: &Object) {
-        let selected = self.shot.view.object.map(ItemId::Object) == Some(item);
-        let polygons = self.shot.view.polygons.as_ref().filter(|_| selected).map(|mode| {
-            if self.shot.view.polygons_stay {
-                mode.shown.clone()
-            } else {
-                BTreeSet::from([mode.current])
-            }
-        });
+    /// Returns the polygons of an object that the view shows; `None` for all.
+    pub(super) fn polygons_of(&self, id: ObjectId) -> Option<BTreeSet<u32>> {
+        let view = &self.shot.view;
+        let mode = view.polygons.as_ref().filter(|_| view.object == Some(id))?;
+        Some(match view.polygons_stay {
+            true => mode.shown.clone(),
+            false => BTreeSet::from([mode.current]),
+        })
+    }
+
+    fn add_object(&self, into: &mut Planning, id: ObjectId, object: &Object) {
         // Back-face culling depends on whether the surface is closed and on the view.
         let back = match (object.is_two_sided(), self.shot.view.back_faces) {
             (true, _) => Back::Lit,
@@ -97,9 +99,13 @@ impl Planner<'_> {
             } else {
                 NormalSource::Computed
             },
-            polygons,
+            polygons: self.polygons_of(id),
             lines: self.lines(&object.model, object.edge_color),
-            ..self.draw(item, &object.model, object.world_from_mesh(self.shot.view.time))
+            ..self.draw(
+                ItemId::Object(id),
+                &object.model,
+                object.world_from_mesh(self.shot.view.time),
+            )
         };
         self.add(into, object, draw);
     }
@@ -127,12 +133,7 @@ impl Planner<'_> {
             uniform: None,
             polygons: None,
             filled: self.shot.view.fill == Fill::Filled,
-            lines: Lines {
-                edges: false,
-                face_normals: None,
-                vertex_normals: None,
-                color: Color::WHITE,
-            },
+            lines: Lines::NONE,
         }
     }
 
@@ -196,9 +197,7 @@ impl Planner<'_> {
             let ground = Ground { item, object, region, turning, tiled, seen };
             draw.part_pipelines = self.part_pipelines(into, &ground);
         }
-        let first = draw.part_pipelines.first().copied().flatten();
-        let alike = draw.part_pipelines.iter().all(|pipeline| *pipeline == first);
-        draw.uniform = first.filter(|_| alike);
+        draw.uniform = uniform(&draw.part_pipelines);
         self.note_features(into, object, &draw);
         into.plan.draws.push(draw);
     }
@@ -302,11 +301,6 @@ impl Planner<'_> {
 
 /// Notes that an item is not drawn.
 fn left_out(into: &mut Planning, item: ItemId, name: &str, reason: &'static str) {
-    into.notes.add(|| EffectUse {
-        effect: presence(item),
-        name: presence(item).label().to_owned(),
-        on: Some(uses::Thing { item, name: name.to_owned() }),
-        state: EffectState::left_out(reason),
-        pixels: None,
-    });
+    let thing = || Some(uses::Thing { item, name: name.to_owned() });
+    into.notes.add(|| EffectUse::new(presence(item), thing(), EffectState::left_out(reason)));
 }

@@ -48,7 +48,7 @@ impl Planner<'_> {
         let textured = !object.model.mesh.uvs().is_empty();
         let settings = &self.shot.settings;
         let cover = Cover::of(&look, textured, settings.transparency);
-        if let Cover::Nothing(_) = cover {
+        if cover == Cover::Nothing {
             return None;
         }
         let linear = into.plan.variants.are_linear();
@@ -90,7 +90,7 @@ impl Planner<'_> {
             texture: texture.cloned(),
             cutout: match cover {
                 Cover::Threshold(opacity) => has_holes.then_some(opacity),
-                Cover::Transparent(_) | Cover::Nothing(_) => None,
+                Cover::Transparent(_) | Cover::Nothing => None,
             },
             opacity: match cover {
                 Cover::Transparent(opacity) => Some(opacity),
@@ -99,7 +99,7 @@ impl Planner<'_> {
                 Cover::Threshold(opacity) => Some(opacity).filter(|_| {
                     !is_textured && !linear && rules.layer(settings.transparency).is_none()
                 }),
-                Cover::Nothing(_) => None,
+                Cover::Nothing => None,
             },
             opacity_map: opacity_map
                 .filter(|_| has_holes || matches!(cover, Cover::Transparent(_)))
@@ -199,12 +199,10 @@ impl Planner<'_> {
             let meeting = LitSurface { effect, light: &source, material, region, turning };
             let rules = &into.plan.rules;
             let reason = rules.reflection(&meeting).or_else(|| rules.object(&meeting));
-            into.notes.add(|| EffectUse {
-                effect: Effect::Light(*id),
-                name: name.clone(),
-                on: ground.thing(),
-                state: reason.map_or(EffectState::ON, EffectState::left_out),
-                pixels: None,
+            into.notes.add(|| {
+                let state = reason.map_or(EffectState::ON, EffectState::left_out);
+                let named = EffectUse::new(Effect::Light(*id), ground.thing(), state);
+                EffectUse { name: name.clone(), ..named }
             });
             Self::note_shadows(into, ground, shining, reason);
             if reason.is_some() {
@@ -221,22 +219,15 @@ impl Planner<'_> {
             };
             stages.push(Stage { effect, light: *light, highlight, is_mapped: false });
         }
-        into.notes.add(|| self.note_highlights(ground, no_highlight.map(EffectState::left_out)));
-        stages
-    }
-
-    fn note_highlights(&self, ground: &Ground<'_>, left_out: Option<EffectState>) -> EffectUse {
         let form = match self.shot.settings.specular {
             SpecularForm::Reflection => "(R.V)^Ns",
             SpecularForm::HalfVector => "(N.H)^Ns",
         };
-        EffectUse {
-            effect: Effect::Highlights,
-            name: Effect::Highlights.label().to_owned(),
-            on: ground.thing(),
-            state: left_out.unwrap_or(EffectState::On(form.into())),
-            pixels: None,
-        }
+        into.notes.add(|| {
+            let state = no_highlight.map_or(EffectState::On(form.into()), EffectState::left_out);
+            EffectUse::new(Effect::Highlights, ground.thing(), state)
+        });
+        stages
     }
 }
 

@@ -56,7 +56,7 @@ impl<T: Number> LightTerms<T> {
                 let PhongMaterial { exponent, floor, .. } = *material;
                 let highlight = Power::by(plan.variants.power, exponent, floor);
                 let lights = stages.iter().map(|stage| &plan.lights[stage.light as usize]);
-                let term = |light| LightTerm::with_highlight(light, material, highlight);
+                let term = |light| LightTerm::new(light, material, highlight);
                 terms.extend(lights.map(term));
             }
         }
