@@ -291,7 +291,7 @@ impl<T: ShadingNumber> Point<'_, T> {
                 row[0] = T::from_f64(value);
             }
         }
-        let color = reflect(context, &shader.batch, surface.own);
+        let color = reflect(&shader.batch, surface.own);
         (terms, color)
     }
 
@@ -314,7 +314,7 @@ impl<T: ShadingNumber> Point<'_, T> {
             }
             let lit = [0, 1, 2].map(|i| surface.own[i] * diffuse[i]);
             let shine = Term { part: Part::Specular, ..term(specular) };
-            return (vec![term(lit), shine], reflect(group.context, &sums, surface.own));
+            return (vec![term(lit), shine], reflect(&sums, surface.own));
         }
         // Without a texture, tables hold final colours, which are interpolated again here.
         let tables = lit.tables(group.draw_index, group.pipeline);

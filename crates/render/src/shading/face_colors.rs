@@ -12,6 +12,7 @@ use prefetch_index::prefetch_index;
 
 use super::full_blocks::ROW;
 use crate::screen::tiles::BLOCK_PIXELS;
+use crate::simd::Bits;
 
 /// The lowest bit of the mark, stored in place of alpha, that tells the frame of an entry.
 const MARK: u32 = 24;
@@ -80,14 +81,13 @@ impl FaceColors {
     #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
     pub(crate) fn of_block(
         &self,
-        (visibility, mut starts): (&[u64; BLOCK_PIXELS], u64),
+        (visibility, starts): (&[u64; BLOCK_PIXELS], u64),
         background: u32,
         colors: &mut [u32; BLOCK_PIXELS + ROW],
     ) -> bool {
         let mut unknown = 0;
-        while starts != 0 {
-            let at = starts.trailing_zeros() as usize % BLOCK_PIXELS;
-            starts &= starts - 1;
+        for at in Bits(starts) {
+            let at = at % BLOCK_PIXELS;
             let word = visibility[at];
             let color = if word == 0 {
                 background

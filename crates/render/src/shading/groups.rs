@@ -22,6 +22,12 @@ pub(crate) struct Group<'a, T> {
 }
 
 impl<'a, T> Group<'a, T> {
+    /// Returns whether a triangle belongs to the group.
+    pub(crate) fn holds(&self, number: u32) -> bool {
+        (self.base..self.end).contains(&number)
+            && self.draw.pipeline_of(number - self.base) == self.pipeline
+    }
+
     /// Returns the surface and its lights, if it is lit.
     pub(crate) fn lit(&self) -> Option<(&'a Shaded, &'a [Stage])> {
         let shaded = self.shaded?;

@@ -23,7 +23,7 @@ use crate::lights::{Light, Rows, set};
 use crate::screen::coverage::Triangle;
 use crate::screen::weights::{HomogeneousWeights, barycentric, cut_place};
 use crate::simd::gather::{SLOTS, paged, pick};
-use crate::simd::{Lanes as _, Sixteen, in_f64};
+use crate::simd::{Bits, Lanes as _, Sixteen, in_f64};
 use crate::texture::lanes::{Linear, Stored};
 use crate::texture::placement::{Placement, UvRows};
 use marraztu_core::accuracy::{Coverage, Interpolation, Settings};
@@ -145,14 +145,13 @@ impl<T: ShadingNumber> Barycentrics<T> {
         plan: &FramePlan,
         draw: &Draw,
     ) {
-        let mut slots = attributes.cut & (u64::MAX >> (SLOTS - attributes.count));
-        while slots != 0 {
-            let slot = slots.trailing_zeros();
-            slots &= slots - 1;
-            let number = attributes.numbers[slot as usize];
+        for slot in Bits(attributes.cut & (u64::MAX >> (SLOTS - attributes.count))) {
+            let number = attributes.numbers[slot];
             // One set of planes per triangle serves all of its pixels.
             let of = HomogeneousWeights::new(plan, draw, number, [0; 2]);
-            for i in (0..fragments.len).filter(|i| fragments.slots[*i].cast_unsigned() == slot) {
+            for i in
+                (0..fragments.len).filter(|i| fragments.slots[*i].cast_unsigned() as usize == slot)
+            {
                 let ([second, third], w) = of.at([fragments.x[i], fragments.y[i]]);
                 self.weights[0][i] = T::from_f64(second);
                 self.weights[1][i] = T::from_f64(third);
@@ -222,15 +221,12 @@ impl ShadingNumber for f32 {
             });
         });
         // Wide triangles among others are computed again in f64.
-        let mut wide = attributes.wide;
-        while wide != 0 {
-            let slot = wide.trailing_zeros();
-            wide &= wide - 1;
-            let corners = attributes.corners(slot as usize);
+        for slot in Bits(attributes.wide) {
+            let corners = attributes.corners(slot);
             let Some(triangle) = Triangle::on(attributes.grid, corners) else { continue };
             paged!(attributes.count, PAGES => {
                 dispatch!(level, simd => {
-                    let of = (slot.cast_signed(), &triangle);
+                    let of = (slot, &triangle);
                     find_among::<_, PAGES>(interpolation, simd, fragments, of, attributes, to);
                 });
             });
@@ -328,11 +324,12 @@ fn find_among<S: Simd, const PAGES: usize>(
     interpolation: Interpolation,
     simd: S,
     fragments: &Fragments,
-    (slot, triangle): (i32, &Triangle),
+    (slot, triangle): (usize, &Triangle),
     attributes: &TriangleAttributes<f32>,
     to: &mut Barycentrics<f32>,
 ) {
     let lanes = Sixteen(simd);
+    let slot = i32::try_from(slot).expect("there are 64 slots");
     let [[_, er, fr], [_, ed, fd]] = triangle.steps();
     // Relative to the first fragment: the integers stay small enough for f64.
     let [left, top] = [fragments.x[0], fragments.y[0]];
@@ -435,7 +432,7 @@ mod tests {
         let wide = Triangle::on(attributes.grid, attributes.corners(1)).unwrap();
         let word = |i: usize| 1 << 62 | u64::from(!u32::from(i % 5 > 2));
         let mut fragments = Fragments::default();
-        fragments.list(level, &std::array::from_fn(word), [8, 16]);
+        fragments.list(level, &std::array::from_fn(word), [8, 16], 0);
         let interpolation = Interpolation::Perspective;
         let mut found = Barycentrics::default();
         assert!(f32::find(interpolation, level, &fragments, &attributes, &mut found));

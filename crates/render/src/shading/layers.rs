@@ -8,7 +8,7 @@
 use crate::simd::dispatch;
 use fearless_simd::Level;
 
-use super::blend::{Blend, Way};
+use super::blend::Blend;
 use super::colors::Sums;
 use super::context::ShadingContext;
 use super::interpolated::ShadingNumber;
@@ -59,7 +59,7 @@ impl Layered {
             if sequence.is_empty() || sequence != before {
                 let mut behind = Sums::new(plan.variants.are_linear());
                 shader.add_entries(context, &opaque, corner, &mut behind);
-                blend.begin(|place| behind.parts(place), way(plan));
+                blend.begin(|place| behind.parts(place), plan.transparency);
                 while more {
                     for i in 0..layers.len() {
                         let row = layers.row(plan.transparency, i);
@@ -80,21 +80,13 @@ impl Layered {
         let Self { layers, sequence, .. } = self;
         sequence.clear();
         // The weights of a mean differ between samples.
-        if samples > 1 && layers.are_all() && way(plan) == Way::Over {
+        if samples > 1 && layers.are_all() && plan.transparency != Transparency::Weighted {
             let number = |word: &u64| word & u64::from(u32::MAX);
             sequence.extend(opaque.iter().map(number));
             for i in 0..layers.len() {
                 sequence.extend(layers.row(plan.transparency, i).iter().map(number));
             }
         }
-    }
-}
-
-/// Returns the blending method of a frame's layers.
-const fn way(plan: &FramePlan) -> Way {
-    match plan.transparency {
-        Transparency::Weighted => Way::Weighted,
-        Transparency::Exact | Transparency::Objects | Transparency::Threshold => Way::Over,
     }
 }
 
@@ -129,7 +121,7 @@ impl<T: ShadingNumber> Shader<T> {
         corner: [i32; 2],
         sums: &mut Sums,
     ) {
-        let shown = self.fragments.list(context.level, entries, corner);
+        let shown = self.fragments.list(context.level, entries, corner, 0);
         if shown.triangles != 0 {
             self.share_evenly(context);
             self.color_fragments(context, corner, &mut Out::Sums(sums));
@@ -153,7 +145,7 @@ impl<T: ShadingNumber> Shader<T> {
         corner: [i32; 2],
         blend: &mut Blend,
     ) {
-        let shown = self.fragments.list(context.level, words, corner);
+        let shown = self.fragments.list(context.level, words, corner, 0);
         if shown.triangles != 0 {
             self.share_evenly(context);
             self.color_fragments(context, corner, &mut Out::Layer(blend));

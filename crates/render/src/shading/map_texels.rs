@@ -13,7 +13,7 @@ use crate::frame::variants::Decoding;
 use crate::lights::Rows;
 use crate::screen::weights::HomogeneousWeights;
 use crate::simd::gather::SLOTS;
-use crate::simd::{Number, Vec3};
+use crate::simd::{Bits, Number, Vec3};
 use crate::texture::lanes::Sampler;
 use crate::texture::mips::Mips;
 use crate::texture::placement::{Placement, fits_f32, texels};
@@ -225,11 +225,9 @@ pub(super) fn place<T: ShadingNumber>(
     let uvs = (&rows, reads_mips);
     let done = T::place_texture(level, attributes, (texture, uvs), placement);
     // Triangles that sixteen lanes could not place exactly.
-    let mut others = placement.known & !done;
+    let others = placement.known & !done;
     // Dispatched so rounding down uses the processor's instruction, if it has one.
-    dispatch!(level, _ => while others != 0 {
-        let slot = others.trailing_zeros() as usize;
-        others &= others - 1;
+    dispatch!(level, _ => for slot in Bits(others) {
         let uvs = each([0, 1, 2], |corner| rows[corner].map(|row| f64::from(row[slot])));
         let texels = texels(uvs, texture);
         if !fits_f32(&texels) {

@@ -26,6 +26,7 @@ use crate::screen::coverage::PixelBox;
 use crate::screen::sample_positions::{ALL, FOUR};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
 use crate::shadow::rays::RayCount;
+use crate::simd::Bits;
 use marraztu_core::accuracy::LightAt;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
@@ -304,12 +305,8 @@ impl<T: ShadingNumber> Painter<T> {
         while left != 0 {
             let first = left.trailing_zeros() as usize;
             let Some(number) = self.visibility.whole(first) else { return };
-            let (mut others, mut which) = (left, 0);
-            while others != 0 {
-                let block = others.trailing_zeros() as usize;
-                others &= others - 1;
-                which |= u64::from(self.visibility.whole(block) == Some(number)) << block;
-            }
+            let is_own = |block: &usize| self.visibility.whole(*block) == Some(number);
+            let which = Bits(left).filter(is_own).fold(0, |which, block| which | 1 << block);
             left &= !which;
             let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
             self.shader.full_blocks(context, number, blocks, canvas);

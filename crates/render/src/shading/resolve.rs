@@ -18,7 +18,7 @@ use super::surface::{Out, Shader};
 use crate::raster::visibility_buffer::{BACKGROUND, Planes, Visible, seen_number};
 use crate::screen::sample_positions::FOUR;
 use crate::screen::tiles::BLOCK_PIXELS;
-use crate::simd::BATCH;
+use crate::simd::{BATCH, Bits};
 
 /// The primitives that the samples of a block's pixels show.
 #[derive(Debug)]
@@ -158,10 +158,7 @@ impl<T: ShadingNumber> Shader<T> {
             self.fragments.share(&samples.shares[0]);
         }
         // Lines and background need no light.
-        let mut others = unlit.pixels[0] & !shown.triangles;
-        while others != 0 {
-            let place = others.trailing_zeros() as usize;
-            others &= others - 1;
+        for place in Bits(unlit.pixels[0] & !shown.triangles) {
             let (number, share) = (samples.numbers[0][place], samples.shares[0][place]);
             add_other(context, number, place, share, sums);
         }
@@ -181,10 +178,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
         // The primitives of later samples join the list until it is full.
         for sample in 1..FOUR {
-            let mut pixels = unlit.pixels[sample];
-            while pixels != 0 {
-                let place = pixels.trailing_zeros() as usize;
-                pixels &= pixels - 1;
+            for place in Bits(unlit.pixels[sample]) {
                 let number = samples.numbers[sample][place];
                 let share = samples.shares[sample][place];
                 if !matches!(seen_number(number), Visible::Triangle(_)) {
@@ -212,10 +206,10 @@ impl<T: ShadingNumber> Shader<T> {
         corner: [i32; 2],
     ) -> Shown {
         let most = self.most_slots(context);
-        let shown = self.fragments.list_on(context.level, entries, corner, most);
+        let shown = self.fragments.list(context.level, entries, corner, most);
         if most > 0 && shown.triangles != 0 && one_group(context, &self.fragments).is_none() {
             // Some slots belong to a draw that the block may not show.
-            return self.fragments.list(context.level, entries, corner);
+            return self.fragments.list(context.level, entries, corner, 0);
         }
         shown
     }

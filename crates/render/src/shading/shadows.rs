@@ -21,10 +21,9 @@ use crate::lights::{Batch, LightTerm, Rows};
 use crate::shadow::known::{BatchPixels, KnownPixels};
 use crate::shadow::map_face::TAPS;
 use crate::shadow::packet::POINTS;
-use crate::shadow::patches::bits;
 use crate::shadow::rays::{Origins, RayScratch};
 use crate::shadow::tracer::Tracer;
-use crate::simd::{BATCH, Number};
+use crate::simd::{BATCH, Bits, Number};
 use marraztu_core::scene::dvec3;
 
 /// The shadows on a batch.
@@ -127,13 +126,13 @@ impl<'a> BatchShadows<'a> {
             return;
         }
         // Blocked positions get back their values; PCF scales the light of partly open ones.
-        for i in bits(shaded) {
+        for i in Bits(shaded) {
             for axis in 0..3 {
                 batch.diffuse[axis][i] = before.0[axis][i];
                 batch.specular[axis][i] = before.1[axis][i];
             }
         }
-        for i in bits(partly.map_or(0, |reading| reading.partly)) {
+        for i in Bits(partly.map_or(0, |reading| reading.partly)) {
             let open = partly.map_or(0, |reading| reading.open[i]);
             let share = T::from_f64(f64::from(open) / f64::from(TAPS));
             for axis in 0..3 {

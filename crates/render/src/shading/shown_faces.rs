@@ -1,7 +1,7 @@
 //! Lights the faces that a tile shows, if each of them has one colour.
 
 use crate::simd::dispatch;
-use fearless_simd::{Level, Simd};
+use fearless_simd::Simd;
 use prefetch_index::prefetch_index;
 
 use super::colors::Form;
@@ -26,17 +26,13 @@ impl<T: ShadingNumber> Shader<T> {
         visibility: &Visibility,
     ) {
         let mut new = std::mem::take(&mut self.new_faces);
-        let count = list(context.level, faces, visibility, (&mut new, &mut self.runs));
+        let to = (&mut new, &mut self.runs);
+        let count = dispatch!(context.level, simd => list(simd, faces, visibility, to));
         let mut left = &new[..count];
         while let Some(first) = left.first() {
             let group = group_of(context, *first);
-            let is_alike = |number: &u32| {
-                (group.base..group.end).contains(number)
-                    && (group.draw.uniform.is_some()
-                        || group.draw.pipeline_of(number - group.base) == group.pipeline)
-            };
             // Triangles of one group are lit together, as many as there are slots.
-            let count = left.iter().take(SLOTS).take_while(|number| is_alike(number)).count();
+            let count = left.iter().take(SLOTS).take_while(|number| group.holds(**number)).count();
             let (own, others) = left.split_at(count);
             left = others;
             if group.path.full != FullPath::Fill {
@@ -69,17 +65,8 @@ fn prefetch_facets<T>(group: &Group<'_, T>, numbers: &[u32]) {
 
 /// Lists the triangles of a tile that have to be lit, and finds the starts of runs of equal pixels,
 /// a bit for each pixel of each block. Returns the number of listed triangles.
-fn list(
-    level: Level,
-    faces: &FaceColors,
-    visibility: &Visibility,
-    to: (&mut Vec<u32>, &mut [u64; BLOCK_PIXELS]),
-) -> usize {
-    dispatch!(level, simd => list_in(simd, faces, visibility, to))
-}
-
 #[inline(always)]
-fn list_in<S: Simd>(
+fn list<S: Simd>(
     simd: S,
     faces: &FaceColors,
     visibility: &Visibility,

@@ -252,8 +252,7 @@ impl<T: ShadingNumber> Shader<T> {
             let group = group_of(context, all.numbers[slot]);
             let mut keep = [false; SLOTS];
             for (other, number) in all.numbers[..all.count].iter().enumerate().skip(slot) {
-                keep[other] = (group.base..group.end).contains(number)
-                    && group.draw.pipeline_of(number - group.base) == group.pipeline;
+                keep[other] = group.holds(*number);
                 done[other] |= keep[other];
             }
             self.fragments.take_from(&all, &keep, corner);

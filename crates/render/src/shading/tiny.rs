@@ -8,10 +8,9 @@
 //!
 //! Clipped triangles, and triangles with edge functions of more than 32 bits, are not tiny.
 
-use crate::simd::dispatch;
 use fearless_simd::{
-    Bytes as _, Level, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, f32x16,
-    i32x16, mask32x16,
+    Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, f32x16, i32x16,
+    mask32x16,
 };
 use prefetch_index::prefetch_index;
 
@@ -21,13 +20,13 @@ use super::fragments::Fragments;
 use super::interpolate::Look;
 use super::triangle_attributes::{Edges, corners};
 use crate::accel::DrawOrder;
+use crate::frame::FramePlan;
+use crate::frame::draw::Draw;
 use crate::lights::Batch;
 use crate::raster::vertices::fetch;
 use crate::screen::clip::ScreenVertex;
-use crate::screen::coverage::Grid;
 use crate::screen::perspective::between;
 use crate::simd::{BATCH, Lanes as _, Sixteen, Vec3};
-use marraztu_core::accuracy::Interpolation;
 
 /// The triangles of a list of pixels, one for each pixel.
 #[derive(Debug)]
@@ -75,68 +74,26 @@ impl TinyTriangles {
 /// number.
 pub(crate) type CornerRows<T> = [[[T; 4]; BATCH]; 3];
 
-/// The inputs for the barycentric coordinates of tiny triangles.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Weighing<'a> {
-    pub(super) interpolation: Interpolation,
-    pub(super) grid: Grid,
-    /// Whether front and back are swapped by mirroring.
-    pub(super) mirrored: bool,
-    pub(super) vertices: &'a [ScreenVertex],
-}
-
-/// Computes the barycentric coordinates of a list, and the masks of back faces. Returns false if a
-/// triangle is clipped or wide: the results are then meaningless.
-pub(super) fn weigh(
-    level: Level,
-    by: Weighing<'_>,
-    fragments: &Fragments,
-    triangles: &mut TinyTriangles,
-    to: &mut Barycentrics<f32>,
-) -> bool {
-    dispatch!(level, simd => weigh_in(simd, by, fragments, triangles, to))
-}
-
-/// Computes position, normal and direction to the observer of every pixel, from the normals at
-/// corners, which are reversed on lit back faces.
-pub(super) fn sample(
-    level: Level,
-    look: &Look<f32>,
-    of: (&Fragments, &TinyTriangles),
-    normals: (&[[f32; 3]], bool),
-    weights: &Barycentrics<f32>,
-    to: &mut Batch<f32>,
-) {
-    dispatch!(level, simd => sample_in(simd, look, of, normals, weights, to));
-}
-
-/// Interpolates the colours at the corners of a number of pixels.
-pub(super) fn mix(
-    level: Level,
-    of: (&CornerRows<f32>, usize),
-    weights: &Barycentrics<f32>,
-    to: (&mut Colors, &[f32; BATCH]),
-) {
-    dispatch!(level, simd => mix_in(simd, of, weights, to));
-}
-
+/// Computes the barycentric coordinates of a list with these screen vertices, and the masks of back
+/// faces. Returns false if a triangle is clipped or wide: the results are then meaningless.
 #[inline(always)]
-fn weigh_in<S: Simd>(
+pub(super) fn weigh<S: Simd>(
     simd: S,
-    by: Weighing<'_>,
+    (plan, draw, vertices): (&FramePlan, &Draw, &[ScreenVertex]),
     fragments: &Fragments,
     triangles: &mut TinyTriangles,
     to: &mut Barycentrics<f32>,
 ) -> bool {
+    let (grid, interpolation) = (plan.variants.grid(), plan.variants.interpolation);
     let mut odd = 0;
     for at in (0..fragments.len).step_by(16) {
         let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =
-            corners(simd, &triangles.ids[at..], by.vertices);
-        let edges = Edges::new(by.grid, [[x0, y0], [x1, y1], [x2, y2]]);
+            corners(simd, &triangles.ids[at..], vertices);
+        let edges = Edges::new(grid, [[x0, y0], [x1, y1], [x2, y2]]);
         let own = u64::MAX >> (64 - (fragments.len - at).min(16));
         odd |= (edges.cut | edges.wide).to_bitmask() & own;
         let front = edges.area.simd_lt(0).to_bitmask();
-        triangles.back[at / 16] = if by.mirrored { front } else { !front };
+        triangles.back[at / 16] = if draw.mirrored { front } else { !front };
         // Each lane evaluates one triangle at one pixel.
         let x = i32x16::from_slice(simd, &fragments.x[at..at + 16]);
         let y = i32x16::from_slice(simd, &fragments.y[at..at + 16]);
@@ -145,13 +102,15 @@ fn weigh_in<S: Simd>(
         let second = (a1 * x + b1 * y + c1).to_float::<f32x16<S>>() * per_area;
         let third = (a2 * x + b2 * y + c2).to_float::<f32x16<S>>() * per_area;
         let by_w = Vec3([w0.bitcast(), w1.bitcast(), w2.bitcast()]);
-        to.put(by.interpolation, Sixteen(simd), at, [second, third], by_w);
+        to.put(interpolation, Sixteen(simd), at, [second, third], by_w);
     }
     odd == 0
 }
 
+/// Computes position, normal and direction to the observer of every pixel, from the normals at
+/// corners, which are reversed on lit back faces.
 #[inline(always)]
-fn sample_in<S: Simd>(
+pub(super) fn sample<S: Simd>(
     simd: S,
     look: &Look<f32>,
     (fragments, triangles): (&Fragments, &TinyTriangles),
@@ -171,8 +130,7 @@ fn sample_in<S: Simd>(
             let back = mask32x16::from_bitmask(simd, triangles.back[at / 16] & 0xffff);
             (a, b, c) = (turned(a, back), turned(b, back), turned(c, back));
         }
-        let by = [lanes.load(&weights.weights[0], at), lanes.load(&weights.weights[1], at)];
-        let normal = between([a, b.minus(a), c.minus(a)], by);
+        let normal = between([a, b.minus(a), c.minus(a)], weights.weights_at(lanes, at));
         let half = f32x16::splat(simd, 0.5);
         let place = [lanes.whole(&fragments.x, at) + half, lanes.whole(&fragments.y, at) + half];
         // Depths only matter in orthographic projection, which has no tiny triangles.
@@ -211,8 +169,9 @@ fn turned<S: Simd>(Vec3([x, y, z]): Vec3<f32x16<S>>, some: mask32x16<S>) -> Vec3
     Vec3([some.select(-x, x), some.select(-y, y), some.select(-z, z)])
 }
 
+/// Interpolates the colours at the corners of a number of pixels.
 #[inline(always)]
-fn mix_in<S: Simd>(
+pub(super) fn mix<S: Simd>(
     simd: S,
     (rows, len): (&CornerRows<f32>, usize),
     weights: &Barycentrics<f32>,
@@ -226,8 +185,7 @@ fn mix_in<S: Simd>(
         let second = Vec3([r, g, b]).minus(first);
         let [r, g, b, _] = lanes.load_four(&rows[2], at);
         let third = Vec3([r, g, b]).minus(first);
-        let by = [lanes.load(&weights.weights[0], at), lanes.load(&weights.weights[1], at)];
-        let color = between([first, second, third], by);
+        let color = between([first, second, third], weights.weights_at(lanes, at));
         colors.store_by(lanes, color, lanes.load(thresholds, at), at);
     }
 }

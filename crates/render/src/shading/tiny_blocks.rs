@@ -13,11 +13,12 @@ use super::groups::{Group, are_of};
 use super::light::Lighting;
 use super::runs::Runs;
 use super::surface::{Out, Shader, Waiting};
-use super::tiny::{self, Weighing};
+use super::tiny;
 use crate::frame::color_path::ListPath;
 use crate::frame::draw::{Back, Shaded, Stage};
 use crate::raster::entries::word;
 use crate::screen::tiles::BLOCK_PIXELS;
+use crate::simd::dispatch;
 use marraztu_core::accuracy::LightAt;
 use marraztu_core::scene::Normals;
 
@@ -84,7 +85,7 @@ impl Shader<f32> {
                 visibility[usize::from(*place) % BLOCK_PIXELS] = word(1, *number);
             }
             let corner = [all.x[from], all.y[from]].map(|at| at & !7);
-            self.fragments.list(context.level, &visibility, corner);
+            self.fragments.list(context.level, &visibility, corner, 0);
             self.color_fragments(context, corner, &mut Out::Tile(canvas, at));
         }
     }
@@ -92,13 +93,9 @@ impl Shader<f32> {
     /// Computes the barycentric coordinates of the list. Returns whether all triangles are tiny.
     fn weigh_tiny(&mut self, group: &Group<'_, f32>) -> bool {
         let ShadingContext { level, plan, frame, .. } = *group.context;
-        let by = Weighing {
-            interpolation: plan.variants.interpolation,
-            grid: plan.variants.grid(),
-            mirrored: group.draw.mirrored,
-            vertices: frame.corners_of(group.draw_index),
-        };
-        tiny::weigh(level, by, &self.fragments, &mut self.tiny, &mut self.barycentrics)
+        let of = (plan, group.draw, frame.corners_of(group.draw_index));
+        let Self { fragments, tiny, barycentrics, .. } = self;
+        dispatch!(level, simd => tiny::weigh(simd, of, fragments, tiny, barycentrics))
     }
 
     /// Phong shading, like [`Shader::light_pixels`].
@@ -127,7 +124,10 @@ impl Shader<f32> {
             }
             let Self { fragments, tiny, barycentrics, batch, .. } = self;
             let normals = (normals, group.draw.back == Back::Lit);
-            tiny::sample(level, &look, (fragments, tiny), normals, barycentrics, batch);
+            let of = (&*fragments, &*tiny);
+            dispatch!(level, simd => {
+                tiny::sample(simd, &look, of, normals, barycentrics, batch);
+            });
         }
         let light = self.tile.light(plan, group.pipeline, shaded);
         light.light_batch(terms.of(group.pipeline), level, &mut self.batch, None);
@@ -182,7 +182,7 @@ impl Shader<f32> {
         }
         let thresholds = thresholds.of(plan.variants.rounding, fragments);
         let of = (&**corner_colors, fragments.len);
-        tiny::mix(level, of, barycentrics, (colors, thresholds));
+        dispatch!(level, simd => tiny::mix(simd, of, barycentrics, (colors, thresholds)));
         true
     }
 }

@@ -19,7 +19,7 @@ use crate::raster::vertices::fetch_vertices;
 use crate::screen::clip::{Screen, ScreenVertex, faces_observer};
 use crate::screen::coverage::{Grid, NARROW_AREA, NARROW_SIDE, Snapped, doubled_area};
 use crate::simd::gather::SLOTS;
-use crate::simd::{Kernel, Lanes, Number, Vec3};
+use crate::simd::{Bits, Kernel, Lanes, Number, Vec3};
 use marraztu_core::base::math::each;
 use marraztu_core::scene::Normals;
 
@@ -202,11 +202,8 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         let back = if draw.mirrored { front } else { !front };
         self.back |= back & !kept;
         // Clipped and wide triangles are decided one by one.
-        let mut odd = odd & (u64::MAX >> (SLOTS - self.count.max(1))) & !kept;
-        while odd != 0 {
-            let slot = odd.trailing_zeros();
-            odd &= odd - 1;
-            let front = is_front(self.ids[slot as usize], draw, plan, vertices);
+        for slot in Bits(odd & (u64::MAX >> (SLOTS - self.count.max(1))) & !kept) {
+            let front = is_front(self.ids[slot], draw, plan, vertices);
             let back = u64::from(front == draw.mirrored) << slot;
             self.back = self.back & !(1 << slot) | back;
         }

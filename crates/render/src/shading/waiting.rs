@@ -16,6 +16,7 @@ use super::tiny_blocks::MANY;
 use crate::frame::color_path::ListPath;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::tiles::BLOCK_PIXELS;
+use crate::simd::Bits;
 use crate::simd::gather::most_gathered;
 use marraztu_core::base::color::Color;
 
@@ -67,7 +68,7 @@ impl<T: ShadingNumber> Shader<T> {
             None => {
                 if most > 0 {
                     // Some slots belong to a draw that the block may not show.
-                    self.fragments.list(context.level, visibility, corner);
+                    self.fragments.list(context.level, visibility, corner, 0);
                 }
                 self.color_fragments(context, corner, &mut Out::Tile(canvas, at));
             }
@@ -157,10 +158,7 @@ fn put_others<T>(
     {
         canvas.fill(at, color.opaque());
     }
-    let mut lines = shown.lines;
-    while lines != 0 {
-        let i = lines.trailing_zeros() as usize;
-        lines &= lines - 1;
+    for i in Bits(shown.lines) {
         if let Visible::Line(line) = seen(visibility[i]) {
             canvas.pixels[at + canvas.offset(in_block(i))] =
                 context.frame.line_color(context.plan, line);

@@ -8,7 +8,7 @@ use glam::{DMat4, DVec3};
 use super::known::{KnownLight, KnownShadows};
 use super::map_face::LightMap;
 use super::maps::ShadowMaps;
-use super::patches::{Patch, bits};
+use super::patches::Patch;
 use super::prepared_block::PreparedBlock;
 use super::rays::{Origins, RayCount, RayScratch};
 use super::shaft::Around;
@@ -16,7 +16,7 @@ use super::triangle::{Corners, Prepared, is_between, reaches_behind};
 use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
 use crate::frame::FramePlan;
 use crate::frame::shadows::{Caster, CasterPart, Holes, ShadowSource, Shadows};
-use crate::simd::Vec3;
+use crate::simd::{Bits, Vec3};
 use crate::texture::sample::{brightness, sample};
 use crate::texture::uv::uv;
 use marraztu_core::accuracy::{Filter, ShadowMethod};
@@ -280,7 +280,7 @@ impl<'a> Tracer<'a> {
         rays: u64,
     ) -> u64 {
         let mut behind = 0;
-        for ray in bits(rays) {
+        for ray in Bits(rays) {
             // A point's own triangles never shade it.
             let others = if packet.is_own {
                 possible & !block.among(simd, [origins.first[ray], origins.end[ray]])
@@ -289,7 +289,7 @@ impl<'a> Tracer<'a> {
             };
             let decided = prepared.decide(simd, origins.point(ray), others);
             let is_own = |i: usize| decided.between >> i & 1 == 1;
-            let mut met = bits(decided.between | decided.open);
+            let mut met = Bits(decided.between | decided.open);
             if met.any(|i| {
                 let triangle = (placed, block.numbers[i], &prepared.triangle(i));
                 self.stands_between(triangle, (packet, origins), (ray, is_own(i)))
