@@ -46,32 +46,12 @@ impl<T: Number> Barycentrics<T> {
     }
 }
 
-/// Clamps linear coordinates of pixels with centres outside of their triangles: negative
-/// coordinates become 0, and the sum stays 1.
-pub(super) struct Clamp<'a, T> {
-    pub(super) len: usize,
-    pub(super) linear: &'a mut [[T; BATCH]; 2],
-}
-
-impl<T: Number> Kernel<T> for Clamp<'_, T> {
-    #[inline(always)]
-    fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { len, linear: [second_row, third_row] } = self;
-        let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
-        for at in (0..len).step_by(M::LANES) {
-            let (second, third) = (lanes.load(second_row, at), lanes.load(third_row, at));
-            let first = Real::max(one - second - third, zero);
-            let (second, third) = (Real::max(second, zero), Real::max(third, zero));
-            let per = one / (first + second + third);
-            lanes.store(second * per, second_row, at);
-            lanes.store(third * per, third_row, at);
-        }
-    }
-}
-
 /// Converts linear coordinates to perspective-correct weights of corners.
 pub(super) struct Weigh<'a, T, const PAGES: usize> {
     pub(super) interpolation: Interpolation,
+    /// Whether pixels may have centres outside of their triangles: negative coordinates then become
+    /// 0, and the sum stays 1.
+    pub(super) clamps: bool,
     pub(super) fragments: &'a Fragments,
     pub(super) attributes: &'a TriangleAttributes<T>,
     pub(super) to: &'a mut Barycentrics<T>,
@@ -80,10 +60,20 @@ pub(super) struct Weigh<'a, T, const PAGES: usize> {
 impl<T: Number, const PAGES: usize> Kernel<T> for Weigh<'_, T, PAGES> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { interpolation, fragments, attributes, to } = self;
+        let Self { interpolation, clamps, fragments, attributes, to } = self;
+        let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
         for at in (0..fragments.len).step_by(M::LANES) {
             let slots = lanes.slots(&fragments.slots, at);
-            let linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
+            let mut linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
+            if clamps {
+                let [second, third] = linear;
+                let first = Real::max(one - second - third, zero);
+                let (second, third) = (Real::max(second, zero), Real::max(third, zero));
+                let per = one / (first + second + third);
+                linear = [second * per, third * per];
+                lanes.store(linear[0], &mut to.linear[0], at);
+                lanes.store(linear[1], &mut to.linear[1], at);
+            }
             let by_w = picked::<M, PAGES>(lanes, &attributes.by_w, slots);
             to.put(interpolation, lanes, at, linear, by_w);
         }

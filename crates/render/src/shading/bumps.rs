@@ -26,6 +26,7 @@ use super::map_texels::{TexelSource, Texels};
 use super::triangle_attributes::{TriangleAttributes, picked};
 use crate::frame::draw::Draw;
 use crate::frame::extras::Bump;
+use crate::frame::variants::Decoding;
 use crate::lights::{Batch, Rows, columns, load, store, turned};
 use crate::simd::gather::paged;
 use crate::simd::{Kernel, Lanes, Number, Real, Vec3};
@@ -94,7 +95,8 @@ pub(super) fn bend<T: ShadingNumber>(
     (maps, batch): (&mut MapRows<T>, &mut Batch<T>),
 ) {
     let ShadingContext { level, plan, .. } = *group.context;
-    let source = TexelSource::of_bumps(group.context, &bump.map);
+    let mut source = TexelSource::new(group.context, &bump.map, Decoding::Stored);
+    source.filter = plan.variants.bump_filter();
     let what = if bump.gain.is_some() { Texels::Slopes } else { Texels::Colors };
     maps.read(group, points, (Map::Bump, source, what), [1.0; 3]);
     let attributes = points.attributes;

@@ -8,6 +8,7 @@ use super::map_texels::{TexelSource, Texels};
 use super::surface::Shader;
 use crate::frame::draw::Shaded;
 use crate::frame::extras::{Extras, Glow};
+use crate::frame::variants::Decoding;
 use crate::simd::{BATCH, Vec3};
 use crate::texture::sample::brightness;
 use marraztu_core::base::Shared;
@@ -89,7 +90,7 @@ impl<T: ShadingNumber> Shader<T> {
 
     /// Sets the factors of exponents to the brightness of the map of Ns.
     pub(super) fn map_exponents(&mut self, group: &Group<'_, T>, map: &Shared<Texture>) {
-        let source = TexelSource::of_numbers(group.context, map);
+        let source = TexelSource::new(group.context, map, Decoding::Stored);
         self.read_map(group, (Map::Exponent, source), [1.0; 3]);
         let [r, g, b] = &self.maps.texels;
         for (i, factor) in self.batch.exponent.iter_mut().enumerate() {

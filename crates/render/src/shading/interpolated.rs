@@ -8,7 +8,7 @@ use fearless_simd::{
 };
 use glam::DVec3;
 
-use super::barycentrics::{Barycentrics, Clamp, Weigh};
+use super::barycentrics::{Barycentrics, Weigh};
 use super::fragments::Fragments;
 use super::full_blocks::{Linear as _, Wide};
 use super::groups::Group;
@@ -123,12 +123,10 @@ impl<T: ShadingNumber> Barycentrics<T> {
         if fragments.shared {
             self.clamp_to_triangle(level, fragments, attributes);
         }
-        if plan.variants.coverage != Coverage::Exact {
-            T::run(level, Clamp { len: fragments.len, linear: &mut self.linear });
-        }
+        let clamps = plan.variants.coverage != Coverage::Exact;
         paged!(attributes.count, PAGES => T::run(
             level,
-            Weigh::<T, PAGES> { interpolation, fragments, attributes, to: self },
+            Weigh::<T, PAGES> { interpolation, clamps, fragments, attributes, to: self },
         ));
         if attributes.cut != 0 {
             self.find_cut(fragments, attributes, plan, draw);
@@ -444,7 +442,8 @@ mod tests {
         }
         assert!(found.linear == linear.linear);
         let (fragments, attributes) = (&fragments, &attributes);
-        let all = Weigh::<f32, 1> { interpolation, fragments, attributes, to: &mut linear };
+        let to = &mut linear;
+        let all = Weigh::<f32, 1> { interpolation, clamps: false, fragments, attributes, to };
         dispatch!(level, simd => all.run(Sixteen(simd)));
         assert!(found.weights == linear.weights && found.w == linear.w);
     }

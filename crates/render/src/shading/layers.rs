@@ -64,7 +64,7 @@ impl Layered {
                     for i in 0..layers.len() {
                         let row = layers.row(plan.transparency, i);
                         blend.place(level, || distances(level, plan, &row));
-                        shader.layer(context, &row, corner, blend);
+                        shader.color_triangles(context, &row, corner, &mut Out::Layer(blend));
                     }
                     more = layers.take(level, order, at, &opaque);
                 }
@@ -121,11 +121,7 @@ impl<T: ShadingNumber> Shader<T> {
         corner: [i32; 2],
         sums: &mut Sums,
     ) {
-        let shown = self.fragments.list(context.level, entries, corner, 0);
-        if shown.triangles != 0 {
-            self.share_evenly(context);
-            self.color_fragments(context, corner, &mut Out::Sums(sums));
-        }
+        self.color_triangles(context, entries, corner, &mut Out::Sums(sums));
         for (place, word) in entries.iter().enumerate() {
             match seen(*word) {
                 Visible::Triangle(_) => {}
@@ -137,29 +133,24 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Blends the triangles of some words over a block; words of 0 have no triangle.
-    fn layer(
+    /// Colours the triangles of some words of a block, each with one share of its pixel; words of 0
+    /// have no triangle.
+    fn color_triangles(
         &mut self,
         context: &ShadingContext<'_, T>,
         words: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
-        blend: &mut Blend,
+        out: &mut Out<'_, '_>,
     ) {
-        let shown = self.fragments.list(context.level, words, corner, 0);
-        if shown.triangles != 0 {
-            self.share_evenly(context);
-            self.color_fragments(context, corner, &mut Out::Layer(blend));
+        if self.fragments.list(context.level, words, corner, 0).triangles == 0 {
+            return;
         }
-    }
-
-    /// Gives every fragment one share. With several samples, its pixel's centre may be outside of
-    /// its triangle.
-    fn share_evenly(&mut self, context: &ShadingContext<'_, T>) {
-        const ONE: [i32; BLOCK_PIXELS] = [1; BLOCK_PIXELS];
+        // With several samples, a pixel's centre may be outside of its triangle.
         if context.frame.sample_positions().are_many() {
-            self.fragments.share(&ONE);
+            self.fragments.share(&[1; BLOCK_PIXELS]);
         } else {
             self.fragments.shares.fill(1);
         }
+        self.color_fragments(context, corner, out);
     }
 }

@@ -29,37 +29,27 @@ use marraztu_core::scene::Texture;
 pub(super) struct TexelSource<'a> {
     texture: &'a Texture,
     mips: Option<&'a Mips>,
-    filter: Filter,
+    pub(super) filter: Filter,
     decoding: Decoding,
 }
 
 impl<'a> TexelSource<'a> {
-    /// Returns a texture of colours, read by the filter of the frame.
-    pub(super) fn of_colors<T: Number>(
+    /// Returns a texture read by the filter of the frame.
+    pub(super) fn new<T: Number>(
         context: &ShadingContext<'a, T>,
         texture: &'a Shared<Texture>,
+        decoding: Decoding,
     ) -> Self {
-        let decoding = context.plan.variants.decoding();
         let mips = context.terms.mips_of(texture, decoding);
         Self { texture, mips, filter: context.plan.filter, decoding }
     }
 
-    /// Returns a texture of numbers, which is never decoded, read by the filter of the frame.
-    pub(super) fn of_numbers<T: Number>(
+    /// Returns a texture of colours.
+    pub(super) fn of_colors<T: Number>(
         context: &ShadingContext<'a, T>,
         texture: &'a Shared<Texture>,
     ) -> Self {
-        let mips = context.terms.mips_of(texture, Decoding::Stored);
-        Self { texture, mips, filter: context.plan.filter, decoding: Decoding::Stored }
-    }
-
-    /// Returns a texture of heights or normals, read by the filter of bump maps.
-    pub(super) fn of_bumps<T: Number>(
-        context: &ShadingContext<'a, T>,
-        texture: &'a Shared<Texture>,
-    ) -> Self {
-        let filter = context.plan.variants.bump_filter();
-        Self { filter, ..Self::of_numbers(context, texture) }
+        Self::new(context, texture, context.plan.variants.decoding())
     }
 
     /// Returns a sampler for lanes. `None` if the texture has no texels.

@@ -328,7 +328,7 @@ impl<T: ShadingNumber> Painter<T> {
         }
         shader.finish_waiting(context, canvas);
         let mut sums = Sums::new(context.plan.variants.are_linear());
-        let shows = shader.add_samples(context, (samples, planes), corner, &mut sums);
+        let shows = shader.add_samples(context, (samples, planes), corner, (&mut sums, None));
         canvas.put(at, &sums.means(FOUR.ilog2()));
         shows
     }
@@ -391,7 +391,7 @@ impl<T: ShadingNumber> Painter<T> {
         } else {
             let planes = visibility.planes(block);
             samples.compare(context.level, planes);
-            shader.add_pass(context, (samples, planes), corner, (sums, kept));
+            shader.add_samples(context, (samples, planes), corner, (sums, Some(kept)));
         }
     }
 

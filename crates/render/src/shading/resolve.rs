@@ -103,62 +103,36 @@ impl Samples {
     }
 }
 
-/// The part of a block that remains to be lit.
-#[derive(Debug)]
-struct Unlit<'a> {
-    /// The entries of the first sample; 0 for pixels that are lit.
-    entries: &'a [u64; BLOCK_PIXELS],
-    /// For each sample, the pixels with an unlit primitive that no earlier sample shows.
-    pixels: &'a [u64; FOUR],
-}
-
 impl<T: ShadingNumber> Shader<T> {
-    /// Adds the colours of a block with compared samples and the upper left pixel `corner`. Returns
-    /// whether any of them shows more than the background.
+    /// Adds the colours of a block with compared samples and the upper left pixel `corner`. In one
+    /// of several passes, colours that earlier passes have `kept` are added first, and only the
+    /// others are lit. Returns whether any pixel that is lit here shows more than the background.
     pub(crate) fn add_samples(
         &mut self,
         context: &ShadingContext<'_, T>,
         (samples, planes): (&Samples, &Planes),
         corner: [i32; 2],
-        sums: &mut Sums,
-    ) -> bool {
-        let all = Unlit { entries: &planes[0], pixels: &samples.new };
-        self.add_unlit(context, (samples, &all), corner, (sums, None))
-    }
-
-    /// Adds the colours of a block in one of several passes: first the cached colours of earlier
-    /// passes, then the others, which are lit here.
-    pub(crate) fn add_pass(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        (samples, planes): (&Samples, &Planes),
-        corner: [i32; 2],
-        (sums, kept): (&mut Sums, &mut Kept),
-    ) {
-        let pixels = samples.add_kept(context.level, kept, sums);
-        if pixels != [0; FOUR] {
-            let entry = |place: usize| planes[0][place] & (pixels[0] >> place & 1).wrapping_neg();
-            let unlit = Unlit { entries: &std::array::from_fn(entry), pixels: &pixels };
-            self.add_unlit(context, (samples, &unlit), corner, (sums, Some(kept)));
-        }
-    }
-
-    /// Adds the colours of some pixels, like [`Self::add_samples`].
-    fn add_unlit(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        (samples, unlit): (&Samples, &Unlit<'_>),
-        corner: [i32; 2],
         (sums, mut kept): (&mut Sums, Option<&mut Kept>),
     ) -> bool {
-        let mut shown = self.list_first(context, unlit.entries, corner);
+        // For each sample, the pixels with an unlit primitive that no earlier sample shows.
+        let unlit = match &kept {
+            Some(kept) => samples.add_kept(context.level, kept, sums),
+            None => samples.new,
+        };
+        if unlit == [0; FOUR] {
+            return false;
+        }
+        let entry = |place: usize| planes[0][place] & (unlit[0] >> place & 1).wrapping_neg();
+        let masked = kept.is_some().then(|| std::array::from_fn(entry));
+        let entries = masked.as_ref().unwrap_or(&planes[0]);
+        let mut shown = self.list_first(context, entries, corner);
         if shown.triangles == 0 {
             self.fragments.begin_shared(0);
         } else {
             self.fragments.share(&samples.shares[0]);
         }
         // Lines and background need no light.
-        for place in Bits(unlit.pixels[0] & !shown.triangles) {
+        for place in Bits(unlit[0] & !shown.triangles) {
             let (number, share) = (samples.numbers[0][place], samples.shares[0][place]);
             add_other(context, number, place, share, sums);
         }
@@ -177,8 +151,8 @@ impl<T: ShadingNumber> Shader<T> {
             color(self, sums);
         }
         // The primitives of later samples join the list until it is full.
-        for sample in 1..FOUR {
-            for place in Bits(unlit.pixels[sample]) {
+        for (sample, pixels) in unlit.into_iter().enumerate().skip(1) {
+            for place in Bits(pixels) {
                 let number = samples.numbers[sample][place];
                 let share = samples.shares[sample][place];
                 if !matches!(seen_number(number), Visible::Triangle(_)) {

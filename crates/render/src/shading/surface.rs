@@ -31,7 +31,7 @@ use crate::frame::draw::{Back, Pipeline, Shaded, Stage};
 use crate::lights::{Batch, Rows};
 use crate::plan::tile::TilePlan;
 use crate::screen::sample_positions::ALL;
-use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::screen::tiles::BLOCK_PIXELS;
 use crate::shadow::rays::{Origins, RayCount, RayScratch};
 use crate::simd::BATCH;
 use crate::simd::gather::{SLOTS, most_gathered};
@@ -207,7 +207,7 @@ impl<T: ShadingNumber> Shader<T> {
             _ => self.path_pixels.alone += pixels,
         }
         match out {
-            Out::Tile(canvas, at) => self.copy(canvas, *at),
+            Out::Tile(canvas, at) => self.copy(canvas, 0..self.fragments.len, *at),
             Out::Waiting(canvas) => self.copy_waiting(canvas),
             Out::Sums(sums) => {
                 let Fragments { len, pixels, shares, .. } = &self.fragments;
@@ -262,19 +262,6 @@ impl<T: ShadingNumber> Shader<T> {
             }
         }
         self.fragments = all;
-    }
-
-    /// Copies the colours into the tile.
-    fn copy(&self, canvas: &mut Canvas<'_>, at: usize) {
-        if self.fragments.is_whole() {
-            canvas.put(at, &self.colors.pixels[..BLOCK_PIXELS]);
-        } else {
-            let pixels = &self.fragments.pixels[..self.fragments.len];
-            for (i, color) in pixels.iter().zip(&self.colors.pixels) {
-                let offset = canvas.offset(in_block(usize::from(*i)));
-                canvas.pixels[at + offset] = color.to_le_bytes();
-            }
-        }
     }
 
     pub(super) fn group(&mut self, group: &Group<'_, T>) {
@@ -536,9 +523,4 @@ impl<T: ShadingNumber> Shader<T> {
             batch.len = fragments.len;
         }
     }
-}
-
-/// Returns the column and row of pixel `i` of a block.
-pub(super) const fn in_block(i: usize) -> [usize; 2] {
-    [i % BLOCK as usize, i / BLOCK as usize]
 }
