@@ -3,9 +3,8 @@
 //! If colours only have to be interpolated, or only lit, the block is coloured in one pass without
 //! a list of fragments. Everything else is coloured like other blocks.
 
-use super::context::ShadingContext;
+use super::context::{Group, ShadingContext, group_of};
 use super::full_blocks::{BlockLight, Blocks, Canvas, Corners, light, mix};
-use super::groups::{Group, group_of};
 use super::interpolated::ShadingNumber;
 use super::map_texels::{TexelSource, TexturePlacement, place};
 use super::surface::{Out, Shader};

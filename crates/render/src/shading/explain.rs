@@ -8,8 +8,7 @@ mod light_ray;
 
 use light_ray::{World, first, light_terms, plus, reflect, vec3};
 
-use super::context::ShadingContext;
-use super::groups::{Group, group_of};
+use super::context::{Group, ShadingContext, group_of};
 use super::interpolate::{Look, Mixed, Points, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::run;

@@ -8,11 +8,10 @@ use fearless_simd::{
 };
 use glam::DVec3;
 
-use super::barycentrics::{Barycentrics, Weigh};
+use super::barycentrics::{Barycentrics, Weigh, interpolate_spans};
+use super::context::Group;
 use super::fragments::Fragments;
 use super::full_blocks::{Linear as _, Wide};
-use super::groups::Group;
-use super::spans::interpolate_spans;
 use super::surface::Shader;
 use super::texels::{TexelScratch, TextureSamples, lane_steps};
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};

@@ -2,7 +2,7 @@
 //! last picture are reused.
 
 use super::colors::prepare_linear;
-use super::rounding::block_thresholds;
+use super::quantize::block_thresholds;
 use crate::frame::FramePlan;
 use crate::frame::draw::{Pipeline, Shaded};
 use crate::frame::variants::Decoding;

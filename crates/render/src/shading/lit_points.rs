@@ -7,8 +7,7 @@
 use crate::accel::Accelerated as _;
 use glam::{DMat3, DVec3};
 
-use super::context::ShadingContext;
-use super::groups::Group;
+use super::context::{Group, ShadingContext};
 use super::interpolate::Points;
 use super::interpolated::ShadingNumber;
 use crate::frame::draw::Draw;

@@ -2,9 +2,8 @@
 
 use crate::simd::dispatch;
 
-use super::context::ShadingContext;
+use super::context::{Group, ShadingContext};
 use super::far_texture::FarTexture;
-use super::groups::Group;
 use super::interpolate::Points;
 use super::interpolated::ShadingNumber;
 use super::texels::{PlacedTexture, TexelScratch, TextureSamples, footprint, steps};

@@ -2,8 +2,7 @@
 
 use crate::simd::dispatch;
 
-use super::context::ShadingContext;
-use super::groups::Group;
+use super::context::{Group, ShadingContext};
 use super::interpolated::ShadingNumber;
 use super::surface::Shader;
 use crate::frame::draw::Shaded;

@@ -9,8 +9,7 @@ use crate::simd::dispatch;
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x16};
 
 use super::colors::Sums;
-use super::context::ShadingContext;
-use super::groups::one_group;
+use super::context::{ShadingContext, one_group};
 use super::interpolated::ShadingNumber;
 use super::kept::Kept;
 use super::runs::Shown;

@@ -8,13 +8,12 @@
 
 use std::ops::Range;
 
-use super::context::ShadingContext;
+use super::context::{ShadingContext, are_of, group_of, one_group};
 use super::full_blocks::Canvas;
-use super::groups::{are_of, group_of, one_group};
 use super::interpolated::ShadingNumber;
 use super::runs::{Runs, Shown};
 use super::surface::{Out, Shader, Waiting};
-use super::tiny_blocks::MANY;
+use super::tiny::MANY;
 use crate::frame::color_path::ListPath;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
