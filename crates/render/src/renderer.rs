@@ -418,7 +418,7 @@ impl Renderer {
         let shares = frame.shares_of_tiles(tiles);
         painters.resize_with(rayon::current_num_threads(), Painter::default);
         // Every painter begins, even if its thread comes too late to paint a tile.
-        painters.iter_mut().for_each(Painter::begin);
+        painters.iter_mut().for_each(|painter| painter.shader.begin());
         let painters: Vec<Mutex<&mut Painter<T>>> = painters.iter_mut().map(Mutex::new).collect();
         together(painters.len(), || {
             let painter = &mut own(&painters);
@@ -440,8 +440,8 @@ impl Renderer {
         });
         for painter in painters {
             let painter = painter.into_inner().unwrap_or_else(PoisonError::into_inner);
-            self.rays += painter.ray_count();
-            self.path_pixels += painter.path_pixels();
+            self.rays += painter.shader.rays.count;
+            self.path_pixels += painter.shader.path_pixels;
         }
         self.timings.tiles += laps.lap();
     }

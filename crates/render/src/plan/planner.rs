@@ -20,7 +20,8 @@ use crate::lights::region::Region;
 use marraztu_core::accuracy::{LightAt, NormalMatrix, VertexArithmetic};
 use marraztu_core::base::{Shared, color::Color, math};
 use marraztu_core::scene::{
-    Fill, ItemId, LightId, Model, NormalLength, NormalSource, Object, ObjectId, Observer,
+    Fill, ItemId, LightKind, MaterialChoice, Model, NormalLength, NormalSource, Object, ObjectId,
+    Observer,
 };
 
 /// The transforms of an object for the observer.
@@ -272,30 +273,27 @@ impl Planner<'_> {
             self.add(into, &mark, draw);
         }
         // Bulbs: a diamond at each light that is on and has a position.
-        let on = self.shot.scene.lights.iter().filter(|(_, light)| light.on);
-        for (id, position) in on.filter_map(|(id, _)| self.bulb_place(id)) {
-            let Some(placement) = helpers::world_from_diamond(&self.observer, position) else {
-                continue;
-            };
+        for (id, light) in self.shot.scene.lights.iter().filter(|(_, light)| light.on) {
+            let placement = self.bulb_place(&light.kind);
+            let place = |at| helpers::world_from_diamond(&self.observer, at);
+            let Some(placement) = placement.and_then(place) else { continue };
             let pipeline = into.pipeline(Pipeline::Flat(helpers::YELLOW));
             let draw = Draw {
                 part_pipelines: vec![Some(pipeline)],
                 filled: true,
                 ..self.draw(ItemId::Light(id), helpers::diamond(), placement)
             };
-            let name =
-                self.shot.scene.lights.get(id).map_or_else(String::new, |light| light.name.clone());
-            let model = draw.model.clone();
-            let mark =
-                Object { name, ..Object::new(model, marraztu_core::scene::MaterialChoice::File) };
+            let mark = Object {
+                name: light.name.clone(),
+                ..Object::new(draw.model.clone(), MaterialChoice::File)
+            };
             self.add(into, &mark, draw);
         }
     }
 
-    fn bulb_place(&self, id: LightId) -> Option<(LightId, DVec3)> {
-        let kind = &self.shot.scene.lights.get(id)?.kind;
+    fn bulb_place(&self, kind: &LightKind) -> Option<DVec3> {
         let origin = self.shot.scene.light_origin(&self.shot.view, kind)?;
-        kind.has_diamond().then_some((id, origin.position?))
+        origin.position.filter(|_| kind.has_diamond())
     }
 }
 

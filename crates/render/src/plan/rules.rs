@@ -12,6 +12,7 @@ use crate::lights::region::Region;
 use crate::lights::turning::Turning;
 use crate::lights::{LightRow, PhongMaterial, ViewLight};
 use marraztu_core::accuracy::Transparency;
+use marraztu_core::base::Shared;
 use marraztu_core::scene::{Bounds, Light, SpotOwner, Texture};
 
 /// The reason for leaving something out; `None` if it is kept.
@@ -97,9 +98,9 @@ impl Thing<'_> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TexturedSurface<'a> {
     /// The texture, if there is one.
-    pub texture: Option<&'a Texture>,
+    pub texture: Option<&'a Shared<Texture>>,
     /// The opacity map, if there is one.
-    pub opacity_map: Option<&'a Texture>,
+    pub opacity_map: Option<&'a Shared<Texture>>,
     /// The factor of alpha. If the product is below one half, the alpha test fails.
     pub opacity: f64,
 }

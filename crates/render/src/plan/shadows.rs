@@ -101,11 +101,7 @@ fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
     let map = look.map(MapKind::Opacity).filter(|_| mapped).map(|map| &map.texture);
     // A map with the texture's alpha would count twice.
     let map = map.filter(|map| !holds_same_alpha(texture, map));
-    let surface = TexturedSurface {
-        texture: texture.map(|texture| &**texture),
-        opacity_map: map.map(|map| &**map),
-        opacity: look.opacity,
-    };
+    let surface = TexturedSurface { texture, opacity_map: map, opacity: look.opacity };
     let holes = || Holes {
         texture: texture.cloned(),
         map: map.cloned(),

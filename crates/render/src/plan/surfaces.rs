@@ -67,11 +67,7 @@ impl Planner<'_> {
         };
         let opacity_map = mapped(ground, &look, MapKind::Opacity).map(|map| &map.texture);
         let opacity_map = opacity_map.filter(|map| !holds_same_alpha(texture, map));
-        let surface = TexturedSurface {
-            texture: texture.map(|texture| &**texture),
-            opacity_map: opacity_map.map(|map| &**map),
-            opacity: look.opacity,
-        };
+        let surface = TexturedSurface { texture, opacity_map, opacity: look.opacity };
         // A textured part may have holes; an untextured one has the same opacity everywhere.
         let is_textured = texture.is_some() || opacity_map.is_some();
         let has_holes = is_textured && rules.alpha_test(&surface).is_none();

@@ -19,6 +19,7 @@ use crate::texture::exact_placement::ExactPlacement;
 use crate::texture::lanes::Sampler;
 use crate::texture::opacity::{Channel, Holes, Opacity, between};
 use crate::texture::uv::{Uvs, uv, uvs};
+use marraztu_core::accuracy::Filter;
 
 /// An f32 alpha closer to one half than this is undecided.
 const NEAR: f32 = 1.0 / 128.0;
@@ -165,7 +166,7 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
             };
             // Nearest filtering jumps at the border of a texel, so a position close to it is
             // undecided.
-            if sampler.shows_texels() {
+            if sampler.filter == Filter::Nearest {
                 for at in position {
                     border |= ((at - at.floor()) - 0.5).abs().simd_gt(0.5 - BORDER);
                 }

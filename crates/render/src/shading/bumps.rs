@@ -179,11 +179,11 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Bend<'_, T, PAGES> {
                 let tangent = mixed::<M, PAGES>(lanes, &tangents.vectors, slots, weights);
                 let tangent = turned(lanes, spaces.tangents, tangent);
                 let sign = lanes.pick::<PAGES>(&tangents.signs, slots);
-                (tangent, cross(normal, tangent).times(sign), normal)
+                (tangent, normal.cross(tangent).times(sign), normal)
             } else {
                 let a = picked::<M, PAGES>(lanes, &tangents.vectors[0], slots);
                 let b = picked::<M, PAGES>(lanes, &tangents.vectors[1], slots);
-                (cross(a, unbent).unit(), cross(b, unbent).unit(), unbent)
+                (a.cross(unbent).unit(), b.cross(unbent).unit(), unbent)
             };
             let bent = tangent.times(x).plus(bitangent.times(y)).plus(normal.times(z)).unit();
             // A flat texel changes no bit. Rounding errors of filtering also count as flat.
@@ -196,10 +196,4 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Bend<'_, T, PAGES> {
             store(lanes, normal, &mut batch.normal, at);
         }
     }
-}
-
-/// Computes the cross product.
-#[inline(always)]
-fn cross<R: Real>(Vec3([a, b, c]): Vec3<R>, Vec3([x, y, z]): Vec3<R>) -> Vec3<R> {
-    Vec3([b * z - c * y, c * x - a * z, a * y - b * x])
 }

@@ -334,11 +334,10 @@ impl Fragments {
     }
 
     #[inline(always)]
-    fn put(&mut self, [left, top]: [i32; 2], place: u8, slot: i32) -> usize {
+    fn put(&mut self, [x, y]: [i32; 2], place: u8, slot: i32) -> usize {
         let i = self.len.min(BATCH - 1);
         self.pixels[i] = place;
-        self.x[i] = left + i32::from(place) % BLOCK;
-        self.y[i] = top + i32::from(place) / BLOCK;
+        (self.x[i], self.y[i]) = (x, y);
         self.slots[i] = slot;
         self.len += 1;
         i
@@ -370,14 +369,16 @@ impl Fragments {
     /// Adds a fragment with `share` samples of its pixel. The list must not be full, and its
     /// triangles must have slots.
     #[inline(always)]
-    pub(crate) fn add(&mut self, number: u32, corner: [i32; 2], place: usize, share: i32) {
+    pub(crate) fn add(&mut self, number: u32, [left, top]: [i32; 2], place: usize, share: i32) {
         let slot = self.slot_of(number);
-        let i = self.put(corner, ALL_PIXELS[place % BLOCK_PIXELS], slot);
+        let place = ALL_PIXELS[place % BLOCK_PIXELS];
+        let [column, row] = [i32::from(place) % BLOCK, i32::from(place) / BLOCK];
+        let i = self.put([left + column, top + row], place, slot);
         self.shares[i] = share;
     }
 
     /// Copies the fragments of another list that have slots marked in `keep`.
-    pub(crate) fn take_from(&mut self, other: &Self, keep: &[bool; SLOTS], corner: [i32; 2]) {
+    pub(crate) fn take_from(&mut self, other: &Self, keep: &[bool; SLOTS]) {
         let mut new = [0; SLOTS];
         (self.count, self.goes_on) = (0, false);
         // Kept triangles move to the first slots.
@@ -391,7 +392,7 @@ impl Fragments {
         for (from, place) in other.pixels[..other.len].iter().enumerate() {
             let slot = other.slots[from].cast_unsigned() as usize;
             if keep[slot] {
-                let to = self.put(corner, *place, new[slot]);
+                let to = self.put([other.x[from], other.y[from]], *place, new[slot]);
                 self.shares[to] = other.shares[from];
             }
         }

@@ -151,6 +151,6 @@ impl<T: ShadingNumber> Shader<T> {
         } else {
             self.fragments.shares.fill(1);
         }
-        self.color_fragments(context, corner, out);
+        self.color_fragments(context, out);
     }
 }

@@ -210,7 +210,7 @@ pub(super) fn place<T: ShadingNumber>(
             (rows[0][slot], rows[1][slot]) = (u, v);
         }
     }
-    let reads_mips = sampler.reads_mips();
+    let reads_mips = sampler.filter.reads_mips();
     let uvs = (&rows, reads_mips);
     let done = T::place_texture(level, attributes, (texture, uvs), placement);
     // Triangles that sixteen lanes could not place exactly.

@@ -20,12 +20,10 @@ use super::layers::Layered;
 use super::resolve::Samples;
 use super::surface::{Out, Shader};
 use crate::frame::FramePlan;
-use crate::frame::color_path::PathPixels;
 use crate::raster::tile::Visibility;
 use crate::screen::coverage::PixelBox;
 use crate::screen::sample_positions::{ALL, FOUR};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
-use crate::shadow::rays::RayCount;
 use crate::simd::Bits;
 use marraztu_core::accuracy::LightAt;
 use marraztu_core::base::color::Color;
@@ -121,7 +119,7 @@ const fn corner_in_tile(block: usize) -> [usize; 2] {
 #[derive(Debug)]
 #[repr(align(128))]
 pub(crate) struct Painter<T> {
-    shader: Shader<T>,
+    pub(crate) shader: Shader<T>,
     visibility: Visibility,
     layered: Layered,
     samples: Samples,
@@ -142,21 +140,6 @@ impl<T: ShadingNumber> Default for Painter<T> {
 }
 
 impl<T: ShadingNumber> Painter<T> {
-    /// Begins a frame.
-    pub(crate) fn begin(&mut self) {
-        self.shader.begin();
-    }
-
-    /// Returns the shadow rays since the frame began.
-    pub(crate) const fn ray_count(&self) -> RayCount {
-        self.shader.ray_count()
-    }
-
-    /// The pixels of each path since the frame began.
-    pub(crate) const fn path_pixels(&self) -> PathPixels {
-        self.shader.path_pixels()
-    }
-
     /// Paints a tile of the picture into its band.
     pub(crate) fn paint(
         &mut self,

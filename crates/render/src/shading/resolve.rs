@@ -141,7 +141,7 @@ impl<T: ShadingNumber> Shader<T> {
                 Some(kept) => Out::Kept(sums, kept, std::mem::take(&mut first)),
                 None => Out::Sums(sums),
             };
-            shader.color_list(context, corner, &mut out);
+            shader.color_list(context, &mut out);
         };
         // Shadows are traced for at most as many points at once as a mask has bits.
         let are_cast = context.plan.shadows.are_cast();
@@ -188,19 +188,14 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Colours the listed fragments, and begins another list.
-    fn color_list(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        corner: [i32; 2],
-        out: &mut Out<'_, '_>,
-    ) {
+    fn color_list(&mut self, context: &ShadingContext<'_, T>, out: &mut Out<'_, '_>) {
         let mut most = 0;
         if self.fragments.len > 0 {
             if let Some(group) = one_group(context, &self.fragments) {
                 self.color_group(&group, out);
                 most = self.most_slots(context);
             } else {
-                self.color_groups(context, corner, out);
+                self.color_groups(context, out);
             }
         }
         self.fragments.begin_shared(most);

@@ -46,9 +46,9 @@ pub(crate) struct Shader<T> {
     pub(crate) barycentrics: Barycentrics<T>,
     pub(crate) batch: Batch<T>,
     /// The memory for shadow rays.
-    pub(super) rays: RayScratch,
+    pub(crate) rays: RayScratch,
     /// The pixels of each path since the frame began.
-    pub(super) path_pixels: PathPixels,
+    pub(crate) path_pixels: PathPixels,
     /// The positions of the triangles on their texture.
     pub(super) placed: TexturePlacement,
     pub(crate) texels: Rows<T>,
@@ -145,16 +145,6 @@ impl<T: ShadingNumber> Shader<T> {
         self.path_pixels = PathPixels::default();
     }
 
-    /// The pixels of each path since the frame began.
-    pub(crate) const fn path_pixels(&self) -> PathPixels {
-        self.path_pixels
-    }
-
-    /// Returns the shadow rays since the frame began.
-    pub(crate) const fn ray_count(&self) -> RayCount {
-        self.rays.count
-    }
-
     /// Returns the number of slots up to which triangles keep their slots for the next list:
     /// triangles in several blocks are then prepared once. Returns 0 if that does not pay: with
     /// light per face, all slots are lit for each list.
@@ -168,12 +158,11 @@ impl<T: ShadingNumber> Shader<T> {
     pub(crate) fn color_fragments(
         &mut self,
         context: &ShadingContext<'_, T>,
-        corner: [i32; 2],
         out: &mut Out<'_, '_>,
     ) {
         match one_group(context, &self.fragments) {
             Some(group) => self.color_group(&group, out),
-            None => self.color_groups(context, corner, out),
+            None => self.color_groups(context, out),
         }
     }
 
@@ -235,12 +224,7 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Colours a block that shows several draws or pipelines, group by group.
-    pub(super) fn color_groups(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        corner: [i32; 2],
-        out: &mut Out<'_, '_>,
-    ) {
+    pub(super) fn color_groups(&mut self, context: &ShadingContext<'_, T>, out: &mut Out<'_, '_>) {
         let mut done = [false; SLOTS];
         let all = std::mem::take(&mut self.fragments);
         for slot in 0..all.count {
@@ -253,7 +237,7 @@ impl<T: ShadingNumber> Shader<T> {
                 keep[other] = group.holds(*number);
                 done[other] |= keep[other];
             }
-            self.fragments.take_from(&all, &keep, corner);
+            self.fragments.take_from(&all, &keep);
             // Triangles of the last list that keep their slots may have no fragments.
             if self.fragments.len > 0 {
                 self.color_group(&group, out);

@@ -21,6 +21,7 @@ use crate::texture::lanes::{Decode, Sampler, Stored, TexelPlaces};
 use crate::texture::placement::{Doubles, LaneSteps, Placement, Steps, less};
 use crate::texture::sample::brightness;
 use crate::texture::uv::Uvs;
+use marraztu_core::accuracy::Filter;
 
 /// A texture on the triangles of a list.
 #[derive(Clone, Copy, Debug)]
@@ -200,12 +201,12 @@ impl PlacedTexture<'_> {
         let lanes = Sixteen(simd);
         lanes.store(position[0], &mut to.position[0], at);
         lanes.store(position[1], &mut to.position[1], at);
-        if self.sampler.reads_mips() {
+        if self.sampler.filter.reads_mips() {
             let [right, below] = [0, 1].map(|which| self.step(simd, of, way, which));
             let squared = |[u, v]: [f32x16<S>; 2]| u * u + v * v;
             let squares = [squared(right), squared(below)];
             lanes.store(Real::max(squares[0], squares[1]), &mut to.footprint, at);
-            if self.sampler.is_anisotropic() {
+            if self.sampler.filter == Filter::Anisotropic {
                 lanes.store(Real::min(squares[0], squares[1]), &mut to.shorter, at);
                 let is_right = squares[0].simd_ge(squares[1]);
                 for axis in 0..2 {

@@ -106,7 +106,7 @@ impl Shader<f32> {
             }
             let corner = [all.x[from], all.y[from]].map(|at| at & !7);
             self.fragments.list(context.level, &visibility, corner, 0);
-            self.color_fragments(context, corner, &mut Out::Tile(canvas, at));
+            self.color_fragments(context, &mut Out::Tile(canvas, at));
         }
     }
 

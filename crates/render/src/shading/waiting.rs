@@ -71,7 +71,7 @@ impl<T: ShadingNumber> Shader<T> {
                     // Some slots belong to a draw that the block may not show.
                     self.fragments.list(context.level, visibility, corner, 0);
                 }
-                self.color_fragments(context, corner, &mut Out::Tile(canvas, at));
+                self.color_fragments(context, &mut Out::Tile(canvas, at));
             }
         }
         true
