@@ -17,7 +17,6 @@ mod shader;
 mod spot;
 mod sun;
 mod together;
-pub(crate) mod turning;
 
 pub use batch::{Batch, Reflected, Sample};
 pub(crate) use batch::{Rows, columns, load, set, store, turned};
@@ -27,7 +26,6 @@ pub use phong::{
 pub use region::Region;
 pub use shader::{Light, LightRow, LightShader, Variant, Which};
 pub(crate) use together::Together;
-pub use turning::Turning;
 
 use marraztu_core::scene::LightKind;
 

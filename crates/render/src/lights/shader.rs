@@ -3,13 +3,14 @@
 use std::marker::PhantomData;
 
 use fearless_simd::Level;
+use glam::DVec3;
 
 use super::batch::{Batch, Reflected, Sample, add, load};
 use super::phong::{
     Form, HalfVector, Highlight, LightTerm, Mapped, Nothing, PhongMaterial, Reflection, ViewLight,
+    max_attenuation,
 };
 use super::region::Region;
-use super::turning::Turning;
 use crate::simd::{Kernel, Lanes, Number};
 
 /// The shader of a kind of light.
@@ -39,14 +40,15 @@ pub trait LightShader {
     fn is_culled(_: &ViewLight, _: &Region) -> Option<&'static str> {
         None
     }
-    /// Returns whether the light comes from behind all faces of a region, given their normals
-    /// `turning`. Leaving it out there then changes no bit.
-    fn is_behind(_: &ViewLight, _: &Region, _: &Turning) -> bool {
-        false
+    /// Returns whether the light comes from behind all faces of a region, given their normals (of
+    /// length 1). Leaving it out there then changes no bit.
+    fn is_behind(light: &ViewLight, region: &Region, normals: &[DVec3]) -> bool {
+        let from = light.position.into();
+        Self::HAS_POSITION && normals.iter().all(|normal| region.faces_away(*normal, from))
     }
     /// Returns the largest fraction of the light that arrives in a region, or anywhere without one.
-    fn max_falloff(_: &ViewLight, _: Option<&Region>) -> f64 {
-        1.0
+    fn max_falloff(light: &ViewLight, region: Option<&Region>) -> f64 {
+        if Self::HAS_POSITION { max_attenuation(light, region) } else { 1.0 }
     }
     /// Returns the fraction of the light in a direction, by the cosine between the direction and
     /// the axis, for explanations.
@@ -100,7 +102,7 @@ pub struct LightRow {
     /// See [`LightShader::is_culled`].
     pub is_culled: fn(&ViewLight, &Region) -> Option<&'static str>,
     /// See [`LightShader::is_behind`].
-    pub is_behind: fn(&ViewLight, &Region, &Turning) -> bool,
+    pub is_behind: fn(&ViewLight, &Region, &[DVec3]) -> bool,
     /// See [`LightShader::max_falloff`].
     pub max_falloff: fn(&ViewLight, Option<&Region>) -> f64,
     /// See [`LightShader::fraction_at`].

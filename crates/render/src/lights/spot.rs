@@ -5,7 +5,6 @@ use super::bulb::arriving;
 use super::phong::{Highlight, LightTerm, ViewLight, max_attenuation, phong};
 use super::region::Region;
 use super::shader::{LightShader, Which};
-use super::turning::Turning;
 use crate::simd::{Lanes, Real};
 
 /// A point that shines in a cone around an axis.
@@ -26,10 +25,6 @@ impl LightShader for Spot {
         } else {
             None
         }
-    }
-
-    fn is_behind(light: &ViewLight, region: &Region, turning: &Turning) -> bool {
-        turning.all(|normal| region.faces_away(normal, light.position.into()))
     }
 
     fn max_falloff(light: &ViewLight, region: Option<&Region>) -> f64 {

@@ -8,7 +8,6 @@
 pub(crate) mod color_path;
 mod cover;
 pub(crate) mod features;
-mod ground;
 mod helpers;
 mod maps;
 mod observer;

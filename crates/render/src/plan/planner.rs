@@ -6,10 +6,9 @@ use glam::{DMat3, DMat4, DVec3};
 
 use super::cover::Cover;
 use super::features::presence;
-use super::ground::Ground;
 use super::helpers;
 use super::observer::ObserverSpace;
-use super::planning::{Planner, Planning};
+use super::planning::{Ground, Planner, Planning};
 use super::rules::Thing;
 use super::turning::{shows_fronts_only, turning_of};
 use super::uses::{self, EffectState, EffectUse};

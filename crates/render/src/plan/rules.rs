@@ -9,8 +9,8 @@ use super::turning::is_turned_away;
 use crate::frame::Rules;
 use crate::frame::draw::{Draw, Stage};
 use crate::lights::region::Region;
-use crate::lights::turning::Turning;
 use crate::lights::{LightRow, PhongMaterial, ViewLight};
+use glam::DVec3;
 use marraztu_core::accuracy::Transparency;
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{Bounds, Light, SpotOwner, Texture};
@@ -39,7 +39,7 @@ pub(crate) struct LitSurface<'a> {
     /// The region of the surface, if it is known.
     pub region: Option<&'a Region>,
     /// The normals of its faces, if they are known.
-    pub turning: Option<&'a Turning>,
+    pub turning: Option<&'a [DVec3]>,
 }
 
 /// The lights of a surface.

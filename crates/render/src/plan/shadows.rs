@@ -7,9 +7,8 @@
 
 use glam::DMat3;
 
-use super::ground::Ground;
 use super::maps::holds_same_alpha;
-use super::planning::{Planner, Planning, Shining};
+use super::planning::{Ground, Planner, Planning, Shining};
 use super::rules::TexturedSurface;
 use super::uses::{Effect, EffectState, EffectUse, Thing};
 use crate::frame::shadows::{Caster, CasterPart, Holes, Shadows};

@@ -4,9 +4,8 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use super::cover::Cover;
-use super::ground::{Ground, LARGEST};
 use super::maps::{decoded, emission, holds_same_alpha, mapped, mapped_ambient};
-use super::planning::{Planner, Planning, Shining};
+use super::planning::{Ground, LARGEST, Planner, Planning, Shining};
 use super::rules::{LitSurface, Reading, TexturedSurface};
 use super::uses::{Effect, EffectState, EffectUse};
 use crate::frame::draw::{Pipeline, Shaded, Stage};
@@ -190,7 +189,7 @@ impl Planner<'_> {
             let Shining { id, name, effect, light, .. } = shining;
             let source = into.plan.lights[*light as usize];
             // Bump maps turn normals in any direction.
-            let turning = ground.turning.as_ref().filter(|_| !is_bumpy);
+            let turning = ground.turning.as_deref().filter(|_| !is_bumpy);
             let region = ground.region.as_ref();
             let meeting = LitSurface { effect, light: &source, material, region, turning };
             let rules = &into.plan.rules;

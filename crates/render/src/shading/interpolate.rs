@@ -116,16 +116,19 @@ pub(crate) fn surface_samples<T: Number>(
     }
 }
 
-/// The rays of pixels: x = column a + b, y = row c + d, each times w in perspective; z = -w.
+/// The rays of the observer, and the normal transform of a draw. The rays of pixels: x = column a +
+/// b, y = row c + d, each times w in perspective; z = -w.
 #[derive(Clone, Copy, Debug)]
-struct Rays<T> {
+pub(crate) struct Look<T> {
     parallel: bool,
     x: [T; 2],
     y: [T; 2],
+    /// The columns of the matrix that transforms normals to view space.
+    normals: [[T; 3]; 3],
 }
 
-impl<T: Number> Rays<T> {
-    fn new(plan: &FramePlan) -> Self {
+impl<T: Number> Look<T> {
+    pub(crate) fn new(plan: &FramePlan, draw: &Draw) -> Self {
         let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
         let Viewport { width, height } = plan.viewport;
         let mut x = [2.0 / width / px, -1.0 / px];
@@ -136,22 +139,12 @@ impl<T: Number> Rays<T> {
                 ray[1] += ray[0] * f64::from(shift) / f64::from(SUBPIXELS);
             }
         }
-        let parallel = plan.eye == Eye::Parallel;
-        Self { parallel, x: x.map(T::from_f64), y: y.map(T::from_f64) }
-    }
-}
-
-/// The rays of the observer, and the normal transform of a draw.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Look<T> {
-    rays: Rays<T>,
-    /// The columns of the matrix that transforms normals to view space.
-    normals: [[T; 3]; 3],
-}
-
-impl<T: Number> Look<T> {
-    pub(crate) fn new(plan: &FramePlan, draw: &Draw) -> Self {
-        Self { rays: Rays::new(plan), normals: columns(draw.view_from_normal) }
+        Self {
+            parallel: plan.eye == Eye::Parallel,
+            x: x.map(T::from_f64),
+            y: y.map(T::from_f64),
+            normals: columns(draw.view_from_normal),
+        }
     }
 
     /// Computes position, normal and direction to the observer of some pixels, from their normals
@@ -166,14 +159,13 @@ impl<T: Number> Look<T> {
         w: M::R,
         depth: impl FnOnce() -> M::R,
     ) -> Sample<M::R> {
-        let Self { rays, normals } = *self;
-        let normal = turned(lanes, normals, normal).unit();
+        let normal = turned(lanes, self.normals, normal).unit();
         let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
-        let x = column * lanes.set(rays.x[0]) + lanes.set(rays.x[1]);
-        let y = row * lanes.set(rays.y[0]) + lanes.set(rays.y[1]);
+        let x = column * lanes.set(self.x[0]) + lanes.set(self.x[1]);
+        let y = row * lanes.set(self.y[0]) + lanes.set(self.y[1]);
         // In perspective all rays start at the observer; in orthographic projection they are
         // parallel.
-        let (position, to_eye) = if rays.parallel {
+        let (position, to_eye) = if self.parallel {
             (Vec3([x, y, depth()]), Vec3([zero, zero, one]))
         } else {
             (Vec3([x * w, y * w, -w]), Vec3([-x, -y, one]).unit())

@@ -20,28 +20,21 @@ use crate::frame::draw::{Draw, Stage};
 use crate::lights::{Batch, LightTerm, Rows};
 use crate::shadow::known::{BatchPixels, KnownPixels};
 use crate::shadow::map_face::TAPS;
-use crate::shadow::packet::POINTS;
-use crate::shadow::rays::{Origins, RayScratch};
+use crate::shadow::rays::{Origins, POINTS, RayScratch};
 use crate::shadow::tracer::Tracer;
 use crate::simd::{BATCH, Bits, Number};
 use marraztu_core::scene::dvec3;
 
 /// The shadows on a batch.
 pub(crate) struct BatchShadows<'a> {
-    pub(crate) tracer: &'a Tracer<'a>,
-    pub(crate) scratch: &'a mut RayScratch,
+    tracer: &'a Tracer<'a>,
+    scratch: &'a mut RayScratch,
     /// Sets the points at which the batch is lit; called if a ray is needed.
-    pub(crate) place: &'a mut dyn FnMut(&mut Origins),
+    place: &'a mut dyn FnMut(&mut Origins),
     /// Whether the points are set.
-    pub(crate) is_placed: bool,
+    is_placed: bool,
     /// The pixels of the batch, if the cache may be used for them.
     pixels: Option<BatchPixels<'a>>,
-}
-
-impl std::fmt::Debug for BatchShadows<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("BatchShadows").field("is_placed", &self.is_placed).finish_non_exhaustive()
-    }
 }
 
 impl<'a> BatchShadows<'a> {

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::packet::POINTS;
+use super::rays::POINTS;
 use super::shaft::Around;
 use crate::simd::Bits;
 use marraztu_core::base::math::each;
