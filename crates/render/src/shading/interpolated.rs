@@ -12,6 +12,7 @@ use super::barycentrics::{Barycentrics, Weigh, interpolate_spans};
 use super::context::Group;
 use super::fragments::Fragments;
 use super::full_blocks::{Linear as _, Wide};
+use super::map_texels::Texels;
 use super::surface::Shader;
 use super::texels::{TexelScratch, TextureSamples, lane_steps};
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
@@ -68,20 +69,13 @@ pub(crate) trait ShadingNumber: Light + AttributeNumber {
     ) -> u64 {
         0
     }
-    /// Multiplies the colours of fragments by texels, if this works sixteen pixels at a time.
-    /// Returns a bit mask of the slots that were handled.
-    fn multiply_texels(
+    /// Reads texels at fragments, if this works sixteen pixels at a time: see
+    /// [`TextureSamples::multiply`] and [`TextureSamples::slopes`]. Returns a bit mask of the slots
+    /// that were handled.
+    fn read_texels(
         level: Level,
         samples: &TextureSamples<'_, Self>,
-        to: (&mut TexelScratch, &mut Rows<Self>),
-    ) -> u64 {
-        0
-    }
-    /// Computes the slopes of heights at fragments, like [`TextureSamples::slopes`]. Returns a bit
-    /// mask of the slots that were handled.
-    fn find_slopes(
-        level: Level,
-        samples: &TextureSamples<'_, Self>,
+        what: Texels,
         to: (&mut TexelScratch, &mut Rows<Self>),
     ) -> u64 {
         0
@@ -260,30 +254,22 @@ impl ShadingNumber for f32 {
         done
     }
 
-    fn multiply_texels(
+    fn read_texels(
         level: Level,
         samples: &TextureSamples<'_, Self>,
-        (scratch, to): (&mut TexelScratch, &mut Rows<Self>),
-    ) -> u64 {
-        let count = samples.points.attributes.count;
-        match samples.decoding {
-            Decoding::Stored => paged!(count, PAGES => {
-                dispatch!(level, simd => samples.multiply::<_, Stored, PAGES>(simd, scratch, to));
-            }),
-            Decoding::Linear => paged!(count, PAGES => {
-                dispatch!(level, simd => samples.multiply::<_, Linear, PAGES>(simd, scratch, to));
-            }),
-        }
-        samples.texture.placement.known
-    }
-
-    fn find_slopes(
-        level: Level,
-        samples: &TextureSamples<'_, Self>,
+        what: Texels,
         (scratch, to): (&mut TexelScratch, &mut Rows<Self>),
     ) -> u64 {
         paged!(samples.points.attributes.count, PAGES => {
-            dispatch!(level, simd => samples.slopes::<_, PAGES>(simd, scratch, to));
+            dispatch!(level, simd => match (what, samples.decoding) {
+                (Texels::Colors, Decoding::Stored) => {
+                    samples.multiply::<_, Stored, PAGES>(simd, scratch, to);
+                }
+                (Texels::Colors, Decoding::Linear) => {
+                    samples.multiply::<_, Linear, PAGES>(simd, scratch, to);
+                }
+                (Texels::Slopes, _) => samples.slopes::<_, PAGES>(simd, scratch, to),
+            });
         });
         samples.texture.placement.known
     }

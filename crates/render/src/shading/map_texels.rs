@@ -84,7 +84,7 @@ pub(crate) struct TexturePlacement {
 
 /// The kind of data read from a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Texels {
+pub(crate) enum Texels {
     /// Red, green and blue, multiplied into the rows.
     Colors,
     /// The slopes of heights along u and v, per texel, which replace the first two rows.
@@ -109,14 +109,9 @@ impl<T: ShadingNumber> Points<'_, T> {
             }
             let TexturePlacement { placement, far, scratch } = placed;
             let texture = PlacedTexture { placement, far, sampler: &sampler };
+            let samples = TextureSamples { points: self, texture, decoding: source.decoding };
             let to = (scratch, &mut *to);
-            let decoding = source.decoding;
-            let samples = TextureSamples { points: self, texture, decoding };
-            let level = group.context.level;
-            done = match what {
-                Texels::Colors => T::multiply_texels(level, &samples, to),
-                Texels::Slopes => T::find_slopes(level, &samples, to),
-            };
+            done = T::read_texels(group.context.level, &samples, what, to);
         }
         // The slots that lanes could not handle are read one by one.
         let slots = u64::MAX >> (SLOTS - attributes.count);

@@ -6,12 +6,10 @@ use super::context::{Group, ShadingContext};
 use super::interpolated::ShadingNumber;
 use super::surface::Shader;
 use crate::frame::draw::Shaded;
+use crate::simd::BATCH;
 use crate::simd::gather::SLOTS;
-use crate::simd::{BATCH, Vec3};
-use crate::texture::sample::{brightness, sample};
+use crate::texture::sample;
 use crate::texture::uv::{uv, uvs};
-use marraztu_core::accuracy::Filter;
-use marraztu_core::scene::Texture;
 
 impl<T: ShadingNumber> Shader<T> {
     /// Returns the opacity of each fragment of a coloured group; 1 for opaque surfaces.
@@ -39,17 +37,11 @@ impl<T: ShadingNumber> Shader<T> {
             let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
             if let Some(corners) = corners[slot] {
                 let uv = uv(corners, barycentrics.weights(i));
-                let alpha = texture.map_or(1.0, |it| sample::<f64>(it, uv, filter)[3]);
-                let mapped = opacity_map.as_ref().map_or(1.0, |it| of_map(it, uv, filter));
+                let alpha = texture.map_or(1.0, |it| sample::sample::<f64>(it, uv, filter)[3]);
+                let mapped = opacity_map.as_ref().map_or(1.0, |it| sample::opacity(it, uv, filter));
                 *own = (alpha * mapped * opacity) as f32;
             }
         });
         opacities
     }
-}
-
-/// Returns the opacity of a map: its alpha or, if the map is opaque everywhere, its brightness.
-fn of_map(map: &Texture, uv: [f64; 2], filter: Filter) -> f64 {
-    let [r, g, b, alpha] = sample::<f64>(map, uv, filter);
-    if map.picture.least_alpha() < 255 { alpha } else { brightness(Vec3([r, g, b])) }
 }

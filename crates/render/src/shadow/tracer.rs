@@ -16,8 +16,8 @@ use super::triangle::{Corners, Prepared, is_between, reaches_behind};
 use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
 use crate::frame::FramePlan;
 use crate::frame::shadows::{Caster, CasterPart, Holes, ShadowSource, Shadows};
-use crate::simd::{Bits, Vec3};
-use crate::texture::sample::{brightness, sample};
+use crate::simd::Bits;
+use crate::texture::sample::{opacity as opacity_of, sample};
 use crate::texture::uv::uv;
 use marraztu_core::accuracy::{Filter, ShadowMethod};
 use marraztu_core::base::math::each;
@@ -361,11 +361,7 @@ impl<'a> Tracer<'a> {
         let uvs = each(uvs, |[u, v]| [f64::from(u), f64::from(v)]);
         let at = uv(uvs, parts);
         let texture = texture.as_ref().map_or(1.0, |it| sample::<f64>(it, at, self.filter)[3]);
-        let map = map.as_ref().map_or(1.0, |it| {
-            let [r, g, b, alpha] = sample::<f64>(it, at, self.filter);
-            // An opaque opacity map is a greyscale picture: its brightness counts instead of alpha.
-            if it.picture.least_alpha() == 255 { brightness(Vec3([r, g, b])) } else { alpha }
-        });
+        let map = map.as_ref().map_or(1.0, |it| opacity_of(it, at, self.filter));
         texture * map * opacity >= 0.5
     }
 }
