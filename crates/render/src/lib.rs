@@ -46,7 +46,7 @@
 //! * [`accel`]: structures built once for each mesh: draw order, clusters, BVH, edge order.
 //! * [`simd`]: the numbers that light is computed in, eight or sixteen at a time.
 //! * `texture`: colours of textures at a position, and their mip maps.
-//! * [`lights`]: one file and one table row for each kind of light; the Phong terms.
+//! * `lights`: one file and one table row for each kind of light; the Phong terms.
 //! * `frame`: what a frame draws, as plain data.
 //! * [`screen`]: clipping, snapping, coverage, sample positions and tiles.
 //! * [`plan`]: decides what a frame draws before any pixel is touched, and says why.
@@ -70,7 +70,7 @@ mod damage;
 mod exposure;
 mod frame;
 mod layers;
-pub mod lights;
+mod lights;
 mod picture_camera;
 pub mod plan;
 mod raster;

@@ -14,7 +14,7 @@ use super::region::Region;
 use crate::simd::{Kernel, Lanes, Number};
 
 /// The shader of a kind of light.
-pub trait LightShader {
+pub(crate) trait LightShader {
     /// The name in the plan.
     const NAME: &'static str;
     /// The shader as an enum.
@@ -65,7 +65,7 @@ pub trait LightShader {
 
 /// The shader of a row of the table of light kinds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
+pub(crate) enum Which {
     /// Ambient light.
     Ambient,
     /// A sun.
@@ -79,36 +79,26 @@ pub enum Which {
 /// A light shader compiled for one form of highlight: in f64 for the reference, and in f32 for the
 /// editor.
 #[derive(Clone, Copy, Debug)]
-pub struct Variant {
+pub(crate) struct Variant {
     reference: fn(Level, &mut Batch<f64>, &LightTerm<f64>),
     fast: fn(Level, &mut Batch<f32>, &LightTerm<f32>),
 }
 
-/// A row of the table of light kinds.
+/// A row of the table of light kinds: the constants and functions of its [`LightShader`].
 #[derive(Clone, Copy, Debug)]
-pub struct LightRow {
-    /// See [`LightShader::NAME`].
-    pub name: &'static str,
-    /// See [`LightShader::WHICH`].
-    pub which: Which,
-    /// See [`LightShader::READS_POSITIONS`].
-    pub reads_positions: bool,
-    /// See [`LightShader::HAS_POSITION`].
-    pub has_position: bool,
-    /// See [`LightShader::HAS_REACH`].
-    pub has_reach: bool,
-    /// See [`LightShader::is_noop`].
-    pub is_noop: fn(&ViewLight, &PhongMaterial) -> Option<&'static str>,
-    /// See [`LightShader::is_culled`].
-    pub is_culled: fn(&ViewLight, &Region) -> Option<&'static str>,
-    /// See [`LightShader::is_behind`].
-    pub is_behind: fn(&ViewLight, &Region, &[DVec3]) -> bool,
-    /// See [`LightShader::max_falloff`].
-    pub max_falloff: fn(&ViewLight, Option<&Region>) -> f64,
-    /// See [`LightShader::fraction_at`].
-    pub fraction_at: fn(&ViewLight, f64) -> f64,
+pub(crate) struct LightRow {
+    pub(crate) name: &'static str,
+    pub(crate) which: Which,
+    pub(crate) reads_positions: bool,
+    pub(crate) has_position: bool,
+    pub(crate) has_reach: bool,
+    pub(crate) is_noop: fn(&ViewLight, &PhongMaterial) -> Option<&'static str>,
+    pub(crate) is_culled: fn(&ViewLight, &Region) -> Option<&'static str>,
+    pub(crate) is_behind: fn(&ViewLight, &Region, &[DVec3]) -> bool,
+    pub(crate) max_falloff: fn(&ViewLight, Option<&Region>) -> f64,
+    pub(crate) fraction_at: fn(&ViewLight, f64) -> f64,
     /// Returns the variant with a form of highlight, and whether a map multiplies its exponent.
-    pub variant: fn(Form, bool) -> Variant,
+    pub(crate) variant: fn(Form, bool) -> Variant,
 }
 
 impl LightRow {
@@ -182,7 +172,7 @@ impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
 }
 
 /// A number type that light shaders are compiled for.
-pub trait Light: Number {
+pub(crate) trait Light: Number {
     /// Adds the light of a shader at every position of a batch.
     fn add_light(variant: Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>);
 }
