@@ -23,12 +23,6 @@ use marraztu_core::scene::{
     Observer,
 };
 
-/// The transforms of an object for the observer.
-struct Placement {
-    view_from_object: DMat4,
-    clip_from_object: DMat4,
-}
-
 impl Planner<'_> {
     /// Adds objects, the oldest first.
     pub(super) fn add_objects(&self, into: &mut Planning) {
@@ -59,7 +53,7 @@ impl Planner<'_> {
     }
 
     /// Returns the reason why the view does not show an object, if there is one.
-    fn not_asked_for(&self, id: ObjectId, object: &Object) -> Option<&'static str> {
+    pub(super) fn not_asked_for(&self, id: ObjectId, object: &Object) -> Option<&'static str> {
         let alone = self.shot.view.only_selected || self.shot.view.polygons.is_some();
         if !object.visible {
             Some("hidden")
@@ -68,11 +62,6 @@ impl Planner<'_> {
         } else {
             None
         }
-    }
-
-    /// Returns whether the view shows an object.
-    pub(super) fn is_asked_for(&self, id: ObjectId, object: &Object) -> bool {
-        self.not_asked_for(id, object).is_none()
     }
 
     /// Returns the polygons of an object that the view shows; `None` for all.
@@ -112,7 +101,7 @@ impl Planner<'_> {
 
     /// Creates the draw of a placed mesh, without a decision about its surface.
     fn draw(&self, item: ItemId, model: &Shared<Model>, world_from_object: DMat4) -> Draw {
-        let Placement { view_from_object, clip_from_object } = self.placement(world_from_object);
+        let [view_from_object, clip_from_object] = self.placement(world_from_object);
         let linear = DMat3::from_mat4(view_from_object);
         Draw {
             item,
@@ -137,16 +126,16 @@ impl Planner<'_> {
         }
     }
 
-    /// Composes an object's placement with the observer's transforms.
-    fn placement(&self, world_from_object: DMat4) -> Placement {
+    /// Returns an object's transforms to view and clip space.
+    fn placement(&self, world_from_object: DMat4) -> [DMat4; 2] {
         let ObserverSpace { view_from_world, clip_from_view, .. } = self.observer;
         if self.shot.settings.vertices == VertexArithmetic::F32 {
             let view_from_object = view_from_world.as_mat4() * world_from_object.as_mat4();
             let clip_from_object = (clip_from_view.as_mat4() * view_from_object).as_dmat4();
-            return Placement { view_from_object: view_from_object.as_dmat4(), clip_from_object };
+            return [view_from_object.as_dmat4(), clip_from_object];
         }
         let view_from_object = view_from_world * world_from_object;
-        Placement { view_from_object, clip_from_object: clip_from_view * view_from_object }
+        [view_from_object, clip_from_view * view_from_object]
     }
 
     /// Adds the draw of an object, or of a helper converted to one, unless nothing of it is

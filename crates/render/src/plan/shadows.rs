@@ -22,9 +22,9 @@ impl Planner<'_> {
         if is_filled && into.plan.shadows.sources.iter().any(Option::is_some) {
             let mut objects: Vec<_> = self.shot.scene.objects.iter().collect();
             objects.sort_by_key(|(id, _)| *id);
-            let shown = objects.into_iter().filter(|(id, object)| self.is_asked_for(*id, object));
-            into.plan.shadows.casters =
-                shown.filter_map(|(id, object)| self.caster(id, object)).collect();
+            objects.retain(|(id, object)| self.not_asked_for(*id, object).is_none());
+            let casters = objects.into_iter().filter_map(|(id, object)| self.caster(id, object));
+            into.plan.shadows.casters = casters.collect();
         }
         if into.plan.shadows.casters.is_empty() {
             into.plan.shadows = Shadows::default();

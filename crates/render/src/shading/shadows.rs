@@ -19,7 +19,7 @@ use super::triangle_attributes::TriangleAttributes;
 use crate::frame::draw::{Draw, Stage};
 use crate::lights::{Batch, LightTerm, Rows};
 use crate::shadow::known::{BatchPixels, KnownPixels};
-use crate::shadow::map_face::TAPS;
+use crate::shadow::map_face::{Reading, TAPS};
 use crate::shadow::rays::{Origins, POINTS, RayScratch};
 use crate::shadow::tracer::Tracer;
 use crate::simd::{BATCH, Bits, Number};
@@ -101,16 +101,19 @@ impl<'a> BatchShadows<'a> {
         if lit == 0 {
             return;
         }
-        let (shaded, partly) = match self.tracer.map(stage.light) {
-            None => (self.traced(level, (stage.light, light), lit), None),
+        let reading = match self.tracer.map(stage.light) {
+            None => Reading {
+                occluded: self.traced(level, (stage.light, light), lit),
+                partly: 0,
+                open: [0; POINTS],
+            },
             Some(map) => {
                 self.place();
                 let at = &self.scratch.origins.at;
-                let reading = dispatch!(level, _ => map.read(at, lit));
-                (reading.occluded, Some(reading))
+                dispatch!(level, _ => map.read(at, lit))
             }
         };
-        if shaded == lit {
+        if reading.occluded == lit {
             // Unlit positions have not changed, so the whole batch can be restored.
             let rows = batch.diffuse.iter_mut().chain(&mut batch.specular);
             for (row, before) in rows.zip(before.0.iter().chain(&before.1)) {
@@ -119,15 +122,14 @@ impl<'a> BatchShadows<'a> {
             return;
         }
         // Blocked positions get back their values; PCF scales the light of partly open ones.
-        for i in Bits(shaded) {
+        for i in Bits(reading.occluded) {
             for axis in 0..3 {
                 batch.diffuse[axis][i] = before.0[axis][i];
                 batch.specular[axis][i] = before.1[axis][i];
             }
         }
-        for i in Bits(partly.map_or(0, |reading| reading.partly)) {
-            let open = partly.map_or(0, |reading| reading.open[i]);
-            let share = T::from_f64(f64::from(open) / f64::from(TAPS));
+        for i in Bits(reading.partly) {
+            let share = T::from_f64(f64::from(reading.open[i]) / f64::from(TAPS));
             for axis in 0..3 {
                 let (diffuse, specular) = (before.0[axis][i], before.1[axis][i]);
                 batch.diffuse[axis][i] = diffuse + (batch.diffuse[axis][i] - diffuse) * share;

@@ -98,17 +98,6 @@ pub(crate) enum Out<'a, 'b> {
     Layer(&'a mut Blend),
 }
 
-/// The result of interpolating the light of vertices.
-#[derive(Clone, Copy, Debug)]
-enum Mixture {
-    /// The bytes of the pixels.
-    Bytes,
-    /// Colours as diffuse light, to be encoded later.
-    Colors,
-    /// Diffuse and specular light.
-    Light,
-}
-
 impl<T: ShadingNumber> Default for Shader<T> {
     fn default() -> Self {
         Self {
@@ -294,9 +283,8 @@ impl<T: ShadingNumber> Shader<T> {
             None => {}
             Some((LightAt::Pixel | LightAt::Sample, _)) => self.light_pixels(group, shaded),
             Some((LightAt::Vertex, stages)) => match self.mix_light(group, shaded, stages) {
-                Mixture::Bytes => return,
-                Mixture::Colors => tint = [1.0; 3],
-                Mixture::Light => {}
+                Some(factor) => tint = factor,
+                None => return,
             },
             Some((LightAt::Face, stages)) => self.light_faces(group, stages, each),
         }
@@ -417,8 +405,14 @@ impl<T: ShadingNumber> Shader<T> {
         light.light_batch(terms.of(group.pipeline), level, batch, shadows);
     }
 
-    /// Gouraud shading: interpolates the light of vertices at every pixel.
-    fn mix_light(&mut self, group: &Group<'_, T>, shaded: &Shaded, stages: &[Stage]) -> Mixture {
+    /// Gouraud shading: interpolates the light or the final colours of vertices at every pixel.
+    /// Returns the factor of diffuse light, or `None` if pixels have got their bytes already.
+    fn mix_light(
+        &mut self,
+        group: &Group<'_, T>,
+        shaded: &Shaded,
+        stages: &[Stage],
+    ) -> Option<[f64; 3]> {
         let ShadingContext { level, plan, lit, .. } = *group.context;
         let tables = lit.tables(group.draw_index, group.pipeline);
         let colored = tables[0].is_colored();
@@ -439,13 +433,13 @@ impl<T: ShadingNumber> Shader<T> {
         if colored && !plan.variants.are_linear() && shaded.extras.is_empty() {
             let thresholds = thresholds.of(plan.variants.rounding, fragments);
             interpolate(attributes, Mixed::Colors(colors, thresholds));
-            return Mixture::Bytes;
+            return None;
         }
         interpolate(attributes, Mixed::Rows(&mut batch.diffuse));
         batch.len = fragments.len;
         if colored {
             batch.specular = [[T::default(); BATCH]; 3];
-            return Mixture::Colors;
+            return Some([1.0; 3]);
         }
         attributes.carry_light(
             group.draw,
@@ -454,7 +448,7 @@ impl<T: ShadingNumber> Shader<T> {
         );
         attributes.spread(level);
         interpolate(attributes, Mixed::Rows(&mut batch.specular));
-        Mixture::Light
+        Some(shaded.tint)
     }
 
     /// Sets the attributes of corners to their diffuse light, or to their final colours, and
