@@ -3,10 +3,9 @@
 use crate::simd::dispatch;
 
 use super::context::{Group, ShadingContext};
-use super::far_texture::FarTexture;
 use super::interpolate::Points;
 use super::interpolated::ShadingNumber;
-use super::texels::{PlacedTexture, TexelScratch, TextureSamples, footprint, steps};
+use super::texels::{FarTexture, PlacedTexture, TexelScratch, TextureSamples, footprint, steps};
 use super::triangle_attributes::{TriangleAttributes, asks_ahead};
 use crate::frame::variants::Decoding;
 use crate::lights::Rows;

@@ -11,7 +11,7 @@
 //! triangles of about a pixel are coloured without looking triangles up (`tiny`).
 //! Blocks that one triangle covers fully (`blocks`) take all of these steps in one pass without a
 //! list (`full_blocks`). Blocks that transparent triangles reach are coloured layer by layer
-//! (`layers`), each with its `opacity`, and combined by alpha blending (`blend`).
+//! (`layers`), each with its opacity, and combined by alpha blending (`blend`).
 
 pub(crate) mod barycentrics;
 mod blend;
@@ -23,18 +23,15 @@ pub(crate) mod context;
 pub(crate) mod corner_light;
 pub(crate) mod explain;
 pub(crate) mod face_colors;
-mod far_texture;
 pub(crate) mod fragments;
 mod full_blocks;
 mod interpolate;
 pub(crate) mod interpolated;
-mod kept;
 mod layers;
 pub(crate) mod light;
 pub(crate) mod light_terms;
 mod lit_points;
 mod map_texels;
-mod opacity;
 pub(crate) mod painter;
 pub(crate) mod pixel_color;
 pub(crate) mod quantize;

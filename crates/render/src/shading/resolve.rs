@@ -6,12 +6,11 @@
 //! fit.
 
 use crate::simd::dispatch;
-use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x16};
+use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x16, u32x16};
 
-use super::colors::Sums;
+use super::colors::{Colors, Sums};
 use super::context::{ShadingContext, one_group};
 use super::interpolated::ShadingNumber;
-use super::kept::Kept;
 use super::runs::Shown;
 use super::surface::{Out, Shader};
 use crate::raster::visibility_buffer::{BACKGROUND, Planes, Visible, seen_number};
@@ -98,6 +97,65 @@ impl Samples {
             self.new[1] |= (!ab).to_bitmask() << at;
             self.new[2] |= (!(ac | bc)).to_bitmask() << at;
             self.new[3] |= (!(ad | bd | cd)).to_bitmask() << at;
+        }
+    }
+}
+
+/// The colour of one triangle for each pixel of a block, from earlier passes over the picture.
+///
+/// Sixteen and sixty-four samples per pixel are drawn four at a time. Light is evaluated at the
+/// centre of a pixel, or at the triangle's point nearest to it. Every pass would therefore compute
+/// the same colour for a triangle in a pixel. The colour is cached, and only triangles that earlier
+/// passes did not show are lit.
+#[derive(Clone, Debug)]
+pub(crate) struct Kept {
+    /// The triangles' numbers; [`NOTHING`] without a cached colour.
+    numbers: [u32; BLOCK_PIXELS],
+    /// The colours, in the fixed-point format of [`Colors`].
+    parts: [[u32; 4]; BLOCK_PIXELS],
+}
+
+/// The number of the background, which is never cached.
+const NOTHING: u32 = u32::MAX;
+
+impl Default for Kept {
+    fn default() -> Self {
+        Self { numbers: [NOTHING; BLOCK_PIXELS], parts: [[0; 4]; BLOCK_PIXELS] }
+    }
+}
+
+impl Kept {
+    /// Returns whether all pixels hold the colour of one triangle.
+    pub(crate) fn are_all_of(&self, number: u32) -> bool {
+        self.numbers.iter().all(|own| *own == number)
+    }
+
+    /// Returns the pixels that hold the colour of the triangle with their number.
+    pub(crate) fn known(&self, level: Level, numbers: &[u32; BLOCK_PIXELS]) -> u64 {
+        dispatch!(level, simd => {
+            let mut known = 0;
+            for at in (0..BLOCK_PIXELS).step_by(16) {
+                let own = u32x16::from_slice(simd, &self.numbers[at..at + 16]);
+                let asked = u32x16::from_slice(simd, &numbers[at..at + 16]);
+                let is_nothing = own.simd_eq(NOTHING);
+                known |= (own.simd_eq(asked) & !is_nothing).to_bitmask() << at;
+            }
+            known
+        })
+    }
+
+    /// Returns the colours of all pixels.
+    pub(crate) const fn parts(&self) -> &[[u32; 4]; BLOCK_PIXELS] {
+        &self.parts
+    }
+
+    /// Caches the colours of some fragments, each in its pixel and for the triangle of its slot.
+    pub(crate) fn keep(&mut self, colors: &Colors, pixels: &[u8], slots: &[i32], numbers: &[u32]) {
+        for (i, (place, slot)) in pixels.iter().zip(slots).enumerate() {
+            let place = usize::from(*place) % BLOCK_PIXELS;
+            let [red, green, blue] = colors.part(i);
+            self.numbers[place] = numbers[slot.cast_unsigned() as usize % numbers.len()];
+            self.parts[place] = [red, green, blue, 0];
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The colours that a surface has by itself, pixel by pixel: texture, vertex colours, tint, emission,
-//! and the maps of its highlights.
+//! the
+//! maps of its highlights, and opacity.
 
-use super::context::Group;
+use super::context::{Group, ShadingContext};
 use super::interpolate::{CornerValues, Mixed, Points, mix};
 use super::interpolated::ShadingNumber;
 use super::map_texels::{TexelSource, Texels, TexturePlacement};
@@ -11,8 +12,9 @@ use crate::frame::extras::{Extras, Glow};
 use crate::frame::variants::Decoding;
 use crate::lights::Rows;
 use crate::simd::gather::SLOTS;
-use crate::simd::{BATCH, Number, Vec3};
-use crate::texture::sample::brightness;
+use crate::simd::{BATCH, Number, Vec3, dispatch};
+use crate::texture::sample::{brightness, opacity_of, sample};
+use crate::texture::uv::{uv, uvs};
 use marraztu_core::base::Shared;
 use marraztu_core::base::color::linear;
 use marraztu_core::base::math::each;
@@ -213,5 +215,38 @@ impl<T: ShadingNumber> Shader<T> {
         for (i, factor) in self.batch.exponent.iter_mut().enumerate() {
             *factor = brightness(Vec3([r[i], g[i], b[i]]));
         }
+    }
+
+    /// Returns the opacity of each fragment of a coloured group; 1 for opaque surfaces.
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+    pub(super) fn opacities(&self, group: &Group<'_, T>) -> [f32; BATCH] {
+        let ShadingContext { level, plan, .. } = *group.context;
+        let Some(Shaded { opacity: Some(opacity), texture, opacity_map, .. }) = group.shaded else {
+            return [1.0; BATCH];
+        };
+        let mut opacities = [*opacity as f32; BATCH];
+        let texture = texture.as_ref().filter(|it| it.picture.least_alpha() < 255);
+        if texture.is_none() && opacity_map.is_none() {
+            return opacities;
+        }
+        let Self { fragments, attributes, barycentrics, .. } = self;
+        // Texture coordinates are fetched once per triangle.
+        let mut corners = [None; SLOTS];
+        for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count]) {
+            *corners = uvs(group.draw, *number);
+        }
+        let filter = plan.filter;
+        let own = &mut opacities[..fragments.len];
+        // Dispatched so rounding down uses the processor's instruction, if it has one.
+        dispatch!(level, _ => for (i, own) in own.iter_mut().enumerate() {
+            let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
+            if let Some(corners) = corners[slot] {
+                let uv = uv(corners, barycentrics.weights(i));
+                let alpha = texture.map_or(1.0, |it| sample::<f64>(it, uv, filter)[3]);
+                let mapped = opacity_map.as_ref().map_or(1.0, |it| opacity_of(it, uv, filter));
+                *own = (alpha * mapped * opacity) as f32;
+            }
+        });
+        opacities
     }
 }

@@ -1,11 +1,11 @@
 //! Texels of fragments, sixteen at a time, and the footprint of a pixel on its texture.
 
 use fearless_simd::{
-    Select as _, Simd, SimdBase as _, SimdMask as _, SimdWiden as _, f32x16, f64x8, i32x16,
+    Select as _, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, SimdWiden as _, f32x16,
+    f64x8, i32x16,
 };
 use glam::DVec3;
 
-use super::far_texture::FarTexture;
 use super::fragments::Fragments;
 use super::interpolate::Points;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
@@ -17,11 +17,13 @@ use crate::screen::coverage::doubled_area;
 use crate::screen::weights::HomogeneousWeights;
 use crate::simd::gather::SLOTS;
 use crate::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3, in_f64};
+use crate::texture::exact_placement::ExactPlacement;
 use crate::texture::lanes::{Decode, Sampler, Stored, TexelPlaces};
 use crate::texture::placement::{Doubles, LaneSteps, Placement, Steps, less};
 use crate::texture::sample::brightness;
 use crate::texture::uv::Uvs;
 use marraztu_core::accuracy::Filter;
+use marraztu_core::scene::Texture;
 
 /// A texture on the triangles of a list.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +32,44 @@ pub(crate) struct PlacedTexture<'a> {
     /// The triangles for which f32 is not accurate enough.
     pub(crate) far: &'a [FarTexture],
     pub(crate) sampler: &'a Sampler<'a>,
+}
+
+/// A texture on a triangle that spans more texels than f32 can tell apart: positions are computed in
+/// f64, and reduced to one repetition before rounding to f32.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FarTexture {
+    /// The slot of the triangle.
+    pub(crate) slot: usize,
+    weights: HomogeneousWeights,
+    placement: ExactPlacement,
+}
+
+impl FarTexture {
+    /// Sets up the triangle of a slot. `None` if its coordinates are too large.
+    pub(crate) fn new(
+        slot: usize,
+        uvs: Uvs,
+        texture: &Texture,
+        weights: impl FnOnce() -> HomogeneousWeights,
+    ) -> Option<Self> {
+        let placement = ExactPlacement::new(uvs, texture)?;
+        Some(Self { slot, weights: weights(), placement })
+    }
+
+    /// Computes the position at a pixel, in texels.
+    pub(crate) fn at(&self, pixel: [i32; 2]) -> [f32; 2] {
+        self.placement.at(self.weights.at(pixel).0)
+    }
+
+    /// Computes the positions in two rows of eight pixels, with the same bits as [`Self::at`].
+    #[inline(always)]
+    pub(crate) fn of_two_rows<S: Simd>(&self, simd: S, [x, y]: [i32; 2]) -> [f32x16<S>; 2] {
+        let (upper, _) = self.weights.of_row(simd, [x, y]);
+        let (lower, _) = self.weights.of_row(simd, [x, y + 1]);
+        let ([u, v], [u_below, v_below]) =
+            (self.placement.of_row(upper), self.placement.of_row(lower));
+        [u.narrow(u_below), v.narrow(v_below)]
+    }
 }
 
 /// The inputs for sampling the texels of some fragments.

@@ -17,7 +17,7 @@ use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
 use crate::frame::FramePlan;
 use crate::frame::shadows::{Caster, CasterPart, Holes, ShadowSource, Shadows};
 use crate::simd::Bits;
-use crate::texture::sample::{opacity as opacity_of, sample};
+use crate::texture::sample::{opacity_of, sample};
 use crate::texture::uv::uv;
 use marraztu_core::accuracy::{Filter, ShadowMethod};
 use marraztu_core::base::math::each;
