@@ -98,18 +98,14 @@ fn distances(level: Level, plan: &FramePlan, words: &[u64; BLOCK_PIXELS]) -> [f6
     for (depth, word) in depths.iter_mut().zip(words) {
         *depth = f64::from(depth_format::depth(format, key(*word)));
     }
-    let m = &plan.clip_from_view;
-    dispatch!(level, _ => in_view(plan.eye, [m.z_axis.z, m.w_axis.z], &mut depths));
-    depths
-}
-
-/// Converts depths to distances; zz and zw are entries of the projection.
-#[inline(always)]
-fn in_view(eye: Eye, [zz, zw]: [f64; 2], depths: &mut [f64; BLOCK_PIXELS]) {
-    match eye {
-        Eye::Point => depths.iter_mut().for_each(|depth| *depth = zw / (*depth + zz)),
-        Eye::Parallel => depths.iter_mut().for_each(|depth| *depth = (zw - *depth) / zz),
+    // The entries zz and zw of the projection.
+    let (zz, zw) = (plan.clip_from_view.z_axis.z, plan.clip_from_view.w_axis.z);
+    let all = depths.iter_mut();
+    match plan.eye {
+        Eye::Point => dispatch!(level, _ => all.for_each(|depth| *depth = zw / (*depth + zz))),
+        Eye::Parallel => dispatch!(level, _ => all.for_each(|depth| *depth = (zw - *depth) / zz)),
     }
+    depths
 }
 
 impl<T: ShadingNumber> Shader<T> {

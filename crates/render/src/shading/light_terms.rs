@@ -64,17 +64,16 @@ impl<T: Number> LightTerms<T> {
 
     /// Prepares mipmaps, and reuses the mipmaps of the last picture.
     fn prepare_mips(&mut self, plan: &FramePlan) {
-        let before = std::mem::take(&mut self.mips);
-        let mut before: Vec<Option<Mips>> = before.into_iter().map(Some).collect();
+        let mut before = std::mem::take(&mut self.mips);
         for pipeline in &plan.pipelines {
             let Pipeline::Shaded(shaded) = pipeline else { continue };
             for (texture, decoding) in mipped(plan, shaded) {
                 if self.mips_of(texture, decoding).is_none() {
-                    let is_it = |mips: &&mut Option<Mips>| {
-                        mips.as_ref().is_some_and(|mips| mips.are_of(texture, decoding))
-                    };
-                    let known = before.iter_mut().find(is_it).and_then(Option::take);
-                    self.mips.push(known.unwrap_or_else(|| Mips::new(texture, decoding)));
+                    let known = before.iter().position(|mips| mips.are_of(texture, decoding));
+                    self.mips.push(match known {
+                        Some(at) => before.swap_remove(at),
+                        None => Mips::new(texture, decoding),
+                    });
                 }
             }
         }

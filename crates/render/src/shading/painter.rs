@@ -12,7 +12,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::colors::Sums;
-use super::context::ShadingContext;
+use super::context::{ShadingContext, group_of};
 use super::full_blocks::{Blocks, Canvas};
 use super::interpolated::ShadingNumber;
 use super::layers::Layered;
@@ -23,7 +23,7 @@ use crate::raster::tile::Visibility;
 use crate::screen::coverage::PixelBox;
 use crate::screen::sample_positions::{ALL, FOUR};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
-use crate::simd::Bits;
+use crate::simd::{BATCH, Bits};
 use marraztu_core::accuracy::LightAt;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
@@ -368,7 +368,9 @@ impl<T: ShadingNumber> Painter<T> {
                 sums.add_to_all(context.level, kept.parts(), &[ALL; BLOCK_PIXELS]);
             } else {
                 let mut out = Out::Kept(sums, kept, BLOCK_PIXELS);
-                shader.full_block(context, number, corner, &mut out);
+                shader.fragments.list_full_block(number, corner);
+                shader.fragments.shares = [ALL; BATCH];
+                shader.color_group(&group_of(context, number), &mut out);
             }
         } else {
             let planes = visibility.planes(block);

@@ -28,7 +28,6 @@ use crate::frame::color_path::PathPixels;
 use crate::frame::draw::{Back, Pipeline, Shaded, Stage};
 use crate::lights::{Batch, Rows};
 use crate::plan::tile::TilePlan;
-use crate::screen::sample_positions::ALL;
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::shadow::rays::{Origins, RayCount, RayScratch};
 use crate::simd::BATCH;
@@ -153,19 +152,6 @@ impl<T: ShadingNumber> Shader<T> {
             Some(group) => self.color_group(&group, out),
             None => self.color_groups(context, out),
         }
-    }
-
-    /// Colours a block that one triangle covers fully.
-    pub(crate) fn full_block(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        number: u32,
-        corner: [i32; 2],
-        out: &mut Out<'_, '_>,
-    ) {
-        self.fragments.list_full_block(number, corner);
-        self.fragments.shares = [ALL; BATCH];
-        self.color_group(&group_of(context, number), out);
     }
 
     /// Colours the fragments of a group.

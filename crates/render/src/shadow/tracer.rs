@@ -15,7 +15,7 @@ use super::shaft::Around;
 use super::triangle::{Corners, Prepared, is_between, reaches_behind};
 use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
 use crate::frame::FramePlan;
-use crate::frame::shadows::{Caster, CasterPart, Holes, ShadowSource, Shadows};
+use crate::frame::shadows::{Caster, Holes, ShadowSource, Shadows};
 use crate::simd::Bits;
 use crate::texture::sample::{opacity_of, sample};
 use crate::texture::uv::uv;
@@ -316,8 +316,7 @@ impl<'a> Tracer<'a> {
         if placed.is_solid || !is_between {
             return is_between;
         }
-        let part = placed.caster.part_of(number);
-        self.is_solid_at(placed, part, number, triangle.parts(origins.point(ray)))
+        self.is_solid_at(placed, number, triangle.parts(origins.point(ray)))
     }
 
     /// Returns whether a point's own triangle reaches behind the plane of another. A point without
@@ -346,16 +345,9 @@ impl<'a> Tracer<'a> {
         placed(&caster.world_from_object, corners)
     }
 
-    /// Returns whether a part of a caster blocks light at these barycentric coordinates of a
-    /// triangle.
-    fn is_solid_at(
-        &self,
-        placed: &InPlace<'_>,
-        part: Option<&CasterPart>,
-        triangle: u32,
-        parts: DVec3,
-    ) -> bool {
-        let Some(part) = part else { return false };
+    /// Returns whether a triangle of a caster blocks light at these barycentric coordinates.
+    fn is_solid_at(&self, placed: &InPlace<'_>, triangle: u32, parts: DVec3) -> bool {
+        let Some(part) = placed.caster.part_of(triangle) else { return false };
         let Some(Holes { texture, map, opacity }) = &part.holes else { return true };
         let Some(uvs) = placed.caster.model.mesh.triangle_uvs(triangle) else { return true };
         let uvs = each(uvs, |[u, v]| [f64::from(u), f64::from(v)]);
