@@ -4,8 +4,8 @@
 //! `runs` of pixels with the same primitive and fetches the attributes of their triangles
 //! (`triangle_attributes`). It computes barycentric coordinates (`barycentrics`), interpolates
 //! attributes (`interpolate`), lights fragments per pixel, face or vertex (`light`) unless they are
-//! in shadow (`shadows`), and multiplies by the surface colour (`surface_maps`). `quantize` converts
-//! the result to bytes, and `resolve` averages samples (MSAA resolve).
+//! in shadow (`shadows`), and multiplies by the surface colour (`surface_maps`). `quantize`
+//! converts the result to bytes, and `resolve` averages samples (MSAA resolve).
 //!
 //! Blocks with the same surface are `waiting` for each other and are coloured together. Blocks of
 //! triangles of about a pixel are coloured without looking triangles up (`tiny`).

@@ -1,5 +1,5 @@
-//! Combines light with the surface colour, and rounds colours to bytes: by truncating, to the nearest
-//! byte, or by ordered dithering.
+//! Combines light with the surface colour, and rounds colours to bytes: by truncating, to the
+//! nearest byte, or by ordered dithering.
 //!
 //! A byte is the integer part of 255 c + t, with a threshold t from 0 to 1: one half rounds to
 //! nearest, and 0 truncates. A threshold that varies from pixel to pixel dithers: the fraction

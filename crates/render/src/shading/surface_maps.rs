@@ -1,6 +1,5 @@
-//! The colours that a surface has by itself, pixel by pixel: texture, vertex colours, tint, emission,
-//! the
-//! maps of its highlights, and opacity.
+//! The properties of a surface pixel by pixel: texture, vertex colours, tint, emission, the maps of
+//! its highlights, and opacity.
 
 use super::context::{Group, ShadingContext};
 use super::interpolate::{CornerValues, Mixed, Points, mix};

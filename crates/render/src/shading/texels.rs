@@ -34,8 +34,8 @@ pub(crate) struct PlacedTexture<'a> {
     pub(crate) sampler: &'a Sampler<'a>,
 }
 
-/// A texture on a triangle that spans more texels than f32 can tell apart: positions are computed in
-/// f64, and reduced to one repetition before rounding to f32.
+/// A texture on a triangle that spans more texels than f32 can tell apart: positions are computed
+/// in f64, and reduced to one repetition before rounding to f32.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FarTexture {
     /// The slot of the triangle.

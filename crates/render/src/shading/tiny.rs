@@ -8,8 +8,8 @@
 //!
 //! Clipped triangles, and triangles with edge functions of more than 32 bits, are not tiny.
 //!
-//! Blocks wait until their pixels fill a list, like other blocks of one surface. If a triangle of the
-//! list is clipped or wide, its blocks are coloured one by one instead, with slots.
+//! Blocks wait until their pixels fill a list, like other blocks of one surface. If a triangle of
+//! the list is clipped or wide, its blocks are coloured one by one instead, with slots.
 
 use crate::accel::Accelerated as _;
 use fearless_simd::{
