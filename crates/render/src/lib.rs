@@ -52,7 +52,7 @@ mod damage;
 mod exposure;
 mod frame;
 mod layers;
-pub mod lights;
+mod lights;
 mod picture_camera;
 pub mod plan;
 mod raster;

@@ -31,7 +31,6 @@ use crate::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::screen::tiles::TILE_SIDE;
 use crate::shading::interpolated::ShadingNumber;
 use crate::shading::light_terms::LightTerms;
-use crate::shading::tiny_blocks::Tiny;
 use crate::shadow::maps::ShadowMaps;
 use crate::shadow::rays::RayCount;
 use crate::shadow::tracer::Tracer;
@@ -381,7 +380,7 @@ impl Renderer {
     }
 
     /// Draws tiles in parallel, with a painter per thread.
-    fn draw<T: ShadingNumber + Tiny>(
+    fn draw<T: ShadingNumber>(
         &mut self,
         cache: &mut ShadingCache<T>,
         plan: &FramePlan,
@@ -418,7 +417,7 @@ impl Renderer {
         let shares = frame.shares_of_tiles(tiles);
         painters.resize_with(rayon::current_num_threads(), Painter::default);
         // Every painter begins, even if its thread comes too late to paint a tile.
-        painters.iter_mut().for_each(Painter::begin);
+        painters.iter_mut().for_each(|painter| painter.shader.begin());
         let painters: Vec<Mutex<&mut Painter<T>>> = painters.iter_mut().map(Mutex::new).collect();
         together(painters.len(), || {
             let painter = &mut own(&painters);
@@ -440,8 +439,8 @@ impl Renderer {
         });
         for painter in painters {
             let painter = painter.into_inner().unwrap_or_else(PoisonError::into_inner);
-            self.rays += painter.ray_count();
-            self.path_pixels += painter.path_pixels();
+            self.rays += painter.shader.rays.count;
+            self.path_pixels += painter.shader.path_pixels;
         }
         self.timings.tiles += laps.lap();
     }

@@ -103,6 +103,12 @@ impl Draw {
     }
 }
 
+/// Returns the pipeline of all parts, if they share one: no triangle has to look up its part then.
+pub(crate) fn uniform(part_pipelines: &[Option<u32>]) -> Option<u32> {
+    let first = part_pipelines.first().copied().flatten();
+    first.filter(|_| part_pipelines.iter().all(|pipeline| *pipeline == first))
+}
+
 /// The drawing of back faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Back {
@@ -125,6 +131,12 @@ pub(crate) struct Lines {
     pub(crate) vertex_normals: Option<f64>,
     /// The colour of the lines.
     pub(crate) color: Color,
+}
+
+impl Lines {
+    /// No lines.
+    pub(crate) const NONE: Self =
+        Self { edges: false, face_normals: None, vertex_normals: None, color: Color::WHITE };
 }
 
 /// The stages that colour a surface, in order.
@@ -230,6 +242,14 @@ impl Shaded {
         }
     }
 
+    /// Returns whether the surface itself has a colour or an opacity for each pixel.
+    pub(crate) fn varies(&self) -> bool {
+        self.texture.is_some()
+            || self.vertex_colors
+            || self.extras.reads_texels()
+            || (self.opacity.is_some() && self.opacity_map.is_some())
+    }
+
     /// Hashes the properties that equal surfaces share; of a texture, only its source.
     fn hash_into(&self, hasher: &mut DefaultHasher) {
         let Self {
@@ -274,14 +294,8 @@ pub(crate) struct Stage {
 
 impl Stage {
     /// Returns the light shader, compiled for the stage's highlight.
-    pub(crate) const fn variant(&self) -> &'static lights::Variant {
-        match (self.highlight, self.is_mapped) {
-            (Form::Plain, _) => &self.effect.plain,
-            (Form::Reflection, false) => &self.effect.reflection,
-            (Form::HalfVector, false) => &self.effect.half_vector,
-            (Form::Reflection, true) => &self.effect.mapped_reflection,
-            (Form::HalfVector, true) => &self.effect.mapped_half_vector,
-        }
+    pub(crate) fn variant(&self) -> lights::Variant {
+        (self.effect.variant)(self.highlight, self.is_mapped)
     }
 }
 

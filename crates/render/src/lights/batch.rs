@@ -1,25 +1,27 @@
 //! Batches of positions that light shaders read and write: an array for each quantity.
 
+use glam::DMat3;
+
 use crate::simd::{BATCH, Lanes, Number, Vec3};
 
 /// Positions on surfaces with their normals and their light: an array for each quantity.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-pub struct Batch<T> {
+pub(crate) struct Batch<T> {
     /// The number of positions; entries beyond it are meaningless.
-    pub len: usize,
+    pub(crate) len: usize,
     /// The positions, in view space.
-    pub position: [[T; BATCH]; 3],
+    pub(crate) position: [[T; BATCH]; 3],
     /// The normals: of length 1, or zero at positions without a normal.
-    pub normal: [[T; BATCH]; 3],
+    pub(crate) normal: [[T; BATCH]; 3],
     /// The directions to the observer, of length 1: V.
-    pub to_eye: [[T; BATCH]; 3],
+    pub(crate) to_eye: [[T; BATCH]; 3],
     /// The factors of the highlight exponents from a map, if there is one.
-    pub exponent: [T; BATCH],
+    pub(crate) exponent: [T; BATCH],
     /// The light to be multiplied by the surface colour: ambient and diffuse.
-    pub diffuse: [[T; BATCH]; 3],
+    pub(crate) diffuse: [[T; BATCH]; 3],
     /// The light that keeps its colour: specular.
-    pub specular: [[T; BATCH]; 3],
+    pub(crate) specular: [[T; BATCH]; 3],
 }
 
 impl<T: Copy + Default> Default for Batch<T> {
@@ -59,30 +61,45 @@ impl<T: Number> Batch<T> {
 
 /// A position on a surface with its normal and its direction to the observer; or several, in lanes.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample<R> {
+pub(crate) struct Sample<R> {
     /// See [`Batch::position`].
-    pub position: Vec3<R>,
+    pub(crate) position: Vec3<R>,
     /// See [`Batch::normal`].
-    pub normal: Vec3<R>,
+    pub(crate) normal: Vec3<R>,
     /// See [`Batch::to_eye`].
-    pub to_eye: Vec3<R>,
+    pub(crate) to_eye: Vec3<R>,
     /// See [`Batch::exponent`].
-    pub exponent: R,
+    pub(crate) exponent: R,
 }
 
 /// The light that a light shader reflects from a position to the observer.
 #[derive(Clone, Copy, Debug)]
-pub struct Reflected<R> {
+pub(crate) struct Reflected<R> {
     /// See [`Batch::diffuse`].
-    pub diffuse: Vec3<R>,
+    pub(crate) diffuse: Vec3<R>,
     /// See [`Batch::specular`]; `None` if it is zero.
-    pub specular: Option<Vec3<R>>,
+    pub(crate) specular: Option<Vec3<R>>,
 }
 
 /// Repeats three numbers in all lanes.
 #[inline(always)]
 pub(crate) fn set<M: Lanes>(lanes: M, numbers: [M::Number; 3]) -> Vec3<M::R> {
     Vec3([lanes.set(numbers[0]), lanes.set(numbers[1]), lanes.set(numbers[2])])
+}
+
+/// Returns the columns of a matrix.
+pub(crate) fn columns<T: Number>(m: DMat3) -> [[T; 3]; 3] {
+    m.to_cols_array_2d().map(|column| column.map(T::from_f64))
+}
+
+/// Multiplies a vector by a matrix given by its columns.
+#[inline(always)]
+pub(crate) fn turned<M: Lanes>(
+    lanes: M,
+    [a, b, c]: [[M::Number; 3]; 3],
+    Vec3([x, y, z]): Vec3<M::R>,
+) -> Vec3<M::R> {
+    set(lanes, a).times(x).plus(set(lanes, b).times(y)).plus(set(lanes, c).times(z))
 }
 
 /// Three rows of numbers.

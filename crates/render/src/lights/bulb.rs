@@ -1,12 +1,8 @@
 //! Point lights.
 
 use super::batch::{Reflected, Sample, set};
-use super::phong::{
-    Highlight, LightTerm, PhongMaterial, ViewLight, light_is_noop, max_attenuation, phong,
-};
-use super::region::Region;
+use super::phong::{Highlight, LightTerm, phong};
 use super::shader::{LightShader, Which};
-use super::turning::Turning;
 use crate::simd::{Lanes, Real as _, Vec3};
 
 /// A point that shines equally in all directions and fades with distance.
@@ -15,18 +11,6 @@ pub(crate) struct Bulb;
 impl LightShader for Bulb {
     const NAME: &'static str = "Bulb";
     const WHICH: Which = Which::Bulb;
-
-    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
-        light_is_noop(light, material)
-    }
-
-    fn is_behind(light: &ViewLight, region: &Region, turning: &Turning) -> bool {
-        turning.all(|normal| region.faces_away(normal, light.position.into()))
-    }
-
-    fn max_falloff(light: &ViewLight, region: Option<&Region>) -> f64 {
-        max_attenuation(light, region)
-    }
 
     #[inline(always)]
     fn shade<M: Lanes, H: Highlight>(

@@ -1,6 +1,6 @@
 //! The table of light kinds.
 //!
-//! Each kind of light is one file in this folder and one row of [`LIGHT_SHADERS`]. Its shader
+//! Each kind of light is one file in this folder and one row: see [`row_of`]. Its shader
 //! decides when a scene needs it, and computes the reflected light once, generically over
 //! [`Real`](super::simd::Real). The row holds the compiled variants. A frame pays only for the
 //! lights that it has.
@@ -17,35 +17,26 @@ mod shader;
 mod spot;
 mod sun;
 mod together;
-pub(crate) mod turning;
 
-pub use batch::{Batch, Reflected, Sample};
-pub(crate) use batch::{Rows, load, set, store};
-pub use phong::{
-    Form, HalfVector, Highlight, LightTerm, Nothing, PhongMaterial, Reflection, ViewLight,
-};
-pub use region::Region;
-pub use shader::{Light, LightRow, LightShader, Variant, Which};
+pub(crate) use batch::{Batch, Rows, Sample, columns, load, set, store, turned};
+pub(crate) use phong::{Form, LightTerm, PhongMaterial, ViewLight};
+pub(crate) use region::Region;
+pub(crate) use shader::{Light, LightRow, Variant};
 pub(crate) use together::Together;
-pub use turning::Turning;
 
 use marraztu_core::scene::LightKind;
 
 /// The row of ambient light.
-pub static AMBIENT: LightRow = LightRow::of::<ambient::Ambient>();
+pub(crate) static AMBIENT: LightRow = LightRow::of::<ambient::Ambient>();
 /// The row of the sun.
-pub static SUN: LightRow = LightRow::of::<sun::Sun>();
+pub(crate) static SUN: LightRow = LightRow::of::<sun::Sun>();
 /// The row of bulbs.
-pub static BULB: LightRow = LightRow::of::<bulb::Bulb>();
+pub(crate) static BULB: LightRow = LightRow::of::<bulb::Bulb>();
 /// The row of spots.
-pub static SPOT: LightRow = LightRow::of::<spot::Spot>();
-
-/// Every kind of light.
-pub static LIGHT_SHADERS: &[&LightRow] = &[&AMBIENT, &SUN, &BULB, &SPOT];
+pub(crate) static SPOT: LightRow = LightRow::of::<spot::Spot>();
 
 /// Returns the row of a light.
-#[must_use]
-pub const fn row_of(kind: &LightKind) -> &'static LightRow {
+pub(crate) const fn row_of(kind: &LightKind) -> &'static LightRow {
     match kind {
         LightKind::Ambient => &AMBIENT,
         LightKind::Sun { .. } => &SUN,

@@ -10,48 +10,46 @@ use marraztu_core::accuracy::SpecularPower;
 
 /// A light of a frame, in view space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ViewLight {
+pub(crate) struct ViewLight {
     /// The colour, as factors.
-    pub color: [f64; 3],
+    pub(crate) color: [f64; 3],
     /// The position.
-    pub position: [f64; 3],
+    pub(crate) position: [f64; 3],
     /// The direction of its light, of length 1.
-    pub direction: [f64; 3],
+    pub(crate) direction: [f64; 3],
     /// The coefficients of 1, d and d^2 in the attenuation.
-    pub attenuation: [f64; 3],
+    pub(crate) attenuation: [f64; 3],
     /// The cosine of the cone's half-aperture.
-    pub cos_half_aperture: f64,
+    pub(crate) cos_half_aperture: f64,
     /// The exponent that concentrates the light along the axis.
-    pub exponent: f64,
+    pub(crate) exponent: f64,
 }
 
 /// The coefficients of the Phong model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PhongMaterial {
+pub(crate) struct PhongMaterial {
     /// Ka.
-    pub ambient: [f64; 3],
+    pub(crate) ambient: [f64; 3],
     /// Kd.
-    pub diffuse: [f64; 3],
+    pub(crate) diffuse: [f64; 3],
     /// Ks.
-    pub specular: [f64; 3],
+    pub(crate) specular: [f64; 3],
     /// Ns.
-    pub exponent: f64,
+    pub(crate) exponent: f64,
     /// A power below 2^`floor` counts as 0.
-    pub floor: f64,
+    pub(crate) floor: f64,
     /// The power of every cosine up to this one counts as 0.
-    pub least_cosine: f64,
+    pub(crate) least_cosine: f64,
 }
 
 impl PhongMaterial {
     /// Returns whether a light can have a highlight on this material.
-    #[must_use]
-    pub fn mirrors(&self, light: &ViewLight) -> bool {
+    pub(crate) fn mirrors(&self, light: &ViewLight) -> bool {
         self.specular.iter().zip(light.color).any(|(ks, color)| ks * color != 0.0)
     }
 
     /// Sets the floor below which powers count as 0, for a variant of powers.
-    #[must_use]
-    pub fn with_floor(self, floor: f64, variant: SpecularPower) -> Self {
+    pub(crate) fn with_floor(self, floor: f64, variant: SpecularPower) -> Self {
         // The cosine whose power is the floor, or a little less, so that rounding leaves nothing
         // out.
         let least = least_cosine(variant, self.exponent, floor);
@@ -61,35 +59,34 @@ impl PhongMaterial {
 
 /// The products of a light and a material, in the arithmetic of shading.
 #[derive(Clone, Debug)]
-pub struct LightTerm<T> {
+pub(crate) struct LightTerm<T> {
     /// I Ka.
-    pub ambient: [T; 3],
+    pub(crate) ambient: [T; 3],
     /// I Kd.
-    pub diffuse: [T; 3],
+    pub(crate) diffuse: [T; 3],
     /// I Ks.
-    pub specular: [T; 3],
+    pub(crate) specular: [T; 3],
     /// See [`ViewLight::position`].
-    pub position: [T; 3],
+    pub(crate) position: [T; 3],
     /// The direction against the light's travel.
-    pub axis: [T; 3],
+    pub(crate) axis: [T; 3],
     /// See [`ViewLight::attenuation`].
-    pub attenuation: [T; 3],
+    pub(crate) attenuation: [T; 3],
     /// Whether the light fades with distance.
-    pub fades: bool,
+    pub(crate) fades: bool,
     /// See [`ViewLight::cos_half_aperture`].
-    pub cos_half_aperture: T,
+    pub(crate) cos_half_aperture: T,
     /// The exponent by which its light is concentrated along the axis.
-    pub gathered: Power,
+    pub(crate) gathered: Power,
     /// The power of the highlight, with the exponent Ns.
-    pub highlight: Power,
+    pub(crate) highlight: Power,
     /// See [`PhongMaterial::least_cosine`].
-    pub least_cosine: T,
+    pub(crate) least_cosine: T,
 }
 
 impl<T: Number> LightTerm<T> {
-    /// Multiplies a light and a material.
-    #[must_use]
-    pub fn new(light: &ViewLight, material: &PhongMaterial) -> Self {
+    /// Multiplies a light and a material, with the prepared power of the material's highlight.
+    pub(crate) fn new(light: &ViewLight, material: &PhongMaterial, highlight: Power) -> Self {
         let all = |numbers: [f64; 3]| numbers.map(T::from_f64);
         // Each product is formed in f64 and rounded once.
         let times = |k: [f64; 3]| all([0, 1, 2].map(|i| light.color[i] * k[i]));
@@ -103,19 +100,9 @@ impl<T: Number> LightTerm<T> {
             fades: light.attenuation != [1.0, 0.0, 0.0],
             cos_half_aperture: T::from_f64(light.cos_half_aperture),
             gathered: Power::new(light.exponent, GATHERED_FLOOR),
-            highlight: Power::new(material.exponent, material.floor),
+            highlight,
             least_cosine: T::from_f64(material.least_cosine),
         }
-    }
-
-    /// The same, with a prepared power of the material's highlight.
-    #[must_use]
-    pub(crate) fn with_highlight(
-        light: &ViewLight,
-        material: &PhongMaterial,
-        highlight: Power,
-    ) -> Self {
-        Self { highlight, ..Self::new(light, material) }
     }
 }
 
@@ -124,7 +111,7 @@ const GATHERED_FLOOR: f64 = -24.0;
 
 /// The forms of specular highlights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub(crate) enum Form {
     /// None: Ks is 0.
     Plain,
     /// (R.V)^Ns
@@ -134,7 +121,7 @@ pub enum Form {
 }
 
 /// The form of a specular highlight, as a type.
-pub trait Highlight {
+pub(crate) trait Highlight {
     /// Whether the exponent varies from position to position: see [`Sample::exponent`].
     const IS_MAPPED: bool = false;
     /// Computes the cosine to be raised to the exponent, if there is a highlight. `n_l` is N.L,
@@ -144,14 +131,14 @@ pub trait Highlight {
 
 /// No highlight.
 #[derive(Debug)]
-pub struct Nothing;
+pub(crate) struct Nothing;
 /// R.V with R = 2 (N.L) N - L: Phong, "Illumination for Computer Generated Pictures", CACM 1975.
 #[derive(Debug)]
-pub struct Reflection;
+pub(crate) struct Reflection;
 /// N.H with H half-way between L and V: Blinn, "Models of Light Reflection for Computer Synthesized
 /// Pictures", SIGGRAPH 1977.
 #[derive(Debug)]
-pub struct HalfVector;
+pub(crate) struct HalfVector;
 
 impl Highlight for Nothing {
     #[inline(always)]
@@ -249,16 +236,4 @@ pub(super) fn max_attenuation(light: &ViewLight, region: Option<&Region>) -> f64
     let d = region.map_or(0.0, |region| region.least_distance(light.position.into()));
     let [a0, a1, a2] = light.attenuation;
     1.0 / (a0 + (a1 + a2 * d) * d)
-}
-
-/// Returns why a light adds nothing to a material, if so.
-pub(super) fn light_is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
-    let zero = |color: [f64; 3]| color == [0.0; 3];
-    if zero(light.color) {
-        Some("its colour is black")
-    } else if zero(material.diffuse) && zero(material.specular) {
-        Some("Kd and Ks of the material are 0")
-    } else {
-        None
-    }
 }

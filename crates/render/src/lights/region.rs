@@ -22,7 +22,7 @@ pub(crate) const EDGE_ON: f64 = 1e-4;
 
 /// The convex hull of eight positions in view space, and the error of others around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Region {
+pub(crate) struct Region {
     corners: [DVec3; 8],
     error: f64,
     /// The largest distance of a corner from the origin.
@@ -31,8 +31,7 @@ pub struct Region {
 
 impl Region {
     /// Creates the hull of these points, with positions up to `error` outside.
-    #[must_use]
-    pub fn new(corners: [DVec3; 8], error: f64) -> Self {
+    pub(crate) fn new(corners: [DVec3; 8], error: f64) -> Self {
         let reach = corners.iter().map(|corner| corner.length()).fold(0.0, f64::max);
         Self { corners, error, reach }
     }
@@ -64,8 +63,7 @@ impl Region {
 
     /// Returns a lower bound of the distance from a point to every position; 0 if no bound is
     /// known.
-    #[must_use]
-    pub fn least_distance(&self, from: DVec3) -> f64 {
+    pub(crate) fn least_distance(&self, from: DVec3) -> f64 {
         let low = self.corners.iter().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
         let high = self.corners.iter().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
         let to_box = (from.clamp(low, high) - from).length();
@@ -79,8 +77,7 @@ impl Region {
     ///
     /// The bound uses a ball around the corners, with radius r at the distance d: the angle to its
     /// centre, minus asin(r / d).
-    #[must_use]
-    pub fn most_cosine(&self, apex: DVec3, axis: DVec3) -> f64 {
+    pub(crate) fn most_cosine(&self, apex: DVec3, axis: DVec3) -> f64 {
         let middle = self.corners.iter().sum::<DVec3>() / 8.0;
         let radius = self.corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
         let (radius, offset) = (radius + self.error_from(apex), middle - apex);
@@ -100,8 +97,7 @@ impl Region {
     ///
     /// The proof is either the bound of the cosine, or a plane through the apex that touches the
     /// cone with all corners on its other side.
-    #[must_use]
-    pub fn misses_cone(&self, apex: DVec3, axis: DVec3, border: f64) -> bool {
+    pub(crate) fn misses_cone(&self, apex: DVec3, axis: DVec3, border: f64) -> bool {
         if self.most_cosine(apex, axis) <= border {
             return true;
         }

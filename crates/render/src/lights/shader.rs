@@ -3,17 +3,18 @@
 use std::marker::PhantomData;
 
 use fearless_simd::Level;
+use glam::DVec3;
 
 use super::batch::{Batch, Reflected, Sample, add, load};
 use super::phong::{
-    HalfVector, Highlight, LightTerm, Mapped, Nothing, PhongMaterial, Reflection, ViewLight,
+    Form, HalfVector, Highlight, LightTerm, Mapped, Nothing, PhongMaterial, Reflection, ViewLight,
+    max_attenuation,
 };
 use super::region::Region;
-use super::turning::Turning;
 use crate::simd::{Kernel, Lanes, Number};
 
 /// The shader of a kind of light.
-pub trait LightShader {
+pub(crate) trait LightShader {
     /// The name in the plan.
     const NAME: &'static str;
     /// The shader as an enum.
@@ -25,19 +26,29 @@ pub trait LightShader {
     /// Whether the light's reach is limited; only then can `is_culled` cull it.
     const HAS_REACH: bool = false;
     /// Returns why the light adds nothing to a material, if so. Leaving it out then changes no bit.
-    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str>;
+    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
+        let zero = |color: [f64; 3]| color == [0.0; 3];
+        if zero(light.color) {
+            Some("its colour is black")
+        } else if zero(material.diffuse) && zero(material.specular) {
+            Some("Kd and Ks of the material are 0")
+        } else {
+            None
+        }
+    }
     /// Returns why no light arrives in a region, if so. Leaving it out there then changes no bit.
     fn is_culled(_: &ViewLight, _: &Region) -> Option<&'static str> {
         None
     }
-    /// Returns whether the light comes from behind all faces of a region, given their normals
-    /// `turning`. Leaving it out there then changes no bit.
-    fn is_behind(_: &ViewLight, _: &Region, _: &Turning) -> bool {
-        false
+    /// Returns whether the light comes from behind all faces of a region, given their normals (of
+    /// length 1). Leaving it out there then changes no bit.
+    fn is_behind(light: &ViewLight, region: &Region, normals: &[DVec3]) -> bool {
+        let from = light.position.into();
+        Self::HAS_POSITION && normals.iter().all(|normal| region.faces_away(*normal, from))
     }
     /// Returns the largest fraction of the light that arrives in a region, or anywhere without one.
-    fn max_falloff(_: &ViewLight, _: Option<&Region>) -> f64 {
-        1.0
+    fn max_falloff(light: &ViewLight, region: Option<&Region>) -> f64 {
+        if Self::HAS_POSITION { max_attenuation(light, region) } else { 1.0 }
     }
     /// Returns the fraction of the light in a direction, by the cosine between the direction and
     /// the axis, for explanations.
@@ -54,7 +65,7 @@ pub trait LightShader {
 
 /// The shader of a row of the table of light kinds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
+pub(crate) enum Which {
     /// Ambient light.
     Ambient,
     /// A sun.
@@ -68,44 +79,26 @@ pub enum Which {
 /// A light shader compiled for one form of highlight: in f64 for the reference, and in f32 for the
 /// editor.
 #[derive(Clone, Copy, Debug)]
-pub struct Variant {
+pub(crate) struct Variant {
     reference: fn(Level, &mut Batch<f64>, &LightTerm<f64>),
     fast: fn(Level, &mut Batch<f32>, &LightTerm<f32>),
 }
 
-/// A row of the table of light kinds.
+/// A row of the table of light kinds: the constants and functions of its [`LightShader`].
 #[derive(Clone, Copy, Debug)]
-pub struct LightRow {
-    /// See [`LightShader::NAME`].
-    pub name: &'static str,
-    /// See [`LightShader::WHICH`].
-    pub which: Which,
-    /// See [`LightShader::READS_POSITIONS`].
-    pub reads_positions: bool,
-    /// See [`LightShader::HAS_POSITION`].
-    pub has_position: bool,
-    /// See [`LightShader::HAS_REACH`].
-    pub has_reach: bool,
-    /// See [`LightShader::is_noop`].
-    pub is_noop: fn(&ViewLight, &PhongMaterial) -> Option<&'static str>,
-    /// See [`LightShader::is_culled`].
-    pub is_culled: fn(&ViewLight, &Region) -> Option<&'static str>,
-    /// See [`LightShader::is_behind`].
-    pub is_behind: fn(&ViewLight, &Region, &Turning) -> bool,
-    /// See [`LightShader::max_falloff`].
-    pub max_falloff: fn(&ViewLight, Option<&Region>) -> f64,
-    /// See [`LightShader::fraction_at`].
-    pub fraction_at: fn(&ViewLight, f64) -> f64,
-    /// Without a highlight.
-    pub plain: Variant,
-    /// With [`Reflection`].
-    pub reflection: Variant,
-    /// With [`HalfVector`].
-    pub half_vector: Variant,
-    /// With [`Reflection`] and a map of its exponent.
-    pub mapped_reflection: Variant,
-    /// With [`HalfVector`] and a map of its exponent.
-    pub mapped_half_vector: Variant,
+pub(crate) struct LightRow {
+    pub(crate) name: &'static str,
+    pub(crate) which: Which,
+    pub(crate) reads_positions: bool,
+    pub(crate) has_position: bool,
+    pub(crate) has_reach: bool,
+    pub(crate) is_noop: fn(&ViewLight, &PhongMaterial) -> Option<&'static str>,
+    pub(crate) is_culled: fn(&ViewLight, &Region) -> Option<&'static str>,
+    pub(crate) is_behind: fn(&ViewLight, &Region, &[DVec3]) -> bool,
+    pub(crate) max_falloff: fn(&ViewLight, Option<&Region>) -> f64,
+    pub(crate) fraction_at: fn(&ViewLight, f64) -> f64,
+    /// Returns the variant with a form of highlight, and whether a map multiplies its exponent.
+    pub(crate) variant: fn(Form, bool) -> Variant,
 }
 
 impl LightRow {
@@ -122,11 +115,13 @@ impl LightRow {
             is_behind: E::is_behind,
             max_falloff: E::max_falloff,
             fraction_at: E::fraction_at,
-            plain: variant::<E, Nothing>(),
-            reflection: variant::<E, Reflection>(),
-            half_vector: variant::<E, HalfVector>(),
-            mapped_reflection: variant::<E, Mapped<Reflection>>(),
-            mapped_half_vector: variant::<E, Mapped<HalfVector>>(),
+            variant: |form, is_mapped| match (form, is_mapped) {
+                (Form::Plain, _) => variant::<E, Nothing>(),
+                (Form::Reflection, false) => variant::<E, Reflection>(),
+                (Form::HalfVector, false) => variant::<E, HalfVector>(),
+                (Form::Reflection, true) => variant::<E, Mapped<Reflection>>(),
+                (Form::HalfVector, true) => variant::<E, Mapped<HalfVector>>(),
+            },
         }
     }
 }
@@ -177,19 +172,19 @@ impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
 }
 
 /// A number type that light shaders are compiled for.
-pub trait Light: Number {
+pub(crate) trait Light: Number {
     /// Adds the light of a shader at every position of a batch.
-    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>);
+    fn add_light(variant: Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>);
 }
 
 impl Light for f64 {
-    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
+    fn add_light(variant: Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
         (variant.reference)(level, batch, term);
     }
 }
 
 impl Light for f32 {
-    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
+    fn add_light(variant: Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
         (variant.fast)(level, batch, term);
     }
 }

@@ -2,12 +2,9 @@
 
 use super::batch::{Reflected, Sample, set};
 use super::bulb::arriving;
-use super::phong::{
-    Highlight, LightTerm, PhongMaterial, ViewLight, light_is_noop, max_attenuation, phong,
-};
+use super::phong::{Highlight, LightTerm, ViewLight, max_attenuation, phong};
 use super::region::Region;
 use super::shader::{LightShader, Which};
-use super::turning::Turning;
 use crate::simd::{Lanes, Real};
 
 /// A point that shines in a cone around an axis.
@@ -17,10 +14,6 @@ impl LightShader for Spot {
     const NAME: &'static str = "Spot";
     const WHICH: Which = Which::Spot;
     const HAS_REACH: bool = true;
-
-    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
-        light_is_noop(light, material)
-    }
 
     fn is_culled(light: &ViewLight, region: &Region) -> Option<&'static str> {
         let (apex, axis) = (light.position.into(), light.direction.into());
@@ -32,10 +25,6 @@ impl LightShader for Spot {
         } else {
             None
         }
-    }
-
-    fn is_behind(light: &ViewLight, region: &Region, turning: &Turning) -> bool {
-        turning.all(|normal| region.faces_away(normal, light.position.into()))
     }
 
     fn max_falloff(light: &ViewLight, region: Option<&Region>) -> f64 {

@@ -3,10 +3,9 @@
 use glam::DVec3;
 
 use super::batch::{Reflected, Sample, set};
-use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight, light_is_noop, phong};
+use super::phong::{Highlight, LightTerm, ViewLight, phong};
 use super::region::{EDGE_ON, Region};
 use super::shader::{LightShader, Which};
-use super::turning::Turning;
 use crate::simd::Lanes;
 
 /// A light with the same direction at every position and no attenuation.
@@ -17,13 +16,9 @@ impl LightShader for Sun {
     const WHICH: Which = Which::Sun;
     const HAS_POSITION: bool = false;
 
-    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
-        light_is_noop(light, material)
-    }
-
-    fn is_behind(light: &ViewLight, _: &Region, turning: &Turning) -> bool {
+    fn is_behind(light: &ViewLight, _: &Region, normals: &[DVec3]) -> bool {
         let direction = DVec3::from_array(light.direction);
-        turning.all(|normal| normal.dot(direction) > EDGE_ON)
+        normals.iter().all(|normal| normal.dot(direction) > EDGE_ON)
     }
 
     #[inline(always)]

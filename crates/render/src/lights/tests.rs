@@ -7,7 +7,7 @@
 use fearless_simd::Level;
 
 use super::*;
-use crate::simd::BATCH;
+use crate::simd::{BATCH, Number, Power};
 use marraztu_core::accuracy::SpecularPower;
 
 fn one(position: [f64; 3], normal: [f64; 3]) -> Batch<f64> {
@@ -42,9 +42,14 @@ fn light() -> ViewLight {
     }
 }
 
+fn term<T: Number>(light: &ViewLight) -> LightTerm<T> {
+    let material = material();
+    LightTerm::new(light, &material, Power::new(material.exponent, material.floor))
+}
+
 fn run(entry: &LightRow, batch: &mut Batch<f64>, light: &ViewLight) -> [[f64; 3]; 2] {
-    let term = LightTerm::new(light, &material());
-    f64::add_light(&entry.reflection, Level::new(), batch, &term);
+    let variant = (entry.variant)(Form::Reflection, false);
+    f64::add_light(variant, Level::new(), batch, &term(light));
     [batch.diffuse.map(|row| row[0]), batch.specular.map(|row| row[0])]
 }
 
@@ -118,14 +123,15 @@ fn a_spot_gives_the_fifth_power_of_the_cosine_inside_its_cone_and_nothing_outsid
 #[test]
 fn fast_light_is_near_the_reference_and_the_same_on_every_level() {
     let levels = crate::simd::levels();
-    for entry in LIGHT_SHADERS {
-        for variant in [&entry.plain, &entry.reflection, &entry.half_vector] {
+    for entry in [&AMBIENT, &SUN, &BULB, &SPOT] {
+        for form in [Form::Plain, Form::Reflection, Form::HalfVector] {
+            let variant = (entry.variant)(form, false);
             let (mut exact, light) =
                 (scattered(), ViewLight { position: [1.0, 2.0, 3.0], ..light() });
-            f64::add_light(variant, Level::new(), &mut exact, &LightTerm::new(&light, &material()));
+            f64::add_light(variant, Level::new(), &mut exact, &term(&light));
             let pictures = levels.iter().map(|level| {
                 let mut fast = narrow(&scattered());
-                f32::add_light(variant, *level, &mut fast, &LightTerm::new(&light, &material()));
+                f32::add_light(variant, *level, &mut fast, &term(&light));
                 [fast.diffuse, fast.specular]
             });
             let pictures: Vec<_> = pictures.collect();

@@ -7,8 +7,8 @@ use marraztu_core::scene::{MapKind, Object, PartLook};
 /// The way a part of an object covers the surfaces behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cover {
-    /// Not drawn, for this reason.
-    Nothing(&'static str),
+    /// Not drawn: it is too transparent.
+    Nothing,
     /// Opaque at points where its texture's alpha, multiplied by this opacity, is at least one
     /// half.
     Threshold(f64),
@@ -30,13 +30,11 @@ impl Cover {
         let fades = texture.is_some_and(|texture| texture.picture.has_partial_alpha())
             || map.is_some_and(|map| map.texture.picture.fades());
         match transparency {
-            Transparency::Threshold if opacity < 0.5 => {
-                Self::Nothing("its opacity is below one half")
-            }
+            Transparency::Threshold if opacity < 0.5 => Self::Nothing,
             Transparency::Threshold => Self::Threshold(opacity),
             Transparency::Weighted | Transparency::Objects | Transparency::Exact => {
                 if opacity == 0.0 {
-                    Self::Nothing("its opacity is 0")
+                    Self::Nothing
                 } else if opacity < 1.0 || fades {
                     Self::Transparent(opacity)
                 } else {

@@ -71,13 +71,8 @@ impl Planner<'_> {
             });
             Facts { settings: &self.shot.settings, object, draw, shaded: shaded.collect() }
         };
-        let note = |effect: Effect, state: EffectState| EffectUse {
-            effect,
-            name: effect.label().to_owned(),
-            on: Some(Thing { item: draw.item, name: object.name.clone() }),
-            state,
-            pixels: None,
-        };
+        let thing = || Some(Thing { item: draw.item, name: object.name.clone() });
+        let note = |effect, state| EffectUse::new(effect, thing(), state);
         // Marks have no surface settings, so they get a single row.
         let presence = presence(draw.item);
         if presence == Effect::Marks {
@@ -184,9 +179,9 @@ fn surfaces(it: &Facts<'_>) -> EffectState {
 fn any(
     it: &Facts<'_>,
     is: impl Fn(&Shaded) -> bool,
-    word: Cow<'static, str>,
+    word: impl Into<Cow<'static, str>>,
 ) -> Option<EffectState> {
-    it.shaded.iter().any(|shaded| is(shaded)).then_some(EffectState::On(word))
+    it.shaded.iter().any(|shaded| is(shaded)).then(|| EffectState::On(word.into()))
 }
 
 fn normals(it: &Facts<'_>) -> EffectState {
@@ -201,7 +196,7 @@ fn normals(it: &Facts<'_>) -> EffectState {
         LightAt::Pixel | LightAt::Sample => "no light reads them",
     };
     let per_pixel = it.settings.light == LightAt::Pixel;
-    any(it, |shaded| per_pixel && shaded.needs_positions, whose.into())
+    any(it, |shaded| per_pixel && shaded.needs_positions, whose)
         .unwrap_or(EffectState::left_out(left_out))
 }
 
@@ -221,18 +216,17 @@ fn texture(it: &Facts<'_>) -> EffectState {
     } else {
         "no texture"
     };
-    any(it, |shaded| shaded.texture.is_some(), filter.into())
-        .unwrap_or(EffectState::left_out(left_out))
+    any(it, |shaded| shaded.texture.is_some(), filter).unwrap_or(EffectState::left_out(left_out))
 }
 
 fn holes(it: &Facts<'_>) -> EffectState {
     let textured = it.shaded.iter().any(|shaded| shaded.texture.is_some());
     let left_out = if textured { "every texel is opaque" } else { "no texture" };
     let mapped = |shaded: &Shaded| shaded.cutout.is_some() && shaded.opacity_map.is_some();
-    if let Some(on) = any(it, mapped, "with map_d".into()) {
+    if let Some(on) = any(it, mapped, "with map_d") {
         return on;
     }
-    any(it, |shaded| shaded.cutout.is_some(), "".into()).unwrap_or(EffectState::left_out(left_out))
+    any(it, |shaded| shaded.cutout.is_some(), "").unwrap_or(EffectState::left_out(left_out))
 }
 
 fn transparency(it: &Facts<'_>) -> EffectState {
@@ -242,8 +236,7 @@ fn transparency(it: &Facts<'_>) -> EffectState {
         Transparency::Weighted => "a weighted mean",
         Transparency::Threshold => return EffectState::left_out("a threshold of one half"),
     };
-    any(it, |shaded| shaded.opacity.is_some(), how.into())
-        .unwrap_or(EffectState::left_out("it is opaque"))
+    any(it, |shaded| shaded.opacity.is_some(), how).unwrap_or(EffectState::left_out("it is opaque"))
 }
 
 /// Returns whether a part of the object names a map of one of these kinds.
@@ -257,9 +250,9 @@ fn emission(it: &Facts<'_>) -> EffectState {
     let mapped = any(
         it,
         |shaded| shaded.extras.emission.as_ref().is_some_and(|glow| glow.map.is_some()),
-        "Ke times map_Ke".into(),
+        "Ke times map_Ke",
     );
-    let plain = any(it, |shaded| shaded.extras.emission.is_some(), "Ke".into());
+    let plain = any(it, |shaded| shaded.extras.emission.is_some(), "Ke");
     let left_out = match it.object.surface {
         _ if !it.draw.filled => "edges only",
         Surface::Texture => "the texture is shown, not lit",
@@ -296,9 +289,8 @@ fn bumps(it: &Facts<'_>) -> EffectState {
         Tangents::Vertex => "tangents at vertices",
         Tangents::Pixel => "tangents at pixels",
     };
-    let normals =
-        any(it, |shaded| shaded.extras.bump.is_some(), format!("normals, {tangents}").into());
-    let heights = any(it, heights, format!("heights, {tangents}").into());
+    let normals = any(it, |shaded| shaded.extras.bump.is_some(), format!("normals, {tangents}"));
+    let heights = any(it, heights, format!("heights, {tangents}"));
     let left_out = match it.settings.light {
         _ if !it.draw.filled => "edges only",
         _ if !names(it, &[MapKind::Bump, MapKind::Normal]) => "the file has none",
@@ -318,7 +310,7 @@ fn vertex_colors(it: &Facts<'_>) -> EffectState {
     } else {
         "the file has none"
     };
-    any(it, |shaded| shaded.vertex_colors, "".into()).unwrap_or(EffectState::left_out(left_out))
+    any(it, |shaded| shaded.vertex_colors, "").unwrap_or(EffectState::left_out(left_out))
 }
 
 fn back_faces(it: &Facts<'_>) -> EffectState {

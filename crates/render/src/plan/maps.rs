@@ -1,7 +1,6 @@
 //! Plans the emission of surfaces, and their maps in addition to the texture.
 
-use super::ground::{Ground, LARGEST};
-use super::planning::{Planner, Planning};
+use super::planning::{Ground, LARGEST, Planner, Planning};
 use crate::frame::Rules;
 use crate::frame::draw::Stage;
 use crate::frame::extras::{Bump, Extras, Glow};

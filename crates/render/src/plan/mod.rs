@@ -8,7 +8,6 @@
 pub(crate) mod color_path;
 mod cover;
 pub(crate) mod features;
-mod ground;
 mod helpers;
 mod maps;
 mod observer;
@@ -120,15 +119,12 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         rules,
     };
     let mut into = Planning::new(plan, notes);
-    into.notes.add(|| EffectUse {
-        effect: Effect::LinearLight,
-        name: Effect::LinearLight.label().to_owned(),
-        on: None,
-        state: match settings.light_values {
+    into.notes.add(|| {
+        let state = match settings.light_values {
             LightValues::Linear => EffectState::On("colours decoded, pictures encoded".into()),
             LightValues::Stored => EffectState::left_out("colours are used as they are stored"),
-        },
-        pixels: None,
+        };
+        EffectUse::new(Effect::LinearLight, None, state)
     });
     let shining = view_lights(&mut into, scene, view, &observer);
     let planner = Planner { shot, observer, shining };
@@ -137,13 +133,8 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
     if view.marks {
         planner.add_marks(&mut into);
     } else {
-        into.notes.add(|| EffectUse {
-            effect: Effect::Marks,
-            name: Effect::Marks.label().to_owned(),
-            on: None,
-            state: EffectState::left_out("switched off"),
-            pixels: None,
-        });
+        let off = EffectState::left_out("switched off");
+        into.notes.add(|| EffectUse::new(Effect::Marks, None, off));
     }
     into
 }

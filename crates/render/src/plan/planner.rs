@@ -6,28 +6,22 @@ use glam::{DMat3, DMat4, DVec3};
 
 use super::cover::Cover;
 use super::features::presence;
-use super::ground::Ground;
 use super::helpers;
 use super::observer::ObserverSpace;
-use super::planning::{Planner, Planning};
+use super::planning::{Ground, Planner, Planning};
 use super::rules::Thing;
 use super::turning::{shows_fronts_only, turning_of};
 use super::uses::{self, EffectState, EffectUse};
 use crate::frame::Rules;
-use crate::frame::draw::{Back, Draw, Lines, Pipeline};
+use crate::frame::draw::{Back, Draw, Lines, Pipeline, uniform};
 use crate::frame::variants::Variants;
 use crate::lights::region::Region;
 use marraztu_core::accuracy::{LightAt, NormalMatrix, VertexArithmetic};
 use marraztu_core::base::{Shared, color::Color, math};
 use marraztu_core::scene::{
-    Fill, ItemId, LightId, Model, NormalLength, NormalSource, Object, ObjectId, Observer,
+    Fill, ItemId, LightKind, MaterialChoice, Model, NormalLength, NormalSource, Object, ObjectId,
+    Observer,
 };
-
-/// The transforms of an object for the observer.
-struct Placement {
-    view_from_object: DMat4,
-    clip_from_object: DMat4,
-}
 
 impl Planner<'_> {
     /// Adds objects, the oldest first.
@@ -42,7 +36,7 @@ impl Planner<'_> {
             let (id, object) = scene.objects.at(*place as usize).expect("a sphere for each object");
             match self.not_asked_for(id, object) {
                 Some(reason) => left_out(into, ItemId::Object(id), &object.name, reason),
-                None => self.add_object(into, ItemId::Object(id), object),
+                None => self.add_object(into, id, object),
             }
         }
     }
@@ -59,7 +53,7 @@ impl Planner<'_> {
     }
 
     /// Returns the reason why the view does not show an object, if there is one.
-    fn not_asked_for(&self, id: ObjectId, object: &Object) -> Option<&'static str> {
+    pub(super) fn not_asked_for(&self, id: ObjectId, object: &Object) -> Option<&'static str> {
         let alone = self.shot.view.only_selected || self.shot.view.polygons.is_some();
         if !object.visible {
             Some("hidden")
@@ -70,20 +64,17 @@ impl Planner<'_> {
         }
     }
 
-    /// Returns whether the view shows an object.
-    pub(super) fn is_asked_for(&self, id: ObjectId, object: &Object) -> bool {
-        self.not_asked_for(id, object).is_none()
+    /// Returns the polygons of an object that the view shows; `None` for all.
+    pub(super) fn polygons_of(&self, id: ObjectId) -> Option<BTreeSet<u32>> {
+        let view = &self.shot.view;
+        let mode = view.polygons.as_ref().filter(|_| view.object == Some(id))?;
+        Some(match view.polygons_stay {
+            true => mode.shown.clone(),
+            false => BTreeSet::from([mode.current]),
+        })
     }
 
-    fn add_object(&self, into: &mut Planning, item: ItemId, object: &Object) {
-        let selected = self.shot.view.object.map(ItemId::Object) == Some(item);
-        let polygons = self.shot.view.polygons.as_ref().filter(|_| selected).map(|mode| {
-            if self.shot.view.polygons_stay {
-                mode.shown.clone()
-            } else {
-                BTreeSet::from([mode.current])
-            }
-        });
+    fn add_object(&self, into: &mut Planning, id: ObjectId, object: &Object) {
         // Back-face culling depends on whether the surface is closed and on the view.
         let back = match (object.is_two_sided(), self.shot.view.back_faces) {
             (true, _) => Back::Lit,
@@ -97,16 +88,20 @@ impl Planner<'_> {
             } else {
                 NormalSource::Computed
             },
-            polygons,
+            polygons: self.polygons_of(id),
             lines: self.lines(&object.model, object.edge_color),
-            ..self.draw(item, &object.model, object.world_from_mesh(self.shot.view.time))
+            ..self.draw(
+                ItemId::Object(id),
+                &object.model,
+                object.world_from_mesh(self.shot.view.time),
+            )
         };
         self.add(into, object, draw);
     }
 
     /// Creates the draw of a placed mesh, without a decision about its surface.
     fn draw(&self, item: ItemId, model: &Shared<Model>, world_from_object: DMat4) -> Draw {
-        let Placement { view_from_object, clip_from_object } = self.placement(world_from_object);
+        let [view_from_object, clip_from_object] = self.placement(world_from_object);
         let linear = DMat3::from_mat4(view_from_object);
         Draw {
             item,
@@ -127,25 +122,20 @@ impl Planner<'_> {
             uniform: None,
             polygons: None,
             filled: self.shot.view.fill == Fill::Filled,
-            lines: Lines {
-                edges: false,
-                face_normals: None,
-                vertex_normals: None,
-                color: Color::WHITE,
-            },
+            lines: Lines::NONE,
         }
     }
 
-    /// Composes an object's placement with the observer's transforms.
-    fn placement(&self, world_from_object: DMat4) -> Placement {
+    /// Returns an object's transforms to view and clip space.
+    fn placement(&self, world_from_object: DMat4) -> [DMat4; 2] {
         let ObserverSpace { view_from_world, clip_from_view, .. } = self.observer;
         if self.shot.settings.vertices == VertexArithmetic::F32 {
             let view_from_object = view_from_world.as_mat4() * world_from_object.as_mat4();
             let clip_from_object = (clip_from_view.as_mat4() * view_from_object).as_dmat4();
-            return Placement { view_from_object: view_from_object.as_dmat4(), clip_from_object };
+            return [view_from_object.as_dmat4(), clip_from_object];
         }
         let view_from_object = view_from_world * world_from_object;
-        Placement { view_from_object, clip_from_object: clip_from_view * view_from_object }
+        [view_from_object, clip_from_view * view_from_object]
     }
 
     /// Adds the draw of an object, or of a helper converted to one, unless nothing of it is
@@ -196,9 +186,7 @@ impl Planner<'_> {
             let ground = Ground { item, object, region, turning, tiled, seen };
             draw.part_pipelines = self.part_pipelines(into, &ground);
         }
-        let first = draw.part_pipelines.first().copied().flatten();
-        let alike = draw.part_pipelines.iter().all(|pipeline| *pipeline == first);
-        draw.uniform = first.filter(|_| alike);
+        draw.uniform = uniform(&draw.part_pipelines);
         self.note_features(into, object, &draw);
         into.plan.draws.push(draw);
     }
@@ -273,40 +261,32 @@ impl Planner<'_> {
             self.add(into, &mark, draw);
         }
         // Bulbs: a diamond at each light that is on and has a position.
-        let on = self.shot.scene.lights.iter().filter(|(_, light)| light.on);
-        for (id, position) in on.filter_map(|(id, _)| self.bulb_place(id)) {
-            let Some(placement) = helpers::world_from_diamond(&self.observer, position) else {
-                continue;
-            };
+        for (id, light) in self.shot.scene.lights.iter().filter(|(_, light)| light.on) {
+            let placement = self.bulb_place(&light.kind);
+            let place = |at| helpers::world_from_diamond(&self.observer, at);
+            let Some(placement) = placement.and_then(place) else { continue };
             let pipeline = into.pipeline(Pipeline::Flat(helpers::YELLOW));
             let draw = Draw {
                 part_pipelines: vec![Some(pipeline)],
                 filled: true,
                 ..self.draw(ItemId::Light(id), helpers::diamond(), placement)
             };
-            let name =
-                self.shot.scene.lights.get(id).map_or_else(String::new, |light| light.name.clone());
-            let model = draw.model.clone();
-            let mark =
-                Object { name, ..Object::new(model, marraztu_core::scene::MaterialChoice::File) };
+            let mark = Object {
+                name: light.name.clone(),
+                ..Object::new(draw.model.clone(), MaterialChoice::File)
+            };
             self.add(into, &mark, draw);
         }
     }
 
-    fn bulb_place(&self, id: LightId) -> Option<(LightId, DVec3)> {
-        let kind = &self.shot.scene.lights.get(id)?.kind;
+    fn bulb_place(&self, kind: &LightKind) -> Option<DVec3> {
         let origin = self.shot.scene.light_origin(&self.shot.view, kind)?;
-        kind.has_diamond().then_some((id, origin.position?))
+        origin.position.filter(|_| kind.has_diamond())
     }
 }
 
 /// Notes that an item is not drawn.
 fn left_out(into: &mut Planning, item: ItemId, name: &str, reason: &'static str) {
-    into.notes.add(|| EffectUse {
-        effect: presence(item),
-        name: presence(item).label().to_owned(),
-        on: Some(uses::Thing { item, name: name.to_owned() }),
-        state: EffectState::left_out(reason),
-        pixels: None,
-    });
+    let thing = || Some(uses::Thing { item, name: name.to_owned() });
+    into.notes.add(|| EffectUse::new(presence(item), thing(), EffectState::left_out(reason)));
 }

@@ -2,13 +2,15 @@
 
 use std::collections::HashMap;
 
+use glam::DVec3;
+
 use super::observer::ObserverSpace;
-use super::uses::Notes;
+use super::uses::{Notes, Thing};
 use crate::frame::FramePlan;
 use crate::frame::draw::Pipeline;
-use crate::lights::LightRow;
+use crate::lights::{LightRow, Region};
 use marraztu_core::accuracy::Shot;
-use marraztu_core::scene::LightId;
+use marraztu_core::scene::{ItemId, LightId, Object};
 
 /// The plan so far, with the notes that explain it.
 #[derive(Debug)]
@@ -56,3 +58,27 @@ pub(super) struct Shining {
     /// Whether the light is on and has a position.
     pub(super) shines: bool,
 }
+
+/// The shared properties of an object's surfaces.
+#[derive(Debug)]
+pub(super) struct Ground<'a> {
+    pub(super) item: ItemId,
+    pub(super) object: &'a Object,
+    /// The region of the lit points, if it is known.
+    pub(super) region: Option<Region>,
+    /// The normals of the surfaces, of length 1, if they are known.
+    pub(super) turning: Option<Vec<DVec3>>,
+    /// Whether lights may be culled tile by tile, because no part of the object is clipped.
+    pub(super) tiled: bool,
+    /// Whether the colours of the surfaces are visible.
+    pub(super) seen: bool,
+}
+
+impl Ground<'_> {
+    pub(super) fn thing(&self) -> Option<Thing> {
+        Some(Thing { item: self.item, name: self.object.name.clone() })
+    }
+}
+
+/// The largest coefficient and exponent: far beyond any real light, and within f32.
+pub(super) const LARGEST: f64 = 1e30;

@@ -9,9 +9,10 @@ use super::turning::is_turned_away;
 use crate::frame::Rules;
 use crate::frame::draw::{Draw, Stage};
 use crate::lights::region::Region;
-use crate::lights::turning::Turning;
 use crate::lights::{LightRow, PhongMaterial, ViewLight};
+use glam::DVec3;
 use marraztu_core::accuracy::Transparency;
+use marraztu_core::base::Shared;
 use marraztu_core::scene::{Bounds, Light, SpotOwner, Texture};
 
 /// The reason for leaving something out; `None` if it is kept.
@@ -21,33 +22,33 @@ type Verdict = Option<&'static str>;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightFacts<'a> {
     /// The light.
-    pub light: &'a Light,
+    pub(super) light: &'a Light,
     /// Whether the item the light is fixed to exists, if it is fixed to one.
-    pub is_placed: bool,
+    pub(super) is_placed: bool,
 }
 
 /// A light and a surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LitSurface<'a> {
     /// The row of the light's kind.
-    pub effect: &'static LightRow,
+    pub(super) effect: &'static LightRow,
     /// The light.
-    pub light: &'a ViewLight,
+    pub(super) light: &'a ViewLight,
     /// The surface.
-    pub material: &'a PhongMaterial,
+    pub(super) material: &'a PhongMaterial,
     /// The region of the surface, if it is known.
-    pub region: Option<&'a Region>,
+    pub(super) region: Option<&'a Region>,
     /// The normals of its faces, if they are known.
-    pub turning: Option<&'a Turning>,
+    pub(super) turning: Option<&'a [DVec3]>,
 }
 
 /// The lights of a surface.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Reading {
     /// The number of lights.
-    pub lights: usize,
+    pub(super) lights: usize,
     /// The number of lights that read positions, normals or directions to the observer.
-    pub of_positions: usize,
+    pub(super) of_positions: usize,
 }
 
 impl Reading {
@@ -70,20 +71,17 @@ pub(crate) struct Thing<'a> {
 impl Thing<'_> {
     /// Returns whether it is completely outside the view: its box is, and no drawn normals stick
     /// out of the box.
-    #[must_use]
     pub(crate) fn is_outside(&self) -> bool {
         let corners = self.bounds.corners();
         !self.draws_normals() && self.observer.misses(self.draw.clip_from_object, corners)
     }
 
     /// Returns whether all of its faces are culled as back faces; only tested for small meshes.
-    #[must_use]
     pub(crate) fn is_turned_away(&self) -> bool {
         !self.draws_normals() && is_turned_away(self.draw, self.observer.viewport)
     }
 
     /// Returns whether its polygons are filled.
-    #[must_use]
     pub(crate) const fn is_filled(&self) -> bool {
         self.draw.filled
     }
@@ -97,17 +95,16 @@ impl Thing<'_> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TexturedSurface<'a> {
     /// The texture, if there is one.
-    pub texture: Option<&'a Texture>,
+    pub(super) texture: Option<&'a Shared<Texture>>,
     /// The opacity map, if there is one.
-    pub opacity_map: Option<&'a Texture>,
+    pub(super) opacity_map: Option<&'a Shared<Texture>>,
     /// The factor of alpha. If the product is below one half, the alpha test fails.
-    pub opacity: f64,
+    pub(super) opacity: f64,
 }
 
 impl TexturedSurface<'_> {
     /// Returns whether each texel passes the alpha test, and thus anything interpolated between
     /// texels.
-    #[must_use]
     pub(crate) fn passes_everywhere(&self) -> bool {
         let least = |byte: u8| f64::from(byte) / 255.0;
         let texture = self.texture.map_or(1.0, |texture| least(texture.picture.least_alpha()));

@@ -5,15 +5,12 @@
 //! an opacity below one half, excluded polygons, and the marks of cameras and bulbs. Light passes
 //! through holes of textures.
 
-use std::collections::BTreeSet;
-
 use glam::DMat3;
 
-use super::ground::Ground;
 use super::maps::holds_same_alpha;
-use super::planning::{Planner, Planning, Shining};
+use super::planning::{Ground, Planner, Planning, Shining};
 use super::rules::TexturedSurface;
-use super::uses::{Effect, EffectState, EffectUse};
+use super::uses::{Effect, EffectState, EffectUse, Thing};
 use crate::frame::shadows::{Caster, CasterPart, Holes, Shadows};
 use marraztu_core::base::math;
 use marraztu_core::scene::{Fill, ItemId, MapKind, Object, ObjectId};
@@ -25,9 +22,9 @@ impl Planner<'_> {
         if is_filled && into.plan.shadows.sources.iter().any(Option::is_some) {
             let mut objects: Vec<_> = self.shot.scene.objects.iter().collect();
             objects.sort_by_key(|(id, _)| *id);
-            let shown = objects.into_iter().filter(|(id, object)| self.is_asked_for(*id, object));
-            into.plan.shadows.casters =
-                shown.filter_map(|(id, object)| self.caster(id, object)).collect();
+            objects.retain(|(id, object)| self.not_asked_for(*id, object).is_none());
+            let casters = objects.into_iter().filter_map(|(id, object)| self.caster(id, object));
+            into.plan.shadows.casters = casters.collect();
         }
         if into.plan.shadows.casters.is_empty() {
             into.plan.shadows = Shadows::default();
@@ -42,13 +39,7 @@ impl Planner<'_> {
                 () if into.plan.shadows.casters.is_empty() => "no object casts shadows",
                 () => continue,
             };
-            into.notes.add(|| EffectUse {
-                effect: Effect::Shadows(shining.id),
-                name: name(shining),
-                on: None,
-                state: EffectState::left_out(reason),
-                pixels: None,
-            });
+            into.notes.add(|| note(shining, None, EffectState::left_out(reason)));
         }
     }
 
@@ -64,14 +55,7 @@ impl Planner<'_> {
             .map(|part| u32::try_from(part).expect("parts are numbered by 32 bits"))
             .map(|part| caster_part(object, part))
             .collect();
-        let selected = self.shot.view.object == Some(id);
-        let polygons = self.shot.view.polygons.as_ref().filter(|_| selected).map(|mode| {
-            if self.shot.view.polygons_stay {
-                mode.shown.clone()
-            } else {
-                BTreeSet::from([mode.current])
-            }
-        });
+        let polygons = self.polygons_of(id);
         let (item, model) = (ItemId::Object(id), object.model.clone());
         Some(Caster { item, model, world_from_object, parts, polygons })
     }
@@ -94,19 +78,15 @@ impl Planner<'_> {
             Some(_) => "shadow maps",
         };
         let reason = if is_mark { Some("markers receive no shadows") } else { no_light };
-        into.notes.add(|| EffectUse {
-            effect: Effect::Shadows(shining.id),
-            name: name(shining),
-            on: ground.thing(),
-            state: reason.map_or(EffectState::On(method.into()), EffectState::left_out),
-            pixels: None,
-        });
+        let state = reason.map_or(EffectState::On(method.into()), EffectState::left_out);
+        into.notes.add(|| note(shining, ground.thing(), state));
     }
 }
 
-/// Returns the name of a light's shadows in the plan.
-fn name(shining: &Shining) -> String {
-    format!("Shadows of {}", shining.name)
+/// Describes the shadows of a light.
+fn note(shining: &Shining, on: Option<Thing>, state: EffectState) -> EffectUse {
+    let name = format!("Shadows of {}", shining.name);
+    EffectUse { name, ..EffectUse::new(Effect::Shadows(shining.id), on, state) }
 }
 
 /// Returns the caster of a part of an object. `None` if the part is not drawn.
@@ -120,11 +100,7 @@ fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
     let map = look.map(MapKind::Opacity).filter(|_| mapped).map(|map| &map.texture);
     // A map with the texture's alpha would count twice.
     let map = map.filter(|map| !holds_same_alpha(texture, map));
-    let surface = TexturedSurface {
-        texture: texture.map(|texture| &**texture),
-        opacity_map: map.map(|map| &**map),
-        opacity: look.opacity,
-    };
+    let surface = TexturedSurface { texture, opacity_map: map, opacity: look.opacity };
     let holes = || Holes {
         texture: texture.cloned(),
         map: map.cloned(),

@@ -4,9 +4,8 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use super::cover::Cover;
-use super::ground::{Ground, LARGEST};
 use super::maps::{decoded, emission, holds_same_alpha, mapped, mapped_ambient};
-use super::planning::{Planner, Planning, Shining};
+use super::planning::{Ground, LARGEST, Planner, Planning, Shining};
 use super::rules::{LitSurface, Reading, TexturedSurface};
 use super::uses::{Effect, EffectState, EffectUse};
 use crate::frame::draw::{Pipeline, Shaded, Stage};
@@ -48,7 +47,7 @@ impl Planner<'_> {
         let textured = !object.model.mesh.uvs().is_empty();
         let settings = &self.shot.settings;
         let cover = Cover::of(&look, textured, settings.transparency);
-        if let Cover::Nothing(_) = cover {
+        if cover == Cover::Nothing {
             return None;
         }
         let linear = into.plan.variants.are_linear();
@@ -67,11 +66,7 @@ impl Planner<'_> {
         };
         let opacity_map = mapped(ground, &look, MapKind::Opacity).map(|map| &map.texture);
         let opacity_map = opacity_map.filter(|map| !holds_same_alpha(texture, map));
-        let surface = TexturedSurface {
-            texture: texture.map(|texture| &**texture),
-            opacity_map: opacity_map.map(|map| &**map),
-            opacity: look.opacity,
-        };
+        let surface = TexturedSurface { texture, opacity_map, opacity: look.opacity };
         // A textured part may have holes; an untextured one has the same opacity everywhere.
         let is_textured = texture.is_some() || opacity_map.is_some();
         let has_holes = is_textured && rules.alpha_test(&surface).is_none();
@@ -90,7 +85,7 @@ impl Planner<'_> {
             texture: texture.cloned(),
             cutout: match cover {
                 Cover::Threshold(opacity) => has_holes.then_some(opacity),
-                Cover::Transparent(_) | Cover::Nothing(_) => None,
+                Cover::Transparent(_) | Cover::Nothing => None,
             },
             opacity: match cover {
                 Cover::Transparent(opacity) => Some(opacity),
@@ -99,7 +94,7 @@ impl Planner<'_> {
                 Cover::Threshold(opacity) => Some(opacity).filter(|_| {
                     !is_textured && !linear && rules.layer(settings.transparency).is_none()
                 }),
-                Cover::Nothing(_) => None,
+                Cover::Nothing => None,
             },
             opacity_map: opacity_map
                 .filter(|_| has_holes || matches!(cover, Cover::Transparent(_)))
@@ -194,17 +189,15 @@ impl Planner<'_> {
             let Shining { id, name, effect, light, .. } = shining;
             let source = into.plan.lights[*light as usize];
             // Bump maps turn normals in any direction.
-            let turning = ground.turning.as_ref().filter(|_| !is_bumpy);
+            let turning = ground.turning.as_deref().filter(|_| !is_bumpy);
             let region = ground.region.as_ref();
             let meeting = LitSurface { effect, light: &source, material, region, turning };
             let rules = &into.plan.rules;
             let reason = rules.reflection(&meeting).or_else(|| rules.object(&meeting));
-            into.notes.add(|| EffectUse {
-                effect: Effect::Light(*id),
-                name: name.clone(),
-                on: ground.thing(),
-                state: reason.map_or(EffectState::ON, EffectState::left_out),
-                pixels: None,
+            into.notes.add(|| {
+                let state = reason.map_or(EffectState::ON, EffectState::left_out);
+                let named = EffectUse::new(Effect::Light(*id), ground.thing(), state);
+                EffectUse { name: name.clone(), ..named }
             });
             Self::note_shadows(into, ground, shining, reason);
             if reason.is_some() {
@@ -221,22 +214,15 @@ impl Planner<'_> {
             };
             stages.push(Stage { effect, light: *light, highlight, is_mapped: false });
         }
-        into.notes.add(|| self.note_highlights(ground, no_highlight.map(EffectState::left_out)));
-        stages
-    }
-
-    fn note_highlights(&self, ground: &Ground<'_>, left_out: Option<EffectState>) -> EffectUse {
         let form = match self.shot.settings.specular {
             SpecularForm::Reflection => "(R.V)^Ns",
             SpecularForm::HalfVector => "(N.H)^Ns",
         };
-        EffectUse {
-            effect: Effect::Highlights,
-            name: Effect::Highlights.label().to_owned(),
-            on: ground.thing(),
-            state: left_out.unwrap_or(EffectState::On(form.into())),
-            pixels: None,
-        }
+        into.notes.add(|| {
+            let state = no_highlight.map_or(EffectState::On(form.into()), EffectState::left_out);
+            EffectUse::new(Effect::Highlights, ground.thing(), state)
+        });
+        stages
     }
 }
 

@@ -27,8 +27,6 @@ pub(crate) struct TilePlan {
     seen: Vec<usize>,
     /// The indices of the kept stages, one list after another.
     kept: Vec<u32>,
-    /// The list under construction.
-    own: Vec<u32>,
 }
 
 /// The decision about a pipeline in a tile: a range of `kept`.
@@ -109,13 +107,11 @@ impl TilePlan {
             let (light, region, turning) = (light(*place), Some(region), None);
             plan.rules.tile(&LitSurface { effect, light, material, region, turning }).is_none()
         };
-        self.own.clear();
-        let count = u32::try_from(stages.len()).expect("fewer than 2^32 lights");
-        self.own.extend((0..count).filter(reaches));
-        let kept = self.own.iter().map(|place| &stages[*place as usize]);
-        let needs_positions = plan.rules.positions(&Reading::of(kept)).is_none();
         let from = self.kept.len();
-        self.kept.extend_from_slice(&self.own);
+        let count = u32::try_from(stages.len()).expect("fewer than 2^32 lights");
+        self.kept.extend((0..count).filter(reaches));
+        let kept = self.kept[from..].iter().map(|place| &stages[*place as usize]);
+        let needs_positions = plan.rules.positions(&Reading::of(kept)).is_none();
         Decided { from, to: self.kept.len(), needs_positions }
     }
 }

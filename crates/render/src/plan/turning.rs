@@ -6,7 +6,6 @@ use glam::DVec3;
 
 use crate::frame::Viewport;
 use crate::frame::draw::{Back, Draw};
-use crate::lights::turning::Turning;
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::coverage::doubled_area;
 use marraztu_core::accuracy::LightAt;
@@ -18,7 +17,7 @@ const FEW: usize = 64;
 
 /// Returns the normals of a draw. `None` if there are many, if back faces are lit, or if the
 /// placement stretches some normals so much more than others that interpolated ones are uncertain.
-pub(super) fn turning_of(draw: &Draw, light_at: LightAt) -> Option<Turning> {
+pub(super) fn turning_of(draw: &Draw, light_at: LightAt) -> Option<Vec<DVec3>> {
     let mesh = &draw.model.mesh;
     let normals = match (light_at, draw.normals) {
         (LightAt::Face, _) | (_, Normals::Face) => mesh.polygon_normals(),
@@ -34,7 +33,7 @@ pub(super) fn turning_of(draw: &Draw, light_at: LightAt) -> Option<Turning> {
     if least * 10.0 < most {
         return None;
     }
-    placed.into_iter().map(math::unit).collect::<Option<_>>().map(Turning)
+    placed.into_iter().map(math::unit).collect()
 }
 
 /// Returns whether the observer is in front of all polygons of a small mesh, and all are flat.

@@ -94,6 +94,13 @@ pub struct EffectUse {
     pub pixels: Option<u64>,
 }
 
+impl EffectUse {
+    /// Creates the use of an effect that is named by its label.
+    pub(super) fn new(effect: Effect, on: Option<Thing>, state: EffectState) -> Self {
+        Self { effect, name: effect.label().to_owned(), on, state, pixels: None }
+    }
+}
+
 /// An object, or a camera drawn as a helper.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Thing {

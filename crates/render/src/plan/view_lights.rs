@@ -33,11 +33,8 @@ pub(super) fn view_lights(
         let facts = LightFacts { light, is_placed: source.is_some() };
         if let Some(reason) = into.plan.rules.light(&facts) {
             into.notes.add(|| EffectUse {
-                effect: Effect::Light(id),
                 name: light.name.clone(),
-                on: None,
-                state: EffectState::left_out(reason),
-                pixels: None,
+                ..EffectUse::new(Effect::Light(id), None, EffectState::left_out(reason))
             });
             continue;
         }
@@ -76,15 +73,12 @@ pub(super) fn view_lights(
 /// Returns the factor of all light, and adds its row to the explanation.
 fn exposure(into: &mut Planning, view: &View) -> f64 {
     let factor = view.light_factor();
-    into.notes.add(|| EffectUse {
-        effect: Effect::Exposure,
-        name: Effect::Exposure.label().to_owned(),
-        on: None,
-        state: match view.exposure {
+    into.notes.add(|| {
+        let state = match view.exposure {
             0.0 => EffectState::left_out("it is 0"),
             _ => EffectState::On(format!("all light times {factor:.3}").into()),
-        },
-        pixels: None,
+        };
+        EffectUse::new(Effect::Exposure, None, state)
     });
     factor
 }

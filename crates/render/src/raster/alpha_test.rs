@@ -15,11 +15,12 @@ use crate::frame::FramePlan;
 use crate::frame::draw::Pipeline;
 use crate::screen::tiles::BLOCK;
 use crate::screen::weights::Weights;
-use crate::simd::bits;
+use crate::simd::Bits;
 use crate::texture::exact_placement::ExactPlacement;
 use crate::texture::lanes::Sampler;
 use crate::texture::opacity::{Channel, Holes, Opacity, between};
 use crate::texture::uv::{Uvs, uv, uvs};
+use marraztu_core::accuracy::Filter;
 
 /// An f32 alpha closer to one half than this is undecided.
 const NEAR: f32 = 1.0 / 128.0;
@@ -125,7 +126,7 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
         // f32 decides most pixels; the rest are sampled one by one in f64.
         let [solid, open] = self.decide(simd, first, edges).unwrap_or([0, u64::MAX]);
         let (mut solid, open) = (solid & !open & pixels, open & pixels);
-        for lane in bits(open) {
+        for lane in Bits(open) {
             solid |= u64::from(self.is_opaque(pixel(lane))) << lane;
         }
         solid
@@ -164,7 +165,7 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
             };
             // Nearest filtering jumps at the border of a texel, so a position close to it is
             // undecided.
-            if sampler.shows_texels() {
+            if sampler.filter == Filter::Nearest {
                 for at in position {
                     border |= ((at - at.floor()) - 0.5).abs().simd_gt(0.5 - BORDER);
                 }
@@ -186,7 +187,7 @@ pub(crate) struct BlockHoles<'a, 'b, 'c> {
 impl BlockHoles<'_, '_, '_> {
     /// Tests the pixels of a mask in two rows of the block one by one, and returns the opaque ones.
     pub(crate) fn opaque_pixels(&self, pair: usize, pixels: u64) -> u64 {
-        let opaque = bits(pixels).filter(|lane| self.test.is_opaque(self.pixel(pair, *lane)));
+        let opaque = Bits(pixels).filter(|lane| self.test.is_opaque(self.pixel(pair, *lane)));
         opaque.fold(0, |opaque, lane| opaque | 1 << lane)
     }
 

@@ -5,7 +5,7 @@
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use crate::simd::{bits, dispatch};
+use crate::simd::{Bits, dispatch};
 use fearless_simd::{Bytes as _, Level, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16};
 use glam::{DMat3, DVec3};
 
@@ -104,11 +104,11 @@ impl EdgeSetup<'_> {
             lines::draw_short::<S, N>(seen[0], seen[1], &short, &mut bins.hits);
         }
         // Long edges go to the tiles they cross, odd ones through clipping first.
-        for lane in bits(shown & !some.to_bitmask()) {
+        for lane in Bits(shown & !some.to_bitmask()) {
             let ends = edges[lane].vertices.map(|vertex| self.vertices[vertex as usize]);
             self.add(ends, numbers[lane].cast_unsigned(), self.nearer(), bins);
         }
-        for lane in bits(odd) {
+        for lane in Bits(odd) {
             self.add_odd(&edges[lane], numbers[lane].cast_unsigned(), bins);
         }
     }

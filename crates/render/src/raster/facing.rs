@@ -7,7 +7,7 @@
 use crate::accel::Accelerated as _;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use crate::simd::{bits, dispatch};
+use crate::simd::{Bits, dispatch};
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x16};
 
 use super::hits::PACK;
@@ -105,7 +105,7 @@ impl<'a> Facing<'a> {
             let outline = if shown { outline } else { Outline::Not as u8 };
             all[triangle.number as usize].store(outline, Ordering::Relaxed);
         }
-        for lane in bits((beyond | wide).to_bitmask()) {
+        for lane in Bits((beyond | wide).to_bitmask()) {
             self.one(triangles[lane].number, all);
         }
     }

@@ -12,7 +12,7 @@ use super::depth_format::Format;
 use super::entries::{keys_and_numbers, put_words, word};
 use crate::screen::coverage::PixelBox;
 use crate::screen::tiles::{TILE, lanes_place};
-use crate::simd::bits;
+use crate::simd::Bits;
 
 /// The number of primitives rasterised at once.
 pub(crate) const PACK: usize = 16;
@@ -235,7 +235,7 @@ impl Hits {
             Reach::Many => {
                 let inside = x.simd_ge(0) & y.simd_ge(0) & x.simd_lt(width) & y.simd_lt(height);
                 let tile = row * self.tiles[0] + column;
-                for lane in bits((covered & inside).to_bitmask()) {
+                for lane in Bits((covered & inside).to_bitmask()) {
                     let tile = tile[lane] as usize;
                     if let Some(color) = pixels.color {
                         self.next_colors(tile)[0] = color[lane];

@@ -6,7 +6,7 @@
 //! are set up one by one.
 
 use crate::accel::Accelerated as _;
-use crate::simd::{bits, dispatch};
+use crate::simd::{Bits, dispatch};
 use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16};
 
 use super::beyond;
@@ -200,7 +200,7 @@ impl<'a> Setup<'a> {
             }
         }
         // Triangles that need clipping or 64 bits are set up one by one.
-        for lane in bits(odd.to_bitmask()) {
+        for lane in Bits(odd.to_bitmask()) {
             self.add_odd::<R, N>(&triangles[lane], (bins, brush));
         }
     }
@@ -264,7 +264,7 @@ impl<'a> Setup<'a> {
         }
         // The remaining triangles are large or alpha-tested.
         let large = (plain & side.simd_gt(above)).to_bitmask() | cutout;
-        for lane in bits(large) {
+        for lane in Bits(large) {
             let corners = each(triangles[lane].vertices, |i| self.vertices[i as usize]);
             let number = self.base + triangles[lane].number;
             let cutout = cutout >> lane & 1 != 0;
@@ -326,7 +326,7 @@ impl<'a> Setup<'a> {
     /// Returns the masks of triangles drawn without the alpha test, with it, and as transparent.
     fn kinds_one_by_one(&self, triangles: &[DrawTriangle; PACK], some: u64) -> [u64; 3] {
         let mut kinds = [0; 3];
-        for lane in bits(some) {
+        for lane in Bits(some) {
             match self.kind(triangles[lane].number) {
                 Kind::Not => {}
                 Kind::Plain => kinds[0] |= 1 << lane,

@@ -10,7 +10,7 @@ use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, i32x16, mas
 use super::hits::PACK;
 use super::queue::{Pack, ROWS, SMALL};
 use crate::screen::coverage::PixelBox;
-use crate::simd::bits;
+use crate::simd::Bits;
 
 /// The first size of bounding boxes in [`SMALL`] that waits for tiles. With the next smaller size,
 /// a model of a million triangles takes 1.1 times as long, and no model gets faster.
@@ -157,7 +157,7 @@ impl TileQueues {
         let pack = pack.map(<[i32; PACK]>::from);
         let [left, top, right, bottom] = boxes.map(<[i32; PACK]>::from);
         // Widely scattered triangles: one at a time, into every tile of its box.
-        for lane in bits(some) {
+        for lane in Bits(some) {
             for row in top[lane]..=bottom[lane] {
                 for column in left[lane]..=right[lane] {
                     let page = self.page((row * self.tiles[0] + column) as usize, size);

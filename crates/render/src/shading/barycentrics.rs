@@ -5,8 +5,9 @@
 use glam::DVec3;
 
 use super::fragments::Fragments;
-use super::triangle_attributes::{TriangleAttributes, picked};
+use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
 use crate::screen::perspective::weighed;
+use crate::screen::spans::{Row, Span};
 use crate::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 use marraztu_core::accuracy::Interpolation;
 
@@ -38,34 +39,20 @@ impl<T: Number> Barycentrics<T> {
         let (b, c): (f64, f64) = (self.weights[0][i].into(), self.weights[1][i].into());
         DVec3::new(1.0 - b - c, b, c)
     }
-}
 
-/// Clamps linear coordinates of pixels with centres outside of their triangles: negative
-/// coordinates become 0, and the sum stays 1.
-pub(super) struct Clamp<'a, T> {
-    pub(super) len: usize,
-    pub(super) linear: &'a mut [[T; BATCH]; 2],
-}
-
-impl<T: Number> Kernel<T> for Clamp<'_, T> {
+    /// Loads the weights of the second and third corner in some fragments.
     #[inline(always)]
-    fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { len, linear: [second_row, third_row] } = self;
-        let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
-        for at in (0..len).step_by(M::LANES) {
-            let (second, third) = (lanes.load(second_row, at), lanes.load(third_row, at));
-            let first = Real::max(one - second - third, zero);
-            let (second, third) = (Real::max(second, zero), Real::max(third, zero));
-            let per = one / (first + second + third);
-            lanes.store(second * per, second_row, at);
-            lanes.store(third * per, third_row, at);
-        }
+    pub(crate) fn weights_at<M: Lanes<Number = T>>(&self, lanes: M, at: usize) -> [M::R; 2] {
+        [lanes.load(&self.weights[0], at), lanes.load(&self.weights[1], at)]
     }
 }
 
 /// Converts linear coordinates to perspective-correct weights of corners.
 pub(super) struct Weigh<'a, T, const PAGES: usize> {
     pub(super) interpolation: Interpolation,
+    /// Whether pixels may have centres outside of their triangles: negative coordinates then become
+    /// 0, and the sum stays 1.
+    pub(super) clamps: bool,
     pub(super) fragments: &'a Fragments,
     pub(super) attributes: &'a TriangleAttributes<T>,
     pub(super) to: &'a mut Barycentrics<T>,
@@ -74,10 +61,20 @@ pub(super) struct Weigh<'a, T, const PAGES: usize> {
 impl<T: Number, const PAGES: usize> Kernel<T> for Weigh<'_, T, PAGES> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { interpolation, fragments, attributes, to } = self;
+        let Self { interpolation, clamps, fragments, attributes, to } = self;
+        let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
         for at in (0..fragments.len).step_by(M::LANES) {
             let slots = lanes.slots(&fragments.slots, at);
-            let linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
+            let mut linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
+            if clamps {
+                let [second, third] = linear;
+                let first = Real::max(one - second - third, zero);
+                let (second, third) = (Real::max(second, zero), Real::max(third, zero));
+                let per = one / (first + second + third);
+                linear = [second * per, third * per];
+                lanes.store(linear[0], &mut to.linear[0], at);
+                lanes.store(linear[1], &mut to.linear[1], at);
+            }
             let by_w = picked::<M, PAGES>(lanes, &attributes.by_w, slots);
             to.put(interpolation, lanes, at, linear, by_w);
         }
@@ -99,5 +96,47 @@ impl<T: Number> Barycentrics<T> {
         lanes.store(w, &mut self.w, at);
         lanes.store(weights[0], &mut self.weights[0], at);
         lanes.store(weights[1], &mut self.weights[1], at);
+    }
+}
+
+/// Interpolates linearly between every sixteenth pixel of a row, where perspective is applied:
+/// replaces the weights of every fragment inside its triangle by the weights of its span, except in
+/// clipped triangles.
+///
+/// A renderer that draws rows from their left ends computes two divisions for sixteen pixels. Here
+/// the unit is a block of 8 x 8 pixels, so a span is found for each of its rows.
+pub(crate) fn interpolate_spans<T: AttributeNumber>(
+    fragments: &Fragments,
+    attributes: &TriangleAttributes<T>,
+    to: &mut Barycentrics<T>,
+) {
+    let mut row = None;
+    let mut span = None;
+    for i in 0..fragments.len {
+        let slot = fragments.slots[i].cast_unsigned() as usize;
+        if attributes.cut >> slot & 1 == 1 {
+            continue;
+        }
+        let (x, y) = (fragments.x[i], fragments.y[i]);
+        let place = (slot, y);
+        // Row and span are reused while fragments stay in them.
+        let own = match row {
+            Some((known, own)) if known == place => own,
+            _ => {
+                let by_w = [0, 1, 2].map(|corner| attributes.by_w[corner][slot].into());
+                let own = Row::new(attributes.corners(slot), by_w, y, attributes.grid);
+                (row, span) = (Some((place, own)), None);
+                own
+            }
+        };
+        let holds = |span: &Span| span.holds(x);
+        if !span.as_ref().is_some_and(holds) {
+            span = own.span(x);
+        }
+        if let Some(span) = &span {
+            let [second, third] = span.at(x);
+            to.weights[0][i] = T::from_f64(second);
+            to.weights[1][i] = T::from_f64(third);
+        }
     }
 }

@@ -16,6 +16,7 @@ use crate::simd::dispatch;
 use fearless_simd::Level;
 
 use crate::screen::tiles::BLOCK_PIXELS;
+use marraztu_core::accuracy::Transparency;
 
 /// A colour for each pixel of a block.
 type Rows = [[f32; BLOCK_PIXELS]; 3];
@@ -54,27 +55,20 @@ impl Default for Mean {
     }
 }
 
-/// The method of blending layers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Way {
-    /// Each layer over the ones behind it.
-    Over,
-    /// A weighted mean of all layers.
-    Weighted,
-}
-
 impl Blend {
     /// Begins with the colours behind all layers.
     #[expect(clippy::cast_precision_loss, reason = "below 2^24")]
-    pub(crate) fn begin(&mut self, behind: impl Fn(usize) -> [u32; 3], way: Way) {
+    pub(crate) fn begin(&mut self, behind: impl Fn(usize) -> [u32; 3], transparency: Transparency) {
         for place in 0..BLOCK_PIXELS {
             for (row, part) in self.colors.iter_mut().zip(behind(place)) {
                 row[place] = part as f32;
             }
         }
-        match way {
-            Way::Over => self.mean = None,
-            Way::Weighted => **self.mean.get_or_insert_default() = Mean::default(),
+        match transparency {
+            Transparency::Exact | Transparency::Objects | Transparency::Threshold => {
+                self.mean = None;
+            }
+            Transparency::Weighted => **self.mean.get_or_insert_default() = Mean::default(),
         }
     }
 
@@ -153,9 +147,9 @@ mod tests {
         (byte << 16) + (1 << 15)
     }
 
-    fn blended(way: Way, layers: &[(u32, f32)]) -> u32 {
+    fn blended(transparency: Transparency, layers: &[(u32, f32)]) -> u32 {
         let mut blend = Blend::default();
-        blend.begin(|_| [parts(100); 3], way);
+        blend.begin(|_| [parts(100); 3], transparency);
         for (color, opacity) in layers {
             blend.place(Level::new(), || [50.0; BLOCK_PIXELS]);
             blend.put(9, [parts(*color); 3], *opacity);
@@ -166,23 +160,23 @@ mod tests {
     #[test]
     fn opacity_0_and_1_leave_and_replace_every_bit() {
         for color in [0, 1, 100, 254, 255] {
-            assert_eq!(blended(Way::Over, &[(color, 1.0)]), parts(color));
-            assert_eq!(blended(Way::Over, &[(color, 0.0)]), parts(100));
-            assert_eq!(blended(Way::Weighted, &[(color, 0.0)]), parts(100));
+            assert_eq!(blended(Transparency::Exact, &[(color, 1.0)]), parts(color));
+            assert_eq!(blended(Transparency::Exact, &[(color, 0.0)]), parts(100));
+            assert_eq!(blended(Transparency::Weighted, &[(color, 0.0)]), parts(100));
         }
     }
 
     #[test]
     fn one_layer_is_the_same_in_both_ways_and_two_are_not() {
         for opacity in [0.125, 0.5, 0.9] {
-            let [over, mean] =
-                [Way::Over, Way::Weighted].map(|way| blended(way, &[(200, opacity)]));
+            let [over, mean] = [Transparency::Exact, Transparency::Weighted]
+                .map(|way| blended(way, &[(200, opacity)]));
             assert!(over.abs_diff(mean) <= 2, "{over} {mean}");
         }
         let layers = [(0, 0.5), (255, 0.5)];
         // 0.5 * 255 + 0.25 * 0 + 0.25 * 100, and 127.5 * 0.75 + 25.
-        assert_eq!(blended(Way::Over, &layers) >> 16, 153);
-        assert_eq!(blended(Way::Weighted, &layers) >> 16, 121);
+        assert_eq!(blended(Transparency::Exact, &layers) >> 16, 153);
+        assert_eq!(blended(Transparency::Weighted, &layers) >> 16, 121);
     }
 
     #[test]

@@ -17,18 +17,16 @@
 
 use glam::{DMat3, DVec3};
 
-use super::barycentrics::Barycentrics;
-use super::context::ShadingContext;
-use super::fragments::Fragments;
-use super::groups::Group;
+use super::context::{Group, ShadingContext};
+use super::interpolate::{Points, mixed};
 use super::interpolated::ShadingNumber;
-use super::map_rows::{Map, MapRows, TangentRows};
-use super::map_texels::{Points, TexelSource, Texels};
+use super::map_texels::{TexelSource, Texels};
+use super::surface_maps::{Map, MapRows, TangentRows};
 use super::triangle_attributes::{TriangleAttributes, picked};
 use crate::frame::draw::Draw;
 use crate::frame::extras::Bump;
-use crate::lights::{Batch, Rows, load, set, store};
-use crate::screen::perspective::between;
+use crate::frame::variants::Decoding;
+use crate::lights::{Batch, Rows, columns, load, store, turned};
 use crate::simd::gather::paged;
 use crate::simd::{Kernel, Lanes, Number, Real, Vec3};
 use crate::texture::uv::uvs;
@@ -90,19 +88,18 @@ impl<T: Number> TangentRows<T> {
 /// Tilts the interpolated normals of a batch. `new` tells whether the triangles differ from the
 /// last batch's.
 pub(super) fn bend<T: ShadingNumber>(
-    context: &ShadingContext<'_, T>,
-    group: &Group<'_>,
-    points: &Points<'_, T>,
-    (bump, new): (&Bump, bool),
+    group: &Group<'_, T>,
+    points: Points<'_, T>,
+    bump: &Bump,
     (maps, batch): (&mut MapRows<T>, &mut Batch<T>),
 ) {
-    let source = TexelSource::of_bumps(context, &bump.map);
+    let ShadingContext { level, plan, .. } = *group.context;
+    let mut source = TexelSource::new(group.context, &bump.map, Decoding::Stored);
+    source.filter = plan.variants.bump_filter();
     let what = if bump.gain.is_some() { Texels::Slopes } else { Texels::Colors };
-    maps.read(context, group, points, (Map::Bump, source, what, new), [1.0; 3]);
-    let plan = context.plan;
-    let Points { fragments, attributes, barycentrics } = *points;
-    let at_vertices = plan.variants.tangents == Tangents::Vertex;
-    if new {
+    maps.read(group, points, (Map::Bump, source, what), [1.0; 3]);
+    let attributes = points.attributes;
+    if attributes.are_new {
         match plan.variants.tangents {
             Tangents::Vertex => maps.tangents.of_vertices(group.draw, attributes),
             Tangents::Pixel => maps.tangents.of_pixels(group.draw, attributes),
@@ -110,15 +107,14 @@ pub(super) fn bend<T: ShadingNumber>(
     }
     // A negative texture scale reverses the direction of u or v.
     let directions = bump.map.scale.map(|scale| if scale < 0.0 { -1.0 } else { 1.0 });
-    let (texels, tangents) = (&maps.texels, &maps.tangents);
-    let spaces = Spaces::new(group.draw);
-    paged!(attributes.count, PAGES => T::run(context.level, Bend::<T, PAGES> {
-        points: (fragments, attributes, barycentrics),
-        texels,
-        tangents: (tangents, at_vertices),
+    paged!(attributes.count, PAGES => T::run(level, Bend::<T, PAGES> {
+        points,
+        texels: &maps.texels,
+        tangents: &maps.tangents,
+        at_vertices: plan.variants.tangents == Tangents::Vertex,
         gain: bump.gain,
         directions,
-        spaces,
+        spaces: Spaces::new(group.draw),
         batch,
     }));
 }
@@ -132,33 +128,23 @@ struct Spaces<T> {
 
 impl<T: Number> Spaces<T> {
     fn new(draw: &Draw) -> Self {
-        let columns = |m: DMat3| {
+        let unscaled = |m: DMat3| {
             let scale = libm::cbrt(m.determinant().abs());
-            let m = if scale > 0.0 { m * (1.0 / scale) } else { m };
-            [m.x_axis, m.y_axis, m.z_axis].map(|column| column.to_array().map(T::from_f64))
+            columns(if scale > 0.0 { m * (1.0 / scale) } else { m })
         };
         Self {
-            normals: columns(draw.view_from_normal),
-            tangents: columns(DMat3::from_mat4(draw.view_from_object)),
+            normals: unscaled(draw.view_from_normal),
+            tangents: unscaled(DMat3::from_mat4(draw.view_from_object)),
         }
     }
 }
 
-/// Multiplies a vector by a matrix given by its columns.
-#[inline(always)]
-fn turned<M: Lanes>(
-    lanes: M,
-    [a, b, c]: [[M::Number; 3]; 3],
-    Vec3([x, y, z]): Vec3<M::R>,
-) -> Vec3<M::R> {
-    set(lanes, a).times(x).plus(set(lanes, b).times(y)).plus(set(lanes, c).times(z))
-}
-
 struct Bend<'a, T, const PAGES: usize> {
-    points: (&'a Fragments, &'a TriangleAttributes<T>, &'a Barycentrics<T>),
+    points: Points<'a, T>,
     texels: &'a Rows<T>,
-    /// The tangents, and whether they come from vertices.
-    tangents: (&'a TangentRows<T>, bool),
+    tangents: &'a TangentRows<T>,
+    /// Whether tangents come from vertices.
+    at_vertices: bool,
     /// The factor of heights; `None` if texels are normals.
     gain: Option<f64>,
     /// Whether texels run along u and v, or against them.
@@ -170,9 +156,8 @@ struct Bend<'a, T, const PAGES: usize> {
 impl<T: Number, const PAGES: usize> Kernel<T> for Bend<'_, T, PAGES> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { points, texels, tangents, gain, directions, spaces, batch } = self;
-        let (fragments, attributes, barycentrics) = points;
-        let (rows, at_vertices) = tangents;
+        let Self { points, texels, tangents, gain, directions, spaces, batch, .. } = self;
+        let Points { fragments, attributes, barycentrics } = points;
         for at in (0..fragments.len).step_by(M::LANES) {
             let slots = lanes.slots(&fragments.slots, at);
             let unbent = load(lanes, &batch.normal, at);
@@ -187,27 +172,18 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Bend<'_, T, PAGES> {
             };
             let (x, y) = (x * lanes.lift(directions[0]), y * lanes.lift(directions[1]));
             // The tangent frame: interpolated from vertices, or from the gradients on the triangle.
-            let [a, b, c] = [
-                picked::<M, PAGES>(lanes, &rows.vectors[0], slots),
-                picked::<M, PAGES>(lanes, &rows.vectors[1], slots),
-                picked::<M, PAGES>(lanes, &rows.vectors[2], slots),
-            ];
-            let (tangent, bitangent, normal) = if at_vertices {
-                let weights = [
-                    lanes.load(&barycentrics.weights[0], at),
-                    lanes.load(&barycentrics.weights[1], at),
-                ];
-                let corners = [
-                    picked::<M, PAGES>(lanes, &attributes.values[0], slots),
-                    picked::<M, PAGES>(lanes, &attributes.values[1], slots),
-                    picked::<M, PAGES>(lanes, &attributes.values[2], slots),
-                ];
-                let normal = turned(lanes, spaces.normals, between(corners, weights));
-                let tangent = turned(lanes, spaces.tangents, between([a, b, c], weights));
-                let sign = lanes.pick::<PAGES>(&rows.signs, slots);
-                (tangent, cross(normal, tangent).times(sign), normal)
+            let (tangent, bitangent, normal) = if self.at_vertices {
+                let weights = barycentrics.weights_at(lanes, at);
+                let normal = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
+                let normal = turned(lanes, spaces.normals, normal);
+                let tangent = mixed::<M, PAGES>(lanes, &tangents.vectors, slots, weights);
+                let tangent = turned(lanes, spaces.tangents, tangent);
+                let sign = lanes.pick::<PAGES>(&tangents.signs, slots);
+                (tangent, normal.cross(tangent).times(sign), normal)
             } else {
-                (cross(a, unbent).unit(), cross(b, unbent).unit(), unbent)
+                let a = picked::<M, PAGES>(lanes, &tangents.vectors[0], slots);
+                let b = picked::<M, PAGES>(lanes, &tangents.vectors[1], slots);
+                (a.cross(unbent).unit(), b.cross(unbent).unit(), unbent)
             };
             let bent = tangent.times(x).plus(bitangent.times(y)).plus(normal.times(z)).unit();
             // A flat texel changes no bit. Rounding errors of filtering also count as flat.
@@ -220,10 +196,4 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Bend<'_, T, PAGES> {
             store(lanes, normal, &mut batch.normal, at);
         }
     }
-}
-
-/// Computes the cross product.
-#[inline(always)]
-fn cross<R: Real>(Vec3([a, b, c]): Vec3<R>, Vec3([x, y, z]): Vec3<R>) -> Vec3<R> {
-    Vec3([b * z - c * y, c * x - a * z, a * y - b * x])
 }

@@ -1,12 +1,15 @@
-//! The inputs of shading.
+//! The inputs of shading, and groups of fragments that are coloured together because they share a
+//! draw and a pipeline.
 
 use fearless_simd::Level;
 
 use super::face_colors::FaceColors;
+use super::fragments::Fragments;
 use super::light::Lit;
 use super::light_terms::LightTerms;
 use crate::frame::FramePlan;
-use crate::frame::color_path::ColorPaths;
+use crate::frame::color_path::{ColorPath, ColorPaths};
+use crate::frame::draw::{Draw, Pipeline, Shaded, Stage};
 use crate::raster::geometry::ScreenGeometry;
 use crate::shadow::tracer::Tracer;
 
@@ -33,4 +36,71 @@ impl<'a, T> ShadingContext<'a, T> {
         let tracer = self.tracer?;
         Some((tracer, tracer.caster_of(draw)?))
     }
+}
+
+/// Fragments that are coloured together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Group<'a, T> {
+    pub(crate) context: &'a ShadingContext<'a, T>,
+    pub(crate) draw: &'a Draw,
+    pub(crate) draw_index: u32,
+    /// The number of the draw's first triangle.
+    pub(crate) base: u32,
+    /// The number after the draw's last triangle.
+    pub(crate) end: u32,
+    pub(crate) pipeline: u32,
+    /// The surface, if it is more than one colour.
+    pub(crate) shaded: Option<&'a Shaded>,
+    pub(crate) path: ColorPath,
+}
+
+impl<'a, T> Group<'a, T> {
+    /// Returns whether a triangle belongs to the group.
+    pub(crate) fn holds(&self, number: u32) -> bool {
+        (self.base..self.end).contains(&number)
+            && self.draw.pipeline_of(number - self.base) == self.pipeline
+    }
+
+    /// Returns the surface and its lights, if it is lit.
+    pub(crate) fn lit(&self) -> Option<(&'a Shaded, &'a [Stage])> {
+        let shaded = self.shaded?;
+        Some((shaded, shaded.light.as_deref()?))
+    }
+}
+
+/// Returns the group of a triangle.
+pub(crate) fn group_of<'a, T>(context: &'a ShadingContext<'_, T>, number: u32) -> Group<'a, T> {
+    let (draw_index, start) = context.frame.draw_of(number);
+    let draw = &context.plan.draws[draw_index as usize];
+    let pipeline = draw.pipeline_of(number - start.number);
+    let shaded = match &context.plan.pipelines[pipeline as usize] {
+        Pipeline::Shaded(shaded) => Some(shaded),
+        Pipeline::Flat(_) => None,
+    };
+    let path = context.paths.of(draw_index, pipeline);
+    let (base, end) = (start.number, start.end);
+    Group { context, draw, draw_index, base, end, pipeline, shaded, path }
+}
+
+/// Returns the group of all fragments of a list, if they belong to one.
+pub(crate) fn one_group<'a, T>(
+    context: &'a ShadingContext<'_, T>,
+    fragments: &Fragments,
+) -> Option<Group<'a, T>> {
+    let group = group_of(context, fragments.numbers[0]);
+    are_of(&group, &fragments.numbers[..fragments.count]).then_some(group)
+}
+
+/// Returns whether all of some triangles belong to a group.
+pub(crate) fn are_of<T>(group: &Group<'_, T>, numbers: &[u32]) -> bool {
+    let Group { context, draw, base, end, pipeline, .. } = *group;
+    let is_uniform = draw.uniform.is_some();
+    if is_uniform && context.plan.draws.len() == 1 {
+        return true;
+    }
+    // Without a branch per triangle, so the comparisons vectorise.
+    let of_draw = |number: &u32| (base <= *number) & (*number < end);
+    let alike = |number: &u32| draw.pipeline_of(number - base) == pipeline;
+    numbers.iter().fold(true, |all, number| all & of_draw(number))
+        && (is_uniform || numbers.iter().all(alike))
 }

@@ -20,7 +20,7 @@ use crate::raster::hits::PACK;
 use crate::raster::inputs::Inputs;
 use crate::screen::clip::ScreenVertex;
 use crate::shadow::rays::RayScratch;
-use crate::simd::{Lanes as _, Sixteen};
+use crate::simd::{Bits, Lanes as _, Sixteen};
 use marraztu_core::scene::Normals;
 
 /// The light at the vertices of a frame. See [`CornerLight`].
@@ -138,10 +138,8 @@ impl LookUp for Worker<'_> {
     fn set(&mut self, triangles: &Triangles<'_>, to: &mut Corners) -> bool {
         let Triangles { numbers, vertices, some, clockwise } = *triangles;
         let mut colors = [[[0.0; 4]; PACK]; 3];
-        let mut left = some;
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize % PACK;
-            left &= left - 1;
+        for lane in Bits(some) {
+            let lane = lane % PACK;
             let corners = vertices.map(|row| row[lane]);
             let clockwise = clockwise >> lane & 1 == 1;
             // One unknown colour rejects the whole group: its pixels are coloured later.

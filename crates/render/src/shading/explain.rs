@@ -8,9 +8,8 @@ mod light_ray;
 
 use light_ray::{World, first, light_terms, plus, reflect, vec3};
 
-use super::context::ShadingContext;
-use super::groups::{Group, group_of};
-use super::interpolate::{Look, Mixed, mix, surface_samples};
+use super::context::{Group, ShadingContext, group_of};
+use super::interpolate::{Look, Mixed, Points, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::run;
 use super::lit_points::place_fragments;
@@ -18,7 +17,7 @@ use super::pixel_color::{Part, PixelColor, SurfacePoint, Term};
 use super::shadows::{BatchShadows, place_faces};
 use super::surface::Shader;
 use crate::frame::Eye;
-use crate::frame::draw::{Back, Pipeline, Shaded, Stage};
+use crate::frame::draw::{Back, Shaded, Stage};
 use crate::lights::Batch;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::coverage::PixelBox;
@@ -97,12 +96,7 @@ fn one<T: ShadingNumber>(
 ) -> (PixelColor, f64) {
     let [x, y] = asked.at;
     let at = [x, y].map(|i| usize::try_from(i).unwrap_or(0));
-    let plain = |part, [r, g, b, _]: [u8; 4]| {
-        let color = [r, g, b].map(|byte| f64::from(byte) / 255.0);
-        let (rounding, terms) = ([0.0; 3], vec![Term::new(part, color)]);
-        let bytes = [r, g, b];
-        PixelColor { at, surface: None, terms, rounding, color, linear: false, bytes }
-    };
+    let plain = |part, [r, g, b, _]: [u8; 4]| plain(at, part, [r, g, b]);
     let ShadingContext { plan, frame, .. } = *context;
     match seen(word) {
         Visible::Background => (plain(Part::Background, plan.background.opaque()), 1.0),
@@ -116,63 +110,58 @@ fn one<T: ShadingNumber>(
             shader.fragments.add(number, [x & !7, y & !7], place, 1);
             shader.fragments.shared = false;
             let group = group_of(context, number);
-            let mut point = Point { context, group, shader: &mut shader, number, at };
-            point.explained()
+            Point { group, shader: &mut shader, number, at }.explained()
         }
     }
 }
 
+/// Returns a pixel with a colour that nothing else explains.
+fn plain(at: [usize; 2], part: Part, bytes: [u8; 3]) -> PixelColor {
+    let color = bytes.map(|byte| f64::from(byte) / 255.0);
+    let (rounding, terms) = ([0.0; 3], vec![Term::new(part, color)]);
+    PixelColor { at, surface: None, terms, rounding, color, linear: false, bytes }
+}
+
 /// A pixel that shows a triangle.
-struct Point<'a, 'b, T> {
-    context: &'a ShadingContext<'b, T>,
-    group: Group<'b>,
+struct Point<'a, T> {
+    group: Group<'a, T>,
     shader: &'a mut Shader<T>,
     number: u32,
     at: [usize; 2],
 }
 
-impl<T: ShadingNumber> Point<'_, '_, T> {
+impl<T: ShadingNumber> Point<'_, T> {
     fn explained(&mut self) -> (PixelColor, f64) {
-        let plan = self.context.plan;
-        let [r, g, b, _] = self.shader.first_color(self.context, &self.group);
+        let plan = self.group.context.plan;
+        let [r, g, b, _] = self.shader.first_color(&self.group);
         let bytes = [r, g, b];
         // The results left by first_color: the light of the pixel, and its texel.
         let of_all = [first(&self.shader.batch.diffuse), first(&self.shader.batch.specular)];
         let texel = first(&self.shader.texels);
         let glow = first(&self.shader.maps.glow);
         let drawn = self.shader.batch.clone();
-        let opacity = f64::from(self.shader.opacities(self.context, &self.group)[0]);
+        let opacity = f64::from(self.shader.opacities(&self.group)[0]);
         let mut surface = self.place();
         let red = surface.back && self.group.draw.back == Back::Red;
-        let shaded = match &plan.pipelines[self.group.pipeline as usize] {
-            Pipeline::Shaded(shaded) if !red => shaded,
-            Pipeline::Shaded(_) | Pipeline::Flat(_) => {
-                let part = if red { Part::BackFace } else { Part::Unlit };
-                let value = bytes.map(|byte| f64::from(byte) / 255.0);
-                let terms = vec![Term::new(part, value)];
-                let (surface, at) = (Some(surface), self.at);
-                let (rounding, linear) = ([0.0; 3], false);
-                let color = value;
-                let plain = PixelColor { at, surface, terms, rounding, color, linear, bytes };
-                return (plain, opacity);
-            }
+        let Some(shaded) = self.group.shaded.filter(|_| !red) else {
+            let part = if red { Part::BackFace } else { Part::Unlit };
+            return (PixelColor { surface: Some(surface), ..plain(self.at, part, bytes) }, opacity);
         };
-        let extras = &shaded.extras;
-        let fades = shaded.opacity.is_some() && shaded.opacity_map.is_some();
-        let textured =
-            shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels() || fades;
+        let textured = shaded.varies();
         let tint = shaded.tint.map(|x| T::from_f64(x).into());
         surface.own = if textured { texel } else { tint };
         surface.light_at = shaded.light.is_some().then_some(plan.light_at);
         // The terms depend on where light is computed.
         let (mut terms, mut color) = match (&shaded.light, plan.light_at) {
             (None, _) => (vec![Term::new(Part::Unlit, surface.own)], surface.own),
-            (Some(_), LightAt::Vertex) => self.of_corners(&surface, textured, of_all),
+            (Some(stages), LightAt::Vertex) => {
+                self.of_corners(&surface, textured.then_some(of_all), stages)
+            }
             (Some(stages), LightAt::Pixel | LightAt::Sample | LightAt::Face) => {
                 self.of_lights(&mut surface, (shaded, stages), &drawn)
             }
         };
-        if extras.glows().next().is_some() {
+        if shaded.extras.glows().next().is_some() {
             terms.push(Term::new(Part::Emission, glow));
             color = plus(color, glow);
         }
@@ -186,18 +175,19 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
     /// Returns the point's position on the surface. Afterwards the batch holds its position and
     /// normal.
     fn place(&mut self) -> SurfacePoint {
-        let Self { context, group, shader, number, .. } = self;
-        let ShadingContext { level, plan, .. } = **context;
+        let Self { group, shader, number, .. } = self;
+        let ShadingContext { level, plan, .. } = *group.context;
         // Forces a fresh fetch: the shader may hold attributes of another kind.
         shader.attributes.forget();
-        shader.take(context, group, true);
+        shader.take(group, true);
         let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
         barycentrics.find(level, fragments, attributes, (plan, group.draw));
         attributes.carry_normals(group.draw);
         attributes.spread(level);
         batch.len = 1;
         let look = Look::new(plan, group.draw);
-        surface_samples(level, look, fragments, attributes, barycentrics, batch);
+        let points = Points { fragments, attributes, barycentrics };
+        surface_samples(level, look, points, batch);
         let world = World::new(plan);
         let w: f64 = barycentrics.w[0].into();
         let position = vec3(&batch.position);
@@ -228,8 +218,9 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         (shaded, stages): (&Shaded, &[Stage]),
         drawn: &Batch<T>,
     ) -> (Vec<Term>, [f64; 3]) {
-        let Self { context, group, shader, .. } = self;
-        let ShadingContext { level, plan, lit, terms: of, .. } = **context;
+        let Self { group, shader, .. } = self;
+        let context = group.context;
+        let ShadingContext { level, plan, lit, terms: of, .. } = *context;
         let kept = shader.tile.light(plan, group.pipeline, shaded).kept.map(<[u32]>::to_vec);
         let by_face = plan.light_at == LightAt::Face;
         if by_face {
@@ -253,13 +244,13 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         };
         let tracer = context.tracer_of(group.draw_index);
         let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
+        let points = Points { fragments, attributes, barycentrics };
         let mut place = |origins: &mut Origins| {
             if let Some(tracer) = tracer {
                 if by_face {
                     place_faces(tracer, group.draw, attributes, origins);
                 } else {
-                    let on = (&*fragments, &*attributes);
-                    place_fragments(context, tracer, group, on, barycentrics, origins);
+                    place_fragments(group, tracer, points, origins);
                 }
             }
         };
@@ -299,7 +290,7 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
                 row[0] = T::from_f64(value);
             }
         }
-        let color = reflect(context, &shader.batch, surface.own);
+        let color = reflect(&shader.batch, surface.own);
         (terms, color)
     }
 
@@ -308,12 +299,13 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
     fn of_corners(
         &mut self,
         surface: &SurfacePoint,
-        textured: bool,
-        [diffuse, specular]: [[f64; 3]; 2],
+        textured: Option<[[f64; 3]; 2]>,
+        stages: &[Stage],
     ) -> (Vec<Term>, [f64; 3]) {
-        let Self { context, group, shader, .. } = self;
+        let Self { group, shader, .. } = self;
+        let ShadingContext { level, lit, .. } = *group.context;
         let term = |value| Term::new(Part::Corners, value);
-        if textured {
+        if let Some([diffuse, specular]) = textured {
             let mut sums = Batch::<T> { len: 1, ..Batch::default() };
             for i in 0..3 {
                 sums.diffuse[i][0] = T::from_f64(diffuse[i]);
@@ -321,18 +313,14 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
             }
             let lit = [0, 1, 2].map(|i| surface.own[i] * diffuse[i]);
             let shine = Term { part: Part::Specular, ..term(specular) };
-            return (vec![term(lit), shine], reflect(context, &sums, surface.own));
+            return (vec![term(lit), shine], reflect(&sums, surface.own));
         }
         // Without a texture, tables hold final colours, which are interpolated again here.
-        let ShadingContext { level, plan, .. } = **context;
-        let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
-            return (Vec::new(), [0.0; 3]);
-        };
-        let tables = context.lit.tables(group.draw_index, group.pipeline);
-        shader.carry_diffuse(context, group, shaded, tables);
-        shader.attributes.spread(level);
+        let tables = lit.tables(group.draw_index, group.pipeline);
+        shader.carry_diffuse(group, stages, tables);
         let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
-        mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.diffuse));
+        let points = Points { fragments, attributes, barycentrics };
+        mix(level, points, &attributes.values, Mixed::Rows(&mut batch.diffuse));
         let color = first(&batch.diffuse);
         (vec![term(color)], color)
     }

@@ -14,7 +14,7 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16
 use super::runs::{MARGIN, Runs, Shown};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::simd::gather::SLOTS;
-use crate::simd::{BATCH, UP_TO_SIXTEEN};
+use crate::simd::{BATCH, Bits, UP_TO_SIXTEEN};
 
 /// The pixels of one block that show triangles. See the [module](self).
 #[derive(Debug)]
@@ -93,19 +93,9 @@ impl Default for Fragments {
 }
 
 impl Fragments {
-    /// Lists the pixels of the block with the upper left pixel `corner` that show triangles.
+    /// Lists the pixels of the block with the upper left pixel `corner` that show triangles. Keeps
+    /// the slots of the last list's triangles if about `most` slots suffice.
     pub(crate) fn list(
-        &mut self,
-        level: Level,
-        visibility: &[u64; BLOCK_PIXELS],
-        corner: [i32; 2],
-    ) -> Shown {
-        self.list_on(level, visibility, corner, 0)
-    }
-
-    /// Lists the pixels of a block, but keeps the slots of the last list's triangles if about
-    /// `most` slots suffice.
-    pub(crate) fn list_on(
         &mut self,
         level: Level,
         visibility: &[u64; BLOCK_PIXELS],
@@ -118,7 +108,7 @@ impl Fragments {
         })
     }
 
-    /// Lists the pixels of a block like [`Self::list_on`], from its runs.
+    /// Lists the pixels of a block like [`Self::list`], from its runs.
     pub(crate) fn list_runs(
         &mut self,
         level: Level,
@@ -243,11 +233,10 @@ impl Fragments {
 
     /// Assigns slots to the runs of pixels that start at `starts`.
     #[inline(always)]
-    fn share_out(&mut self, numbers: &[u32; MARGIN + BLOCK_PIXELS], mut starts: u64) {
+    fn share_out(&mut self, numbers: &[u32; MARGIN + BLOCK_PIXELS], starts: u64) {
         self.goes_on = true;
-        while starts != 0 {
-            let at = starts.trailing_zeros() as usize % BLOCK_PIXELS;
-            starts &= starts - 1;
+        for at in Bits(starts) {
+            let at = at % BLOCK_PIXELS;
             // A run is at most a row long, so a whole row is filled; the next run overwrites the
             // rest.
             let slot = self.slot_of(numbers[MARGIN + at]);
@@ -345,11 +334,10 @@ impl Fragments {
     }
 
     #[inline(always)]
-    fn put(&mut self, [left, top]: [i32; 2], place: u8, slot: i32) -> usize {
+    fn put(&mut self, [x, y]: [i32; 2], place: u8, slot: i32) -> usize {
         let i = self.len.min(BATCH - 1);
         self.pixels[i] = place;
-        self.x[i] = left + i32::from(place) % BLOCK;
-        self.y[i] = top + i32::from(place) / BLOCK;
+        (self.x[i], self.y[i]) = (x, y);
         self.slots[i] = slot;
         self.len += 1;
         i
@@ -381,14 +369,16 @@ impl Fragments {
     /// Adds a fragment with `share` samples of its pixel. The list must not be full, and its
     /// triangles must have slots.
     #[inline(always)]
-    pub(crate) fn add(&mut self, number: u32, corner: [i32; 2], place: usize, share: i32) {
+    pub(crate) fn add(&mut self, number: u32, [left, top]: [i32; 2], place: usize, share: i32) {
         let slot = self.slot_of(number);
-        let i = self.put(corner, ALL_PIXELS[place % BLOCK_PIXELS], slot);
+        let place = ALL_PIXELS[place % BLOCK_PIXELS];
+        let [column, row] = [i32::from(place) % BLOCK, i32::from(place) / BLOCK];
+        let i = self.put([left + column, top + row], place, slot);
         self.shares[i] = share;
     }
 
     /// Copies the fragments of another list that have slots marked in `keep`.
-    pub(crate) fn take_from(&mut self, other: &Self, keep: &[bool; SLOTS], corner: [i32; 2]) {
+    pub(crate) fn take_from(&mut self, other: &Self, keep: &[bool; SLOTS]) {
         let mut new = [0; SLOTS];
         (self.count, self.goes_on) = (0, false);
         // Kept triangles move to the first slots.
@@ -402,7 +392,7 @@ impl Fragments {
         for (from, place) in other.pixels[..other.len].iter().enumerate() {
             let slot = other.slots[from].cast_unsigned() as usize;
             if keep[slot] {
-                let to = self.put(corner, *place, new[slot]);
+                let to = self.put([other.x[from], other.y[from]], *place, new[slot]);
                 self.shares[to] = other.shares[from];
             }
         }

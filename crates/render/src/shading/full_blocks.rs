@@ -23,7 +23,6 @@ use crate::simd::gather::SLOTS;
 use crate::simd::{Encoding, Lanes as _, Sixteen, Vec3};
 use crate::texture::lanes::Stored;
 use marraztu_core::accuracy::Interpolation;
-use marraztu_core::base::color::Color;
 
 /// The pixels of a tile, in rows that are `stride` pixels apart.
 #[derive(Debug)]
@@ -44,11 +43,11 @@ impl Canvas<'_> {
         }
     }
 
-    /// Fills a block; `at` is the index of its first pixel.
+    /// Fills a block with a colour; `at` is the index of its first pixel.
     #[inline(always)]
-    pub(crate) fn fill(&mut self, at: usize, color: Color) {
+    pub(crate) fn fill(&mut self, at: usize, color: [u8; 4]) {
         for row in self.pixels[at..].chunks_mut(self.stride).take(ROW) {
-            row[..ROW].fill(color.opaque());
+            row[..ROW].fill(color);
         }
     }
 
@@ -75,6 +74,11 @@ pub(crate) struct Blocks {
 }
 
 impl Blocks {
+    /// Returns the number of pixels.
+    pub(crate) const fn pixels(self) -> u64 {
+        self.which.count_ones() as u64 * BLOCK_PIXELS as u64
+    }
+
     /// Calls `each` with the column and row in the tile of the first pixel of each block.
     #[inline(always)]
     pub(crate) fn each(self, mut each: impl FnMut([i32; 2])) {
@@ -332,23 +336,23 @@ pub(crate) fn mix(
 
 /// The lighting of fully covered blocks.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BlockLight<'a, T> {
+pub(crate) struct BlockLight<'a> {
     /// The weighting of the triangle's corners.
     pub(crate) by: Corners<'a>,
     /// The conversion from pixels to positions and normals; `None` if no light reads them.
-    pub(crate) look: Option<Look<T>>,
+    pub(crate) look: Option<Look<f32>>,
     /// The colour of the surface itself.
-    pub(crate) tint: [T; 3],
+    pub(crate) tint: [f32; 3],
     /// The texture that multiplies it.
     pub(crate) texture: Option<PlacedTexture<'a>>,
     /// The vertex colours that multiply it.
-    pub(crate) vertex_colors: Option<&'a CornerValues<T>>,
+    pub(crate) vertex_colors: Option<&'a CornerValues<f32>>,
     /// The lights, if the surface is lit.
     pub(crate) lights: Option<TileLight<'a>>,
     /// The products of the lights and the material.
-    pub(crate) terms: &'a [LightTerm<T>],
+    pub(crate) terms: &'a [LightTerm<f32>],
     /// The emitted light added to every colour, if the surface has any.
-    pub(crate) glow: Option<[T; 3]>,
+    pub(crate) glow: Option<[f32; 3]>,
     /// The encoding, if colours are linear.
     pub(crate) encoding: Option<&'a Encoding>,
 }
@@ -359,7 +363,7 @@ pub(crate) fn light(
     level: Level,
     attributes: &TriangleAttributes<f32>,
     blocks: Blocks,
-    (light, batch, scratch): (BlockLight<'_, f32>, &mut Batch<f32>, &mut TexelScratch),
+    (light, batch, scratch): (BlockLight<'_>, &mut Batch<f32>, &mut TexelScratch),
     canvas: &mut Canvas<'_>,
 ) -> bool {
     with_points!(level, attributes, light.by, simd, points => {
@@ -373,7 +377,7 @@ fn lit<S: Simd>(
     attributes: &TriangleAttributes<f32>,
     points: impl Points<S>,
     blocks: Blocks,
-    (light, batch, scratch): (BlockLight<'_, f32>, &mut Batch<f32>, &mut TexelScratch),
+    (light, batch, scratch): (BlockLight<'_>, &mut Batch<f32>, &mut TexelScratch),
     canvas: &mut Canvas<'_>,
 ) {
     let lanes = Sixteen(simd);

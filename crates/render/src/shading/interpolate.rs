@@ -8,7 +8,6 @@
 //! observer is therefore exact for any triangle.
 
 use fearless_simd::Level;
-use glam::DMat3;
 
 use super::barycentrics::Barycentrics;
 use super::colors::Colors;
@@ -17,7 +16,7 @@ use super::texels::product;
 use super::triangle_attributes::{TriangleAttributes, picked};
 use crate::frame::draw::Draw;
 use crate::frame::{Eye, FramePlan, Viewport};
-use crate::lights::{Batch, Rows, Sample, load, set, store};
+use crate::lights::{Batch, Rows, Sample, columns, load, store, turned};
 use crate::screen::coverage::SUBPIXELS;
 use crate::screen::perspective::between;
 use crate::simd::gather::{SLOTS, paged};
@@ -27,9 +26,17 @@ use crate::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 /// of the second and third from them.
 pub(crate) type CornerValues<T> = [[[T; SLOTS]; 3]; 3];
 
+/// Fragments with their triangles, and their places in them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Points<'a, T> {
+    pub(crate) fragments: &'a Fragments,
+    pub(crate) attributes: &'a TriangleAttributes<T>,
+    pub(crate) barycentrics: &'a Barycentrics<T>,
+}
+
 /// Interpolates attributes at some pixels.
 #[inline(always)]
-fn mixed<M: Lanes, const PAGES: usize>(
+pub(super) fn mixed<M: Lanes, const PAGES: usize>(
     lanes: M,
     rows: &CornerValues<M::Number>,
     slots: M::Slots,
@@ -46,85 +53,44 @@ fn mixed<M: Lanes, const PAGES: usize>(
 pub(crate) enum Mixed<'a, T> {
     /// Light.
     Rows(&'a mut Rows<T>),
+    /// Colours, which are multiplied by the attributes.
+    Product(&'a mut Rows<T>),
     /// Colours, with their rounding thresholds.
     Colors(&'a mut Colors, &'a [T; BATCH]),
 }
 
-/// Interpolates attributes at every pixel.
+/// Interpolates values at every pixel.
 pub(crate) fn mix<T: Number>(
     level: Level,
-    fragments: &Fragments,
-    attributes: &TriangleAttributes<T>,
-    barycentrics: &Barycentrics<T>,
+    points: Points<'_, T>,
+    values: &CornerValues<T>,
     to: Mixed<'_, T>,
 ) {
-    paged!(attributes.count, PAGES => T::run(
-        level,
-        Mix::<T, PAGES> { fragments, attributes, barycentrics, to },
-    ));
+    paged!(points.attributes.count, PAGES => T::run(level, Mix::<T, PAGES> { points, values, to }));
 }
 
 struct Mix<'a, T, const PAGES: usize> {
-    fragments: &'a Fragments,
-    attributes: &'a TriangleAttributes<T>,
-    barycentrics: &'a Barycentrics<T>,
+    points: Points<'a, T>,
+    values: &'a CornerValues<T>,
     to: Mixed<'a, T>,
 }
 
 impl<T: Number, const PAGES: usize> Kernel<T> for Mix<'_, T, PAGES> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { fragments, attributes, barycentrics, mut to } = self;
+        let Self { points: Points { fragments, barycentrics, .. }, values, mut to } = self;
         for at in (0..fragments.len).step_by(M::LANES) {
             let slots = lanes.slots(&fragments.slots, at);
-            let weights = [
-                lanes.load(&barycentrics.weights[0], at),
-                lanes.load(&barycentrics.weights[1], at),
-            ];
-            let value = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
+            let value = mixed::<M, PAGES>(lanes, values, slots, barycentrics.weights_at(lanes, at));
             match &mut to {
                 Mixed::Rows(rows) => store(lanes, value, rows, at),
+                Mixed::Product(rows) => {
+                    store(lanes, product(load(lanes, rows, at), value), rows, at);
+                }
                 Mixed::Colors(colors, thresholds) => {
                     colors.store_by(lanes, value, lanes.load(*thresholds, at), at);
                 }
             }
-        }
-    }
-}
-
-/// Multiplies colours by colours that are interpolated between the corners.
-pub(crate) fn multiply<T: Number>(
-    (level, count): (Level, usize),
-    fragments: &Fragments,
-    values: &CornerValues<T>,
-    barycentrics: &Barycentrics<T>,
-    to: &mut Rows<T>,
-) {
-    paged!(count, PAGES => T::run(
-        level,
-        Multiply::<T, PAGES> { fragments, values, barycentrics, to },
-    ));
-}
-
-struct Multiply<'a, T, const PAGES: usize> {
-    fragments: &'a Fragments,
-    values: &'a CornerValues<T>,
-    barycentrics: &'a Barycentrics<T>,
-    to: &'a mut Rows<T>,
-}
-
-impl<T: Number, const PAGES: usize> Kernel<T> for Multiply<'_, T, PAGES> {
-    #[inline(always)]
-    fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { fragments, values, barycentrics, to } = self;
-        for at in (0..fragments.len).step_by(M::LANES) {
-            let slots = lanes.slots(&fragments.slots, at);
-            let weights = [
-                lanes.load(&barycentrics.weights[0], at),
-                lanes.load(&barycentrics.weights[1], at),
-            ];
-            let value = mixed::<M, PAGES>(lanes, values, slots, weights);
-            store(lanes, product(load(lanes, to, at), value), to, at);
         }
     }
 }
@@ -134,38 +100,35 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Multiply<'_, T, PAGES> {
 pub(crate) fn surface_samples<T: Number>(
     level: Level,
     look: Look<T>,
-    fragments: &Fragments,
-    attributes: &TriangleAttributes<T>,
-    barycentrics: &Barycentrics<T>,
+    points: Points<'_, T>,
     batch: &mut Batch<T>,
 ) {
-    match fragments.shared {
-        true => paged!(attributes.count, PAGES => T::run(
+    let count = points.attributes.count;
+    match points.fragments.shared {
+        true => paged!(count, PAGES => T::run(
             level,
-            SurfaceSamples::<T, PAGES, true> { fragments, attributes, barycentrics, batch, look },
+            SurfaceSamples::<T, PAGES, true> { points, batch, look },
         )),
-        false => paged!(attributes.count, PAGES => T::run(
+        false => paged!(count, PAGES => T::run(
             level,
-            SurfaceSamples::<T, PAGES, false> { fragments, attributes, barycentrics, batch, look },
+            SurfaceSamples::<T, PAGES, false> { points, batch, look },
         )),
     }
 }
 
-/// Returns the columns of a matrix.
-fn matrix<T: Number>(m: DMat3) -> [[T; 3]; 3] {
-    [m.x_axis, m.y_axis, m.z_axis].map(|column| column.to_array().map(T::from_f64))
-}
-
-/// The rays of pixels: x = column a + b, y = row c + d, each times w in perspective; z = -w.
+/// The rays of the observer, and the normal transform of a draw. The rays of pixels: x = column a +
+/// b, y = row c + d, each times w in perspective; z = -w.
 #[derive(Clone, Copy, Debug)]
-struct Rays<T> {
+pub(crate) struct Look<T> {
     parallel: bool,
     x: [T; 2],
     y: [T; 2],
+    /// The columns of the matrix that transforms normals to view space.
+    normals: [[T; 3]; 3],
 }
 
-impl<T: Number> Rays<T> {
-    fn new(plan: &FramePlan) -> Self {
+impl<T: Number> Look<T> {
+    pub(crate) fn new(plan: &FramePlan, draw: &Draw) -> Self {
         let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
         let Viewport { width, height } = plan.viewport;
         let mut x = [2.0 / width / px, -1.0 / px];
@@ -176,22 +139,12 @@ impl<T: Number> Rays<T> {
                 ray[1] += ray[0] * f64::from(shift) / f64::from(SUBPIXELS);
             }
         }
-        let parallel = plan.eye == Eye::Parallel;
-        Self { parallel, x: x.map(T::from_f64), y: y.map(T::from_f64) }
-    }
-}
-
-/// The rays of the observer, and the normal transform of a draw.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Look<T> {
-    rays: Rays<T>,
-    /// The columns of the matrix that transforms normals to view space.
-    normals: [[T; 3]; 3],
-}
-
-impl<T: Number> Look<T> {
-    pub(crate) fn new(plan: &FramePlan, draw: &Draw) -> Self {
-        Self { rays: Rays::new(plan), normals: matrix(draw.view_from_normal) }
+        Self {
+            parallel: plan.eye == Eye::Parallel,
+            x: x.map(T::from_f64),
+            y: y.map(T::from_f64),
+            normals: columns(draw.view_from_normal),
+        }
     }
 
     /// Computes position, normal and direction to the observer of some pixels, from their normals
@@ -201,20 +154,18 @@ impl<T: Number> Look<T> {
     pub(crate) fn at<M: Lanes<Number = T>>(
         &self,
         lanes: M,
-        Vec3([x, y, z]): Vec3<M::R>,
+        normal: Vec3<M::R>,
         [column, row]: [M::R; 2],
         w: M::R,
         depth: impl FnOnce() -> M::R,
     ) -> Sample<M::R> {
-        let Self { rays, normals: [nx, ny, nz] } = *self;
-        let (nx, ny, nz) = (set(lanes, nx), set(lanes, ny), set(lanes, nz));
-        let normal = nx.times(x).plus(ny.times(y)).plus(nz.times(z)).unit();
+        let normal = turned(lanes, self.normals, normal).unit();
         let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
-        let x = column * lanes.set(rays.x[0]) + lanes.set(rays.x[1]);
-        let y = row * lanes.set(rays.y[0]) + lanes.set(rays.y[1]);
+        let x = column * lanes.set(self.x[0]) + lanes.set(self.x[1]);
+        let y = row * lanes.set(self.y[0]) + lanes.set(self.y[1]);
         // In perspective all rays start at the observer; in orthographic projection they are
         // parallel.
-        let (position, to_eye) = if rays.parallel {
+        let (position, to_eye) = if self.parallel {
             (Vec3([x, y, depth()]), Vec3([zero, zero, one]))
         } else {
             (Vec3([x * w, y * w, -w]), Vec3([-x, -y, one]).unit())
@@ -224,9 +175,7 @@ impl<T: Number> Look<T> {
 }
 
 struct SurfaceSamples<'a, T, const PAGES: usize, const SHARED: bool> {
-    fragments: &'a Fragments,
-    attributes: &'a TriangleAttributes<T>,
-    barycentrics: &'a Barycentrics<T>,
+    points: Points<'a, T>,
     batch: &'a mut Batch<T>,
     look: Look<T>,
 }
@@ -236,13 +185,10 @@ impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
 {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { fragments, attributes, barycentrics, batch, look } = self;
+        let Self { points: Points { fragments, attributes, barycentrics }, batch, look } = self;
         for at in (0..fragments.len).step_by(M::LANES) {
             let slots = lanes.slots(&fragments.slots, at);
-            let weights = [
-                lanes.load(&barycentrics.weights[0], at),
-                lanes.load(&barycentrics.weights[1], at),
-            ];
+            let weights = barycentrics.weights_at(lanes, at);
             let normal = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
             let half = lanes.lift(0.5);
             // A shared pixel is lit where its triangle was clamped, others at their centre.

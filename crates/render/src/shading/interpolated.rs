@@ -1,4 +1,5 @@
-//! Computes barycentric coordinates of fragments, in each of the two precisions.
+//! The two precisions of shading: the barycentric coordinates of fragments in each, and the fast
+//! paths of f32.
 
 use crate::simd::dispatch;
 use fearless_simd::{
@@ -7,27 +8,38 @@ use fearless_simd::{
 };
 use glam::DVec3;
 
-use super::barycentrics::{Barycentrics, Clamp, Weigh};
+use super::barycentrics::{Barycentrics, Weigh, interpolate_spans};
+use super::context::Group;
 use super::fragments::Fragments;
-use super::full_blocks::{self, BlockLight, Blocks, Canvas, Corners, Linear as _, Wide};
-use super::spans::interpolate_spans;
+use super::full_blocks::{Linear as _, Wide};
+use super::map_texels::Texels;
+use super::surface::Shader;
 use super::texels::{TexelScratch, TextureSamples, lane_steps};
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
 use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
 use crate::frame::variants::Decoding;
-use crate::lights::{Batch, Light, Rows, set};
+use crate::lights::{Light, Rows, set};
 use crate::screen::coverage::Triangle;
 use crate::screen::weights::{HomogeneousWeights, barycentric, cut_place};
 use crate::simd::gather::{SLOTS, paged, pick};
-use crate::simd::{Lanes as _, Sixteen, in_f64};
+use crate::simd::{Bits, Lanes as _, Sixteen, in_f64};
 use crate::texture::lanes::{Linear, Stored};
 use crate::texture::placement::{Placement, UvRows};
 use marraztu_core::accuracy::{Coverage, Interpolation, Settings};
 use marraztu_core::scene::Texture;
 
-/// A number type in which attributes are interpolated.
-pub(crate) trait Interpolated: AttributeNumber {
+/// A number type in which fragments are shaded. The defaults are those of f64, which has no fast
+/// paths: they handle nothing.
+#[expect(unused_variables, reason = "the defaults read nothing")]
+pub(crate) trait ShadingNumber: Light + AttributeNumber {
+    /// Returns the same shader and group, if their number type is f32.
+    fn single<'s, 'g, 'a>(
+        shader: &'s mut Shader<Self>,
+        group: &'g Group<'a, Self>,
+    ) -> Option<(&'s mut Shader<f32>, &'g Group<'a, f32>)> {
+        None
+    }
     /// Computes all barycentric coordinates sixteen pixels at a time, if the triangles allow it.
     /// Returns whether they do.
     fn find(
@@ -36,32 +48,17 @@ pub(crate) trait Interpolated: AttributeNumber {
         fragments: &Fragments,
         attributes: &TriangleAttributes<Self>,
         to: &mut Barycentrics<Self>,
-    ) -> bool;
+    ) -> bool {
+        false
+    }
     /// Computes the linear barycentric coordinates, except in wide triangles.
     fn find_linear(
         level: Level,
         fragments: &Fragments,
         attributes: &TriangleAttributes<Self>,
         to: &mut Barycentrics<Self>,
-    );
-    /// Interpolates the colours of one triangle in blocks that it covers fully, if one pass is
-    /// enough. Returns whether it did.
-    fn mix_blocks(
-        level: Level,
-        attributes: &TriangleAttributes<Self>,
-        blocks: Blocks,
-        by: Corners<'_>,
-        to: &mut Canvas<'_>,
-    ) -> bool;
-    /// Lights blocks that one triangle covers fully, if one pass per block is enough. Returns
-    /// whether it did.
-    fn light_blocks(
-        level: Level,
-        attributes: &TriangleAttributes<Self>,
-        blocks: Blocks,
-        light: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
-        to: &mut Canvas<'_>,
-    ) -> bool;
+    ) {
+    }
     /// Places a texture on triangles with these texture coordinates, sixteen at a time. Steps are
     /// only needed for mipmaps. Returns a bit mask of the slots that were handled.
     fn place_texture(
@@ -69,26 +66,23 @@ pub(crate) trait Interpolated: AttributeNumber {
         attributes: &TriangleAttributes<Self>,
         texture: (&Texture, (&UvRows, bool)),
         to: &mut Placement,
-    ) -> u64;
-    /// Multiplies the colours of fragments by texels, if this works sixteen pixels at a time.
-    /// Returns a bit mask of the slots that were handled.
-    fn multiply_texels(
+    ) -> u64 {
+        0
+    }
+    /// Reads texels at fragments, if this works sixteen pixels at a time: see
+    /// [`TextureSamples::multiply`] and [`TextureSamples::slopes`]. Returns a bit mask of the slots
+    /// that were handled.
+    fn read_texels(
         level: Level,
-        count: usize,
         samples: &TextureSamples<'_, Self>,
+        what: Texels,
         to: (&mut TexelScratch, &mut Rows<Self>),
-    ) -> u64;
-    /// Computes the slopes of heights at fragments, like [`TextureSamples::slopes`]. Returns a bit
-    /// mask of the slots that were handled.
-    fn find_slopes(
-        level: Level,
-        count: usize,
-        samples: &TextureSamples<'_, Self>,
-        to: (&mut TexelScratch, &mut Rows<Self>),
-    ) -> u64;
+    ) -> u64 {
+        0
+    }
 }
 
-impl<T: Interpolated> Barycentrics<T> {
+impl<T: ShadingNumber> Barycentrics<T> {
     /// Computes the barycentric coordinates of every fragment.
     pub(crate) fn find(
         &mut self,
@@ -122,12 +116,10 @@ impl<T: Interpolated> Barycentrics<T> {
         if fragments.shared {
             self.clamp_to_triangle(level, fragments, attributes);
         }
-        if plan.variants.coverage != Coverage::Exact {
-            T::run(level, Clamp { len: fragments.len, linear: &mut self.linear });
-        }
+        let clamps = plan.variants.coverage != Coverage::Exact;
         paged!(attributes.count, PAGES => T::run(
             level,
-            Weigh::<T, PAGES> { interpolation, fragments, attributes, to: self },
+            Weigh::<T, PAGES> { interpolation, clamps, fragments, attributes, to: self },
         ));
         if attributes.cut != 0 {
             self.find_cut(fragments, attributes, plan, draw);
@@ -144,14 +136,13 @@ impl<T: Interpolated> Barycentrics<T> {
         plan: &FramePlan,
         draw: &Draw,
     ) {
-        let mut slots = attributes.cut & (u64::MAX >> (SLOTS - attributes.count));
-        while slots != 0 {
-            let slot = slots.trailing_zeros();
-            slots &= slots - 1;
-            let number = attributes.numbers[slot as usize];
+        for slot in Bits(attributes.cut & (u64::MAX >> (SLOTS - attributes.count))) {
+            let number = attributes.numbers[slot];
             // One set of planes per triangle serves all of its pixels.
             let of = HomogeneousWeights::new(plan, draw, number, [0; 2]);
-            for i in (0..fragments.len).filter(|i| fragments.slots[*i].cast_unsigned() == slot) {
+            for i in
+                (0..fragments.len).filter(|i| fragments.slots[*i].cast_unsigned() as usize == slot)
+            {
                 let ([second, third], w) = of.at([fragments.x[i], fragments.y[i]]);
                 self.weights[0][i] = T::from_f64(second);
                 self.weights[1][i] = T::from_f64(third);
@@ -187,74 +178,16 @@ impl<T: Interpolated> Barycentrics<T> {
     }
 }
 
-impl Interpolated for f64 {
-    fn find(
-        _: Interpolation,
-        _: Level,
-        _: &Fragments,
-        _: &TriangleAttributes<Self>,
-        _: &mut Barycentrics<Self>,
-    ) -> bool {
-        false
+impl ShadingNumber for f64 {}
+
+impl ShadingNumber for f32 {
+    fn single<'s, 'g, 'a>(
+        shader: &'s mut Shader<Self>,
+        group: &'g Group<'a, Self>,
+    ) -> Option<(&'s mut Shader<Self>, &'g Group<'a, Self>)> {
+        Some((shader, group))
     }
 
-    fn find_linear(
-        _: Level,
-        _: &Fragments,
-        _: &TriangleAttributes<Self>,
-        _: &mut Barycentrics<Self>,
-    ) {
-    }
-
-    fn mix_blocks(
-        _: Level,
-        _: &TriangleAttributes<Self>,
-        _: Blocks,
-        _: Corners<'_>,
-        _: &mut Canvas<'_>,
-    ) -> bool {
-        false
-    }
-
-    fn light_blocks(
-        _: Level,
-        _: &TriangleAttributes<Self>,
-        _: Blocks,
-        _: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
-        _: &mut Canvas<'_>,
-    ) -> bool {
-        false
-    }
-
-    fn place_texture(
-        _: Level,
-        _: &TriangleAttributes<Self>,
-        _: (&Texture, (&UvRows, bool)),
-        _: &mut Placement,
-    ) -> u64 {
-        0
-    }
-
-    fn multiply_texels(
-        _: Level,
-        _: usize,
-        _: &TextureSamples<'_, Self>,
-        _: (&mut TexelScratch, &mut Rows<Self>),
-    ) -> u64 {
-        0
-    }
-
-    fn find_slopes(
-        _: Level,
-        _: usize,
-        _: &TextureSamples<'_, Self>,
-        _: (&mut TexelScratch, &mut Rows<Self>),
-    ) -> u64 {
-        0
-    }
-}
-
-impl Interpolated for f32 {
     fn find(
         interpolation: Interpolation,
         level: Level,
@@ -279,15 +212,12 @@ impl Interpolated for f32 {
             });
         });
         // Wide triangles among others are computed again in f64.
-        let mut wide = attributes.wide;
-        while wide != 0 {
-            let slot = wide.trailing_zeros();
-            wide &= wide - 1;
-            let corners = attributes.corners(slot as usize);
+        for slot in Bits(attributes.wide) {
+            let corners = attributes.corners(slot);
             let Some(triangle) = Triangle::on(attributes.grid, corners) else { continue };
             paged!(attributes.count, PAGES => {
                 dispatch!(level, simd => {
-                    let of = (slot.cast_signed(), &triangle);
+                    let of = (slot, &triangle);
                     find_among::<_, PAGES>(interpolation, simd, fragments, of, attributes, to);
                 });
             });
@@ -309,26 +239,6 @@ impl Interpolated for f32 {
         });
     }
 
-    fn mix_blocks(
-        level: Level,
-        attributes: &TriangleAttributes<Self>,
-        blocks: Blocks,
-        by: Corners<'_>,
-        to: &mut Canvas<'_>,
-    ) -> bool {
-        full_blocks::mix(level, attributes, blocks, by, to)
-    }
-
-    fn light_blocks(
-        level: Level,
-        attributes: &TriangleAttributes<Self>,
-        blocks: Blocks,
-        light: (BlockLight<'_, Self>, &mut Batch<Self>, &mut TexelScratch),
-        to: &mut Canvas<'_>,
-    ) -> bool {
-        full_blocks::light(level, attributes, blocks, light, to)
-    }
-
     fn place_texture(
         level: Level,
         attributes: &TriangleAttributes<Self>,
@@ -344,31 +254,22 @@ impl Interpolated for f32 {
         done
     }
 
-    fn multiply_texels(
+    fn read_texels(
         level: Level,
-        count: usize,
         samples: &TextureSamples<'_, Self>,
+        what: Texels,
         (scratch, to): (&mut TexelScratch, &mut Rows<Self>),
     ) -> u64 {
-        match samples.decoding {
-            Decoding::Stored => paged!(count, PAGES => {
-                dispatch!(level, simd => samples.multiply::<_, Stored, PAGES>(simd, scratch, to));
-            }),
-            Decoding::Linear => paged!(count, PAGES => {
-                dispatch!(level, simd => samples.multiply::<_, Linear, PAGES>(simd, scratch, to));
-            }),
-        }
-        samples.texture.placement.known
-    }
-
-    fn find_slopes(
-        level: Level,
-        count: usize,
-        samples: &TextureSamples<'_, Self>,
-        (scratch, to): (&mut TexelScratch, &mut Rows<Self>),
-    ) -> u64 {
-        paged!(count, PAGES => {
-            dispatch!(level, simd => samples.slopes::<_, PAGES>(simd, scratch, to));
+        paged!(samples.points.attributes.count, PAGES => {
+            dispatch!(level, simd => match (what, samples.decoding) {
+                (Texels::Colors, Decoding::Stored) => {
+                    samples.multiply::<_, Stored, PAGES>(simd, scratch, to);
+                }
+                (Texels::Colors, Decoding::Linear) => {
+                    samples.multiply::<_, Linear, PAGES>(simd, scratch, to);
+                }
+                (Texels::Slopes, _) => samples.slopes::<_, PAGES>(simd, scratch, to),
+            });
         });
         samples.texture.placement.known
     }
@@ -406,11 +307,12 @@ fn find_among<S: Simd, const PAGES: usize>(
     interpolation: Interpolation,
     simd: S,
     fragments: &Fragments,
-    (slot, triangle): (i32, &Triangle),
+    (slot, triangle): (usize, &Triangle),
     attributes: &TriangleAttributes<f32>,
     to: &mut Barycentrics<f32>,
 ) {
     let lanes = Sixteen(simd);
+    let slot = i32::try_from(slot).expect("there are 64 slots");
     let [[_, er, fr], [_, ed, fd]] = triangle.steps();
     // Relative to the first fragment: the integers stay small enough for f64.
     let [left, top] = [fragments.x[0], fragments.y[0]];
@@ -486,11 +388,6 @@ fn find_in_one<S: Simd>(
     }
 }
 
-/// A number type that fragments are shaded in.
-pub(crate) trait ShadingNumber: Light + Interpolated {}
-
-impl<T: Light + Interpolated> ShadingNumber for T {}
-
 #[cfg(test)]
 #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
 mod tests {
@@ -518,7 +415,7 @@ mod tests {
         let wide = Triangle::on(attributes.grid, attributes.corners(1)).unwrap();
         let word = |i: usize| 1 << 62 | u64::from(!u32::from(i % 5 > 2));
         let mut fragments = Fragments::default();
-        fragments.list(level, &std::array::from_fn(word), [8, 16]);
+        fragments.list(level, &std::array::from_fn(word), [8, 16], 0);
         let interpolation = Interpolation::Perspective;
         let mut found = Barycentrics::default();
         assert!(f32::find(interpolation, level, &fragments, &attributes, &mut found));
@@ -530,7 +427,8 @@ mod tests {
         }
         assert!(found.linear == linear.linear);
         let (fragments, attributes) = (&fragments, &attributes);
-        let all = Weigh::<f32, 1> { interpolation, fragments, attributes, to: &mut linear };
+        let to = &mut linear;
+        let all = Weigh::<f32, 1> { interpolation, clamps: false, fragments, attributes, to };
         dispatch!(level, simd => all.run(Sixteen(simd)));
         assert!(found.weights == linear.weights && found.w == linear.w);
     }

@@ -8,7 +8,7 @@
 use crate::simd::dispatch;
 use fearless_simd::Level;
 
-use super::blend::{Blend, Way};
+use super::blend::Blend;
 use super::colors::Sums;
 use super::context::ShadingContext;
 use super::interpolated::ShadingNumber;
@@ -59,12 +59,12 @@ impl Layered {
             if sequence.is_empty() || sequence != before {
                 let mut behind = Sums::new(plan.variants.are_linear());
                 shader.add_entries(context, &opaque, corner, &mut behind);
-                blend.begin(|place| behind.parts(place), way(plan));
+                blend.begin(|place| behind.parts(place), plan.transparency);
                 while more {
                     for i in 0..layers.len() {
                         let row = layers.row(plan.transparency, i);
                         blend.place(level, || distances(level, plan, &row));
-                        shader.layer(context, &row, corner, blend);
+                        shader.color_triangles(context, &row, corner, &mut Out::Layer(blend));
                     }
                     more = layers.take(level, order, at, &opaque);
                 }
@@ -80,21 +80,13 @@ impl Layered {
         let Self { layers, sequence, .. } = self;
         sequence.clear();
         // The weights of a mean differ between samples.
-        if samples > 1 && layers.are_all() && way(plan) == Way::Over {
+        if samples > 1 && layers.are_all() && plan.transparency != Transparency::Weighted {
             let number = |word: &u64| word & u64::from(u32::MAX);
             sequence.extend(opaque.iter().map(number));
             for i in 0..layers.len() {
                 sequence.extend(layers.row(plan.transparency, i).iter().map(number));
             }
         }
-    }
-}
-
-/// Returns the blending method of a frame's layers.
-const fn way(plan: &FramePlan) -> Way {
-    match plan.transparency {
-        Transparency::Weighted => Way::Weighted,
-        Transparency::Exact | Transparency::Objects | Transparency::Threshold => Way::Over,
     }
 }
 
@@ -106,18 +98,14 @@ fn distances(level: Level, plan: &FramePlan, words: &[u64; BLOCK_PIXELS]) -> [f6
     for (depth, word) in depths.iter_mut().zip(words) {
         *depth = f64::from(depth_format::depth(format, key(*word)));
     }
-    let m = &plan.clip_from_view;
-    dispatch!(level, _ => in_view(plan.eye, [m.z_axis.z, m.w_axis.z], &mut depths));
-    depths
-}
-
-/// Converts depths to distances; zz and zw are entries of the projection.
-#[inline(always)]
-fn in_view(eye: Eye, [zz, zw]: [f64; 2], depths: &mut [f64; BLOCK_PIXELS]) {
-    match eye {
-        Eye::Point => depths.iter_mut().for_each(|depth| *depth = zw / (*depth + zz)),
-        Eye::Parallel => depths.iter_mut().for_each(|depth| *depth = (zw - *depth) / zz),
+    // The entries zz and zw of the projection.
+    let (zz, zw) = (plan.clip_from_view.z_axis.z, plan.clip_from_view.w_axis.z);
+    let all = depths.iter_mut();
+    match plan.eye {
+        Eye::Point => dispatch!(level, _ => all.for_each(|depth| *depth = zw / (*depth + zz))),
+        Eye::Parallel => dispatch!(level, _ => all.for_each(|depth| *depth = (zw - *depth) / zz)),
     }
+    depths
 }
 
 impl<T: ShadingNumber> Shader<T> {
@@ -129,11 +117,7 @@ impl<T: ShadingNumber> Shader<T> {
         corner: [i32; 2],
         sums: &mut Sums,
     ) {
-        let shown = self.fragments.list(context.level, entries, corner);
-        if shown.triangles != 0 {
-            self.share_evenly(context);
-            self.color_fragments(context, corner, &mut Out::Sums(sums));
-        }
+        self.color_triangles(context, entries, corner, &mut Out::Sums(sums));
         for (place, word) in entries.iter().enumerate() {
             match seen(*word) {
                 Visible::Triangle(_) => {}
@@ -145,29 +129,24 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Blends the triangles of some words over a block; words of 0 have no triangle.
-    fn layer(
+    /// Colours the triangles of some words of a block, each with one share of its pixel; words of 0
+    /// have no triangle.
+    fn color_triangles(
         &mut self,
         context: &ShadingContext<'_, T>,
         words: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
-        blend: &mut Blend,
+        out: &mut Out<'_, '_>,
     ) {
-        let shown = self.fragments.list(context.level, words, corner);
-        if shown.triangles != 0 {
-            self.share_evenly(context);
-            self.color_fragments(context, corner, &mut Out::Layer(blend));
+        if self.fragments.list(context.level, words, corner, 0).triangles == 0 {
+            return;
         }
-    }
-
-    /// Gives every fragment one share. With several samples, its pixel's centre may be outside of
-    /// its triangle.
-    fn share_evenly(&mut self, context: &ShadingContext<'_, T>) {
-        const ONE: [i32; BLOCK_PIXELS] = [1; BLOCK_PIXELS];
+        // With several samples, a pixel's centre may be outside of its triangle.
         if context.frame.sample_positions().are_many() {
-            self.fragments.share(&ONE);
+            self.fragments.share(&[1; BLOCK_PIXELS]);
         } else {
             self.fragments.shares.fill(1);
         }
+        self.color_fragments(context, out);
     }
 }

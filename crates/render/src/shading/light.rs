@@ -16,7 +16,7 @@ use super::shadows::{BatchShadows, place_vertices};
 use super::triangle_attributes::TriangleAttributes;
 use crate::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
 use crate::frame::{Eye, FramePlan};
-use crate::lights::{Batch, LightTerm, Together, load, set, store};
+use crate::lights::{Batch, LightTerm, Together, columns, load, set, store, turned};
 use crate::plan::tile::TileLight;
 use crate::shadow::rays::{Origins, RayScratch};
 use crate::shadow::tracer::Tracer;
@@ -332,7 +332,6 @@ impl<T: Number> ToView<T> {
     fn new(plan: &FramePlan, draw: &Draw) -> Self {
         let middle = near_observer(draw);
         let numbers = |v: DVec3| v.to_array().map(T::from_f64);
-        let columns = |m: DMat3| [m.x_axis, m.y_axis, m.z_axis].map(numbers);
         Self {
             middle: numbers(middle),
             middle_in_view: numbers(draw.view_from_object.transform_point3(middle)),
@@ -359,17 +358,6 @@ fn near_observer(draw: &Draw) -> DVec3 {
     let observer = draw.view_from_object.inverse().w_axis.truncate();
     let near = if observer.is_finite() { bounds.nearest_to(observer) } else { bounds.centre() };
     dvec3(near.as_vec3().to_array())
-}
-
-/// Multiplies vectors by a matrix given by its columns.
-#[inline(always)]
-fn turned<M: Lanes>(
-    lanes: M,
-    [a, b, c]: [[M::Number; 3]; 3],
-    Vec3([x, y, z]): Vec3<M::R>,
-) -> Vec3<M::R> {
-    let (a, b, c) = (set(lanes, a), set(lanes, b), set(lanes, c));
-    a.times(x).plus(b.times(y)).plus(c.times(z))
 }
 
 /// Transforms a batch from object space to view space.
@@ -412,12 +400,22 @@ pub(crate) fn run<T: ShadingNumber>(
     batch: &mut Batch<T>,
     shadows: Option<BatchShadows<'_>>,
 ) {
-    let Some(mut shadows) = shadows else {
-        return set_lights(stages.iter().zip(terms), level, batch);
-    };
-    batch.darken();
-    for (stage, term) in stages.iter().zip(terms) {
-        shadows.add_light(stage, term, level, batch);
+    run_some(stages.iter().zip(terms), level, batch, shadows);
+}
+
+/// Sets the light at every position of a batch to the sum of some lights visible from it.
+fn run_some<'a, T: ShadingNumber>(
+    lights: impl Iterator<Item = (&'a Stage, &'a LightTerm<T>)> + Clone,
+    level: Level,
+    batch: &mut Batch<T>,
+    shadows: Option<BatchShadows<'_>>,
+) {
+    match shadows {
+        None => set_lights(lights, level, batch),
+        Some(mut shadows) => {
+            batch.darken();
+            lights.for_each(|(stage, term)| shadows.add_light(stage, term, level, batch));
+        }
     }
 }
 
@@ -429,20 +427,13 @@ impl TileLight<'_> {
         terms: &[LightTerm<T>],
         level: Level,
         batch: &mut Batch<T>,
-        mut shadows: Option<BatchShadows<'_>>,
+        shadows: Option<BatchShadows<'_>>,
     ) {
         let Some(kept) = self.kept else {
             return run(self.stages, terms, level, batch, shadows);
         };
-        let kept =
-            kept.iter().map(|place| (&self.stages[*place as usize], &terms[*place as usize]));
-        match &mut shadows {
-            None => set_lights(kept, level, batch),
-            Some(shadows) => {
-                batch.darken();
-                kept.for_each(|(stage, term)| shadows.add_light(stage, term, level, batch));
-            }
-        }
+        let of = |place: &u32| (&self.stages[*place as usize], &terms[*place as usize]);
+        run_some(kept.iter().map(of), level, batch, shadows);
     }
 }
 

@@ -2,7 +2,7 @@
 //! last picture are reused.
 
 use super::colors::prepare_linear;
-use super::rounding::block_thresholds;
+use super::quantize::block_thresholds;
 use crate::frame::FramePlan;
 use crate::frame::draw::{Pipeline, Shaded};
 use crate::frame::variants::Decoding;
@@ -56,7 +56,7 @@ impl<T: Number> LightTerms<T> {
                 let PhongMaterial { exponent, floor, .. } = *material;
                 let highlight = Power::by(plan.variants.power, exponent, floor);
                 let lights = stages.iter().map(|stage| &plan.lights[stage.light as usize]);
-                let term = |light| LightTerm::with_highlight(light, material, highlight);
+                let term = |light| LightTerm::new(light, material, highlight);
                 terms.extend(lights.map(term));
             }
         }
@@ -64,17 +64,16 @@ impl<T: Number> LightTerms<T> {
 
     /// Prepares mipmaps, and reuses the mipmaps of the last picture.
     fn prepare_mips(&mut self, plan: &FramePlan) {
-        let before = std::mem::take(&mut self.mips);
-        let mut before: Vec<Option<Mips>> = before.into_iter().map(Some).collect();
+        let mut before = std::mem::take(&mut self.mips);
         for pipeline in &plan.pipelines {
             let Pipeline::Shaded(shaded) = pipeline else { continue };
             for (texture, decoding) in mipped(plan, shaded) {
                 if self.mips_of(texture, decoding).is_none() {
-                    let is_it = |mips: &&mut Option<Mips>| {
-                        mips.as_ref().is_some_and(|mips| mips.are_of(texture, decoding))
-                    };
-                    let known = before.iter_mut().find(is_it).and_then(Option::take);
-                    self.mips.push(known.unwrap_or_else(|| Mips::new(texture, decoding)));
+                    let known = before.iter().position(|mips| mips.are_of(texture, decoding));
+                    self.mips.push(match known {
+                        Some(at) => before.swap_remove(at),
+                        None => Mips::new(texture, decoding),
+                    });
                 }
             }
         }

@@ -7,12 +7,9 @@
 use crate::accel::Accelerated as _;
 use glam::{DMat3, DVec3};
 
-use super::barycentrics::Barycentrics;
-use super::context::ShadingContext;
-use super::fragments::Fragments;
-use super::groups::Group;
+use super::context::{Group, ShadingContext};
+use super::interpolate::Points;
 use super::interpolated::ShadingNumber;
-use super::triangle_attributes::TriangleAttributes;
 use crate::frame::draw::Draw;
 use crate::screen::weights::Weights;
 use crate::shadow::rays::Origins;
@@ -24,14 +21,12 @@ use marraztu_core::scene::{Normals, dvec3};
 
 /// Sets the points at which fragments are lit.
 pub(crate) fn place_fragments<T: ShadingNumber>(
-    context: &ShadingContext<'_, T>,
+    group: &Group<'_, T>,
     (tracer, caster): (&Tracer<'_>, u32),
-    group: &Group<'_>,
-    (fragments, attributes): (&Fragments, &TriangleAttributes<T>),
-    barycentrics: &Barycentrics<T>,
+    Points { fragments, attributes, barycentrics }: Points<'_, T>,
     origins: &mut Origins,
 ) {
-    let ShadingContext { plan, frame, .. } = *context;
+    let ShadingContext { plan, frame, .. } = *group.context;
     origins.begin(Some(caster), true);
     let vertices = frame.corners_of(group.draw_index);
     let is_smooth = plan.variants.terminator == Terminator::Smooth;

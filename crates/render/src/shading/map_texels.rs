@@ -2,19 +2,16 @@
 
 use crate::simd::dispatch;
 
-use super::barycentrics::Barycentrics;
-use super::context::ShadingContext;
-use super::far_texture::FarTexture;
-use super::fragments::Fragments;
-use super::groups::Group;
+use super::context::{Group, ShadingContext};
+use super::interpolate::Points;
 use super::interpolated::ShadingNumber;
-use super::texels::{PlacedTexture, TexelScratch, TextureSamples, footprint, steps};
+use super::texels::{FarTexture, PlacedTexture, TexelScratch, TextureSamples, footprint, steps};
 use super::triangle_attributes::{TriangleAttributes, asks_ahead};
 use crate::frame::variants::Decoding;
 use crate::lights::Rows;
 use crate::screen::weights::HomogeneousWeights;
 use crate::simd::gather::SLOTS;
-use crate::simd::{Number, Vec3};
+use crate::simd::{Bits, Number, Vec3};
 use crate::texture::lanes::Sampler;
 use crate::texture::mips::Mips;
 use crate::texture::placement::{Placement, fits_f32, texels};
@@ -30,37 +27,27 @@ use marraztu_core::scene::Texture;
 pub(super) struct TexelSource<'a> {
     texture: &'a Texture,
     mips: Option<&'a Mips>,
-    filter: Filter,
+    pub(super) filter: Filter,
     decoding: Decoding,
 }
 
 impl<'a> TexelSource<'a> {
-    /// Returns a texture of colours, read by the filter of the frame.
-    pub(super) fn of_colors<T: Number>(
+    /// Returns a texture read by the filter of the frame.
+    pub(super) fn new<T: Number>(
         context: &ShadingContext<'a, T>,
         texture: &'a Shared<Texture>,
+        decoding: Decoding,
     ) -> Self {
-        let decoding = context.plan.variants.decoding();
         let mips = context.terms.mips_of(texture, decoding);
         Self { texture, mips, filter: context.plan.filter, decoding }
     }
 
-    /// Returns a texture of numbers, which is never decoded, read by the filter of the frame.
-    pub(super) fn of_numbers<T: Number>(
+    /// Returns a texture of colours.
+    pub(super) fn of_colors<T: Number>(
         context: &ShadingContext<'a, T>,
         texture: &'a Shared<Texture>,
     ) -> Self {
-        let mips = context.terms.mips_of(texture, Decoding::Stored);
-        Self { texture, mips, filter: context.plan.filter, decoding: Decoding::Stored }
-    }
-
-    /// Returns a texture of heights or normals, read by the filter of bump maps.
-    pub(super) fn of_bumps<T: Number>(
-        context: &ShadingContext<'a, T>,
-        texture: &'a Shared<Texture>,
-    ) -> Self {
-        let filter = context.plan.variants.bump_filter();
-        Self { filter, ..Self::of_numbers(context, texture) }
+        Self::new(context, texture, context.plan.variants.decoding())
     }
 
     /// Returns a sampler for lanes. `None` if the texture has no texels.
@@ -96,64 +83,51 @@ pub(crate) struct TexturePlacement {
 
 /// The kind of data read from a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Texels {
+pub(crate) enum Texels {
     /// Red, green and blue, multiplied into the rows.
     Colors,
     /// The slopes of heights along u and v, per texel, which replace the first two rows.
     Slopes,
 }
 
-/// The fragments to read texels for.
-pub(super) struct Points<'a, T> {
-    pub(super) fragments: &'a Fragments,
-    pub(super) attributes: &'a TriangleAttributes<T>,
-    pub(super) barycentrics: &'a Barycentrics<T>,
-}
-
 impl<T: ShadingNumber> Points<'_, T> {
     /// Reads a map at all fragments: sixteen pixels at a time, and one by one for the rest. `base`
     /// is the previous content of rows of colours.
     pub(super) fn read(
-        &self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        (source, what, new): (TexelSource<'_>, Texels, bool),
+        self,
+        group: &Group<'_, T>,
+        (source, what): (TexelSource<'_>, Texels),
         placed: &mut TexturePlacement,
         (base, to): ([f64; 3], &mut Rows<T>),
     ) {
-        let Self { fragments, attributes, barycentrics } = *self;
+        let Self { attributes, .. } = self;
         let mut done = 0;
         if let Some(sampler) = source.sampler() {
-            if new {
-                place(context, group, attributes, (source.texture, &sampler), placed);
+            if attributes.are_new {
+                place(group, attributes, (source.texture, &sampler), placed);
             }
             let TexturePlacement { placement, far, scratch } = placed;
             let texture = PlacedTexture { placement, far, sampler: &sampler };
+            let samples = TextureSamples { points: self, texture, decoding: source.decoding };
             let to = (scratch, &mut *to);
-            let decoding = source.decoding;
-            let samples = TextureSamples { fragments, barycentrics, texture, decoding };
-            done = match what {
-                Texels::Colors => T::multiply_texels(context.level, attributes.count, &samples, to),
-                Texels::Slopes => T::find_slopes(context.level, attributes.count, &samples, to),
-            };
+            done = T::read_texels(group.context.level, &samples, what, to);
         }
         // The slots that lanes could not handle are read one by one.
         let slots = u64::MAX >> (SLOTS - attributes.count);
         if done & slots != slots {
-            self.read_one_by_one(context, group, (source, what, done), (base, to));
+            self.read_one_by_one(group, (source, what, done), (base, to));
         }
     }
 
     /// Reads a map pixel by pixel, except for the triangles in the slots `done`.
     fn read_one_by_one(
-        &self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
+        self,
+        group: &Group<'_, T>,
         (source, what, done): (TexelSource<'_>, Texels, u64),
         (base, to): ([f64; 3], &mut Rows<T>),
     ) {
-        let plan = context.plan;
-        let Self { fragments, attributes, barycentrics } = *self;
+        let ShadingContext { level, plan, .. } = *group.context;
+        let Self { fragments, attributes, barycentrics } = self;
         let (mut corners, mut all_steps) = ([None; SLOTS], [None; SLOTS]);
         for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
             corners[slot] = uvs(group.draw, *number);
@@ -162,7 +136,7 @@ impl<T: ShadingNumber> Points<'_, T> {
             }
         }
         // Dispatched so rounding down uses the processor's instruction, if it has one.
-        dispatch!(context.level, _ => for i in 0..fragments.len {
+        dispatch!(level, _ => for i in 0..fragments.len {
             let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
             if done >> slot & 1 == 1 {
                 continue;
@@ -203,12 +177,12 @@ impl<T: ShadingNumber> Points<'_, T> {
 
 /// Computes the placement of a texture on the triangles of a list.
 pub(super) fn place<T: ShadingNumber>(
-    context: &ShadingContext<'_, T>,
-    group: &Group<'_>,
+    group: &Group<'_, T>,
     attributes: &TriangleAttributes<T>,
     (texture, sampler): (&Texture, &Sampler<'_>),
     TexturePlacement { placement, far, .. }: &mut TexturePlacement,
 ) {
+    let ShadingContext { level, plan, .. } = *group.context;
     placement.clear();
     far.clear();
     let mesh = &group.draw.model.mesh;
@@ -230,21 +204,19 @@ pub(super) fn place<T: ShadingNumber>(
             (rows[0][slot], rows[1][slot]) = (u, v);
         }
     }
-    let reads_mips = sampler.reads_mips();
+    let reads_mips = sampler.filter.reads_mips();
     let uvs = (&rows, reads_mips);
-    let done = T::place_texture(context.level, attributes, (texture, uvs), placement);
+    let done = T::place_texture(level, attributes, (texture, uvs), placement);
     // Triangles that sixteen lanes could not place exactly.
-    let mut others = placement.known & !done;
+    let others = placement.known & !done;
     // Dispatched so rounding down uses the processor's instruction, if it has one.
-    dispatch!(context.level, _ => while others != 0 {
-        let slot = others.trailing_zeros() as usize;
-        others &= others - 1;
+    dispatch!(level, _ => for slot in Bits(others) {
         let uvs = each([0, 1, 2], |corner| rows[corner].map(|row| f64::from(row[slot])));
         let texels = texels(uvs, texture);
         if !fits_f32(&texels) {
             let Some(own) = FarTexture::new(slot, uvs, texture, || {
                 let number = attributes.numbers[slot];
-                HomogeneousWeights::new(context.plan, group.draw, number, [0; 2])
+                HomogeneousWeights::new(plan, group.draw, number, [0; 2])
             }) else {
                 placement.known &= !(1 << slot);
                 continue;
@@ -252,7 +224,7 @@ pub(super) fn place<T: ShadingNumber>(
             far.push(own);
         }
         let steps = match reads_mips {
-            true => steps((context.plan, group.draw), attributes, slot),
+            true => steps((plan, group.draw), attributes, slot),
             false => None,
         };
         placement.set(slot, texels, steps);

@@ -4,14 +4,14 @@
 //! `runs` of pixels with the same primitive and fetches the attributes of their triangles
 //! (`triangle_attributes`). It computes barycentric coordinates (`barycentrics`), interpolates
 //! attributes (`interpolate`), lights fragments per pixel, face or vertex (`light`) unless they are
-//! in shadow (`shadows`), and multiplies by the surface colour (`textured`). `quantize` converts
-//! the result to bytes, and `resolve` averages samples (MSAA resolve).
+//! in shadow (`shadows`), and multiplies by the surface colour (`surface_maps`). `quantize`
+//! converts the result to bytes, and `resolve` averages samples (MSAA resolve).
 //!
 //! Blocks with the same surface are `waiting` for each other and are coloured together. Blocks of
-//! triangles of about a pixel (`tiny_blocks`) are coloured without looking triangles up (`tiny`).
+//! triangles of about a pixel are coloured without looking triangles up (`tiny`).
 //! Blocks that one triangle covers fully (`blocks`) take all of these steps in one pass without a
 //! list (`full_blocks`). Blocks that transparent triangles reach are coloured layer by layer
-//! (`layers`), each with its `opacity`, and combined by alpha blending (`blend`).
+//! (`layers`), each with its opacity, and combined by alpha blending (`blend`).
 
 pub(crate) mod barycentrics;
 mod blend;
@@ -23,34 +23,24 @@ pub(crate) mod context;
 pub(crate) mod corner_light;
 pub(crate) mod explain;
 pub(crate) mod face_colors;
-mod far_texture;
 pub(crate) mod fragments;
 mod full_blocks;
-mod glow;
-mod groups;
 mod interpolate;
 pub(crate) mod interpolated;
-mod kept;
 mod layers;
 pub(crate) mod light;
 pub(crate) mod light_terms;
 mod lit_points;
-mod map_rows;
 mod map_texels;
-mod opacity;
 pub(crate) mod painter;
 pub(crate) mod pixel_color;
 pub(crate) mod quantize;
 mod resolve;
-pub(crate) mod rounding;
 mod runs;
 pub(crate) mod shadows;
-pub(crate) mod shown_faces;
-mod spans;
 pub(crate) mod surface;
+mod surface_maps;
 mod texels;
-mod textured;
 mod tiny;
-pub(crate) mod tiny_blocks;
 pub(crate) mod triangle_attributes;
 mod waiting;

@@ -12,21 +12,18 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::colors::Sums;
-use super::context::ShadingContext;
+use super::context::{ShadingContext, group_of};
 use super::full_blocks::{Blocks, Canvas};
 use super::interpolated::ShadingNumber;
-use super::kept::Kept;
 use super::layers::Layered;
-use super::resolve::Samples;
+use super::resolve::{Kept, Samples};
 use super::surface::{Out, Shader};
-use super::tiny_blocks::Tiny;
 use crate::frame::FramePlan;
-use crate::frame::color_path::PathPixels;
 use crate::raster::tile::Visibility;
 use crate::screen::coverage::PixelBox;
 use crate::screen::sample_positions::{ALL, FOUR};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
-use crate::shadow::rays::RayCount;
+use crate::simd::{BATCH, Bits};
 use marraztu_core::accuracy::LightAt;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
@@ -121,7 +118,7 @@ const fn corner_in_tile(block: usize) -> [usize; 2] {
 #[derive(Debug)]
 #[repr(align(128))]
 pub(crate) struct Painter<T> {
-    shader: Shader<T>,
+    pub(crate) shader: Shader<T>,
     visibility: Visibility,
     layered: Layered,
     samples: Samples,
@@ -141,22 +138,7 @@ impl<T: ShadingNumber> Default for Painter<T> {
     }
 }
 
-impl<T: ShadingNumber + Tiny> Painter<T> {
-    /// Begins a frame.
-    pub(crate) fn begin(&mut self) {
-        self.shader.begin();
-    }
-
-    /// Returns the shadow rays since the frame began.
-    pub(crate) const fn ray_count(&self) -> RayCount {
-        self.shader.ray_count()
-    }
-
-    /// The pixels of each path since the frame began.
-    pub(crate) const fn path_pixels(&self) -> PathPixels {
-        self.shader.path_pixels()
-    }
-
+impl<T: ShadingNumber> Painter<T> {
     /// Paints a tile of the picture into its band.
     pub(crate) fn paint(
         &mut self,
@@ -282,7 +264,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
                 };
             } else {
                 if !is_filled {
-                    canvas.fill(at, context.plan.background);
+                    canvas.fill(at, context.plan.background.opaque());
                 }
                 shows = false;
             }
@@ -305,12 +287,8 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         while left != 0 {
             let first = left.trailing_zeros() as usize;
             let Some(number) = self.visibility.whole(first) else { return };
-            let (mut others, mut which) = (left, 0);
-            while others != 0 {
-                let block = others.trailing_zeros() as usize;
-                others &= others - 1;
-                which |= u64::from(self.visibility.whole(block) == Some(number)) << block;
-            }
+            let is_own = |block: &usize| self.visibility.whole(*block) == Some(number);
+            let which = Bits(left).filter(is_own).fold(0, |which, block| which | 1 << block);
             left &= !which;
             let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
             self.shader.full_blocks(context, number, blocks, canvas);
@@ -332,7 +310,7 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
         }
         shader.finish_waiting(context, canvas);
         let mut sums = Sums::new(context.plan.variants.are_linear());
-        let shows = shader.add_samples(context, (samples, planes), corner, &mut sums);
+        let shows = shader.add_samples(context, (samples, planes), corner, (&mut sums, None));
         canvas.put(at, &sums.means(FOUR.ilog2()));
         shows
     }
@@ -390,12 +368,14 @@ impl<T: ShadingNumber + Tiny> Painter<T> {
                 sums.add_to_all(context.level, kept.parts(), &[ALL; BLOCK_PIXELS]);
             } else {
                 let mut out = Out::Kept(sums, kept, BLOCK_PIXELS);
-                shader.full_block(context, number, corner, &mut out);
+                shader.fragments.list_full_block(number, corner);
+                shader.fragments.shares = [ALL; BATCH];
+                shader.color_group(&group_of(context, number), &mut out);
             }
         } else {
             let planes = visibility.planes(block);
             samples.compare(context.level, planes);
-            shader.add_pass(context, (samples, planes), corner, (sums, kept));
+            shader.add_samples(context, (samples, planes), corner, (sums, Some(kept)));
         }
     }
 

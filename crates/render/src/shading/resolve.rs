@@ -6,19 +6,17 @@
 //! fit.
 
 use crate::simd::dispatch;
-use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x16};
+use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x16, u32x16};
 
-use super::colors::Sums;
-use super::context::ShadingContext;
-use super::groups::one_group;
+use super::colors::{Colors, Sums};
+use super::context::{ShadingContext, one_group};
 use super::interpolated::ShadingNumber;
-use super::kept::Kept;
 use super::runs::Shown;
 use super::surface::{Out, Shader};
 use crate::raster::visibility_buffer::{BACKGROUND, Planes, Visible, seen_number};
 use crate::screen::sample_positions::FOUR;
 use crate::screen::tiles::BLOCK_PIXELS;
-use crate::simd::BATCH;
+use crate::simd::{BATCH, Bits};
 
 /// The primitives that the samples of a block's pixels show.
 #[derive(Debug)]
@@ -103,65 +101,95 @@ impl Samples {
     }
 }
 
-/// The part of a block that remains to be lit.
-#[derive(Debug)]
-struct Unlit<'a> {
-    /// The entries of the first sample; 0 for pixels that are lit.
-    entries: &'a [u64; BLOCK_PIXELS],
-    /// For each sample, the pixels with an unlit primitive that no earlier sample shows.
-    pixels: &'a [u64; FOUR],
+/// The colour of one triangle for each pixel of a block, from earlier passes over the picture.
+///
+/// Sixteen and sixty-four samples per pixel are drawn four at a time. Light is evaluated at the
+/// centre of a pixel, or at the triangle's point nearest to it. Every pass would therefore compute
+/// the same colour for a triangle in a pixel. The colour is cached, and only triangles that earlier
+/// passes did not show are lit.
+#[derive(Clone, Debug)]
+pub(crate) struct Kept {
+    /// The triangles' numbers; [`NOTHING`] without a cached colour.
+    numbers: [u32; BLOCK_PIXELS],
+    /// The colours, in the fixed-point format of [`Colors`].
+    parts: [[u32; 4]; BLOCK_PIXELS],
+}
+
+/// The number of the background, which is never cached.
+const NOTHING: u32 = u32::MAX;
+
+impl Default for Kept {
+    fn default() -> Self {
+        Self { numbers: [NOTHING; BLOCK_PIXELS], parts: [[0; 4]; BLOCK_PIXELS] }
+    }
+}
+
+impl Kept {
+    /// Returns whether all pixels hold the colour of one triangle.
+    pub(crate) fn are_all_of(&self, number: u32) -> bool {
+        self.numbers.iter().all(|own| *own == number)
+    }
+
+    /// Returns the pixels that hold the colour of the triangle with their number.
+    pub(crate) fn known(&self, level: Level, numbers: &[u32; BLOCK_PIXELS]) -> u64 {
+        dispatch!(level, simd => {
+            let mut known = 0;
+            for at in (0..BLOCK_PIXELS).step_by(16) {
+                let own = u32x16::from_slice(simd, &self.numbers[at..at + 16]);
+                let asked = u32x16::from_slice(simd, &numbers[at..at + 16]);
+                let is_nothing = own.simd_eq(NOTHING);
+                known |= (own.simd_eq(asked) & !is_nothing).to_bitmask() << at;
+            }
+            known
+        })
+    }
+
+    /// Returns the colours of all pixels.
+    pub(crate) const fn parts(&self) -> &[[u32; 4]; BLOCK_PIXELS] {
+        &self.parts
+    }
+
+    /// Caches the colours of some fragments, each in its pixel and for the triangle of its slot.
+    pub(crate) fn keep(&mut self, colors: &Colors, pixels: &[u8], slots: &[i32], numbers: &[u32]) {
+        for (i, (place, slot)) in pixels.iter().zip(slots).enumerate() {
+            let place = usize::from(*place) % BLOCK_PIXELS;
+            let [red, green, blue] = colors.part(i);
+            self.numbers[place] = numbers[slot.cast_unsigned() as usize % numbers.len()];
+            self.parts[place] = [red, green, blue, 0];
+        }
+    }
 }
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Adds the colours of a block with compared samples and the upper left pixel `corner`. Returns
-    /// whether any of them shows more than the background.
+    /// Adds the colours of a block with compared samples and the upper left pixel `corner`. In one
+    /// of several passes, colours that earlier passes have `kept` are added first, and only the
+    /// others are lit. Returns whether any pixel that is lit here shows more than the background.
     pub(crate) fn add_samples(
         &mut self,
         context: &ShadingContext<'_, T>,
         (samples, planes): (&Samples, &Planes),
         corner: [i32; 2],
-        sums: &mut Sums,
-    ) -> bool {
-        let all = Unlit { entries: &planes[0], pixels: &samples.new };
-        self.add_unlit(context, (samples, &all), corner, (sums, None))
-    }
-
-    /// Adds the colours of a block in one of several passes: first the cached colours of earlier
-    /// passes, then the others, which are lit here.
-    pub(crate) fn add_pass(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        (samples, planes): (&Samples, &Planes),
-        corner: [i32; 2],
-        (sums, kept): (&mut Sums, &mut Kept),
-    ) {
-        let pixels = samples.add_kept(context.level, kept, sums);
-        if pixels != [0; FOUR] {
-            let entry = |place: usize| planes[0][place] & (pixels[0] >> place & 1).wrapping_neg();
-            let unlit = Unlit { entries: &std::array::from_fn(entry), pixels: &pixels };
-            self.add_unlit(context, (samples, &unlit), corner, (sums, Some(kept)));
-        }
-    }
-
-    /// Adds the colours of some pixels, like [`Self::add_samples`].
-    fn add_unlit(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        (samples, unlit): (&Samples, &Unlit<'_>),
-        corner: [i32; 2],
         (sums, mut kept): (&mut Sums, Option<&mut Kept>),
     ) -> bool {
-        let mut shown = self.list_first(context, unlit.entries, corner);
+        // For each sample, the pixels with an unlit primitive that no earlier sample shows.
+        let unlit = match &kept {
+            Some(kept) => samples.add_kept(context.level, kept, sums),
+            None => samples.new,
+        };
+        if unlit == [0; FOUR] {
+            return false;
+        }
+        let entry = |place: usize| planes[0][place] & (unlit[0] >> place & 1).wrapping_neg();
+        let masked = kept.is_some().then(|| std::array::from_fn(entry));
+        let entries = masked.as_ref().unwrap_or(&planes[0]);
+        let mut shown = self.list_first(context, entries, corner);
         if shown.triangles == 0 {
             self.fragments.begin_shared(0);
         } else {
             self.fragments.share(&samples.shares[0]);
         }
         // Lines and background need no light.
-        let mut others = unlit.pixels[0] & !shown.triangles;
-        while others != 0 {
-            let place = others.trailing_zeros() as usize;
-            others &= others - 1;
+        for place in Bits(unlit[0] & !shown.triangles) {
             let (number, share) = (samples.numbers[0][place], samples.shares[0][place]);
             add_other(context, number, place, share, sums);
         }
@@ -171,7 +199,7 @@ impl<T: ShadingNumber> Shader<T> {
                 Some(kept) => Out::Kept(sums, kept, std::mem::take(&mut first)),
                 None => Out::Sums(sums),
             };
-            shader.color_list(context, corner, &mut out);
+            shader.color_list(context, &mut out);
         };
         // Shadows are traced for at most as many points at once as a mask has bits.
         let are_cast = context.plan.shadows.are_cast();
@@ -180,11 +208,8 @@ impl<T: ShadingNumber> Shader<T> {
             color(self, sums);
         }
         // The primitives of later samples join the list until it is full.
-        for sample in 1..FOUR {
-            let mut pixels = unlit.pixels[sample];
-            while pixels != 0 {
-                let place = pixels.trailing_zeros() as usize;
-                pixels &= pixels - 1;
+        for (sample, pixels) in unlit.into_iter().enumerate().skip(1) {
+            for place in Bits(pixels) {
                 let number = samples.numbers[sample][place];
                 let share = samples.shares[sample][place];
                 if !matches!(seen_number(number), Visible::Triangle(_)) {
@@ -212,28 +237,23 @@ impl<T: ShadingNumber> Shader<T> {
         corner: [i32; 2],
     ) -> Shown {
         let most = self.most_slots(context);
-        let shown = self.fragments.list_on(context.level, entries, corner, most);
+        let shown = self.fragments.list(context.level, entries, corner, most);
         if most > 0 && shown.triangles != 0 && one_group(context, &self.fragments).is_none() {
             // Some slots belong to a draw that the block may not show.
-            return self.fragments.list(context.level, entries, corner);
+            return self.fragments.list(context.level, entries, corner, 0);
         }
         shown
     }
 
     /// Colours the listed fragments, and begins another list.
-    fn color_list(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        corner: [i32; 2],
-        out: &mut Out<'_, '_>,
-    ) {
+    fn color_list(&mut self, context: &ShadingContext<'_, T>, out: &mut Out<'_, '_>) {
         let mut most = 0;
         if self.fragments.len > 0 {
             if let Some(group) = one_group(context, &self.fragments) {
-                self.color_group(context, &group, out);
+                self.color_group(&group, out);
                 most = self.most_slots(context);
             } else {
-                self.color_groups(context, corner, out);
+                self.color_groups(context, out);
             }
         }
         self.fragments.begin_shared(most);

@@ -1,6 +1,6 @@
 //! The primitives of a block's pixels, and the runs of pixels with the same one.
 
-use crate::simd::dispatch;
+use crate::simd::{Bits, dispatch};
 use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, u32x16, u64x8};
 
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
@@ -64,10 +64,8 @@ impl Runs {
     /// Calls `take` with the triangles of runs that are not in the row above.
     #[inline(always)]
     pub(crate) fn each_new(&self, mut take: impl FnMut(u32)) {
-        let mut starts = self.new_starts();
-        while starts != 0 {
-            take(self.number(starts.trailing_zeros() as usize));
-            starts &= starts - 1;
+        for start in Bits(self.new_starts()) {
+            take(self.number(start));
         }
     }
 

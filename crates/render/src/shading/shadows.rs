@@ -19,29 +19,22 @@ use super::triangle_attributes::TriangleAttributes;
 use crate::frame::draw::{Draw, Stage};
 use crate::lights::{Batch, LightTerm, Rows};
 use crate::shadow::known::{BatchPixels, KnownPixels};
-use crate::shadow::map_face::TAPS;
-use crate::shadow::packet::POINTS;
-use crate::shadow::rays::{Origins, RayScratch};
+use crate::shadow::map_face::{Reading, TAPS};
+use crate::shadow::rays::{Origins, POINTS, RayScratch};
 use crate::shadow::tracer::Tracer;
-use crate::simd::{BATCH, Number, bits};
+use crate::simd::{BATCH, Bits, Number};
 use marraztu_core::scene::dvec3;
 
 /// The shadows on a batch.
 pub(crate) struct BatchShadows<'a> {
-    pub(crate) tracer: &'a Tracer<'a>,
-    pub(crate) scratch: &'a mut RayScratch,
+    tracer: &'a Tracer<'a>,
+    scratch: &'a mut RayScratch,
     /// Sets the points at which the batch is lit; called if a ray is needed.
-    pub(crate) place: &'a mut dyn FnMut(&mut Origins),
+    place: &'a mut dyn FnMut(&mut Origins),
     /// Whether the points are set.
-    pub(crate) is_placed: bool,
+    is_placed: bool,
     /// The pixels of the batch, if the cache may be used for them.
     pixels: Option<BatchPixels<'a>>,
-}
-
-impl std::fmt::Debug for BatchShadows<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("BatchShadows").field("is_placed", &self.is_placed).finish_non_exhaustive()
-    }
 }
 
 impl<'a> BatchShadows<'a> {
@@ -108,16 +101,19 @@ impl<'a> BatchShadows<'a> {
         if lit == 0 {
             return;
         }
-        let (shaded, partly) = match self.tracer.map(stage.light) {
-            None => (self.traced(level, (stage.light, light), lit), None),
+        let reading = match self.tracer.map(stage.light) {
+            None => Reading {
+                occluded: self.traced(level, (stage.light, light), lit),
+                partly: 0,
+                open: [0; POINTS],
+            },
             Some(map) => {
                 self.place();
                 let at = &self.scratch.origins.at;
-                let reading = dispatch!(level, _ => map.read(at, lit));
-                (reading.occluded, Some(reading))
+                dispatch!(level, _ => map.read(at, lit))
             }
         };
-        if shaded == lit {
+        if reading.occluded == lit {
             // Unlit positions have not changed, so the whole batch can be restored.
             let rows = batch.diffuse.iter_mut().chain(&mut batch.specular);
             for (row, before) in rows.zip(before.0.iter().chain(&before.1)) {
@@ -126,15 +122,14 @@ impl<'a> BatchShadows<'a> {
             return;
         }
         // Blocked positions get back their values; PCF scales the light of partly open ones.
-        for i in bits(shaded) {
+        for i in Bits(reading.occluded) {
             for axis in 0..3 {
                 batch.diffuse[axis][i] = before.0[axis][i];
                 batch.specular[axis][i] = before.1[axis][i];
             }
         }
-        for i in bits(partly.map_or(0, |reading| reading.partly)) {
-            let open = partly.map_or(0, |reading| reading.open[i]);
-            let share = T::from_f64(f64::from(open) / f64::from(TAPS));
+        for i in Bits(reading.partly) {
+            let share = T::from_f64(f64::from(reading.open[i]) / f64::from(TAPS));
             for axis in 0..3 {
                 let (diffuse, specular) = (before.0[axis][i], before.1[axis][i]);
                 batch.diffuse[axis][i] = diffuse + (batch.diffuse[axis][i] - diffuse) * share;

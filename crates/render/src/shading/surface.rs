@@ -9,30 +9,26 @@ use super::barycentrics::Barycentrics;
 use super::blend::Blend;
 use super::bumps::bend;
 use super::colors::{Colors, Form, Sums};
-use super::context::ShadingContext;
+use super::context::{Group, ShadingContext, group_of, one_group};
 use super::fragments::Fragments;
 use super::full_blocks::Canvas;
-use super::groups::{Group, group_of, one_group};
-use super::interpolate::{CornerValues, Look, Mixed, mix, surface_samples};
+use super::interpolate::{CornerValues, Look, Mixed, Points, mix, surface_samples};
 use super::interpolated::ShadingNumber;
-use super::kept::Kept;
 use super::light::{Lighting, Table, run};
 use super::lit_points::place_fragments;
-use super::map_rows::MapRows;
-use super::map_texels::{Points, TexturePlacement};
-use super::quantize::{Finish, Quantize, SurfaceColor};
-use super::rounding::{QuantizeWithThresholds, Thresholds};
+use super::map_texels::TexturePlacement;
+use super::quantize::{Quantize, SurfaceColor, Thresholds};
+use super::resolve::Kept;
 use super::shadows::{BatchShadows, place_faces};
+use super::surface_maps::MapRows;
 use super::tiny::{CornerRows, TinyTriangles};
 use super::triangle_attributes::{TriangleAttributes, asks_ahead};
 use crate::accel::Accelerated as _;
-use crate::frame::FramePlan;
 use crate::frame::color_path::PathPixels;
 use crate::frame::draw::{Back, Pipeline, Shaded, Stage};
 use crate::lights::{Batch, Rows};
 use crate::plan::tile::TilePlan;
-use crate::screen::sample_positions::ALL;
-use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::screen::tiles::BLOCK_PIXELS;
 use crate::shadow::rays::{Origins, RayCount, RayScratch};
 use crate::simd::BATCH;
 use crate::simd::gather::{SLOTS, most_gathered};
@@ -49,9 +45,9 @@ pub(crate) struct Shader<T> {
     pub(crate) barycentrics: Barycentrics<T>,
     pub(crate) batch: Batch<T>,
     /// The memory for shadow rays.
-    pub(super) rays: RayScratch,
+    pub(crate) rays: RayScratch,
     /// The pixels of each path since the frame began.
-    pub(super) path_pixels: PathPixels,
+    pub(crate) path_pixels: PathPixels,
     /// The positions of the triangles on their texture.
     pub(super) placed: TexturePlacement,
     pub(crate) texels: Rows<T>,
@@ -101,17 +97,6 @@ pub(crate) enum Out<'a, 'b> {
     Layer(&'a mut Blend),
 }
 
-/// The result of interpolating the light of vertices.
-#[derive(Clone, Copy, Debug)]
-enum Mixture {
-    /// The bytes of the pixels.
-    Bytes,
-    /// Colours as diffuse light, to be encoded later.
-    Colors,
-    /// Diffuse and specular light.
-    Light,
-}
-
 impl<T: ShadingNumber> Default for Shader<T> {
     fn default() -> Self {
         Self {
@@ -148,16 +133,6 @@ impl<T: ShadingNumber> Shader<T> {
         self.path_pixels = PathPixels::default();
     }
 
-    /// The pixels of each path since the frame began.
-    pub(crate) const fn path_pixels(&self) -> PathPixels {
-        self.path_pixels
-    }
-
-    /// Returns the shadow rays since the frame began.
-    pub(crate) const fn ray_count(&self) -> RayCount {
-        self.rays.count
-    }
-
     /// Returns the number of slots up to which triangles keep their slots for the next list:
     /// triangles in several blocks are then prepared once. Returns 0 if that does not pay: with
     /// light per face, all slots are lit for each list.
@@ -171,50 +146,30 @@ impl<T: ShadingNumber> Shader<T> {
     pub(crate) fn color_fragments(
         &mut self,
         context: &ShadingContext<'_, T>,
-        corner: [i32; 2],
         out: &mut Out<'_, '_>,
     ) {
-        if let Some(group) = one_group(context, &self.fragments) {
-            self.color_group(context, &group, out);
-        } else {
-            self.color_groups(context, corner, out);
+        match one_group(context, &self.fragments) {
+            Some(group) => self.color_group(&group, out),
+            None => self.color_groups(context, out),
         }
     }
 
-    /// Colours a block that one triangle covers fully.
-    pub(crate) fn full_block(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        number: u32,
-        corner: [i32; 2],
-        out: &mut Out<'_, '_>,
-    ) {
-        self.fragments.list_full_block(number, corner);
-        self.fragments.shares = [ALL; BATCH];
-        self.color_group(context, &group_of(context, number), out);
-    }
-
     /// Colours the fragments of a group.
-    pub(crate) fn color_group(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        out: &mut Out<'_, '_>,
-    ) {
+    pub(crate) fn color_group(&mut self, group: &Group<'_, T>, out: &mut Out<'_, '_>) {
         // The fixed-point form is summed; bytes are copied to the tile.
         self.colors.form = match out {
             Out::Tile(..) | Out::Waiting(_) => Form::Pixels,
             Out::Sums(_) | Out::Kept(..) | Out::Layer(_) => Form::Parts,
         };
-        self.colors.linear = context.plan.variants.are_linear();
-        self.group(context, group);
+        self.colors.linear = group.context.plan.variants.are_linear();
+        self.group(group);
         let pixels = self.fragments.len as u64;
         match out {
             Out::Waiting(_) => self.path_pixels.joined += pixels,
             _ => self.path_pixels.alone += pixels,
         }
         match out {
-            Out::Tile(canvas, at) => self.copy(canvas, *at),
+            Out::Tile(canvas, at) => self.copy(canvas, 0..self.fragments.len, *at),
             Out::Waiting(canvas) => self.copy_waiting(canvas),
             Out::Sums(sums) => {
                 let Fragments { len, pixels, shares, .. } = &self.fragments;
@@ -227,7 +182,7 @@ impl<T: ShadingNumber> Shader<T> {
                 kept.keep(&self.colors, &pixels[..*len.min(first)], slots, numbers);
             }
             Out::Layer(blend) => {
-                let opacities = self.opacities(context, group);
+                let opacities = self.opacities(group);
                 let pixels = &self.fragments.pixels[..self.fragments.len];
                 for (i, (place, opacity)) in pixels.iter().zip(opacities).enumerate() {
                     blend.put(usize::from(*place), self.colors.part(i), opacity);
@@ -237,23 +192,14 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Returns the colour of the first fragment of a group.
-    pub(crate) fn first_color(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-    ) -> [u8; 4] {
+    pub(crate) fn first_color(&mut self, group: &Group<'_, T>) -> [u8; 4] {
         self.colors.form = Form::Pixels;
-        self.group(context, group);
+        self.group(group);
         self.colors.pixels[0].to_le_bytes()
     }
 
     /// Colours a block that shows several draws or pipelines, group by group.
-    pub(super) fn color_groups(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        corner: [i32; 2],
-        out: &mut Out<'_, '_>,
-    ) {
+    pub(super) fn color_groups(&mut self, context: &ShadingContext<'_, T>, out: &mut Out<'_, '_>) {
         let mut done = [false; SLOTS];
         let all = std::mem::take(&mut self.fragments);
         for slot in 0..all.count {
@@ -263,37 +209,23 @@ impl<T: ShadingNumber> Shader<T> {
             let group = group_of(context, all.numbers[slot]);
             let mut keep = [false; SLOTS];
             for (other, number) in all.numbers[..all.count].iter().enumerate().skip(slot) {
-                keep[other] = (group.base..group.end).contains(number)
-                    && group.draw.pipeline_of(number - group.base) == group.pipeline;
+                keep[other] = group.holds(*number);
                 done[other] |= keep[other];
             }
-            self.fragments.take_from(&all, &keep, corner);
+            self.fragments.take_from(&all, &keep);
             // Triangles of the last list that keep their slots may have no fragments.
             if self.fragments.len > 0 {
-                self.color_group(context, &group, out);
+                self.color_group(&group, out);
             }
         }
         self.fragments = all;
     }
 
-    /// Copies the colours into the tile.
-    fn copy(&self, canvas: &mut Canvas<'_>, at: usize) {
-        if self.fragments.is_whole() {
-            canvas.put(at, &self.colors.pixels[..BLOCK_PIXELS]);
-        } else {
-            let pixels = &self.fragments.pixels[..self.fragments.len];
-            for (i, color) in pixels.iter().zip(&self.colors.pixels) {
-                let offset = canvas.offset(in_block(usize::from(*i)));
-                canvas.pixels[at + offset] = color.to_le_bytes();
-            }
-        }
-    }
-
-    pub(super) fn group(&mut self, context: &ShadingContext<'_, T>, group: &Group<'_>) {
-        match &context.plan.pipelines[group.pipeline as usize] {
+    pub(super) fn group(&mut self, group: &Group<'_, T>) {
+        match &group.context.plan.pipelines[group.pipeline as usize] {
             Pipeline::Flat(color) => self.colors.fill(color.opaque()),
             Pipeline::Shaded(shaded) => {
-                self.shaded(context, group, shaded);
+                self.shaded(group, shaded);
                 if group.draw.back == Back::Red {
                     self.redden();
                 }
@@ -310,24 +242,21 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    fn shaded(&mut self, context: &ShadingContext<'_, T>, group: &Group<'_>, shaded: &Shaded) {
+    fn shaded(&mut self, group: &Group<'_, T>, shaded: &Shaded) {
+        let Group { context, draw, .. } = *group;
         let ShadingContext { level, plan, .. } = *context;
-        let draw = group.draw;
         let extras = &shaded.extras;
-        // An opacity map is read at the positions of fragments.
-        let fades = shaded.opacity.is_some() && shaded.opacity_map.is_some();
-        let textured =
-            shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels() || fades;
+        let textured = shaded.varies();
         // Whether every pixel has a separate colour.
         let each = textured || plan.variants.rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let located = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
         if shaded.texture.is_some() && asks_ahead(self.fragments.count) {
-            let mesh = &group.draw.model.mesh;
+            let mesh = &draw.model.mesh;
             let numbers = &self.fragments.numbers[..self.fragments.count];
             numbers.iter().for_each(|number| mesh.prefetch_uv_places(number - group.base));
         }
-        let new = self.take(context, group, located);
+        self.take(group, located);
         self.prepares_little = !textured && extras.is_empty();
         if located {
             self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
@@ -338,29 +267,26 @@ impl<T: ShadingNumber> Shader<T> {
         let mut tint = shaded.tint;
         match light {
             None => {}
-            Some((LightAt::Pixel | LightAt::Sample, _)) => {
-                self.light_pixels(context, group, shaded, new);
-            }
-            Some((LightAt::Vertex, _)) => match self.mix_light(context, group, shaded, new) {
-                Mixture::Bytes => return,
-                Mixture::Colors => tint = [1.0; 3],
-                Mixture::Light => {}
+            Some((LightAt::Pixel | LightAt::Sample, _)) => self.light_pixels(group, shaded),
+            Some((LightAt::Vertex, stages)) => match self.mix_light(group, shaded, stages) {
+                Some(factor) => tint = factor,
+                None => return,
             },
-            Some((LightAt::Face, stages)) => self.light_faces(context, group, stages, each),
+            Some((LightAt::Face, stages)) => self.light_faces(group, stages, each),
         }
         // Maps come after light, because the map of Ks multiplies highlights.
         if textured {
-            self.texels(context, group, shaded, new);
+            self.texels(group, shaded);
         }
         let glows = extras.glows().next().is_some();
-        if !extras.is_empty() {
-            self.map_highlights(context, group, shaded, new);
-            if glows {
-                self.find_glow(context, group, shaded, new);
-            }
+        if let Some(map) = &extras.specular {
+            self.map_highlights(group, map);
+        }
+        if glows {
+            self.find_glow(group, shaded);
         }
         let lit = light.is_some();
-        self.quantize(context, if textured { None } else { Some(tint) }, (lit, glows));
+        self.quantize(context, (!textured).then_some(tint), (lit, glows));
         if is_by_slot {
             self.colors.hand_out(&self.fragments.slots[..self.fragments.len]);
         }
@@ -375,35 +301,30 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         let ShadingContext { level, plan, terms, .. } = *context;
         let (rounding, encoding) = (plan.variants.rounding, terms.encoding());
-        let Self { batch, texels, colors, maps, thresholds, .. } = self;
+        let Self { batch, texels, colors, maps, thresholds, fragments, .. } = self;
         let own = match tint {
             None => SurfaceColor::Texels(texels),
             Some(tint) => SurfaceColor::Tint(tint.map(T::from_f64)),
         };
-        // `Finish` handles glow and encoding; the common cases have smaller kernels.
+        let thresholds =
+            (rounding != Rounding::Nearest).then(|| thresholds.of(rounding, fragments));
+        let glow = glows.then_some(&maps.glow);
         if glows || encoding.is_some() {
-            let thresholds =
-                (rounding != Rounding::Nearest).then(|| thresholds.of(rounding, &self.fragments));
-            let glow = glows.then_some(&maps.glow);
-            T::run(level, Finish { batch, lit, own, glow, thresholds, encoding, colors });
-        } else if rounding == Rounding::Nearest {
-            T::run(level, Quantize { batch, lit, own, colors });
+            let kernel =
+                Quantize::<T, true> { batch, lit, own, glow, thresholds, encoding, colors };
+            T::run(level, kernel);
         } else {
-            let thresholds = thresholds.of(rounding, &self.fragments);
-            T::run(level, QuantizeWithThresholds { batch, lit, own, thresholds, colors });
+            let kernel =
+                Quantize::<T, false> { batch, lit, own, glow, thresholds, encoding, colors };
+            T::run(level, kernel);
         }
     }
 
     /// Fetches the triangles of the list, with their screen positions if they are to be `located`.
     /// Returns whether they differ from the last list's.
-    pub(crate) fn take(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        located: bool,
-    ) -> bool {
+    pub(crate) fn take(&mut self, group: &Group<'_, T>, located: bool) -> bool {
+        let Group { context, draw, draw_index, base, .. } = *group;
         let ShadingContext { level, plan, frame, .. } = *context;
-        let Group { draw, draw_index, base, .. } = *group;
         let corners = located || draw.back != Back::Culled;
         let order = corners.then(|| draw.model.mesh.draw_order());
         let new = self.attributes.take(&self.fragments, order, draw_index, base);
@@ -422,11 +343,11 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Returns the conversion of a group's pixels to positions and normals, computed once per draw.
-    pub(super) fn look_of(&mut self, plan: &FramePlan, group: &Group<'_>) -> Look<T> {
+    pub(super) fn look_of(&mut self, group: &Group<'_, T>) -> Look<T> {
         match self.look {
             Some((draw, look)) if draw == group.draw_index => look,
             _ => {
-                let look = Look::new(plan, group.draw);
+                let look = Look::new(group.context.plan, group.draw);
                 self.look = Some((group.draw_index, look));
                 look
             }
@@ -434,29 +355,24 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Phong shading: lights every pixel.
-    fn light_pixels(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        shaded: &Shaded,
-        new: bool,
-    ) {
+    fn light_pixels(&mut self, group: &Group<'_, T>, shaded: &Shaded) {
+        let context = group.context;
         let ShadingContext { level, plan, terms, .. } = *context;
-        if shaded.extras.exponent.is_some() {
-            self.map_exponents(context, group, shaded, new);
+        if let Some(map) = &shaded.extras.exponent {
+            self.map_exponents(group, map);
         }
-        let look = self.look_of(plan, group);
+        let look = self.look_of(group);
         let Self { tile, fragments, attributes, barycentrics, batch, maps, rays, .. } = self;
         let light = tile.light(plan, group.pipeline, shaded);
         if light.needs_positions {
-            if new {
+            if attributes.are_new {
                 attributes.carry_normals(group.draw);
                 attributes.spread(level);
             }
-            surface_samples(level, look, fragments, attributes, barycentrics, batch);
+            let points = Points { fragments, attributes, barycentrics };
+            surface_samples(level, look, points, batch);
             if let Some(bump) = &shaded.extras.bump {
-                let points = Points { fragments, attributes, barycentrics };
-                bend(context, group, &points, (bump, new), (maps, batch));
+                bend(group, points, bump, (maps, batch));
             }
         } else {
             // The attributes were not fetched, so the next block must not reuse them.
@@ -464,10 +380,10 @@ impl<T: ShadingNumber> Shader<T> {
         }
         // Shadow rays start at the exact points that the fragments show.
         let tracer = context.tracer_of(group.draw_index).filter(|_| light.needs_positions);
+        let points = Points { fragments, attributes, barycentrics };
         let mut place = |origins: &mut Origins| {
             if let Some(tracer) = tracer {
-                let on = (&*fragments, &*attributes);
-                place_fragments(context, tracer, group, on, barycentrics, origins);
+                place_fragments(group, tracer, points, origins);
             }
         };
         let shadows = tracer
@@ -475,38 +391,41 @@ impl<T: ShadingNumber> Shader<T> {
         light.light_batch(terms.of(group.pipeline), level, batch, shadows);
     }
 
-    /// Gouraud shading: interpolates the light of vertices at every pixel.
+    /// Gouraud shading: interpolates the light or the final colours of vertices at every pixel.
+    /// Returns the factor of diffuse light, or `None` if pixels have got their bytes already.
     fn mix_light(
         &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
+        group: &Group<'_, T>,
         shaded: &Shaded,
-        new: bool,
-    ) -> Mixture {
-        let ShadingContext { level, plan, .. } = *context;
-        let tables = context.lit.tables(group.draw_index, group.pipeline);
-        if !tables[0].is_colored() {
+        stages: &[Stage],
+    ) -> Option<[f64; 3]> {
+        let ShadingContext { level, plan, lit, .. } = *group.context;
+        let tables = lit.tables(group.draw_index, group.pipeline);
+        let colored = tables[0].is_colored();
+        if !colored {
             // The attributes of the last block hold specular light.
             self.attributes.keep_none();
         }
-        if new || !tables[0].is_colored() {
-            self.carry_diffuse(context, group, shaded, tables);
-            self.attributes.spread(level);
+        if self.attributes.are_new || !colored {
+            self.carry_diffuse(group, stages, tables);
         }
         let Self { fragments, attributes, barycentrics, batch, colors, thresholds, .. } = self;
-        let colored = tables[0].is_colored();
+        let interpolate = |attributes: &TriangleAttributes<T>, to| {
+            let points = Points { fragments, attributes, barycentrics };
+            mix(level, points, &attributes.values, to);
+        };
         // Final colours are interpolated and converted in one pass, unless something is added
         // later.
         if colored && !plan.variants.are_linear() && shaded.extras.is_empty() {
             let thresholds = thresholds.of(plan.variants.rounding, fragments);
-            mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors, thresholds));
-            return Mixture::Bytes;
+            interpolate(attributes, Mixed::Colors(colors, thresholds));
+            return None;
         }
-        mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.diffuse));
+        interpolate(attributes, Mixed::Rows(&mut batch.diffuse));
         batch.len = fragments.len;
         if colored {
             batch.specular = [[T::default(); BATCH]; 3];
-            return Mixture::Colors;
+            return Some([1.0; 3]);
         }
         attributes.carry_light(
             group.draw,
@@ -514,20 +433,20 @@ impl<T: ShadingNumber> Shader<T> {
             |place, back| tables[usize::from(back)].specular(place),
         );
         attributes.spread(level);
-        mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.specular));
-        Mixture::Light
+        interpolate(attributes, Mixed::Rows(&mut batch.specular));
+        Some(shaded.tint)
     }
 
-    /// Sets the attributes of corners to their diffuse light, or to their final colours.
+    /// Sets the attributes of corners to their diffuse light, or to their final colours, and
+    /// prepares them for interpolation.
     pub(crate) fn carry_diffuse(
         &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        shaded: &Shaded,
+        group: &Group<'_, T>,
+        stages: &[Stage],
         tables: [&Table<T>; 2],
     ) {
+        let context = group.context;
         let Self { attributes, batch, rays, .. } = self;
-        let stages = shaded.light.as_deref().unwrap_or_default();
         let terms = context.terms.of(group.pipeline);
         let tracer =
             context.tracer_of(group.draw_index).filter(|_| context.plan.shadows.any_of(stages));
@@ -537,16 +456,12 @@ impl<T: ShadingNumber> Shader<T> {
             #[inline(always)]
             |place, back| tables[usize::from(back)].diffuse(place, &lighting, (batch, rays)),
         );
+        attributes.spread(context.level);
     }
 
     /// Flat shading: lights each face, and copies the light to its pixels if they are `located`.
-    fn light_faces(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        stages: &[Stage],
-        located: bool,
-    ) {
+    fn light_faces(&mut self, group: &Group<'_, T>, stages: &[Stage], located: bool) {
+        let context = group.context;
         let ShadingContext { level, lit, terms, .. } = *context;
         let Self { fragments, attributes, batch, rays, .. } = self;
         batch.len = attributes.count;
@@ -570,9 +485,4 @@ impl<T: ShadingNumber> Shader<T> {
             batch.len = fragments.len;
         }
     }
-}
-
-/// Returns the column and row of pixel `i` of a block.
-pub(super) const fn in_block(i: usize) -> [usize; 2] {
-    [i % BLOCK as usize, i / BLOCK as usize]
 }

@@ -1,13 +1,13 @@
 //! Texels of fragments, sixteen at a time, and the footprint of a pixel on its texture.
 
 use fearless_simd::{
-    Select as _, Simd, SimdBase as _, SimdMask as _, SimdWiden as _, f32x16, f64x8, i32x16,
+    Select as _, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, SimdWiden as _, f32x16,
+    f64x8, i32x16,
 };
 use glam::DVec3;
 
-use super::barycentrics::Barycentrics;
-use super::far_texture::FarTexture;
 use super::fragments::Fragments;
+use super::interpolate::Points;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
 use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
@@ -17,10 +17,13 @@ use crate::screen::coverage::doubled_area;
 use crate::screen::weights::HomogeneousWeights;
 use crate::simd::gather::SLOTS;
 use crate::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3, in_f64};
+use crate::texture::exact_placement::ExactPlacement;
 use crate::texture::lanes::{Decode, Sampler, Stored, TexelPlaces};
 use crate::texture::placement::{Doubles, LaneSteps, Placement, Steps, less};
 use crate::texture::sample::brightness;
 use crate::texture::uv::Uvs;
+use marraztu_core::accuracy::Filter;
+use marraztu_core::scene::Texture;
 
 /// A texture on the triangles of a list.
 #[derive(Clone, Copy, Debug)]
@@ -31,11 +34,48 @@ pub(crate) struct PlacedTexture<'a> {
     pub(crate) sampler: &'a Sampler<'a>,
 }
 
+/// A texture on a triangle that spans more texels than f32 can tell apart: positions are computed
+/// in f64, and reduced to one repetition before rounding to f32.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FarTexture {
+    /// The slot of the triangle.
+    pub(crate) slot: usize,
+    weights: HomogeneousWeights,
+    placement: ExactPlacement,
+}
+
+impl FarTexture {
+    /// Sets up the triangle of a slot. `None` if its coordinates are too large.
+    pub(crate) fn new(
+        slot: usize,
+        uvs: Uvs,
+        texture: &Texture,
+        weights: impl FnOnce() -> HomogeneousWeights,
+    ) -> Option<Self> {
+        let placement = ExactPlacement::new(uvs, texture)?;
+        Some(Self { slot, weights: weights(), placement })
+    }
+
+    /// Computes the position at a pixel, in texels.
+    pub(crate) fn at(&self, pixel: [i32; 2]) -> [f32; 2] {
+        self.placement.at(self.weights.at(pixel).0)
+    }
+
+    /// Computes the positions in two rows of eight pixels, with the same bits as [`Self::at`].
+    #[inline(always)]
+    pub(crate) fn of_two_rows<S: Simd>(&self, simd: S, [x, y]: [i32; 2]) -> [f32x16<S>; 2] {
+        let (upper, _) = self.weights.of_row(simd, [x, y]);
+        let (lower, _) = self.weights.of_row(simd, [x, y + 1]);
+        let ([u, v], [u_below, v_below]) =
+            (self.placement.of_row(upper), self.placement.of_row(lower));
+        [u.narrow(u_below), v.narrow(v_below)]
+    }
+}
+
 /// The inputs for sampling the texels of some fragments.
 #[derive(Debug)]
 pub(crate) struct TextureSamples<'a, T> {
-    pub(crate) fragments: &'a Fragments,
-    pub(crate) barycentrics: &'a Barycentrics<T>,
+    pub(crate) points: Points<'a, T>,
     pub(crate) texture: PlacedTexture<'a>,
     pub(crate) decoding: Decoding,
 }
@@ -66,7 +106,7 @@ impl TextureSamples<'_, f32> {
         TexelScratch { places, texels, .. }: &mut TexelScratch,
         to: &mut Rows<f32>,
     ) {
-        let Self { fragments, texture, .. } = *self;
+        let Self { points: Points { fragments, .. }, texture, .. } = *self;
         let lanes = Sixteen(simd);
         self.place::<S, PAGES>(simd, places);
         texture.sampler.sample::<S, D>(simd, places, fragments.len, texels);
@@ -79,14 +119,12 @@ impl TextureSamples<'_, f32> {
     /// Computes the places of all fragments.
     #[inline(always)]
     fn place<S: Simd, const PAGES: usize>(&self, simd: S, to: &mut TexelPlaces) {
-        let Self { fragments, barycentrics, texture, .. } = *self;
+        let Self { points: Points { fragments, barycentrics, .. }, texture, .. } = *self;
         let lanes = Sixteen(simd);
         for at in (0..fragments.len).step_by(16) {
             let slots = OfSlots::<S, PAGES>(lanes.slots(&fragments.slots, at));
-            let second = lanes.load(&barycentrics.weights[0], at);
-            let third = lanes.load(&barycentrics.weights[1], at);
             let w = lanes.load(&barycentrics.w, at);
-            let way = texture.way(simd, &slots, [second, third]);
+            let way = texture.way(simd, &slots, barycentrics.weights_at(lanes, at));
             let mut position = texture.position(simd, &slots, way);
             if !texture.far.is_empty() {
                 position = self.far_positions(simd, at, position);
@@ -104,7 +142,7 @@ impl TextureSamples<'_, f32> {
         TexelScratch { places, texels, .. }: &mut TexelScratch,
         to: &mut Rows<f32>,
     ) {
-        let Self { fragments, texture, .. } = *self;
+        let Self { points: Points { fragments, .. }, texture, .. } = *self;
         let lanes = Sixteen(simd);
         self.place::<S, PAGES>(simd, places);
         let own = places.position;
@@ -144,8 +182,8 @@ impl<T> TextureSamples<'_, T> {
         positions: [f32x16<S>; 2],
     ) -> [f32x16<S>; 2] {
         let mut rows = [<[f32; 16]>::from(positions[0]), <[f32; 16]>::from(positions[1])];
-        for lane in 0..16.min(self.fragments.len - at) {
-            let Fragments { x, y, slots, .. } = self.fragments;
+        let Fragments { len, x, y, slots, .. } = self.points.fragments;
+        for lane in 0..16.min(len - at) {
             let slot = slots[at + lane].cast_unsigned() as usize;
             if let Some(far) = self.texture.far.iter().find(|far| far.slot == slot) {
                 let [u, v] = far.at([x[at + lane], y[at + lane]]);
@@ -203,12 +241,12 @@ impl PlacedTexture<'_> {
         let lanes = Sixteen(simd);
         lanes.store(position[0], &mut to.position[0], at);
         lanes.store(position[1], &mut to.position[1], at);
-        if self.sampler.reads_mips() {
+        if self.sampler.filter.reads_mips() {
             let [right, below] = [0, 1].map(|which| self.step(simd, of, way, which));
             let squared = |[u, v]: [f32x16<S>; 2]| u * u + v * v;
             let squares = [squared(right), squared(below)];
             lanes.store(Real::max(squares[0], squares[1]), &mut to.footprint, at);
-            if self.sampler.is_anisotropic() {
+            if self.sampler.filter == Filter::Anisotropic {
                 lanes.store(Real::min(squares[0], squares[1]), &mut to.shorter, at);
                 let is_right = squares[0].simd_ge(squares[1]);
                 for axis in 0..2 {

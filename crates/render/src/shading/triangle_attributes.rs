@@ -19,7 +19,7 @@ use crate::raster::vertices::fetch_vertices;
 use crate::screen::clip::{Screen, ScreenVertex, faces_observer};
 use crate::screen::coverage::{Grid, NARROW_AREA, NARROW_SIDE, Snapped, doubled_area};
 use crate::simd::gather::SLOTS;
-use crate::simd::{Kernel, Lanes, Number, Vec3};
+use crate::simd::{Bits, Kernel, Lanes, Number, Vec3};
 use marraztu_core::base::math::each;
 use marraztu_core::scene::Normals;
 
@@ -30,6 +30,8 @@ pub(crate) struct TriangleAttributes<T> {
     pub(crate) count: usize,
     /// The number of first slots with triangles of the last list, which are prepared already.
     kept: usize,
+    /// Whether the last list has other triangles than the list before.
+    pub(crate) are_new: bool,
     /// The triangles' numbers in the mesh.
     pub(crate) numbers: [u32; SLOTS],
     /// Whether the corners were fetched.
@@ -71,6 +73,7 @@ impl<T: Number> Default for TriangleAttributes<T> {
         Self {
             count: 0,
             kept: 0,
+            are_new: false,
             numbers: [0; SLOTS],
             has_corners: false,
             ids: [[0; 3]; SLOTS],
@@ -163,7 +166,8 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
             && before.fold(0, |all, pair| all | differ(pair)) == 0;
         // Triangles at the front of the list that did not change stay prepared.
         self.kept = if goes_on { self.count } else { 0 };
-        if self.kept == count {
+        self.are_new = self.kept != count;
+        if !self.are_new {
             return false;
         }
         (self.draw, self.count, self.has_corners) = (Some(draw), count, order.is_some());
@@ -198,11 +202,8 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         let back = if draw.mirrored { front } else { !front };
         self.back |= back & !kept;
         // Clipped and wide triangles are decided one by one.
-        let mut odd = odd & (u64::MAX >> (SLOTS - self.count.max(1))) & !kept;
-        while odd != 0 {
-            let slot = odd.trailing_zeros();
-            odd &= odd - 1;
-            let front = is_front(self.ids[slot as usize], draw, plan, vertices);
+        for slot in Bits(odd & (u64::MAX >> (SLOTS - self.count.max(1))) & !kept) {
+            let front = is_front(self.ids[slot], draw, plan, vertices);
             let back = u64::from(front == draw.mirrored) << slot;
             self.back = self.back & !(1 << slot) | back;
         }

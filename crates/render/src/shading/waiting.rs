@@ -6,23 +6,25 @@
 //! once. Light per pixel takes 0.8 to 0.95 of the time. The bits are the same, because no pixel
 //! depends on others of its list.
 
-use super::context::ShadingContext;
+use std::ops::Range;
+
+use super::context::{ShadingContext, are_of, group_of, one_group};
 use super::full_blocks::Canvas;
-use super::groups::{are_of, group_of, one_group};
 use super::interpolated::ShadingNumber;
 use super::runs::{Runs, Shown};
-use super::surface::{Out, Shader, Waiting, in_block};
-use super::tiny_blocks::Tiny;
+use super::surface::{Out, Shader, Waiting};
+use super::tiny::MANY;
 use crate::frame::color_path::ListPath;
 use crate::raster::visibility_buffer::{Visible, seen};
-use crate::screen::tiles::BLOCK_PIXELS;
+use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::simd::Bits;
 use crate::simd::gather::most_gathered;
 use marraztu_core::base::color::Color;
 
 /// The number of triangles above which a block is coloured separately.
 const MANY_TRIANGLES: usize = 24;
 
-impl<T: ShadingNumber + Tiny> Shader<T> {
+impl<T: ShadingNumber> Shader<T> {
     /// Colours a block with the upper left pixel `corner` into a tile, starting at index `at`: at
     /// the latest when [`Shader::finish_waiting`] is called. Background pixels get the colour
     /// `fill`; without one, they are left unchanged. Returns whether any pixel shows more than the
@@ -38,8 +40,10 @@ impl<T: ShadingNumber + Tiny> Shader<T> {
         let runs = Runs::of(context.level, visibility);
         // Three ways to wait: with tiny triangles, with the blocks already waiting, or as the first
         // one.
-        if let Some((shader, context)) = T::single(self, context)
-            && shader.wait_tiny(context, &runs, corner, (canvas, at))
+        if runs.new_starts().count_ones() >= MANY
+            && let Some((shader, group)) =
+                T::single(self, &group_of(context, runs.first_triangle()))
+            && shader.wait_tiny(group, &runs, corner, (canvas, at))
         {
             put_others(context, visibility, runs.shown(), (canvas, at), fill);
             return true;
@@ -61,13 +65,13 @@ impl<T: ShadingNumber + Tiny> Shader<T> {
             Some(group) if self.has_room() && group.path.list != ListPath::Alone => {
                 self.waiting.push(Waiting { from: 0, at });
             }
-            Some(group) => self.color_group(context, &group, &mut Out::Tile(canvas, at)),
+            Some(group) => self.color_group(&group, &mut Out::Tile(canvas, at)),
             None => {
                 if most > 0 {
                     // Some slots belong to a draw that the block may not show.
-                    self.fragments.list(context.level, visibility, corner);
+                    self.fragments.list(context.level, visibility, corner, 0);
                 }
-                self.color_fragments(context, corner, &mut Out::Tile(canvas, at));
+                self.color_fragments(context, &mut Out::Tile(canvas, at));
             }
         }
         true
@@ -80,20 +84,19 @@ impl<T: ShadingNumber + Tiny> Shader<T> {
         canvas: &mut Canvas<'_>,
     ) {
         if !self.waiting.is_empty() {
-            if self.fragments.are_tiny()
-                && let Some((shader, context)) = T::single(self, context)
-            {
-                shader.finish_tiny(context, canvas);
+            let are_tiny = self.fragments.are_tiny();
+            let first =
+                if are_tiny { &self.fragments.each()[0] } else { &self.fragments.numbers[0] };
+            let group = group_of(context, *first);
+            if are_tiny && let Some((shader, group)) = T::single(self, &group) {
+                shader.finish_tiny(group, canvas);
             } else {
-                let group = group_of(context, self.fragments.numbers[0]);
-                self.color_group(context, &group, &mut Out::Waiting(canvas));
+                self.color_group(&group, &mut Out::Waiting(canvas));
             }
             self.waiting.clear();
         }
     }
-}
 
-impl<T: ShadingNumber> Shader<T> {
     /// Adds a block to the waiting ones, if it shows the same surface and fits.
     fn join(
         &mut self,
@@ -108,7 +111,7 @@ impl<T: ShadingNumber> Shader<T> {
         let (len, count) = (self.fragments.len, self.fragments.count);
         let shown = self.fragments.list_more(context.level, runs, corner);
         let group = group_of(context, self.fragments.numbers[0]);
-        if !are_of(context, &group, &self.fragments.numbers[count..self.fragments.count]) {
+        if !are_of(&group, &self.fragments.numbers[count..self.fragments.count]) {
             // The block shows another surface: its fragments are removed again.
             self.fragments.take_back(len, count);
             return None;
@@ -128,16 +131,21 @@ impl<T: ShadingNumber> Shader<T> {
     pub(super) fn copy_waiting(&self, canvas: &mut Canvas<'_>) {
         let ends = self.waiting.iter().skip(1).map(|next| next.from).chain([self.fragments.len]);
         for (Waiting { from, at }, end) in self.waiting.iter().copied().zip(ends) {
-            let colors = &self.colors.pixels[from..end];
-            // A block with all pixels is copied row by row.
-            if let Some(all) = colors.first_chunk::<BLOCK_PIXELS>() {
-                canvas.put(at, all);
-                continue;
-            }
-            for (i, color) in self.fragments.pixels[from..end].iter().zip(colors) {
-                let offset = canvas.offset(in_block(usize::from(*i)));
-                canvas.pixels[at + offset] = color.to_le_bytes();
-            }
+            self.copy(canvas, from..end, at);
+        }
+    }
+
+    /// Copies the colours of some fragments into their block.
+    pub(super) fn copy(&self, canvas: &mut Canvas<'_>, range: Range<usize>, at: usize) {
+        let Range { start: from, end } = range;
+        let colors = &self.colors.pixels[from..end];
+        // A block with all pixels is copied row by row.
+        if let Some(all) = colors.first_chunk::<BLOCK_PIXELS>() {
+            return canvas.put(at, all);
+        }
+        for (i, color) in self.fragments.pixels[from..end].iter().zip(colors) {
+            let offset = canvas.offset(in_block(usize::from(*i)));
+            canvas.pixels[at + offset] = color.to_le_bytes();
         }
     }
 }
@@ -154,15 +162,17 @@ fn put_others<T>(
     if let Some(color) = fill
         && (shown.triangles | shown.lines) != u64::MAX
     {
-        canvas.fill(at, color);
+        canvas.fill(at, color.opaque());
     }
-    let mut lines = shown.lines;
-    while lines != 0 {
-        let i = lines.trailing_zeros() as usize;
-        lines &= lines - 1;
+    for i in Bits(shown.lines) {
         if let Visible::Line(line) = seen(visibility[i]) {
             canvas.pixels[at + canvas.offset(in_block(i))] =
                 context.frame.line_color(context.plan, line);
         }
     }
+}
+
+/// Returns the column and row of pixel `i` of a block.
+const fn in_block(i: usize) -> [usize; 2] {
+    [i % BLOCK as usize, i / BLOCK as usize]
 }

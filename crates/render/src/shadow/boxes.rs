@@ -8,8 +8,7 @@
 use fearless_simd::{Simd, SimdBase as _, SimdMask as _, f32x16};
 use glam::{DMat4, DVec3};
 
-use super::packet::POINTS;
-use super::rays::LocalRays;
+use super::rays::{LocalRays, POINTS};
 use marraztu_core::scene::Bounds;
 
 /// The error of a position and of a parameter in f32, relative to the largest coordinate: four

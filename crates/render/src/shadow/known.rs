@@ -58,13 +58,14 @@ impl KnownShadows {
     /// Keeps the cache of each light that has not moved, and drops all others. The picture must
     /// have the same size as before.
     pub(crate) fn keep(&mut self, size: Size, sources: &[Option<ShadowSource>]) {
-        let mut before = std::mem::take(&mut self.lights);
-        let mut kept = |source: &ShadowSource| {
-            let is_it = |known: &&mut Option<KnownLight>| {
-                known.as_ref().is_some_and(|known| known.source.is_same(source))
-            };
-            let known = before.iter_mut().find(is_it).and_then(Option::take);
-            known.unwrap_or_else(|| KnownLight::new(*source, size))
+        let before = std::mem::take(&mut self.lights);
+        let mut before: Vec<KnownLight> = before.into_iter().flatten().collect();
+        let mut kept = |source: &ShadowSource| match before
+            .iter()
+            .position(|known| known.source.is_same(source))
+        {
+            Some(at) => before.remove(at),
+            None => KnownLight::new(*source, size),
         };
         self.lights = sources.iter().map(|source| source.as_ref().map(&mut kept)).collect();
     }

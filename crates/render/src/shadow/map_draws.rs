@@ -9,7 +9,7 @@ use super::map_bias::{Bordered, Limit, Picture};
 use super::map_face::Face;
 use crate::cancellation::Cancellation;
 use crate::frame::FramePlan;
-use crate::frame::draw::{Back, Draw, Lines, Pipeline, Shaded};
+use crate::frame::draw::{Back, Draw, Lines, Pipeline, Shaded, uniform};
 use crate::frame::shadows::{Caster, CasterPart, Shadows};
 use crate::frame::variants::Variants;
 use crate::lights::PhongMaterial;
@@ -249,9 +249,6 @@ fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
     };
     let part_pipelines: Vec<Option<u32>> =
         caster.parts.iter().map(|part| part.as_ref().map(&mut pipeline)).collect();
-    let first = part_pipelines.first().copied().flatten();
-    // A single pipeline for all parts skips the look-up per triangle.
-    let alike = part_pipelines.iter().all(|pipeline| *pipeline == first);
     Draw {
         item: caster.item,
         model: caster.model.clone(),
@@ -263,16 +260,11 @@ fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
         culls_opaque: false,
         normals: Normals::Vertex,
         normal_source: NormalSource::Computed,
+        uniform: uniform(&part_pipelines),
         part_pipelines,
-        uniform: first.filter(|_| alike),
         polygons: caster.polygons.clone(),
         filled: true,
-        lines: Lines {
-            edges: false,
-            face_normals: None,
-            vertex_normals: None,
-            color: Color::WHITE,
-        },
+        lines: Lines::NONE,
     }
 }
 

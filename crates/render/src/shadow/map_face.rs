@@ -2,8 +2,9 @@
 
 use glam::DMat4;
 
-use super::packet::POINTS;
+use super::rays::POINTS;
 use crate::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE_SIDE};
+use crate::simd::Bits;
 
 /// A picture of depths; 0 in empty texels.
 #[derive(Debug)]
@@ -99,10 +100,7 @@ impl LightMap {
                 is_inside[i] = u8::from(within & (y[i] < side));
             }
             // Compares the points of this picture one by one: each reads other texels.
-            let mut rest = left;
-            while rest != 0 {
-                let i = rest.trailing_zeros() as usize;
-                rest &= rest - 1;
+            for i in Bits(left) {
                 if is_inside[i] == 0 {
                     continue;
                 }

@@ -36,7 +36,6 @@ mod map_bias;
 mod map_draws;
 pub(crate) mod map_face;
 pub(crate) mod maps;
-pub(crate) mod packet;
 pub(crate) mod patches;
 pub(crate) mod prepared_block;
 pub(crate) mod rays;

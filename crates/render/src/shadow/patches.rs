@@ -6,9 +6,9 @@
 
 use glam::DVec3;
 
-use super::packet::POINTS;
+use super::rays::POINTS;
 use super::shaft::Around;
-use crate::simd::bits;
+use crate::simd::Bits;
 use marraztu_core::base::math::each;
 
 /// Points that lie close together.
@@ -54,7 +54,7 @@ pub(super) fn find_patches(
 fn only(at: &[[f64; POINTS]; 3], points: u64) -> [[f64; POINTS]; 3] {
     let first = nth(points, 0);
     let mut some = each([0, 1, 2], |axis: usize| [at[axis][first]; POINTS]);
-    for i in bits(points) {
+    for i in Bits(points) {
         for (to, from) in some.iter_mut().zip(at) {
             to[i] = from[i];
         }
@@ -90,7 +90,7 @@ fn divided(at: &[[f64; POINTS]; 3], points: u64, around: &Around) -> Option<[u64
         let x = at[0][i] * along.x + at[1][i] * along.y + at[2][i] * along.z;
         *place = ((x + offset) * 8.0) as u32;
     }
-    let taken = bits(points).fold(0_u32, |taken, i| taken | 1 << places[i].min(15));
+    let taken = Bits(points).fold(0_u32, |taken, i| taken | 1 << places[i].min(15));
     // The sixteenths where a gap begins, between the first and last occupied ones.
     let empty = !taken & 0xffff;
     let gaps = (1..EMPTY).fold(empty, |gaps, i| gaps & empty >> i);
@@ -100,14 +100,14 @@ fn divided(at: &[[f64; POINTS]; 3], points: u64, around: &Around) -> Option<[u64
     if gap == 0 {
         return None;
     }
-    let near = bits(points).filter(|i| places[*i] < gap.trailing_zeros());
+    let near = Bits(points).filter(|i| places[*i] < gap.trailing_zeros());
     let near = near.fold(0, |near, i| near | 1 << i);
     Some([near, points & !near])
 }
 
 /// Returns the index of the n-th set bit of a mask, which must have enough.
 fn nth(mask: u64, n: usize) -> usize {
-    bits(mask).nth(n).unwrap_or_default()
+    Bits(mask).nth(n).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -163,7 +163,7 @@ mod tests {
             for Patch { points, around } in &origins.patches {
                 assert!(all & points == 0 && *points != 0, "a point is in two patches");
                 all |= points;
-                for i in bits(*points) {
+                for i in Bits(*points) {
                     let from = origins.point(i) - around.centre;
                     let inside = around
                         .halves

@@ -11,6 +11,7 @@ use glam::{DMat4, DVec3};
 use super::shaft::Around;
 use super::triangle::{Corners, Decided, ERROR, OFF_PLANE, Prepared, side};
 use crate::accel::{BVH_BLOCK, BvhBlock};
+use crate::simd::Vec3;
 use marraztu_core::base::math::each;
 
 /// Eight prepared triangles. Each row is one cache line.
@@ -27,43 +28,23 @@ pub(crate) struct PreparedBlock {
 }
 
 /// One vector of each of eight triangles.
-type Eight<S> = [f64x8<S>; 3];
+type Eight<S> = Vec3<f64x8<S>>;
 
 #[inline(always)]
-fn minus<S: Simd>(a: Eight<S>, b: Eight<S>) -> Eight<S> {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn cross<S: Simd>(a: Eight<S>, b: Eight<S>) -> Eight<S> {
-    [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]]
-}
-
-#[inline(always)]
-fn dot<S: Simd>(a: Eight<S>, b: Eight<S>) -> f64x8<S> {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn largest<S: Simd>(v: Eight<S>) -> f64x8<S> {
+fn largest<S: Simd>(Vec3(v): Eight<S>) -> f64x8<S> {
     v[0].abs().max(v[1].abs()).max(v[2].abs())
 }
 
 /// Returns the largest component of vectors enlarged by an extent.
 #[inline(always)]
-fn farthest<S: Simd>([x, y, z]: Eight<S>, extent: DVec3) -> f64x8<S> {
+fn farthest<S: Simd>(Vec3([x, y, z]): Eight<S>, extent: DVec3) -> f64x8<S> {
     (x.abs() + extent.x).max(y.abs() + extent.y).max(z.abs() + extent.z)
-}
-
-#[inline(always)]
-fn times<S: Simd>([x, y, z]: Eight<S>, by: f64x8<S>) -> Eight<S> {
-    [x * by, y * by, z * by]
 }
 
 /// Repeats one vector for all lanes.
 #[inline(always)]
 fn all<S: Simd>(simd: S, v: DVec3) -> Eight<S> {
-    [f64x8::splat(simd, v.x), f64x8::splat(simd, v.y), f64x8::splat(simd, v.z)]
+    Vec3([f64x8::splat(simd, v.x), f64x8::splat(simd, v.y), f64x8::splat(simd, v.z)])
 }
 
 /// Transforms corners to world space with the arithmetic of [`DMat4::transform_point3`]: all parts
@@ -82,14 +63,14 @@ fn placed<S: Simd>(simd: S, world_from_object: &DMat4, corner: &[[f32; BVH_BLOCK
         f64x8::from_slice(simd, &wide[1]),
         f64x8::from_slice(simd, &wide[2]),
     ];
-    each(
+    Vec3(each(
         [0, 1, 2],
         #[inline(always)]
         |axis: usize| {
             let [a, b, c] = [m.x_axis[axis], m.y_axis[axis], m.z_axis[axis]];
             z * c + (y * b + x * a) + m.w_axis[axis]
         },
-    )
+    ))
 }
 
 impl PreparedBlock {
@@ -111,23 +92,23 @@ impl PreparedBlock {
         store(&mut self.corners, [a, b, c]);
         let to = all(simd, light);
         // Edge vectors and the plane's normal. `size` scales the error bounds.
-        let (ab, bc, ca) = (minus(b, a), minus(c, b), minus(a, c));
-        let plane = cross(ab, minus(c, a));
+        let (ab, bc, ca) = (b.minus(a), c.minus(b), a.minus(c));
+        let plane = ab.cross(c.minus(a));
         let size = largest(ab) * largest(ca);
-        let to_light = minus(to, a);
-        let (sign, sided) = self.sign(simd, dot(plane, to_light), size * largest(to_light), light);
+        let to_light = to.minus(a);
+        let (sign, sided) = self.sign(simd, plane.dot(to_light), size * largest(to_light), light);
         // The planes through the light and each edge, with the sign that is positive between.
-        let (from_a, from_b, from_c) = (minus(a, to), minus(b, to), minus(c, to));
+        let (from_a, from_b, from_c) = (a.minus(to), b.minus(to), c.minus(to));
         let normals = [
-            times(cross(from_a, ab), sign),
-            times(cross(from_b, bc), sign),
-            times(cross(from_c, ca), sign),
-            times(plane, sign),
+            from_a.cross(ab).times(sign),
+            from_b.cross(bc).times(sign),
+            from_c.cross(ca).times(sign),
+            plane.times(sign),
         ];
         store(&mut self.normals, normals);
         // The error of each function grows with the distance of the points from the corner.
         let (centre, extent) = (all(simd, around.centre), around.extent());
-        let middle = [minus(centre, a), minus(centre, b), minus(centre, c)];
+        let middle = [centre.minus(a), centre.minus(b), centre.minus(c)];
         let far =
             [farthest(middle[0], extent), farthest(middle[1], extent), farthest(middle[2], extent)];
         let errors = [
@@ -142,10 +123,10 @@ impl PreparedBlock {
         let mut possible = sided;
         for i in 0..4 {
             errors[i].store_slice(&mut self.errors[i]);
-            let spread = dot(normals[i], halves[0]).abs()
-                + dot(normals[i], halves[1]).abs()
-                + dot(normals[i], halves[2]).abs();
-            let most = dot(normals[i], middle[i % 3]) + spread;
+            let spread = normals[i].dot(halves[0]).abs()
+                + normals[i].dot(halves[1]).abs()
+                + normals[i].dot(halves[2]).abs();
+            let most = normals[i].dot(middle[i % 3]) + spread;
             // A comparison with NaN or infinity is false, so such triangles are kept.
             possible &= !most.simd_lt(errors[i] * -4.0).to_bitmask();
         }
@@ -203,9 +184,9 @@ impl PreparedBlock {
                 break;
             }
             let (corner, normal) = (&self.corners[i % 3], &self.normals[i]);
-            let from = minus(p, rows(simd, corner));
+            let from = p.minus(rows(simd, corner));
             let error = f64x8::from_slice(simd, &self.errors[i]);
-            let value = dot(from, rows(simd, normal));
+            let value = from.dot(rows(simd, normal));
             between &= value.simd_gt(error).to_bitmask();
             possible &= value.simd_ge(-error).to_bitmask();
         }
@@ -224,15 +205,16 @@ impl PreparedBlock {
 
 #[inline(always)]
 fn rows<S: Simd>(simd: S, [x, y, z]: &[[f64; BVH_BLOCK]; 3]) -> Eight<S> {
-    [f64x8::from_slice(simd, x), f64x8::from_slice(simd, y), f64x8::from_slice(simd, z)]
+    Vec3([f64x8::from_slice(simd, x), f64x8::from_slice(simd, y), f64x8::from_slice(simd, z)])
 }
 
 #[inline(always)]
 fn store<S: Simd, const N: usize>(to: &mut [[[f64; BVH_BLOCK]; 3]; N], vectors: [Eight<S>; N]) {
     // By index: moving vectors through iterators takes them through memory.
     for i in 0..N {
-        for axis in 0..3 {
-            vectors[i][axis].store_slice(&mut to[i][axis]);
-        }
+        let Vec3([x, y, z]) = vectors[i];
+        x.store_slice(&mut to[i][0]);
+        y.store_slice(&mut to[i][1]);
+        z.store_slice(&mut to[i][2]);
     }
 }

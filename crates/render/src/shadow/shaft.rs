@@ -14,7 +14,7 @@
 use fearless_simd::{Simd, SimdBase as _, SimdMask as _, f32x16};
 use glam::{DMat4, DVec3, Vec3};
 
-use super::packet::POINTS;
+use super::rays::POINTS;
 use marraztu_core::base::math::{each, unit};
 
 /// An oriented box around the points of a packet.

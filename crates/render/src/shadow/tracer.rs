@@ -14,9 +14,9 @@ use super::shaft::Around;
 use super::triangle::{Corners, Prepared, is_between, reaches_behind};
 use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
 use crate::frame::FramePlan;
-use crate::frame::shadows::{Caster, CasterPart, Holes, ShadowSource, Shadows};
-use crate::simd::{Vec3, bits, dispatch};
-use crate::texture::sample::{brightness, sample};
+use crate::frame::shadows::{Caster, Holes, ShadowSource, Shadows};
+use crate::simd::{Bits, dispatch};
+use crate::texture::sample::{opacity_of, sample};
 use crate::texture::uv::uv;
 use marraztu_core::accuracy::{Filter, ShadowMethod};
 use marraztu_core::base::math::each;
@@ -279,7 +279,7 @@ impl<'a> Tracer<'a> {
         rays: u64,
     ) -> u64 {
         let mut behind = 0;
-        for ray in bits(rays) {
+        for ray in Bits(rays) {
             // A point's own triangles never shade it.
             let others = if packet.is_own {
                 possible & !block.among(simd, [origins.first[ray], origins.end[ray]])
@@ -288,7 +288,7 @@ impl<'a> Tracer<'a> {
             };
             let decided = prepared.decide(simd, origins.point(ray), others);
             let is_own = |i: usize| decided.between >> i & 1 == 1;
-            let mut met = bits(decided.between | decided.open);
+            let mut met = Bits(decided.between | decided.open);
             if met.any(|i| {
                 let triangle = (placed, block.numbers[i], &prepared.triangle(i));
                 self.stands_between(triangle, (packet, origins), (ray, is_own(i)))
@@ -315,8 +315,7 @@ impl<'a> Tracer<'a> {
         if placed.is_solid || !is_between {
             return is_between;
         }
-        let part = placed.caster.part_of(number);
-        self.is_solid_at(placed, part, number, triangle.parts(origins.point(ray)))
+        self.is_solid_at(placed, number, triangle.parts(origins.point(ray)))
     }
 
     /// Returns whether a point's own triangle reaches behind the plane of another. A point without
@@ -345,26 +344,15 @@ impl<'a> Tracer<'a> {
         placed(&caster.world_from_object, corners)
     }
 
-    /// Returns whether a part of a caster blocks light at these barycentric coordinates of a
-    /// triangle.
-    fn is_solid_at(
-        &self,
-        placed: &InPlace<'_>,
-        part: Option<&CasterPart>,
-        triangle: u32,
-        parts: DVec3,
-    ) -> bool {
-        let Some(part) = part else { return false };
+    /// Returns whether a triangle of a caster blocks light at these barycentric coordinates.
+    fn is_solid_at(&self, placed: &InPlace<'_>, triangle: u32, parts: DVec3) -> bool {
+        let Some(part) = placed.caster.part_of(triangle) else { return false };
         let Some(Holes { texture, map, opacity }) = &part.holes else { return true };
         let Some(uvs) = placed.caster.model.mesh.triangle_uvs(triangle) else { return true };
         let uvs = each(uvs, |[u, v]| [f64::from(u), f64::from(v)]);
         let at = uv(uvs, parts);
         let texture = texture.as_ref().map_or(1.0, |it| sample::<f64>(it, at, self.filter)[3]);
-        let map = map.as_ref().map_or(1.0, |it| {
-            let [r, g, b, alpha] = sample::<f64>(it, at, self.filter);
-            // An opaque opacity map is a greyscale picture: its brightness counts instead of alpha.
-            if it.picture.least_alpha() == 255 { brightness(Vec3([r, g, b])) } else { alpha }
-        });
+        let map = map.as_ref().map_or(1.0, |it| opacity_of(it, at, self.filter));
         texture * map * opacity >= 0.5
     }
 }

@@ -36,20 +36,23 @@ pub(crate) use single::log2;
 pub use sixteen::Sixteen;
 pub use vec3::Vec3;
 
-/// Iterates over the indices of the set bits of a mask.
-#[inline(always)]
-pub(crate) fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(
-        #[inline(always)]
-        move || {
-            (mask != 0).then(|| {
-                let first = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                first
-            })
-        },
-    )
-}
-
 /// The numbers of sixteen lanes.
 pub(crate) const UP_TO_SIXTEEN: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+
+/// Iterates over the indices of the set bits of a mask, the lowest first.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bits(pub(crate) u64);
+
+impl Iterator for Bits {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        if self.0 == 0 {
+            return None;
+        }
+        let i = self.0.trailing_zeros() as usize;
+        self.0 &= self.0 - 1;
+        Some(i)
+    }
+}

@@ -20,6 +20,14 @@ impl<R: Real> Vec3<R> {
         a * x + b * y + c * z
     }
 
+    /// Computes the cross product.
+    #[inline(always)]
+    #[must_use]
+    pub fn cross(self, other: Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([b * z - c * y, c * x - a * z, a * y - b * x])
+    }
+
     /// Multiplies each number by `factor`.
     #[inline(always)]
     #[must_use]

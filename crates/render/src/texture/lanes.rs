@@ -27,7 +27,7 @@ const LEVELS: usize = 16;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sampler<'a> {
     levels: &'a [Texture],
-    filter: Filter,
+    pub(crate) filter: Filter,
     /// Width and height of each level.
     sizes: [[f32; LEVELS]; 2],
     /// The sizes divided by the size of the first level.
@@ -54,16 +54,6 @@ impl<'a> Sampler<'a> {
             scales.iter_mut().for_each(|side| *side /= sides[0]);
         }
         has_texels.then_some(Self { levels, filter, sizes, scales })
-    }
-
-    /// Returns whether the filter reads mipmaps.
-    pub(crate) fn reads_mips(&self) -> bool {
-        self.filter.reads_mips()
-    }
-
-    /// Returns whether the filter reads several samples along the longer side of a pixel.
-    pub(crate) fn is_anisotropic(&self) -> bool {
-        self.filter == Filter::Anisotropic
     }
 
     /// Samples red, green and blue, as factors, at the first `len` places.
@@ -165,11 +155,6 @@ impl<'a> Sampler<'a> {
         self.levels.get(level).map_or(&[], |level| level.picture.pixels())
     }
 
-    /// Returns whether the filter shows texels unfiltered.
-    pub(crate) fn shows_texels(&self) -> bool {
-        self.filter == Filter::Nearest
-    }
-
     /// Wraps a coordinate in texels into the picture: 0 to its side.
     #[inline(always)]
     fn reduced<S: Simd>(&self, x: f32x16<S>, axis: usize) -> f32x16<S> {
@@ -197,7 +182,8 @@ impl<'a> Sampler<'a> {
         len: usize,
         to: &mut Rows<f32>,
     ) {
-        let most = if self.is_anisotropic() { count_probes(simd, places, len) } else { 1.0 };
+        let most =
+            if self.filter == Filter::Anisotropic { count_probes(simd, places, len) } else { 1.0 };
         let same = self.find_levels(simd, places, len);
         let middle = places.position;
         let mut sums = [[0.0; BATCH]; 3];

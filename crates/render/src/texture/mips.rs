@@ -158,19 +158,23 @@ mod tests {
 
     const TRILINEAR: Filter = Filter::Trilinear;
 
-    /// Columns of black and white texels.
-    fn striped(side: usize) -> Shared<Texture> {
-        let at = |i: usize| if i.is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] };
-        let picture =
-            Picture::from_pixels(Size::new(side, side), (0..side * side).map(at).collect());
-        let picture = picture.unwrap().into();
-        Shared::new(Texture { picture, ..Texture::clone(&chequered(1)) })
+    /// A texture with white texels and black ones.
+    fn patterned(side: usize, is_white: impl Fn(usize) -> bool) -> Shared<Texture> {
+        let at = |i: usize| if is_white(i) { [255; 4] } else { [0, 0, 0, 255] };
+        let pixels = (0..side * side).map(at).collect();
+        let picture = Picture::from_pixels(Size::new(side, side), pixels).unwrap().into();
+        let (wrap, offset, scale) = (Wrap::Repeat, [0.0; 2], [1.0; 2]);
+        Shared::new(Texture { source: PathBuf::new(), picture, wrap, offset, scale })
+    }
+
+    fn chequered(side: usize) -> Shared<Texture> {
+        patterned(side, |i| (i % side + i / side).is_multiple_of(2))
     }
 
     /// A pixel that is eight texels high and half a texel wide lies within one column.
     #[test]
     fn a_pixel_along_a_stripe_shows_its_colour_only_with_the_anisotropic_filter() {
-        let mips = Mips::new(&striped(16), Decoding::Stored);
+        let mips = Mips::new(&patterned(16, |i| i.is_multiple_of(2)), Decoding::Stored);
         let at = |column: f64, filter: Filter| -> [f64; 4] {
             let uv = [(column + 0.5) / 16.0, 0.37];
             mips.sample_beside((uv, [0.0; 2]), [[0.5 / 16.0, 0.0], [0.0, 8.0 / 16.0]], filter)
@@ -179,17 +183,6 @@ mod tests {
         assert!((shown[0] - 1.0).abs() < 1e-9 && shown[1].abs() < 1e-9, "{shown:?}");
         let grey = [0.0, 1.0].map(|column| at(column, TRILINEAR)[0]);
         assert!(grey.iter().all(|grey| (grey - 0.5).abs() < 0.003), "{grey:?}");
-    }
-
-    fn chequered(side: usize) -> Shared<Texture> {
-        let at = |i: usize| {
-            if (i % side + i / side).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] }
-        };
-        let picture =
-            Picture::from_pixels(Size::new(side, side), (0..side * side).map(at).collect());
-        let (wrap, offset, scale) = (Wrap::Repeat, [0.0; 2], [1.0; 2]);
-        let source = PathBuf::new();
-        Shared::new(Texture { source, picture: picture.unwrap().into(), wrap, offset, scale })
     }
 
     #[test]

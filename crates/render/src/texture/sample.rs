@@ -67,6 +67,12 @@ pub(crate) fn sample_as<T: Number>(
     }
 }
 
+/// Samples an opacity map at `uv`: its alpha or, if it is opaque everywhere, its brightness.
+pub(crate) fn opacity_of(map: &Texture, uv: [f64; 2], filter: Filter) -> f64 {
+    let [r, g, b, alpha] = sample::<f64>(map, uv, filter);
+    if map.picture.least_alpha() == 255 { brightness(Vec3([r, g, b])) } else { alpha }
+}
+
 /// The factor of each byte: byte / 255.
 const FACTORS: [f64; 256] = {
     let mut factors = [0.0; 256];

@@ -14,7 +14,7 @@ use crate::raster::entries::word;
 use crate::raster::large;
 use crate::screen::sample_positions::FOUR;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS};
-use crate::simd::{UP_TO_SIXTEEN, bits};
+use crate::simd::{Bits, UP_TO_SIXTEEN};
 
 /// The largest bounding box, in pixels, of a triangle drawn by a list of fragments.
 pub(super) const MOST: i32 = 64;
@@ -111,7 +111,7 @@ impl Fragments {
             };
             let depth = f32x16::from_slice(simd, &self.depths[at..at + 16]);
             let keys = <[u32; 16]>::from(format.keys(depth));
-            for lane in bits(opaque) {
+            for lane in Bits(opaque) {
                 let lane = lane % 16;
                 let entry = &mut buffer[self.place(at + lane)];
                 *entry = word(keys[lane], number).max(*entry);

@@ -11,7 +11,7 @@ use crate::raster::depth_format::Any;
 use crate::raster::geometry::ScreenGeometry;
 use crate::raster::large::{BlockTriangle, Large, Touched};
 use crate::screen::tiles::BLOCK_PIXELS;
-use crate::simd::bits;
+use crate::simd::Bits;
 use crate::texture::opacity::Holes;
 
 /// The data reused from one alpha-tested triangle of a tile to the next.
@@ -48,7 +48,7 @@ impl Visibility {
         let Touched { mut some, whole } = large.blocks::<S, N>(simd, area, &self.sample_positions);
         // Blocks with nearer depths everywhere hide the triangle (hierarchical Z).
         let high = self.key(large.high);
-        for block in bits(some) {
+        for block in Bits(some) {
             if high < self.farthest[block] {
                 some &= !(1 << block);
             }
@@ -73,7 +73,7 @@ impl Visibility {
         let tests: [Option<AlphaTest<'_, '_>>; N] = std::array::from_fn(test);
         let large = BlockTriangle::Large(large);
         some &= !self.draw_even_blocks::<N>(simd.level(), &large, some & whole, &tests);
-        for block in bits(some) {
+        for block in Bits(some) {
             self.draw_tested::<S, N>(simd, &large, block, whole >> block & 1 != 0, &tests);
         }
     }
@@ -115,7 +115,7 @@ impl Visibility {
         let (mut done, mut place) = (0, None);
         // Classifying costs a tenth of sampling. If it hardly ever succeeds, it stops.
         let mut credit = 4;
-        for block in bits(blocks) {
+        for block in Bits(blocks) {
             if credit == 0 {
                 break;
             }
@@ -153,7 +153,7 @@ impl Visibility {
             let shift = self.sample_positions.shift::<N>(sample);
             // First pass: list the pixels in front, block by block.
             fragments.count = 0;
-            for block in bits(some) {
+            for block in Bits(some) {
                 self.write::<N>(simd.level(), block);
                 let first = (block * N + sample) * BLOCK_PIXELS;
                 let whole = whole >> block & 1 != 0;

@@ -22,7 +22,7 @@ use crate::raster::visibility_buffer::BACKGROUND;
 use crate::screen::coverage::PixelBox;
 use crate::screen::sample_positions::{FOUR, SamplePositions};
 use crate::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE, lanes_place};
-use crate::simd::bits;
+use crate::simd::Bits;
 
 /// The nearest small triangles of a tile.
 #[derive(Debug, Default)]
@@ -67,7 +67,7 @@ impl Visibility {
                     small.draw(simd, D::of(self.depth_format), (bins, tile));
                 });
                 // Only the blocks that were reached are moved to the planes.
-                for block in bits(small.reached) {
+                for block in Bits(small.reached) {
                     self.put_pixels(simd, block, &small.blocks[block].0);
                 }
             },

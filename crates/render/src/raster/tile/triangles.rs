@@ -1,6 +1,6 @@
 //! Draws the medium and large triangles of a tile that have no holes.
 
-use crate::simd::{bits, dispatch};
+use crate::simd::{Bits, dispatch};
 use fearless_simd::{Level, Simd};
 
 use super::Visibility;
@@ -48,7 +48,7 @@ impl Visibility {
         let touched = triangle.blocks::<S, N>(simd, area, &self.sample_positions);
         let (high, mut place) = (self.key(triangle.high()), None);
         // Skip hidden blocks (hierarchical Z), note fully covered ones, draw the rest.
-        for block in bits(touched.some) {
+        for block in Bits(touched.some) {
             if high < self.farthest[block] {
                 continue;
             }
@@ -80,7 +80,7 @@ impl Visibility {
         let Touched { some, whole } = medium.blocks::<N>(simd, area, &self.sample_positions);
         let high = self.key(medium.high);
         let (mut large, mut place) = (None, None);
-        with_format!(self.depth_format, D => for block in bits(some) {
+        with_format!(self.depth_format, D => for block in Bits(some) {
             let block = block % BLOCK_PIXELS;
             if high < self.farthest[block] {
                 continue;

@@ -14,7 +14,7 @@ use crate::raster::geometry::ScreenGeometry;
 use crate::raster::large::BlockTriangle;
 use crate::raster::scan_lines::ScanLines;
 use crate::screen::coverage::PixelBox;
-use crate::simd::bits;
+use crate::simd::Bits;
 use marraztu_core::accuracy::Coverage;
 use marraztu_core::base::math::each;
 
@@ -77,7 +77,7 @@ impl Visibility {
         }
         let touched = triangle.blocks::<S, N>(simd, area, &self.sample_positions);
         let high = self.key(triangle.high());
-        for block in bits(touched.some) {
+        for block in Bits(touched.some) {
             if high >= self.farthest[block] {
                 let whole = touched.whole >> block & 1 != 0;
                 self.draw_tested::<S, N>(simd, triangle, block, whole, tests);

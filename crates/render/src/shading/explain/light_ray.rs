@@ -4,12 +4,9 @@ use glam::{DMat3, DVec3};
 
 use crate::frame::FramePlan;
 use crate::frame::draw::Stage;
-use crate::lights::{Batch, Form, Rows, ViewLight, store};
-use crate::shading::context::ShadingContext;
+use crate::lights::{Batch, Form, Rows, ViewLight};
 use crate::shading::interpolated::ShadingNumber;
 use crate::shading::pixel_color::{LightRay, Part, Term};
-use crate::shading::quantize::{SurfaceColor, reflected};
-use crate::simd::{Kernel, Lanes, Vec3};
 
 /// Returns the terms of one light: ambient, or diffuse and specular.
 pub(super) fn light_terms<T: ShadingNumber>(
@@ -112,28 +109,6 @@ pub(super) fn plus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 /// Computes t D + S for the first position of a batch, in the arithmetic of the picture.
-pub(super) fn reflect<T: ShadingNumber>(
-    context: &ShadingContext<'_, T>,
-    batch: &Batch<T>,
-    own: [f64; 3],
-) -> [f64; 3] {
-    let mut to: Rows<T> = [[T::default(); crate::simd::BATCH]; 3];
-    let own = own.map(T::from_f64);
-    T::run(context.level, Reflect { batch, own, to: &mut to });
-    first(&to)
-}
-
-struct Reflect<'a, T> {
-    batch: &'a Batch<T>,
-    own: [T; 3],
-    to: &'a mut Rows<T>,
-}
-
-impl<T: ShadingNumber> Kernel<T> for Reflect<'_, T> {
-    #[inline(always)]
-    fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { batch, own, to } = self;
-        let own: Vec3<M::R> = SurfaceColor::Tint(own).at(lanes, 0);
-        store(lanes, reflected(lanes, own, batch, 0), to, 0);
-    }
+pub(super) fn reflect<T: ShadingNumber>(batch: &Batch<T>, own: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|i| (T::from_f64(own[i]) * batch.diffuse[i][0] + batch.specular[i][0]).into())
 }

@@ -26,7 +26,7 @@ fn triangles_of_neighbouring_blocks_keep_their_slots() {
             }
         });
         let before = fragments.numbers[..fragments.count].to_vec();
-        fragments.list_on(Level::new(), &visibility, [0, 0], 32);
+        fragments.list(Level::new(), &visibility, [0, 0], 32);
         assert!(fragments.count <= SLOTS);
         went_on += usize::from(fragments.numbers[..fragments.count].starts_with(&before));
         for (k, place) in fragments.pixels[..fragments.len].iter().enumerate() {
@@ -120,7 +120,7 @@ fn every_pixel_finds_its_triangle_in_its_slot() {
             }
         });
         let mut fragments = Fragments::default();
-        let shown = fragments.list(Level::new(), &visibility, [8, 16]);
+        let shown = fragments.list(Level::new(), &visibility, [8, 16], 0);
         let is_triangle = |i: &usize| visibility[*i] != 0 && !(visibility[*i] as u32) < 1 << 31;
         let want: Vec<usize> = (0..BLOCK_PIXELS).filter(is_triangle).collect();
         let bits = want.iter().fold(0, |bits, i| bits | 1_u64 << i);

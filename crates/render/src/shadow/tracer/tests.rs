@@ -4,6 +4,7 @@ use crate::accel::Accelerated as _;
 use glam::DMat4;
 
 use super::*;
+use crate::frame::shadows::CasterPart;
 use marraztu_core::base::Shared;
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
