@@ -13,7 +13,7 @@ use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::{Budgets, Report, brief};
 
 /// The contents of the laboratory panel.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Laboratory {
     /// The last measurement, or the results so far of the running one.
     pub report: Option<Report>,
@@ -55,33 +55,6 @@ pub struct Laboratory {
     pub costs: BTreeMap<&'static str, AxisCost>,
     /// The scene, the view and the size that were measured.
     pub(crate) measured: Option<(Scene, View, Size)>,
-}
-
-impl Default for Laboratory {
-    fn default() -> Self {
-        Self {
-            report: None,
-            is_rough: false,
-            suite: Vec::new(),
-            shown_suite: None,
-            running: None,
-            left: None,
-            failed: None,
-            measure: Measure::default(),
-            region: Region::default(),
-            panel: None,
-            budgets: Budgets::default(),
-            compare: Compare::Off,
-            reference: Reference::default(),
-            away: false,
-            costs: BTreeMap::new(),
-            judged: None,
-            picking: false,
-            attribution: None,
-            lesson: None,
-            measured: None,
-        }
-    }
 }
 
 impl Laboratory {

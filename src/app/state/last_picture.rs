@@ -13,7 +13,7 @@ use marraztu_lab::cost::{Costs, Explained};
 use marraztu_render::{Damage, PixelColor};
 
 /// Statistics of the last picture.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Statistics {
     /// The time from the snapshot to the finished picture in memory, on the drawing thread, of the
     /// last picture that differs from the one before.
@@ -36,23 +36,6 @@ pub struct Statistics {
     pub refined: Option<Samples>,
     /// The parts that were redrawn, and why.
     pub changes: Option<Damage>,
-}
-
-impl Default for Statistics {
-    fn default() -> Self {
-        Self {
-            time: Duration::ZERO,
-            size: Size::new(0, 0),
-            pictures: 0,
-            late: false,
-            rate: 0,
-            triangles: 0,
-            reduction: Reduction::NONE,
-            lost: None,
-            refined: None,
-            changes: None,
-        }
-    }
 }
 
 impl Statistics {
